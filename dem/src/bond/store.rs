@@ -200,6 +200,12 @@ impl Held {
         self.partner.extend(pairs.iter().map(|p| p[1]));
     }
 
+    /// All pairs.
+    pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        let rows = self.start.windows(2).enumerate();
+        rows.flat_map(|(a, w)| self.partner[w[0] as usize..w[1] as usize].iter().map(move |b| [a as u32, *b]))
+    }
+
     /// Whether two bodies are held.
     #[inline]
     pub fn has(&self, a: u32, b: u32) -> bool {

@@ -20,6 +20,7 @@ use crate::lanes::V3;
 use crate::law::History;
 use crate::pairs::cross::ImageName;
 use crate::pairs::groups::Groups;
+use std::cell::Cell;
 
 /// Lists of bonds across blocks, then within.
 fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
@@ -28,6 +29,11 @@ fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
 
 fn bond_lists_mut(state: &mut State) -> impl Iterator<Item = &mut BondList> {
     state.bonds.cross.iter_mut().chain(state.lists.iter_mut().map(|l| &mut l.bonds))
+}
+
+fn add_to(spring: &mut Vec<[f64; 4]>, turn: &mut Vec<[f64; 4]>, h: History) {
+    spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
+    turn.push(h.turn);
 }
 
 /// Memory of all contacts: spring and the number of the normal law; rolling and twisting springs. And that of all bonds: shear, turn.
@@ -55,36 +61,49 @@ impl Memory {
     /// That of a state.
     pub fn of(state: &State) -> Memory {
         let mut out = Memory::default();
-        let Memory { spring, turn, bonds, kept } = &mut out;
-        let mut add = |h: History| {
-            spring.push([h.spring.x, h.spring.y, h.spring.z, h.rate]);
-            turn.push(h.turn);
-        };
+        let Memory { spring, turn, bonds, .. } = &mut out;
+        let mut add = |h: History| add_to(spring, turn, h);
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.pairs.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.planes.iter().for_each(|(_, h)| add(h)));
         for list in bond_lists(state).iter().flatten() {
-            list.debonded.iter().for_each(|pair| add(pair.history));
             for kernel::Memory { shear, turn } in list.iter().map(|e| e.memory) {
                 bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
             }
         }
+        out.add_rest(state);
+        out
+    }
+
+    /// That of what is neither a contact of spheres with spheres or planes nor a bond.
+    pub fn of_rest(state: &State) -> Memory {
+        let mut out = Memory::default();
+        out.add_rest(state);
+        out
+    }
+
+    fn add_rest(&mut self, state: &State) {
+        let Memory { spring, turn, kept, .. } = self;
+        let mut add = |h: History| add_to(spring, turn, h);
+        bond_lists(state).iter().flatten().for_each(|l| l.debonded.iter().for_each(|pair| add(pair.history)));
         state.cross.iter().for_each(|c| c.images.iter().for_each(|image| add(image.history)));
         state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
-        out
     }
 
     /// Puts it into a state with the same lists.
     pub fn put(&self, state: &mut State) {
+        let from = self.put_contacts(state);
+        self.put_rest(state, from);
+    }
+
+    /// Puts that of contacts of spheres with spheres and planes, which come first, and of bonds into a state; how many there are of the
+    /// former.
+    pub fn put_contacts(&self, state: &mut State) -> usize {
         let (mut at, mut bond) = (0, 0);
         state.cross.iter_mut().for_each(|c| self.fill(&mut c.spheres, &mut at));
         state.lists.iter_mut().for_each(|l| self.fill(&mut l.pairs, &mut at));
         state.lists.iter_mut().for_each(|l| self.fill(&mut l.planes, &mut at));
         for list in bond_lists_mut(state) {
-            for DebondedPair { history, .. } in &mut list.debonded {
-                *history = self.history(at, true);
-                at += 1;
-            }
             for k in 0..list.count as usize {
                 let vector = |[x, y, z, _]: [f64; 4]| V3::new(x, y, z);
                 let memory =
@@ -92,6 +111,15 @@ impl Memory {
                 list.set(k, &Entry { memory, ..list.get(k) });
                 bond += 2;
             }
+        }
+        at
+    }
+
+    /// Puts that of all other contacts, from number `at` on, into a state.
+    pub fn put_rest(&self, state: &mut State, mut at: usize) {
+        for DebondedPair { history, .. } in bond_lists_mut(state).flat_map(|list| &mut list.debonded) {
+            *history = self.history(at, true);
+            at += 1;
         }
         for image in state.cross.iter_mut().flat_map(|c| &mut c.images) {
             image.history = self.history(at, true);
@@ -128,6 +156,9 @@ pub(super) struct Lists {
     pub start: Vec<u32>,
     /// What it is and which, and the other of its ends.
     pub entries: Vec<[u32; 2]>,
+    /// The block after whose contacts across it is summed up; one past the last block, if after all of these; more, if after all contacts
+    /// of spheres with spheres and planes.
+    pub after: Vec<u32>,
     /// Where the lists of each block begin, and one past the last of each.
     pub ranges: Vec<[u32; LISTS]>,
     /// Bodies of each bond, and its constants.
@@ -144,18 +175,21 @@ pub(super) struct Lists {
     pub watched: Vec<[u32; 3]>,
     /// Number of blocks.
     blocks: usize,
+    /// Number of the first contact.
+    first: u32,
 }
 
 impl Lists {
-    pub fn of(model: &Model, state: &State, work: &Work, spheres: &Spheres) -> Lists {
-        let blocks = state.blocks.len();
-        let mut out = Lists { ranges: vec![[0; LISTS]; blocks + 1], blocks, ..Lists::default() };
-        let mut first = 0;
+    /// The lists of a state. `first`: how many contacts come before these, as the device has listed them itself.
+    pub fn of(model: &Model, state: &State, work: &Work, spheres: &Spheres, first: usize) -> Lists {
+        let (blocks, first) = (state.blocks.len(), first as u32);
+        let mut out = Lists { ranges: vec![[0; LISTS]; blocks + 1], blocks, first, ..Lists::default() };
+        let mut bodies = 0;
         for (b, block) in state.blocks.iter().enumerate() {
-            out.ranges[b][0] = first;
-            first += block.bodies.len() as u32;
+            out.ranges[b][0] = bodies;
+            bodies += block.bodies.len() as u32;
         }
-        out.ranges[blocks][0] = first;
+        out.ranges[blocks][0] = bodies;
         out.contacts(state, work, spheres);
         let places =
             [List::CrossDebonded, List::OwnDebonded].into_iter().zip([List::CrossBonds, List::OwnBonds]);
@@ -164,12 +198,21 @@ impl Lists {
         }
         out.images(model, state, spheres);
         for (b, lists) in state.lists.iter().enumerate() {
-            out.ranges[b][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
+            out.ranges[b][List::Patches as usize] = out.next() + out.pairs.ends.len() as u32;
             out.pairs.add(b, lists, spheres);
         }
-        out.ranges[blocks][List::Patches as usize] = (out.ends.len() + out.pairs.ends.len()) as u32;
+        out.ranges[blocks][List::Patches as usize] = out.next() + out.pairs.ends.len() as u32;
         out.enter(state, work, spheres);
         out
+    }
+
+    /// Number of the next contact.
+    pub fn next(&self) -> u32 {
+        self.first + self.ends.len() as u32
+    }
+
+    fn ends_of(&self, contact: u32) -> [u32; 2] {
+        self.ends[(contact - self.first) as usize]
     }
 
     /// Where a list of a block begins; block `blocks`: one past its last.
@@ -185,7 +228,7 @@ impl Lists {
             for (b, members) in work.members.iter().enumerate() {
                 let by_body = spheres.clumps && !members.rigid && list != List::Cross;
                 for of in self.from(list, b)..self.from(list, b + 1) {
-                    let i = self.ends[of as usize][0];
+                    let i = self.ends_of(of)[0];
                     let sphere = if by_body { spheres.first[i as usize] } else { i };
                     out[k * count + sphere as usize + 1] += 1;
                 }
@@ -201,8 +244,7 @@ impl Lists {
 
     /// Contacts of spheres with spheres and planes.
     fn contacts(&mut self, state: &State, work: &Work, spheres: &Spheres) {
-        let mark =
-            |out: &mut Lists, list: List, b: usize| out.ranges[b][list as usize] = out.ends.len() as u32;
+        let mark = |out: &mut Lists, list: List, b: usize| out.ranges[b][list as usize] = out.next();
         for (b, cross) in state.cross.iter().enumerate() {
             mark(self, List::Cross, b);
             let ends =
@@ -227,21 +269,21 @@ impl Lists {
     /// Contacts across periodic borders.
     fn images(&mut self, model: &Model, state: &State, spheres: &Spheres) {
         for (b, cross) in state.cross.iter().enumerate() {
-            self.ranges[b][List::Images as usize] = self.ends.len() as u32;
+            self.ranges[b][List::Images as usize] = self.next();
             for ImageName { i, block, j, shift } in cross.images.iter().map(|image| image.name) {
                 self.ends.push([spheres.at(b, i), spheres.at(block as usize, j)]);
                 let way = model.periodic.map_or(Vec3::zeros(), |p| p.way(&shift));
                 self.ways.push([way.x, way.y, way.z, 0.0]);
             }
         }
-        self.ranges[self.blocks][List::Images as usize] = self.ends.len() as u32;
+        self.ranges[self.blocks][List::Images as usize] = self.next();
     }
 
     /// Debonded pairs and bonds of some lists, one of each block; `debonded`, `bonds`: what these are here.
     fn bonds(&mut self, model: &Model, debonded: List, bonds: List, lists: &[&BondList]) {
         let across = bonds == List::CrossBonds;
         for b in 0..=self.blocks {
-            self.ranges[b][debonded as usize] = self.ends.len() as u32;
+            self.ranges[b][debonded as usize] = self.next();
             self.ranges[b][bonds as usize] = self.bond_ends.len() as u32;
             let Some(list) = lists.get(b) else { continue };
             let there = |block: u32| if across { block as usize } else { b };
@@ -259,9 +301,11 @@ impl Lists {
     /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
     /// and within, contacts within, planes, triangles.
     fn enter(&mut self, state: &State, work: &Work, spheres: &Spheres) {
-        let mut all: Vec<(u32, u32)> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
-        let mut put =
-            |body: u32, what: What, of: u32, second: bool| all.push((body, entry(what, of, second)));
+        let mut all: Vec<[u32; 3]> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
+        let after = Cell::new(0);
+        let mut put = |body: u32, what: What, of: u32, second: bool| {
+            all.push([body, entry(what, of, second), after.get()])
+        };
         // Across blocks the engine takes the formulas of clumps for all spheres, where there are clumps.
         let across = if spheres.clumps { What::Members } else { What::Spheres };
         // Those that the processor moves gather nothing here.
@@ -269,6 +313,7 @@ impl Lists {
         for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
             for share in &w.shares.list {
                 let from = share.block as usize;
+                after.set(share.block);
                 let (forces, record) = (&work.cross[from], share.record());
                 let (what, of) = if record >= forces.images_at {
                     let of = (record - forces.images_at) / forces.width;
@@ -281,6 +326,7 @@ impl Lists {
                 };
                 put(self.body(b, share.place), what, of, !share.first());
             }
+            after.set(self.blocks as u32);
             for share in work.bonds.shares(b) {
                 let from = share.block as usize;
                 let count = state.bonds.cross[from].count;
@@ -291,11 +337,10 @@ impl Lists {
                 put(self.body(b, share.place), what, of, !share.first);
             }
         }
-        let bonds =
-            [(What::Bond, List::OwnBonds, &self.bond_ends), (What::Debonded, List::OwnDebonded, &self.ends)];
-        for (what, list, ends) in bonds {
+        after.set(self.blocks as u32);
+        for (what, list) in [(What::Bond, List::OwnBonds), (What::Debonded, List::OwnDebonded)] {
             for of in self.from(list, 0)..self.from(list, self.blocks) {
-                let [i, j] = ends[of as usize];
+                let [i, j] = if what == What::Bond { self.bond_ends[of as usize] } else { self.ends_of(of) };
                 put(i, what, of, false);
                 put(j, what, of, true);
             }
@@ -307,7 +352,7 @@ impl Lists {
                 let what = if members.rigid { member } else { single };
                 let body = |end: u32| if members.rigid { spheres.owner(end) } else { end };
                 for of in self.from(list, b)..self.from(list, b + 1) {
-                    let [i, j] = self.ends[of as usize];
+                    let [i, j] = self.ends_of(of);
                     put(body(i), what, of, false);
                     if list == List::Own {
                         put(body(j), what, of, true);
@@ -315,6 +360,7 @@ impl Lists {
                 }
             }
         }
+        after.set(u32::MAX);
         for (group, &first) in self.pairs.groups.iter().enumerate() {
             put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
         }
@@ -347,21 +393,23 @@ impl Lists {
         } else if what == What::Bond as u32 {
             self.bond_ends[of][side]
         } else {
-            self.ends[of][side]
+            self.ends_of(of as u32)[side]
         }
     }
 
     /// Sorts entries by body; the order of each body's entries stays.
-    fn sort(&mut self, all: &[(u32, u32)]) {
+    fn sort(&mut self, all: &[[u32; 3]]) {
         let bodies = self.from(List::Bodies, self.blocks) as usize;
         self.start = vec![0; bodies + 1];
-        all.iter().for_each(|(body, _)| self.start[*body as usize + 1] += 1);
+        all.iter().for_each(|[body, ..]| self.start[*body as usize + 1] += 1);
         (0..bodies).for_each(|k| self.start[k + 1] += self.start[k]);
         let mut next = self.start.clone();
         self.entries = vec![[0; 2]; all.len()];
-        for (body, entry) in all {
+        self.after = vec![0; all.len()];
+        for [body, entry, after] in all {
             let to = &mut next[*body as usize];
             self.entries[*to as usize] = [*entry, self.there(*entry)];
+            self.after[*to as usize] = *after;
             *to += 1;
         }
     }

@@ -13,6 +13,7 @@ use crate::base::error::StepError;
 use crate::bodies::table::Kind;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
+use crate::engine::candidates::Listed;
 use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -47,14 +48,18 @@ pub struct Device<M> {
     pub(super) ahead: bool,
     /// Whether the device has found the neighbours, and neither the state nor `work` knows them.
     pub(super) found: bool,
-    /// Contacts, pairs of spheres and triangles among them, and bonds on the device.
+    /// Contacts, those of spheres with spheres and planes, which come first, and pairs of spheres and triangles among them; bonds on the
+    /// device.
     pub(super) contacts: usize,
-    pairs: usize,
+    pub(super) among_spheres: usize,
+    pub(super) pairs: usize,
     bonds: usize,
+    /// The search after which the device was handed the pairs that bonds hold, since it has this order of bodies.
+    pub(super) held_since: Option<u64>,
     /// Whether the next step is the engine's to make.
-    orphans: bool,
+    pub(super) orphans: bool,
     /// The processor's part of the steps.
-    handed: Handed,
+    pub(super) handed: Handed,
 }
 
 /// Arrays that change places after each step.
@@ -100,6 +105,8 @@ impl<M: Machine> Device<M> {
             ahead: false,
             found: false,
             contacts: 0,
+            among_spheres: 0,
+            held_since: None,
             pairs: 0,
             bonds: 0,
             orphans: false,
@@ -134,8 +141,19 @@ impl<M: Machine> Device<M> {
         self.machine.put(self.call.buffers[slot as usize], numbers)
     }
 
-    fn put_counts(&mut self, slot: Slot, counts: &[u32]) -> Result<(), String> {
+    pub(super) fn put_counts(&mut self, slot: Slot, counts: &[u32]) -> Result<(), String> {
         self.machine.put_counts(self.call.buffers[slot as usize], counts)
+    }
+
+    pub(super) fn get(&mut self, slot: Slot, from: usize, numbers: &mut [f64]) -> Result<(), String> {
+        self.machine.get(self.call.buffers[slot as usize], from, numbers)
+    }
+
+    /// What pairs of spheres and triangles keep.
+    pub(super) fn get_kept(&mut self, memory: &mut Memory) -> Result<(), String> {
+        let kept = &mut memory.kept;
+        self.get(Slot::OldSpare, 0, &mut kept.spare)?;
+        self.get(Slot::OldTouch, 0, kept.touch.as_flattened_mut().as_flattened_mut())
     }
 
     pub(super) fn reserve(&mut self, slot: Slot, numbers: usize) -> Result<(), String> {
@@ -170,14 +188,12 @@ impl<M: Machine> Device<M> {
         if self.features.clumps {
             self.take_clumps(&motion, &constants)?;
         }
-        if self.features.classes > 0 {
-            let blocks = state.blocks.iter().enumerate();
-            let blocks: Vec<u32> =
-                blocks.flat_map(|(b, block)| block.bodies.iter().map(move |_| b as u32)).collect();
-            self.put_counts(Slot::Block, &blocks)?;
-        }
+        let blocks = state.blocks.iter().enumerate();
+        let blocks: Vec<u32> =
+            blocks.flat_map(|(b, block)| block.bodies.iter().map(move |_| b as u32)).collect();
+        self.put_counts(Slot::Block, &blocks)?;
         self.take_lists(model, state)?;
-        (self.ahead, self.found) = (false, false);
+        (self.ahead, self.found, self.held_since) = (false, false, None);
         Ok(())
     }
 
@@ -210,18 +226,15 @@ impl<M: Machine> Device<M> {
 
     /// The near list, bonds, and the memory of both.
     fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
-        let lists = Lists::of(model, state, &self.work, &self.spheres);
+        let lists = Lists::of(model, state, &self.work, &self.spheres, 0);
         let memory = Memory::of(state);
         let last = state.blocks.len();
-        let (pairs, bonds) = (lists.pairs.ends.len(), lists.bond_ends.len());
-        let count = lists.ends.len() + pairs;
-        (self.contacts, self.pairs, self.bonds, self.orphans) = (count, pairs, bonds, lists.pairs.orphans);
+        let bonds = lists.bond_ends.len();
+        (self.bonds, self.orphans) = (bonds, lists.pairs.orphans);
         let planes = lists.from(List::Planes, 0);
-        let debonded = lists.from(List::CrossDebonded, 0);
         self.call.count(Count::FirstPlane, planes as usize);
-        self.call.count(Count::FirstDebonded, debonded as usize);
-        self.call.count(Count::FirstPatch, lists.ends.len());
-        self.call.count(Count::FirstImage, lists.from(List::Images, 0) as usize);
+        self.note_rest(&lists);
+        let (count, pairs) = (self.contacts, self.pairs);
         let counts: [(Slot, &[u32]); 7] = [
             (Slot::Ends, lists.ends.as_flattened()),
             (Slot::Start, &lists.start),
@@ -234,9 +247,7 @@ impl<M: Machine> Device<M> {
         for (slot, list) in counts {
             self.put_counts(slot, list)?;
         }
-        if self.features.classes > 0 {
-            self.put_counts(Slot::Offsets, &lists.offsets(&self.work, &self.spheres))?;
-        }
+        self.put_counts(Slot::Offsets, &lists.offsets(&self.work, &self.spheres))?;
         let numbers: [(Slot, &[f64]); 8] = [
             (Slot::OldMemory, memory.spring.as_flattened()),
             (Slot::OldTurn, if self.features.roll { memory.turn.as_flattened() } else { &[] }),
@@ -258,13 +269,36 @@ impl<M: Machine> Device<M> {
             (Slot::Spent, 2 * count),
             (Slot::Walls, 8 * with_planes),
             (Slot::Power, bonds),
+            (Slot::Couples, 4 * lists.ways.len()),
+        ];
+        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))?;
+        self.room_for_pairs(pairs)?;
+        self.hand_over_from(lists)
+    }
+
+    /// Notes where the lists begin that come after contacts of spheres with spheres and planes, and how long they are.
+    pub(super) fn note_rest(&mut self, lists: &Lists) {
+        self.among_spheres = lists.from(List::CrossDebonded, 0) as usize;
+        self.pairs = lists.pairs.ends.len();
+        self.contacts = lists.next() as usize + self.pairs;
+        self.call.count(Count::FirstDebonded, self.among_spheres);
+        self.call.count(Count::FirstImage, lists.from(List::Images, 0) as usize);
+        self.call.count(Count::FirstPatch, lists.next() as usize);
+    }
+
+    /// Room for what pairs of spheres and triangles leave.
+    pub(super) fn room_for_pairs(&mut self, pairs: usize) -> Result<(), String> {
+        let room = [
             (Slot::NewSpare, pairs),
             (Slot::NewTouch, 12 * pairs),
             (Slot::Ended, pairs),
             (Slot::Action, 8 * pairs),
-            (Slot::Couples, 4 * lists.ways.len()),
         ];
-        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))?;
+        room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
+    }
+
+    /// Has the processor's part of the steps follow these lists.
+    pub(super) fn hand_over_from(&mut self, lists: Lists) -> Result<(), String> {
         if self.features.beside {
             let width = self.features.picked_width();
             let there = (&mut self.machine, &mut self.call);
@@ -276,14 +310,15 @@ impl<M: Machine> Device<M> {
     /// Makes `state` whole.
     fn fetch(&mut self, state: &mut State) -> Result<(), StepError> {
         if self.ahead {
-            self.bring_back(state).map_err(|e| failed(state, e))?;
+            self.bring_back(state, Listed::All).map_err(|e| failed(state, e))?;
             self.ahead = false;
         }
         Ok(())
     }
 
-    fn bring_back(&mut self, state: &mut State) -> Result<(), String> {
-        if self.found {
+    /// Puts what the device has into a state, or all but where its lists say already what it remembers.
+    pub(super) fn bring_back(&mut self, state: &mut State, listed: Listed) -> Result<(), String> {
+        if self.found || listed == Listed::Rest {
             self.name_contacts(state)?;
         }
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
@@ -301,21 +336,21 @@ impl<M: Machine> Device<M> {
             if slot == Slot::OldTurn && !self.features.roll {
                 continue;
             }
-            self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
+            self.get(slot, 0, list.as_flattened_mut())?;
         }
-        let kept = &mut memory.kept;
-        self.machine.get(self.call.buffers[Slot::OldSpare as usize], &mut kept.spare)?;
-        let touch = kept.touch.as_flattened_mut().as_flattened_mut();
-        self.machine.get(self.call.buffers[Slot::OldTouch as usize], touch)?;
+        self.get_kept(&mut memory)?;
         if self.features.clumps {
             let lists =
                 [(Slot::OldOrientation, &mut motion.orientation), (Slot::OldMomentum, &mut motion.momentum)];
             for (slot, list) in lists {
-                self.machine.get(self.call.buffers[slot as usize], list.as_flattened_mut())?;
+                self.get(slot, 0, list.as_flattened_mut())?;
             }
         }
         motion.put(state, &mut self.work);
-        memory.put(state);
+        match listed {
+            Listed::All => memory.put(state),
+            Listed::Rest => _ = memory.put_contacts(state),
+        }
         Ok(())
     }
 
@@ -338,7 +373,7 @@ impl<M: Machine> Device<M> {
             step::prepare(model, state, &mut self.work, surface, applied)?;
         }
         if neighbours::due(state) {
-            self.list(model, state, surface)?;
+            self.orphans |= self.list(model, state, surface).map_err(|e| failed(state, e))?;
         }
         if self.orphans {
             return self.by_processor(model, state, surface, applied);
@@ -369,21 +404,6 @@ impl<M: Machine> Device<M> {
             self.fetch(state)?;
         }
         step::conclude(model, state, &mut self.work, all, surface.max_speed())
-    }
-
-    /// Makes the near list anew: on the device, or on the processor.
-    fn list<S: Surface>(&mut self, model: &Model, state: &mut State, surface: &S) -> Result<(), StepError> {
-        if self.features.classes > 0 {
-            neighbours::adapt(model, state);
-            self.search(model, state).map_err(|e| failed(state, e))?;
-            self.work.searched.searches += 1;
-            neighbours::made(state, &mut self.work);
-        } else {
-            self.fetch(state)?;
-            neighbours::update(model, state, &mut self.work, surface);
-            self.take_lists(model, state).map_err(|e| failed(state, e))?;
-        }
-        Ok(())
     }
 
     /// Has the engine make a step.
@@ -428,7 +448,7 @@ impl<M: Machine> Device<M> {
         self.machine.launch("bodies", state.present_count(), &self.call)?;
         self.machine.launch("books", 4 * (self.books.len() - 1) + 1, &self.call)?;
         let books = self.buffer(Slot::Books);
-        self.machine.get(books, &mut self.books)?;
+        self.machine.get(books, 0, &mut self.books)?;
         Ok(self.books.last() != Some(&0.0))
     }
 

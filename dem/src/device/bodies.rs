@@ -85,6 +85,27 @@ impl Motion {
     }
 }
 
+/// Puts places, and orientations where there are clumps, into a state with the same bodies in the same order, and their spheres into `work`;
+/// motions stay what they are there.
+pub(super) fn put_places(x: &[[f64; 4]], orientation: &[[f64; 4]], state: &mut State, work: &mut Work) {
+    let mut at = 0;
+    for (block, members) in state.blocks.iter_mut().zip(&mut work.members) {
+        let n = block.bodies.len();
+        // As in `Motion::put`.
+        if !members.solid() {
+            block.centre.iter_mut().zip(&x[at..at + n]).for_each(|(to, from)| to.0 = *from);
+            let turns = orientation.iter().skip(at);
+            block.rotation.iter_mut().zip(turns).for_each(|(to, q)| to.orientation = quaternion(q));
+            if members.rigid {
+                (0..n).for_each(|k| {
+                    members.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
+                });
+            }
+        }
+        at += n;
+    }
+}
+
 /// An orientation as the engine has it.
 pub(super) fn quaternion([i, j, k, s]: &[f64; 4]) -> UnitQuaternion<f64> {
     Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion()

@@ -101,10 +101,20 @@ impl Cuda {
         stream.memcpy_htod(bytes, &mut slice.slice_mut(..bytes.len())).map_err(of_driver)
     }
 
-    fn read<T: Pod>(&mut self, buffer: usize, data: &mut [T]) -> Result<(), String> {
-        let bytes: &mut [u8] = cast_slice_mut(data);
+    /// Writes into a buffer that has room for it, from place `from` on.
+    fn fill_up<T: Pod>(&mut self, buffer: usize, from: usize, data: &[T]) -> Result<(), String> {
+        let (bytes, from) = (cast_slice::<T, u8>(data), from * size_of::<T>());
+        let Some(Some(slice)) = self.buffers.get_mut(buffer).filter(|_| !bytes.is_empty()) else {
+            return Ok(());
+        };
+        let mut there = slice.slice_mut(from..from + bytes.len());
+        self.stream.memcpy_htod(bytes, &mut there).map_err(of_driver)
+    }
+
+    fn read<T: Pod>(&mut self, buffer: usize, from: usize, data: &mut [T]) -> Result<(), String> {
+        let (bytes, from) = (cast_slice_mut::<T, u8>(data), from * size_of::<T>());
         let Some(Some(slice)) = self.buffers.get(buffer).filter(|_| !bytes.is_empty()) else { return Ok(()) };
-        let wanted = slice.slice(..bytes.len());
+        let wanted = slice.slice(from..from + bytes.len());
         if bytes.len() > LANDING {
             self.stream.memcpy_dtoh(&wanted, bytes).map_err(of_driver)?;
             return self.stream.synchronize().map_err(of_driver);
@@ -141,12 +151,20 @@ impl Machine for Cuda {
         self.room(buffer, counts * size_of::<u32>()).map(|_| ())
     }
 
-    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
-        self.read(buffer, numbers)
+    fn fill(&mut self, buffer: usize, from: usize, numbers: &[f64]) -> Result<(), String> {
+        self.fill_up(buffer, from, numbers)
+    }
+
+    fn fill_counts(&mut self, buffer: usize, from: usize, counts: &[u32]) -> Result<(), String> {
+        self.fill_up(buffer, from, counts)
+    }
+
+    fn get(&mut self, buffer: usize, from: usize, numbers: &mut [f64]) -> Result<(), String> {
+        self.read(buffer, from, numbers)
     }
 
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
-        self.read(buffer, counts)
+        self.read(buffer, 0, counts)
     }
 
     fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String> {

@@ -107,7 +107,7 @@ impl Handed {
             return Ok(());
         }
         machine.launch("pick", watched.len(), call)?;
-        machine.get(call.buffer(Slot::Picked), picked.as_flattened_mut())?;
+        machine.get(call.buffer(Slot::Picked), 0, picked.as_flattened_mut())?;
         let width = picked.len() / watched.len();
         for ([block, place, _], row) in watched.iter().zip(picked.chunks_exact(width)) {
             let (block, k) = (*block as usize, *place as usize);

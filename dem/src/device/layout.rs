@@ -122,6 +122,14 @@ table! {
         Items = "ITEMS": "unsigned",
         /// First contact of each sphere with other blocks, then within its own, then with planes; first of its partners. One past the last.
         Offsets = "OFFSETS": "unsigned",
+        /// Entries that the processor lists: where those of each body begin, and one past the last; the entries; the block after whose
+        /// contacts across each is summed up, which is one past the last for what follows all of these, and more for what comes last.
+        RestStart = "REST_START": "const unsigned",
+        Rest = "REST": "const ends",
+        RestFrom = "REST_FROM": "const unsigned",
+        /// Partners of each body that it never has a contact with, as these have bonds: where they begin, and one past the last.
+        HeldStart = "HELD_START": "const unsigned",
+        HeldWith = "HELD_WITH": "const unsigned",
         /// Partners of each sphere, ascending.
         Rows = "ROWS": "unsigned",
         /// Contacts and their offsets before the search, and how much it has found.
@@ -324,11 +332,16 @@ pub(super) struct Features {
     pub periodic: bool,
     /// Whether the processor has a part in each step.
     pub beside: bool,
-    /// Classes of size in the search for neighbours; none where that is the processor's.
+    /// Classes of size in the search for neighbours.
     pub classes: usize,
 }
 
 impl Features {
+    /// Whether there is anything that the processor lists.
+    pub fn rest(&self) -> bool {
+        self.bonds || self.walls > 0 || self.periodic || self.beside
+    }
+
     /// Records of four that state where a body is and how it moves.
     pub fn picked_width(&self) -> usize {
         if self.clumps { 4 } else { 3 }
@@ -456,6 +469,8 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("CLUMPS", f.clumps),
         ("PERIODIC", f.periodic),
         ("BESIDE", f.beside),
+        ("BONDS", f.bonds),
+        ("LISTED_THERE", f.rest()),
     ];
     for (name, on) in flags {
         _ = writeln!(out, "#define {name} {}", u32::from(on));

@@ -1,7 +1,6 @@
 //! What carries the kernels out.
 
 use super::layout::{Arguments, Count, Number, Slot};
-use super::sizes;
 use crate::engine::beside;
 use crate::engine::model::Model;
 
@@ -54,6 +53,18 @@ pub trait Machine {
     /// As [`Machine::put`].
     fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String>;
 
+    /// Puts numbers into a buffer from number `from` on, for which it has room; what else it holds stays.
+    ///
+    /// # Errors
+    /// The device does not respond.
+    fn fill(&mut self, buffer: usize, from: usize, numbers: &[f64]) -> Result<(), String>;
+
+    /// The same of counts.
+    ///
+    /// # Errors
+    /// As [`Machine::fill`].
+    fn fill_counts(&mut self, buffer: usize, from: usize, counts: &[u32]) -> Result<(), String>;
+
     /// Makes a buffer hold so many numbers, whatever they are.
     ///
     /// # Errors
@@ -66,13 +77,13 @@ pub trait Machine {
     /// As [`Machine::put`].
     fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String>;
 
-    /// Reads as many numbers of a buffer as there is room for.
+    /// Reads as many numbers of a buffer as there is room for, from number `from` on.
     ///
     /// # Errors
     /// The device does not respond.
-    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String>;
+    fn get(&mut self, buffer: usize, from: usize, numbers: &mut [f64]) -> Result<(), String>;
 
-    /// Reads counts of a buffer.
+    /// Reads counts of a buffer, from the first on.
     ///
     /// # Errors
     /// As [`Machine::get`].
@@ -85,10 +96,8 @@ pub trait Machine {
     fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String>;
 }
 
-/// The kernels of a step; the same with the processor's part; and those with the search for neighbours.
-const STEP: [&str; 2] = ["bodies", "books"];
-const BESIDE: [&str; 3] = ["bodies", "books", "pick"];
-const ALL: [&str; 12] = [
+/// The kernels of a model: a step, the search for neighbours, and with a part of the processor in each step the last.
+const ALL: [&str; 13] = [
     "bodies",
     "books",
     "clear_cells",
@@ -101,13 +110,10 @@ const ALL: [&str; 12] = [
     "ranges",
     "sum_up",
     "sum_down",
+    "pick",
 ];
 
 /// The kernels that the text for a model has.
 pub fn kernels(model: &Model) -> &'static [&'static str] {
-    match (sizes::covers(model), beside::any(model)) {
-        (true, _) => &ALL,
-        (false, true) => &BESIDE,
-        (false, false) => &STEP,
-    }
+    if beside::any(model) { &ALL } else { &ALL[..ALL.len() - 1] }
 }

@@ -3,18 +3,93 @@
 //! The near list is a function of where bodies are: all pairs within a reach, by the order of their spheres, with the memory of those that
 //! were listed before. So it has the engine's bits however it is found; here straight from cells, without candidates.
 
+use super::arrays::{Lists, Memory};
 use super::back_end::Device;
+use super::bodies::{Motion, put_places};
 use super::layout::{Count, LISTS, List, Number, STRETCH, Slot};
 use super::machine::Machine;
 use super::sizes::largest;
+use super::walls::orphans;
 use crate::base::Vec3;
+use crate::engine::candidates::Listed;
 use crate::engine::model::Model;
+use crate::engine::neighbours;
 use crate::engine::state::State;
 use crate::law::History;
+use crate::spatial::surface::Surface;
 
 impl<M: Machine> Device<M> {
-    /// Makes the near list anew where the bodies are.
-    pub(super) fn search(&mut self, model: &Model, state: &State) -> Result<(), String> {
+    /// Makes the near list anew where the bodies are: what the processor lists first, as far as there is any. Whether the device has not made
+    /// its own, since the next step is the processor's.
+    pub(super) fn list<S: Surface>(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        surface: &S,
+    ) -> Result<bool, String> {
+        if !self.features.rest() {
+            neighbours::adapt(model, state);
+            self.search(model, state)?;
+            self.work.searched.searches += 1;
+            neighbours::made(state, &mut self.work);
+            return Ok(false);
+        }
+        if self.ahead {
+            self.fetch_rest(state)?;
+        }
+        neighbours::update(model, state, &mut self.work, surface, Listed::Rest);
+        if state.lists.iter().any(orphans) {
+            // What such a contact leaves behind is the engine's to book. Of contacts among spheres the state has those of before.
+            self.bring_back(state, Listed::Rest)?;
+            (self.ahead, self.found, state.stale) = (false, true, true);
+            return Ok(true);
+        }
+        self.hold(model, state)?;
+        self.search(model, state)?;
+        Ok(false)
+    }
+
+    /// Puts where bodies are, and the memory of what the processor lists, into a state.
+    fn fetch_rest(&mut self, state: &mut State) -> Result<(), String> {
+        let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
+        let Motion { mut x, mut orientation, .. } = Motion::zeros(n, self.features.clumps);
+        self.get(Slot::OldX, 0, x.as_flattened_mut())?;
+        self.get(Slot::OldOrientation, 0, orientation.as_flattened_mut())?;
+        put_places(&x, &orientation, state, &mut self.work);
+        let from = self.among_spheres;
+        let mut memory = Memory::zeros(self.contacts - from, self.pairs, 0);
+        self.get(Slot::OldMemory, 4 * from, memory.spring.as_flattened_mut())?;
+        if self.features.roll {
+            self.get(Slot::OldTurn, 4 * from, memory.turn.as_flattened_mut())?;
+        }
+        self.get_kept(&mut memory)?;
+        memory.put_rest(state, 0);
+        Ok(())
+    }
+
+    /// Hands the pairs over that bonds hold, where these may be others.
+    fn hold(&mut self, model: &Model, state: &State) -> Result<(), String> {
+        let searches = self.work.searched.searches;
+        if !self.features.bonds || self.held_since == Some(searches) {
+            return Ok(());
+        }
+        let bodies = state.blocks.iter().flat_map(|b| &b.bodies);
+        let mut place = vec![0; model.body_count()];
+        bodies.enumerate().for_each(|(k, &body)| place[body as usize] = k as u32);
+        let pairs = self.work.held.pairs().map(|pair| pair.map(|body| place[body as usize]));
+        let mut pairs: Vec<[u32; 2]> = pairs.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
+        pairs.sort_unstable();
+        let start = |k: u32| pairs.partition_point(|[a, _]| *a < k) as u32;
+        let start: Vec<u32> = (0..=state.present_count() as u32).map(start).collect();
+        let with: Vec<u32> = pairs.iter().map(|[_, b]| *b).collect();
+        self.put_counts(Slot::HeldStart, &start)?;
+        self.put_counts(Slot::HeldWith, &with)?;
+        self.held_since = Some(searches);
+        Ok(())
+    }
+
+    /// Makes the near list of spheres with spheres and planes anew, and what all bodies gather.
+    fn search(&mut self, model: &Model, state: &State) -> Result<(), String> {
         // What was found before is where memory comes from.
         for (new, old) in [(Slot::Ends, Slot::OldEnds), (Slot::Offsets, Slot::OldOffsets)] {
             self.call.buffers.swap(new as usize, old as usize);
@@ -30,25 +105,75 @@ impl<M: Machine> Device<M> {
         let buffer = self.buffer(Slot::Totals);
         self.machine.get_counts(buffer, &mut totals)?;
         let [of_spheres, contacts, partners] = totals.map(|n| n as usize);
-        self.reserve_counts(Slot::Ends, 2 * contacts)?;
+        let rest = self.features.rest().then(|| Lists::of(model, state, &self.work, &self.spheres, contacts));
+        let (listed, entered) = rest.as_ref().map_or((0, 0), |l| (l.ends.len(), l.entries.len()));
+        self.reserve_counts(Slot::Ends, 2 * (contacts + listed))?;
         self.reserve_counts(Slot::Rows, partners)?;
-        self.reserve_counts(Slot::Entries, 2 * (partners + (contacts - of_spheres)))?;
-        self.remember(contacts)?;
+        self.reserve_counts(Slot::Entries, 2 * (partners + (contacts - of_spheres) + entered))?;
+        self.call.count(Count::FirstPlane, of_spheres);
+        match &rest {
+            Some(lists) => self.put_lists(lists)?,
+            None => self.note_none(contacts),
+        }
+        self.remember(self.contacts)?;
         self.call_kernel("list_partners", spheres)?;
         self.call_kernel("enter_partners", bodies + 1)?;
         self.call_kernel("ranges", blocks + 1)?;
         for (old, new) in [(Slot::OldMemory, Slot::NewMemory), (Slot::OldTurn, Slot::NewTurn)] {
             self.call.buffers.swap(old as usize, new as usize);
         }
-        self.remember(contacts)?;
-        self.reserve(Slot::Spent, 2 * contacts)?;
+        self.remember(self.contacts)?;
+        self.reserve(Slot::Spent, 2 * self.contacts)?;
         self.reserve(Slot::Walls, 8 * (contacts - of_spheres))?;
-        self.call.count(Count::FirstPlane, of_spheres);
+        if let Some(lists) = rest {
+            self.put_memory(state, contacts)?;
+            self.hand_over_from(lists)?;
+        }
+        (self.found, self.ahead) = (true, true);
+        Ok(())
+    }
+
+    /// There is nothing behind the contacts of spheres with spheres and planes.
+    fn note_none(&mut self, contacts: usize) {
         for none in [Count::FirstDebonded, Count::FirstPatch, Count::FirstImage] {
             self.call.count(none, contacts);
         }
-        (self.contacts, self.found, self.ahead) = (contacts, true, true);
-        Ok(())
+        (self.contacts, self.among_spheres) = (contacts, contacts);
+    }
+
+    /// Puts down what the processor lists.
+    fn put_lists(&mut self, lists: &Lists) -> Result<(), String> {
+        self.note_rest(lists);
+        let ends = self.buffer(Slot::Ends);
+        self.machine.fill_counts(ends, 2 * self.among_spheres, lists.ends.as_flattened())?;
+        let counts: [(Slot, &[u32]); 6] = [
+            (Slot::Ranges, lists.ranges.as_flattened()),
+            (Slot::RestStart, &lists.start),
+            (Slot::Rest, lists.entries.as_flattened()),
+            (Slot::RestFrom, &lists.after),
+            (Slot::PatchPairs, lists.pairs.ends.as_flattened()),
+            (Slot::Groups, &lists.pairs.groups),
+        ];
+        for (slot, list) in counts {
+            self.put_counts(slot, list)?;
+        }
+        self.put(Slot::Reference, &lists.reference)?;
+        self.put(Slot::Ways, lists.ways.as_flattened())?;
+        self.reserve(Slot::Couples, 4 * lists.ways.len())
+    }
+
+    /// Puts down what contacts remember that the processor lists.
+    fn put_memory(&mut self, state: &State, from: usize) -> Result<(), String> {
+        let memory = Memory::of_rest(state);
+        let of_springs = self.buffer(Slot::OldMemory);
+        self.machine.fill(of_springs, 4 * from, memory.spring.as_flattened())?;
+        if self.features.roll {
+            let of_turns = self.buffer(Slot::OldTurn);
+            self.machine.fill(of_turns, 4 * from, memory.turn.as_flattened())?;
+        }
+        self.put(Slot::OldSpare, &memory.kept.spare)?;
+        self.put(Slot::OldTouch, memory.kept.touch.as_flattened().as_flattened())?;
+        self.room_for_pairs(self.pairs)
     }
 
     /// Room for what contacts remember after the next step.
@@ -119,7 +244,7 @@ impl<M: Machine> Device<M> {
     /// Puts the lists that the device has found into a state, without what their contacts remember.
     pub(super) fn name_contacts(&mut self, state: &mut State) -> Result<(), String> {
         let mut ranges = vec![[0; LISTS]; state.blocks.len() + 1];
-        let mut ends = vec![[0; 2]; self.contacts];
+        let mut ends = vec![[0; 2]; self.among_spheres];
         let (of_ranges, of_ends) = (self.buffer(Slot::Ranges), self.buffer(Slot::Ends));
         self.machine.get_counts(of_ranges, ranges.as_flattened_mut())?;
         self.machine.get_counts(of_ends, ends.as_flattened_mut())?;

@@ -1,15 +1,7 @@
-//! Where the device searches for neighbours itself, and the classes of size that its cells have.
-
-use crate::engine::beside;
-use crate::engine::model::Model;
+//! The classes of size that the cells of the search have.
 
 /// Most classes of size; all smaller spheres share the last.
 const CLASSES: usize = 8;
-
-/// Whether the device searches for the neighbours of a model's bodies: those of spheres that meet each other and planes alone.
-pub(super) fn covers(model: &Model) -> bool {
-    model.bonds.is_empty() && model.walls.walls.is_empty() && model.periodic.is_none() && !beside::any(model)
-}
 
 /// Classes of size for spheres between two radii [m]: each spans a factor of two, where they differ much.
 pub(super) fn classes((least, most): (f64, f64)) -> usize {

@@ -67,9 +67,14 @@ impl Pairs {
             self.groups.push(self.ends.len() as u32);
             self.ends.extend(pairs.iter().map(|pair| [spheres.at(block, pair.i), pair.patch]));
         }
-        let alive = joined(&lists.walls).filter(Option::is_some).count();
-        self.orphans |= alive < lists.walls.live.len();
+        self.orphans |= orphans(lists);
     }
+}
+
+/// Whether a contact of a block's last step has no pair any more.
+pub(super) fn orphans(lists: &BlockLists) -> bool {
+    let alive = joined(&lists.walls).filter(Option::is_some).count();
+    alive < lists.walls.live.len()
 }
 
 /// The contact of each pair, if it has one.

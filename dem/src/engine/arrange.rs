@@ -58,7 +58,7 @@ impl Work {
 
     /// Lays the constants out in the state's present order.
     pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
-        self.searched.listed = false;
+        self.searched.listed = None;
         self.own = 0..state.blocks.len();
         self.halo.clear();
         self.members.resize_with(state.blocks.len(), Members::default);

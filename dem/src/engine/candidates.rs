@@ -25,11 +25,19 @@ use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// Which contacts are listed here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Listed {
+    All,
+    /// All but those of spheres with each other, those across periodic borders excepted, and with planes: a back end lists these itself.
+    Rest,
+}
+
 /// Finds all candidates anew.
-pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S) {
+pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S, listed: Listed) {
     super::bonds::hold(model, state, &mut work.held);
     let Work { members, blocks: works, parallel, held, walls: standing, sheet, own, halo, .. } = &mut *work;
-    let all = All::new(model, state, members, held, (&*own, halo));
+    let all = All::new(model, state, members, held, (&*own, halo), listed);
     let kinds =
         model.solids.then(|| Search::new(now(model, state, members, (standing, sheet)), &model.patch_trees));
     let walls = model.walls.placed(&state.walls);
@@ -75,7 +83,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     searched.walls.clear();
     searched.walls.extend(state.walls.iter().map(|w| (w.offset, w.orientation)));
     searched.surface_drift = 0.0;
-    searched.listed = true;
+    searched.listed = Some(listed);
     searched.searches += 1;
 }
 
@@ -108,6 +116,7 @@ struct All<'a> {
     space: Option<Space>,
     /// Where most spheres are in clumps, which are searched body by body first.
     hulls: Option<Hulls>,
+    listed: Listed,
 }
 
 impl<'a> All<'a> {
@@ -117,6 +126,7 @@ impl<'a> All<'a> {
         members: &'a [Members],
         held: &'a Held,
         (own, halo): (&'a Range<usize>, &[[u32; 2]]),
+        listed: Listed,
     ) -> All<'a> {
         let (mut points, mut names, mut cells) = (Vec::new(), Vec::new(), Cells::default());
         let mut first = Vec::with_capacity(members.len());
@@ -137,15 +147,16 @@ impl<'a> All<'a> {
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
         // Single spheres beside a sleeper, or a few clumps, would only pay for a second level.
         let in_clumps: usize = members[own.clone()].iter().map(Members::in_clumps).sum();
-        let by_bodies = space.is_none() && 2 * in_clumps > points.len();
+        let among_spheres = listed == Listed::All;
+        let by_bodies = among_spheres && space.is_none() && 2 * in_clumps > points.len();
         let hulls = by_bodies.then(|| {
             let body = |[block, sphere]: [u32; 2]| members[block as usize].body(sphere);
             Hulls::new(&points, names.iter().map(|&name| (name[0], body(name))), members.len(), model.skin)
         });
-        if hulls.is_none() {
+        if hulls.is_none() && (among_spheres || space.is_some()) {
             cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
         }
-        All { model, state, members, held, own, points, names, first, cells, space, hulls }
+        All { model, state, members, held, own, points, names, first, cells, space, hulls, listed }
     }
 
     /// The spheres of a block.
@@ -177,6 +188,10 @@ impl<'a> All<'a> {
         c.images.clear();
         c.planes.clear();
         c.reference.start(self.of_block(b).first());
+        if self.listed == Listed::Rest && self.space.is_none() {
+            self.of_block(b).iter().for_each(|p| c.reference.push(&xyz(p)));
+            return;
+        }
         match &self.hulls {
             Some(hulls) => {
                 let mut near = Vec::new();
@@ -204,6 +219,9 @@ impl<'a> All<'a> {
     fn list(&self, b: usize, global: u32, me: (u32, u32), c: &mut Candidates) {
         let (model, p, i) = (self.model, &self.points[global as usize], global - self.first[b]);
         c.reference.push(&xyz(p));
+        if self.listed == Listed::Rest {
+            return;
+        }
         for &j in &c.row {
             let [block_j, j] = self.names[j as usize];
             if block_j == b as u32 {

@@ -45,9 +45,9 @@ fn hulls_find_what_spheres_find() {
         let model = Model::new(thrown(seed)).unwrap();
         let state = State::new(&model);
         let mut work = Work::new(&model, &state);
-        search(&model, &state, &mut work, &NoSurface);
+        search(&model, &state, &mut work, &NoSurface, Listed::All);
         let own = (&(0..state.blocks.len()), &[][..]);
-        let mut all = All::new(&model, &state, &work.members, &work.held, own);
+        let mut all = All::new(&model, &state, &work.members, &work.held, own, Listed::All);
         assert!(all.hulls.take().is_some());
         all.cells.build(&all.points, model.radii, model.skin);
         let mut count = 0;

@@ -7,7 +7,7 @@
 
 use super::arrange::link;
 use super::block_work::Candidates;
-use super::candidates;
+use super::candidates::{self, Listed};
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::walls;
@@ -23,20 +23,26 @@ use crate::shape::cuboid;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
-/// Makes the near list anew when it is due. `surface_speed` is the bound of the external surface [m/s].
-pub(crate) fn update<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
+/// Makes the near list anew when it is due, or the part of it that is listed here. Of what is listed elsewhere a state has nothing then.
+pub(crate) fn update<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+    listed: Listed,
+) {
     if !due(state) {
         return;
     }
     adapt(model, state);
     work.searched.surface_drift += state.wall_drift;
-    let mut approach = if state.stale || !work.searched.listed {
+    let mut approach = if state.stale || work.searched.listed != Some(listed) {
         f64::INFINITY
     } else {
         approach(model, state, work, moved2(state, work))
     };
     if too_far(model, state, approach) {
-        candidates::search(model, state, work, surface);
+        candidates::search(model, state, work, surface, listed);
         approach = 0.0;
     }
     renew(model, state, work, surface, approach);

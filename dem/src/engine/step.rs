@@ -2,12 +2,13 @@
 
 use super::block_work::BlockWork;
 use super::bonds;
+use super::candidates::{self, Listed};
 use super::input::AppliedForce;
 use super::model::Model;
 use super::state::State;
 use super::threads::{self, Bodies, Lists, One};
 use super::work::Work;
-use super::{applied, candidates, neighbours, order, scarring, wall_contacts, walls};
+use super::{applied, neighbours, order, scarring, wall_contacts, walls};
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
 use crate::base::ledger::Ledger;
@@ -60,7 +61,7 @@ pub fn step<S: Surface>(
         work.arrange(model, state);
     }
     prepare(model, state, work, surface, applied)?;
-    neighbours::update(model, state, work, surface);
+    neighbours::update(model, state, work, surface, Listed::All);
     advance(model, state, work, surface);
     collect(model, state, work, surface.max_speed())
 }

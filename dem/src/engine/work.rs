@@ -1,6 +1,7 @@
 //! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
 
 use super::block_work::{BlockWork, Ground};
+use super::candidates::Listed;
 use super::state::State;
 use super::wall_contacts::WallContacts;
 use crate::base::Vec3;
@@ -24,7 +25,7 @@ use std::ops::Range;
 /// What the search knows: whether the candidates exist, and where walls were when they were found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Searched {
-    pub listed: bool,
+    pub listed: Option<Listed>,
     pub planes: Vec<Vec3>,
     pub walls: Vec<(Vec3, UnitQuaternion<f64>)>,
     pub surface_drift: f64,

@@ -6,10 +6,11 @@ use super::halo::{self, Bounds};
 use super::link::{Link, Lost};
 use super::partition::Partition;
 use super::traffic::{Kind, Traffic};
+use crate::engine::candidates::{self, Listed};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{candidates, neighbours, step};
+use crate::engine::{neighbours, step};
 use crate::spatial::surface::NoSurface;
 
 /// One rank with its part of a state.
@@ -117,7 +118,11 @@ impl<L: Link> Rank<L> {
 
     /// How far bodies of this rank have come since the last search, squared [m²].
     pub fn moved2(&self, state: &State) -> f64 {
-        if self.work.searched.listed { neighbours::moved2(state, &self.work) } else { f64::INFINITY }
+        if self.work.searched.listed.is_some() {
+            neighbours::moved2(state, &self.work)
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// Boxes around the blocks of this rank.
@@ -160,7 +165,7 @@ impl<L: Link> Rank<L> {
             // Ranks have their runs in order.
             self.work.halo.extend(places);
         }
-        candidates::search(model, state, &mut self.work, &NoSurface);
+        candidates::search(model, state, &mut self.work, &NoSurface, Listed::All);
         let need = ghosts::of_candidates(state, &self.work, &self.work.own);
         self.agree(&need)
     }

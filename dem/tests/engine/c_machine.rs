@@ -84,9 +84,17 @@ impl Machine for TestMachine {
         self.machine.reserve_counts(buffer, counts)
     }
 
-    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+    fn fill(&mut self, buffer: usize, from: usize, numbers: &[f64]) -> Result<(), String> {
+        self.machine.fill(buffer, from, numbers)
+    }
+
+    fn fill_counts(&mut self, buffer: usize, from: usize, counts: &[u32]) -> Result<(), String> {
+        self.machine.fill_counts(buffer, from, counts)
+    }
+
+    fn get(&mut self, buffer: usize, from: usize, numbers: &mut [f64]) -> Result<(), String> {
         self.read += numbers.len();
-        self.machine.get(buffer, numbers)
+        self.machine.get(buffer, from, numbers)
     }
 
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
@@ -169,9 +177,25 @@ impl Machine for CMachine {
         Ok(())
     }
 
-    fn get(&mut self, buffer: usize, numbers: &mut [f64]) -> Result<(), String> {
+    fn fill(&mut self, buffer: usize, from: usize, numbers: &[f64]) -> Result<(), String> {
+        match &mut self.buffers[buffer] {
+            Buffer::Numbers(own) => own[from..from + numbers.len()].copy_from_slice(numbers),
+            Buffer::Counts(_) => return Err(format!("buffer {buffer} holds counts")),
+        }
+        Ok(())
+    }
+
+    fn fill_counts(&mut self, buffer: usize, from: usize, counts: &[u32]) -> Result<(), String> {
+        match &mut self.buffers[buffer] {
+            Buffer::Counts(own) => own[from..from + counts.len()].copy_from_slice(counts),
+            Buffer::Numbers(_) => return Err(format!("buffer {buffer} holds numbers")),
+        }
+        Ok(())
+    }
+
+    fn get(&mut self, buffer: usize, from: usize, numbers: &mut [f64]) -> Result<(), String> {
         match &self.buffers[buffer] {
-            Buffer::Numbers(own) => numbers.copy_from_slice(own),
+            Buffer::Numbers(own) => numbers.copy_from_slice(&own[from..]),
             Buffer::Counts(_) => return Err(format!("buffer {buffer} holds counts")),
         }
         Ok(())
@@ -179,7 +203,7 @@ impl Machine for CMachine {
 
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String> {
         match &self.buffers[buffer] {
-            Buffer::Counts(own) => counts.copy_from_slice(own),
+            Buffer::Counts(own) => counts.copy_from_slice(&own[..counts.len()]),
             Buffer::Numbers(_) => return Err(format!("buffer {buffer} holds numbers")),
         }
         Ok(())

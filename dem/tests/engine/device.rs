@@ -318,7 +318,7 @@ pub(crate) fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMu
 }
 
 /// The gas between walls of triangles in place of some planes: a rough floor that comes up, a flat lid that swings, a side that turns.
-fn between_triangles(mut input: ModelInput) -> ModelInput {
+pub(crate) fn between_triangles(mut input: ModelInput) -> ModelInput {
     let (far, mut random) = (0.0206 * 11.0, Random::new(3));
     let (middle, wide) = (0.5 * far, 1.6 * far);
     input.planes.retain(|p| p.normal.x < 0.5 && p.normal.z.abs() < 0.5);
@@ -363,7 +363,7 @@ fn walls_of_triangles() {
 }
 
 /// The gas with periodic borders in place of the planes at its sides, blown along.
-fn with_borders(mut input: ModelInput) -> ModelInput {
+pub(crate) fn with_borders(mut input: ModelInput) -> ModelInput {
     let far = 0.0206 * 11.0;
     input.planes.retain(|p| p.normal.z.abs() > 0.9);
     input.periodic = [Some([0.0, far]), Some([0.0, far]), None];
@@ -429,7 +429,7 @@ fn other_walls_are_refused() {
 }
 
 /// A block of bonded spheres, pressed and torn by the planes that shut in on it, in which bonds break and broken pairs part.
-fn bonded(kind: Bond, material: Material) -> ModelInput {
+pub(crate) fn bonded(kind: Bond, material: Material) -> ModelInput {
     let mut input = gas([material, smooth()], Vec::new());
     input.bodies.iter_mut().for_each(|b| b.velocity *= 0.4);
     let spheres: Vec<_> = input.bodies.iter().map(|b| (b.position, 0.01 * b.scale)).collect();
@@ -439,19 +439,24 @@ fn bonded(kind: Bond, material: Material) -> ModelInput {
     input
 }
 
+/// Bonds of which some break.
+pub(crate) fn parallel() -> ParallelBond {
+    ParallelBond {
+        radius_factor: 0.8,
+        stiffness: ParallelStiffness::Modulus { young: 2e7, ratio: 2.5 },
+        tensile_strength: 2e5,
+        shear_strength: ShearStrength::MohrCoulomb { cohesion: 1e5, friction: 0.5 },
+        moment_factor: 0.5,
+        criterion: Criterion::Stress,
+        damping: BondDamping::Fraction(0.05),
+        contact: false,
+    }
+}
+
 #[test]
 fn bonds_that_break() {
     if device_is_there() {
-        let parallel = ParallelBond {
-            radius_factor: 0.8,
-            stiffness: ParallelStiffness::Modulus { young: 2e7, ratio: 2.5 },
-            tensile_strength: 2e5,
-            shear_strength: ShearStrength::MohrCoulomb { cohesion: 1e5, friction: 0.5 },
-            moment_factor: 0.5,
-            criterion: Criterion::Stress,
-            damping: BondDamping::Fraction(0.05),
-            contact: false,
-        };
+        let parallel = parallel();
         for (name, material, contact) in [
             ("parallel bonds", stone(), false),
             ("parallel bonds beside contacts that roll", turning(stone()), true),

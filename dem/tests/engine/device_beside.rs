@@ -98,7 +98,7 @@ impl Surface for Ground {
 const FIRST: usize = 1085;
 
 /// The gas on such ground in place of its floor.
-fn on_ground(mut input: ModelInput) -> ModelInput {
+pub(crate) fn on_ground(mut input: ModelInput) -> ModelInput {
     input.planes.remove(0);
     input.bodies.iter_mut().for_each(|b| b.position.z += 1e-3);
     input.surface_material = Some(1);
@@ -106,7 +106,7 @@ fn on_ground(mut input: ModelInput) -> ModelInput {
 }
 
 /// The same with a box and stones that fall into it, stones on the ground in a corner that is cleared for them, and the lid higher up.
-fn among_blocks(input: ModelInput) -> ModelInput {
+pub(crate) fn among_blocks(input: ModelInput) -> ModelInput {
     let mut input = on_ground(input);
     input.surface_mesh = Some(Ground::new().mesh);
     let lid = input.planes.last_mut().expect("a lid");
@@ -147,8 +147,8 @@ fn beside_a_wall(mut input: ModelInput) -> ModelInput {
 }
 
 /// What differs first between device and engine, and what has happened by then.
-struct Compared {
-    differs: Option<usize>,
+pub(crate) struct Compared {
+    pub differs: Option<usize>,
     state: State,
     /// Contacts with the surface of spheres, and of blocks.
     met: [usize; 2],
@@ -157,7 +157,7 @@ struct Compared {
 }
 
 /// As the engine's own comparison, on ground that comes up, with forces on the first block and, for a while, on a sphere.
-fn compare(input: ModelInput, change: impl Fn(String) -> String) -> Compared {
+pub(crate) fn compare(input: ModelInput, change: impl Fn(String) -> String) -> Compared {
     let model = Model::new(input).expect("a good input");
     let text = change(source(&model).expect("a model for a device"));
     let (mut ours, mut theirs) = (State::new(&model), State::new(&model));

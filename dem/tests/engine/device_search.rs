@@ -1,8 +1,13 @@
 //! The search for neighbours on a device: the lists, their order and the memory of their contacts are the engine's.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{STEPS, changed, compare_events, gas, smooth, turning, with_clumps};
+use crate::device::{
+    STEPS, between_triangles, bonded, changed, compare_events, gas, parallel, smooth, turning, with_borders,
+    with_clumps,
+};
+use crate::device_beside::{self, among_blocks};
 use crate::scene::{Random, sphere, stone};
+use trackbed_dem::bond::Bond;
 use trackbed_dem::device::{Device, kernels, source};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BackEnd, Model, ModelInput, State, Vec3, Work, step};
@@ -65,7 +70,13 @@ fn unlike_sizes_have_the_same_bits() {
 #[test]
 fn the_state_stays_on_the_device() {
     if device_is_there() {
-        for input in [gas([stone(), smooth()], Vec::new()), with_clumps(unlike(), |k| k % 3 == 1)] {
+        let spheres = gas([stone(), smooth()], Vec::new());
+        // How much of a state a search may read: where the processor lists contacts with triangles, places and these.
+        for (input, share) in [
+            (spheres.clone(), 0.125),
+            (with_clumps(unlike(), |k| k % 3 == 1), 0.125),
+            (between_triangles(spheres), 0.3),
+        ] {
             let model = Model::new(input).expect("a good input");
             let text = source(&model).expect("a model for a device");
             kernels(&model).iter().for_each(|k| assert!(text.contains(&format!("KERNEL({k})")), "{k}"));
@@ -76,12 +87,12 @@ fn the_state_stays_on_the_device() {
                 step(&model, &mut theirs, &mut work, &NoSurface, &[]).expect("a good step");
                 device.step(&model, &mut ours, &NoSurface, &[]).expect("a good step on the device");
             }
-            let (searches, _) = device.rebuilds();
+            let (_, near_lists) = device.rebuilds();
             let read = device.machine().read;
             device.download(&model, &mut ours).expect("a device that responds");
             let whole = device.machine().read - read;
-            println!("{read} numbers are read in 500 steps, {searches} searches; {whole} in a download");
-            assert!(searches > 10 && 8 * read < searches as usize * whole);
+            println!("{read} numbers are read in 500 steps, {near_lists} near lists; {whole} in a download");
+            assert!(near_lists > 10 && (read as f64) < share * (near_lists * whole as u64) as f64);
             assert!(postcard::to_stdvec(&ours).unwrap() == postcard::to_stdvec(&theirs).unwrap());
         }
     }
@@ -102,5 +113,70 @@ fn a_changed_search_is_seen() {
             println!("{from} -> {to}: {differs:?}");
             assert!(differs.is_some(), "{from} -> {to}");
         }
+    }
+}
+
+/// Spheres in a lattice that press each other, several blocks of them, across borders too: they have contacts of all kinds at once.
+fn packed() -> ModelInput {
+    let (mut random, count, wide) = (Random::new(9), 14, 0.0199);
+    let mut input = with_borders(gas([stone(), smooth()], Vec::new()));
+    let far = f64::from(count) * wide;
+    input.periodic = [Some([0.0, far]), Some([0.0, far]), None];
+    let body = |k: i32| {
+        let cell =
+            Vec3::new(f64::from(k % count), f64::from(k / count % count), f64::from(k / count / count));
+        sphere((cell + Vec3::repeat(0.5)) * wide, random.vector() * 0.3)
+    };
+    input.bodies = (0..count * count * count).map(body).collect();
+    input.planes.truncate(1);
+    input
+}
+
+#[test]
+fn a_lattice_across_borders_has_the_same_bits() {
+    if device_is_there() {
+        let (differs, state, (searches, _)) = compare_events(packed(), 400, |text| text, |_, _| false);
+        let (friction, couple) = (state.ledger.dissipated_friction, state.ledger.periodic.angular.norm());
+        println!("{searches} searches, friction {friction:.3e} J, impulse of the borders {couple:.3e} N m s");
+        assert_eq!(differs, None);
+        assert!(searches > 1 && friction > 0.0 && couple > 0.0);
+    }
+}
+
+/// A contact whose triangle is open from one step to the next is the engine's to end.
+#[test]
+fn a_contact_without_its_pair_ends_as_the_engine_ends_it() {
+    if device_is_there() {
+        let opens = |k: usize, state: &mut State| {
+            (k % 40 == 0 || k % 40 == 2).then(|| state.open_wall(0, k % 40 == 0)).is_some()
+        };
+        let input = between_triangles(gas([turning(stone()), smooth()], Vec::new()));
+        let (differs, state, _) = compare_events(input, STEPS, |text| text, opens);
+        assert_eq!(differs, None);
+        assert!(state.wall_contact_count() > 10 && state.ledger.dissipated_friction > 0.0);
+    }
+}
+
+/// The comparison sees what is wrong with the place of what the processor lists among the sums: across blocks, before and behind contacts
+/// within; and with whom the device lists.
+#[test]
+fn a_changed_place_of_the_rest_is_seen() {
+    if device_is_there() {
+        let spheres = gas([stone(), smooth()], Vec::new());
+        let bonds = bonded(Bond::Parallel(parallel()), stone());
+        for (input, from, to) in [
+            (packed(), "REST_FROM[*rest] < BLOCK[", "REST_FROM[*rest] <= BLOCK["),
+            (between_triangles(spheres.clone()), "REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] <= ~0u"),
+            (bonds.clone(), "REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] < BLOCKS"),
+            (bonds, "if (HELD_WITH[k] == other) return 1;", "if (HELD_WITH[k] == other) return 0;"),
+        ] {
+            let (differs, ..) = compare_events(input, STEPS, changed(from, to), |_, _| false);
+            println!("{from} -> {to}: {differs:?}");
+            assert!(differs.is_some(), "{from} -> {to}");
+        }
+        let (from, to) = ("NO_SPHERE(s) (SINGLE[s] & ELSEWHERE)", "NO_SPHERE(s) 0");
+        let differs = device_beside::compare(among_blocks(spheres), changed(from, to)).differs;
+        println!("{from} -> {to}: {differs:?}");
+        assert!(differs.is_some(), "{from} -> {to}");
     }
 }

@@ -13,7 +13,7 @@ mod search;
 mod spheres;
 
 use super::layout::{self, Features};
-use super::sizes::{classes, covers};
+use super::sizes::classes;
 use super::tape::{self, Recorded};
 use crate::engine::beside;
 use crate::engine::model::Model;
@@ -38,7 +38,7 @@ pub(super) fn features(model: &Model) -> Features {
         walls: model.walls.walls.len(),
         periodic: model.periodic.is_some(),
         beside: beside::any(model),
-        classes: if covers(model) { classes(model.radii) } else { 0 },
+        classes: classes(model.radii),
     }
 }
 
@@ -66,9 +66,7 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     if f.held {
         all.push(motion::books());
     }
-    if f.classes > 0 {
-        all.push(search::part());
-    }
+    all.push(search::part());
     all
 }
 

@@ -1,4 +1,5 @@
-// Search for neighbours: the near lists, as the engine makes them (`engine/neighbours.rs`), and what each body gathers from them.
+// Search for neighbours: the near lists of spheres with each other and with planes, as the engine makes them (`engine/neighbours.rs`), and
+// what each body gathers, from these and from what the processor lists.
 // Spheres lie in buckets by a hash of their cell, in each in any order: rows of partners are sorted, so that nothing hangs on it. Each
 // class of size has cells of its own, so that small spheres between large ones do not crowd.
 
@@ -60,6 +61,22 @@ DEVICE void insert(unsigned *list, unsigned count, const unsigned x) {
     list[count] = x;
 }
 
+#if BESIDE && !CLUMPS
+/// Whether a body that the processor moves, which has no spheres, stands in their list.
+#define NO_SPHERE(s) (SINGLE[s] & ELSEWHERE)
+#else
+#define NO_SPHERE(s) 0
+#endif
+
+/// Whether two bodies never have a contact, since a bond has it.
+DEVICE int held_apart(ARGUMENTS p, const unsigned body, const unsigned other) {
+#if BONDS
+    for (unsigned k = HELD_START[body]; k < HELD_START[body + 1]; ++k)
+        if (HELD_WITH[k] == other) return 1;
+#endif
+    return 0;
+}
+
 /// Spheres near one that may touch it: how many; how many of the later ones are of other blocks and of its own; in `row`, if there is
 /// one, ascending.
 DEVICE unsigned partners(ARGUMENTS p, const unsigned s, unsigned *later, unsigned *row) {
@@ -67,6 +84,7 @@ DEVICE unsigned partners(ARGUMENTS p, const unsigned s, unsigned *later, unsigne
     const unsigned body = BODY(s);
     const int still = OLD_V[body].w == 0.0;
     unsigned n = 0;
+    if (NO_SPHERE(s)) return 0;
     for (unsigned size = 0; size < CLASSES; ++size) {
         const real inverse = GRIDS[2 * size], way = 1.000001 * (x.w + GRIDS[2 * size + 1] + REACH);
         // The cells of all centres within that way, roundings allowed for.
@@ -87,6 +105,7 @@ DEVICE unsigned partners(ARGUMENTS p, const unsigned s, unsigned *later, unsigne
                     const four y = SPHERE(other);
                     if (there == body || !spheres_near(x, y, REACH)) continue;
                     if (still && OLD_V[there].w == 0.0) continue;
+                    if (NO_SPHERE(other) || held_apart(p, body, there)) continue;
                     // Other cells share the buckets.
                     if (!in_row(p, y, size, inverse, from_x, to_x, cy, cz)) continue;
                     if (row) {
@@ -105,7 +124,7 @@ DEVICE unsigned partners(ARGUMENTS p, const unsigned s, unsigned *later, unsigne
 /// Planes near a sphere: how many; contacts with them from `c` on, if they are to be listed.
 DEVICE unsigned planes_near(ARGUMENTS p, const unsigned s, const int list, const unsigned c) {
     unsigned n = 0;
-    if (OLD_V[BODY(s)].w == 0.0) return 0;
+    if (OLD_V[BODY(s)].w == 0.0 || NO_SPHERE(s)) return 0;
     for (unsigned k = 0; k < PLANE_COUNT; ++k) {
         const four point = PLANES_SEARCHED[3 * k];
         if (point.w != 0.0 || !plane_near(SPHERE(s), point, PLANES_SEARCHED[3 * k + 1], PLANES_SEARCHED[3 * k + 2], REACH)) continue;
@@ -214,36 +233,66 @@ DEVICE void enter(ends *list, unsigned count, const unsigned what, const unsigne
     list[count].second = with;
 }
 
+#if LISTED_THERE
+/// Puts entries of the processor between those of contacts across blocks, of which there are `count` behind room for them: after those of
+/// the same block. `rest`: the first of those that are left; what comes after them is left of what comes last.
+DEVICE unsigned merge(ARGUMENTS p, ends *entry, const ends *across, const unsigned count, unsigned *rest, const unsigned end) {
+    unsigned n = 0, m = 0;
+    for (;;) {
+        const int more = *rest < end && REST_FROM[*rest] <= BLOCKS;
+        if (m < count && !(more && REST_FROM[*rest] < BLOCK[BODY(ENDS[across[m].first >> ENTRY_SHIFT].first)])) entry[n++] = across[m++];
+        else if (more) entry[n++] = REST[(*rest)++];
+        else return n;
+    }
+}
+#endif
+
 /// Contacts that a body gathers, in the order of the engine's sums: across blocks, within, with planes; in the order of the lists in each.
 KERNEL(enter_partners) {
     THREAD(i, BODIES + 1)
     const unsigned first = FIRST_OF(i);
     ends *entry = ENTRIES + (ROW_OF(first) + PLANES_OF(first) - PLANES_OF(0));
     unsigned n = 0;
+#if LISTED_THERE
+    unsigned rest = REST_START[i];
+    entry += rest;
+#endif
     START[i] = (unsigned)(entry - ENTRIES);
     if (i == BODIES) return;
     for (unsigned own = 0; own < 2; ++own) {
         const unsigned what = own == 0 ? ACROSS : ORIENTED(i) ? WITHIN_TURNED : WITHIN;
         unsigned count = 0;
+#if LISTED_THERE
+        // Room in front of contacts across blocks for what comes between them.
+        ends *const to = entry + n + (own ? 0 : REST_START[i + 1] - rest);
+#else
+        ends *const to = entry + n;
+#endif
         for (unsigned s = first; s < FIRST_OF(i + 1); ++s) {
             unsigned c = OFFSETS[own * SPHERE_COUNT + s];
             for (unsigned m = ROW_OF(s); m < ROW_OF(s + 1); ++m) {
                 const unsigned other = ROWS[m], second = other < s;
                 if ((BLOCK[BODY(other)] == BLOCK[i]) != own) continue;
                 const unsigned of = second ? contact_of(p, OFFSETS[own * SPHERE_COUNT + other], own ? NAME(s) : s) : c++;
-                enter(entry + n, count++, of << ENTRY_SHIFT | what << 1 | second, own ? NAME(other) : other);
+                enter(to, count++, of << ENTRY_SHIFT | what << 1 | second, own ? NAME(other) : other);
             }
         }
+#if LISTED_THERE
+        if (own == 0) count = merge(p, entry, to, count, &rest, REST_START[i + 1]);
+#endif
         n += count;
     }
     for (unsigned c = PLANES_OF(first); c < PLANES_OF(FIRST_OF(i + 1)); ++c) {
         const ends with = {c << ENTRY_SHIFT | (ORIENTED(i) ? PLANE_TURNED : PLANE) << 1, ENDS[c].second};
         entry[n++] = with;
     }
+#if LISTED_THERE
+    for (; rest < REST_START[i + 1]; ++rest) entry[n++] = REST[rest];
+#endif
 }
 RUN(enter_partners)
 
-/// Where the lists of each block begin.
+/// Where the lists of each block begin that are listed here.
 KERNEL(ranges) {
     THREAD(b, BLOCKS + 1)
     unsigned *of = RANGES + b * LISTS;
@@ -251,7 +300,9 @@ KERNEL(ranges) {
     of[1] = CROSS_OF(first);
     of[2] = OWN_OF(first);
     of[3] = PLANES_OF(first);
+#if !LISTED_THERE
     for (unsigned list = 4; list < LISTS; ++list) of[list] = PLANES_OF(SPHERE_COUNT);
+#endif
 }
 RUN(ranges)
 
