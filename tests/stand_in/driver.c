@@ -41,34 +41,51 @@ result cuModuleGetFunction(void **function, void *module, const char *name) {
     return (*function = dlsym(module, name)) ? SUCCESS : NOT_FOUND;
 }
 
-// Before each allocation stands its size.
+// Before each allocation stands its size, and which one there was before it.
 enum { HEAD = 64 };
-static size_t *size_of(address of) { return (size_t *)(of - HEAD); }
+struct allocation { size_t bytes; struct allocation *next, **self; };
+static struct allocation *all;
+static struct allocation *head_of(address of) { return (struct allocation *)(of - HEAD); }
+/// Whether so many bytes from an address on lie in one allocation.
+static int inside(address from, size_t bytes) {
+    for (struct allocation *one = all; one; one = one->next) {
+        const address base = (address)one + HEAD;
+        if (from >= base && from - base <= one->bytes) return bytes <= one->bytes - (from - base);
+    }
+    return 0;
+}
 result cuMemAllocAsync(address *out, size_t bytes, void *stream) {
     if (used + bytes > setting("STAND_IN_MEMORY", (size_t)1 << 40)) return OUT_OF_MEMORY;
-    char *memory = malloc(bytes + HEAD);
-    if (!memory) return OUT_OF_MEMORY;
+    struct allocation *one = malloc(bytes + HEAD);
+    if (!one) return OUT_OF_MEMORY;
     used += bytes;
-    *out = (address)(memory + HEAD);
-    *size_of(*out) = bytes;
+    *out = (address)one + HEAD;
+    one->bytes = bytes;
+    one->next = all;
+    one->self = &all;
+    if (all) all->self = &one->next;
+    all = one;
     return SUCCESS;
 }
 result cuMemFreeAsync(address of, void *stream) {
-    used -= *size_of(of);
-    free((void *)(of - HEAD));
+    struct allocation *one = head_of(of);
+    used -= one->bytes;
+    *one->self = one->next;
+    if (one->next) one->next->self = one->self;
+    free(one);
     return SUCCESS;
 }
 result cuMemsetD8Async(address to, unsigned char value, size_t bytes, void *stream) {
     // Whatever is read before it is written spoils the result: zeros would not.
-    if (bytes > *size_of(to)) return INVALID_VALUE;
+    if (!inside(to, bytes)) return INVALID_VALUE;
     return memset((void *)to, 0xff, bytes), SUCCESS;
 }
 result cuMemcpyHtoDAsync_v2(address to, const void *from, size_t bytes, void *stream) {
-    if (bytes > *size_of(to)) return INVALID_VALUE;
+    if (!inside(to, bytes)) return INVALID_VALUE;
     return memcpy((void *)to, from, bytes), SUCCESS;
 }
 result cuMemcpyDtoHAsync_v2(void *to, address from, size_t bytes, void *stream) {
-    if (bytes > *size_of(from)) return INVALID_VALUE;
+    if (!inside(from, bytes)) return INVALID_VALUE;
     return memcpy(to, (void *)from, bytes), SUCCESS;
 }
 result cuMemHostAlloc(void **out, size_t bytes, unsigned flags) { return (*out = malloc(bytes)) ? SUCCESS : OUT_OF_MEMORY; }

@@ -20,21 +20,13 @@ fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
 /// What a device does not compute is named, with exit code 2, before anything is written.
 #[test]
 fn a_device_refuses_by_name() {
-    let cylinder =
-        "walls=[{ kind = \"cylinder\", base = [0, 0, -1], radius = 1, height = 3, material = \"stone\" }]";
     let inputs = repository().join("inputs").display().to_string();
     let stones = fs::read_to_string(repository().join("inputs/ballast/box-polyhedra.toml")).unwrap();
     let stones = stones.replace("\"../", &format!("\"{inputs}/"));
     let stones = stones.replace("\"polyhedra-", &format!("\"{inputs}/ballast/polyhedra-"));
     let solid = &COUPLED[..COUPLED.find("[[material]]").unwrap()];
-    let cases: [(&str, &str, &[&str], &str); 4] = [
+    let cases: [(&str, &str, &[&str], &str); 3] = [
         ("device_solid", solid, &[], "solids alone are not"),
-        (
-            "device_wall",
-            GRAINS,
-            &[cylinder],
-            "walls other than triangles and planes of steady velocity are not",
-        ),
         ("device_wind", GRAINS, &["wind={ drag = 0.9 }"], "body forces other than gravity are not"),
         ("device_stones", &stones, &[], "scenes of boxes and polyhedra alone are not"),
     ];
@@ -95,12 +87,15 @@ fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str
 fn runs_on_a_stand_in_have_the_processors_bytes() {
     let Some(libraries) = stand_in() else { return };
     let folder = Folder::new("device_runs");
-    let scenes: [(&str, &[&str]); 5] = [
+    let scenes: [(&str, &[&str]); 8] = [
         ("verify/asperities/scene.toml", &["time.end=0.1 s"]),
         ("grains/bonded_stone/scene.toml", &["time.end=0.01 s"]),
         ("grains/block.toml", &["time.end=0.02 s", "grains.0.count=120"]),
         ("grains/two_laws.toml", &["time.end=0.05 s"]),
         ("grains/shear.toml", &["time.end=0.02 s"]),
+        ("grains/column.toml", &["time.end=0.02 s", "grains.0.count=700"]),
+        ("grains/drum.toml", &["time.end=0.05 s"]),
+        ("grains/servo.toml", &["time.end=0.05 s"]),
     ];
     for (name, set) in scenes {
         let scene = repository().join("inputs").join(name).display().to_string();

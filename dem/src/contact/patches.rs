@@ -48,12 +48,39 @@ pub(crate) struct PatchWork {
     pub contacts: Vec<SurfaceContact>,
     /// What the block's spheres felt from each wall; empty in blocks near none.
     pub wall_sums: Vec<WallSum>,
+    /// Forces of contacts with walls, and what dashpots and friction took in these, where another back end adds them up.
+    pub aside: Aside,
+}
+
+/// Forces of contacts that are kept beside those that come after.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Aside {
+    /// In the order of the block's spheres.
+    pub forces: Vec<PatchForce>,
+    pub dashpot: f64,
+    pub friction: f64,
+}
+
+impl Aside {
+    /// Nothing, in the same memory.
+    pub fn clear(&mut self) {
+        self.forces.clear();
+        (self.dashpot, self.friction) = (0.0, 0.0);
+    }
 }
 
 impl PatchWork {
     /// Forces of the contacts with the surface that came last, in the order of the block's spheres.
     pub fn forces(&self) -> &[PatchForce] {
         &self.forces
+    }
+
+    /// Puts the contacts that came last aside, and what they took out of `tally`.
+    pub fn set_aside(&mut self, tally: &mut Tally) {
+        let PatchWork { forces, aside, .. } = self;
+        std::mem::swap(forces, &mut aside.forces);
+        aside.dashpot = std::mem::take(&mut tally.ledger.dissipated_dashpot);
+        aside.friction = std::mem::take(&mut tally.ledger.dissipated_friction);
     }
 }
 

@@ -13,13 +13,15 @@ use crate::bond::BondList;
 use crate::bond::debonded::DebondedPair;
 use crate::bond::kernel;
 use crate::bond::store::Entry;
+use crate::engine::beside;
 use crate::engine::model::Model;
-use crate::engine::state::State;
+use crate::engine::state::{BlockLists, State};
 use crate::engine::work::Work;
 use crate::lanes::V3;
 use crate::law::History;
 use crate::pairs::cross::ImageName;
 use crate::pairs::groups::Groups;
+use crate::pairs::patches::PatchPair;
 use std::cell::Cell;
 
 /// Lists of bonds across blocks, then within.
@@ -44,13 +46,16 @@ pub(super) struct Memory {
     pub bonds: Vec<[f64; 4]>,
     /// Of pairs of spheres and triangles.
     pub kept: Kept,
+    /// Whether these are the device's.
+    triangles: bool,
 }
 
 impl Memory {
     /// Zeros for so many contacts, pairs of spheres and triangles among them, and bonds.
-    pub fn zeros(contacts: usize, pairs: usize, bonds: usize) -> Memory {
+    pub fn zeros(model: &Model, contacts: usize, pairs: usize, bonds: usize) -> Memory {
         let zero = [0.0; 4];
         Memory {
+            triangles: !beside::walls(model),
             spring: vec![zero; contacts],
             turn: vec![zero; contacts],
             bonds: vec![zero; 2 * bonds],
@@ -59,8 +64,8 @@ impl Memory {
     }
 
     /// That of a state.
-    pub fn of(state: &State) -> Memory {
-        let mut out = Memory::default();
+    pub fn of(model: &Model, state: &State) -> Memory {
+        let mut out = Memory::zeros(model, 0, 0, 0);
         let Memory { spring, turn, bonds, .. } = &mut out;
         let mut add = |h: History| add_to(spring, turn, h);
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
@@ -76,8 +81,8 @@ impl Memory {
     }
 
     /// That of what is neither a contact of spheres with spheres or planes nor a bond.
-    pub fn of_rest(state: &State) -> Memory {
-        let mut out = Memory::default();
+    pub fn of_rest(model: &Model, state: &State) -> Memory {
+        let mut out = Memory::zeros(model, 0, 0, 0);
         out.add_rest(state);
         out
     }
@@ -87,7 +92,9 @@ impl Memory {
         let mut add = |h: History| add_to(spring, turn, h);
         bond_lists(state).iter().flatten().for_each(|l| l.debonded.iter().for_each(|pair| add(pair.history)));
         state.cross.iter().for_each(|c| c.images.iter().for_each(|image| add(image.history)));
-        state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
+        if self.triangles {
+            state.lists.iter().for_each(|l| kept.add(&l.walls, &mut add));
+        }
     }
 
     /// Puts it into a state with the same lists.
@@ -126,7 +133,7 @@ impl Memory {
             at += 1;
         }
         let mut pair = 0;
-        for lists in &mut state.lists {
+        for lists in state.lists.iter_mut().take_while(|_| self.triangles) {
             let count = lists.walls.pairs.len();
             self.kept.put(&mut lists.walls, pair, |k| self.history(at + pair + k, true));
             pair += count;
@@ -199,10 +206,12 @@ impl Lists {
         out.images(model, state, spheres);
         for (b, lists) in state.lists.iter().enumerate() {
             out.ranges[b][List::Patches as usize] = out.next() + out.pairs.ends.len() as u32;
-            out.pairs.add(b, lists, spheres);
+            if !beside::walls(model) {
+                out.pairs.add(b, lists, spheres);
+            }
         }
         out.ranges[blocks][List::Patches as usize] = out.next() + out.pairs.ends.len() as u32;
-        out.enter(state, work, spheres);
+        out.enter(model, state, work, spheres);
         out
     }
 
@@ -300,7 +309,7 @@ impl Lists {
 
     /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
     /// and within, contacts within, planes, triangles.
-    fn enter(&mut self, state: &State, work: &Work, spheres: &Spheres) {
+    fn enter(&mut self, model: &Model, state: &State, work: &Work, spheres: &Spheres) {
         let mut all: Vec<[u32; 3]> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
         let after = Cell::new(0);
         let mut put = |body: u32, what: What, of: u32, second: bool| {
@@ -365,11 +374,16 @@ impl Lists {
             put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
         }
         self.pairs.groups.push(self.pairs.ends.len() as u32);
-        for (b, (lists, members)) in state.lists.iter().zip(&work.members).enumerate() {
-            for pairs in lists.surface.pairs.chunk_by(|p, q| members.body(p.i) == members.body(q.i)) {
-                let place = members.body(pairs[0].i);
-                let of = self.hand_over(Source::Surface { block: b, place }, [b as u32, place]);
-                put(self.body(b, place), What::Handed, of, false);
+        type Of = (fn(&BlockLists) -> &[PatchPair], fn(usize, u32) -> Source);
+        let on_walls: Of = (|l| &l.walls.pairs, |block, place| Source::Walls { block, place });
+        let on_surface: Of = (|l| &l.surface.pairs, |block, place| Source::Surface { block, place });
+        for (pairs, source) in beside::walls(model).then_some(on_walls).into_iter().chain([on_surface]) {
+            for (b, (lists, members)) in state.lists.iter().zip(&work.members).enumerate() {
+                for pairs in pairs(lists).chunk_by(|p, q| members.body(p.i) == members.body(q.i)) {
+                    let place = members.body(pairs[0].i);
+                    let of = self.hand_over(source(b, place), [b as u32, place]);
+                    put(self.body(b, place), What::Handed, of, false);
+                }
             }
         }
         self.watched.sort_unstable();

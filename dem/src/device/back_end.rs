@@ -113,7 +113,8 @@ impl<M: Machine> Device<M> {
             handed: Handed::default(),
         };
         let law = text::law_constants(&model.laws, materials);
-        let Triangles { shapes, names } = Triangles::of(model);
+        let Triangles { shapes, names } =
+            if device.features.walls > 0 { Triangles::of(model) } else { Triangles::default() };
         let constants = device
             .put(Slot::Law, &law)
             .and_then(|()| device.put(Slot::Shapes, shapes.as_flattened()))
@@ -227,7 +228,7 @@ impl<M: Machine> Device<M> {
     /// The near list, bonds, and the memory of both.
     fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
         let lists = Lists::of(model, state, &self.work, &self.spheres, 0);
-        let memory = Memory::of(state);
+        let memory = Memory::of(model, state);
         let last = state.blocks.len();
         let bonds = lists.bond_ends.len();
         (self.bonds, self.orphans) = (bonds, lists.pairs.orphans);
@@ -308,22 +309,27 @@ impl<M: Machine> Device<M> {
     }
 
     /// Makes `state` whole.
-    fn fetch(&mut self, state: &mut State) -> Result<(), StepError> {
+    fn fetch(&mut self, model: &Model, state: &mut State) -> Result<(), StepError> {
         if self.ahead {
-            self.bring_back(state, Listed::All).map_err(|e| failed(state, e))?;
+            self.bring_back(model, state, Listed::All).map_err(|e| failed(state, e))?;
             self.ahead = false;
         }
         Ok(())
     }
 
     /// Puts what the device has into a state, or all but where its lists say already what it remembers.
-    pub(super) fn bring_back(&mut self, state: &mut State, listed: Listed) -> Result<(), String> {
+    pub(super) fn bring_back(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        listed: Listed,
+    ) -> Result<(), String> {
         if self.found || listed == Listed::Rest {
             self.name_contacts(state)?;
         }
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let mut motion = Motion::zeros(n, self.features.clumps);
-        let mut memory = Memory::zeros(self.contacts, self.pairs, self.bonds);
+        let mut memory = Memory::zeros(model, self.contacts, self.pairs, self.bonds);
         let lists = [
             (Slot::OldX, &mut motion.x),
             (Slot::OldV, &mut motion.v),
@@ -401,7 +407,7 @@ impl<M: Machine> Device<M> {
         }
         let all = books::add_up(&self.books, &self.features, &self.mass, model, state, &mut self.work);
         if bonds::looks_at_separation(state) {
-            self.fetch(state)?;
+            self.fetch(model, state)?;
         }
         step::conclude(model, state, &mut self.work, all, surface.max_speed())
     }
@@ -414,7 +420,7 @@ impl<M: Machine> Device<M> {
         surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
-        self.fetch(state)?;
+        self.fetch(model, state)?;
         if self.found {
             self.work.follow(model, state);
         }
@@ -476,8 +482,8 @@ impl<M: Machine> BackEnd for Device<M> {
         self.advance(model, state, surface, applied)
     }
 
-    fn download(&mut self, _: &Model, state: &mut State) -> Result<(), StepError> {
-        self.fetch(state)
+    fn download(&mut self, model: &Model, state: &mut State) -> Result<(), StepError> {
+        self.fetch(model, state)
     }
 
     fn surface_contacts(&self) -> &[SurfaceContact] {

@@ -48,9 +48,11 @@ pub(super) fn add_up(
             sums.clear();
             sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
         }
-        // Of contacts within the block, with planes and the surface, then of those across.
+        // Of contacts within the block, with planes, walls and the surface, then of those across.
         if f.beside {
             let Tally { ledger, failure: wrong, .. } = &work.blocks[b].tally;
+            let aside = &work.blocks[b].patches.aside;
+            spent = [spent[0] + aside.dashpot, spent[1] + aside.friction];
             spent = [spent[0] + ledger.dissipated_dashpot, spent[1] + ledger.dissipated_friction];
             sum.work_surface += ledger.work_surface;
             sum.surface += &ledger.surface;

@@ -4,6 +4,7 @@
 use super::bodies::quaternion;
 use super::layout::{Count, Slot};
 use super::machine::{Call, Machine};
+use crate::contact::patch_forces::PatchForce;
 use crate::engine::beside;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -16,6 +17,8 @@ use crate::spatial::surface::Surface;
 pub(super) enum Source {
     /// The pair whose slot begins with a record of a block: spheres come first in all kinds of pairs that they are in.
     Pair { from: usize, record: usize },
+    /// The contacts of a body with walls.
+    Walls { block: usize, place: u32 },
     /// The contacts of a body with the external surface.
     Surface { block: usize, place: u32 },
 }
@@ -32,31 +35,47 @@ pub(super) struct Handed {
     picked: Vec<[f64; 4]>,
 }
 
+/// How far the forces of a block have been gone through.
+#[derive(Default)]
+struct InTurn {
+    block: u32,
+    next: usize,
+}
+
+impl InTurn {
+    /// Adds those of a body (block, place) to a list; bodies come in order.
+    fn add(&mut self, all: &[PatchForce], [block, place]: [u32; 2], to: &mut Vec<[f64; 4]>) {
+        if block != self.block {
+            *self = InTurn { block, next: 0 };
+        }
+        let own = all[self.next..].iter().take_while(|f| f.body == place);
+        for force in own {
+            let (f, t) = (force.force(), force.torque());
+            to.extend([[f.x, f.y, f.z, 0.0], [t.x, t.y, t.z, 0.0]]);
+            self.next += 1;
+        }
+    }
+}
+
 impl Handed {
     /// Forces and torques of all entries, one after another.
     fn collect(&mut self, work: &Work) {
         let Handed { sources, start, forces, .. } = self;
         start.clear();
         forces.clear();
-        // Contacts with the surface lie in the order of the bodies.
-        let (mut at, mut block_at) = (0, usize::MAX);
+        // Contacts with walls lie in the order of the bodies, and so do those with the surface.
+        let (mut on_walls, mut on_surface) = (InTurn::default(), InTurn::default());
         for source in &*sources {
             start.push(forces.len() as u32 / 2);
             match *source {
                 Source::Pair { from, record } => {
                     forces.extend(work.cross[from].slots[record..][..2].iter().map(|r| r.0));
                 }
+                Source::Walls { block, place } => {
+                    on_walls.add(&work.blocks[block].patches.aside.forces, [block as u32, place], forces);
+                }
                 Source::Surface { block, place } => {
-                    if block != block_at {
-                        (at, block_at) = (0, block);
-                    }
-                    let own =
-                        work.blocks[block].patches.forces()[at..].iter().take_while(|f| f.body == place);
-                    for force in own {
-                        let (f, t) = (force.force(), force.torque());
-                        forces.extend([[f.x, f.y, f.z, 0.0], [t.x, t.y, t.z, 0.0]]);
-                        at += 1;
-                    }
+                    on_surface.add(work.blocks[block].patches.forces(), [block as u32, place], forces);
                 }
             }
         }

@@ -326,7 +326,7 @@ pub(super) struct Features {
     pub bonds: bool,
     /// Whether any body is a clump.
     pub clumps: bool,
-    /// Number of walls of triangles.
+    /// Number of walls, where these are the device's.
     pub walls: usize,
     /// Whether there are periodic borders.
     pub periodic: bool,

@@ -27,8 +27,7 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
         (model.solids && bodies().all(solid), "scenes of boxes and polyhedra alone"),
         (model.solids && !model.bonds.is_empty(), "bonds in scenes with boxes or polyhedra"),
         (model.solids && model.periodic.is_some(), "boxes and polyhedra across periodic borders"),
-        (!model.walls.triangulated(), "walls other than triangles and planes of steady velocity"),
-        (model.walls.walls.iter().any(|w| w.servo.is_some()), "walls that a force drives"),
+        (model.scarred, "bodies that scar the ground"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
     ];
     match all.into_iter().find(|(there, _)| *there) {

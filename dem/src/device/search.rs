@@ -35,12 +35,12 @@ impl<M: Machine> Device<M> {
             return Ok(false);
         }
         if self.ahead {
-            self.fetch_rest(state)?;
+            self.fetch_rest(model, state)?;
         }
         neighbours::update(model, state, &mut self.work, surface, Listed::Rest);
-        if state.lists.iter().any(orphans) {
+        if self.features.walls > 0 && state.lists.iter().any(orphans) {
             // What such a contact leaves behind is the engine's to book. Of contacts among spheres the state has those of before.
-            self.bring_back(state, Listed::Rest)?;
+            self.bring_back(model, state, Listed::Rest)?;
             (self.ahead, self.found, state.stale) = (false, true, true);
             return Ok(true);
         }
@@ -50,14 +50,14 @@ impl<M: Machine> Device<M> {
     }
 
     /// Puts where bodies are, and the memory of what the processor lists, into a state.
-    fn fetch_rest(&mut self, state: &mut State) -> Result<(), String> {
+    fn fetch_rest(&mut self, model: &Model, state: &mut State) -> Result<(), String> {
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let Motion { mut x, mut orientation, .. } = Motion::zeros(n, self.features.clumps);
         self.get(Slot::OldX, 0, x.as_flattened_mut())?;
         self.get(Slot::OldOrientation, 0, orientation.as_flattened_mut())?;
         put_places(&x, &orientation, state, &mut self.work);
         let from = self.among_spheres;
-        let mut memory = Memory::zeros(self.contacts - from, self.pairs, 0);
+        let mut memory = Memory::zeros(model, self.contacts - from, self.pairs, 0);
         self.get(Slot::OldMemory, 4 * from, memory.spring.as_flattened_mut())?;
         if self.features.roll {
             self.get(Slot::OldTurn, 4 * from, memory.turn.as_flattened_mut())?;
@@ -126,7 +126,7 @@ impl<M: Machine> Device<M> {
         self.reserve(Slot::Spent, 2 * self.contacts)?;
         self.reserve(Slot::Walls, 8 * (contacts - of_spheres))?;
         if let Some(lists) = rest {
-            self.put_memory(state, contacts)?;
+            self.put_memory(model, state, contacts)?;
             self.hand_over_from(lists)?;
         }
         (self.found, self.ahead) = (true, true);
@@ -163,8 +163,8 @@ impl<M: Machine> Device<M> {
     }
 
     /// Puts down what contacts remember that the processor lists.
-    fn put_memory(&mut self, state: &State, from: usize) -> Result<(), String> {
-        let memory = Memory::of_rest(state);
+    fn put_memory(&mut self, model: &Model, state: &State, from: usize) -> Result<(), String> {
+        let memory = Memory::of_rest(model, state);
         let of_springs = self.buffer(Slot::OldMemory);
         self.machine.fill(of_springs, 4 * from, memory.spring.as_flattened())?;
         if self.features.roll {

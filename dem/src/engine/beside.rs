@@ -1,5 +1,5 @@
-//! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, all contacts of bodies
-//! that are not made of spheres, and the motion of these. Everything that takes part is where the step begins.
+//! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, and with walls where any
+//! of these is round or driven by a force, all contacts of bodies that are not made of spheres, and the motion of these. Everything that takes part is where the step begins.
 
 use super::block_work::BlockWork;
 use super::model::Model;
@@ -19,20 +19,26 @@ use rayon::prelude::*;
 
 /// Whether a model has any of it.
 pub(crate) fn any(model: &Model) -> bool {
-    model.solids || model.surface_material.is_some()
+    model.solids || model.surface_material.is_some() || walls(model)
 }
 
-/// Forces of these contacts: into the slots of their pairs, and of those with the surface into the scratch of the block; the near list is
+/// Whether contacts of spheres with walls are among it.
+pub(crate) fn walls(model: &Model) -> bool {
+    !model.walls.triangulated() || model.walls.walls.iter().any(|w| w.servo.is_some())
+}
+
+/// Forces of these contacts: into the slots of their pairs, and of those with walls and the surface into the scratch of the block; the near list is
 /// good. What blocks book begins anew.
 pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let setting = Setting { laws: &model.laws, simd: work.simd, dt: state.pace.kick() };
     let gone = state.drift + state.wall_drift;
-    let State { blocks, lists, cross, planes, scars, .. } = &mut *state;
+    let State { blocks, lists, cross, planes, scars, walls: moved, .. } = &mut *state;
     let (blocks, planes) = (&blocks[..], &planes[..]);
-    let Work { members, blocks: works, cross: slots, walls, sheet, parallel, .. } = work;
+    let Work { members, blocks: works, cross: slots, walls: standing, sheet, parallel, .. } = work;
     let members = &members[..];
     let bodies = (Part { first: 0, list: blocks }, Part { first: 0, list: members });
-    let now = candidates::now_of(model, bodies, planes, (walls, sheet), scars);
+    let now = candidates::now_of(model, bodies, planes, (standing, sheet), scars);
+    let placed = walls(model).then(|| model.walls.placed(moved));
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossForces))| {
         out.clear_books();
         kind::forces(&setting, &now, b, pairs, out);
@@ -41,10 +47,20 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
         w.tally.ledger = Ledger::default();
         w.tally.failure = None;
         w.patches.contacts.clear();
-        if !list.surface.is_empty() {
+        let bodies = (&blocks[b], &members[b]);
+        if placed.is_some() || !list.surface.is_empty() {
             w.tally.sums.clear();
             w.tally.sums.resize(blocks[b].bodies.len(), Sums::default());
-            let bodies = (&blocks[b], &members[b]);
+        }
+        if let Some(walls) = &placed {
+            w.patches.wall_sums.clear();
+            w.patches.aside.clear();
+            if !list.walls.is_empty() {
+                step::on_walls(model, &setting, (walls, gone), &mut list.walls, bodies, w);
+                w.patches.set_aside(&mut w.tally);
+            }
+        }
+        if !list.surface.is_empty() {
             step::on_surface(model, &setting, (surface, gone), &mut list.surface, bodies, w);
         }
     };

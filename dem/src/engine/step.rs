@@ -242,22 +242,34 @@ impl<S: Surface> Shared<'_, S> {
             dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, tally);
         }
         if !lists.walls.is_empty() {
-            work.patches.wall_sums.resize(self.walls.groups(), WallSum::default());
-            let against = Against {
-                surface: &self.walls,
-                material: |patch| model.walls.material(patch),
-                partner: |patch| model.walls.partner(patch),
-                external: false,
-                gone: self.gone,
-            };
-            let own = (block, members);
-            patches::contacts(&setting, &against, &mut lists.walls, own, tally, &mut work.patches);
+            let walls = (&self.walls, self.gone);
+            on_walls(model, &setting, walls, &mut lists.walls, (block, members), work);
         }
         if !lists.surface.is_empty() {
             let (surface, own) = ((self.surface, self.gone), (block, members));
             on_surface(model, &setting, surface, &mut lists.surface, own, work);
         }
     }
+}
+
+/// Contacts of a block's spheres with walls; `gone`: as for [`on_surface`].
+pub(crate) fn on_walls(
+    model: &Model,
+    setting: &Setting<'_>,
+    (walls, gone): (&PlacedWalls<'_>, f64),
+    list: &mut PatchList,
+    own: (&Block, &Members),
+    work: &mut BlockWork,
+) {
+    work.patches.wall_sums.resize(walls.groups(), WallSum::default());
+    let against = Against {
+        surface: walls,
+        material: |patch| model.walls.material(patch),
+        partner: |patch| model.walls.partner(patch),
+        external: false,
+        gone,
+    };
+    patches::contacts(setting, &against, list, own, &mut work.tally, &mut work.patches);
 }
 
 /// Contacts of a block's spheres with the external surface, and what that did; `gone`: bound on the way that anything has come towards

@@ -13,8 +13,8 @@ use trackbed_dem::law::table;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::{NoSurface, Surface};
 use trackbed_dem::{
-    BackEnd, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, RigidBody, Servo, Shape,
-    State, Vec3, WallInput, WallShape, Work, step,
+    BackEnd, BodyInput, LocalDamping, Material, Model, ModelInput, Motion, Oscillation, Plane, RigidBody,
+    Servo, Shape, State, Vec3, WallInput, WallShape, Work, step,
 };
 
 pub(crate) const STEPS: usize = 1000;
@@ -408,23 +408,64 @@ fn periodic_borders() {
     }
 }
 
-/// What is no wall of triangles with a prescribed motion is refused by name.
+/// A plate in place of one of the planes, which a force presses onto the gas along `way`.
+pub(crate) fn pressed(mut input: ModelInput, way: Vec3) -> ModelInput {
+    input.planes.retain(|p| p.normal.dot(&way) < 0.5);
+    let side = |b: &BodyInput| b.position.dot(&way) - 0.01 * b.scale;
+    let point = way * input.bodies.iter().map(side).fold(f64::INFINITY, f64::min);
+    let plate = WallShape::Plane { point, normal: way + Vec3::new(0.0, 0.002, 0.0) };
+    let servo = Servo { direction: way, force: vec![[0.0, 300.0]], max_speed: 3.0, gain: 0.5 };
+    input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(plate, 1) });
+    input
+}
+
+/// The gas in a cone with a bottom that comes up and a shell that turns, beside triangles, under a plate that a force drives.
+fn in_a_cone(input: ModelInput) -> ModelInput {
+    let mut input = pressed(input, -Vec3::z());
+    input.planes.retain(|p| p.normal.z.abs() < 0.5);
+    input.bodies.iter_mut().for_each(|b| b.velocity *= 2.0);
+    let middle = Vec3::repeat(0.5 * 0.0206 * 11.0);
+    let cone = WallShape::Frustum {
+        base: Vec3::new(middle.x, middle.y, -1.2e-3),
+        axis: Vec3::z(),
+        height: 0.3,
+        radii: [0.1555, 0.158],
+        caps: [true, false],
+    };
+    let rising = Motion { velocity: Vec3::new(0.1, 0.0, 0.4), ..Motion::default() };
+    input.walls.push(WallInput { motion: rising, ..WallInput::fixed(cone, 0) });
+    let shell = WallShape::Sphere { centre: Vec3::new(middle.x, middle.y, 0.0953), radius: 0.1775 };
+    let turning = Motion { angular_velocity: Vec3::new(0.5, 1.0, 0.8), ..Motion::default() };
+    input.walls.push(WallInput { motion: turning, ..WallInput::fixed(shell, 1) });
+    let side = mesh(3, Vec3::new(-1e-3, middle.y, middle.z), [Vec3::y() * 0.4, Vec3::z() * 0.4], || 0.0);
+    input.walls.push(WallInput::fixed(side, 0));
+    input
+}
+
+/// Contacts with walls that are round, or driven, are the processor's part of a step.
 #[test]
-fn other_walls_are_refused() {
-    let far = Vec3::new(0.0, 0.0, -1.0);
-    let square = mesh(1, far, [Vec3::x(), Vec3::y()], || 0.0);
-    let sphere = WallShape::Sphere { centre: far, radius: 0.1 };
-    let held = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 0.2, gain: 0.5 };
-    let driven = WallInput { servo: Some(held), ..WallInput::fixed(square, 0) };
-    for (wall, words) in [
-        (WallInput::fixed(sphere, 0), "walls other than triangles and planes of steady velocity"),
-        (driven, "walls that a force drives"),
-    ] {
-        let mut input = gas([stone(), smooth()], Vec::new());
-        input.walls.push(wall);
-        let why =
-            source(&Model::new(input).expect("a good input")).expect_err("not for a device").to_string();
-        assert_eq!(why, format!("{words} are not computed on a device, only on the processor"));
+fn round_and_driven_walls() {
+    if device_is_there() {
+        let clumps = with_clumps(gas([turning(stone()), smooth()], Vec::new()), |k| k % 3 != 1);
+        for (name, input) in [
+            ("a plate", pressed(gas([stone(), smooth()], Vec::new()), -Vec3::z())),
+            ("a cone", in_a_cone(gas([stone(), smooth()], Vec::new()))),
+            (
+                "a cone, hertz, rolling",
+                in_a_cone(gas([turning(elastic(stone())), smooth()].map(elastic), Vec::new())),
+            ),
+            ("a cone, clumps", in_a_cone(clumps)),
+        ] {
+            let round = input.walls.len() > 1;
+            let state = same_bits(name, input);
+            let (force, contacts) = (state.wall_force(0).0.norm(), state.wall_contact_count());
+            let of_walls: Vec<f64> = (1..4).filter(|_| round).map(|k| state.wall_force(k).0.norm()).collect();
+            println!(
+                "{name}: {contacts} contacts, plate {force:.3} N, servo {:.3e} J, {of_walls:.3?} N",
+                state.ledger.work_servo
+            );
+            assert!(contacts > 4 && force > 0.0 && state.ledger.work_servo != 0.0);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Steps that a device shares with the processor: spheres and clumps on a surface that moves, among blocks that the processor moves.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{STEPS, changed, fails_alike, gas, mesh, smooth, turning, with_clumps};
+use crate::device::{STEPS, changed, fails_alike, gas, mesh, pressed, smooth, turning, with_clumps};
 use crate::scene::{block, body, stone};
 use std::sync::Arc;
 use trackbed_dem::device::{Device, source};
@@ -203,7 +203,7 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
     if device_is_there() {
         let materials = [turning(stone()), smooth()];
         let clumps = |k: usize| k % 3 == 1;
-        let scenes: [(&str, ModelInput); 6] = [
+        let scenes: [(&str, ModelInput); 7] = [
             ("spheres on ground", on_ground(gas([stone(), smooth()], Vec::new()))),
             ("clumps on ground", on_ground(with_clumps(gas(materials, Vec::new()), clumps))),
             ("spheres and blocks", among_blocks(gas([stone(), smooth()], Vec::new()))),
@@ -212,10 +212,12 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
                 "blocks beside a wall",
                 beside_a_wall(among_blocks(with_clumps(gas([stone(), smooth()], Vec::new()), clumps))),
             ),
+            ("blocks under a plate", among_blocks(pressed(gas([stone(), smooth()], Vec::new()), Vec3::x()))),
             ("clumps and blocks", among_blocks(with_clumps(gas([stone(), smooth()], Vec::new()), clumps))),
         ];
         for (name, input) in scenes {
-            let blocks = input.bodies.len() > FIRST;
+            let (blocks, driven) =
+                (input.bodies.len() > FIRST, input.walls.iter().any(|w| w.servo.is_some()));
             let Compared { differs, state, met, read } = compare(input, |text| text);
             let l = &state.ledger;
             println!(
@@ -225,6 +227,7 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
             );
             assert_eq!(differs, None, "{name}: the first step after which the states differ");
             assert!(met[0] > 1000 && (met[1] > 100) == blocks && l.work_surface > 0.0, "{name}: {met:?}");
+            assert_eq!(l.work_servo != 0.0, driven, "{name}");
             assert!((l.work_applied != 0.0) && l.dissipated_friction > 0.0, "{name}");
         }
     }

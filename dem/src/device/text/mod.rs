@@ -35,7 +35,7 @@ pub(super) fn features(model: &Model) -> Features {
         held: damped || fixed,
         bonds: !model.bonds.is_empty(),
         clumps: model.clumps,
-        walls: model.walls.walls.len(),
+        walls: if beside::walls(model) { 0 } else { model.walls.walls.len() },
         periodic: model.periodic.is_some(),
         beside: beside::any(model),
         classes: classes(model.radii),
