@@ -22,7 +22,6 @@ use crate::law::History;
 use crate::pairs::cross::ImageName;
 use crate::pairs::groups::Groups;
 use crate::pairs::patches::PatchPair;
-use std::cell::Cell;
 
 /// Lists of bonds across blocks, then within.
 fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
@@ -186,6 +185,18 @@ pub(super) struct Lists {
     first: u32,
 }
 
+/// Body, entry, and after which block's contacts across it comes, in the order of the sums of each body.
+struct Entered {
+    all: Vec<[u32; 3]>,
+    after: u32,
+}
+
+impl Entered {
+    fn put(&mut self, body: u32, what: What, of: u32, second: bool) {
+        self.all.push([body, entry(what, of, second), self.after]);
+    }
+}
+
 impl Lists {
     /// The lists of a state. `first`: how many contacts come before these, as the device has listed them itself.
     pub fn of(model: &Model, state: &State, work: &Work, spheres: &Spheres, first: usize) -> Lists {
@@ -308,13 +319,34 @@ impl Lists {
     }
 
     /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
-    /// and within, contacts within, planes, triangles.
+    /// and within, contacts within, planes, triangles, what the processor has of walls and the surface.
     fn enter(&mut self, model: &Model, state: &State, work: &Work, spheres: &Spheres) {
-        let mut all: Vec<[u32; 3]> = Vec::with_capacity(2 * (self.ends.len() + self.bond_ends.len()));
-        let after = Cell::new(0);
-        let mut put = |body: u32, what: What, of: u32, second: bool| {
-            all.push([body, entry(what, of, second), after.get()])
-        };
+        let room = 2 * (self.ends.len() + self.bond_ends.len());
+        let mut entered = Entered { all: Vec::with_capacity(room), after: 0 };
+        self.enter_across(state, work, spheres, &mut entered);
+        entered.after = self.blocks as u32;
+        for (what, list) in [(What::Bond, List::OwnBonds), (What::Debonded, List::OwnDebonded)] {
+            for of in self.from(list, 0)..self.from(list, self.blocks) {
+                let [i, j] = if what == What::Bond { self.bond_ends[of as usize] } else { self.ends_of(of) };
+                entered.put(i, what, of, false);
+                entered.put(j, what, of, true);
+            }
+        }
+        self.enter_within(work, spheres, &mut entered);
+        entered.after = u32::MAX;
+        for (group, &first) in self.pairs.groups.iter().enumerate() {
+            let sphere = self.pairs.ends[first as usize][0];
+            entered.put(spheres.owner(sphere), What::Walls, group as u32, false);
+        }
+        self.pairs.groups.push(self.pairs.ends.len() as u32);
+        self.enter_patches(model, state, work, &mut entered);
+        self.watched.sort_unstable();
+        self.watched.dedup();
+        self.sort(&entered.all);
+    }
+
+    /// Contacts, bonds and debonded pairs across blocks, and what the processor has of pairs of bodies.
+    fn enter_across(&mut self, state: &State, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         // Across blocks the engine takes the formulas of clumps for all spheres, where there are clumps.
         let across = if spheres.clumps { What::Members } else { What::Spheres };
         // Those that the processor moves gather nothing here.
@@ -322,7 +354,7 @@ impl Lists {
         for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
             for share in &w.shares.list {
                 let from = share.block as usize;
-                after.set(share.block);
+                entered.after = share.block;
                 let (forces, record) = (&work.cross[from], share.record());
                 let (what, of) = if record >= forces.images_at {
                     let of = (record - forces.images_at) / forces.width;
@@ -333,9 +365,9 @@ impl Lists {
                 } else {
                     (across, self.from(List::Cross, from) + (record / forces.width) as u32)
                 };
-                put(self.body(b, share.place), what, of, !share.first());
+                entered.put(self.body(b, share.place), what, of, !share.first());
             }
-            after.set(self.blocks as u32);
+            entered.after = self.blocks as u32;
             for share in work.bonds.shares(b) {
                 let from = share.block as usize;
                 let count = state.bonds.cross[from].count;
@@ -343,17 +375,13 @@ impl Lists {
                     Some(slot) => (What::Debonded, self.from(List::CrossDebonded, from) + slot),
                     None => (What::Bond, self.from(List::CrossBonds, from) + share.slot),
                 };
-                put(self.body(b, share.place), what, of, !share.first);
+                entered.put(self.body(b, share.place), what, of, !share.first);
             }
         }
-        after.set(self.blocks as u32);
-        for (what, list) in [(What::Bond, List::OwnBonds), (What::Debonded, List::OwnDebonded)] {
-            for of in self.from(list, 0)..self.from(list, self.blocks) {
-                let [i, j] = if what == What::Bond { self.bond_ends[of as usize] } else { self.ends_of(of) };
-                put(i, what, of, false);
-                put(j, what, of, true);
-            }
-        }
+    }
+
+    /// Contacts within blocks, and with planes.
+    fn enter_within(&self, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         let within =
             [(List::Own, What::Spheres, What::Members), (List::Planes, What::Plane, What::MemberPlane)];
         for (list, single, member) in within {
@@ -362,18 +390,17 @@ impl Lists {
                 let body = |end: u32| if members.rigid { spheres.owner(end) } else { end };
                 for of in self.from(list, b)..self.from(list, b + 1) {
                     let [i, j] = self.ends_of(of);
-                    put(body(i), what, of, false);
+                    entered.put(body(i), what, of, false);
                     if list == List::Own {
-                        put(body(j), what, of, true);
+                        entered.put(body(j), what, of, true);
                     }
                 }
             }
         }
-        after.set(u32::MAX);
-        for (group, &first) in self.pairs.groups.iter().enumerate() {
-            put(spheres.owner(self.pairs.ends[first as usize][0]), What::Walls, group as u32, false);
-        }
-        self.pairs.groups.push(self.pairs.ends.len() as u32);
+    }
+
+    /// What the processor has of contacts with walls and with the external surface.
+    fn enter_patches(&mut self, model: &Model, state: &State, work: &Work, entered: &mut Entered) {
         type Of = (fn(&BlockLists) -> &[PatchPair], fn(usize, u32) -> Source);
         let on_walls: Of = (|l| &l.walls.pairs, |block, place| Source::Walls { block, place });
         let on_surface: Of = (|l| &l.surface.pairs, |block, place| Source::Surface { block, place });
@@ -382,13 +409,10 @@ impl Lists {
                 for pairs in pairs(lists).chunk_by(|p, q| members.body(p.i) == members.body(q.i)) {
                     let place = members.body(pairs[0].i);
                     let of = self.hand_over(source(b, place), [b as u32, place]);
-                    put(self.body(b, place), What::Handed, of, false);
+                    entered.put(self.body(b, place), What::Handed, of, false);
                 }
             }
         }
-        self.watched.sort_unstable();
-        self.watched.dedup();
-        self.sort(&all);
     }
 
     /// Notes what the processor hands over to a body (block, place); its number.
