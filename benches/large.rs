@@ -124,7 +124,7 @@ fn stand(model: &Model) -> Result<Stand, Box<dyn Error>> {
     load.iter_mut().for_each(|l| *l += 10.0 * noise(&mut seed));
     let solution = watch.time(|| solver.solve(model, &load))?;
     let most = solver.counts().map_or(0, |c| c.most);
-    Ok((set_up.cpu, watch.cpu, solution.u, most, solver.iteration_memory().unwrap_or(0)))
+    Ok((set_up.cpu, watch.cpu, solution.u, most, solver.solver_memory().unwrap_or(0)))
 }
 
 fn statics(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {

@@ -1,7 +1,7 @@
 //! What can go wrong: the checks of a model, the choice of a method, the solution of the equations.
 
 use crate::material::Region;
-use crate::solver::AnalysisError;
+use crate::solver::{AnalysisError, MumpsError};
 use crate::solver::conjugate::Stopped;
 use thiserror::Error;
 
@@ -145,4 +145,6 @@ pub enum SolveError {
     Singular,
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    #[error(transparent)]
+    Mumps(#[from] MumpsError),
 }
