@@ -6,8 +6,8 @@
 //! bits are those of one machine, one library and one number of its threads.
 //!
 //! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41; compression: Amestoy, Buttari,
-//! L'Excellent and Mary, ACM Trans. Math. Software 45 (2019) 2:1-26. Limits: no exchange of pivots between fronts (CNTL(1) = 0), so that
-//! a matrix that is not positive definite is refused; fewer than 2^31 equations.
+//! L'Excellent and Mary, ACM Trans. Math. Software 45 (2019) 2:1-26. Limits: matrices that are not positive definite are refused; fewer than
+//! 2^31 equations.
 
 use super::MumpsError;
 use std::ffi::{CString, c_char, c_int, c_longlong};
@@ -57,6 +57,9 @@ const SOLVE: c_int = 3;
 /// Room beyond the estimate of the analysis at first, and at most [%].
 const ROOM: c_int = 20;
 const MOST_ROOM: c_int = 320;
+
+/// Share of the largest entry of its row below which a pivot would change places: never in a matrix that is positive definite.
+const PIVOTING: f64 = 1e-14;
 
 /// A symmetric matrix by coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -227,9 +230,9 @@ impl Instance {
         for (index, value) in [(6, 0), (8, 0), (7, 1), (10, 0), (12, 1), (28, 1)] {
             self.set(index, value);
         }
-        // Pivots stay where they are, and those near zero are found.
+        // Pivots stay where they are unless one is as good as zero, which is found; with a threshold of 0 it would not be.
         self.set(24, 1);
-        self.set_real(1, 0.0);
+        self.set_real(1, PIVOTING);
         self.set_real(3, -settings.null_pivot);
         if let Some(dropped) = settings.compression {
             self.set(35, 2);
@@ -300,5 +303,57 @@ impl Instance {
             -10 => Err(MumpsError::NotPositive { pivots: 1 }),
             code => Err(MumpsError::Code { code, detail: self.info(2) }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The symmetric matrix `[[1, off, 0], [off, last, 0], [0, 0, 1]]`.
+    fn matrix(off: f64, last: f64) -> Coordinates {
+        Coordinates {
+            row: vec![1, 2, 2, 3],
+            column: vec![1, 1, 2, 3],
+            value: vec![1.0, off, last, 1.0],
+            place: vec![1, 2, 3],
+        }
+    }
+
+    fn factor(off: f64, last: f64) -> Result<Factor, MumpsError> {
+        Factor::new(matrix(off, last), Settings { null_pivot: 1e-11, ..Settings::default() })
+    }
+
+    #[test]
+    fn the_solution_meets_the_equations() {
+        let mut factor = factor(0.5, 1.0).unwrap();
+        let mut x = [2.0, 2.5, 3.0];
+        factor.solve_in_place(&mut x).unwrap();
+        assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, e)| (x - e).abs() < 1e-14), "{x:?}");
+        assert_eq!(factor.size(), 3);
+    }
+
+    #[test]
+    fn pivots_near_zero_and_negative_ones_are_refused() {
+        let error = factor(1.0, 1.0 + 1e-13).err().unwrap();
+        assert!(matches!(error, MumpsError::Pivot { equation: 0 | 1 }), "{error}");
+        assert_eq!(factor(2.0, 1.0).err(), Some(MumpsError::NotPositive { pivots: 1 }));
+        assert!(factor(1.0, 1.0 + 1e-9).is_ok());
+    }
+
+    #[test]
+    fn no_equations_are_no_work() {
+        let mut factor = Factor::new(Coordinates::default(), Settings::default()).unwrap();
+        factor.solve_in_place(&mut []).unwrap();
+        assert_eq!((factor.size(), factor.memory()), (0, 0));
+        assert_eq!(demand(Coordinates::default(), Settings::default()), Ok(0));
+    }
+
+    #[test]
+    #[should_panic(expected = "rows, columns and places from 1 to 3")]
+    fn a_row_out_of_range_is_refused() {
+        let mut wrong = matrix(0.5, 1.0);
+        wrong.row[1] = 4;
+        let _ = Factor::new(wrong, Settings::default());
     }
 }
