@@ -74,17 +74,15 @@ impl StaticSolver {
         check_linear(model)?;
         check_held(model)?;
         let (mesh, supports) = (model.mesh(), model.supports());
-        let by_iteration = |tolerance: f64| IMPROVE.max(100.0 * tolerance);
         let (system, enough) = match model.methods().statics {
             Method::Direct => (Equations::Direct(Box::new(factor(model)?)), IMPROVE),
             Method::Iterative { tolerance } => {
                 let iteration = Iteration::aggregation(mesh, &model.shared_matrices(), supports, tolerance)?;
-                (Equations::Aggregation(Box::new(iteration)), by_iteration(tolerance))
+                (Equations::Aggregation(Box::new(iteration)), IMPROVE.max(100.0 * tolerance))
             }
             Method::Mumps(method) => {
-                let enough = method.compression.map_or(IMPROVE, |c| by_iteration(c.tolerance));
-                let matrices = model.shared_matrices();
-                (Equations::by_mumps(mesh, &matrices, supports, OF_STIFFNESS, method, NO_STIFFNESS)?, enough)
+                let matrices = model.matrices();
+                (Equations::by_mumps(mesh, matrices, supports, OF_STIFFNESS, method, NO_STIFFNESS)?, IMPROVE)
             }
         };
         let equations = vec![0.0; model.free_dof_count()];

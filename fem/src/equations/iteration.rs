@@ -99,7 +99,7 @@ pub fn block_jacobi_memory(matrices: Arc<Matrices>, supports: &Supports) -> usiz
 }
 
 impl<P: Preconditioner> Iteration<P> {
-    pub(super) fn new(matrix: Product, preconditioner: P, values: usize, tolerance: f64) -> Iteration<P> {
+    fn new(matrix: Product, preconditioner: P, values: usize, tolerance: f64) -> Iteration<P> {
         let gradients = ConjugateGradients::new(values, LIMIT);
         let (load, solution) = (vec![0.0; values], vec![0.0; values]);
         let counts = Counts::default();
@@ -110,12 +110,6 @@ impl<P: Preconditioner> Iteration<P> {
     pub fn memory(&self) -> usize {
         let vectors = 16 * self.load.len() + self.gradients.memory();
         self.matrix.memory() + self.preconditioner.memory() + vectors
-    }
-
-    /// The preconditioner.
-    #[cfg(feature = "mumps")]
-    pub(super) fn preconditioner(&mut self) -> &mut P {
-        &mut self.preconditioner
     }
 
     /// Counts so far.

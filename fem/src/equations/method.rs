@@ -24,17 +24,6 @@ pub enum Method {
 pub struct MumpsMethod {
     /// Whether the factor lies in files, in the folder for temporary files.
     pub out_of_core: bool,
-    /// Whether blocks of the factor are compressed.
-    pub compression: Option<Compression>,
-}
-
-/// A compressed factor, which conjugate gradients take for a preconditioner.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compression {
-    /// Size below which parts of blocks are left out [-]; the diagonal of the matrix is scaled to 1.
-    pub dropped: f64,
-    /// Residual at which a solution counts as found [-], as that of [`Method::Iterative`].
-    pub tolerance: f64,
 }
 
 impl Method {

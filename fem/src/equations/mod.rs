@@ -6,9 +6,9 @@ pub mod cholesky;
 pub mod iteration;
 pub mod mass;
 pub mod method;
-pub mod ordering;
 #[cfg(feature = "mumps")]
 pub mod mumps;
+pub mod ordering;
 mod pattern;
 pub mod system;
 

@@ -1,40 +1,25 @@
 //! The equations of a model by the library MUMPS: a factor of `S A S`, A = k K + m M + d D on the free dofs, S the root of the inverse
 //! diagonal, in the order of elimination of the mesh.
 //!
-//! The scaled diagonal is 1, so that pivots that count as zero and parts of blocks that are left out are shares. A compressed factor is a
-//! preconditioner of conjugate gradients: what was left out costs iterations, not accuracy.
+//! The scaled diagonal is 1, so that pivots that count as zero are shares of their diagonal.
 //!
 //! Limits: the factor is made anew with its analysis for each combination; a pivot near zero is reported with its node and direction, a
 //! negative one without.
 
-use super::iteration::Iteration;
 use super::method::MumpsMethod;
 use super::pattern::order;
-use super::system::Equations;
 use crate::assembly::{Combination, Matrices};
 use crate::error::SolveError;
-use crate::iterative::product::Product;
 use crate::mesh::Mesh;
 use crate::solver::MumpsError;
-use crate::solver::conjugate::Preconditioner;
 use crate::solver::mumps::{self, Coordinates, Settings};
 use crate::supports::{Supports, name};
-use std::sync::Arc;
 
 /// A factor of MUMPS, ready to solve.
 pub struct Factor {
     factor: mumps::Factor,
     /// Root of the inverse diagonal. Shape `[equations]`.
     scale: Vec<f64>,
-}
-
-/// A compressed factor as preconditioner.
-pub struct Compressed {
-    factor: Factor,
-    free: Vec<u32>,
-    equations: Vec<f64>,
-    /// What ended a solve, which has left no number behind.
-    failure: Option<MumpsError>,
 }
 
 impl Factor {
@@ -77,55 +62,6 @@ impl Factor {
     }
 }
 
-impl Compressed {
-    /// What ended the last solve, if anything has.
-    pub fn failure(&mut self) -> Option<MumpsError> {
-        self.failure.take()
-    }
-}
-
-impl Preconditioner for Compressed {
-    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
-        for (e, &d) in self.equations.iter_mut().zip(&self.free) {
-            *e = r[d as usize];
-        }
-        z.fill(0.0);
-        if let Err(failure) = self.factor.solve_in_place(&mut self.equations) {
-            self.failure = Some(failure);
-            z.fill(f64::NAN);
-            return;
-        }
-        for (e, &d) in self.equations.iter().zip(&self.free) {
-            z[d as usize] = *e;
-        }
-    }
-
-    fn memory(&self) -> usize {
-        self.factor.memory()
-    }
-}
-
-/// The equations by a factor as it is, or by conjugate gradients with a compressed one.
-///
-/// # Errors
-/// As [`Factor::new`].
-pub fn equations(
-    mesh: &Mesh,
-    matrices: &Arc<Matrices>,
-    supports: &Supports,
-    combination: Combination,
-    method: MumpsMethod,
-    null_pivot: f64,
-) -> Result<Equations, SolveError> {
-    let factor = Factor::new(mesh, matrices, supports, combination, method, null_pivot)?;
-    let Some(compression) = method.compression else { return Ok(Equations::Mumps(Box::new(factor))) };
-    let (free, equations) = (supports.free().to_vec(), vec![0.0; supports.free().len()]);
-    let preconditioner = Compressed { factor, free, equations, failure: None };
-    let matrix = Product::new(matrices.clone(), supports, combination);
-    let iteration = Iteration::new(matrix, preconditioner, 3 * mesh.node_count(), compression.tolerance);
-    Ok(Equations::Compressed(Box::new(iteration)))
-}
-
 /// Memory that MUMPS expects to take for equations with the pattern of the stiffness, their entries included [bytes].
 ///
 /// # Errors
@@ -142,8 +78,7 @@ pub fn demand(
 }
 
 fn settings(method: MumpsMethod, null_pivot: f64) -> Settings {
-    let compression = method.compression.map(|c| c.dropped);
-    Settings { out_of_core: method.out_of_core, compression, null_pivot }
+    Settings { out_of_core: method.out_of_core, null_pivot }
 }
 
 fn no_stiffness(mesh: &Mesh, supports: &Supports, equation: usize) -> SolveError {

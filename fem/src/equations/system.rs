@@ -12,7 +12,6 @@ use crate::iterative::block_jacobi::BlockJacobi;
 use crate::mesh::Mesh;
 use crate::solver::LinearSolver;
 use crate::supports::Supports;
-use std::sync::Arc;
 
 /// Equations `A x = b` on the free dofs, ready to solve.
 pub enum Equations {
@@ -25,9 +24,6 @@ pub enum Equations {
     /// A factor of the library MUMPS.
     #[cfg(feature = "mumps")]
     Mumps(Box<mumps::Factor>),
-    /// Conjugate gradients with a compressed one.
-    #[cfg(feature = "mumps")]
-    Compressed(Box<Iteration<mumps::Compressed>>),
 }
 
 impl Equations {
@@ -39,7 +35,7 @@ impl Equations {
     /// [`SolveError::Singular`], or what the library lacks.
     pub fn by_mumps(
         mesh: &Mesh,
-        matrices: &Arc<Matrices>,
+        matrices: &Matrices,
         supports: &Supports,
         combination: Combination,
         method: MumpsMethod,
@@ -47,7 +43,8 @@ impl Equations {
     ) -> Result<Equations, SolveError> {
         #[cfg(feature = "mumps")]
         {
-            mumps::equations(mesh, matrices, supports, combination, method, null_pivot)
+            let factor = mumps::Factor::new(mesh, matrices, supports, combination, method, null_pivot)?;
+            Ok(Equations::Mumps(Box::new(factor)))
         }
         #[cfg(not(feature = "mumps"))]
         {
@@ -76,11 +73,6 @@ impl Equations {
             Equations::Aggregation(iteration) => iteration.solve(supports, x, guess),
             #[cfg(feature = "mumps")]
             Equations::Mumps(factor) => Ok(factor.solve_in_place(x)?),
-            #[cfg(feature = "mumps")]
-            Equations::Compressed(iteration) => {
-                let result = iteration.solve(supports, x, guess);
-                result.map_err(|e| iteration.preconditioner().failure().map_or(e, SolveError::from))
-            }
         }
     }
 
@@ -92,8 +84,6 @@ impl Equations {
             Equations::Aggregation(iteration) => Some(iteration.counts()),
             #[cfg(feature = "mumps")]
             Equations::Mumps(_) => None,
-            #[cfg(feature = "mumps")]
-            Equations::Compressed(iteration) => Some(iteration.counts()),
         }
     }
 
@@ -105,8 +95,6 @@ impl Equations {
             Equations::Aggregation(iteration) => Some(iteration.memory()),
             #[cfg(feature = "mumps")]
             Equations::Mumps(factor) => Some(factor.memory()),
-            #[cfg(feature = "mumps")]
-            Equations::Compressed(iteration) => Some(iteration.memory()),
         }
     }
 }

@@ -363,8 +363,8 @@ pub(crate) fn equations(model: &Model, combination: Combination) -> Result<Equat
             Equations::BlockJacobi(Box::new(iteration))
         }
         Method::Mumps(method) => {
-            let matrices = model.shared_matrices();
-            Equations::by_mumps(mesh, &matrices, supports, combination, method, f64::EPSILON)?
+            let matrices = model.matrices();
+            Equations::by_mumps(mesh, matrices, supports, combination, method, f64::EPSILON)?
         }
     })
 }

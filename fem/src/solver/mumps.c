@@ -19,7 +19,7 @@ DMUMPS_STRUC_C *trackbed_mumps_start(void) {
         return NULL;
     }
     id->par = 1;
-    id->sym = getenv("SYM1") ? 1 : 2;
+    id->sym = 2;
     id->comm_fortran = WORLD;
     id->job = -1;
     dmumps_c(id);

@@ -1,13 +1,13 @@
-//! A symmetric matrix factored by MUMPS (`L D Lᵀ`), a library of its own, in the order that is given; out of core or with
-//! compressed blocks where that is asked for.
+//! A symmetric matrix factored by MUMPS (`L D Lᵀ`), a library of its own, in the order that is given; out of core where that
+//! is asked for.
 //!
 //! Only with the feature `mumps`. MUMPS keeps a state that all its instances share, so that calls from several threads wait for each
 //! other; it uses as many threads as it was built for. It has no say in the order of sums of the BLAS that it is linked with, so that
 //! bits are those of one machine, one library and one number of its threads.
 //!
-//! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41; compression: Amestoy, Buttari,
-//! L'Excellent and Mary, ACM Trans. Math. Software 45 (2019) 2:1-26. Limits: matrices that are not positive definite are refused; fewer than
-//! 2^31 equations.
+//! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41. Limits: matrices that are not positive definite are refused; fewer than
+//! 2^31 equations. Compression of blocks (ICNTL(35)) is left out: MUMPS 5.5.1 with SCOTCH 7.0.3, as Debian 12 has them, reads memory
+//! that was never set while it groups the equations for it, and ends the program.
 
 use super::MumpsError;
 use std::ffi::{CString, c_char, c_int, c_longlong};
@@ -79,9 +79,6 @@ pub struct Coordinates {
 pub struct Settings {
     /// Whether the factor goes to files, in the folder for temporary files of the process.
     pub out_of_core: bool,
-    /// Size against the entries of the matrix, which should be near 1 on the diagonal, below which parts of blocks are left out of the
-    /// factor; nothing is left out without it.
-    pub compression: Option<f64>,
     /// Size at which a pivot counts as zero.
     pub null_pivot: f64,
 }
@@ -97,12 +94,7 @@ pub fn demand(matrix: Coordinates, settings: Settings) -> Result<usize, MumpsErr
     let mut matrix = matrix;
     let entries = 16 * matrix.row.len();
     let instance = Instance::analysed(&mut matrix, settings)?;
-    let estimate = match (settings.compression, settings.out_of_core) {
-        (None, false) => 17,
-        (None, true) => 27,
-        (Some(_), false) => 37,
-        (Some(_), true) => 39,
-    };
+    let estimate = if settings.out_of_core { 27 } else { 17 };
     Ok(1_000_000 * instance.info(estimate).unsigned_abs() as usize + entries)
 }
 
@@ -196,9 +188,15 @@ impl Instance {
     fn analysed(matrix: &mut Coordinates, settings: Settings) -> Result<Instance, MumpsError> {
         let Coordinates { row, column, value, place } = matrix;
         let n = c_int::try_from(place.len()).map_err(|_| MumpsError::Memory)?;
-        assert!(row.len() == column.len() && row.len() == value.len(), "one row, column and value for every entry");
+        assert!(
+            row.len() == column.len() && row.len() == value.len(),
+            "one row, column and value for every entry"
+        );
         let inside = |i: &i32| (1..=n).contains(i);
-        assert!(row.iter().chain(&*column).chain(&*place).all(inside), "rows, columns and places from 1 to {n}");
+        assert!(
+            row.iter().chain(&*column).chain(&*place).all(inside),
+            "rows, columns and places from 1 to {n}"
+        );
         let raw = {
             let _turn = turn();
             // SAFETY: takes nothing.
@@ -234,10 +232,6 @@ impl Instance {
         self.set(24, 1);
         self.set_real(1, PIVOTING);
         self.set_real(3, -settings.null_pivot);
-        if let Some(dropped) = settings.compression {
-            self.set(35, 2);
-            self.set_real(7, dropped);
-        }
         if settings.out_of_core {
             self.set(22, 1);
             let folder = std::env::temp_dir();

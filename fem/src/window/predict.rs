@@ -70,8 +70,6 @@ impl WindowSolver {
                 let contacts = Contacts { supports, factor: scale, add: contacts };
                 on_factor(|x| Ok(factor.solve_in_place(x)?), x, contacts, scratch)?
             }
-            #[cfg(feature = "mumps")]
-            Equations::Compressed(system) => system.solve_with(supports, x, scale, contacts, TOLERANCE)?,
         };
         rate.copy_from_slice(&state.v);
         for (x, &d) in self.equations.iter().zip(supports.free()) {

@@ -1,4 +1,4 @@
-//! The library MUMPS against the program's own factor: statics, windows, predictions, factors out of core and compressed, failures.
+//! The library MUMPS against the program's own factor: statics, windows, predictions, factors out of core, failures.
 //! A program without it says so.
 
 use crate::aggregation::hinged;
@@ -25,12 +25,9 @@ mod library {
     use trackbed_fem::solver::MumpsError;
     use trackbed_fem::statics::StaticSolver;
     use trackbed_fem::window::WindowSolver;
-    use trackbed_fem::{Compression, ElementKind, Mass, Methods, MumpsMethod, SolveError, State, statics};
+    use trackbed_fem::{ElementKind, Mass, Methods, MumpsMethod, SolveError, State, statics};
 
-    fn compressed(dropped: f64, tolerance: f64) -> MumpsMethod {
-        let compression = Some(Compression { dropped, tolerance });
-        MumpsMethod { out_of_core: false, compression }
-    }
+    const OUT_OF_CORE: MumpsMethod = MumpsMethod { out_of_core: true };
 
     /// Two exact factors of one matrix: rounding times its condition, some 1e4 here, leaves 1e-12.
     #[test]
@@ -39,7 +36,7 @@ mod library {
         for (kind, counts) in cases {
             let (own, _) = solve(&block(kind, counts, Methods::default()));
             for out_of_core in [false, true] {
-                let method = MumpsMethod { out_of_core, compression: None };
+                let method = MumpsMethod { out_of_core };
                 let (found, iterations) = solve(&block(kind, counts, by(method)));
                 let miss = difference(&found.u, &own.u).max(difference(&found.reactions, &own.reactions));
                 println!("{}, out of core {out_of_core}: differs by {miss:.1e}", kind.name());
@@ -54,7 +51,7 @@ mod library {
             let model = |methods| soils(ElementKind::Hex20, [5, 4, 4], mass, methods);
             let (own, _) = windows(&model(Methods::default()), theta);
             for out_of_core in [false, true] {
-                let method = MumpsMethod { out_of_core, compression: None };
+                let method = MumpsMethod { out_of_core };
                 let (found, iterations) = windows(&model(by(method)), theta);
                 let miss = difference(&found.u, &own.u).max(difference(&found.v, &own.v));
                 println!("{mass:?}, theta {theta}, out of core {out_of_core}: differs by {miss:.1e}");
@@ -63,37 +60,10 @@ mod library {
         }
     }
 
-    /// What is left out of the factor costs iterations; the tolerance is kept.
-    #[test]
-    fn a_compressed_factor_keeps_the_tolerance() {
-        let counts = [14, 12, 10];
-        let (own, _) = solve(&block(ElementKind::Hex20, counts, Methods::default()));
-        let mut most = Vec::new();
-        for dropped in [1e-9, 1e-3] {
-            let methods = by(compressed(dropped, 1e-10));
-            let (found, iterations) = solve(&block(ElementKind::Hex20, counts, methods));
-            let miss = difference(&found.u, &own.u);
-            println!("dropped {dropped:.0e}: {iterations} iterations, differs by {miss:.1e}");
-            assert!(miss > 0.0 && miss < 1e-8, "{miss:e}");
-            most.push(iterations);
-        }
-        assert!(most[0] >= 1 && most[0] <= 4 && most[1] > most[0], "{most:?}");
-    }
-
-    #[test]
-    fn windows_with_a_compressed_factor_keep_the_tolerance() {
-        let model = |methods| soils(ElementKind::Hex20, [5, 4, 4], Mass::Consistent, methods);
-        let (own, _) = windows(&model(Methods::default()), 0.55);
-        let (found, iterations) = windows(&model(by(compressed(1e-6, 1e-10))), 0.55);
-        let miss = difference(&found.u, &own.u).max(difference(&found.v, &own.v));
-        println!("{iterations} iterations, differs by {miss:.1e}");
-        assert!((1..20).contains(&iterations) && miss > 0.0 && miss < 3e-9, "{miss:e}");
-    }
-
     #[test]
     fn predictions_are_those_of_the_own_factor() {
         let (own, iterations) = predict(Methods::default());
-        for method in [MumpsMethod::default(), compressed(1e-6, 1e-10)] {
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
             let (found, made) = predict(by(method));
             let miss = difference(&found, &own);
             println!("{made} iterations, {iterations} on the own factor: differ by {miss:.1e}");
@@ -104,7 +74,7 @@ mod library {
     /// The hinge has no stiffness: the pivot that shows it is that of a node of the second block or of the hinge.
     #[test]
     fn a_mechanism_is_named() {
-        for method in [MumpsMethod::default(), compressed(1e-9, 1e-8)] {
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
             let model = hinged(by(method));
             let error = statics::solve(&model, &model.gravity_load()).unwrap_err();
             println!("{error}");
@@ -128,10 +98,12 @@ mod library {
     /// The estimate of the memory, which a run is refused by, is at least what is taken, and near it.
     #[test]
     fn the_memory_is_known_before() {
-        for method in [MumpsMethod::default(), MumpsMethod { out_of_core: true, compression: None }] {
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
             let model = block(ElementKind::Hex20, [14, 12, 10], by(method));
-            let (expected, taken) =
-                (model.mumps_memory(method).unwrap(), StaticSolver::new(&model).unwrap().solver_memory().unwrap());
+            let (expected, taken) = (
+                model.mumps_memory(method).unwrap(),
+                StaticSolver::new(&model).unwrap().solver_memory().unwrap(),
+            );
             println!("{method:?}: {expected} bytes expected, {taken} taken");
             assert!(expected >= taken && expected < 3 * taken, "{expected} {taken}");
         }
@@ -151,7 +123,7 @@ mod library {
             assert!(output.status.success() && text.contains("1 passed"), "{text}");
             return;
         }
-        let method = MumpsMethod { out_of_core: true, compression: None };
+        let method = OUT_OF_CORE;
         let model = block(ElementKind::Hex20, [3, 3, 3], by(method));
         let error = StaticSolver::new(&model).err().unwrap();
         assert_eq!(error, SolveError::Mumps(MumpsError::Files));
