@@ -45,7 +45,7 @@ impl Factor {
         Ok(Factor { factor, scale })
     }
 
-    /// The largest memory that MUMPS has taken while it factored [bytes].
+    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included [bytes].
     pub fn memory(&self) -> usize {
         self.factor.memory()
     }

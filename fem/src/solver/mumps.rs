@@ -74,6 +74,13 @@ pub struct Coordinates {
     pub place: Vec<i32>,
 }
 
+impl Coordinates {
+    /// Memory of the entries [bytes].
+    fn memory(&self) -> usize {
+        (2 * size_of::<i32>() + size_of::<f64>()) * self.row.len()
+    }
+}
+
 /// How a matrix is factored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
@@ -92,7 +99,7 @@ pub fn demand(matrix: Coordinates, settings: Settings) -> Result<usize, MumpsErr
         return Ok(0);
     }
     let mut matrix = matrix;
-    let entries = 16 * matrix.row.len();
+    let entries = matrix.memory();
     let instance = Instance::analysed(&mut matrix, settings)?;
     let estimate = if settings.out_of_core { 27 } else { 17 };
     Ok(1_000_000 * instance.info(estimate).unsigned_abs() as usize + entries)
@@ -137,7 +144,7 @@ impl Factor {
             return Err(MumpsError::NotPositive { pivots: instance.info(12).unsigned_abs() });
         }
         instance.forget_matrix(size);
-        let memory = 1_000_000 * instance.info(22).unsigned_abs() as usize;
+        let memory = 1_000_000 * instance.info(22).unsigned_abs() as usize + matrix.memory();
         Ok(Factor { size, instance: Some(instance), memory })
     }
 
@@ -146,7 +153,7 @@ impl Factor {
         self.size
     }
 
-    /// The largest memory that MUMPS has taken while it factored [bytes].
+    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included [bytes].
     pub fn memory(&self) -> usize {
         self.memory
     }
@@ -292,7 +299,7 @@ impl Instance {
         match code {
             0.. => Ok(()),
             -8 | -9 | -14 | -15 | -17 | -20 => Err(MumpsError::Room),
-            -5 | -7 | -13 | -19 | -22 | -71 => Err(MumpsError::Memory),
+            -5 | -7 | -13 | -19 => Err(MumpsError::Memory),
             -90 => Err(MumpsError::Files),
             -10 => Err(MumpsError::NotPositive { pivots: 1 }),
             code => Err(MumpsError::Code { code, detail: self.info(2) }),
