@@ -135,7 +135,10 @@ fn noise(seed: &mut u64) -> f64 {
 }
 
 /// Times of the set-up and of a window, the state after some, the iterations of one, and the memory.
-fn run(model: &Model) -> Result<(Watch, Watch, State, f64, usize), Box<dyn Error>> {
+type Run = (Watch, Watch, State, f64, usize);
+
+/// Windows under noise on the crest.
+fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
     let mut set_up = Watch::default();
     let mut solver = set_up.time(|| WindowSolver::new(model, THETA, WINDOW))?;
     let top = model.mesh().coordinates.iter().map(|x| x[2]).fold(0.0, f64::max);

@@ -93,10 +93,10 @@ mod library {
     #[test]
     fn a_pulse_moves_an_embankment_as_by_the_own_factor() {
         let set = [
-            "solid.block.x.counts=[10]",
-            "solid.block.y.counts=[6]",
-            "solid.block.z.counts=[2, 2]",
-            "time.end=0.03",
+            "solid.block.x.counts=[20]",
+            "solid.block.y.counts=[12]",
+            "solid.block.z.counts=[3, 3]",
+            "time.end=0.02",
             "output.frames=2",
         ];
         let methods = [DIRECT, MUMPS, IN_FILES];
