@@ -95,17 +95,17 @@ mod library {
         });
     }
 
-    /// The estimate of the memory, which a run is refused by, is at least what is taken, and near it.
+    /// The estimate of the memory, which a run is refused by, is at least what is peak, and near it.
     #[test]
     fn the_memory_is_known_before() {
         for method in [MumpsMethod::default(), OUT_OF_CORE] {
             let model = block(ElementKind::Hex20, [14, 12, 10], by(method));
-            let (expected, taken) = (
+            let (expected, peak) = (
                 model.mumps_memory(method).unwrap(),
                 StaticSolver::new(&model).unwrap().solver_memory().unwrap(),
             );
-            println!("{method:?}: {expected} bytes expected, {taken} taken");
-            assert!(expected >= taken && expected < 3 * taken, "{expected} {taken}");
+            println!("{method:?}: {expected} bytes expected, {peak} peak");
+            assert!(expected >= peak && expected < 3 * peak, "{expected} {peak}");
         }
     }
 

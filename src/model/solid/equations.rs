@@ -62,8 +62,8 @@ pub(super) fn plan(
     nodes: usize,
 ) -> Result<EquationPlan, SceneError> {
     let table = solid.optional("equations", &solid.equations);
-    let asked = table.as_ref().map_or(Equations::default(), |t| **t);
-    let method = asked.method;
+    let chosen = table.as_ref().map_or(Equations::default(), |t| **t);
+    let method = chosen.method;
     let hindrance = hindrance(solid, analysis, linear, coupled);
     if let Some(t) = &table {
         check(t)?;
@@ -77,8 +77,8 @@ pub(super) fn plan(
             return Err(t.error("method", found, "\"auto\" or \"direct\""));
         }
     }
-    let tolerance = asked.tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
-    let mumps = MumpsMethod { out_of_core: asked.out_of_core.unwrap_or(false) };
+    let tolerance = chosen.tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
+    let mumps = MumpsMethod { out_of_core: chosen.out_of_core.unwrap_or(false) };
     let choose = |used: bool, wins: bool, why: String| match method {
         _ if !used => (Method::Direct, String::new()),
         EquationMethod::Direct => (Method::Direct, "as the scene says".into()),
