@@ -7,6 +7,8 @@
 //!
 //! * `cargo bench --bench large -- windows` or `-- statics` (1 thread), sizes up to 100,000 nodes; `-- windows 0.4` one of them, as a share of the
 //!   largest; `-- windows 1 gradients` without the factor, which takes 7.3 GB there.
+//! * `cargo bench --features mumps --bench large -- windows 0.6 mumps` or `-- statics 0.6 mumps`: the factor, gradients, and the library MUMPS
+//!   as it is and out of core.
 
 #[path = "common/watch.rs"]
 mod watch;
@@ -15,7 +17,8 @@ use std::error::Error;
 use trackbed_fem::statics::StaticSolver;
 use trackbed_fem::window::WindowSolver;
 use trackbed_fem::{
-    Constraint, Elastic, Mass, Mesh, Method, Methods, Model, ModelInput, Quadrature, Rayleigh, State,
+    Constraint, Elastic, Mass, Mesh, Method, Methods, Model, ModelInput, MumpsMethod, Quadrature, Rayleigh,
+    State,
 };
 use watch::{Watch, pool};
 
@@ -27,6 +30,10 @@ const SHARES: [f64; 6] = [0.2, 0.3, 0.4, 0.6, 0.8, 1.0];
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if let [what @ ("windows" | "statics"), share, "mumps"] = words[..] {
+        let share = share.parse()?;
+        return Ok(pool(1).install(|| ways(what == "statics", share).map_err(|e| e.to_string()))?);
+    }
     let (what, share, direct) = match words[..] {
         [what, share] => (what, Some(share.parse()?), true),
         [what, share, "gradients"] => (what, Some(share.parse()?), false),
@@ -83,14 +90,55 @@ fn embankment(share: f64, methods: Methods) -> Result<Model, Box<dyn Error>> {
     })?)
 }
 
+/// All ways of a body of this size, each against the factor.
+fn ways(statics: bool, share: f64) -> Result<(), Box<dyn Error>> {
+    let tolerance = Method::WINDOW_TOLERANCE;
+    let ways = [
+        ("factor", Method::Direct),
+        ("gradients", Method::Iterative { tolerance }),
+        ("MUMPS", Method::Mumps(MumpsMethod { out_of_core: false })),
+        ("MUMPS, out of core", Method::Mumps(MumpsMethod { out_of_core: true })),
+    ];
+    let mut first: Option<Vec<f64>> = None;
+    for (name, method) in ways {
+        let model = embankment(share, Methods { statics: method, dynamics: method })?;
+        let (set_up, seconds, u, iterations, memory) = if statics {
+            let (set_up, seconds, u, most, memory) = stand(&model)?;
+            (set_up, seconds, u, f64::from(most), memory)
+        } else {
+            run(&model)
+                .map(|(set_up, seconds, state, mean, memory)| (set_up, seconds, state.u, mean, memory))?
+        };
+        let memory = if method == Method::Direct { model.solver_demand(true)?.bytes } else { memory };
+        let other = first.get_or_insert_with(|| u.clone());
+        let miss = u.iter().zip(&*other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let size = other.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        println!(
+            "{}, {}, {name}: {:.0} MB, {:.2} s ({:.2} s by the clock), {iterations:.1} iterations, {:.1} ms ({:.1}), differs by {:.0e}",
+            model.mesh().node_count(),
+            model.free_dof_count(),
+            1e-6 * memory as f64,
+            set_up.cpu,
+            set_up.wall,
+            1e3 * seconds.cpu,
+            1e3 * seconds.wall,
+            miss / size
+        );
+    }
+    Ok(())
+}
+
 /// Reproducible noise, uniform in [-1, 1) (Knuth's linear congruential generator).
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// Processor seconds of a window, the state after some, and the iterations of one.
-fn run(model: &Model) -> Result<(f64, f64, State, f64), Box<dyn Error>> {
+/// Times of the set-up and of a window, the state after some, the iterations of one, and the memory.
+type Run = (Watch, Watch, State, f64, usize);
+
+/// Windows under noise on the crest.
+fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
     let mut set_up = Watch::default();
     let mut solver = set_up.time(|| WindowSolver::new(model, THETA, WINDOW))?;
     let top = model.mesh().coordinates.iter().map(|x| x[2]).fold(0.0, f64::max);
@@ -110,11 +158,12 @@ fn run(model: &Model) -> Result<(f64, f64, State, f64), Box<dyn Error>> {
         watch.time(|| solver.step(model, &mut state, &load))?;
     }
     let mean = solver.counts().map_or(0.0, |c| c.iterations as f64 / c.solves as f64);
-    Ok((set_up.cpu, watch.cpu / f64::from(COUNT), state, mean))
+    let one = Watch { wall: watch.wall / f64::from(COUNT), cpu: watch.cpu / f64::from(COUNT) };
+    Ok((set_up, one, state, mean, solver.solver_memory().unwrap_or(0)))
 }
 
-/// Processor seconds of the set-up and of one solution, that solution, iterations, memory.
-type Stand = (f64, f64, Vec<f64>, u32, usize);
+/// Times of the set-up and of one solution, that solution, iterations, memory.
+type Stand = (Watch, Watch, Vec<f64>, u32, usize);
 
 /// A body under its weight and noise.
 fn stand(model: &Model) -> Result<Stand, Box<dyn Error>> {
@@ -124,7 +173,7 @@ fn stand(model: &Model) -> Result<Stand, Box<dyn Error>> {
     load.iter_mut().for_each(|l| *l += 10.0 * noise(&mut seed));
     let solution = watch.time(|| solver.solve(model, &load))?;
     let most = solver.counts().map_or(0, |c| c.most);
-    Ok((set_up.cpu, watch.cpu, solution.u, most, solver.iteration_memory().unwrap_or(0)))
+    Ok((set_up, watch, solution.u, most, solver.solver_memory().unwrap_or(0)))
 }
 
 fn statics(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {
@@ -140,13 +189,14 @@ fn statics(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {
         let miss = u.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let size = other.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let mb = 1e-6 * demand.bytes as f64;
-        format!("{mb:.0} MB, {:.2} s (differs by {:.0e})", factor + seconds, miss / size)
+        format!("{mb:.0} MB, {:.2} s (differs by {:.0e})", factor.cpu + seconds.cpu, miss / size)
     } else {
         "not made".into()
     };
     let mb = 1e-6 * memory as f64;
     println!(
-        "{nodes}, {equations}: {factor}; {mb:.0} MB, {set_up:.2} s, {iterations} iterations, {seconds:.2} s"
+        "{nodes}, {equations}: {factor}; {mb:.0} MB, {:.2} s, {iterations} iterations, {:.2} s",
+        set_up.cpu, seconds.cpu
     );
     Ok(())
 }
@@ -155,24 +205,24 @@ fn windows(share: f64, direct: bool) -> Result<(), Box<dyn Error>> {
     let tolerance = Method::WINDOW_TOLERANCE;
     let methods = Methods { dynamics: Method::Iterative { tolerance }, ..Methods::default() };
     let model = embankment(share, methods)?;
-    let (set_up, seconds, state, iterations) = run(&model)?;
-    let memory = model.window_iteration_memory();
+    let (set_up, seconds, state, iterations, memory) = run(&model)?;
     let (nodes, equations) = (model.mesh().node_count(), model.free_dof_count());
     let factor = if direct {
         let model = embankment(share, Methods::default())?;
         let demand = model.solver_demand(true)?;
-        let (factor, seconds, other, _) = run(&model)?;
+        let (factor, seconds, other, ..) = run(&model)?;
         let miss = state.u.iter().zip(&other.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let size = other.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let (mb, ms) = (1e-6 * demand.bytes as f64, 1e3 * seconds);
-        format!("{mb:.0} MB, {factor:.2} s, {ms:.1} ms (differs by {:.0e})", miss / size)
+        let (mb, ms) = (1e-6 * demand.bytes as f64, 1e3 * seconds.cpu);
+        format!("{mb:.0} MB, {:.2} s, {ms:.1} ms (differs by {:.0e})", factor.cpu, miss / size)
     } else {
         "not made".into()
     };
     println!(
-        "{nodes}, {equations}: {factor}; {:.0} MB, {set_up:.2} s, {iterations:.1} iterations, {:.1} ms",
+        "{nodes}, {equations}: {factor}; {:.0} MB, {:.2} s, {iterations:.1} iterations, {:.1} ms",
         1e-6 * memory as f64,
-        1e3 * seconds
+        set_up.cpu,
+        1e3 * seconds.cpu
     );
     Ok(())
 }

@@ -29,6 +29,7 @@ mod suite {
     mod mesh_orders;
     mod meshed_sleeper;
     mod messages;
+    mod mumps;
     mod observe;
     mod packings;
     mod plausible;

@@ -8,8 +8,9 @@ use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
 use crate::element::stiffness_points;
+use crate::equations;
 use crate::equations::iteration::block_jacobi_memory;
-use crate::equations::{self, method::Methods};
+use crate::equations::method::{Methods, MumpsMethod};
 pub use crate::error::ModelError;
 use crate::error::SolveError;
 use crate::mass::Mass;
@@ -397,6 +398,14 @@ impl Model {
     /// to 100,000 nodes) [bytes].
     pub fn static_iteration_memory(&self) -> usize {
         2750 * self.mesh.node_count()
+    }
+
+    /// Memory that MUMPS expects to take for a factor, known before it is made [bytes].
+    ///
+    /// # Errors
+    /// [`crate::solver::MumpsError::Missing`] in a program that was built without it; else what the library lacks.
+    pub fn mumps_memory(&self, method: MumpsMethod) -> Result<usize, SolveError> {
+        equations::system::mumps_memory(&self.mesh, &self.matrices, &self.supports, method)
     }
 
     /// The ordering and symbolic factorization, made once and shared by all solvers of this model.

@@ -23,6 +23,8 @@ use crate::supports::name;
 pub(crate) const NO_STIFFNESS: f64 = 1e-11;
 /// Residual over the largest force above which the solution is corrected by one more solve.
 const IMPROVE: f64 = 1e-13;
+/// The matrix of statics.
+const OF_STIFFNESS: Combination = Combination { stiffness: 1.0, mass: 0.0, dashpots: 0.0 };
 /// Solves at most.
 const CORRECTIONS: usize = 3;
 /// Residual over the largest force above which the solution is refused, unless the tolerance of an iteration is larger.
@@ -67,16 +69,20 @@ impl StaticSolver {
     ///
     /// # Errors
     /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely;
-    /// [`SolveError::Plastic`] refuses a plastic material.
+    /// [`SolveError::Plastic`] refuses a plastic material; [`SolveError::Mumps`] where MUMPS is asked for and lacks something.
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
         check_linear(model)?;
         check_held(model)?;
+        let (mesh, supports) = (model.mesh(), model.supports());
         let (system, enough) = match model.methods().statics {
             Method::Direct => (Equations::Direct(Box::new(factor(model)?)), IMPROVE),
             Method::Iterative { tolerance } => {
-                let (mesh, supports) = (model.mesh(), model.supports());
                 let iteration = Iteration::aggregation(mesh, &model.shared_matrices(), supports, tolerance)?;
                 (Equations::Aggregation(Box::new(iteration)), IMPROVE.max(100.0 * tolerance))
+            }
+            Method::Mumps(method) => {
+                let matrices = model.matrices();
+                (Equations::by_mumps(mesh, matrices, supports, OF_STIFFNESS, method, NO_STIFFNESS)?, IMPROVE)
             }
         };
         let equations = vec![0.0; model.free_dof_count()];
@@ -88,9 +94,9 @@ impl StaticSolver {
         self.system.counts()
     }
 
-    /// Memory of conjugate gradients beside that of the model [bytes].
-    pub fn iteration_memory(&self) -> Option<usize> {
-        self.system.iteration_memory()
+    /// Memory of conjugate gradients or of MUMPS beside that of the model [bytes].
+    pub fn solver_memory(&self) -> Option<usize> {
+        self.system.memory()
     }
 
     /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements of the model.
@@ -165,8 +171,7 @@ impl StaticSolver {
 /// The factor of a stiffness that is left everywhere.
 fn factor(model: &Model) -> Result<Cholesky, SolveError> {
     let (mesh, supports) = (model.mesh(), model.supports());
-    let of_stiffness = Combination { stiffness: 1.0, ..Combination::default() };
-    let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, of_stiffness)?;
+    let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, OF_STIFFNESS)?;
     let weakest = factor.weakest_pivot();
     if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
         let (node, direction) = name(mesh, weakest.dof);

@@ -86,6 +86,11 @@ impl WindowSolver {
         self.system.counts()
     }
 
+    /// Memory of conjugate gradients or of MUMPS beside that of the model [bytes].
+    pub fn solver_memory(&self) -> Option<usize> {
+        self.system.memory()
+    }
+
     /// The parameter theta [-].
     pub fn theta(&self) -> f64 {
         self.theta

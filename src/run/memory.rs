@@ -39,12 +39,14 @@ impl Prediction {
             (solver, flops) = (demand.bytes as u64, demand.flops);
         }
         // What the static solve takes is gone when the steps begin.
-        if plan.statics && plan.methods.statics != Method::Direct {
+        let [statics, steps] = plan.iterates();
+        if statics {
             solver = solver.max(part.model.static_iteration_memory() as u64);
         }
-        if plan.dynamics && plan.methods.dynamics != Method::Direct {
+        if steps {
             solver = solver.max(part.model.window_iteration_memory() as u64);
         }
+        solver = solver.max(mumps(part)?.unwrap_or(0));
         let results = RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64;
         Ok(Prediction { model, solver, results, flops })
     }
@@ -81,37 +83,68 @@ impl Prediction {
 pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
     let (plan, model) = (&part.equations, &part.model);
     let factor = || model.solver_demand(true).map(|d| d.bytes as u64).map_err(|e| part.failure(&e));
+    let mumps = mumps(part)?;
     let mut lines = Vec::new();
     if plan.statics {
         let (factor, iteration) = (factor()?, model.static_iteration_memory() as u64);
-        lines.push(line("statics", plan.methods.statics, &plan.statics_reason, factor, iteration));
+        let memory = Memory { factor, iteration, mumps };
+        lines.push(line("statics", plan.methods.statics, &plan.statics_reason, memory));
     }
     if plan.dynamics {
         let (factor, iteration) = (factor()?, model.window_iteration_memory() as u64);
-        lines.push(line("steps", plan.methods.dynamics, &plan.dynamics_reason, factor, iteration));
+        let memory = Memory { factor, iteration, mumps };
+        lines.push(line("steps", plan.methods.dynamics, &plan.dynamics_reason, memory));
     }
     Ok(lines)
 }
 
-fn line(what: &str, method: Method, reason: &str, factor: u64, iteration: u64) -> (String, Value) {
+/// What MUMPS expects to take [bytes]; none where it is not used.
+fn mumps(part: &SolidPart) -> Result<Option<u64>, Failure> {
+    let Some(method) = part.equations.mumps() else { return Ok(None) };
+    let memory = part.model.mumps_memory(method).map_err(|e| part.failure(&e))?;
+    Ok(Some(memory as u64))
+}
+
+/// What each method takes [bytes].
+struct Memory {
+    factor: u64,
+    iteration: u64,
+    /// Where it is used.
+    mumps: Option<u64>,
+}
+
+fn line(what: &str, method: Method, reason: &str, memory: Memory) -> (String, Value) {
+    let (factor, iteration) = (size(memory.factor), size(memory.iteration));
     let (text, key) = match method {
         Method::Direct => {
-            let other = format!("{}; conjugate gradients would take {}", size(factor), size(iteration));
+            let other = format!("{factor}; conjugate gradients would take {iteration}");
             (format!("equations of {what}: by a factor ({reason}), {other}"), "direct")
         }
         Method::Iterative { tolerance } => {
-            let other = format!("{}; a factor would take {}", size(iteration), size(factor));
+            let other = format!("{iteration}; a factor would take {factor}");
             let by = format!("by conjugate gradients to {tolerance:e}");
             (format!("equations of {what}: {by} ({reason}), {other}"), "iterative")
         }
+        Method::Mumps(method) => {
+            let files = if method.out_of_core { " in files" } else { "" };
+            let by = format!("by a factor{files} of MUMPS");
+            let own = size(memory.mumps.unwrap_or(0));
+            let other = format!(
+                "{own}; the program's own factor would take {factor}, conjugate gradients {iteration}"
+            );
+            (format!("equations of {what}: {by} ({reason}), {other}"), "mumps")
+        }
     };
-    let value = json!({
+    let mut value = json!({
         "of": what,
         "method": key,
         "reason": reason,
-        "factor_bytes": factor,
-        "iteration_bytes": iteration,
+        "factor_bytes": memory.factor,
+        "iteration_bytes": memory.iteration,
     });
+    if let (Method::Mumps(_), Some(bytes)) = (method, memory.mumps) {
+        value["mumps_bytes"] = bytes.into();
+    }
     (text, value)
 }
 

@@ -14,6 +14,12 @@ pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
              coordinates (George 1973)",
         );
     }
+    if part.equations.mumps().is_some() {
+        sources.push(
+            "sparse factorization: the library MUMPS, Amestoy, Duff, L'Excellent & Koster, SIAM J. Matrix Anal. Appl. 23, 2001; \
+             nested dissection by coordinates (George 1973)",
+        );
+    }
     let [statics, steps] = part.equations.iterates();
     if statics {
         sources.push(

@@ -15,6 +15,15 @@ pub enum Method {
         /// [`crate::solver::conjugate`] says: near the error in energy over the energy of the solution, as a root.
         tolerance: f64,
     },
+    /// A factor that the library MUMPS makes and keeps; only in programs that are built with the feature `mumps`.
+    Mumps(MumpsMethod),
+}
+
+/// How MUMPS factors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MumpsMethod {
+    /// Whether the factor lies in files, in the folder for temporary files.
+    pub out_of_core: bool,
 }
 
 impl Method {

@@ -18,14 +18,18 @@ pub fn analyse(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<
         row.push(r);
         column_start[c + 1] = row.len();
     });
+    Ok(Analysis::from_pattern(column_start, row, order(mesh, supports))?)
+}
+
+/// The equations in the order of elimination. Shape `[equations]`.
+pub(super) fn order(mesh: &Mesh, supports: &Supports) -> Vec<usize> {
     let index = supports.free_index();
-    let order: Vec<usize> = nested_dissection(mesh)
+    nested_dissection(mesh)
         .iter()
         .flat_map(|&n| (0..3).map(move |k| index[3 * n as usize + k]))
         .filter(|&e| e != CONSTRAINED)
         .map(|e| e as usize)
-        .collect();
-    Ok(Analysis::from_pattern(column_start, row, order)?)
+        .collect()
 }
 
 /// The values of a combination of matrices on the free dofs, in the order of [`Analysis::pattern`], for the model that was

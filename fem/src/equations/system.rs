@@ -2,9 +2,14 @@
 
 use super::cholesky::Cholesky;
 use super::iteration::{Counts, Iteration};
+use super::method::MumpsMethod;
+#[cfg(feature = "mumps")]
+use super::mumps;
+use crate::assembly::{Combination, Matrices};
 use crate::error::SolveError;
 use crate::iterative::aggregation::Aggregation;
 use crate::iterative::block_jacobi::BlockJacobi;
+use crate::mesh::Mesh;
 use crate::solver::LinearSolver;
 use crate::supports::Supports;
 
@@ -16,14 +21,43 @@ pub enum Equations {
     BlockJacobi(Box<Iteration<BlockJacobi>>),
     /// Conjugate gradients with smoothed aggregation.
     Aggregation(Box<Iteration<Aggregation>>),
+    /// A factor of the library MUMPS.
+    #[cfg(feature = "mumps")]
+    Mumps(Box<mumps::Factor>),
 }
 
 impl Equations {
+    /// The equations of a combination of a model's matrices by the library MUMPS; pivots below `null_pivot` of their diagonal count as
+    /// zero.
+    ///
+    /// # Errors
+    /// [`crate::solver::MumpsError::Missing`] in a program that was built without it; else [`SolveError::NoStiffness`],
+    /// [`SolveError::Singular`], or what the library lacks.
+    pub fn by_mumps(
+        mesh: &Mesh,
+        matrices: &Matrices,
+        supports: &Supports,
+        combination: Combination,
+        method: MumpsMethod,
+        null_pivot: f64,
+    ) -> Result<Equations, SolveError> {
+        #[cfg(feature = "mumps")]
+        {
+            let factor = mumps::Factor::new(mesh, matrices, supports, combination, method, null_pivot)?;
+            Ok(Equations::Mumps(Box::new(factor)))
+        }
+        #[cfg(not(feature = "mumps"))]
+        {
+            let _ = (mesh, matrices, supports, combination, method, null_pivot);
+            Err(crate::solver::MumpsError::Missing.into())
+        }
+    }
+
     /// Solves in place: the right-hand side comes in, the solution goes out. `guess` gives a value near the solution by
     /// dofs; only an iteration looks at it. Shape `[equations]`.
     ///
     /// # Errors
-    /// [`SolveError::NotConverged`].
+    /// [`SolveError::NotConverged`], [`SolveError::Mumps`].
     pub fn solve(
         &mut self,
         supports: &Supports,
@@ -37,6 +71,8 @@ impl Equations {
             }
             Equations::BlockJacobi(iteration) => iteration.solve(supports, x, guess),
             Equations::Aggregation(iteration) => iteration.solve(supports, x, guess),
+            #[cfg(feature = "mumps")]
+            Equations::Mumps(factor) => Ok(factor.solve_in_place(x)?),
         }
     }
 
@@ -46,15 +82,40 @@ impl Equations {
             Equations::Direct(_) => None,
             Equations::BlockJacobi(iteration) => Some(iteration.counts()),
             Equations::Aggregation(iteration) => Some(iteration.counts()),
+            #[cfg(feature = "mumps")]
+            Equations::Mumps(_) => None,
         }
     }
 
-    /// Memory of an iteration beside the model's [bytes].
-    pub fn iteration_memory(&self) -> Option<usize> {
+    /// Memory beside the model's, of an iteration or of MUMPS [bytes]; that of the program's own factor is known from its analysis.
+    pub fn memory(&self) -> Option<usize> {
         match self {
             Equations::Direct(_) => None,
             Equations::BlockJacobi(iteration) => Some(iteration.memory()),
             Equations::Aggregation(iteration) => Some(iteration.memory()),
+            #[cfg(feature = "mumps")]
+            Equations::Mumps(factor) => Some(factor.memory()),
         }
+    }
+}
+
+/// Memory that MUMPS expects to take for equations with the pattern of the stiffness [bytes].
+///
+/// # Errors
+/// [`crate::solver::MumpsError::Missing`] in a program that was built without it; else what the library lacks.
+pub fn mumps_memory(
+    mesh: &Mesh,
+    matrices: &Matrices,
+    supports: &Supports,
+    method: MumpsMethod,
+) -> Result<usize, SolveError> {
+    #[cfg(feature = "mumps")]
+    {
+        mumps::demand(mesh, matrices, supports, method)
+    }
+    #[cfg(not(feature = "mumps"))]
+    {
+        let _ = (mesh, matrices, supports, method);
+        Err(crate::solver::MumpsError::Missing.into())
     }
 }

@@ -362,6 +362,10 @@ pub(crate) fn equations(model: &Model, combination: Combination) -> Result<Equat
             let iteration = Iteration::block_jacobi(mesh, matrices, supports, combination, tolerance)?;
             Equations::BlockJacobi(Box::new(iteration))
         }
+        Method::Mumps(method) => {
+            let matrices = model.matrices();
+            Equations::by_mumps(mesh, matrices, supports, combination, method, f64::EPSILON)?
+        }
     })
 }
 

@@ -1,7 +1,6 @@
 //! The window that comes, with contacts linearized: what the stiffened scheme of the coupling goes on with.
 
 use super::WindowSolver;
-use crate::equations::cholesky::Cholesky;
 use crate::equations::system::Equations;
 use crate::error::SolveError;
 use crate::model::Model;
@@ -54,13 +53,22 @@ impl WindowSolver {
             *slot = theta * dt * force[d as usize];
         }
         let (x, scale) = (&mut self.equations[..], theta * dt);
+        let scratch = [&mut self.work[..], &mut self.product];
         let iterations = match &mut self.system {
             Equations::BlockJacobi(system) => system.solve_with(supports, x, scale, contacts, TOLERANCE)?,
             Equations::Aggregation(system) => system.solve_with(supports, x, scale, contacts, TOLERANCE)?,
             Equations::Direct(factor) => {
                 let contacts = Contacts { supports, factor: scale, add: contacts };
-                let scratch = [&mut self.work[..], &mut self.product];
-                on_factor(factor, x, contacts, scratch)
+                let solve = |x: &mut [f64]| {
+                    factor.solve_in_place(x);
+                    Ok(())
+                };
+                on_factor(solve, x, contacts, scratch)?
+            }
+            #[cfg(feature = "mumps")]
+            Equations::Mumps(factor) => {
+                let contacts = Contacts { supports, factor: scale, add: contacts };
+                on_factor(|x| Ok(factor.solve_in_place(x)?), x, contacts, scratch)?
             }
         };
         rate.copy_from_slice(&state.v);
@@ -79,13 +87,13 @@ struct Contacts<'a, F> {
     add: F,
 }
 
-/// Solves in place with the factor as preconditioner, and returns the iterations. Scratch is two nodal vectors.
+/// Solves in place with a factor, which `solve` solves with, as preconditioner, and returns the iterations. Scratch is two nodal vectors.
 fn on_factor<F: FnMut(&[f64], &mut [f64])>(
-    factor: &mut Cholesky,
+    mut solve: impl FnMut(&mut [f64]) -> Result<(), SolveError>,
     x: &mut [f64],
     mut contacts: Contacts<'_, F>,
     [work, product]: [&mut [f64]; 2],
-) -> u32 {
+) -> Result<u32, SolveError> {
     let (supports, size) = (contacts.supports, x.len());
     let mut r = x.to_vec();
     x.fill(0.0);
@@ -94,7 +102,7 @@ fn on_factor<F: FnMut(&[f64], &mut [f64])>(
     let (mut last, mut first, mut iterations) = (0.0, 0.0, 0);
     while iterations < ITERATIONS {
         z.copy_from_slice(&r);
-        factor.solve_in_place(&mut z);
+        solve(&mut z)?;
         let rz = dot(&r, &z);
         if iterations == 0 {
             first = rz;
@@ -121,5 +129,5 @@ fn on_factor<F: FnMut(&[f64], &mut [f64])>(
         last = rz;
         iterations += 1;
     }
-    iterations
+    Ok(iterations)
 }

@@ -22,7 +22,7 @@ fn iterative(tolerance: f64) -> Methods {
 }
 
 /// A block of two soils on a base, with dashpots on one side and damping.
-fn soils(kind: ElementKind, counts: [usize; 3], mass: Mass, methods: Methods) -> Model {
+pub fn soils(kind: ElementKind, counts: [usize; 3], mass: Mass, methods: Methods) -> Model {
     let size = counts.map(|n| 0.25 * n as f64);
     let mut mesh = match kind {
         ElementKind::Hex20 => Mesh::block(counts, size),
@@ -51,7 +51,7 @@ fn soils(kind: ElementKind, counts: [usize; 3], mass: Mass, methods: Methods) ->
     .unwrap()
 }
 
-fn loads(model: &Model, count: usize) -> Vec<Vec<f64>> {
+pub fn loads(model: &Model, count: usize) -> Vec<Vec<f64>> {
     let mut random = Random(17);
     (0..count).map(|_| (0..model.dof_count()).map(|_| 1e3 * random.next()).collect()).collect()
 }
@@ -63,7 +63,7 @@ fn shake(model: &Model, step: usize) -> Vec<f64> {
 }
 
 /// The states after ten windows of random loads on a moving base, and the most iterations of one.
-fn windows(model: &Model, theta: f64) -> (State, u32) {
+pub fn windows(model: &Model, theta: f64) -> (State, u32) {
     let mut solver = WindowSolver::new(model, theta, WINDOW).unwrap();
     let mut state = State::new(model);
     for (k, load) in loads(model, 10).iter().enumerate() {
@@ -199,23 +199,23 @@ fn a_steady_load_takes_fewer_iterations() {
     assert!(steps[40..].iter().all(|&s| s < steps[0]), "{steps:?}");
 }
 
-/// A plate under a prediction: contacts stiff against the window matrix.
+/// The prediction of a window under a plate whose contacts are stiff against the window matrix, and its iterations.
+pub fn predict(methods: Methods) -> (Vec<f64>, u32) {
+    let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, methods);
+    let load = &loads(&model, 1)[0];
+    let mut solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
+    let mut state = State::new(&model);
+    solver.step(&model, &mut state, load).unwrap();
+    let top: Vec<usize> =
+        (0..model.mesh().node_count()).filter(|&n| model.mesh().coordinates[n][2] > 0.99).collect();
+    let contacts = |w: &[f64], f: &mut [f64]| top.iter().for_each(|&n| f[3 * n + 2] += 1e6 * w[3 * n + 2]);
+    let mut rate = vec![0.0; model.dof_count()];
+    let iterations = solver.predict(&model, &state, load, contacts, &mut rate).unwrap();
+    (rate, iterations)
+}
+
 #[test]
 fn predictions_with_contacts_are_those_of_the_factor() {
-    let predict = |methods| {
-        let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, methods);
-        let load = &loads(&model, 1)[0];
-        let mut solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
-        let mut state = State::new(&model);
-        solver.step(&model, &mut state, load).unwrap();
-        let top: Vec<usize> =
-            (0..model.mesh().node_count()).filter(|&n| model.mesh().coordinates[n][2] > 0.99).collect();
-        let contacts =
-            |w: &[f64], f: &mut [f64]| top.iter().for_each(|&n| f[3 * n + 2] += 1e6 * w[3 * n + 2]);
-        let mut rate = vec![0.0; model.dof_count()];
-        let iterations = solver.predict(&model, &state, load, contacts, &mut rate).unwrap();
-        (rate, iterations)
-    };
     let ((direct, few), (found, more)) = (predict(Methods::default()), predict(iterative(1e-10)));
     println!("{few} iterations on the factor, {more} without: differ by {:.1e}", difference(&found, &direct));
     assert!(difference(&found, &direct) < 1e-6 && few > 0 && more > few);

@@ -25,6 +25,7 @@ mod locking;
 mod mixed;
 mod modal;
 mod modified_cam_clay;
+mod mumps;
 mod patch;
 mod plastic_common;
 mod plastic_cylinder;

@@ -1,9 +1,9 @@
 //! How the equations of an elastic solid are solved: as the scene says, or by what is faster.
 
 use super::analysis::Analysis;
-use crate::scene::solid::{EquationMethod, Mass, Solid};
+use crate::scene::solid::{EquationMethod, Equations, Mass, Solid};
 use crate::scene::{SceneError, Table};
-use trackbed_fem::{Method, Methods};
+use trackbed_fem::{Method, Methods, MumpsMethod};
 
 /// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a hundredth of its
 /// memory, and none of its set-up (`benches/README.md`, section "Large solids").
@@ -28,7 +28,7 @@ pub struct EquationPlan {
 }
 
 impl EquationPlan {
-    /// Whether any equations of the solid are factored.
+    /// Whether any equations of the solid are factored by the program itself.
     pub fn takes_factor(&self) -> bool {
         let direct = |used: bool, method: Method| used && method == Method::Direct;
         // Neither a linear static solve nor linear steps: plastic ones, which always are.
@@ -38,14 +38,22 @@ impl EquationPlan {
 
     /// Whether any are solved by conjugate gradients: in statics, in steps.
     pub fn iterates(&self) -> [bool; 2] {
-        [self.methods.statics, self.methods.dynamics].map(|m| m != Method::Direct)
+        [self.methods.statics, self.methods.dynamics].map(|m| matches!(m, Method::Iterative { .. }))
+    }
+
+    /// How MUMPS factors, where any equations are given to it; static solves and steps have it alike.
+    pub fn mumps(&self) -> Option<MumpsMethod> {
+        [self.methods.statics, self.methods.dynamics].into_iter().find_map(|m| match m {
+            Method::Mumps(method) => Some(method),
+            Method::Direct | Method::Iterative { .. } => None,
+        })
     }
 }
 
 /// Resolves `[solid.equations]` for a solid of so many nodes.
 ///
 /// # Errors
-/// An iteration where none is possible, a tolerance without one.
+/// An iteration or MUMPS where none is possible, a key without what it is for, MUMPS in a program that was built without it.
 pub(super) fn plan(
     solid: &Table<Solid>,
     analysis: &Analysis,
@@ -54,23 +62,28 @@ pub(super) fn plan(
     nodes: usize,
 ) -> Result<EquationPlan, SceneError> {
     let table = solid.optional("equations", &solid.equations);
-    let (method, tolerance) =
-        table.as_ref().map_or((EquationMethod::Auto, None), |t| (t.method, t.tolerance));
-    if let Some(t) = &table {
-        t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
-        let idle = method == EquationMethod::Direct && tolerance.is_some();
-        t.refuse([("tolerance", idle)], "no such key beside method = \"direct\"")?;
-    }
+    let chosen = table.as_ref().map_or(Equations::default(), |t| **t);
+    let method = chosen.method;
     let hindrance = hindrance(solid, analysis, linear, coupled);
-    if let (Some(t), EquationMethod::Iterative, Some(hindrance)) = (&table, method, hindrance) {
-        let found = format!("\"iterative\" beside {hindrance}");
-        return Err(t.error("method", found, "\"auto\" or \"direct\""));
+    if let Some(t) = &table {
+        check(t)?;
+        let name = match method {
+            EquationMethod::Iterative => Some("iterative"),
+            EquationMethod::Mumps => Some("mumps"),
+            EquationMethod::Auto | EquationMethod::Direct => None,
+        };
+        if let (Some(name), Some(hindrance)) = (name, hindrance) {
+            let found = format!("\"{name}\" beside {hindrance}");
+            return Err(t.error("method", found, "\"auto\" or \"direct\""));
+        }
     }
-    let tolerance = tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
+    let tolerance = chosen.tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
+    let mumps = MumpsMethod { out_of_core: chosen.out_of_core.unwrap_or(false) };
     let choose = |used: bool, wins: bool, why: String| match method {
         _ if !used => (Method::Direct, String::new()),
         EquationMethod::Direct => (Method::Direct, "as the scene says".into()),
         EquationMethod::Iterative => (Method::Iterative { tolerance }, "as the scene says".into()),
+        EquationMethod::Mumps => (Method::Mumps(mumps), "as the scene says".into()),
         EquationMethod::Auto if wins => (Method::Iterative { tolerance }, why),
         EquationMethod::Auto => (Method::Direct, why),
     };
@@ -92,7 +105,23 @@ pub(super) fn plan(
     Ok(EquationPlan { methods, statics, dynamics, statics_reason, dynamics_reason })
 }
 
-/// What keeps an iteration from being used.
+/// Checks `[solid.equations]` by itself.
+fn check(t: &Table<Equations>) -> Result<(), SceneError> {
+    t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
+    let (direct, mumps) = (t.method == EquationMethod::Direct, t.method == EquationMethod::Mumps);
+    let idle = t.out_of_core.is_some() && !mumps;
+    t.refuse([("out_of_core", idle)], "no such key but with method = \"mumps\"")?;
+    t.refuse([("tolerance", direct && t.tolerance.is_some())], "no such key beside method = \"direct\"")?;
+    t.refuse([("tolerance", mumps && t.tolerance.is_some())], "no such key beside method = \"mumps\"")?;
+    if mumps && !cfg!(feature = "mumps") {
+        let found = "\"mumps\", which this program was built without";
+        let expected = "\"auto\", \"direct\" or \"iterative\"; `cargo build --release --features mumps` builds a program that has it";
+        return Err(t.error("method", found, expected));
+    }
+    Ok(())
+}
+
+/// What keeps an iteration or MUMPS from being used.
 fn hindrance(solid: &Solid, analysis: &Analysis, linear: bool, coupled: bool) -> Option<&'static str> {
     if !linear {
         Some("a material that yields")

@@ -134,6 +134,8 @@ pub struct Equations {
     pub method: EquationMethod,
     /// Residual at which an iteration ends, over the right-hand side; default 1e-8.
     pub tolerance: Option<f64>,
+    /// Whether the factor of MUMPS lies in files; default false.
+    pub out_of_core: Option<bool>,
 }
 
 /// How the equations of an elastic solid are solved.
@@ -147,6 +149,8 @@ pub enum EquationMethod {
     Direct,
     /// Conjugate gradients.
     Iterative,
+    /// Factor by the library MUMPS, in programs that are built with it.
+    Mumps,
 }
 
 /// Which matrix the iteration takes.

@@ -1,0 +1,95 @@
+/* What Rust needs of MUMPS. The layout of its structure changes from version to version, so that it stays in C, compiled against the
+   header of the library that is linked. */
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <dmumps_c.h>
+
+_Static_assert(sizeof(MUMPS_INT) == sizeof(int), "a MUMPS with integers of 32 bits is needed");
+
+/* MPI_COMM_WORLD for every version of MUMPS. */
+enum { WORLD = -987654 };
+
+/* An instance for symmetric matrices, without output; a null pointer where there is no memory. Its matrix may be indefinite by MUMPS's
+   naming (SYM = 2): only so are pivots near zero found and named. */
+DMUMPS_STRUC_C *trackbed_mumps_start(void) {
+    DMUMPS_STRUC_C *id = calloc(1, sizeof *id);
+    if (!id) {
+        return NULL;
+    }
+    id->par = 1;
+    id->sym = 2;
+    id->comm_fortran = WORLD;
+    id->job = -1;
+    dmumps_c(id);
+    if (id->infog[0] < 0) {
+        free(id);
+        return NULL;
+    }
+    for (int i = 0; i < 3; i++) {
+        id->icntl[i] = -1;
+    }
+    id->icntl[3] = 0;
+    return id;
+}
+
+/* Ends an instance; its files are removed. */
+void trackbed_mumps_end(DMUMPS_STRUC_C *id) {
+    id->job = -2;
+    dmumps_c(id);
+    free(id);
+}
+
+/* Sets ICNTL(index). */
+void trackbed_mumps_set(DMUMPS_STRUC_C *id, int index, int value) {
+    id->icntl[index - 1] = value;
+}
+
+/* Sets CNTL(index). */
+void trackbed_mumps_set_real(DMUMPS_STRUC_C *id, int index, double value) {
+    id->cntl[index - 1] = value;
+}
+
+/* Sets the folder for files, a text that ends with 0; 0 where it is too long. */
+int trackbed_mumps_folder(DMUMPS_STRUC_C *id, const char *folder) {
+    if (strlen(folder) >= sizeof id->ooc_tmpdir) {
+        return 0;
+    }
+    strcpy(id->ooc_tmpdir, folder);
+    return 1;
+}
+
+/* Sets the matrix by coordinates from 1, one triangle, and the place of each equation in the elimination, from 1. */
+void trackbed_mumps_matrix(DMUMPS_STRUC_C *id, int n, long long nnz, int *row, int *column, double *value, int *place) {
+    id->n = n;
+    id->nnz = nnz;
+    id->irn = row;
+    id->jcn = column;
+    id->a = value;
+    id->perm_in = place;
+}
+
+/* Sets the right-hand side, where the solution will be. */
+void trackbed_mumps_side(DMUMPS_STRUC_C *id, double *x) {
+    id->rhs = x;
+    id->nrhs = 1;
+    id->lrhs = id->n;
+}
+
+/* Runs a job and returns INFOG(1). */
+int trackbed_mumps_run(DMUMPS_STRUC_C *id, int job) {
+    id->job = job;
+    dmumps_c(id);
+    return id->infog[0];
+}
+
+/* INFOG(index). */
+int trackbed_mumps_info(const DMUMPS_STRUC_C *id, int index) {
+    return id->infog[index - 1];
+}
+
+/* The first equation whose pivot is near zero, from 1, where INFOG(28) says that there are any. */
+int trackbed_mumps_null_pivot(const DMUMPS_STRUC_C *id) {
+    return id->pivnul_list ? id->pivnul_list[0] : 0;
+}

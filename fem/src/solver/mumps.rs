@@ -1,0 +1,360 @@
+//! A symmetric matrix factored by MUMPS (`L D Lᵀ`), a library of its own, in the order that is given; out of core where that
+//! is asked for.
+//!
+//! Only with the feature `mumps`. MUMPS keeps a state that all its instances share, so that calls from several threads wait for each
+//! other; it uses as many threads as it was built for. It has no say in the order of sums of the BLAS that it is linked with, so that
+//! bits are those of one machine, one library and one number of its threads.
+//!
+//! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41. Limits: matrices that are not positive definite are refused; fewer than
+//! 2^31 equations. Compression of blocks (ICNTL(35)) is left out: MUMPS 5.5.1 with SCOTCH 7.0.3, as Debian 12 has them, reads memory
+//! that was never set while it groups the equations for it, and ends the program.
+
+use super::MumpsError;
+use std::ffi::{CString, c_char, c_int, c_longlong};
+use std::ptr::{NonNull, null_mut};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The structure of MUMPS, whose layout C alone knows.
+#[repr(C)]
+struct Structure {
+    private: [u8; 0],
+}
+
+unsafe extern "C" {
+    fn trackbed_mumps_start() -> *mut Structure;
+    fn trackbed_mumps_end(id: *mut Structure);
+    fn trackbed_mumps_set(id: *mut Structure, index: c_int, value: c_int);
+    fn trackbed_mumps_set_real(id: *mut Structure, index: c_int, value: f64);
+    fn trackbed_mumps_folder(id: *mut Structure, folder: *const c_char) -> c_int;
+    fn trackbed_mumps_matrix(
+        id: *mut Structure,
+        n: c_int,
+        nnz: c_longlong,
+        row: *mut c_int,
+        column: *mut c_int,
+        value: *mut f64,
+        place: *mut c_int,
+    );
+    fn trackbed_mumps_side(id: *mut Structure, x: *mut f64);
+    fn trackbed_mumps_run(id: *mut Structure, job: c_int) -> c_int;
+    fn trackbed_mumps_info(id: *const Structure, index: c_int) -> c_int;
+    fn trackbed_mumps_null_pivot(id: *const Structure) -> c_int;
+}
+
+/// Held while MUMPS runs: its instances share variables.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    // A panic elsewhere leaves nothing of MUMPS half done: its calls do not return in the middle.
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Jobs of MUMPS.
+const ANALYSE: c_int = 1;
+const FACTOR: c_int = 2;
+const SOLVE: c_int = 3;
+
+/// Room beyond the estimate of the analysis at first, and at most [%].
+const ROOM: c_int = 20;
+const MOST_ROOM: c_int = 320;
+
+/// Share of the largest entry of its row below which a pivot would change places: never in a matrix that is positive definite.
+const PIVOTING: f64 = 1e-14;
+
+/// A symmetric matrix by coordinates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coordinates {
+    /// Rows of the entries, from 1, of one triangle. Shape `[entries]`.
+    pub row: Vec<i32>,
+    /// Their columns, from 1. Shape `[entries]`.
+    pub column: Vec<i32>,
+    /// Their values; entries at the same place are added. Shape `[entries]`.
+    pub value: Vec<f64>,
+    /// When each equation is to be eliminated, from 1. Shape `[equations]`.
+    pub place: Vec<i32>,
+}
+
+impl Coordinates {
+    /// Memory of the entries [bytes].
+    fn memory(&self) -> usize {
+        (2 * size_of::<i32>() + size_of::<f64>()) * self.row.len()
+    }
+}
+
+/// How a matrix is factored.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Whether the factor goes to files, in the folder for temporary files of the process.
+    pub out_of_core: bool,
+    /// Size at which a pivot counts as zero.
+    pub null_pivot: f64,
+}
+
+/// Memory that MUMPS expects to take for a matrix, its entries as given included [bytes].
+///
+/// # Errors
+/// As [`Factor::new`], numbers apart.
+pub fn demand(matrix: Coordinates, settings: Settings) -> Result<usize, MumpsError> {
+    if matrix.place.is_empty() {
+        return Ok(0);
+    }
+    let mut matrix = matrix;
+    let entries = matrix.memory();
+    let instance = Instance::analysed(&mut matrix, settings)?;
+    let estimate = if settings.out_of_core { 27 } else { 17 };
+    Ok(1_000_000 * instance.info(estimate).unsigned_abs() as usize + entries)
+}
+
+/// A factor, ready to solve.
+pub struct Factor {
+    size: usize,
+    /// None where there are no equations.
+    instance: Option<Instance>,
+    memory: usize,
+}
+
+impl Factor {
+    /// Analyses and factors a matrix.
+    ///
+    /// # Errors
+    /// [`MumpsError::Pivot`] names an equation whose pivot is zero, [`MumpsError::NotPositive`] says that there are negative ones;
+    /// the others: no memory, no place for files, a matrix that is no number.
+    ///
+    /// # Panics
+    /// Lengths that do not agree, or a row, column or place out of range.
+    pub fn new(mut matrix: Coordinates, settings: Settings) -> Result<Factor, MumpsError> {
+        let size = matrix.place.len();
+        if size == 0 {
+            return Ok(Factor { size, instance: None, memory: 0 });
+        }
+        let mut instance = Instance::analysed(&mut matrix, settings)?;
+        let mut room = ROOM;
+        loop {
+            instance.set(14, room);
+            match instance.run(FACTOR) {
+                Err(MumpsError::Room) if room < MOST_ROOM => room *= 2,
+                Err(other) => return Err(other),
+                Ok(()) => break,
+            }
+        }
+        if instance.info(28) > 0 {
+            return Err(MumpsError::Pivot { equation: instance.null_pivot() });
+        }
+        if instance.info(12) > 0 {
+            return Err(MumpsError::NotPositive { pivots: instance.info(12).unsigned_abs() });
+        }
+        instance.forget_matrix(size);
+        let memory = 1_000_000 * instance.info(22).unsigned_abs() as usize + matrix.memory();
+        Ok(Factor { size, instance: Some(instance), memory })
+    }
+
+    /// Number of equations.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included [bytes].
+    pub fn memory(&self) -> usize {
+        self.memory
+    }
+
+    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    ///
+    /// # Errors
+    /// A file of the factor that cannot be read; no memory.
+    ///
+    /// # Panics
+    /// When `x` has another length.
+    pub fn solve_in_place(&mut self, x: &mut [f64]) -> Result<(), MumpsError> {
+        assert_eq!(x.len(), self.size, "one value for every equation");
+        match &mut self.instance {
+            None => Ok(()),
+            Some(instance) => instance.solve(x),
+        }
+    }
+}
+
+/// An instance of MUMPS. Between calls it holds no pointer to memory that is not its own.
+struct Instance(NonNull<Structure>);
+
+// SAFETY: an instance is owned by one `Instance` alone and bound to no thread; what instances share is changed only while `TURN` is held.
+unsafe impl Send for Instance {}
+// SAFETY: a shared `Instance` gives nothing but integers that calls through `&mut` alone change.
+unsafe impl Sync for Instance {}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        let _turn = turn();
+        // SAFETY: the pointer comes from `trackbed_mumps_start` and is used for the last time.
+        unsafe { trackbed_mumps_end(self.0.as_ptr()) }
+    }
+}
+
+impl Instance {
+    /// Starts an instance and analyses the pattern. The instance knows where `matrix` lies until [`Instance::forget_matrix`].
+    fn analysed(matrix: &mut Coordinates, settings: Settings) -> Result<Instance, MumpsError> {
+        let Coordinates { row, column, value, place } = matrix;
+        let n = c_int::try_from(place.len()).map_err(|_| MumpsError::Memory)?;
+        assert!(
+            row.len() == column.len() && row.len() == value.len(),
+            "one row, column and value for every entry"
+        );
+        let inside = |i: &i32| (1..=n).contains(i);
+        assert!(
+            row.iter().chain(&*column).chain(&*place).all(inside),
+            "rows, columns and places from 1 to {n}"
+        );
+        let raw = {
+            let _turn = turn();
+            // SAFETY: takes nothing.
+            unsafe { trackbed_mumps_start() }
+        };
+        let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::Memory)?);
+        let (nnz, id) = (row.len() as c_longlong, instance.0.as_ptr());
+        // SAFETY: the four arrays have `nnz`, `nnz`, `nnz` and `n` values. They are looked at by the jobs of analysis and
+        // factorization alone, which run while the caller has the matrix.
+        unsafe {
+            trackbed_mumps_matrix(
+                id,
+                n,
+                nnz,
+                row.as_mut_ptr(),
+                column.as_mut_ptr(),
+                value.as_mut_ptr(),
+                place.as_mut_ptr(),
+            );
+        }
+        instance.configure(settings)?;
+        instance.run(ANALYSE)?;
+        Ok(instance)
+    }
+
+    fn configure(&mut self, settings: Settings) -> Result<(), MumpsError> {
+        // No permutation of columns and no scaling, both for matrices without a good diagonal; the order that is given; neither
+        // parallel analysis nor refinement.
+        for (index, value) in [(6, 0), (8, 0), (7, 1), (10, 0), (12, 1), (28, 1)] {
+            self.set(index, value);
+        }
+        // Pivots stay where they are unless one is as good as zero, which is found; with a threshold of 0 it would not be.
+        self.set(24, 1);
+        self.set_real(1, PIVOTING);
+        self.set_real(3, -settings.null_pivot);
+        if settings.out_of_core {
+            self.set(22, 1);
+            let folder = std::env::temp_dir();
+            let text = folder.to_str().and_then(|f| CString::new(f).ok()).ok_or(MumpsError::Files)?;
+            // SAFETY: a text that ends with 0 and is copied.
+            if unsafe { trackbed_mumps_folder(self.0.as_ptr(), text.as_ptr()) } == 0 {
+                return Err(MumpsError::Files);
+            }
+        }
+        Ok(())
+    }
+
+    fn forget_matrix(&mut self, size: usize) {
+        let (id, n) = (self.0.as_ptr(), size as c_int);
+        // SAFETY: a matrix without entries; later jobs solve, which does not look at it without refinement.
+        unsafe { trackbed_mumps_matrix(id, n, 0, null_mut(), null_mut(), null_mut(), null_mut()) }
+    }
+
+    fn solve(&mut self, x: &mut [f64]) -> Result<(), MumpsError> {
+        // SAFETY: `x` has the length of the equations (checked by the caller) and is looked at by the next job alone.
+        unsafe { trackbed_mumps_side(self.0.as_ptr(), x.as_mut_ptr()) };
+        let result = self.run(SOLVE);
+        // SAFETY: no right-hand side.
+        unsafe { trackbed_mumps_side(self.0.as_ptr(), null_mut()) };
+        result
+    }
+
+    /// Sets ICNTL(index).
+    fn set(&mut self, index: c_int, value: c_int) {
+        // SAFETY: all indices of this file are those of settings.
+        unsafe { trackbed_mumps_set(self.0.as_ptr(), index, value) }
+    }
+
+    /// Sets CNTL(index).
+    fn set_real(&mut self, index: c_int, value: f64) {
+        // SAFETY: all indices of this file are those of settings.
+        unsafe { trackbed_mumps_set_real(self.0.as_ptr(), index, value) }
+    }
+
+    /// INFOG(index).
+    fn info(&self, index: c_int) -> c_int {
+        // SAFETY: all indices of this file are those of results.
+        unsafe { trackbed_mumps_info(self.0.as_ptr(), index) }
+    }
+
+    fn null_pivot(&self) -> usize {
+        // SAFETY: reads the list of null pivots, which is there after a factorization.
+        let equation = unsafe { trackbed_mumps_null_pivot(self.0.as_ptr()) };
+        usize::try_from(equation - 1).unwrap_or(0)
+    }
+
+    fn run(&mut self, job: c_int) -> Result<(), MumpsError> {
+        let code = {
+            let _turn = turn();
+            // SAFETY: what the job looks at has been set, by the callers.
+            unsafe { trackbed_mumps_run(self.0.as_ptr(), job) }
+        };
+        match code {
+            0.. => Ok(()),
+            -8 | -9 | -14 | -15 | -17 | -20 => Err(MumpsError::Room),
+            -5 | -7 | -13 | -19 => Err(MumpsError::Memory),
+            -90 => Err(MumpsError::Files),
+            -10 => Err(MumpsError::NotPositive { pivots: 1 }),
+            code => Err(MumpsError::Code { code, detail: self.info(2) }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The symmetric matrix `[[1, off, 0], [off, last, 0], [0, 0, 1]]`.
+    fn matrix(off: f64, last: f64) -> Coordinates {
+        Coordinates {
+            row: vec![1, 2, 2, 3],
+            column: vec![1, 1, 2, 3],
+            value: vec![1.0, off, last, 1.0],
+            place: vec![1, 2, 3],
+        }
+    }
+
+    fn factor(off: f64, last: f64) -> Result<Factor, MumpsError> {
+        Factor::new(matrix(off, last), Settings { null_pivot: 1e-11, ..Settings::default() })
+    }
+
+    #[test]
+    fn the_solution_meets_the_equations() {
+        let mut factor = factor(0.5, 1.0).unwrap();
+        let mut x = [2.0, 2.5, 3.0];
+        factor.solve_in_place(&mut x).unwrap();
+        assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, e)| (x - e).abs() < 1e-14), "{x:?}");
+        assert_eq!(factor.size(), 3);
+    }
+
+    #[test]
+    fn pivots_near_zero_and_negative_ones_are_refused() {
+        let error = factor(1.0, 1.0 + 1e-13).err().unwrap();
+        assert!(matches!(error, MumpsError::Pivot { equation: 0 | 1 }), "{error}");
+        assert_eq!(factor(2.0, 1.0).err(), Some(MumpsError::NotPositive { pivots: 1 }));
+        assert!(factor(1.0, 1.0 + 1e-9).is_ok());
+    }
+
+    #[test]
+    fn no_equations_are_no_work() {
+        let mut factor = Factor::new(Coordinates::default(), Settings::default()).unwrap();
+        factor.solve_in_place(&mut []).unwrap();
+        assert_eq!((factor.size(), factor.memory()), (0, 0));
+        assert_eq!(demand(Coordinates::default(), Settings::default()), Ok(0));
+    }
+
+    #[test]
+    #[should_panic(expected = "rows, columns and places from 1 to 3")]
+    fn a_row_out_of_range_is_refused() {
+        let mut wrong = matrix(0.5, 1.0);
+        wrong.row[1] = 4;
+        let _ = Factor::new(wrong, Settings::default());
+    }
+}

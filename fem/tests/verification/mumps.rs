@@ -1,0 +1,145 @@
+//! The library MUMPS against the program's own factor: statics, windows, predictions, factors out of core, failures.
+//! A program without it says so.
+
+use crate::aggregation::hinged;
+use trackbed_fem::solver::MumpsError;
+use trackbed_fem::{Method, Methods, MumpsMethod, SolveError, statics};
+
+fn by(method: MumpsMethod) -> Methods {
+    Methods { statics: Method::Mumps(method), dynamics: Method::Mumps(method) }
+}
+
+#[test]
+fn a_program_without_it_says_so() {
+    let model = hinged(by(MumpsMethod::default()));
+    let error = statics::solve(&model, &model.gravity_load()).unwrap_err();
+    assert_eq!(error == SolveError::Mumps(MumpsError::Missing), !cfg!(feature = "mumps"), "{error}");
+}
+
+#[cfg(feature = "mumps")]
+mod library {
+    use super::by;
+    use crate::aggregation::{hinged, soils as block, solve};
+    use crate::common::difference;
+    use crate::iterative::{loads, predict, soils, windows};
+    use trackbed_fem::solver::MumpsError;
+    use trackbed_fem::statics::StaticSolver;
+    use trackbed_fem::window::WindowSolver;
+    use trackbed_fem::{ElementKind, Mass, Methods, MumpsMethod, SolveError, State, statics};
+
+    const OUT_OF_CORE: MumpsMethod = MumpsMethod { out_of_core: true };
+
+    /// Two exact factors of one matrix: rounding times its condition, some 1e4 here, leaves 1e-12.
+    #[test]
+    fn statics_are_those_of_the_own_factor() {
+        let cases = [(ElementKind::Hex20, [8, 6, 5]), (ElementKind::Tet10, [6, 4, 4])];
+        for (kind, counts) in cases {
+            let (own, _) = solve(&block(kind, counts, Methods::default()));
+            for out_of_core in [false, true] {
+                let method = MumpsMethod { out_of_core };
+                let (found, iterations) = solve(&block(kind, counts, by(method)));
+                let miss = difference(&found.u, &own.u).max(difference(&found.reactions, &own.reactions));
+                println!("{}, out of core {out_of_core}: differs by {miss:.1e}", kind.name());
+                assert!(iterations == 0 && miss > 0.0 && miss < 1e-11, "{miss:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn windows_are_those_of_the_own_factor() {
+        for (mass, theta) in [(Mass::Lumped, 0.5), (Mass::Consistent, 0.55)] {
+            let model = |methods| soils(ElementKind::Hex20, [5, 4, 4], mass, methods);
+            let (own, _) = windows(&model(Methods::default()), theta);
+            for out_of_core in [false, true] {
+                let method = MumpsMethod { out_of_core };
+                let (found, iterations) = windows(&model(by(method)), theta);
+                let miss = difference(&found.u, &own.u).max(difference(&found.v, &own.v));
+                println!("{mass:?}, theta {theta}, out of core {out_of_core}: differs by {miss:.1e}");
+                assert!(iterations == 0 && miss > 0.0 && miss < 1e-11, "{miss:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn predictions_are_those_of_the_own_factor() {
+        let (own, iterations) = predict(Methods::default());
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
+            let (found, made) = predict(by(method));
+            let miss = difference(&found, &own);
+            println!("{made} iterations, {iterations} on the own factor: differ by {miss:.1e}");
+            assert!(miss < 1e-6 && made.abs_diff(iterations) < 3, "{miss:e}");
+        }
+    }
+
+    /// The hinge has no stiffness: the pivot that shows it is that of a node of the second block or of the hinge.
+    #[test]
+    fn a_mechanism_is_named() {
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
+            let model = hinged(by(method));
+            let error = statics::solve(&model, &model.gravity_load()).unwrap_err();
+            println!("{error}");
+            let SolveError::NoStiffness { node, .. } = error else { panic!("{error}") };
+            let place = model.mesh().coordinates[node as usize - 1];
+            assert!(place[0] > 1.0 - 1e-9, "node {node} at {place:?}");
+        }
+    }
+
+    /// Instances share variables of the library; threads wait for each other.
+    #[test]
+    fn solvers_on_several_threads_do_not_disturb_each_other() {
+        let model = block(ElementKind::Hex20, [6, 5, 4], by(MumpsMethod::default()));
+        let alone = solve(&model).0;
+        std::thread::scope(|scope| {
+            let all: Vec<_> = (0..4).map(|_| scope.spawn(|| solve(&model).0)).collect();
+            all.into_iter().for_each(|t| assert!(t.join().unwrap() == alone));
+        });
+    }
+
+    /// The estimate of the memory, which a run is refused by, is at least what is peak, and near it.
+    #[test]
+    fn the_memory_is_known_before() {
+        for method in [MumpsMethod::default(), OUT_OF_CORE] {
+            let model = block(ElementKind::Hex20, [14, 12, 10], by(method));
+            let (expected, peak) = (
+                model.mumps_memory(method).unwrap(),
+                StaticSolver::new(&model).unwrap().solver_memory().unwrap(),
+            );
+            println!("{method:?}: {expected} bytes expected, {peak} peak");
+            assert!(expected >= peak && expected < 3 * peak, "{expected} {peak}");
+        }
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_an_error() {
+        // The folder is that of the process, so that a process of its own is asked.
+        if std::env::var_os("TRACKBED_NO_FOLDER").is_none() {
+            let output = std::process::Command::new(std::env::current_exe().unwrap())
+                .args(["--exact", "mumps::library::a_folder_that_is_not_there_is_an_error"])
+                .env("TRACKBED_NO_FOLDER", "1")
+                .env("TMPDIR", "/no/such/folder")
+                .output()
+                .unwrap();
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            assert!(output.status.success() && text.contains("1 passed"), "{text}");
+            return;
+        }
+        let method = OUT_OF_CORE;
+        let model = block(ElementKind::Hex20, [3, 3, 3], by(method));
+        let error = StaticSolver::new(&model).err().unwrap();
+        assert_eq!(error, SolveError::Mumps(MumpsError::Files));
+    }
+
+    /// Steps of one solver, then of another made anew, have the same bits.
+    #[test]
+    fn a_solver_made_anew_goes_on_with_the_same_bits() {
+        let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, by(MumpsMethod::default()));
+        let loads = loads(&model, 6);
+        let new = || WindowSolver::new(&model, 0.6, 1e-4).unwrap();
+        let (mut whole, mut parts, mut solver) = (State::new(&model), State::new(&model), new());
+        for load in &loads {
+            solver.step(&model, &mut whole, load).unwrap();
+            new().step(&model, &mut parts, load).unwrap();
+        }
+        assert!(whole == parts);
+    }
+}
