@@ -148,7 +148,7 @@ fn a_lattice_across_borders_has_the_same_bits() {
 fn a_contact_without_its_pair_ends_as_the_engine_ends_it() {
     if device_is_there() {
         let opens = |k: usize, state: &mut State| {
-            (k % 40 == 0 || k % 40 == 2).then(|| state.open_wall(0, k % 40 == 0)).is_some()
+            matches!(k % 40, 0 | 2).then(|| state.open_wall(0, k.is_multiple_of(40))).is_some()
         };
         let input = between_triangles(gas([turning(stone()), smooth()], Vec::new()));
         let (differs, state, _) = compare_events(input, STEPS, |text| text, opens);
