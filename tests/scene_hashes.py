@@ -1,12 +1,13 @@
 """Hashes of everything that the scenes write: does a change of the program change any result?
 
-    python3 tests/scene_hashes.py record BINARY TABLE [--threads N] [--jobs N] [--only TEXT] [--keep FOLDER]
+    python3 tests/scene_hashes.py record BINARY TABLE [--threads N] [--jobs N] [--only TEXT] [--keep FOLDER] [--device]
     python3 tests/scene_hashes.py compare BINARY TABLE [the same options]
     python3 tests/scene_hashes.py list
 
 `record` runs each case of tests/scene_cases.toml with BINARY and writes TABLE: case, file, SHA-256. `compare` runs them
 again and lists every row that differs, is missing or is new; exit code 1 if there is any. --keep FOLDER leaves the files
-there. --only TEXT (it may be given again) takes the cases whose name contains the text.
+there. --only TEXT (it may be given again) takes the cases whose name contains the text. With --device the runs have `--device gpu`, and
+cases that a device does not compute are left out; where there is none, LD_LIBRARY_PATH may lead to the libraries of tests/stand_in.
 
 What is hashed, and what is left out on purpose:
 
@@ -183,7 +184,11 @@ def interrupted(command, folder, seconds):
     return count, execute(command, None)[1]
 
 
-def scene_rows(case, binary, threads, work):
+class NotOnDevice(Exception):
+    """A case that a device does not compute."""
+
+
+def scene_rows(case, binary, threads, work, device):
     """Rows of a scene: what is reported on it, and what a run leaves."""
     scene, sets = str(ROOT / case["scene"]), [f"--set={s}" for s in case.get("set", [])]
     rows = {}
@@ -193,8 +198,14 @@ def scene_rows(case, binary, threads, work):
     verb, more = case.get("verb", "run"), case.get("more", [])
     out = work / "whole"
     command = [binary, verb, scene, *sets, *more, "--threads", str(threads)]
+    if device:
+        if verb != "run":
+            raise NotOnDevice
+        command += ["--device", "gpu"]
     start = time.monotonic()
-    _, status = execute([*command, "--out", str(out)], None)
+    done, status = execute([*command, "--out", str(out)], None)
+    if device and done.returncode == 2 and "on a device" in done.stderr:
+        raise NotOnDevice
     seconds = time.monotonic() - start
     rows |= {"(exit)": status.replace(str(ROOT), ".")} | files(out)
     if case.get("restart"):
@@ -223,13 +234,22 @@ def command_rows(case, binary, work):
     return rows | files(out)
 
 
-def run_case(case, binary, threads, keep):
+def run_case(case, binary, options):
+    """The name of a case, its rows, which are none where a device does not compute it, and its seconds."""
+    threads, keep, device = options.threads, options.keep, options.device
     work = pathlib.Path(tempfile.mkdtemp(prefix="scene_hashes_"))
     start = time.monotonic()
     try:
-        rows = scene_rows(case, binary, threads, work) if "scene" in case else command_rows(case, binary, work)
+        if "scene" in case:
+            rows = scene_rows(case, binary, threads, work, device)
+        elif device:
+            raise NotOnDevice
+        else:
+            rows = command_rows(case, binary, work)
         for folder in work.iterdir() if keep else ():
             shutil.copytree(folder, pathlib.Path(keep) / case["name"] / folder.name, dirs_exist_ok=True)
+    except NotOnDevice:
+        rows = {}
     finally:
         shutil.rmtree(work)
     return case["name"], rows, time.monotonic() - start
@@ -252,16 +272,17 @@ def cases(only):
 
 
 def run_all(chosen, binary, options):
-    """Rows of all cases: {(case, file): digest}."""
-    table = {}
+    """Rows of all cases: {(case, file): digest}, and how many cases have any."""
+    table, count = {}, 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        tasks = [pool.submit(run_case, c, binary, options.threads, options.keep) for c in chosen]
+        tasks = [pool.submit(run_case, c, binary, options) for c in chosen]
         for task in tasks:
             name, rows, seconds = task.result()
             table |= {(name, file): digest for file, digest in rows.items()}
-            status = rows.get("(exit)", "exit code 0")
+            count += bool(rows)
+            status = rows.get("(exit)", "exit code 0") if rows else "not on a device"
             print(f"{seconds:6.1f} s  {name}: {len(rows)} rows, {status}", file=sys.stderr, flush=True)
-    return table
+    return table, count
 
 
 def compare(found, expected):
@@ -286,6 +307,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--keep")
+    parser.add_argument("--device", action="store_true")
     options = parser.parse_args()
     chosen = cases(options.only)
     if options.mode == "list":
@@ -294,14 +316,14 @@ def main():
     if not options.table or not chosen:
         parser.error("BINARY and TABLE are needed" if chosen else "no case has such a name")
     start = time.monotonic()
-    found = run_all(chosen, str(pathlib.Path(options.binary).resolve()), options)
-    print(f"{len(chosen)} cases in {time.monotonic() - start:.0f} s", file=sys.stderr)
+    found, count = run_all(chosen, str(pathlib.Path(options.binary).resolve()), options)
+    print(f"{count} of {len(chosen)} cases in {time.monotonic() - start:.0f} s", file=sys.stderr)
     if options.mode == "record":
         lines = [f"{case}\t{file}\t{digest}\n" for (case, file), digest in sorted(found.items())]
         pathlib.Path(options.table).write_text("".join(lines))
         return 0
     rows = [line.split("\t") for line in pathlib.Path(options.table).read_text().splitlines()]
-    names = {c["name"] for c in chosen}
+    names = {name for name, _ in found} if options.device else {c["name"] for c in chosen}
     expected = {(case, file): digest for case, file, digest in rows if case in names}
     return 1 if compare(found, expected) else 0
 

@@ -393,10 +393,10 @@ impl<M: Machine> Device<M> {
         if failed_there {
             // The arrays of the step before are there still: made again, the step says what has failed.
             self.ahead = true;
-            self.by_processor(model, state, surface, applied)?;
-            // The processor's contacts have been in this step twice: it is not one to go on from.
-            let again = || failed(state, "a step failed there that did not fail when made again".into());
-            return if beside { Err(again()) } else { Ok(()) };
+            if beside {
+                self.handed.put_back(state);
+            }
+            return self.by_processor(model, state, surface, applied);
         }
         self.exchange();
         self.ahead = true;

@@ -5,7 +5,7 @@ use super::bodies::quaternion;
 use super::layout::{Count, Slot};
 use super::machine::{Call, Machine};
 use crate::contact::patch_forces::PatchForce;
-use crate::engine::beside;
+use crate::engine::beside::{self, Kept};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
@@ -33,6 +33,8 @@ pub(super) struct Handed {
     /// Force and torque, in turn.
     forces: Vec<[f64; 4]>,
     picked: Vec<[f64; 4]>,
+    /// What contacts remembered before the step.
+    kept: Kept,
 }
 
 /// How far the forces of a block have been gone through.
@@ -109,10 +111,16 @@ impl Handed {
         (state, work): (&mut State, &mut Work),
         surface: &S,
     ) -> Result<(), String> {
+        self.kept.keep(state);
         beside::forces(model, state, work, surface);
         self.collect(work);
         machine.put_counts(call.buffer(Slot::HandedStart), &self.start)?;
         machine.put(call.buffer(Slot::Handed), self.forces.as_flattened())
+    }
+
+    /// Has a state's contacts remember what they did before the forces of this step were worked out.
+    pub fn put_back(&self, state: &mut State) {
+        self.kept.put_back(state);
     }
 
     /// Brings back where the bodies are that the processor needs to know.

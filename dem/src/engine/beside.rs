@@ -14,6 +14,8 @@ use crate::contact::kind;
 use crate::contact::single::Setting;
 use crate::integrate::leapfrog;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
+use crate::pairs::list::PairList;
+use crate::pairs::patches::PatchList;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
@@ -71,6 +73,47 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
         cross.iter_mut().zip(slots).enumerate().for_each(between);
         lists.iter_mut().zip(works).enumerate().for_each(own);
     }
+}
+
+/// What the contacts of this part remember before a step, so that it can be made again.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    blocks: Vec<KeptOfBlock>,
+}
+
+#[derive(Debug, Default)]
+struct KeptOfBlock {
+    kinds: Vec<PairList>,
+    /// With walls, and with the external surface.
+    patches: [PatchList; 2],
+}
+
+impl Kept {
+    /// Keeps that of a state.
+    pub fn keep(&mut self, state: &State) {
+        self.blocks.resize_with(state.blocks.len(), KeptOfBlock::default);
+        for (kept, (cross, lists)) in self.blocks.iter_mut().zip(state.cross.iter().zip(&state.lists)) {
+            copy_kinds(&mut kept.kinds, &cross.kinds);
+            let [walls, surface] = &mut kept.patches;
+            walls.copy_from(&lists.walls);
+            surface.copy_from(&lists.surface);
+        }
+    }
+
+    /// Puts it back.
+    pub fn put_back(&self, state: &mut State) {
+        for (kept, (cross, lists)) in self.blocks.iter().zip(state.cross.iter_mut().zip(&mut state.lists)) {
+            copy_kinds(&mut cross.kinds, &kept.kinds);
+            let [walls, surface] = &kept.patches;
+            lists.walls.copy_from(walls);
+            lists.surface.copy_from(surface);
+        }
+    }
+}
+
+fn copy_kinds(to: &mut Vec<PairList>, from: &[PairList]) {
+    to.resize_with(from.len(), PairList::default);
+    to.iter_mut().zip(from).for_each(|(to, from)| to.copy_from(from));
 }
 
 /// Moves the bodies that are not made of spheres under the forces in the slots of their pairs.

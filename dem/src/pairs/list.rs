@@ -95,6 +95,16 @@ impl PartialEq for PairList {
 }
 
 impl PairList {
+    /// Becomes the same as another, in its own memory.
+    pub fn copy_from(&mut self, other: &PairList) {
+        let PairList { names, spans, hints, memory, last_block } = other;
+        self.names.clone_from(names);
+        self.spans.clone_from(spans);
+        self.hints.clone_from(hints);
+        self.memory.clone_from(memory);
+        self.last_block = *last_block;
+    }
+
     pub fn len(&self) -> usize {
         self.names.len()
     }

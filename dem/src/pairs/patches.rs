@@ -42,6 +42,12 @@ impl PatchList {
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty() && self.live.is_empty()
     }
+
+    /// Becomes the same as another, in its own memory.
+    pub fn copy_from(&mut self, other: &PatchList) {
+        self.pairs.clone_from(&other.pairs);
+        self.live.clone_from(&other.live);
+    }
 }
 
 impl PatchList {

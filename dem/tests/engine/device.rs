@@ -509,6 +509,9 @@ fn bonds_that_break() {
             println!("{bonds} bonds, {left} left, {:?} broken by tension and shear", state.broken_bonds());
             assert!(left < bonds - 20 && left > bonds / 4, "{left} of {bonds} bonds are left");
         }
+        let state =
+            same_bits("bonds under a plate", pressed(bonded(Bond::Parallel(parallel), stone()), -Vec3::z()));
+        assert!(state.broken_bonds().0 > 0 && state.ledger.work_servo != 0.0);
         let mut input = bonded(Bond::Parallel(parallel), stone());
         input.bonds.retain(|b| b.a % 4 != 0 && b.b % 4 != 0);
         input.bodies.iter_mut().for_each(|b| b.velocity *= 8.0);

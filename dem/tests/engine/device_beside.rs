@@ -1,9 +1,12 @@
 //! Steps that a device shares with the processor: spheres and clumps on a surface that moves, among blocks that the processor moves.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{STEPS, changed, fails_alike, gas, mesh, pressed, smooth, turning, with_clumps};
+use crate::device::{
+    STEPS, bonded, changed, fails_alike, gas, mesh, parallel, pressed, smooth, turning, with_clumps,
+};
 use crate::scene::{block, body, stone};
 use std::sync::Arc;
+use trackbed_dem::bond::Bond;
 use trackbed_dem::device::{Device, source};
 use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_dem::surface::{Feature, PatchPoint, Surface};
@@ -203,7 +206,7 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
     if device_is_there() {
         let materials = [turning(stone()), smooth()];
         let clumps = |k: usize| k % 3 == 1;
-        let scenes: [(&str, ModelInput); 7] = [
+        let scenes: [(&str, ModelInput); 8] = [
             ("spheres on ground", on_ground(gas([stone(), smooth()], Vec::new()))),
             ("clumps on ground", on_ground(with_clumps(gas(materials, Vec::new()), clumps))),
             ("spheres and blocks", among_blocks(gas([stone(), smooth()], Vec::new()))),
@@ -213,6 +216,7 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
                 beside_a_wall(among_blocks(with_clumps(gas([stone(), smooth()], Vec::new()), clumps))),
             ),
             ("blocks under a plate", among_blocks(pressed(gas([stone(), smooth()], Vec::new()), Vec3::x()))),
+            ("bonded spheres, which break", on_ground(bonded(Bond::Parallel(parallel()), stone()))),
             ("clumps and blocks", among_blocks(with_clumps(gas([stone(), smooth()], Vec::new()), clumps))),
         ];
         for (name, input) in scenes {
@@ -228,6 +232,8 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
             assert_eq!(differs, None, "{name}: the first step after which the states differ");
             assert!(met[0] > 1000 && (met[1] > 100) == blocks && l.work_surface > 0.0, "{name}: {met:?}");
             assert_eq!(l.work_servo != 0.0, driven, "{name}");
+            let broken = state.broken_bonds();
+            assert!(!name.contains("break") || broken.0 + broken.1 > 20, "{name}: {broken:?}");
             assert!((l.work_applied != 0.0) && l.dissipated_friction > 0.0, "{name}");
         }
     }
