@@ -56,6 +56,16 @@ impl Work {
         self.arrange(model, state);
     }
 
+    /// Puts the spheres of clumps where these are, after something else than a step may have moved them.
+    pub(crate) fn place_spheres(&mut self, state: &State) {
+        let blocks = self.members.iter_mut().zip(&state.blocks);
+        for (members, block) in blocks.filter(|(members, _)| members.rigid) {
+            for (k, (centre, rotation)) in block.centre.iter().zip(&block.rotation).enumerate() {
+                members.place_spheres(k, centre, &rotation.orientation);
+            }
+        }
+    }
+
     /// Lays the constants out in the state's present order.
     pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
         self.searched.listed = None;

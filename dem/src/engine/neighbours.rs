@@ -34,6 +34,9 @@ pub(crate) fn update<S: Surface>(
     if !due(state) {
         return;
     }
+    if state.stale {
+        work.place_spheres(state);
+    }
     adapt(model, state);
     work.searched.surface_drift += state.wall_drift;
     let mut approach = if state.stale || work.searched.listed != Some(listed) {

@@ -1,10 +1,12 @@
 //! The same bits whatever the threads, the skin, or a restart.
 
+use crate::device::{gas, smooth, with_clumps};
 use crate::scene::{Run, pile, sphere, stone, weightless};
+use nalgebra::UnitQuaternion;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
-    BodyInput, ModelInput, Motion, Oscillation, RigidBody, Servo, State, TimeStep, Vec3, WallInput,
-    WallShape, Work,
+    BodyInput, Model, ModelInput, Motion, Oscillation, RigidBody, Servo, State, TimeStep, Vec3, WallInput,
+    WallShape, Work, step,
 };
 
 /// Everything that a user can see of a state, as bits.
@@ -243,4 +245,30 @@ fn skin_changes_nothing_at_walls() {
         seen.push((kind, a.0 == b.0, close));
     }
     assert!(seen.iter().all(|s| s.1 && s.2), "the skin shows: {seen:?}");
+}
+
+/// Clumps that are set elsewhere between two steps have their spheres there in the next.
+#[test]
+fn clumps_that_were_shifted_step_as_with_new_scratch() {
+    let input = with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 != 1);
+    let model = Model::new(input).unwrap();
+    let mut state = State::new(&model);
+    let mut work = Work::new(&model, &state);
+    for _ in 0..50 {
+        step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+    }
+    let turn = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), 0.01);
+    for body in 0..model.body_count() {
+        let shift = Vec3::new(0.0, 3e-4 * (body % 5) as f64, -2e-4 * (body % 3) as f64);
+        state.shift(&model, body, &shift, &turn);
+    }
+    state.forget_neighbours();
+    let mut other = state.clone();
+    let mut fresh = Work::new(&model, &other);
+    for k in 0..100 {
+        step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
+        step(&model, &mut other, &mut fresh, &NoSurface, &[]).unwrap();
+        let same = postcard::to_stdvec(&state).unwrap() == postcard::to_stdvec(&other).unwrap();
+        assert!(same, "step {k} after the shift differs");
+    }
 }
