@@ -92,11 +92,12 @@ impl<M: Machine> Device<M> {
         call.number(Number::GravityZ, g.z);
         call.number(Number::Damping, model.damping);
         call.count(Count::Materials, materials as usize);
+        let features = text::features(model);
         let mut device = Device {
             machine,
             work,
             call,
-            features: text::features(model),
+            features,
             spheres: Spheres::default(),
             books: Vec::new(),
             mass: Vec::new(),
@@ -110,7 +111,8 @@ impl<M: Machine> Device<M> {
             pairs: 0,
             bonds: 0,
             orphans: false,
-            handed: Handed::default(),
+            // Bonds break, and spheres touch more triangles than there is room for.
+            handed: Handed::new(features.bonds || features.walls > 0),
         };
         let law = text::law_constants(&model.laws, materials);
         let Triangles { shapes, names } =
@@ -393,10 +395,11 @@ impl<M: Machine> Device<M> {
         if failed_there {
             // The arrays of the step before are there still: made again, the step says what has failed.
             self.ahead = true;
-            if beside {
-                self.handed.put_back(state);
-            }
-            return self.by_processor(model, state, surface, applied);
+            let as_before = !beside || self.handed.put_back(state);
+            self.by_processor(model, state, surface, applied)?;
+            // Else the processor's contacts have been in this step twice: it is not one to go on from.
+            let again = || failed(state, "a step failed there that did not fail when made again".into());
+            return if as_before { Ok(()) } else { Err(again()) };
         }
         self.exchange();
         self.ahead = true;

@@ -33,8 +33,8 @@ pub(super) struct Handed {
     /// Force and torque, in turn.
     forces: Vec<[f64; 4]>,
     picked: Vec<[f64; 4]>,
-    /// What contacts remembered before the step.
-    kept: Kept,
+    /// What contacts remembered before the step, where it may be made again.
+    kept: Option<Kept>,
 }
 
 /// How far the forces of a block have been gone through.
@@ -86,6 +86,11 @@ impl Handed {
 }
 
 impl Handed {
+    /// Nothing yet. `again`: whether there may be steps that a device gives back though nothing is wrong with them.
+    pub fn new(again: bool) -> Handed {
+        Handed { kept: again.then(Kept::default), ..Handed::default() }
+    }
+
     /// Notes the sources of forces, and whom the processor needs to know.
     pub fn take_over<M: Machine>(
         &mut self,
@@ -111,16 +116,19 @@ impl Handed {
         (state, work): (&mut State, &mut Work),
         surface: &S,
     ) -> Result<(), String> {
-        self.kept.keep(state);
+        if let Some(kept) = &mut self.kept {
+            kept.keep(state);
+        }
         beside::forces(model, state, work, surface);
         self.collect(work);
         machine.put_counts(call.buffer(Slot::HandedStart), &self.start)?;
         machine.put(call.buffer(Slot::Handed), self.forces.as_flattened())
     }
 
-    /// Has a state's contacts remember what they did before the forces of this step were worked out.
-    pub fn put_back(&self, state: &mut State) {
-        self.kept.put_back(state);
+    /// Has a state's contacts remember what they did before the forces of this step were worked out; whether that was kept.
+    pub fn put_back(&self, state: &mut State) -> bool {
+        self.kept.iter().for_each(|kept| kept.put_back(state));
+        self.kept.is_some()
     }
 
     /// Brings back where the bodies are that the processor needs to know.

@@ -1,7 +1,8 @@
 //! The search for neighbours on the device: its kernels in turn (`text/search.c`), and what of it the processor gets.
 //!
 //! The near list is a function of where bodies are: all pairs within a reach, by the order of their spheres, with the memory of those that
-//! were listed before. So it has the engine's bits however it is found; here straight from cells, without candidates.
+//! were listed before. So it has the engine's bits however it is found; here straight from cells, without candidates. What else there is the
+//! processor lists as the engine does, and its entries are put where the engine has them in its sums.
 
 use super::arrays::{Lists, Memory};
 use super::back_end::Device;

@@ -1,5 +1,6 @@
 //! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, and with walls where any
-//! of these is round or driven by a force, all contacts of bodies that are not made of spheres, and the motion of these. Everything that takes part is where the step begins.
+//! of these is round or driven by a force, all contacts of bodies that are not made of spheres, and the motion of these. Everything that
+//! takes part is where the step begins.
 
 use super::block_work::BlockWork;
 use super::model::Model;
@@ -29,8 +30,8 @@ pub(crate) fn walls(model: &Model) -> bool {
     !model.walls.triangulated() || model.walls.walls.iter().any(|w| w.servo.is_some())
 }
 
-/// Forces of these contacts: into the slots of their pairs, and of those with walls and the surface into the scratch of the block; the near list is
-/// good. What blocks book begins anew.
+/// Forces of these contacts: into the slots of their pairs, and of those with walls and the surface into the scratch of the block; the
+/// near list is good. What blocks book begins anew.
 pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let setting = Setting { laws: &model.laws, simd: work.simd, dt: state.pace.kick() };
     let gone = state.drift + state.wall_drift;

@@ -1,5 +1,5 @@
 //! Candidates: everything within the skin of touching, found by cells and trees. Valid until motion has used the
-//! skin up, which `near.rs` checks against the positions kept here.
+//! skin up, which `neighbours.rs` checks against the positions kept here.
 
 use super::block_work::{BlockWork, Candidates};
 use super::hulls::Hulls;
