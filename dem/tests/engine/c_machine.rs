@@ -52,6 +52,7 @@ pub struct TestMachine {
 impl TestMachine {
     pub fn new(text: &str, model: &Model) -> TestMachine {
         let machine = if on_cuda() { cuda(text, model) } else { Box::new(CMachine::new(text)) };
+        crate::device_changes::report_loaded();
         TestMachine { machine, read: 0 }
     }
 }

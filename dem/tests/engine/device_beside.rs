@@ -1,9 +1,8 @@
 //! Steps that a device shares with the processor: spheres and clumps on a surface that moves, among blocks that the processor moves.
 
 use crate::c_machine::{TestMachine, device_is_there};
-use crate::device::{
-    STEPS, bonded, changed, fails_alike, gas, mesh, parallel, pressed, smooth, turning, with_clumps,
-};
+use crate::device::{STEPS, bonded, fails_alike, gas, mesh, parallel, pressed, smooth, turning, with_clumps};
+use crate::device_changes::assert_detected;
 use crate::scene::{block, body, stone};
 use std::sync::Arc;
 use trackbed_dem::bond::Bond;
@@ -245,17 +244,17 @@ fn a_changed_part_is_seen() {
     if device_is_there() {
         let spheres = on_ground(gas([stone(), smooth()], Vec::new()));
         let blocks = among_blocks(with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 == 1));
-        for (input, from, to) in [
-            (&spheres, "add(&s->torque, HANDED[2 * k + 1]);", ""),
-            (&spheres, "add(&s->force, HANDED[2 * k]);", "add(&s->force, HANDED[2 * HANDED_START[c]]);"),
-            (&blocks, "picked[1] = OLD_V[i];", "picked[1] = NEW_V[i];"),
-            (&blocks, "picked[3] = OLD_ORIENTATION[i];", "picked[3] = NEW_ORIENTATION[i];"),
-            (&blocks, "if (SINGLE[i] & ELSEWHERE) return;", "if (i == 5) return;"),
-        ] {
-            let differs = compare(input.clone(), changed(from, to)).differs;
-            println!("{from} -> {to}: {differs:?}");
-            assert!(differs.is_some(), "{from} -> {to}");
-        }
+        let changes = [
+            ("add(&s->torque, HANDED[2 * k + 1]);", ""),
+            ("add(&s->force, HANDED[2 * k]);", "add(&s->force, HANDED[2 * HANDED_START[c]]);"),
+            ("picked[1] = OLD_V[i];", "picked[1] = NEW_V[i];"),
+            ("picked[3] = OLD_ORIENTATION[i];", "picked[3] = NEW_ORIENTATION[i];"),
+            ("if (SINGLE[i] & ELSEWHERE) return;", "if (i == 5) return;"),
+        ];
+        assert_detected("device_beside::a_changed_part_is_seen", &changes, |k, change| {
+            let input = if k < 2 { &spheres } else { &blocks };
+            compare(input.clone(), change).differs
+        });
     }
 }
 

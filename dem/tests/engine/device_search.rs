@@ -2,10 +2,11 @@
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{
-    STEPS, between_triangles, bonded, changed, compare_events, gas, parallel, smooth, turning, with_borders,
+    STEPS, between_triangles, bonded, compare_events, gas, parallel, smooth, turning, with_borders,
     with_clumps,
 };
 use crate::device_beside::{self, among_blocks};
+use crate::device_changes::assert_detected;
 use crate::scene::{Random, sphere, stone};
 use trackbed_dem::bond::Bond;
 use trackbed_dem::device::{Device, kernels, source};
@@ -103,16 +104,15 @@ fn the_state_stays_on_the_device() {
 fn a_changed_search_is_seen() {
     if device_is_there() {
         let input = unlike();
-        for (from, to) in [
+        let changes = [
             ("known ? OLD_MEMORY[old] : fresh", "fresh"),
             ("known ? OLD_TURN[old] : none()", "none()"),
             ("if (!in_row(p, y, size, inverse, from_x, to_x, cy, cz)) continue;", ""),
             ("if (still && OLD_V[there].w == 0.0) continue;", ""),
-        ] {
-            let (differs, ..) = compare_events(input.clone(), STEPS, changed(from, to), events);
-            println!("{from} -> {to}: {differs:?}");
-            assert!(differs.is_some(), "{from} -> {to}");
-        }
+        ];
+        assert_detected("device_search::a_changed_search_is_seen", &changes, |_, change| {
+            compare_events(input.clone(), STEPS, change, events).0
+        });
     }
 }
 
@@ -164,19 +164,19 @@ fn a_changed_place_of_the_rest_is_seen() {
     if device_is_there() {
         let spheres = gas([stone(), smooth()], Vec::new());
         let bonds = bonded(Bond::Parallel(parallel()), stone());
-        for (input, from, to) in [
-            (packed(), "REST_FROM[*rest] < BLOCK[", "REST_FROM[*rest] <= BLOCK["),
-            (between_triangles(spheres.clone()), "REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] <= ~0u"),
-            (bonds.clone(), "REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] < BLOCKS"),
-            (bonds, "if (HELD_WITH[k] == other) return 1;", "if (HELD_WITH[k] == other) return 0;"),
-        ] {
-            let (differs, ..) = compare_events(input, STEPS, changed(from, to), |_, _| false);
-            println!("{from} -> {to}: {differs:?}");
-            assert!(differs.is_some(), "{from} -> {to}");
-        }
-        let (from, to) = ("NO_SPHERE(s) (SINGLE[s] & ELSEWHERE)", "NO_SPHERE(s) 0");
-        let differs = device_beside::compare(among_blocks(spheres), changed(from, to)).differs;
-        println!("{from} -> {to}: {differs:?}");
-        assert!(differs.is_some(), "{from} -> {to}");
+        let inputs = [packed(), between_triangles(spheres.clone()), bonds.clone(), bonds];
+        let changes = [
+            ("REST_FROM[*rest] < BLOCK[", "REST_FROM[*rest] <= BLOCK["),
+            ("REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] <= ~0u"),
+            ("REST_FROM[*rest] <= BLOCKS", "REST_FROM[*rest] < BLOCKS"),
+            ("if (HELD_WITH[k] == other) return 1;", "if (HELD_WITH[k] == other) return 0;"),
+            ("NO_SPHERE(s) (SINGLE[s] & ELSEWHERE)", "NO_SPHERE(s) 0"),
+        ];
+        assert_detected("device_search::a_changed_place_of_the_rest_is_seen", &changes, |k, change| {
+            match inputs.get(k) {
+                Some(input) => compare_events(input.clone(), STEPS, change, |_, _| false).0,
+                None => device_beside::compare(among_blocks(spheres.clone()), change).differs,
+            }
+        });
     }
 }

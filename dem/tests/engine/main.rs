@@ -12,6 +12,7 @@ mod c_machine;
 mod determinism;
 mod device;
 mod device_beside;
+mod device_changes;
 mod device_search;
 mod disks;
 mod extremes;

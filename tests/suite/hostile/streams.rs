@@ -3,6 +3,7 @@
 use super::super::support::{COUPLED, Folder, PLASTIC, json, repository, results, run, scene_folder};
 use super::{refused, within};
 use std::fs::{self, File};
+use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -72,6 +73,18 @@ fn wait_for(rows: usize, out: &Path, child: &mut Child) {
     }
 }
 
+/// A command that a closed terminal ends, also where the tests run under `nohup`: an ignored signal is inherited.
+fn with_default_hangup(mut command: Command) -> Command {
+    // SAFETY: between fork and exec the closure calls `signal` only, which is async-signal-safe.
+    unsafe {
+        command.pre_exec(|| match libc::signal(libc::SIGHUP, libc::SIG_DFL) {
+            libc::SIG_ERR => Err(std::io::Error::last_os_error()),
+            _ => Ok(()),
+        })
+    };
+    command
+}
+
 /// G6: a terminal that is closed leaves a checkpoint; under `nohup` it is none of the run's business.
 #[test]
 fn hanging_up_leaves_a_checkpoint() {
@@ -79,7 +92,8 @@ fn hanging_up_leaves_a_checkpoint() {
     let scene = repository().join("inputs/grains/box.toml");
     let set = ["grains.0.count=3000", "time.end=0.2", "output.frames=2"];
     let out = folder.join("out");
-    let mut child = program(&scene, &out, &set).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    let mut command = with_default_hangup(program(&scene, &out, &set));
+    let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     wait_for(4, &out, &mut child);
     kill("HUP", &child);
     let said = child.wait_with_output().unwrap();
