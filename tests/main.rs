@@ -59,5 +59,6 @@ mod suite {
     mod tutorials;
     mod verdict;
     mod view;
+    mod view_clients;
     mod walls;
 }

@@ -48,13 +48,13 @@ fn serve(args: &ViewArgs) -> Result<(), Failure> {
     if series::folders(&args.dir).is_empty() {
         Results::open(&args.dir, Coding::Exact)?;
     }
-    let (server, port) = view::server::bind(args.port)?;
+    let (listener, port) = view::server::bind(args.port)?;
     let address = format!("http://127.0.0.1:{port}/");
     print(&format!("{address} shows {}; Ctrl-C ends it\n", args.dir.display()))?;
     if !args.no_open {
         open(&address);
     }
-    view::server::serve(&server, port, &args.dir)
+    view::server::serve(listener, port, &args.dir)
 }
 
 /// Opens the address in the user's browser.

@@ -4,6 +4,7 @@
 //! asks for them ([`server`]) or all at once ([`mod@export`]). What is drawn, and how, is up to the page: `web/`.
 
 mod chunk;
+mod connections;
 pub mod export;
 mod grains;
 mod lines;

@@ -60,16 +60,30 @@ pub fn pieces(title: &str, settings: &Value) -> (String, String) {
             (name.to_string(), json!(address))
         })
         .collect();
-    let version = env!("CARGO_PKG_VERSION");
-    let page = FRAME
-        .replace("{{TITLE}}", &escaped(title))
-        .replace("{{POLICY}}", &escaped(POLICY))
-        .replace("{{VERSION}}", version)
-        .replace("{{STYLE}}", STYLE)
-        .replace("{{SETTINGS}}", &quoted(settings))
-        .replace("{{IMPORTS}}", &quoted(&json!({ "imports": imports })));
-    let (head, tail) = page.split_once("{{DATA}}").expect("the page has a place for data");
-    (head.to_string(), tail.to_string())
+    let (head, tail) = FRAME.split_once("{{DATA}}").expect("the page has a place for data");
+    let place = |name: &str| match name {
+        "TITLE" => escaped(title),
+        "POLICY" => escaped(POLICY),
+        "VERSION" => escaped(env!("CARGO_PKG_VERSION")),
+        "STYLE" => STYLE.to_string(),
+        "SETTINGS" => quoted(settings),
+        "IMPORTS" => quoted(&json!({ "imports": imports })),
+        other => unreachable!("the frame of the page has no place {other}"),
+    };
+    (filled(head, place), filled(tail, place))
+}
+
+/// A frame with its places `{{NAME}}` filled. What is filled in is not searched for places: a folder may have the name of one.
+fn filled(frame: &str, place: impl Fn(&str) -> String) -> String {
+    let mut out = String::new();
+    let mut rest = frame;
+    while let Some((before, after)) = rest.split_once("{{") {
+        let (name, after) = after.split_once("}}").expect("a place of the frame ends");
+        out += before;
+        out += &place(name);
+        rest = after;
+    }
+    out + rest
 }
 
 /// A block within the page, deflated.
@@ -93,5 +107,19 @@ mod tests {
         assert!(!page.contains("<script>alert"), "the title is escaped");
         assert!(page.contains("&lt;/title&gt;&lt;script&gt;"), "the title is there");
         assert!(embedded("grains/0/\"><b>", b"x").contains("data-block=\"grains/0/&quot;&gt;&lt;b&gt;\""));
+    }
+
+    #[test]
+    fn title_named_like_place_stays_text() {
+        let settings = json!({ "served": true });
+        let plain = pieces("bed", &settings);
+        for title in
+            ["{{DATA}}", "{{TITLE}}", "{{STYLE}}", "{{SETTINGS}}{{IMPORTS}}", "}}{{", "{{", "{{{{DATA}}}}"]
+        {
+            let (head, tail) = pieces(title, &settings);
+            assert!(head.contains(&format!("<title>{title} ")), "{title}");
+            assert_eq!(head.len() - title.len(), plain.0.len() - "bed".len(), "{title}");
+            assert_eq!(tail, plain.1, "{title}");
+        }
     }
 }

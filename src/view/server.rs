@@ -4,20 +4,22 @@
 //! requests under the names of this machine are answered. Nothing is ever written.
 
 use std::collections::HashMap;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use hyper::Method;
+use hyper::body::Bytes;
+use hyper::http::request::Parts;
 use serde_json::json;
-use tiny_http::{Header, Method, Request, Response, Server};
 
 use super::chunk::Coding;
+use super::connections::{self, Reply, Respond};
 use super::page;
 use super::results::Results;
 use crate::failure::Failure;
 use crate::results::series;
 
-/// Requests handled at a time.
-const THREADS: usize = 4;
 /// Runs of a folder that are kept open.
 const OPEN: usize = 8;
 /// Longest address [bytes].
@@ -28,6 +30,8 @@ struct Site {
     /// The folder, without links.
     root: PathBuf,
     port: u16,
+    /// The page, which all requests share.
+    page: Bytes,
     runs: Mutex<HashMap<String, Arc<Results>>>,
 }
 
@@ -35,79 +39,82 @@ struct Site {
 type Refusal = (u16, String);
 
 /// A page or a block with its type.
-struct Content(&'static str, Vec<u8>);
+struct Content(&'static str, Bytes);
 
-/// Binds the address; port 0 is any that is free. Returns the server and its port.
+/// Binds the address; port 0 is any that is free. Returns the listener and its port.
 ///
 /// # Errors
 /// The port is taken or not allowed.
-pub fn bind(port: u16) -> Result<(Server, u16), Failure> {
-    let refused = |error: String| {
+pub fn bind(port: u16) -> Result<(TcpListener, u16), Failure> {
+    let bound = TcpListener::bind(("127.0.0.1", port)).and_then(|l| l.local_addr().map(|a| (l, a.port())));
+    bound.map_err(|error| {
         Failure::Input(format!("--port: found {port}, which cannot be used ({error}), expected a free port"))
-    };
-    let server = Server::http(("127.0.0.1", port)).map_err(|e| refused(e.to_string()))?;
-    let bound = server.server_addr().to_ip().map(|address| address.port());
-    bound.ok_or_else(|| refused("no address".to_string())).map(|port| (server, port))
+    })
 }
 
 /// Serves a folder until the process ends.
 ///
 /// # Errors
 /// The folder is gone.
-pub fn serve(server: &Server, port: u16, dir: &Path) -> Result<(), Failure> {
-    let site = Site { root: dir.canonicalize()?, port, runs: Mutex::default() };
-    std::thread::scope(|scope| {
-        for _ in 0..THREADS {
-            scope.spawn(|| {
-                while let Ok(request) = server.recv() {
-                    site.handle(request);
-                }
-            });
-        }
-    });
-    Ok(())
+pub fn serve(listener: TcpListener, port: u16, dir: &Path) -> Result<(), Failure> {
+    let root = dir.canonicalize()?;
+    let title = root.file_name().map(|n| n.to_string_lossy().into_owned());
+    let (head, tail) = page::pieces(&title.unwrap_or_default(), &json!({ "served": true }));
+    let site = Site { root, port, page: (head + &tail).into(), runs: Mutex::default() };
+    Ok(connections::serve(listener, Arc::new(site))?)
 }
 
-impl Site {
-    fn handle(&self, request: Request) {
-        let response = match self.checked(&request).and_then(|()| self.content(request.url())) {
-            Ok(Content(kind, bytes)) => Response::from_data(bytes).with_header(header("Content-Type", kind)),
-            Err((status, sentence)) => Response::from_data(sentence.into_bytes())
-                .with_status_code(status)
-                .with_header(header("Content-Type", "text/plain; charset=utf-8")),
-        };
-        let fixed = [
+impl Respond for Site {
+    fn respond(&self, head: &Parts) -> Reply {
+        let address = head.uri.path_and_query().map_or("/", |address| address.as_str());
+        match self.checked(head, address).and_then(|()| self.content(address)) {
+            Ok(Content(kind, content)) => Reply { status: 200, kind, content },
+            Err((status, sentence)) => {
+                Reply { status, kind: "text/plain; charset=utf-8", content: sentence.into() }
+            }
+        }
+    }
+
+    fn fields(&self) -> &'static [(&'static str, &'static str)] {
+        &[
             ("Content-Security-Policy", page::POLICY),
             ("Cross-Origin-Resource-Policy", "same-origin"),
             ("X-Content-Type-Options", "nosniff"),
             ("Referrer-Policy", "no-referrer"),
             ("Cache-Control", "no-store"),
-        ];
-        let response =
-            fixed.into_iter().fold(response, |r, (name, value)| r.with_header(header(name, value)));
-        // Who went away gets nothing.
-        let _ = request.respond(response);
+        ]
     }
+}
 
+impl Site {
     /// Whether a request comes from this machine's own page.
-    fn checked(&self, request: &Request) -> Result<(), Refusal> {
-        let values = |name: &'static str| {
-            request.headers().iter().filter(move |h| h.field.equiv(name)).map(|h| h.value.as_str())
-        };
+    fn checked(&self, head: &Parts, address: &str) -> Result<(), Refusal> {
+        // A value that is not ASCII is nobody's name.
+        let values =
+            |name: &'static str| head.headers.get_all(name).iter().map(|v| v.to_str().unwrap_or("?"));
         let own = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
         let is_own = |host: &str| own.iter().any(|o| host.eq_ignore_ascii_case(o));
         let hosts: Vec<&str> = values("Host").collect();
-        if hosts.len() != 1 || !is_own(hosts[0]) {
+        let named = head.uri.authority().is_none_or(|authority| is_own(authority.as_str()));
+        if hosts.len() != 1 || !is_own(hosts[0]) || !named {
             return Err((403, format!("only requests to {} are answered", own[0])));
         }
         if values("Origin").any(|origin| !origin.strip_prefix("http://").is_some_and(is_own)) {
             return Err((403, "requests of other pages are not answered".to_string()));
         }
-        if *request.method() != Method::Get {
+        // Browsers name the relation of the page that requests; "none" is an address that the user has typed.
+        if values("Sec-Fetch-Site").any(|site| !matches!(site, "same-origin" | "none")) {
+            return Err((403, "requests of other sites are not answered".to_string()));
+        }
+        if head.method != Method::GET {
             return Err((405, "only GET is answered".to_string()));
         }
-        if request.url().len() > LONGEST {
+        if address.len() > LONGEST {
             return Err((414, format!("an address has at most {LONGEST} bytes")));
+        }
+        let length = values("Content-Length").any(|length| length != "0");
+        if length || head.headers.contains_key("Transfer-Encoding") {
+            return Err((413, "a request has no body".to_string()));
         }
         Ok(())
     }
@@ -120,14 +127,10 @@ impl Site {
         let run = query.split('&').find_map(|pair| pair.strip_prefix("run="));
         let run = run.map(decoded).unwrap_or(Some(String::new())).ok_or_else(bad)?;
         match path.as_str() {
-            "/" => {
-                let title = self.root.file_name().map(|n| n.to_string_lossy().into_owned());
-                let (head, tail) = page::pieces(&title.unwrap_or_default(), &json!({ "served": true }));
-                Ok(Content("text/html; charset=utf-8", (head + &tail).into_bytes()))
-            }
+            "/" => Ok(Content("text/html; charset=utf-8", self.page.clone())),
             "/folders" => {
                 let folders = json!(series::folders(&self.root)).to_string();
-                Ok(Content("application/json", folders.into_bytes()))
+                Ok(Content("application/json", folders.into()))
             }
             _ => match path.strip_prefix("/data/") {
                 Some(name) => self.block(name, &run),
@@ -139,7 +142,7 @@ impl Site {
     fn block(&self, name: &str, run: &str) -> Result<Content, Refusal> {
         let results = self.results(run, name == "scene")?;
         match results.block(name) {
-            Ok(Some(bytes)) => Ok(Content("application/octet-stream", bytes)),
+            Ok(Some(bytes)) => Ok(Content("application/octet-stream", bytes.into())),
             Ok(None) => Err((404, "the run has no such data".to_string())),
             Err(failure) => Err((422, failure.to_string())),
         }
@@ -164,11 +167,6 @@ impl Site {
         runs.insert(run.to_string(), results.clone());
         Ok(results)
     }
-}
-
-/// A header of fixed letters.
-fn header(name: &str, value: &str) -> Header {
-    Header::from_bytes(name, value).expect("headers are ASCII")
 }
 
 /// A text with its `%41` as letters; `None` where that is no UTF-8 or has control characters.

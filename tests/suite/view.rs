@@ -60,13 +60,13 @@ fn bed(folder: &Folder, title: &str) -> PathBuf {
 }
 
 /// The program as a server; it ends with the test.
-struct Server {
-    program: Child,
-    port: u16,
+pub struct Server {
+    pub program: Child,
+    pub port: u16,
 }
 
 impl Server {
-    fn start(dir: &Path) -> Server {
+    pub fn start(dir: &Path) -> Server {
         let mut program = Command::new(env!("CARGO_BIN_EXE_trackbed"))
             .args(["view", &dir.display().to_string(), "--no-open"])
             .stdout(Stdio::piped())
@@ -96,7 +96,8 @@ impl Server {
         (status, body)
     }
 
-    fn get(&self, address: &str) -> (u16, Vec<u8>) {
+    /// Status and body of the response to an address.
+    pub fn get(&self, address: &str) -> (u16, Vec<u8>) {
         self.raw(&format!("GET {address} HTTP/1.1\r\nHost: 127.0.0.1:{}", self.port))
     }
 
@@ -309,6 +310,50 @@ fn other_hosts_pages_and_methods_are_refused() {
     assert_eq!(server.raw(&format!("GET / HTTP/1.1\r\nHost: localhost:{port}")).0, 200);
     // Nobody else's address is bound.
     assert!(TcpStream::connect(("127.0.0.2", port)).is_err() || cfg!(not(target_os = "linux")));
+}
+
+/// A browser says whose page makes it send a request; an address that a user types has no such page.
+#[test]
+fn requests_of_other_sites_are_refused() {
+    let folder = Folder::new("view_sites");
+    let out = bed(&folder, "bed");
+    let server = Server::start(&out);
+    for (site, expected) in [
+        ("same-origin", 200),
+        ("none", 200),
+        ("same-site", 403),
+        ("cross-site", 403),
+        ("", 403),
+        ("None", 403),
+    ] {
+        let head = format!("GET /data/scene HTTP/1.1\r\nHost: 127.0.0.1:{}", server.port);
+        assert_eq!(server.raw(&format!("{head}\r\nSec-Fetch-Site: {site}")).0, expected, "{site}");
+    }
+}
+
+/// A folder may have the name of a place of the page's frame.
+#[test]
+fn folder_named_like_place_is_text() {
+    let folder = Folder::new("view_places");
+    let out = bed(&folder, "bed");
+    // Names of the blocks: their content has the name of the folder.
+    let data = |page: &str| -> Vec<String> {
+        page.split("data-block=\"").skip(1).map(|b| b[..b.find('"').unwrap()].to_string()).collect()
+    };
+    let mut plain = None;
+    for name in ["plain", "{{DATA}}", "{{TITLE}}", "{{STYLE}}{{DATA}}", "{{", "}}", "{{DATA}}{{DATA}}"] {
+        let named = folder.join(name);
+        fs::rename(plain.as_ref().map_or(&out, |(dir, _)| dir), &named).unwrap();
+        let html = folder.join("page.html");
+        trackbed(["view", named.to_str().unwrap(), "--force", "--export", html.to_str().unwrap()]).good();
+        let page = fs::read_to_string(&html).unwrap();
+        assert!(page.contains(&format!("<title>{name} \u{2013} trackbed</title>")), "{name}");
+        assert!(page.find("data-block").unwrap() > page.find("type=\"importmap\"").unwrap(), "{name}");
+        let (_, first) = plain.get_or_insert_with(|| (named.clone(), data(&page)));
+        assert!(*first == data(&page), "{name}");
+        assert!(Server::start(&named).get("/").1.len() > 500_000, "{name}");
+        plain.as_mut().unwrap().0 = named;
+    }
 }
 
 #[test]

@@ -1,0 +1,117 @@
+//! `trackbed view` with hostile clients, those of `tests/data/view/clients.toml`: each gets its refusal, the next good request its
+//! response, and the memory of the server stays as it was.
+
+use super::support::{Folder, repository, run};
+use super::view::Server;
+use serde::Deserialize;
+use std::fs;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// Memory that the server may take [kB]: four responses of the small results below, and what hyper and the system keep.
+const MEMORY: u64 = 120_000;
+/// Time after which a server that does not respond is taken for dead; longer than the patience of the server.
+const DEAD: Duration = Duration::from_secs(60);
+
+#[derive(Deserialize)]
+struct Clients {
+    client: Vec<Client>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Client {
+    name: String,
+    #[serde(default)]
+    head: String,
+    #[serde(default)]
+    fill: String,
+    #[serde(default)]
+    times: usize,
+    #[serde(default)]
+    tail: String,
+    #[serde(default = "one")]
+    clients: usize,
+    #[serde(default = "yes")]
+    reads: bool,
+    #[serde(default)]
+    status: Vec<u16>,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Client {
+    /// Connects and sends all that the server takes.
+    fn send(&self, port: u16) -> TcpStream {
+        let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        stream.set_read_timeout(Some(DEAD)).unwrap();
+        // A client that reads nothing fills the buffers of the system, and then must not wait for the server.
+        let patience = if self.reads { DEAD } else { Duration::from_millis(200) };
+        stream.set_write_timeout(Some(patience)).unwrap();
+        let [head, fill, tail] =
+            [&self.head, &self.fill, &self.tail].map(|text| text.replace("{port}", &port.to_string()));
+        let once = (65_536 / fill.len().max(1)).clamp(1, self.times.max(1));
+        let piece = fill.repeat(once);
+        let mut send = |bytes: &[u8]| stream.write_all(bytes).is_ok();
+        let mut open = send(head.as_bytes());
+        let mut left = self.times;
+        while open && left > 0 {
+            let now = left.min(once);
+            open = send(&piece.as_bytes()[..now * fill.len()]);
+            left -= now;
+        }
+        _ = open && send(tail.as_bytes());
+        stream
+    }
+
+    /// Status of the response; 0 where the connection is closed without one.
+    fn status(&self, stream: &mut TcpStream) -> u16 {
+        let mut head = Vec::new();
+        let mut byte = [0];
+        while head.len() < 13 && matches!(stream.read(&mut byte), Ok(1)) {
+            head.push(byte[0]);
+        }
+        let text = String::from_utf8_lossy(&head);
+        text.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0)
+    }
+}
+
+/// Largest memory of a process so far [kB]; 0 where the system does not report it.
+fn memory(process: u32) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"));
+    line.and_then(|l| l.split_whitespace().nth(1)?.parse().ok()).unwrap_or(0)
+}
+
+#[test]
+fn hostile_clients_neither_stop_nor_fill_it() {
+    let text = fs::read_to_string(repository().join("tests/data/view/clients.toml")).unwrap();
+    let Clients { client: clients } = toml::from_str(&text).unwrap();
+    assert!(clients.len() >= 30);
+    let folder = Folder::new("view_clients");
+    let out = folder.join("results");
+    let set = ["grains.0.count=300", "time.end=0.01", "output.frames=2"];
+    run(&repository().join("inputs/grains/box.toml"), &out, &set).good();
+    let mut server = Server::start(&out);
+    for client in &clients {
+        let mut streams: Vec<TcpStream> = (0..client.clients).map(|_| client.send(server.port)).collect();
+        let statuses: Vec<u16> = match client.reads {
+            true => streams.iter_mut().map(|stream| client.status(stream)).collect(),
+            false => Vec::new(),
+        };
+        let memory = memory(server.program.id());
+        println!("{}: {statuses:?}, {memory} kB", client.name);
+        assert!(statuses.iter().all(|s| client.status.contains(s)), "{}: {statuses:?}", client.name);
+        assert!(memory < MEMORY, "{}: {memory} kB", client.name);
+        assert_eq!(server.get("/folders"), (200, br#"[""]"#.to_vec()), "after {}", client.name);
+        assert!(server.get("/data/grains/0").1.len() > 3600, "after {}", client.name);
+        assert!(server.program.try_wait().unwrap().is_none(), "{} has ended the server", client.name);
+    }
+}
