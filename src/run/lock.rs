@@ -134,8 +134,10 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
         file.write_all(own.as_bytes())?;
         // The process that had it may have removed the file between its opening and its lock.
         let mut there = String::new();
-        if File::open(path).and_then(|mut f| f.read_to_string(&mut there)).is_ok() && there == own {
-            return Ok(Some((file, before)));
+        match File::open(path).and_then(|mut f| f.read_to_string(&mut there)) {
+            Ok(_) if there == own => return Ok(Some((file, before))),
+            Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(e),
+            _ => {}
         }
     }
     Ok(None)
