@@ -1,0 +1,1 @@
+"""Kinds of attacks of tests/attack.py."""
