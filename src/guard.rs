@@ -25,6 +25,22 @@ pub fn install() {
     }));
 }
 
+/// Has an abort of the process, for which no memory is left or whose stack has overflowed, end it with exit code 3 and one line.
+#[cfg(unix)]
+pub fn end_at_abort() {
+    const LINE: &[u8] = b"error: memory: found none left, or a stack that has overflowed. Make the scene smaller, or raise the limits of \
+                          the system (ulimit -v, ulimit -s).\n";
+    let action = || {
+        // SAFETY: the bytes are those of a constant.
+        unsafe { libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len()) };
+        signal_hook::low_level::exit(3);
+    };
+    // SAFETY: the action calls `write` and `_exit` only, which are async-signal-safe.
+    let registered = unsafe { signal_hook::low_level::register(libc::SIGABRT, action) };
+    // Without it an abort ends the process by its signal.
+    drop(registered);
+}
+
 /// Carries `work` out; a panic in it, or in a thread that it waits for, is a failure with exit code 3.
 ///
 /// # Errors

@@ -7,6 +7,8 @@ use trackbed::{guard, message};
 
 fn main() -> ExitCode {
     guard::install();
+    #[cfg(unix)]
+    guard::end_at_abort();
     // clap's own code for wrong usage is 2, which is the code for bad input here too.
     match guard::guarded(|| trackbed::commands::execute(trackbed::cli::Cli::parse().command)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -84,6 +84,11 @@ pub enum NewmarkError {
     Prescribed,
 }
 
+/// A number of a message with four digits, or words where it is none.
+pub(crate) fn size(value: f64) -> String {
+    if value.is_finite() { format!("{value:.3e}") } else { "more than a number holds".to_string() }
+}
+
 /// Why equations could not be solved. Numbers of nodes are those of the user's files.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs, reason = "the messages are the documentation")]
@@ -91,11 +96,12 @@ pub enum SolveError {
     #[error("the body is not held: node {node} is free to move in {direction}; add supports")]
     NotHeld { node: u32, direction: &'static str },
     #[error(
-        "the body is not held: no stiffness is left at node {node} in {direction} (pivot {pivot:.3e} of the diagonal); add \
-         supports, join elements by whole faces, and use the full rule where a row of elements is one element wide"
+        "the body is not held: no stiffness is left at node {node} in {direction} (pivot {} of the diagonal); add \
+         supports, join elements by whole faces, and use the full rule where a row of elements is one element wide",
+        size(*pivot)
     )]
     NoStiffness { node: u32, direction: &'static str, pivot: f64 },
-    #[error("the solution misses equilibrium by {residual:.3e} of the load at node {node} in {direction}")]
+    #[error("the solution misses equilibrium by {} of the load at node {node} in {direction}", size(*residual))]
     Inaccurate { node: u32, direction: &'static str, residual: f64 },
     #[error("material {material} has density 0; dynamics needs a mass")]
     NoMass { material: u32 },
@@ -108,8 +114,9 @@ pub enum SolveError {
     )]
     Plastic { material: u32 },
     #[error(
-        "no equilibrium after time {time}: {iterations} iterations left a residual of {residual:.3e} of the forces; worst at \
-         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}"
+        "no equilibrium after time {time}: {iterations} iterations left a residual of {} of the forces; worst at \
+         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}",
+        size(*residual)
     )]
     Diverged {
         time: f64,

@@ -103,7 +103,24 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
         }
         None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
     }
+    if let Some(line) = lines.iter().find(|line| has_no_number(line)) {
+        return Err(document.beyond_range(&format!("a value of the report ({})", quantity(line))).into());
+    }
     Ok(Report { title: job.title.clone(), lines, numbers })
+}
+
+/// Whether a line has a value that is beyond what a number holds.
+fn has_no_number(line: &str) -> bool {
+    line.split(|c: char| !c.is_alphanumeric()).any(|word| matches!(word, "inf" | "NaN"))
+}
+
+/// What a line of the report is about: its words before the first value.
+fn quantity(line: &str) -> String {
+    let words = line.split_whitespace().map(|word| word.trim_matches(|c: char| !c.is_alphanumeric()));
+    words
+        .take_while(|word| word.starts_with(char::is_alphabetic) && !has_no_number(word))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, Value), Failure> {

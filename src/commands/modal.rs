@@ -14,6 +14,9 @@ use std::path::Path;
 use trackbed_fem as fem;
 use trackbed_fem::modal::{ModalError, Modes};
 
+/// Masses of solids whose squares a number holds with many digits [kg].
+const MASS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+
 /// Finds the lowest modes and writes `modes.csv`, `results.pvd` and a `.vtu` for each mode.
 ///
 /// # Errors
@@ -34,6 +37,10 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         if args.count == 0 || args.count > unknowns {
             let expected = format!("1 to {unknowns}, the number of unknowns");
             return Err(Failure::Input(format!("-n: found {}, expected {expected}", args.count)));
+        }
+        let mass = part.model.total_mass();
+        if mass > 0.0 && !MASS.contains(&mass) {
+            return Err(document.beyond_range("the square of the mass of the solid").into());
         }
         let modes = fem::modal::solve(&part.model, args.count).map_err(|e| match e {
             ModalError::Solve(e) => part.failure(&e),

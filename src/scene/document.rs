@@ -214,6 +214,18 @@ impl Document {
         }
     }
 
+    /// An error about the number of the scene that is farthest from 1, since `quantity` is beyond what a number holds.
+    pub fn beyond_range(&self, quantity: &str) -> SceneError {
+        let keys = self.keys();
+        let extreme = keys.iter().max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
+        let (key, value) = extreme.map_or(("scene", "its numbers"), |(key, value)| (key, value));
+        self.error(
+            key,
+            value,
+            format!("a number of usual size: with this one {quantity} is beyond what a number holds"),
+        )
+    }
+
     /// Whether the scene has a key.
     pub fn has(&self, path: &str) -> bool {
         let parts: Vec<String> = path.split('.').map(String::from).collect();
@@ -332,6 +344,13 @@ pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneE
         }
     };
     DeTable::parse(text).map_err(wrong).map(drop)
+}
+
+/// Powers of ten between 1 and the number of a value that is farthest from it; 0 where it has none but zeros.
+fn size(value: &str) -> f64 {
+    let numbers = value.split(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+')));
+    let powers = numbers.filter_map(|word| word.parse().ok()).filter(|x: &f64| *x != 0.0 && !x.is_nan());
+    powers.map(|x| libm::log10(x.abs()).abs()).fold(0.0, f64::max)
 }
 
 /// An error in a `--set` argument.

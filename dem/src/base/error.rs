@@ -6,6 +6,12 @@ use std::fmt;
 /// Why a model cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
+    /// A quantity of the model is beyond what a number holds, or 0 where it must not be.
+    #[error("the {quantity} of the grains is beyond what a number holds")]
+    NotFinite {
+        /// Name of the quantity.
+        quantity: &'static str,
+    },
     /// A material constant is out of range.
     #[error("material {material}: {quantity} is {value}; it must {requirement}")]
     Material {

@@ -23,11 +23,11 @@ impl Steps {
     /// `rigid`: limit of the rigid bodies of walls and of polyhedra on their faces [s]; `collision`: see [`collision::longest`] [s].
     ///
     /// # Errors
-    /// A fixed step above the limit.
+    /// A fixed step above the limit; numbers too large or too small to be computed with.
     pub fn new(input: &TimeStep, limit: &DtLimit, rigid: f64, collision: f64) -> Result<Steps, ModelError> {
         let lasting = collision::PACKED * collision;
         let steps = |first: f64| Steps { first, share: None, longest: rigid, collision, lasting };
-        Ok(match *input {
+        let steps = match *input {
             TimeStep::Auto { fraction } => steps(fraction * limit.dt),
             TimeStep::Measured { share, longest, collisions } => {
                 let longest = longest.min(rigid);
@@ -42,6 +42,18 @@ impl Steps {
                 return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
             }
             TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => steps(dt),
-        })
+        };
+        let quantities = [
+            ("time step", steps.first),
+            ("critical time step", limit.dt),
+            ("effective mass", limit.mass),
+            ("contact stiffness", limit.stiffness),
+        ];
+        // Masses are 0 where no body can move, stiffnesses where nothing is touched.
+        let bad = |(k, value): (usize, f64)| !value.is_finite() || (k < 2 && value <= 0.0);
+        match quantities.iter().enumerate().find(|(k, (_, value))| bad((*k, *value))) {
+            Some((_, &(quantity, _))) => Err(ModelError::NotFinite { quantity }),
+            None => Ok(steps),
+        }
     }
 }

@@ -15,7 +15,7 @@ mod krylov;
 
 use crate::assembly::Combination;
 use crate::equations::cholesky::Cholesky;
-use crate::error::SolveError;
+use crate::error::{SolveError, size};
 use crate::model::Model;
 use crate::newmark::{check_density, factor};
 use crate::statics::{NO_STIFFNESS, check_held};
@@ -49,7 +49,7 @@ pub enum ModalError {
         restarts: usize,
     },
     /// A mode misses its equation.
-    #[error("mode {mode} misses its equation by {residual:.3e}")]
+    #[error("mode {mode} misses its equation by {}", size(*residual))]
     Inaccurate {
         /// Number of the mode, from 1.
         mode: usize,

@@ -11,6 +11,7 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
                 format!("at most {limit:.6e} s, set by {cause}, or `accept_step_above_limit = true`");
             document.error("time.grain_step", format!("{dt} s"), expected)
         }
+        ModelError::NotFinite { quantity } => document.beyond_range(&format!("the {quantity} of the grains")),
         ModelError::RigidPair { a, b } => {
             let found = format!("no stiffness for {a} against {b}, which may touch");
             document.error("material", found, "`stiffness` for one of their materials, or for the pair")

@@ -79,6 +79,60 @@ fn counts_are_compared_before_anything_is_made() {
     assert!(!folder.join("out").exists());
 }
 
+/// Heaps and values beyond reason: a rejection at once, and no number that is none.
+#[test]
+fn absurd_sizes_are_rejected_at_once() {
+    let scene = repository().join("inputs/grains/box.toml").display().to_string();
+    let check = |set: &str, words: &str| {
+        refused(["check", &scene, "--set", set], words);
+        let outcome = trackbed(["check", &scene, "--set", set]);
+        let numbers = outcome.stderr.split(|c: char| !c.is_alphanumeric());
+        assert!(!numbers.into_iter().any(|w| ["inf", "NaN"].contains(&w)), "{outcome:?}");
+    };
+    let heap = "grains.0.count: found 10000000 grains, a heap of about ";
+    check("grains.0.count=10000000", heap);
+    check("grains.0.count=10000000", "expected a heap of at most 200 m");
+    check("grains.0.count=1000000", "expected a heap of at most 200 m");
+    let beyond = "expected a number of usual size: with this one ";
+    for value in ["material.0.stiffness=1e-320", "material.0.density=1e-300", "material.0.density=1e-320"] {
+        let (key, number) = value.split_once('=').unwrap();
+        check(value, &format!("{key}: found {}", number.parse::<f64>().unwrap()));
+        check(value, beyond);
+    }
+    let beam = repository().join("inputs/verify/beam_modes.toml").display().to_string();
+    let out = Folder::new("heavy").join("modes").display().to_string();
+    for density in ["1e300", "1e200", "1e-200"] {
+        let set = format!("solid.material.0.density={density}");
+        refused(["modal", &beam, "--out", &out, "--set", &set], beyond);
+    }
+    // A heap of usual height, of as many grains, is none of these.
+    let wide = ["grains.0.count=20000", "grains.0.fill.high=[2, 2]", "walls.2.point=[2, 0, 0]"];
+    let sets = wide.iter().chain(&["walls.4.point=[0, 2, 0]"]).flat_map(|s| ["--set", s]);
+    trackbed(["check", &scene].into_iter().chain(sets)).good();
+}
+
+/// Without file handles a run names these, not another run.
+#[test]
+fn missing_file_handles_are_named() {
+    let folder = Folder::new("handles");
+    let scene = repository().join("inputs/grains/box.toml");
+    for handles in [3, 4, 5] {
+        let out = folder.join(&format!("out_{handles}"));
+        let limit = format!("ulimit -n {handles}; exec \"$0\" \"$@\"");
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", &limit, env!("CARGO_BIN_EXE_trackbed"), "run"])
+            .arg(&scene)
+            .arg("--out")
+            .arg(&out);
+        let output = command.args(["--set", "time.end=0.001", "--quiet"]).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(!text.contains("in use by process"), "{handles}: {text}");
+        assert!(matches!(output.status.code(), Some(0..=2)), "{handles}: {:?} {text}", output.status);
+        assert!(output.status.success() || text.contains("Too many open files"), "{handles}: {text}");
+    }
+}
+
 /// F3: steps that would never end.
 #[test]
 fn runs_without_end_are_refused() {

@@ -9,6 +9,11 @@ use crate::scene::units::vector;
 use trackbed_dem::BodyInput;
 use trackbed_dem::insert::place;
 
+/// Share of a loose heap that the bounding spheres of its grains fill (`trackbed_dem::insert::place`).
+const LOOSE: f64 = 0.3;
+/// Highest heap [m]: grains that fall from there take 6 s and arrive at 63 m/s.
+const HIGHEST: f64 = 200.0;
+
 /// Grains of random sizes, places and orientations in a box.
 pub(super) fn filled(
     group: &Table<Grains>,
@@ -21,6 +26,7 @@ pub(super) fn filled(
 
     let mut low = vector(&fill.low);
     let high = [fill.high[0].si, fill.high[1].si];
+    check_height(group, &radii, (high[0] - low[0]) * (high[1] - low[1]))?;
     low[2] = low[2].max(top_of(part, low, high));
     let placed = place::place_loose(low, high, &radii, group.seed)
         .map_err(|e| group.error("fill", e.to_string(), "a box that holds the grains"))?;
@@ -32,6 +38,17 @@ pub(super) fn filled(
         ..model.clone()
     }));
     Ok(())
+}
+
+/// Refuses a heap that is too high, before its grains are placed one by one.
+fn check_height(group: &Table<Grains>, radii: &[f64], area: f64) -> Result<(), Failure> {
+    let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+    let height = volume / (LOOSE * area);
+    if height <= HIGHEST || !height.is_finite() {
+        return Ok(());
+    }
+    let found = format!("{} grains, a heap of about {height:.0} m on the plan of `fill`", radii.len());
+    Err(group.error("count", found, format!("a heap of at most {HIGHEST:.0} m")).into())
 }
 
 /// Height above which a box is free of the grains that earlier groups have put there [m].
