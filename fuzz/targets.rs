@@ -4,7 +4,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use trackbed::read::{MESH_ENDINGS, SURFACE_ENDINGS, read_mesh_file, read_surface};
+use trackbed::results::grains::GrainFile;
+use trackbed::results::lines::{Chains, Walls};
+use trackbed::results::solid::{self, Skin};
+use trackbed::run::check_checkpoint;
 use trackbed::scene::{Document, Scene};
+use trackbed::study::count_runs;
+use trackbed::write::hdf5;
 
 /// A file of its own for each call at one time.
 fn file(ending: &str, bytes: &[u8]) -> PathBuf {
@@ -30,6 +36,74 @@ pub fn surface(data: &[u8]) {
     let file = file(SURFACE_ENDINGS[*form as usize % SURFACE_ENDINGS.len()], bytes);
     drop(read_surface(&file));
     let _ = std::fs::remove_file(file);
+}
+
+/// Readers of the frames of a run: the first byte chooses the part, the rest is the file.
+pub fn frame(data: &[u8]) {
+    let Some((part, bytes)) = data.split_first() else { return };
+    let is_solid = part % 4 == 3;
+    let file = file(if is_solid { "vtu" } else { "vtp" }, bytes);
+    match part % 4 {
+        0 => {
+            if let Ok(grains) = GrainFile::open(&file) {
+                grains.fields().iter().for_each(|name| drop(grains.field(name)));
+                (grains.bounds(), grains.bodies.extents());
+            }
+        }
+        1 => drop(Chains::open(&file)),
+        2 => {
+            if let Ok(walls) = Walls::open(&file) {
+                walls.fields().iter().for_each(|name| drop(walls.field(name)));
+            }
+        }
+        _ => {
+            if let Ok(skin) = Skin::open(&file) {
+                let names = solid::fields(&file).unwrap_or_default();
+                names.iter().for_each(|name| drop(skin.field(&file, name)));
+                drop((skin.bounds(), skin.displacement(&file)));
+            }
+        }
+    }
+    let _ = std::fs::remove_file(file);
+}
+
+/// A VTKHDF file that a resumed run goes on with: the first byte is the length of the mark, then come the mark and the file.
+pub fn vtkhdf(data: &[u8]) {
+    let Some((&length, bytes)) = data.split_first() else { return };
+    let (mark, content) = bytes.split_at(bytes.len().min(usize::from(length)));
+    let file = file("vtkhdf", content);
+    if let Ok(mut resumed) = hdf5::File::resume(&file, mark) {
+        drop(resumed.commit());
+    }
+    let _ = std::fs::remove_file(file);
+}
+
+/// The reader of checkpoints and of states.
+pub fn checkpoint(data: &[u8]) {
+    let file = file("checkpoint", data);
+    drop(check_checkpoint(&file));
+    let _ = std::fs::remove_file(file);
+}
+
+/// The reader of studies.
+pub fn study(data: &[u8]) {
+    let file = file("toml", data);
+    drop(count_runs(&file));
+    let _ = std::fs::remove_file(file);
+}
+
+/// The target of a name, which is that of its file in `fuzz_targets` and of its folder in `corpus`.
+pub fn named(name: &str) -> fn(&[u8]) {
+    match name {
+        "mesh" => mesh,
+        "surface" => surface,
+        "scene" => scene,
+        "frame" => frame,
+        "vtkhdf" => vtkhdf,
+        "checkpoint" => checkpoint,
+        "study" => study,
+        other => panic!("no target {other}"),
+    }
 }
 
 /// The parser of scenes; the last line is an override as `--set` takes it.

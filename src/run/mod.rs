@@ -39,6 +39,7 @@ mod threads;
 mod track_output;
 mod wall_output;
 
+pub use checkpoint::check_file as check_checkpoint;
 pub use checkpoint_store::Interrupt;
 pub use companion::{Accompanied, Companion, Shown};
 pub use device::Place;

@@ -64,6 +64,15 @@ pub struct Options {
 /// Validates a scene with overrides, as `check` does.
 pub type Check<'a> = &'a dyn Fn(&Path, &[String]) -> Result<(), Failure>;
 
+/// Number of runs of a study; its scene is not checked.
+///
+/// # Errors
+/// Bad input.
+pub fn count_runs(file: &Path) -> Result<usize, Failure> {
+    let document = Document::open(file)?;
+    Ok(Plan::new(&document, &document.read::<StudyFile>()?)?.runs.len())
+}
+
 /// Carries out a study; what it prints at its end.
 ///
 /// # Errors

@@ -1,14 +1,14 @@
 //! Files of every form with bytes, numbers and lines changed at random: a reader returns a mesh or one error, soon and in little
 //! memory. The same functions are the targets of `fuzz/`, whose kept inputs are read here too.
 
-use super::super::support::{COUPLED, Folder, PLASTIC, repository, small_block};
+use super::super::support::{COUPLED, Folder, PLASTIC, repository, run, small_block};
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use trackbed::read::{MeshFile, read_mesh_file, read_surface};
-use trackbed::write::{MeshOptions, write_mesh_file};
+use trackbed::write::{MeshOptions, hdf5, write_mesh_file};
 use trackbed_fem::mesh::Constraint;
 
 /// Time for a file of up to a megabyte.
@@ -210,6 +210,72 @@ fn changed_scenes_and_overrides_are_parsed_or_refused() {
     changed_texts(300, 4);
 }
 
+/// Frames of grains, chains, walls and solid, a file of VTKHDF with its mark, a checkpoint and a study, each as its target takes it.
+fn good_results(folder: &Folder) -> Vec<(&'static str, Vec<u8>)> {
+    let made = |name: &str, scene: &str, set: &[&str]| {
+        let out = folder.join(name);
+        run(&repository().join("inputs").join(scene), &out, set).good();
+        out
+    };
+    let set = ["grains.0.count=40", "time.end=0.05", "output.frames=1", "output.chains=\"all\""];
+    let grains = made("grains", "grains/box.toml", &set);
+    let solid = made("solid", "solid/cylinder/scene.toml", &["output.frames=1"]);
+    let mut found = Vec::new();
+    let frames = |dir: &Path, part: &str| {
+        let entries = fs::read_dir(dir.join("frames")).unwrap().map(|e| e.unwrap().path());
+        let mut files: Vec<PathBuf> =
+            entries.filter(|f| f.file_name().unwrap().to_str().unwrap().starts_with(part)).collect();
+        files.sort();
+        fs::read(files.last().unwrap_or_else(|| panic!("no {part}"))).unwrap()
+    };
+    let parts = [(0, &grains, "grains"), (1, &grains, "chains"), (2, &grains, "walls"), (3, &solid, "solid")];
+    for (number, dir, part) in parts {
+        found.push(("frame", [&[number], frames(dir, part).as_slice()].concat()));
+    }
+    found.push(("checkpoint", fs::read(grains.join("end.state")).unwrap()));
+    let study = fs::read_to_string(repository().join("inputs/studies/box_trade.toml")).unwrap();
+    let study = study.replace("scene = \"../", &format!("scene = \"{}/inputs/", repository().display()));
+    found.push(("study", study.into_bytes()));
+    let file = folder.join("results.vtkhdf");
+    let mut hdf = hdf5::File::create(&file).unwrap();
+    hdf.commit().unwrap();
+    let mark = hdf.mark();
+    found.push(("vtkhdf", [&[mark.len() as u8], mark.as_slice(), &fs::read(&file).unwrap()].concat()));
+    found
+}
+
+/// Changes results for `count` times, or for some time.
+fn changed_results(count: usize, time: Duration, seed: u64) {
+    let folder = Folder::new("changed_results");
+    let (mut chance, mut faults) = (Chance(seed), Vec::new());
+    for (name, whole) in good_results(&folder) {
+        let target = targets::named(name);
+        judged(name, &whole, || target(&whole), &mut faults);
+        let (begun, mut done) = (Instant::now(), 0);
+        while done < count || begun.elapsed() < time {
+            let mut bytes = whole.clone();
+            (0..=chance.below(4)).for_each(|_| change(&mut bytes, &mut chance));
+            judged(name, &bytes, || target(&bytes), &mut faults);
+            done += 1;
+        }
+        println!("{name}: {done} changed files of {} bytes", whole.len());
+    }
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn changed_results_are_read_or_refused() {
+    changed_results(40, Duration::ZERO, 5);
+}
+
+/// `TRACKBED_SECONDS` for each target, `TRACKBED_SEED` chooses other changes.
+#[test]
+#[ignore = "2 min for each of seven files"]
+fn many_changed_results() {
+    let number = |name: &str, default| std::env::var(name).map_or(default, |v| v.parse().unwrap());
+    changed_results(1, Duration::from_secs(number("TRACKBED_SECONDS", 120)), number("TRACKBED_SEED", 12));
+}
+
 /// `TRACKBED_SEED` chooses other changes.
 #[test]
 #[ignore = "half a million changes, 10 min"]
@@ -230,11 +296,7 @@ fn kept_inputs_of_the_fuzz_targets_are_read_or_refused() {
             let file = file.unwrap().path();
             let bytes = fs::read(&file).unwrap();
             let name = file.file_name().unwrap().to_str().unwrap();
-            let call = match target.file_name().unwrap().to_str().unwrap() {
-                "mesh" => targets::mesh,
-                "surface" => targets::surface,
-                _ => targets::scene,
-            };
+            let call = targets::named(target.file_name().unwrap().to_str().unwrap());
             judged(name, &bytes, || call(&bytes), &mut faults);
             count += 1;
         }
