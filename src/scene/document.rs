@@ -219,6 +219,8 @@ impl Document {
         let keys = self.keys();
         let extreme = keys.iter().max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
         let (key, value) = extreme.map_or(("scene", "its numbers"), |(key, value)| (key, value));
+        // As a power of ten: the digits of 1e-300 fill lines.
+        let value = value.parse().map_or(value.to_string(), |x: f64| format!("{x:e}"));
         self.error(
             key,
             value,

@@ -94,11 +94,11 @@ fn absurd_sizes_are_rejected_at_once() {
     check("grains.0.count=10000000", "expected a heap of at most 200 m");
     check("grains.0.count=1000000", "expected a heap of at most 200 m");
     let beyond = "expected a number of usual size: with this one ";
-    for value in ["material.0.stiffness=1e-320", "material.0.density=1e-300", "material.0.density=1e-320"] {
-        let (key, number) = value.split_once('=').unwrap();
-        check(value, &format!("{key}: found {}", number.parse::<f64>().unwrap()));
+    for value in ["material.0.stiffness=1e-320", "material.0.density=1e-300"] {
+        check(value, &value.replace('=', ": found "));
         check(value, beyond);
     }
+    check("material.0.density=1e-320", "mass is 0; it must be positive and finite");
     let beam = repository().join("inputs/verify/beam_modes.toml").display().to_string();
     let out = Folder::new("heavy").join("modes").display().to_string();
     for density in ["1e300", "1e200", "1e-200"] {
@@ -116,7 +116,7 @@ fn absurd_sizes_are_rejected_at_once() {
 fn missing_file_handles_are_named() {
     let folder = Folder::new("handles");
     let scene = repository().join("inputs/grains/box.toml");
-    for handles in [3, 4, 5] {
+    for handles in [4, 5] {
         let out = folder.join(&format!("out_{handles}"));
         let limit = format!("ulimit -n {handles}; exec \"$0\" \"$@\"");
         let mut command = Command::new("sh");
