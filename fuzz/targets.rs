@@ -47,7 +47,7 @@ pub fn frame(data: &[u8]) {
         0 => {
             if let Ok(grains) = GrainFile::open(&file) {
                 grains.fields().iter().for_each(|name| drop(grains.field(name)));
-                (grains.bounds(), grains.bodies.extents());
+                drop((grains.bounds(), grains.bodies.extents()));
             }
         }
         1 => drop(Chains::open(&file)),
