@@ -51,7 +51,7 @@ def main():
     program = pathlib.Path(options.program).resolve()
     if not program.is_file():
         parser.error(f"PROGRAM: found no file {program}, expected target/release/trackbed")
-    seconds = options.seconds or (45 if options.short else 600)
+    seconds = options.seconds or (30 if options.short else 600)
     chosen = {name: kind for name, kind in KINDS.items() if not options.only or name in options.only}
     total = sum(share for _, share in chosen.values())
     print(f"{'kind':12} {'attempts':>8} {'accepted':>8} {'rejected':>8} {'numerical':>9} {'stopped':>8} {'longest':>9} {'faults':>6}")

@@ -158,7 +158,7 @@ def sleepers(bench, rng):
 
 def borders(bench, rng):
     """Periodic boxes narrower than two grains, or as wide as nothing."""
-    scene = INPUTS / "grains/chute_flow.toml"
+    scene = INPUTS / "grains/shear.toml"
     tree = tomllib.loads(scene.read_text())
     periodic = [p for p, _ in leaves("", tree) if "periodic" in p] or ["periodic.x", "periodic.y"]
     widths = [0.0, 1e-12, 1e-3, 0.01, 0.019, 0.02, 0.021, 0.03, 0.039, 0.04, 0.041, -1.0, 1e9, math.inf]
