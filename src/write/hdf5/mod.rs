@@ -86,6 +86,9 @@ impl File {
     /// The file is shorter than it was at the mark; what the system refuses.
     pub fn resume(path: &Path, mark: &[u8]) -> Result<File, WriteError> {
         let state: State = postcard::from_bytes(mark).map_err(|error| WriteError::format(path, error))?;
+        if state.groups.is_empty() {
+            return Err(WriteError::format(path, "is named by a mark without groups"));
+        }
         let out = OpenOptions::new().write(true).open(path).map_err(WriteError::io(path))?;
         let length = out.metadata().map_err(WriteError::io(path))?.len();
         if length < state.end {
