@@ -162,6 +162,7 @@ fn run(
         solid: &solid,
         grains: trackbed_dem::Model::new(input).expect("the grains are a model"),
         substeps: SUBSTEPS,
+        division: 1,
         scheme: Default::default(),
         theta: 0.5,
         newton: Default::default(),

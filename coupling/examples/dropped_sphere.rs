@@ -47,6 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         solid: &solid,
         grains,
         substeps: 5,
+        division: 1,
         scheme,
         theta: 0.5,
         newton,

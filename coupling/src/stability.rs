@@ -18,6 +18,7 @@
 //! safer than the study's single node.
 
 use crate::face::landmarks;
+use crate::interface::InterfaceNumbers;
 use crate::scheme::Scheme;
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
@@ -194,6 +195,44 @@ pub fn point_masses(
         masses.side = outer.side;
     }
     masses.least().is_finite().then_some(masses)
+}
+
+/// Largest W and D of the whole interface, all contacts together ([`crate::interface`]): systems drawn at random are stable up to 1, and a bed
+/// of 60 spheres still trembles above this.
+pub const INTERFACE: [f64; 2] = [0.75, 0.75];
+
+/// (Ω of a body in a bed over Ω on its contacts with the surface alone)²: neighbours stiffen it. With 1, a bed of 60 spheres that satisfies all
+/// limits still trembles at 3 mm/s.
+const NEIGHBOURS: f64 = 4.0;
+
+/// Relative growth of an undamped contact per window, from above: ½ W² (Ω²/24 − (θ − ½)), Ω that of a body among others; zero where θ
+/// covers it.
+pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
+    if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
+        return 0.0;
+    }
+    (0.5 * n.stiffness.powi(2) * (NEIGHBOURS * n.phase.powi(2) / 24.0 - (theta - 0.5))).max(0.0)
+}
+
+/// How far the whole interface is beyond its limits: above 1 it may be unstable. 0 for schemes that it does not bound. Under a θ of ½
+/// undamped contacts grow in windows of any length ([`interface_growth`]), so Ω does not count.
+pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
+    if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
+        return 0.0;
+    }
+    let [w, d] = INTERFACE;
+    let phase = if theta > 0.5 { n.phase / largest_phase(theta) } else { 0.0 };
+    (n.stiffness / w).max(n.damping / d).max(phase)
+}
+
+/// Largest Ω of undamped contacts that θ covers: √(24 (θ − ½)) for a body among others.
+pub fn largest_phase(theta: f64) -> f64 {
+    (24.0 / NEIGHBOURS * (theta - 0.5)).max(0.0).sqrt()
+}
+
+/// θ that covers Ω, with a margin of a tenth, to the next 0.0005.
+pub fn theta_for(phase: f64) -> f64 {
+    0.5 + (1.1 * NEIGHBOURS * phase.powi(2) / 24.0 * 2000.0).ceil() / 2000.0
 }
 
 /// Masses that points of some faces of a free body offer within a window of length `window` [s]: the impulse of a constant

@@ -321,6 +321,17 @@ impl Matrices {
         self.row_start[..self.node_count()].iter().map(|&slot| self.mass[slot]).collect()
     }
 
+    /// Columns q >= node and entries [kg] of a row of the mass matrix, the diagonal first.
+    pub(crate) fn mass_row(&self, node: usize) -> impl Iterator<Item = (u32, f64)> {
+        let row = self.row_start[node]..self.row_start[node + 1];
+        let lumped = self.lumped.as_ref().map(|l| l.diagonal[node]);
+        let entries = self.column[row.clone()].iter().zip(&self.mass[row]);
+        entries.enumerate().map(move |(k, (&q, &m))| match lumped {
+            Some(diagonal) => (q, if k == 0 { diagonal } else { 0.0 }),
+            None => (q, m),
+        })
+    }
+
     /// The diagonal [kg], shape `[nodes]`, when the mass is lumped.
     pub fn lumped_mass(&self) -> Option<&[f64]> {
         self.lumped.as_ref().map(|l| l.diagonal.as_slice())

@@ -61,6 +61,7 @@ pub mod state;
 pub mod statics;
 pub mod stress;
 pub mod supports;
+pub mod surface_mass;
 pub mod window;
 
 pub use assumed::{AssumedStrain, Dilatation};

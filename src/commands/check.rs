@@ -1,7 +1,7 @@
 //! `trackbed check`: reads and resolves everything that a run would, runs nothing, and reports what would happen.
 
 use crate::failure::Failure;
-use crate::model::exchange::{self, CouplingPart};
+use crate::model::exchange::{self, CouplingPart, Windows};
 use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::model::{self, Job};
@@ -217,7 +217,7 @@ fn coupling_lines(
     model: &dem::Model,
 ) -> Result<(Vec<String>, Value), Failure> {
     let surface = coupling.ground(solid, grains);
-    let (classes, substeps) = coupling.classes(grains, model, solid, &surface);
+    let Windows { classes, substeps, theta } = coupling.windows(grains, model, solid, &surface);
     coupling.refuse(document, &classes, substeps, model.dt())?;
     let window = model.dt() * f64::from(substeps);
     let s = exchange::stability(&classes);
@@ -240,6 +240,7 @@ fn coupling_lines(
         "substeps": substeps,
         "window": window,
         "stability": { "stiffness": s.stiffness, "damping": s.damping },
+        "theta": theta,
         "scheme": coupling.scheme.to_string(),
         "notes": remarks,
     });

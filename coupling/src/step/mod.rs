@@ -23,6 +23,7 @@ mod rest;
 mod solver;
 mod state;
 mod stiffened;
+mod watch;
 mod window;
 
 pub use account::{spent, spent_by_grains, stored};
@@ -30,4 +31,5 @@ pub use model::Model;
 pub use rest::resting_load;
 pub use solver::StepError;
 pub use state::{State, Work};
+pub use watch::{Watch, watch};
 pub use window::{exchange, step};

@@ -14,6 +14,8 @@ pub struct Model<'a> {
     /// Steps of the grains per window, of the length that the run begins with; where steps follow the contacts
     /// ([`dem::stability`]) fewer, longer ones make up the same window.
     pub substeps: u32,
+    /// Parts of equal length that a window of `substeps` is divided into, 1 unless the interface asks for shorter ones.
+    pub division: u32,
     /// Order of the exchange.
     pub scheme: Scheme,
     /// Implicitness of the solid's step, ½–1.
@@ -29,6 +31,6 @@ pub struct Model<'a> {
 impl Model<'_> {
     /// Length of a window [s].
     pub fn window(&self) -> f64 {
-        self.grains.dt() * f64::from(self.substeps)
+        self.grains.dt() * f64::from(self.substeps) / f64::from(self.division)
     }
 }

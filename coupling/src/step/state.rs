@@ -3,7 +3,9 @@
 use super::model::Model;
 use super::solver::SolidSolver;
 use super::stiffened::{Held, Stiffened};
+use super::watch::Watch;
 use crate::accelerate::Accelerator;
+use crate::interface::Interface;
 use crate::ledger::Spent;
 use crate::scheme::Passes;
 use crate::surface::SolidSurface;
@@ -36,6 +38,8 @@ pub struct State {
     pub(super) lagged: [Vec<f64>; 2],
     /// Contacts of the last grain step, for the stiffened scheme.
     pub(super) held: Vec<Held>,
+    /// What checks of the interface have found.
+    pub watch: Watch,
 }
 
 /// Scratch memory and factors; `B` computes the steps of the grains.
@@ -54,6 +58,7 @@ pub struct Work<B = dem::Work> {
     pub(super) applied: Vec<dem::AppliedForce>,
     pub(super) accelerator: Accelerator,
     pub(super) stiffened: Stiffened,
+    pub(super) interface: Interface,
 }
 
 impl State {
@@ -68,6 +73,7 @@ impl State {
             passes: Passes::default(),
             lagged: Default::default(),
             held: Vec::new(),
+            watch: Watch::default(),
         }
     }
 
@@ -78,6 +84,7 @@ impl State {
         self.audit = TransferAudit::default();
         self.spent = Spent::default();
         self.passes = Passes::default();
+        self.watch = Watch::default();
     }
 
     /// The same with a contact load [N], shape `[3·nodes]`, that the solid carries from the start: the lagged scheme begins
@@ -113,6 +120,7 @@ impl<B: dem::BackEnd> Work<B> {
         Ok(Work {
             grains,
             transfer: Transfer::new(&surface),
+            interface: Interface::new(model.solid, &surface),
             surface,
             solver: SolidSolver::new(model, state.solid.points.is_empty())?,
             load: vec![0.0; n],
@@ -134,6 +142,17 @@ impl<B: dem::BackEnd> Work<B> {
         let solver = ReducedWindowSolver::new(model.solid, reduced, model.theta, model.window())?;
         self.solver = SolidSolver::Reduced(Box::new(solver));
         Ok(())
+    }
+
+    /// Makes the solver of the solid anew, for windows of another length.
+    pub(super) fn refactor(&mut self, model: &Model<'_>, without_stresses: bool) -> Result<(), SolveError> {
+        match &self.solver {
+            SolidSolver::Reduced(solver) => self.reduce(model, solver.reduced().clone()),
+            SolidSolver::Elastic(_) | SolidSolver::Plastic(_) => {
+                self.solver = SolidSolver::new(model, without_stresses)?;
+                Ok(())
+            }
+        }
     }
 
     /// What the reduction of the solid costs in accuracy; none without one.

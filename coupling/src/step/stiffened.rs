@@ -12,6 +12,7 @@
 
 use super::model::Model;
 use crate::face::dot;
+use crate::interface::{PointMatrices, PointMatrix, distribute};
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
@@ -43,24 +44,15 @@ impl From<&SurfaceContact> for Held {
     }
 }
 
-/// A linearized contact: matrix against the velocity of its point.
-struct Spring {
-    /// Nodes of the touched face and values of its shape functions there; zero beyond the nodes of its kind.
-    nodes: [u32; 8],
-    shape: [f64; 8],
-    normal: [f64; 3],
-    along: f64,
-    across: f64,
-}
-
-impl Spring {
+/// Contacts linearized for the next window.
+impl PointMatrix {
     /// A contact linearized for the next window, and its force on the solid; none where it is open or would pull.
     fn of(
         model: &Model<'_>,
         grains: &dem::State,
         surface: &SolidSurface,
         c: &Held,
-    ) -> Option<(Spring, [f64; 3])> {
+    ) -> Option<(PointMatrix, [f64; 3])> {
         let body = c.body as usize;
         let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
         // Where the surface is now, not where the last window left it.
@@ -93,16 +85,15 @@ impl Spring {
         });
         let (shape, nodes) = (surface.shape_functions(c.patch, near.local), surface.padded_nodes(c.patch));
         let (along, across) = (half * stiffness + dashpot, half * tangential);
-        Some((Spring { nodes, shape, normal, along, across }, force))
+        Some((PointMatrix { nodes, shape, normal, along, across }, force))
     }
 }
 
 /// Scratch of the prediction.
 #[derive(Default)]
 pub(crate) struct Stiffened {
-    springs: Vec<Spring>,
+    contacts: PointMatrices,
     field: Vec<[f64; 3]>,
-    mean: Vec<[f64; 3]>,
 }
 
 impl Stiffened {
@@ -120,53 +111,27 @@ impl Stiffened {
         load: &mut [f64],
         rate: &mut [f64],
     ) -> Result<u32, SolveError> {
-        self.springs.clear();
-        self.field.resize(surface.nodes().len(), [0.0; 3]);
-        self.mean.resize(surface.nodes().len(), [0.0; 3]);
-        self.field.fill([0.0; 3]);
+        let Stiffened { contacts, field } = self;
+        contacts.points.clear();
+        field.clear();
+        field.resize(surface.nodes().len(), [0.0; 3]);
         for c in held {
-            let Some((spring, force)) = Spring::of(model, grains, surface, c) else { continue };
+            let Some((spring, force)) = PointMatrix::of(model, grains, surface, c) else { continue };
             for (&n, s) in spring.nodes.iter().zip(spring.shape) {
-                (0..3).for_each(|d| self.field[n as usize][d] += s * force[d]);
+                (0..3).for_each(|d| field[n as usize][d] += s * force[d]);
             }
-            self.springs.push(spring);
+            contacts.points.push(spring);
         }
         let nodes = surface.nodes();
-        spread(surface, &self.field, |n, f| {
+        distribute(surface, field, |n, f| {
             (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
         });
-        let Stiffened { springs, field, mean } = self;
-        let contacts = |w: &[f64], out: &mut [f64]| {
-            for (f, &n) in field.iter_mut().zip(nodes) {
-                *f = [0, 1, 2].map(|d| w[3 * n as usize + d]);
-            }
-            match surface.spread() {
-                None => mean.copy_from_slice(field),
-                Some(s) => s.mean(field, mean),
-            }
-            field.fill([0.0; 3]);
-            for s in springs.iter() {
-                let mut v = [0.0; 3];
-                for (&n, share) in s.nodes.iter().zip(s.shape) {
-                    (0..3).for_each(|d| v[d] += share * mean[n as usize][d]);
-                }
-                let closing = dot(v, s.normal);
-                let force = [0, 1, 2].map(|d| s.across * v[d] + (s.along - s.across) * closing * s.normal[d]);
-                for (&n, share) in s.nodes.iter().zip(s.shape) {
-                    (0..3).for_each(|d| field[n as usize][d] += share * force[d]);
-                }
-            }
-            spread(surface, field, |n, f| {
+        let product = |w: &[f64], out: &mut [f64]| {
+            let velocity = |k: usize| [0, 1, 2].map(|d| w[3 * nodes[k] as usize + d]);
+            contacts.times(surface, velocity, |n, f| {
                 (0..3).for_each(|d| out[3 * nodes[n as usize] as usize + d] += f[d]);
             });
         };
-        solver.predict(model.solid, solid, load, contacts, rate)
-    }
-}
-
-fn spread(surface: &SolidSurface, forces: &[[f64; 3]], mut add: impl FnMut(u32, [f64; 3])) {
-    match surface.spread() {
-        None => forces.iter().zip(0..).filter(|(f, _)| **f != [0.0; 3]).for_each(|(f, n)| add(n, *f)),
-        Some(s) => s.distribute(forces, add),
+        solver.predict(model.solid, solid, load, product, rate)
     }
 }

@@ -192,7 +192,10 @@ fn grains<B: BackEnd>(
     work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<(), StepError> {
-    let substeps = stability::divide(&model.grains, &mut state.grains, model.window(), model.substeps);
+    let substeps = {
+        let most = model.substeps / model.division;
+        stability::divide(&model.grains, &mut state.grains, model.window(), most)
+    };
     let dt = state.grains.dt();
     begin(model, state, work)?;
     work.transfer.begin_window();

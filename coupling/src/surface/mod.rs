@@ -326,7 +326,7 @@ impl SolidSurface {
     }
 
     /// Whether corner `corner` of face `patch` lies on the border of the surface.
-    pub(crate) fn corner_on_border(&self, patch: u32, corner: usize) -> bool {
+    pub fn corner_on_border(&self, patch: u32, corner: usize) -> bool {
         self.sides.rim[self.face_nodes[patch as usize][corner] as usize]
     }
 

@@ -17,6 +17,7 @@ mod polyhedra;
 mod pressure;
 mod reduction;
 mod rest;
+mod resting;
 mod sliding;
 mod spread;
 mod support;

@@ -178,6 +178,7 @@ impl<'a> Coupled<'a> {
             solid,
             grains: dem::Model::new(grains).expect("valid grains"),
             substeps,
+            division: 1,
             scheme: Default::default(),
             theta: 0.5,
             newton: Default::default(),

@@ -10,7 +10,7 @@ use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
 use crate::body_force::{self, BodyForce, Skin};
 use crate::contact::kind::SheetView;
-use crate::law::Laws;
+use crate::law::{History, Laws, Linearised};
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::Plane;
@@ -359,6 +359,27 @@ impl Model {
     /// [m].
     pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
         self.laws.loading(a as u32, b as u32, overlap, radius)
+    }
+
+    /// A new contact between two materials as springs and dashpots, at an overlap and an effective radius [m], for the effective
+    /// mass of both bodies [kg]. Without friction there is nothing across the normal.
+    pub fn linearised(&self, a: usize, b: usize, mass: f64, radius: f64, overlap: f64) -> Linearised {
+        let materials = [a as u32, b as u32];
+        // Laws that keep a radius begin with that of the bodies; others keep a speed, which springs do not depend on.
+        let history = History { rate: radius, ..History::NONE };
+        let law = self.laws.linearised(materials, mass, radius, overlap, &history);
+        let (limit, _) = self.laws.held_by_friction(materials, None, overlap, radius, &history);
+        match limit > 0.0 {
+            true => law,
+            false => {
+                Linearised { tangential: 0.0, tangential_damping: 0.0, rolling: 0.0, twisting: 0.0, ..law }
+            }
+        }
+    }
+
+    /// Whether a patch is one of the second external surface ([`Model::patch_material`]).
+    pub fn on_other_surface(&self, patch: u32) -> bool {
+        self.other_surface.is_some_and(|(first, _)| patch >= first)
     }
 
     /// Tangential over normal stiffness of a contact between two materials.

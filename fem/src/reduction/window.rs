@@ -75,7 +75,7 @@ impl ReducedWindowSolver {
     }
 
     /// The shapes and their error.
-    pub fn reduced(&self) -> &Reduced {
+    pub fn reduced(&self) -> &Arc<Reduced> {
         &self.reduced
     }
 

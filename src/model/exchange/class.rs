@@ -1,6 +1,7 @@
 //! Contacts by the materials of both sides, and whether their exchange is stable.
 
 use serde::{Deserialize, Serialize};
+use trackbed_coupling::interface::InterfaceNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{PointMasses, Stability, largest_d};
 
@@ -33,6 +34,8 @@ pub struct ContactClass {
     pub d: f64,
     /// Largest D of the scheme; absent where it has none.
     pub d_limit: Option<f64>,
+    /// W and D of a dense layer of such stones, all contacts together, and Ω of the lightest one. Zero on meshed sleepers.
+    pub numbers: InterfaceNumbers,
 }
 
 impl ContactClass {
@@ -48,7 +51,8 @@ impl ContactClass {
         let mass = |v: f64| if v.is_finite() { format!("{v:.3e}") } else { "none".into() };
         format!(
             "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {} kg at a corner, {} at a side, {} in the \
-             middle, {} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}",
+             middle, {} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}; dense \
+             layer: W = {:.3}, D = {:.3}; phase of undamped contacts {:.3}",
             self.grains,
             self.solid,
             self.stiffness,
@@ -68,6 +72,9 @@ impl ContactClass {
             limit(self.w_limit),
             self.d,
             self.d_limit.map_or(String::new(), |l| format!(" (at most {l})")),
+            self.numbers.stiffness,
+            self.numbers.damping,
+            self.numbers.phase,
         )
     }
 }
@@ -75,7 +82,12 @@ impl ContactClass {
 impl ContactClass {
     /// The same for windows of `window` [s], given that for 1 s.
     pub fn at(&self, window: f64) -> ContactClass {
-        ContactClass { w: window * self.w, d: window * self.d, ..self.clone() }
+        ContactClass {
+            w: window * self.w,
+            d: window * self.d,
+            numbers: self.numbers.at(window),
+            ..self.clone()
+        }
     }
 }
 

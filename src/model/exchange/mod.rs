@@ -1,6 +1,7 @@
 //! `[coupling]` resolved: faces, scheme, transfer, and how long a window may be.
 
 mod class;
+mod layer;
 mod table;
 
 pub use class::{ContactClass, remarks, stability};
@@ -9,15 +10,19 @@ pub use table::build;
 use super::grains::GrainsPart;
 use super::solid::SolidPart;
 use crate::scene::{Document, SceneError};
+use trackbed_coupling::interface::InterfaceNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
-    PointMasses, accurate_w, largest_d, largest_w, point_masses, quiet_w, window_masses,
+    PointMasses, accurate_w, largest_d, largest_w, point_masses, quiet_w, theta_for, window_masses,
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Face;
+
+/// Largest Ω of undamped contacts that θ is chosen for, 0.633 then; beyond it windows are divided.
+const LARGEST_PHASE: f64 = 0.85;
 
 /// Most sub-steps that `"auto"` takes: beyond it the grains are nearly all of the cost.
 const MOST: u32 = 20;
@@ -33,12 +38,22 @@ pub struct CouplingPart {
     pub scheme: Scheme,
     /// How contact forces reach the solid.
     pub transfer: TransferPlan,
-    /// Implicitness of the solid's step.
-    pub theta: f64,
+    /// Implicitness of the solid's step; absent where it follows from the contacts.
+    theta: Option<f64>,
     /// Faces that grains may touch: those of the ground, then those of the meshed sleepers, one after the other.
     pub faces: Vec<Face>,
     /// How many of them are the ground's.
     pub ground_faces: usize,
+}
+
+/// Windows of a run, from the contacts that its materials make.
+pub struct Windows {
+    /// The classes of contacts, with their numbers in these windows.
+    pub classes: Vec<ContactClass>,
+    /// Steps of the grains per window, as long as the first.
+    pub substeps: u32,
+    /// Implicitness of the solid's step.
+    pub theta: f64,
 }
 
 /// How long a step of the solid is.
@@ -96,15 +111,14 @@ impl CouplingPart {
         }
     }
 
-    /// The classes of contacts, and the steps of the grains per window: as the scene says, or as many as the limits of all
-    /// classes leave room for. `surface` is the ground's.
-    pub fn classes(
+    /// The windows: as the scene says, or as long as the limits of all classes leave room for, and θ. `surface` is the ground's.
+    pub fn windows(
         &self,
         grains: &GrainsPart,
         model: &dem::Model,
         solid: &SolidPart,
         surface: &SolidSurface,
-    ) -> (Vec<ContactClass>, u32) {
+    ) -> Windows {
         let ground = self.ground_classes(grains, model, solid, surface);
         let dt = model.dt();
         let mut substeps = match self.window {
@@ -118,7 +132,7 @@ impl CouplingPart {
                     1.0
                 };
                 let most = (f64::from(MOST) * growth) as u32;
-                // W and D are proportional to the window.
+                // W and D are proportional to the window. Where many contacts need shorter ones the run divides them.
                 let of_one = |c: ContactClass| c.excess().max(c.w / quiet_w(self.scheme));
                 let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
@@ -126,9 +140,14 @@ impl CouplingPart {
         };
         loop {
             let window = f64::from(substeps) * dt;
-            let sleepers = self.sleeper_classes(grains, model, solid, window);
+            let ground = || ground.iter().map(|c| c.at(window));
+            let theta = self.theta.unwrap_or_else(|| match self.scheme {
+                Scheme::Lagged | Scheme::Iterated { .. } => 0.5,
+                _ => theta_for(ground().map(|c| c.numbers.phase).fold(0.0, f64::max).min(LARGEST_PHASE)),
+            });
+            let sleepers = self.sleeper_classes(grains, model, solid, theta, window);
             if !self.automatic() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
-                return (ground.iter().map(|c| c.at(window)).chain(sleepers).collect(), substeps);
+                return Windows { classes: ground().chain(sleepers).collect(), substeps, theta };
             }
             substeps -= 1;
         }
@@ -190,7 +209,9 @@ impl CouplingPart {
         let places =
             ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id, within)?)));
         let places: Vec<_> = places.collect();
-        self.with_stones(grains, model, solid, own, &places)
+        let mut classes = self.with_stones(grains, model, solid, own, &places);
+        layer::add_numbers(&mut classes, (grains, model, own), (&solid.model, surface), within);
+        classes
     }
 
     /// The classes of contacts with meshed sleepers, whose masses depend on the window [s].
@@ -199,6 +220,7 @@ impl CouplingPart {
         grains: &GrainsPart,
         model: &dem::Model,
         solid: &SolidPart,
+        theta: f64,
         window: f64,
     ) -> Vec<ContactClass> {
         let (Some(sleepers), Some(first)) = (&solid.sleepers, self.faces.get(self.ground_faces)) else {
@@ -209,7 +231,7 @@ impl CouplingPart {
         let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
         let surface = self.spread(surface, grains);
         let faces = sleepers.telling_faces(&surface);
-        let Ok(masses) = window_masses(&body, &surface, &faces, self.theta, window) else {
+        let Ok(masses) = window_masses(&body, &surface, &faces, theta, window) else {
             return Vec::new();
         };
         let own = model.patch_material(self.ground_faces as u32);
@@ -217,7 +239,7 @@ impl CouplingPart {
         for class in &mut classes {
             // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
             // −D/2θ of it.
-            let own = (1e6 * (4.0 * self.theta - 2.0)).round() / 1e6;
+            let own = (1e6 * (4.0 * theta - 2.0)).round() / 1e6;
             class.d_limit = class.d_limit.map(|limit| limit.min(own));
             *class = class.at(window);
         }
@@ -255,6 +277,7 @@ impl CouplingPart {
                     w_limit: limit(0).min(limit(1)).min(accurate_w(self.scheme)),
                     d: 2.0 * damping_ratio * (stones[1] * stiffness).sqrt() / m,
                     d_limit: d_limit.is_finite().then_some(d_limit),
+                    numbers: InterfaceNumbers::default(),
                 });
             }
         }

@@ -23,8 +23,8 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<
         beside_polyhedra(c, solid)?;
     }
     let window = window(c)?;
-    let theta = c.theta.unwrap_or(if solid.sleepers.is_some() { WITH_SLEEPERS } else { 0.5 });
-    if !(0.5..=1.0).contains(&theta) {
+    let theta = c.theta.or(solid.sleepers.is_some().then_some(WITH_SLEEPERS));
+    if let Some(theta) = theta.filter(|theta| !(0.5..=1.0).contains(theta)) {
         return Err(c.error("theta", theta.to_string(), "0.5 to 1"));
     }
     let scheme = scheme(c, solid)?;

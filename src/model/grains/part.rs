@@ -193,9 +193,14 @@ impl GrainsPart {
         self.materials.all[body.material]
     }
 
+    /// Number of groups that are no sleepers; theirs come first.
+    pub fn stone_groups(&self) -> u32 {
+        self.groups.names.len() as u32 - u32::from(self.track.rigid_sleeper().is_some())
+    }
+
     /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
     pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
-        let grains = self.groups.names.len() as u32 - u32::from(self.track.rigid_sleeper().is_some());
+        let grains = self.stone_groups();
         let own = (0..model.body_count())
             .filter(|&b| model.part(b) < grains && model.material(b) == material)
             .map(|b| model.mass(b));

@@ -8,6 +8,7 @@ mod solid;
 
 use crate::failure::Failure;
 use crate::model::Job;
+use crate::model::exchange::Windows;
 use crate::model::grains::{GrainsPart, with_sleepers};
 use crate::model::solid::Analysis;
 use crate::run;
@@ -177,10 +178,10 @@ fn left(
         }
     }
     let mut seconds = whole * column.pace * job.end;
-    if let (Some(plan), Some(solid)) = (&job.coupling, &job.solid)
-        && let Some(window) = window(job, grains, ground.as_ref())
+    if let Some(solid) = &job.solid
+        && let Some((window, theta)) = window(job, grains, ground.as_ref())
     {
-        seconds += job.end / window * solid::step(solid, plan, window)?;
+        seconds += job.end / window * solid::step(solid, theta, window)?;
     }
     stages.push(expected(RUN, seconds));
     Ok(stages)
@@ -198,12 +199,12 @@ fn cores(threads: usize) -> f64 {
     1.0 + SPEED_UP * (threads as f64 - 1.0)
 }
 
-/// Length of a window of grains and solid [s]; none where one of them is alone.
-fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<f64> {
+/// Length of a window of grains and solid [s] and its theta; none where one of them is alone.
+fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<(f64, f64)> {
     let (plan, solid) = (job.coupling.as_ref()?, job.solid.as_ref()?);
     let model = dem::Model::new(with_sleepers(grains)).ok()?;
-    let (_, substeps) = plan.classes(grains, &model, solid, ground?);
-    Some(model.dt() * f64::from(substeps))
+    let Windows { substeps, theta, .. } = plan.windows(grains, &model, solid, ground?);
+    Some((model.dt() * f64::from(substeps), theta))
 }
 
 /// A time for people.

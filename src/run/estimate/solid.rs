@@ -4,7 +4,6 @@ use super::clock::Clock;
 use super::{Known, StageTime};
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::exchange::CouplingPart;
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use crate::run::system::{SolidSystem, System};
 use crate::run::{Prediction, initial};
@@ -25,7 +24,7 @@ const RESTLESS: f64 = 0.01;
 ///
 /// # Errors
 /// A matrix cannot be factored; no equilibrium.
-pub fn step(part: &SolidPart, plan: &CouplingPart, dt: f64) -> Result<f64, Failure> {
+pub fn step(part: &SolidPart, theta: f64, dt: f64) -> Result<f64, Failure> {
     if part.is_linear() {
         let method = TimeMethod::Newmark(Newmark { alpha: 0.25, delta: 0.5 });
         let mut system = SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?;
@@ -35,7 +34,7 @@ pub fn step(part: &SolidPart, plan: &CouplingPart, dt: f64) -> Result<f64, Failu
     let (model, gravity) = (&part.model, part.model.gravity_load());
     let mut state = initial::under_load(part, model, &gravity, &gravity)?;
     let failure = |e: SolveError| part.failure(&e);
-    let mut solver = PlasticWindowSolver::new(model, plan.theta, dt, part.newton).map_err(failure)?;
+    let mut solver = PlasticWindowSolver::new(model, theta, dt, part.newton).map_err(failure)?;
     let (mut load, mut heavier) = (gravity.clone(), false);
     time(|| {
         heavier = !heavier;

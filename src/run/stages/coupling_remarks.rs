@@ -1,8 +1,11 @@
 //! Warnings about the exchange between grains and solid at the end of a run.
 
+use crate::run::summary::CouplingRecord;
 use crate::run::system::CoupledSystem;
+use trackbed_coupling::interface::InterfaceNumbers;
 use trackbed_coupling::ledger::Spent;
 use trackbed_coupling::scheme::Passes;
+use trackbed_coupling::stability::{INTERFACE, interface_excess, largest_phase, theta_for};
 
 /// A remark on windows of the iterated scheme that found no end.
 pub fn unconverged(passes: &Passes) -> Option<String> {
@@ -48,4 +51,38 @@ pub fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
         x.y,
         x.z
     ))
+}
+
+/// Growth of amplitudes over a run, as an exponent, above which undamped contacts are warned about.
+const GROWTH: f64 = 1.0;
+
+/// A warning about an interface whose contacts, all together, were beyond what the windows allow.
+pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -> Option<String> {
+    let (model, watch) = (&system.model, &system.state.watch);
+    let InterfaceNumbers { stiffness, damping, phase } = watch.largest;
+    let numbers = InterfaceNumbers { phase: 0.0, ..watch.largest };
+    let excess = interface_excess(model.scheme, model.theta, &numbers);
+    if !system.automatic && excess > 1.0 {
+        let fitting = (f64::from(record.substeps) / excess) as u32;
+        let fewer = if fitting > 0 {
+            format!("coupling.substeps = {fitting} or \"auto\"")
+        } else {
+            "\"auto\"".into()
+        };
+        return Some(format!(
+            "unstable coupling windows: all contacts on the solid together had W = {stiffness:.2}, D = {damping:.2} (at most {}): the contacts \
+             may shake the ground. Set {fewer}.",
+            INTERFACE[0]
+        ));
+    }
+    (watch.growth > GROWTH).then(|| {
+        format!(
+            "undamped contacts at rest: phase {phase:.2} per window, theta = {} damps up to {:.2}: amplitudes may have grown by a factor of \
+             {:.1e}. Remove coupling.theta, set it to {:.3}, or set tangential_damping_ratio.",
+            model.theta,
+            largest_phase(model.theta),
+            watch.growth.min(700.0).exp(),
+            theta_for(phase)
+        )
+    })
 }

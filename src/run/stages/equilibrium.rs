@@ -5,7 +5,7 @@ use super::stage::{CoupledRun, RunState, Stage};
 use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
-use crate::model::exchange::{self, CouplingPart};
+use crate::model::exchange::{self, CouplingPart, Windows};
 use crate::model::solid::SolidPart;
 use crate::progress::{Progress, Verbosity};
 use crate::run::checkpoint::Loaded;
@@ -41,7 +41,7 @@ impl Stage for Equilibrium {
         let grains = state.grains.as_mut().expect("a coupled run has grains");
         let ground = grains.ground.take().expect("a coupled run has a ground");
         let transfer_kind = plan.transfer_kind(&ground);
-        let (classes, substeps) = plan.classes(&grains.part, &model, part, &ground);
+        let Windows { classes, substeps, theta } = plan.windows(&grains.part, &model, part, &ground);
         plan.refuse(run.document, &classes, substeps, model.dt())?;
         let bases = std::mem::take(&mut grains.bases);
         let whole = part.sleepers.as_ref().map(|s| s.set_down(&part.model, &bases));
@@ -57,7 +57,7 @@ impl Stage for Equilibrium {
         let body = Body { part, model: solid };
         let start = grains.start(&model)?;
         let bed = Bed { model, start, carried: grains.carried.as_ref() };
-        let system = couple(run, body, bases, bed, plan, substeps, surface, load, loaded, summary)?;
+        let system = couple(run, body, bases, bed, plan, (substeps, theta), surface, load, loaded, summary)?;
         state.loaded.take_if(|loaded| loaded.moment.stage == END);
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
@@ -71,6 +71,9 @@ impl Stage for Equilibrium {
             transfer: Default::default(),
             scheme: plan.scheme,
             substeps,
+            theta,
+            interface: Default::default(),
+            division: 1,
             stability: exchange::stability(&classes),
             classes,
             passes: Default::default(),
@@ -90,7 +93,7 @@ fn couple<'b>(
     bases: Vec<f64>,
     bed: Bed<'_>,
     plan: &CouplingPart,
-    substeps: u32,
+    (substeps, theta): (u32, f64),
     mut surface: SolidSurface,
     load: Option<&'b CyclicLoad>,
     resumed: Option<&mut Loaded>,
@@ -120,8 +123,9 @@ fn couple<'b>(
         dead_load,
         reference,
         substeps,
+        division: state.watch.division.max(1),
         scheme: plan.scheme,
-        theta: plan.theta,
+        theta,
         newton: solid.newton,
         grains,
     };
@@ -147,6 +151,7 @@ fn couple<'b>(
         state,
         work,
         changed: false,
+        automatic: plan.automatic(),
         loads: &solid.loads,
         ground_faces: plan.ground_faces,
         seats,

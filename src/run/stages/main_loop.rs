@@ -1,6 +1,6 @@
 //! The main loop of a run: grains, a solid, or both through time, under their loads.
 
-use super::coupling_remarks::{fallen, late, unconverged};
+use super::coupling_remarks::{fallen, late, unconverged, unstable_interface};
 use super::solid_loop::solid_alone;
 use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps, planes};
 use super::{solid_remarks, statics, time_loop};
@@ -107,6 +107,9 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
         record.transfer = system.state.audit;
         record.passes = system.state.passes;
         record.interface_work_error = system.spent().interface();
+        record.interface = system.state.watch.largest;
+        record.division = system.model.division;
+        summary.warnings.extend(unstable_interface(&system, record));
     }
     summary.warnings.extend(unconverged(&system.state.passes));
     summary.warnings.extend(late(&system.spent()));

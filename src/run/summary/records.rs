@@ -4,6 +4,7 @@ use crate::model::exchange::ContactClass;
 use crate::run::events::EventRecord;
 use crate::run::system::SolidView;
 use serde::{Deserialize, Serialize};
+use trackbed_coupling::interface::InterfaceNumbers;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_coupling::scheme::{Passes, Scheme};
 use trackbed_coupling::stability::Stability;
@@ -138,6 +139,12 @@ pub struct CouplingRecord {
     pub scheme: Scheme,
     /// Steps of the grains per step of the solid.
     pub substeps: u32,
+    /// Implicitness of the solid's step.
+    pub theta: f64,
+    /// Largest numbers of the interface that the run has met, in the windows they were met in.
+    pub interface: InterfaceNumbers,
+    /// Parts that windows were divided into, 1 without.
+    pub division: u32,
     /// Stability of the exchange: the largest numbers of all classes of contacts.
     pub stability: Stability,
     /// Every class of contacts with its numbers and limits.

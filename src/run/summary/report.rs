@@ -158,6 +158,12 @@ impl Summary {
             for class in &c.classes {
                 lines.push(format!("  {}", class.line()));
             }
+            let n = &c.interface;
+            lines.push(format!(
+                "  all contacts together, largest of the run: W = {:.3}, D = {:.3}, phase of undamped contacts {:.3}; theta = {}, \
+                 windows divided by {}",
+                n.stiffness, n.damping, n.phase, c.theta, c.division
+            ));
             if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
                 lines.push(format!(
                     "  {:.2} passes per window, {} windows not converged",

@@ -51,6 +51,8 @@ pub struct CoupledSystem<'a> {
     pub work: coupling::step::Work<Steps>,
     /// Whether something has changed the grains that a device has taken over.
     pub changed: bool,
+    /// Whether windows may become shorter where the interface asks for it.
+    pub automatic: bool,
     /// Loads on the solid.
     pub loads: &'a [crate::model::solid::NodalLoad],
     /// Faces of the surface that are the ground's.
@@ -60,6 +62,28 @@ pub struct CoupledSystem<'a> {
 }
 
 impl CoupledSystem<'_> {
+    /// One of the equal parts of a window.
+    fn part_of_window(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
+        let (loads, seats) = (self.loads, self.seats.as_ref());
+        let solid_load = |t: f64, load: &mut [f64]| {
+            loads.iter().for_each(|l| l.add(t, load));
+            seats.iter().for_each(|s| s.add_load(t, load));
+        };
+        // The middle of the window, at which the step takes its loads.
+        let middle = self.state.solid.time + 0.5 * self.model.window();
+        let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
+        let model = &self.model;
+        let apply = |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| {
+            applied(t, &model.grains, s, out);
+        };
+        coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
+            .map_err(|e| Failure::Numerical(e.to_string()))?;
+        if let Some(seats) = &mut self.seats {
+            seats.work += seats.work_at(middle, &self.state.solid.u) - before;
+        }
+        Ok(())
+    }
+
     /// Puts what the system goes on from: `memory` of the solver and the work of loads on meshed sleepers so far [J] beside the states.
     fn put(
         &self,
@@ -73,7 +97,7 @@ impl CoupledSystem<'_> {
 
 impl TrackSystem for CoupledSystem<'_> {
     fn window(&self) -> f64 {
-        self.model.window()
+        self.model.grains.dt() * f64::from(self.model.substeps)
     }
 
     fn grains(&self) -> Option<GrainsView<'_>> {
@@ -111,24 +135,12 @@ impl System for CoupledSystem<'_> {
         if std::mem::take(&mut self.changed) && self.work.grains.elsewhere() {
             self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
         }
-        let (loads, seats) = (self.loads, self.seats.as_ref());
-        let solid_load = |t: f64, load: &mut [f64]| {
-            loads.iter().for_each(|l| l.add(t, load));
-            seats.iter().for_each(|s| s.add_load(t, load));
-        };
-        // The middle of the window, at which the step takes its loads.
-        let middle = self.state.solid.time + 0.5 * self.model.window();
-        let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
-        let model = &self.model;
-        let apply = |t: f64, s: &dem::State, out: &mut Vec<dem::AppliedForce>| {
-            applied(t, &model.grains, s, out);
-        };
-        coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
-            .map_err(|e| Failure::Numerical(e.to_string()))?;
-        if let Some(seats) = &mut self.seats {
-            seats.work += seats.work_at(middle, &self.state.solid.u) - before;
+        // A division that begins now is for the windows after this one.
+        for _ in 0..self.model.division {
+            self.part_of_window(applied)?;
         }
-        Ok(())
+        coupling::step::watch(&mut self.model, &mut self.state, &mut self.work, self.automatic)
+            .map_err(|e| Failure::Numerical(format!("solid, in shorter coupling windows: {e}")))
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {

@@ -1,0 +1,84 @@
+//! Whether windows suit the contacts that there are: the [numbers of the interface](crate::interface), looked at while a run goes on.
+
+use super::model::Model;
+use super::state::{State, Work};
+use crate::interface::InterfaceNumbers;
+use crate::stability::{interface_excess, interface_growth};
+use serde::{Deserialize, Serialize};
+use trackbed_dem as dem;
+use trackbed_fem::SolveError;
+
+/// Most windows between two checks.
+const MOST: u64 = 2048;
+/// Growth of the number of contacts that calls for a check before its time, and fewest windows between two.
+const MORE: f64 = 1.25;
+const FEWEST: u64 = 16;
+/// Most parts of a window.
+const PARTS: u32 = 64;
+
+/// What checks of the interface have found; part of the state of a run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Watch {
+    /// Largest numbers of the interface at the windows they were found in.
+    pub largest: InterfaceNumbers,
+    /// Sum of the bounds of growth over all windows: amplitudes grow by no more than its exponential. Zero where the interface is stable.
+    pub growth: f64,
+    /// Parts that a window is divided into.
+    pub division: u32,
+    /// Numbers of the last check for windows of 1 s.
+    last: InterfaceNumbers,
+    windows: u64,
+    checked: u64,
+    interval: u64,
+    contacts: usize,
+}
+
+impl Watch {
+    fn due(&self, contacts: usize) -> bool {
+        let since = self.windows - self.checked;
+        self.windows == 1
+            || since >= self.interval
+            || since >= FEWEST && contacts as f64 > MORE * self.contacts as f64 + 2.0
+    }
+}
+
+/// After a window: checks the interface if it is time to. Where `automatic`, windows become as short as it needs from the next on; their
+/// solver is made anew.
+///
+/// # Errors
+/// The matrix of shorter windows cannot be factored.
+pub fn watch<B: dem::BackEnd>(
+    model: &mut Model<'_>,
+    state: &mut State,
+    work: &mut Work<B>,
+    automatic: bool,
+) -> Result<(), SolveError> {
+    let contacts = work.grains.surface_contacts();
+    let own = &mut state.watch;
+    own.windows += 1;
+    if own.due(contacts.len()) {
+        own.interval = (2 * own.interval).clamp(1, MOST);
+        own.checked = own.windows;
+        own.contacts = contacts.len();
+        own.last = work.interface.numbers(&model.grains, &state.grains, &work.surface, contacts);
+        own.largest = own.largest.max(&own.last.at(model.window()));
+    }
+    let now = own.last.at(model.window());
+    own.growth += interface_growth(model.scheme, model.theta, &now);
+    if !automatic || interface_excess(model.scheme, model.theta, &now) <= 1.0 {
+        return Ok(());
+    }
+    let whole = model.window() * f64::from(model.division);
+    let suits = |parts: &u32| {
+        let window = whole / f64::from(*parts);
+        let possible = model.grains.measured().is_some() || model.substeps.is_multiple_of(*parts);
+        possible && interface_excess(model.scheme, model.theta, &own.last.at(window)) <= 1.0
+    };
+    let least = if model.grains.measured().is_some() { PARTS } else { model.substeps };
+    let parts = (model.division + 1..=PARTS).find(suits).unwrap_or(least.max(model.division));
+    if parts != model.division {
+        (model.division, own.division) = (parts, parts);
+        work.refactor(model, state.solid.points.is_empty())?;
+    }
+    Ok(())
+}
