@@ -345,7 +345,7 @@ frames = 0
 vtk = false
 "#;
 
-/// Stones settled in a box on soft ground, one of them where discs are cut by the border, spread and point transfer: they come to rest
+/// Stones settled in a box on soft ground, and a ball where discs are cut by the border: they come to rest
 /// with kinetic energies of 1e-7 J and less. With windows of one contact they shake the ground for ever (1e-4 J). Right values: the same scenes with
 /// `substeps = 1`.
 #[test]
@@ -357,9 +357,9 @@ walls = [
     { kind = "plane", point = [0, 0, 0], normal = [0, 1, 0], material = "w" },
     { kind = "plane", point = [0, 0.6, 0], normal = [0, -1, 0], material = "w" },
 ]
-grains = [{ name = "g", shape = "sphere", material = "s", count = 40, size = ["60 mm", "100 mm"], seed = 1, fill = { low = [0, 0, 0], high = [0.6, 0.6] } }]
-deposition = { max_time = 1, settled_speed = "1 mm/s" }
-time = { end = "1.5 s" }
+grains = [{ name = "g", shape = "sphere", material = "s", count = 60, size = ["60 mm", "100 mm"], seed = 1, fill = { low = [0, 0, 0], high = [0.6, 0.6] } }]
+deposition = { max_time = 2, settled_speed = "1 mm/s" }
+time = { end = "2 s" }
 coupling = { material = "w", substeps = "auto", transfer = TRANSFER }
 solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
 "#;
@@ -370,26 +370,27 @@ coupling = { material = "w", substeps = "auto", transfer = TRANSFER }
 solid.gravity = false
 solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
 "#;
-    for (name, text, size, transfer, divided) in [
-        ("bed under wide discs", bed, "0.6", "{ spread_factor = 2.0 }", true),
-        ("bed under discs", bed, "0.6", "{ spread_factor = 1.0 }", true),
-        ("bed on points", bed, "0.6", "\"point\"", false),
-        ("ball at a corner", ball, "1.0", "{ spread = \"50 mm\" }", true),
+    let damped = "restitution = 0.3\nrolling_friction = 0.1\ntangential_damping_ratio = 1\n";
+    for (name, text, size, transfer, contact) in [
+        ("bed under wide discs", bed, "0.6", "{ spread_factor = 2.0 }", "restitution = 0.3\n"),
+        ("bed under discs", bed, "0.6", "{ spread_factor = 1.0 }", "restitution = 0.3\n"),
+        ("ball at a corner", ball, "1.0", "{ spread = \"50 mm\" }", damped),
     ] {
-        let scene = format!("{}{}", text.replace("TRANSFER", transfer), SOFT.replace("SIZE", size));
+        let ground = SOFT.replace("SIZE", size).replace("restitution = 0.3\n", contact);
+        let scene = format!("{}{ground}", text.replace("TRANSFER", transfer));
         let folder = scene_folder("rest", &scene);
         run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
         let s = json(&folder.join("out/summary.json"));
         let history = Table::read(&folder.join("out/history.csv"));
         let last = |column: &str| *history.column(column).last().unwrap();
-        let kinetic = [last("grains_kinetic [J]"), last("solid_kinetic [J]")];
+        let kinetic = [last("grains_kinetic"), last("solid_kinetic")];
         let c = &s["coupling"];
         println!(
             "{name}: kinetic energy {:.1e}, {:.1e} J, {} parts, theta {}, {}",
             kinetic[0], kinetic[1], c["division"], c["theta"], c["interface"]
         );
         assert!(kinetic[0] < 1e-6 && kinetic[1] < 1e-6, "{name}: {kinetic:?}");
-        assert_eq!(number(c, "/division") > 1.0, divided, "{name}: {c:#}");
+        assert!(number(c, "/division") > 1.0, "{name}: {c:#}");
     }
 }
 
@@ -441,7 +442,7 @@ vtk = false
         run(&folder.join("scene.toml"), &folder.join("out"), &set).good();
         let s = json(&folder.join("out/summary.json"));
         let history = Table::read(&folder.join("out/history.csv"));
-        let energy = history.column("solid_kinetic [J]");
+        let energy = history.column("solid_kinetic");
         kinetic.push(energy[energy.len() * 9 / 10..].iter().fold(0.0_f64, |a, b| a.max(*b)));
         let warned = s["warnings"].to_string().contains("undamped contacts at rest");
         assert_eq!(warned, !set.is_empty(), "{}", s["warnings"]);
