@@ -87,16 +87,19 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
     let mut numbers = json!({ "findings": findings, "solid": null, "grains": null, "coupling": null });
     if let Some(solid) = &job.solid {
         let (own, values) = solid_lines(solid, memory)?;
+        check_finite(document, "solid", &own[0])?;
         lines.extend(own);
         numbers["solid"] = values;
     }
     match &job.grains {
         Some(grains) => {
             let (model, own) = grain_lines(document, job, grains)?;
+            check_finite(document, "grains", &own[1])?;
             lines.extend(own);
             numbers["grains"] = grain_numbers(&model);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
                 let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
+                check_finite(document, "coupling", &own[0])?;
                 lines.extend(own);
                 numbers["coupling"] = values;
             }
@@ -104,6 +107,16 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
         None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
     }
     Ok(Report { title: job.title.clone(), lines, numbers })
+}
+
+/// Refuses a part of the scene whose numbers overflow.
+fn check_finite(document: &Document, key: &str, line: &str) -> Result<(), Failure> {
+    let overflows = line.split([' ', '(', ')']).any(|word| matches!(word, "NaN" | "inf" | "-inf"));
+    if !overflows {
+        return Ok(());
+    }
+    let expected = "finite numbers: a stiffness, density or size is far too large or too small";
+    Err(document.error(key, line.trim(), expected).into())
 }
 
 fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, Value), Failure> {
