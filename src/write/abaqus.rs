@@ -82,8 +82,12 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
     // Sets of the sections, by their materials.
     let sections: BTreeSet<String> = mesh.materials.iter().map(|m| format!("MATERIAL_{m}")).collect();
     let sections: Vec<String> = sections.into_iter().collect();
+    let node_sets = plain_names(&file.node_sets, &[], NAME, lost);
+    // A set of faces keeps the name of the set of its nodes.
+    let of_nodes: BTreeMap<&String, String> =
+        file.node_sets.keys().zip(node_sets.iter().map(|(name, _)| name.clone())).collect();
     for (what, sets, ids) in [
-        ("*NSET, NSET", plain_names(&file.node_sets, &[], NAME, lost), &mesh.node_ids),
+        ("*NSET, NSET", node_sets, &mesh.node_ids),
         ("*ELSET, ELSET", plain_names(&file.element_sets, &sections, NAME, lost), &mesh.element_ids),
     ] {
         for (name, members) in sets {
@@ -91,7 +95,9 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
             numbers(&mut out, members.iter().map(|m| ids[*m as usize]))?;
         }
     }
-    for (name, faces) in plain_names(&file.face_sets, &[], NAME, lost) {
+    let own = plain_names(&file.face_sets, &[], NAME, &mut Vec::new());
+    for (set, (own, faces)) in file.face_sets.keys().zip(own) {
+        let name = of_nodes.get(set).unwrap_or(&own);
         writeln!(out, "*SURFACE, TYPE=ELEMENT, NAME={name}")?;
         for [element, side] in faces {
             let face = mesh.face(*element as usize, *side as usize);

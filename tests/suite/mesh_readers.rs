@@ -495,8 +495,8 @@ fn meshes_inside_out_are_said_to_be() {
 #[test]
 fn units_of_a_course_are_those_of_its_heading() {
     let folder = Folder::new("course");
-    let scene = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0, 1], counts = [1] }\ny = { lines = [0, 1], counts = [1] }\n\
-                 z = { lines = [0, 1], counts = [1] }\n[[solid.material]]\nid = 1\nyoung = \"60 MPa\"\npoisson = 0.3\ndensity = 2000\n\
+    let scene = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0, 1], counts = [2] }\ny = { lines = [0, 1], counts = [2] }\n\
+                 z = { lines = [0, 1], counts = [2] }\n[[solid.material]]\nid = 1\nyoung = \"60 MPa\"\npoisson = 0.3\ndensity = 2000\n\
                  [[solid.support]]\nside = \"z-\"\ndirections = [\"x\", \"y\", \"z\"]\nname = \"base\"\n\
                  [[solid.load]]\nkind = \"pressure\"\nside = \"z+\"\npressure = \"10 kPa\"\n\
                  history = { kind = \"table\", file = \"course.csv\" }\n[solid.quasi_static]\n\

@@ -160,7 +160,7 @@ const NAMES: [&str; 12] = [
 
 fn generated(seed: u64) -> MeshFile {
     let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
-    (0..3).for_each(|_| drop(random.next()));
+    (0..3).for_each(|_| _ = random.next());
     let mut mesh = mesh(&mut random);
     // Without nodes of no element, which readers leave out.
     let mut used = vec![false; mesh.node_count()];
