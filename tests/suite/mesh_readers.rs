@@ -514,7 +514,7 @@ fn units_of_a_course_are_those_of_its_heading() {
     ] {
         run(course).good();
         let history = super::support::Table::read(&folder.join("out/history.csv"));
-        let reaction = *history.column("base_z").last().unwrap();
+        let reaction = *history.column("base_reaction_z").last().unwrap();
         assert!((reaction.abs() - 20_000.0).abs() < 1e-3, "{course}: {reaction}");
     }
     for (course, part) in [
