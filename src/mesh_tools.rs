@@ -10,7 +10,7 @@ use serde::Serialize;
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-pub use check::{Part, Problem, check};
+pub use check::{Part, Problem, all_inside_out, check, sentences};
 pub use quality::{Quality, element_quality};
 
 /// A mesh in numbers.
@@ -32,6 +32,8 @@ pub struct MeshInfo {
     pub scaled_jacobian: Range,
     /// Longest over shortest edge, corner to corner; null in JSON where an edge has no length.
     pub aspect_ratio: Range,
+    /// Number of elements whose volume is negative, inside out.
+    pub inside_out: usize,
     /// Number of faces on the surface.
     pub boundary_faces: usize,
     /// Number of degrees of freedom with a prescribed displacement.
@@ -159,6 +161,7 @@ pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
         materials: materials.into_values().collect(),
         scaled_jacobian: by_element(|q| q.scaled_jacobian),
         aspect_ratio: by_element(|q| q.aspect_ratio),
+        inside_out: qualities.iter().filter(|q| q.volume < 0.0).count(),
         boundary_faces: mesh.boundary_faces().len(),
         constrained_dofs: dofs.len(),
         unused_nodes: unused_nodes(mesh),
@@ -190,6 +193,14 @@ impl fmt::Display for MeshInfo {
             writeln!(f, "{name}                 {:>10.4} to {:.4} m", low[axis], high[axis])?;
         }
         writeln!(f, "volume            {:>10.4} m³", self.volume)?;
+        if self.inside_out > 0 {
+            let all = if self.inside_out == self.elements { ", all" } else { "" };
+            writeln!(
+                f,
+                "inside out        {:>10}   elements{all}: their volume counts as negative",
+                self.inside_out
+            )?;
+        }
         for m in &self.materials {
             writeln!(f, "  material {:<6} {:>10.4} m³   {} elements", m.id, m.volume, m.elements)?;
         }

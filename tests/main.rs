@@ -27,6 +27,8 @@ mod suite {
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
+    mod mesh_readers;
+    mod mesh_round;
     mod meshed_sleeper;
     mod messages;
     mod mumps;

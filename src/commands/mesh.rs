@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::output::print;
 use crate::cli::{MeshArgs, MeshFormat};
 use crate::failure::Failure;
-use crate::mesh_tools;
+use crate::mesh_tools::{self, Problem};
 use crate::model::solid::mesh_file;
 use crate::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_file};
 use crate::scene::{Document, Scene};
@@ -29,17 +29,25 @@ pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
             line(format!("set               {:>10}   {what} in {name}", members.len()));
         }
     }
+    for (name, members) in &file.face_sets {
+        line(format!("set               {:>10}   faces in {name}", members.len()));
+    }
     print(&format!("{text}\n{}", remarks(&file.warnings)))
 }
 
 /// Prints that there is no fault, or fails with all of them.
 pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;
-    let problems = mesh_tools::check(&file.mesh, &file.constraints);
-    if problems.is_empty() {
-        return print(&format!("{}: no fault found\n{}", args.input.display(), remarks(&file.warnings)));
+    let mut problems = mesh_tools::check(&file.mesh, &file.constraints);
+    let mut notes = file.warnings.clone();
+    if file.no_constraints {
+        problems.retain(|problem| !matches!(problem, Problem::Unconstrained { .. }));
+        notes.push("no constraints in this form: give [[solid.support]] in the scene".into());
     }
-    let text = problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+    if problems.is_empty() {
+        return print(&format!("{}: no fault found\n{}", args.input.display(), remarks(&notes)));
+    }
+    let text = mesh_tools::sentences(&file.mesh, &problems).join("; ");
     Err(Failure::Input(format!("{}: found {text}, expected a mesh without faults", args.input.display())))
 }
 

@@ -33,6 +33,8 @@ pub enum Problem {
         place: String,
         /// The determinant there [m³].
         determinant: f64,
+        /// Volume of the element [m³]; negative where all of it is inside out.
+        volume: f64,
     },
     /// Two nodes in one place, so that elements that look joined are not.
     #[error("nodes {first} and {second} coincide: they are {distance:e} m apart")]
@@ -96,6 +98,82 @@ pub fn check(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     problems
 }
 
+/// Ids that a sentence names at most.
+const SHOWN: usize = 10;
+
+/// What holds when every element is inside out.
+pub fn all_inside_out(mesh: &Mesh, problems: &[Problem]) -> Option<String> {
+    let negative = |p: &&Problem| matches!(p, Problem::Inverted { volume, .. } if *volume < 0.0);
+    let all = mesh.element_count();
+    if all == 0 || problems.iter().filter(negative).count() != all {
+        return None;
+    }
+    let bricks = mesh.connectivity.kinds().iter().all(|kind| kind.linear() == ElementKind::Hex8);
+    let order = if bricks { "; right: M N O P I J K L, U V W X Q R S T, Y Z A B" } else { "" };
+    let elements = if all == 1 { "the only element".to_string() } else { format!("all {all} elements") };
+    Some(format!(
+        "{elements} inside out: bottom and top faces are exchanged (order of the nodes, or a mirrored mesh){order}"
+    ))
+}
+
+/// The problems as sentences, one for each cause, with ten numbers at most.
+pub fn sentences(mesh: &Mesh, problems: &[Problem]) -> Vec<String> {
+    let (mut all, mut at) = (Vec::new(), 0);
+    let same = |a: &Problem, b: &Problem| std::mem::discriminant(a) == std::mem::discriminant(b);
+    while at < problems.len() {
+        let group: Vec<&Problem> = problems[at..].iter().take_while(|p| same(p, &problems[at])).collect();
+        at += group.len();
+        let whole =
+            matches!(group[0], Problem::Inverted { .. }).then(|| all_inside_out(mesh, problems)).flatten();
+        match whole {
+            Some(sentence) => all.push(sentence),
+            None if group.len() == 1 => all.push(group[0].to_string()),
+            None => all.extend(joined(&group)),
+        }
+    }
+    all
+}
+
+/// Several problems of one kind in one sentence; kinds that occur once only as they are.
+fn joined(group: &[&Problem]) -> Vec<String> {
+    let list = |names: Vec<String>| {
+        let end = if group.len() > SHOWN { format!(", … ({} in all)", group.len()) } else { String::new() };
+        names.join(", ") + &end
+    };
+    let shown = || group.iter().take(SHOWN);
+    let sentence = match group[0] {
+        Problem::Inverted { .. } => {
+            let ids = shown().filter_map(|p| match p {
+                Problem::Inverted { element, .. } => Some(element.to_string()),
+                _ => None,
+            });
+            let determinant = |p: &Problem| match p {
+                Problem::Inverted { determinant, .. } => *determinant,
+                _ => 0.0,
+            };
+            let worst = group.iter().min_by(|a, b| determinant(a).total_cmp(&determinant(b)));
+            let worst = worst.map_or(String::new(), |p| p.to_string());
+            format!("elements {} are turned inside out; the worst: {worst}", list(ids.collect()))
+        }
+        Problem::Coincident { .. } => {
+            let pairs = shown().filter_map(|p| match p {
+                Problem::Coincident { first, second, .. } => Some(format!("{first} and {second}")),
+                _ => None,
+            });
+            format!("{} pairs of nodes coincide: {}", group.len(), list(pairs.collect()))
+        }
+        Problem::Unconstrained { .. } => {
+            let parts = shown().filter_map(|p| match p {
+                Problem::Unconstrained { part } => Some(name(std::slice::from_ref(part))),
+                _ => None,
+            });
+            format!("nothing is constrained in {} parts: {}", group.len(), list(parts.collect()))
+        }
+        _ => return group.iter().map(ToString::to_string).collect(),
+    };
+    vec![sentence]
+}
+
 fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
     let (quality, kind) = (element_quality(mesh, element), mesh.connectivity.kind(element));
     let place = match quality.worst_point.checked_sub(kind.corner_count()) {
@@ -104,7 +182,8 @@ fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
         Some(point) => format!("Gauss point {} of {}", point + 1, mass_points(kind).len()),
     };
     let (element, determinant) = (mesh.element_ids[element], quality.determinant);
-    (determinant <= 0.0).then_some(Problem::Inverted { element, place, determinant })
+    let volume = quality.volume;
+    (determinant <= 0.0).then_some(Problem::Inverted { element, place, determinant, volume })
 }
 
 /// Pairs of coincident nodes. Nodes go into cells somewhat larger than the distance sought; each looks into the
@@ -194,6 +273,27 @@ mod tests {
 
     fn sentences(problems: &[Problem]) -> Vec<String> {
         problems.iter().map(Problem::to_string).collect()
+    }
+
+    /// A mirrored mesh has one cause; of some elements inside out ten are named.
+    #[test]
+    fn one_cause_is_one_sentence() {
+        let mut mesh = sample::straight_block([4, 3, 2]);
+        mesh.coordinates.iter_mut().for_each(|x| x[0] = -x[0]);
+        let problems = check(&mesh, &held(&mesh));
+        let found = super::sentences(&mesh, &problems);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("all 24 elements inside out: bottom and top faces"), "{found:?}");
+
+        let mut mesh = sample::straight_block([4, 3, 2]);
+        for element in 0..12 {
+            mesh.connectivity[element][..8].rotate_left(4);
+            mesh.connectivity[element][8..16].rotate_left(4);
+        }
+        let found = super::sentences(&mesh, &check(&mesh, &held(&mesh)));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(", … (12 in all) are turned inside out; the worst: element "), "{found:?}");
+        assert_eq!(found[0].split(" are turned").next().unwrap().matches(", ").count(), 10, "{found:?}");
     }
 
     #[test]

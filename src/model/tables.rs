@@ -1,11 +1,14 @@
 //! Tables that grains are made from: sphere packings and sieve limits in CSV, stone libraries in TOML.
 
 mod grading;
+mod heading;
 
 pub use grading::{Grading, gradation};
+pub use heading::{Column, FACTOR, FORCE};
 
 use crate::read::{ReadError, source};
 use crate::scene::{Document, SceneError};
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
@@ -29,11 +32,37 @@ fn fault(
 }
 
 fn text(file: &Path, what: &str) -> Result<String, ReadError> {
-    let bytes = source::bytes(file, source::LARGEST).map_err(|refusal| {
+    let mut text = String::new();
+    each_line(file, what, |_, line| {
+        text.push_str(line);
+        text.push('\n');
+        Ok(())
+    })?;
+    Ok(text)
+}
+
+/// Reads a file line by line, so that a long one takes no memory, with the numbers of the lines; without a byte order mark.
+fn each_line(
+    file: &Path,
+    what: &str,
+    mut take: impl FnMut(usize, &str) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let refused = |refusal: source::Refusal| {
         let (found, expected) = refusal.words(|e| e.to_string());
         fault(file, None, what, found, expected)
-    })?;
-    String::from_utf8(bytes).map_err(|_| fault(file, None, what, "bytes that are no UTF-8", "text"))
+    };
+    let mut reader = BufReader::new(source::open(file, source::LARGEST).map_err(refused)?);
+    let (mut line, mut bytes) = (0, Vec::new());
+    loop {
+        bytes.clear();
+        if reader.read_until(b'\n', &mut bytes).map_err(|e| refused(e.into()))? == 0 {
+            return Ok(());
+        }
+        line += 1;
+        let text = std::str::from_utf8(&bytes)
+            .map_err(|_| fault(file, None, what, "bytes that are no UTF-8", "text"))?;
+        take(line, text.strip_prefix('\u{feff}').filter(|_| line == 1).unwrap_or(text).trim_end())?;
+    }
 }
 
 /// Refuses a row that has not as many columns as the heading, or as there are names where there is none. One number
@@ -56,42 +85,62 @@ fn check_width(
     Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), expected))
 }
 
-/// Rows of a CSV file that are neither empty nor comments, with their line numbers; fields trimmed, quotes kept off.
-fn rows(content: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
-    content
-        .lines()
-        .enumerate()
-        .map(|(i, l)| (i + 1, l.trim()))
-        .filter(|(_, l)| !l.is_empty() && !l.starts_with('#'))
-        .map(|(i, l)| (i, l.split(',').map(|f| f.trim().trim_matches('"')).collect()))
+/// Fields of a line of a CSV file, trimmed, quotes kept off; `None` for an empty line and a comment.
+fn fields(line: &str) -> Option<Vec<&str>> {
+    let line = line.trim();
+    let data = !line.is_empty() && !line.starts_with('#');
+    data.then(|| line.split(',').map(|f| f.trim().trim_matches('"')).collect())
 }
 
-/// Rows of numbers under a heading that may be missing; each row starts with the columns named.
-fn numbers<const N: usize>(file: &Path, columns: [&str; N]) -> Result<Vec<(usize, [f64; N])>, ReadError> {
-    let content = text(file, "packing")?;
-    let (mut table, mut heading) = (Vec::new(), None);
-    for (n, (line, fields)) in rows(&content).enumerate() {
-        if n == 0 && fields[0].parse::<f64>().is_err() {
+/// Rows of a CSV file that are neither empty nor comments, with their line numbers.
+fn rows(content: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
+    (1..).zip(content.lines()).filter_map(|(i, line)| Some((i, fields(line)?)))
+}
+
+/// Rows of numbers in SI units under a heading that may be missing; each row starts with the columns named.
+fn numbers<const N: usize>(
+    file: &Path,
+    what: &str,
+    columns: &[Column; N],
+    mut take: impl FnMut(usize, [f64; N]) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let (mut first, mut heading, mut factors) = (true, None, [1.0; N]);
+    let names = columns.iter().map(|column| column.name).collect::<Vec<_>>().join(", ");
+    each_line(file, what, |line, text| {
+        let Some(fields) = fields(text) else { return Ok(()) };
+        if std::mem::take(&mut first) && fields[0].parse::<f64>().is_err() {
             // A heading may name more columns, which are passed over.
             heading = Some(fields.len()).filter(|width| *width >= N);
-            continue;
+            factors = heading::factors(file, line, &fields, columns)?;
+            return Ok(());
         }
-        check_width(file, line, &fields, heading, &columns.join(", "), N)?;
+        check_width(file, line, &fields, heading, &names, N)?;
         let mut value = [0.0; N];
-        for (k, name) in columns.into_iter().enumerate() {
-            value[k] = fields[k]
-                .parse()
-                .ok()
-                .filter(|v: &f64| v.is_finite())
-                .ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", fields[k]), "a number"))?;
+        for (k, column) in columns.iter().enumerate() {
+            let number = fields[k].parse::<f64>().ok().map(|v| v * factors[k]).filter(|v| v.is_finite());
+            let wrong = || fault(file, Some(line), column.name, format!("\"{}\"", fields[k]), "a number");
+            value[k] = number.ok_or_else(wrong)?;
         }
-        table.push((line, value));
-    }
+        take(line, value)
+    })
+}
+
+/// All rows of [`numbers`], one at least.
+fn table<const N: usize>(file: &Path, columns: &[Column; N]) -> Result<Vec<(usize, [f64; N])>, ReadError> {
+    let mut table = Vec::new();
+    numbers(file, "packing", columns, |line, row| {
+        table.push((line, row));
+        Ok(())
+    })?;
     if table.is_empty() {
         return Err(fault(file, None, "packing", "no row", "at least one grain"));
     }
     Ok(table)
 }
+
+const X: Column = Column::length("x", &["x"]);
+const Y: Column = Column::length("y", &["y"]);
+const Z: Column = Column::length("z", &["z"]);
 
 /// Spheres `x, y, z, r` [m] of a packing; a first row that is not numbers is a heading.
 ///
@@ -104,7 +153,8 @@ pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
         }
         Err(fault(file, Some(line), "r", r.to_string(), "a radius above 0"))
     };
-    numbers(file, ["x", "y", "z", "r"])?.into_iter().map(row).collect()
+    let radius = Column::length("r", &["r", "radius"]);
+    table(file, &[X, Y, Z, radius])?.into_iter().map(row).collect()
 }
 
 /// A stone of a packing, a clump or a polyhedron.
@@ -126,7 +176,10 @@ pub struct PlacedStone {
 /// # Errors
 /// The file is missing, a row has too few columns, a value is no finite number, or out of range.
 pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
-    let columns = ["x", "y", "z", "qw", "qx", "qy", "qz", "scale", "stone"];
+    let [qw, qx] = [Column::number("qw", &["qw"]), Column::number("qx", &["qx"])];
+    let [qy, qz] = [Column::number("qy", &["qy"]), Column::number("qz", &["qz"])];
+    let [scale, stone] = [Column::number("scale", &["scale"]), Column::number("stone", &["stone"])];
+    let columns = [X, Y, Z, qw, qx, qy, qz, scale, stone];
     let row = |(line, v): (usize, [f64; 9])| {
         let orientation = [v[3], v[4], v[5], v[6]];
         let norm = orientation.iter().map(|q| q * q).sum::<f64>();
@@ -143,44 +196,32 @@ pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, Rea
         }
         Ok(PlacedStone { position: [v[0], v[1], v[2]], orientation, scale: v[7], stone: v[8] as usize })
     };
-    numbers(file, columns)?.into_iter().map(row).collect()
+    table(file, &columns)?.into_iter().map(row).collect()
 }
 
-/// Rows `time, factor` [s, -] of a history; a first row that is not numbers is a heading.
+/// Rows of time and `value` of a history in SI units; a first row that is not numbers is a heading, whose units are obeyed.
 ///
 /// # Errors
-/// The file is missing, a row has too few columns, a value is no finite number, or times do not ascend.
-pub fn history(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
-    let content = text(file, "history")?;
-    let (mut points, mut heading): (Vec<(f64, f64)>, _) = (Vec::new(), None);
-    for (n, (line, fields)) in rows(&content).enumerate() {
-        if n == 0 && fields[0].parse::<f64>().is_err() {
-            // As in `numbers`.
-            heading = Some(fields.len()).filter(|width| *width >= 2);
-            continue;
-        }
-        check_width(file, line, &fields, heading, "time, factor", 2)?;
-        let number = |k: usize, name: &str| {
-            let value = fields[k].parse::<f64>().ok().filter(|v| v.is_finite());
-            value.ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", fields[k]), "a number"))
-        };
-        let (time, factor) = (number(0, "time")?, number(1, "factor")?);
+/// The file is missing, a row has too few columns, a value is no finite number, times do not ascend, or the heading names
+/// other columns or units.
+pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError> {
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    let name = value.name;
+    numbers(file, "history", &[heading::TIME, value], |line, [time, value]| {
         if let Some(&(before, _)) = points.last()
             && time <= before
         {
-            return Err(fault(
-                file,
-                Some(line),
-                "time",
-                time.to_string(),
-                format!("a time after {before} s"),
-            ));
+            let expected = format!("a time after {before} s");
+            return Err(fault(file, Some(line), "time", time.to_string(), expected));
         }
-        points.push((time, factor));
-    }
+        points.push((time, value));
+        Ok(())
+    })?;
     if points.is_empty() {
-        return Err(fault(file, None, "history", "no row", "at least one row of time, factor"));
+        let expected = format!("at least one row of time, {name}");
+        return Err(fault(file, None, "history", "no row", expected));
     }
+    points.shrink_to_fit();
     Ok(points)
 }
 
@@ -233,7 +274,8 @@ pub fn pairs(file: &Path, count: usize) -> Result<Vec<[usize; 2]>, ReadError> {
         let expected = format!("two different numbers of grains, 0 to {}", count.max(1) - 1);
         Err(fault(file, Some(line), "pair", format!("{}, {}", v[0], v[1]), expected))
     };
-    numbers(file, ["a", "b"])?.into_iter().map(row).collect()
+    let columns = [Column::number("a", &[]), Column::number("b", &[])];
+    table(file, &columns)?.into_iter().map(row).collect()
 }
 
 #[cfg(test)]
@@ -258,8 +300,10 @@ mod tests {
         let curve = grading.curve;
         assert_eq!(curve.sizes().len(), 3);
         assert!((curve.passing_at(0.05) - 0.8).abs() < 1e-12);
-        let error = gradation(&path, "X", "C").unwrap_err();
-        assert!(error.to_string().contains("no row of X C"), "{error}");
+        let error = gradation(&path, "X", "C").unwrap_err().to_string();
+        let spelled = gradation(&path, " x", "a ").unwrap();
+        assert_eq!(spelled.limits, grading.limits);
+        assert!(error.contains("\"X\" \"C\", expected one of X A, X B"), "{error}");
         std::fs::remove_file(path).unwrap();
     }
 

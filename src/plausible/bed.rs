@@ -217,7 +217,8 @@ fn place(body: &trackbed_dem::BodyInput) -> [f64; 3] {
 fn scales(findings: &mut Findings, scene: &Scene, job: &Job) {
     let solid = of_solid(job).map(|e| e.longest());
     if let Some(length) = solid {
-        findings.weigh("solid", length, Usual::new(1e-3, 3000.0, "m"));
+        // What is too large: `geometry`.
+        findings.weigh("solid", length.min(3000.0), Usual::new(1e-3, 3000.0, "m"));
     }
     if let (Some(length), Some(size)) = (solid, size(scene)) {
         let ratio = length / size;

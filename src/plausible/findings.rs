@@ -86,6 +86,9 @@ impl Findings {
 /// A value with its unit: plain where that is short.
 pub fn shown(value: f64, unit: &str) -> String {
     let size = value.abs();
+    if !value.is_finite() {
+        return format!("more than 1e308 {unit}").trim_end().to_string();
+    }
     let digits = match value == 0.0 || (1e-3..1e5).contains(&size) {
         true => format!("{}", (value * 1e4).round() / 1e4),
         false => format!("{value:.3e}"),

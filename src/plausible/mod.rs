@@ -7,6 +7,7 @@
 
 mod bed;
 mod findings;
+mod geometry;
 mod grains;
 mod inertia;
 mod materials;
@@ -27,6 +28,7 @@ pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     solid::weigh(&mut findings, scene, job);
     grains::weigh(&mut findings, scene);
     bed::weigh(&mut findings, scene, job);
+    geometry::weigh(&mut findings, scene, job);
     track::weigh(&mut findings, scene, job);
     run::weigh(&mut findings, scene, job);
     inertia::weigh(&mut findings, scene, job);

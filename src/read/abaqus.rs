@@ -1,7 +1,7 @@
 //! Abaqus input files (`.inp`), also in CalculiX' dialect.
 //!
 //! Read are *NODE, *ELEMENT, *NSET, *ELSET (both with GENERATE), *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION,
-//! *BOUNDARY (numbers and sets, ranges of directions, ENCASTRE, PINNED, XSYMM and its like), *INCLUDE (followed), and
+//! *SURFACE (faces of elements), *BOUNDARY (numbers and sets, ranges of directions, ENCASTRE, PINNED, XSYMM and its like), *INCLUDE (followed), and
 //! one *PART with one *INSTANCE that is not moved. Everything else is passed over; what would change geometry or
 //! directions is refused.
 //!
@@ -20,11 +20,13 @@ use std::path::Path;
 use trackbed_fem::ElementKind;
 
 use super::abaqus_data as data;
+use super::abaqus_faces as faces;
 use super::abaqus_lines::{Block, read_blocks};
 use super::abaqus_sets::{self as sets, Members};
 use super::degenerate::from_brick;
 use super::error::ReadError;
 use super::mesh_file::{Builder, MeshFile};
+use super::number;
 
 /// Keywords that make or move nodes and elements, or turn directions.
 const REFUSED: [&str; 12] = [
@@ -43,7 +45,8 @@ const REFUSED: [&str; 12] = [
 ];
 
 /// Keywords whose meaning is lost when they are passed over.
-const MECHANICAL: [&str; 16] = [
+const MECHANICAL: [&str; 17] = [
+    "MODELCHANGE",
     "EQUATION",
     "MPC",
     "TIE",
@@ -78,6 +81,12 @@ pub(super) struct Deck {
     /// Element set and material of each section, with its line.
     pub sections: Vec<(usize, String, String)>,
     pub boundaries: Vec<data::Boundary>,
+    /// Whether the first step has replaced the constraints of the model.
+    pub renewed: bool,
+    /// Names and rows of *SURFACE.
+    pub surfaces: Vec<(String, Vec<faces::Row>)>,
+    /// Elements of other kinds that are written as bricks with repeated nodes.
+    pub folded: std::collections::HashSet<u32>,
     /// Elements left out, so that sets may name them.
     pub left_out: std::collections::HashSet<u32>,
     /// Elements: index in the mesh, in file order.
@@ -109,6 +118,7 @@ pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
     data::sections(&mut builder, &deck)?;
     data::boundaries(&mut builder, &deck)?;
     sets::sets(&mut builder, &deck);
+    surfaces(&mut builder, &deck)?;
     if !deck.skipped.is_empty() {
         let skipped: Vec<String> = deck.skipped.iter().map(|(name, n)| format!("*{name} ({n})")).collect();
         builder.warn(format!("keywords that were not read: {}", skipped.join(", ")));
@@ -135,6 +145,7 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
             Ok(())
         }
         "BOUNDARY" => data::boundary(builder, deck, block),
+        "SURFACE" => surface(builder, deck, block),
         "STEP" => {
             deck.steps += 1;
             Ok(())
@@ -149,7 +160,7 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
             deck.instances.push(name);
             one_only(builder, block, "instances", &deck.instances)?;
             for (line, row) in block.rows() {
-                if row.iter().any(|text| !text.is_empty() && super::number::real(text) != Some(0.0)) {
+                if row.iter().any(|text| !text.is_empty() && number::real(text) != Some(0.0)) {
                     let expected = "an instance that is neither moved nor turned";
                     return Err(builder.fault(line, "*INSTANCE", row.join(", "), expected));
                 }
@@ -167,6 +178,45 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
             Ok(())
         }
     }
+}
+
+/// Keeps the rows of a *SURFACE of elements.
+fn surface(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    let name = block.required(builder, "NAME")?.to_string();
+    let kind = block.option("TYPE").unwrap_or("ELEMENT").to_uppercase();
+    if kind != "ELEMENT" || block.option("COMBINE").is_some() || block.option("CROP").is_some() {
+        *deck.skipped.entry(format!("SURFACE of {kind}")).or_insert(0) += 1;
+        return Ok(());
+    }
+    deck.surfaces.push((name, faces::rows(builder, block)?));
+    Ok(())
+}
+
+/// Makes sets of faces of the rows of *SURFACE.
+fn surfaces(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
+    for (name, rows) in &deck.surfaces {
+        let mut found = Vec::new();
+        for row in rows {
+            let target = deck.without_instance(&row.target);
+            let one;
+            let ids = match (number::whole(target), deck.element_sets.get(&target.to_uppercase())) {
+                (Some(id), _) => {
+                    one = Members::of([id]);
+                    &one
+                }
+                (None, Some(set)) => set,
+                (None, None) => {
+                    let found = format!("\"{}\"", row.target);
+                    let expected = "an element or a set of elements";
+                    return Err(builder.fault(row.line, "*SURFACE", found, expected));
+                }
+            };
+            let elements = sets::with_elements(builder, |known| ids.resolve(known)).0;
+            found.extend(faces::faces_of(builder, row, &elements, &deck.folded)?);
+        }
+        builder.face_set(name, found);
+    }
+    Ok(())
 }
 
 fn one_only(builder: &Builder, block: &Block, what: &str, names: &[String]) -> Result<(), ReadError> {
@@ -282,6 +332,9 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
                 builder.fault(line, format!("element {id} ({name})"), fault.found, fault.expected)
             })?,
         };
+        if count == 8 && kind != ElementKind::Hex8 || count == 20 && kind.linear() != ElementKind::Hex8 {
+            deck.folded.insert(id);
+        }
         let label = format!("{name} {}", kind.name());
         builder.element(line, id, 0, (kind, &label), &nodes)?;
     }

@@ -24,6 +24,8 @@ pub(super) struct Boundary {
     target: String,
     directions: Vec<u8>,
     value: f64,
+    /// Step that the row stands in, 0 for the model.
+    step: usize,
 }
 
 pub(super) fn whole(builder: &Builder, line: usize, key: &str, text: Option<&str>) -> Result<u32, ReadError> {
@@ -138,6 +140,24 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
         *deck.skipped.entry("BOUNDARY of later steps".into()).or_insert(0) += 1;
         return Ok(());
     }
+    if let Some(what) = ["USER", "SUBMODEL"].into_iter().find(|what| block.option(what).is_some()) {
+        let expected = "displacements in the rows of the file";
+        return Err(builder.fault(block.line, "*BOUNDARY", what, expected));
+    }
+    if let Some(name) = block.option("AMPLITUDE") {
+        let sentence = format!(
+            "line {}: *BOUNDARY with AMPLITUDE={name}: the values of its rows are taken without it",
+            block.line
+        );
+        builder.warn(sentence);
+    }
+    let is_new = block.option("OP").is_some_and(|op| op.eq_ignore_ascii_case("NEW"));
+    if deck.steps == 1 && is_new {
+        renew(builder, deck, block)?;
+    } else if deck.renewed {
+        let found = "a *BOUNDARY without OP=NEW after one with it";
+        return Err(builder.fault(block.line, "*BOUNDARY", found, "OP=NEW in all of a step, or in none"));
+    }
     if let Some(kind) = block.option("TYPE").filter(|k| !k.to_uppercase().starts_with("DISP")) {
         return Err(builder.fault(block.line, "*BOUNDARY", format!("TYPE={kind}"), "displacements"));
     }
@@ -174,7 +194,28 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
                 ((first..=last.min(3)).map(|d| d as u8 - 1).collect(), value)
             }
         };
-        deck.boundaries.push(Boundary { line, target, directions, value });
+        deck.boundaries.push(Boundary { line, target, directions, value, step: deck.steps });
+    }
+    Ok(())
+}
+
+/// OP=NEW in the first step removes all constraints of the model; beside it the step has no others.
+fn renew(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
+    if deck.renewed {
+        return Ok(());
+    }
+    deck.renewed = true;
+    if let Some(row) = deck.boundaries.iter().find(|row| row.step == 1) {
+        let found = format!("OP=NEW after a *BOUNDARY without it on line {}", row.line);
+        return Err(builder.fault(block.line, "*BOUNDARY", found, "OP=NEW in all of a step, or in none"));
+    }
+    let count = deck.boundaries.len();
+    deck.boundaries.clear();
+    if count > 0 {
+        let line = block.line;
+        builder.warn(format!(
+            "line {line}: *BOUNDARY, OP=NEW removes the {count} rows of constraints of the model"
+        ));
     }
     Ok(())
 }

@@ -42,13 +42,27 @@ impl Block {
 
     /// Data line `at`: its number and its fields; a comma at the end leaves an empty last field.
     pub fn row(&self, at: usize) -> Option<(usize, Vec<&str>)> {
-        self.data.get(at).map(|(line, text)| (*line, text.split(',').map(str::trim).collect()))
+        self.data.get(at).map(|(line, text)| (*line, fields(text).collect()))
     }
 
     /// All data lines.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Vec<&str>)> {
         (0..self.len()).filter_map(|at| self.row(at))
     }
+}
+
+/// The fields of a line between commas, trimmed, without the quotes of names; a comma within quotes belongs to its name.
+fn fields(text: &str) -> impl Iterator<Item = &str> {
+    let mut quoted = false;
+    let outside = move |c: char| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    };
+    text.split(outside).map(|field| unquoted(field.trim()))
+}
+
+fn unquoted(text: &str) -> &str {
+    text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(text)
 }
 
 /// The keywords of a file and of those that it includes.
@@ -100,13 +114,13 @@ fn follow(
                 None => break,
             }
         }
-        let mut parts = whole.split(',').map(str::trim);
+        let mut parts = fields(&whole);
         let squeezed = |s: &str| s.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_uppercase();
         let keyword = squeezed(parts.next().unwrap_or_default());
         let options = parts
             .filter(|p| !p.is_empty())
             .map(|part| match part.split_once('=') {
-                Some((name, value)) => (squeezed(name), value.trim().trim_matches('"').to_string()),
+                Some((name, value)) => (squeezed(name), unquoted(value.trim()).to_string()),
                 None => (squeezed(part), String::new()),
             })
             .collect();

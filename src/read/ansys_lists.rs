@@ -9,8 +9,8 @@
 //! | constraints | `node dir value`: dir 1, 2, 3, UX, UY, UZ or ALL; value [m], absent means 0 |
 //!
 //! Also read: elements without number or without material or without both, of several lines each, and
-//! listings of the commands NLIST, ELIST and DLIST. How numbers, separators, comments and headers may be
-//! written is said in the `number` and `table` modules beside this one.
+//! listings of the commands NLIST, ELIST and DLIST, and the fixed columns of NWRITE. How numbers, separators, comments and
+//! headers may be written is said in the `number`, `table` and `header` modules.
 //!
 //! Bricks with repeated nodes are wedges, pyramids and tetrahedra, as in SOLID186, and bricks whose mid-side nodes are all
 //! 0 are of the linear kinds (see `degenerate` beside this module). Lines of 8 nodes are linear bricks too.
@@ -29,8 +29,10 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 use super::degenerate;
 use super::element_list::{self, Columns, Record};
 use super::error::ReadError;
-use super::mesh_file::{MeshFile, drop_unused_nodes};
+use super::header::Content;
+use super::mesh_file::{FARTHEST, FARTHEST_EXPECTED, MeshFile, check_faces, drop_unused_nodes};
 use super::number;
+use super::nwrite;
 use super::table::{self, Row, Table};
 
 /// What the columns of the element list are.
@@ -92,6 +94,7 @@ pub fn read_lists(
     let mut lists = Lists::default();
     let index = read_nodes(nodes, &mut lists)?;
     read_elements(elements, layout, &index, &mut lists)?;
+    check_faces(elements, &lists.mesh)?;
     if let Some(file) = constraints {
         read_constraints(file, &index, &mut lists)?;
     }
@@ -119,29 +122,42 @@ impl From<Lists> for MeshFile {
 /// Index of each node number.
 type NodeIndex = HashMap<u32, u32>;
 
+/// Names of the reals of a node.
+const VALUES: [&str; 6] =
+    ["coordinate x", "coordinate y", "coordinate z", "nodal rotation", "nodal rotation", "nodal rotation"];
+
 fn read_nodes(file: &Path, lists: &mut Lists) -> Result<NodeIndex, ReadError> {
-    let table = Table::read(file, "node list")?;
-    lists.warnings.extend(table.warnings.iter().cloned());
+    let table = Table::read(file, Content::Nodes)?;
     if table.rows.is_empty() {
         return Err(ReadError::whole(file, "nodes", "none", "at least 4 rows of id x y z"));
+    }
+    let blanks = nwrite::places(&table);
+    if blanks.is_some() {
+        let short = table.rows.iter().filter(|row| row.width() < 4).count();
+        let of = format!("{}: {short} rows", file.display());
+        lists.warnings.push(format!("{of} have blank coordinates, which are 0 in the columns of NWRITE"));
     }
     let mut index = NodeIndex::with_capacity(table.rows.len());
     for (i, row) in table.rows.iter().enumerate() {
         // NLIST adds the three angles of the nodal coordinate system.
-        if row.width() != 4 && row.width() != 7 {
+        if blanks.is_none() && row.width() != 4 && row.width() != 7 {
             let found = row.width().to_string();
             return Err(ReadError::at(file, row.line, "columns of a node", found, "4 (id x y z)"));
         }
         let id = table.whole(row, 0, "node number")?;
-        let mut point = [0.0; 3];
-        for (axis, name) in ["coordinate x", "coordinate y", "coordinate z"].iter().enumerate() {
-            point[axis] = table.real(row, axis + 1, name)?;
-        }
-        for column in 4..row.width() {
-            if table.real(row, column, "nodal rotation")? != 0.0 {
+        let mut values = [0.0; 6];
+        for column in 1..row.width() {
+            let place = blanks.as_ref().map_or(column - 1, |all| all[i][column - 1]);
+            values[place] = table.real(row, column, VALUES[place])?;
+            if place >= 3 && values[place] != 0.0 {
                 let found = table.field(row, column);
-                return Err(ReadError::at(file, row.line, "nodal rotation", found, "0 (global directions)"));
+                return Err(ReadError::at(file, row.line, VALUES[place], found, "0 (global directions)"));
             }
+        }
+        let point = [values[0], values[1], values[2]];
+        if let Some(x) = point.iter().find(|x| x.abs() > FARTHEST) {
+            let key = format!("coordinates of node {id}");
+            return Err(ReadError::at(file, row.line, key, format!("{x:e}"), FARTHEST_EXPECTED));
         }
         if let Some(first) = index.insert(id, i as u32) {
             return Err(named_twice(&table, "node", id, table.rows[first as usize].line, row.line));
@@ -163,8 +179,7 @@ fn read_elements(
     index: &NodeIndex,
     lists: &mut Lists,
 ) -> Result<(), ReadError> {
-    let table = Table::read(file, "element list")?;
-    lists.warnings.extend(table.warnings.iter().cloned());
+    let table = Table::read(file, Content::Elements)?;
     if table.rows.is_empty() {
         return Err(ReadError::whole(file, "elements", "none", "at least one row of id mat n1…n20"));
     }
@@ -220,8 +235,7 @@ fn read_element(
 }
 
 fn read_constraints(file: &Path, index: &NodeIndex, lists: &mut Lists) -> Result<(), ReadError> {
-    let table = Table::read(file, "constraint list")?;
-    lists.warnings.extend(table.warnings.iter().cloned());
+    let table = Table::read(file, Content::Constraints)?;
     let mut given: HashMap<(u32, u8), (f64, usize)> = HashMap::with_capacity(table.rows.len());
     for row in &table.rows {
         // DLIST adds the imaginary part.

@@ -104,6 +104,75 @@ fn columns_are_recognised_by_count_and_content() {
     }
 }
 
+/// Ten columns are number, material and 8 nodes, unless two lines make an element of 20 nodes.
+#[test]
+fn ten_columns_are_eight_nodes_or_half_of_twenty() {
+    let eight = "1 1 1 2 3 4 9 10 11 12\n2 1 9 10 11 12 17 18 19 20\n";
+    for text in [
+        eight.to_string(),
+        format!("{eight}3 2 5 6 7 8 13 14 15 16\n"),
+        format!("{eight}{}", "3 1 101 102 103 104 105 106 107 108\n4 1 5 6 7 8 13 14 15 16\n"),
+    ] {
+        let lists = read("ten", &brick_nodes(), &text, None).unwrap();
+        assert!(lists.mesh.connectivity.kinds().iter().all(|kind| *kind == ElementKind::Hex8), "{text}");
+        assert_eq!((lists.mesh.element_ids[1], lists.mesh.materials[1]), (2, 1));
+    }
+    let first: Vec<u32> = (1..=10).collect();
+    let join = |ids: Vec<u32>| ids.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
+    let twenty = format!("{}\n{}\n", join(first), join((11..=20).collect()));
+    let lists = read("twenty", &brick_nodes(), &twenty, None).unwrap();
+    assert_eq!((lists.mesh.element_count(), lists.mesh.connectivity.kind(0)), (1, ElementKind::Hex20));
+}
+
+/// NWRITE leaves zeros at the end of a row blank: only in its columns is a short row a node.
+#[test]
+fn blank_coordinates_of_nwrite_are_zero() {
+    let points: Vec<[f64; 3]> =
+        (0..8).map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)]).collect();
+    let row = |(n, x): (usize, &[f64; 3]), id: usize, real: usize| {
+        let kept = 3 - x.iter().rev().take_while(|v| **v == 0.0).count();
+        let reals: String = x[..kept].iter().map(|v| format!("{v:real$.13e}")).collect();
+        format!("{:id$}{reals}\n", n + 1)
+    };
+    let elements = "1 1 1 2 4 3 5 6 8 7\n";
+    for (id, real) in [(9, 21), (8, 20)] {
+        let nodes: String = points.iter().enumerate().map(|row_of| row(row_of, id, real)).collect();
+        let lists = read("nwrite", &nodes, elements, None).unwrap();
+        assert_eq!(lists.mesh.coordinates, points, "{id}");
+        assert!(
+            lists.warnings[0]
+                .ends_with("4 rows have blank coordinates, which are 0 in the columns of NWRITE")
+        );
+        // A blank field between others keeps its column.
+        let gap = nodes.replacen(
+            &format!("{:id$}{:real$.13e}{:real$.13e}\n", 4, 1.0, 1.0),
+            &format!("{:id$}{:real$}{:real$.13e}\n", 4, "", 1.0),
+            1,
+        );
+        assert_eq!(read("gap", &gap, elements, None).unwrap().mesh.coordinates[3], [0.0, 1.0, 0.0]);
+    }
+    let free: String = points.iter().enumerate().map(|row_of| row(row_of, 3, 21)).collect();
+    let expected = "NODECOORD.DAT:1: columns of a node: found 1, expected 4 (id x y z)";
+    assert_eq!(refused("free", &free, elements, None), expected);
+}
+
+#[test]
+fn listings_in_other_coordinate_systems_are_refused() {
+    let plain = brick_nodes();
+    for system in ["1", "2", "11"] {
+        let nodes =
+            format!(" LIST ALL SELECTED NODES.   DSYS=      {system}\n\n   NODE   X   Y   Z\n{plain}");
+        let error = refused("dsys", &nodes, &elements(), None);
+        assert!(error.starts_with(&format!(
+            "NODECOORD.DAT:1: coordinate system: found DSYS = {system}, expected DSYS = 0"
+        )));
+    }
+    let nodes = format!(
+        " LIST ALL SELECTED NODES.   DSYS=      0\n SORT TABLE ON  NODE  NODE  NODE\n\n   NODE   X   Y   Z\n{plain}"
+    );
+    assert!(read("dsys_0", &nodes, &elements(), None).unwrap().warnings.is_empty());
+}
+
 #[test]
 fn the_scene_may_tell_the_columns() {
     let text = format!("7 {}\n3 {}\n", element_nodes(1), element_nodes(13));
@@ -295,8 +364,8 @@ fn faults_of_the_constraint_list() {
         bad("two_values", "5 UX 0\n6 1 0\n5 1 0.25\n"),
         "DOF.DAT:3: constraint of node 5 in x: found 0.25 after 0 on line 1, expected one value"
     );
-    // A decimal comma makes two numbers.
-    assert_eq!(bad("value", "5 1 0,5\n"), "DOF.DAT:1: imaginary part: found 5, expected 0");
+    assert_eq!(bad("value", "5 1 0,5\n"), "DOF.DAT:1: row: found \"0,5\", expected a decimal point");
+    assert_eq!(bad("imaginary", "5 1 0 5\n"), "DOF.DAT:1: imaginary part: found 5, expected 0");
     assert_eq!(
         bad("value_text", "5 1 o.o\n"),
         "DOF.DAT:1: prescribed value: found \"o.o\", expected a number"

@@ -91,8 +91,13 @@ fn command(
         "EBLOCK" => cdb_blocks::elements(lines, line, &fields, archive),
         "ETBLOCK" => cdb_blocks::types(lines, line, archive),
         "CMBLOCK" => {
-            let component = cdb_blocks::component(lines, line, &fields)?;
-            archive.components.push(component);
+            match cdb_blocks::component(lines, line, &fields)? {
+                Some(component) => archive.components.push(component),
+                None => {
+                    let (name, kind) = (fields[1], fields[2]);
+                    builder.warn(format!("component {name} of the solid model ({kind}) is left out"));
+                }
+            }
             Ok(())
         }
         "ET" => element_type(builder, archive, line, &fields),

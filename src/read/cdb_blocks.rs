@@ -40,7 +40,9 @@ impl<'a> Lines<'a> {
 
     /// Whether the next line is a row of numbers.
     fn numeric(&mut self) -> bool {
-        self.lines.peek().is_some_and(|(_, line)| line.trim_start().starts_with(|c: char| c.is_ascii_digit()))
+        let number =
+            |line: &str| line.trim_start().trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
+        self.lines.peek().is_some_and(|(_, line)| number(line))
     }
 
     fn fault(&self, line: usize, key: &str, found: impl Into<String>, expected: &str) -> ReadError {
@@ -48,11 +50,11 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Fields of a row: whole numbers, then reals, as in `(3i9,6e21.13e3)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Fields of a row: whole numbers, then reals, as in `(3i9,6e21.13e3)` or `(1i7,2i9,6e21.13)`.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Format {
-    pub whole: usize,
-    pub whole_width: usize,
+    /// Widths of the whole numbers.
+    pub whole: Vec<usize>,
     pub real: usize,
     pub real_width: usize,
 }
@@ -69,21 +71,29 @@ impl Format {
                 (if count.is_empty() { 1 } else { count.parse().ok()? }, width.parse().ok()?);
             ((1..=100).contains(&count) && (1..=100).contains(&width)).then_some((count, width))
         };
-        let (whole, whole_width) = item(parts.next()?, &['i'])?;
-        let (real, real_width) = match parts.next() {
-            Some(part) => item(part, &['e', 'f', 'g', 'a']).unwrap_or((0, 1)),
-            None => (0, 1),
-        };
-        Some(Format { whole, whole_width, real, real_width })
+        let mut whole = Vec::new();
+        let mut part = parts.next();
+        while let Some((count, width)) = part.and_then(|part| item(part, &['i'])) {
+            whole.extend(std::iter::repeat_n(width, count));
+            part = parts.next();
+        }
+        let reals = part.and_then(|part| item(part, &['e', 'f', 'g', 'a']));
+        let (real, real_width) = reals.unwrap_or((0, 1));
+        (!whole.is_empty()).then_some(Format { whole, real, real_width })
+    }
+
+    /// Place of whole number `at` in a row, or of the first real.
+    fn place(&self, at: usize) -> usize {
+        self.whole[..at].iter().sum()
     }
 
     /// Whole number `at` of a row: `None` when the row ends before it or the field is blank.
     fn whole<'a>(&self, row: &'a str, at: usize) -> Option<&'a str> {
-        field(row, at * self.whole_width, self.whole_width)
+        field(row, self.place(at), *self.whole.get(at)?)
     }
 
     fn real<'a>(&self, row: &'a str, at: usize) -> Option<&'a str> {
-        field(row, self.whole * self.whole_width + at * self.real_width, self.real_width)
+        field(row, self.place(self.whole.len()) + at * self.real_width, self.real_width)
     }
 }
 
@@ -104,13 +114,16 @@ fn format(lines: &mut Lines, block: &str) -> Result<Format, ReadError> {
 /// All whole numbers of a row up to its end; blank fields are 0.
 fn whole_row(
     lines: &Lines,
-    format: Format,
+    format: &Format,
     line: usize,
     row: &str,
     key: &str,
 ) -> Result<Vec<u32>, ReadError> {
-    let count = row.trim_end().len().div_ceil(format.whole_width).min(format.whole);
-    (0..count).map(|at| whole(lines, line, format.whole(row, at).unwrap_or("0"), key)).collect()
+    let end = row.trim_end().len();
+    (0..format.whole.len())
+        .take_while(|at| format.place(*at) < end)
+        .map(|at| whole(lines, line, format.whole(row, at).unwrap_or("0"), key))
+        .collect()
 }
 
 fn whole(lines: &Lines, line: usize, text: &str, key: &str) -> Result<u32, ReadError> {
@@ -168,8 +181,8 @@ pub(super) fn elements(
     let solid = fields.get(2).is_some_and(|f| f.eq_ignore_ascii_case("SOLID"));
     let format = format(lines, "EBLOCK")?;
     let entries = if solid { 11 } else { 5 };
-    if format.whole <= entries {
-        let found = format!("{} numbers a row", format.whole);
+    if format.whole.len() <= entries {
+        let found = format!("{} numbers a row", format.whole.len());
         return Err(lines.fault(line, "EBLOCK", found, "more than its entries before the nodes"));
     }
     loop {
@@ -177,7 +190,7 @@ pub(super) fn elements(
         if ends(row) {
             return Ok(());
         }
-        let first = whole_row(lines, format, line, row, "element")?;
+        let first = whole_row(lines, &format, line, row, "element")?;
         if first.len() <= entries {
             let found = format!("{} numbers", first.len());
             return Err(lines.fault(line, "element", found, "entries and nodes"));
@@ -200,12 +213,12 @@ pub(super) fn elements(
                     let (key, found) = (format!("element {}", element.id), "the end of the block");
                     return Err(lines.fault(line, &key, found, &format!("{count} nodes")));
                 }
-                element.nodes.extend(whole_row(lines, format, line, row, "node of an element")?);
+                element.nodes.extend(whole_row(lines, &format, line, row, "node of an element")?);
             }
             element.nodes.truncate(count.max(1));
         } else if first.len() == 15 && archive.takes_two_rows(element.kind) {
             let (line, row) = lines.row("EBLOCK")?;
-            element.nodes.extend(whole_row(lines, format, line, row, "node of an element")?);
+            element.nodes.extend(whole_row(lines, &format, line, row, "node of an element")?);
         }
         archive.elements.push(element);
     }
@@ -233,14 +246,24 @@ pub(super) fn types(lines: &mut Lines, _line: usize, archive: &mut Archive) -> R
     }
 }
 
+/// Kinds of components of the solid model, which a mesh has no use for.
+const GEOMETRY: [&str; 8] = ["KP", "KPS", "LINE", "LINES", "AREA", "AREAS", "VOLU", "VOLUS"];
+
 /// `CMBLOCK, name, NODE or ELEM, count`: a negative number ends a range that the number before it begins.
-pub(super) fn component(lines: &mut Lines, line: usize, fields: &[&str]) -> Result<Component, ReadError> {
+/// `None` for a component of the solid model, whose rows are passed over.
+pub(super) fn component(
+    lines: &mut Lines,
+    line: usize,
+    fields: &[&str],
+) -> Result<Option<Component>, ReadError> {
     let (Some(name), Some(kind), Some(count)) = (fields.get(1), fields.get(2), fields.get(3)) else {
         return Err(lines.fault(line, "CMBLOCK", fields.join(","), "CMBLOCK, name, NODE or ELEM, count"));
     };
-    let of_nodes = match kind.to_ascii_uppercase().as_str() {
+    let upper = kind.to_ascii_uppercase();
+    let of_nodes = match upper.as_str() {
         "NODE" | "NODES" => true,
         "ELEM" | "ELEMENT" | "ELEMENTS" => false,
+        _ if GEOMETRY.contains(&upper.as_str()) => false,
         _ => return Err(lines.fault(line, "CMBLOCK", format!("\"{kind}\""), "NODE or ELEM")),
     };
     let count = whole(lines, line, count, "count of a component")? as usize;
@@ -253,7 +276,7 @@ pub(super) fn component(lines: &mut Lines, line: usize, fields: &[&str]) -> Resu
             return Err(lines.fault(line, &format!("component {name}"), found, &format!("{count} numbers")));
         }
         let (line, row) = lines.row("CMBLOCK")?;
-        for at in 0..format.whole.min(count - read) {
+        for at in 0..format.whole.len().min(count - read) {
             let Some(text) = format.whole(row, at) else { break };
             let key = format!("component {name}");
             match text.strip_prefix('-') {
@@ -275,7 +298,8 @@ pub(super) fn component(lines: &mut Lines, line: usize, fields: &[&str]) -> Resu
             return Err(lines.fault(line, &format!("component {name}"), "an empty row", "numbers"));
         }
     }
-    Ok(Component { name: name.to_string(), of_nodes, ranges })
+    let of_mesh = !GEOMETRY.contains(&upper.as_str());
+    Ok(of_mesh.then(|| Component { name: name.to_string(), of_nodes, ranges }))
 }
 
 #[cfg(test)]
@@ -284,11 +308,13 @@ mod tests {
 
     #[test]
     fn formats() {
-        let parsed = |text| Format::parse(text).map(|f| (f.whole, f.whole_width, f.real, f.real_width));
-        assert_eq!(parsed("(3i9,6e21.13e3)"), Some((3, 9, 6, 21)));
-        assert_eq!(parsed(" (3I8,6E20.13) "), Some((3, 8, 6, 20)));
-        assert_eq!(parsed("(1i9,3e20.9e3)"), Some((1, 9, 3, 20)));
-        assert_eq!(parsed("(19i10)"), Some((19, 10, 0, 1)));
+        let parsed = |text| Format::parse(text).map(|f| (f.whole, f.real, f.real_width));
+        assert_eq!(parsed("(3i9,6e21.13e3)"), Some((vec![9; 3], 6, 21)));
+        assert_eq!(parsed(" (3I8,6E20.13) "), Some((vec![8; 3], 6, 20)));
+        assert_eq!(parsed("(1i9,3e20.9e3)"), Some((vec![9], 3, 20)));
+        assert_eq!(parsed("(1i7,2i9,6e21.13)"), Some((vec![7, 9, 9], 6, 21)));
+        assert_eq!(parsed("(i8,i9,i10,3e20.9)"), Some((vec![8, 9, 10], 3, 20)));
+        assert_eq!(parsed("(19i10)"), Some((vec![10; 19], 0, 1)));
         for text in ["", "(", "()", "(3x9)", "(0i9)", "(3i0)", "(999999i9)", "3i9"] {
             assert_eq!(parsed(text), None, "{text}");
         }

@@ -88,9 +88,11 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
             expected: "all mid-side nodes of an element, or none",
         });
     }
-    // A mid-side of an edge without length repeats its corner; where mid-sides are missing it may be missing too.
+    // A mid-side of an edge without length repeats a corner, mostly that of the edge; where mid-sides are missing it may be
+    // missing too.
     for &(p, of) in form.repeats.iter().filter(|(p, _)| (8..ids.len()).contains(p)) {
-        if ids[p] != ids[of] && ids[p] != 0 {
+        let corner_of_point = of < 8 && ids[..8].contains(&ids[p]);
+        if ids[p] != ids[of] && ids[p] != 0 && !corner_of_point {
             let found = format!("node {} = {} on an edge of a {}", LETTERS[p], ids[p], kind.name());
             return Err(Fault { found, expected: "the node of the corner or edge that it is folded onto" });
         }

@@ -2,12 +2,15 @@
 //!
 //! An element may take one line or several. The number of columns of an element is the one that divides the
 //! lines of the file into whole elements; the first of 22, 21, 20 and 26 that fits is taken. Where none does, and all
-//! lines have the same 10, 9, 8 or 14 columns, they are elements of 8 nodes. Otherwise the message is about the
+//! lines have the same 10, 9, 8 or 14 columns, they are elements of 8 nodes; so they are where two lines of 10 would make no element of
+//! 20 nodes. Otherwise the message is about the
 //! number of columns that most lines have, or else about the one that gets furthest, so that it names the first damaged
 //! element.
 
 use super::ansys_lists::ElementColumns;
+use super::degenerate::from_brick;
 use super::error::ReadError;
+use super::number;
 use super::table::{Row, Table};
 
 /// What the columns before the nodes are.
@@ -97,6 +100,11 @@ pub fn split(
         }
     }
     let (mut columns, mut records, fault) = best.expect("the loop above tries four candidates");
+    let two_lines = columns == NEITHER && table.rows.iter().all(|row| row.width() == 10);
+    let fault = match (fault, two_lines && !records.iter().all(|record| is_brick(table, *record))) {
+        (None, true) => Some(wrong_width(table, ID_MATERIAL, 0, 1, 10)),
+        (fault, _) => fault,
+    };
     if let Some(fault) = fault {
         let widths = [ID_MATERIAL, ID, NEITHER, LISTING].map(Columns::of_eight);
         let same = |c: &Columns| table.rows.iter().all(|row| row.width() == c.width());
@@ -107,6 +115,12 @@ pub fn split(
         columns = id_or_material(table, columns.count, &records, warnings)?;
     }
     Ok((columns, records))
+}
+
+/// Whether the fields of an element without number and material are nodes of a brick.
+fn is_brick(table: &Table, record: Record) -> bool {
+    let ids: Option<Vec<u32>> = fields(table, record).map(|(_, text)| number::whole(text)).collect();
+    ids.is_some_and(|ids| from_brick(&ids).is_ok())
 }
 
 /// Whether most lines have just these columns.

@@ -3,7 +3,8 @@
 //! | in Gmsh | here |
 //! |---|---|
 //! | physical volume | material number; a set of elements when it has a name |
-//! | physical surface, curve, point | set of the nodes of its elements, by name or as `physical_surface_7` |
+//! | physical surface | set of faces, and of their nodes, by name or as `physical_surface_7` |
+//! | physical curve, point | set of the nodes of its elements, likewise |
 //! | no physical volume at all | the number of the geometric volume is the material number |
 //!
 //! A volume in several physical groups takes the material of the first, and belongs to the set of each. Elements of
@@ -17,9 +18,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use trackbed_fem::ElementKind;
+use trackbed_fem::{ElementKind, Mesh};
 
 use super::error::ReadError;
+use super::faces::{self, Faces};
 use super::gmsh4;
 use super::mesh_file::{Builder, MeshFile, order_from_edges, read_bytes};
 use super::tokens::{Encoding, Tokens};
@@ -71,10 +73,13 @@ const LOWER: [(i32, usize, usize); 14] = [
     (23, 2, 15),
 ];
 
+/// Types of `LOWER` with four corners.
+const QUADRANGLES: [i32; 3] = [3, 10, 16];
+
 /// Dimension and number of nodes of a type.
 pub(super) enum Shape {
     Volume(ElementKind),
-    Lower { dimension: usize, nodes: usize },
+    Lower { dimension: usize, nodes: usize, corners: usize },
 }
 
 pub(super) fn shape(tokens: &mut Tokens, kind: i32) -> Result<Shape, ReadError> {
@@ -82,7 +87,8 @@ pub(super) fn shape(tokens: &mut Tokens, kind: i32) -> Result<Shape, ReadError> 
         return Ok(Shape::Volume(*kind));
     }
     if let Some(&(_, dimension, nodes)) = LOWER.iter().find(|(number, ..)| *number == kind) {
-        return Ok(Shape::Lower { dimension, nodes });
+        let corners = if QUADRANGLES.contains(&kind) { 4 } else { 3.min(nodes) };
+        return Ok(Shape::Lower { dimension, nodes, corners });
     }
     let name = match kind {
         12 => "27-node hexahedra (type 12)".to_string(),
@@ -107,6 +113,9 @@ pub(super) struct RawElement {
     pub nodes: Vec<u32>,
 }
 
+/// Name of the physical volume of material 0: Gmsh numbers its groups from 1.
+pub(crate) const MATERIAL_0: &str = "material_0";
+
 /// What the sections tell, before it is put together.
 #[derive(Default)]
 pub(super) struct Sections {
@@ -115,9 +124,14 @@ pub(super) struct Sections {
     pub elements: Vec<RawElement>,
     /// Node numbers of physical groups of dimension 0 to 2.
     pub node_groups: BTreeMap<(usize, u32), Vec<u32>>,
+    /// Corners of the faces of physical surfaces, by node number.
+    pub face_groups: BTreeMap<u32, Vec<[u32; 4]>>,
     /// Physical groups of the entities, by dimension and number (4.1).
     pub entities: BTreeMap<(usize, i32), Vec<u32>>,
 }
+
+/// Sections with numbers, whose form `$MeshFormat` says.
+const SECTIONS: [&str; 4] = ["$PhysicalNames", "$Entities", "$Nodes", "$Elements"];
 
 /// Reads a Gmsh mesh.
 ///
@@ -142,8 +156,12 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
         }
         let old = match (version, name) {
             (_, "$MeshFormat") => true,
-            (None, _) => return Err(tokens.fault("section", name, "$MeshFormat first")),
             (Some(old), _) => old,
+            (None, name) if SECTIONS.contains(&name) => {
+                return Err(tokens.fault("section", name, "$MeshFormat first"));
+            }
+            // Comments and sections of other programs may stand before it.
+            (None, _) => true,
         };
         tokens.encoding = encoding;
         match name {
@@ -162,7 +180,7 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
         }
         tokens.encoding = Encoding::Text;
         let end = name.replacen('$', "$End", 1);
-        let known = ["$MeshFormat", "$PhysicalNames", "$Entities", "$Nodes", "$Elements"].contains(&name);
+        let known = name == "$MeshFormat" || SECTIONS.contains(&name);
         loop {
             match tokens.next_line() {
                 Some(line) if line == end => break,
@@ -302,8 +320,11 @@ pub(super) fn one_element<'a>(
         Shape::Volume(kind) => {
             sections.elements.push(RawElement { line, id, kind: *kind, groups, entity, nodes });
         }
-        Shape::Lower { dimension, .. } => {
+        Shape::Lower { dimension, corners, .. } => {
             for group in groups {
+                if *dimension == 2 {
+                    sections.face_groups.entry(group).or_default().push(faces::key(&nodes[..*corners]));
+                }
                 sections.node_groups.entry((*dimension, group)).or_default().extend(&nodes);
             }
         }
@@ -312,7 +333,9 @@ pub(super) fn one_element<'a>(
 }
 
 fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile, ReadError> {
+    builder.made.no_constraints = true;
     merge_repeated(&mut sections.elements);
+    let none = Mesh::default();
     let grouped = sections.elements.iter().filter(|e| !e.groups.is_empty()).count();
     let total = sections.elements.len();
     if grouped == 0 && total > 0 {
@@ -325,18 +348,21 @@ fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile
     }
     for raw in &sections.elements {
         let own = if grouped == 0 { raw.entity } else { 0 };
-        let material = raw.groups.first().copied().unwrap_or(own);
+        let is_zero = |group: &u32| sections.names.get(&(3, *group)).is_some_and(|name| name == MATERIAL_0);
+        let material = raw.groups.first().filter(|group| !is_zero(group)).copied();
+        let material = material.unwrap_or(if raw.groups.is_empty() { own } else { 0 });
         let nodes: Vec<u32> = order(raw.kind).iter().map(|p| raw.nodes[*p]).collect();
         let number = TYPES.iter().find(|(_, kind)| *kind == raw.kind).map_or(0, |t| t.0);
         let name = format!("type {number} {}", raw.kind.name());
         builder.element(raw.line, raw.id, material, (raw.kind, &name), &nodes)?;
         let index = builder.made.mesh.element_count() as u32 - 1;
-        for group in &raw.groups {
+        for group in raw.groups.iter().filter(|group| !is_zero(group)) {
             if let Some(name) = sections.names.get(&(3, *group)) {
                 builder.element_set(name, [index]);
             }
         }
     }
+    let all_faces = Faces::of(if sections.face_groups.is_empty() { &none } else { &builder.made.mesh });
     for ((dimension, number), ids) in &sections.node_groups {
         let what = ["point", "curve", "surface"][*dimension];
         let name = sections.names.get(&(*dimension, *number)).cloned();
@@ -349,8 +375,28 @@ fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile
             nodes.push(index);
         }
         builder.node_set(&name, nodes);
+        if *dimension == 2 {
+            let faces = sections.face_groups.get(number).map(Vec::as_slice).unwrap_or_default();
+            face_set(&mut builder, &all_faces, &name, faces);
+        }
     }
     builder.finish()
+}
+
+/// The faces of a physical surface as those of volumes.
+fn face_set(builder: &mut Builder, all: &Faces, name: &str, faces: &[[u32; 4]]) {
+    let (mut found, mut absent) = (Vec::new(), 0);
+    for ids in faces {
+        let corners = ids.map(|id| if id == u32::MAX { Some(id) } else { builder.node_index(id) });
+        let key = corners.map(|corner| corner.unwrap_or(u32::MAX));
+        let before = found.len();
+        found.extend(all.find(faces::key(&key)));
+        absent += usize::from(found.len() == before);
+    }
+    builder.face_set(name, found);
+    if absent > 0 {
+        builder.warn(format!("{absent} faces of the set {name} are no faces of volumes and are left out"));
+    }
 }
 
 /// Format 2.2 holds an element once for each of its physical groups, with the same nodes.

@@ -7,6 +7,7 @@ use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::error::ReadError;
+use super::faces::Faces;
 use super::source;
 
 /// What a mesh file holds.
@@ -16,10 +17,15 @@ pub struct MeshFile {
     pub mesh: Mesh,
     /// Constraints in file order, one per node and direction.
     pub constraints: Vec<Constraint>,
+    /// Whether the form of the file cannot hold constraints.
+    pub no_constraints: bool,
     /// Named sets of nodes: indices of nodes, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
     /// Named sets of elements: indices of elements, ascending.
     pub element_sets: BTreeMap<String, Vec<u32>>,
+    /// Named sets of faces: index of the element and number of the face in `ElementKind::faces`, ascending. A set of nodes has
+    /// the same name.
+    pub face_sets: BTreeMap<String, Vec<[u32; 2]>>,
     /// Elastic constants by material number, where the file tells them.
     pub materials: BTreeMap<u32, FileMaterial>,
     /// Types of volume elements as the file names them, with their counts, in the order of their first elements.
@@ -27,6 +33,11 @@ pub struct MeshFile {
     /// What was guessed, left out, or looks like a mistake, one sentence each.
     pub warnings: Vec<String>,
 }
+
+/// Largest coordinate, so that volumes and their products are finite numbers.
+pub(crate) const FARTHEST: f64 = 1e15;
+/// What is expected of coordinates.
+pub(super) const FARTHEST_EXPECTED: &str = "coordinates up to 1e15";
 
 /// Linear elastic constants of a mesh file, in the units of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +106,10 @@ impl Builder {
                 x.to_string(),
                 "finite numbers",
             ));
+        }
+        if let Some(x) = point.iter().find(|x| x.abs() > FARTHEST) {
+            let key = format!("coordinates of node {id}");
+            return Err(self.fault(line, key, format!("{x:e}"), FARTHEST_EXPECTED));
         }
         if self.nodes.insert(id, self.made.mesh.node_ids.len() as u32).is_some() {
             return Err(self.fault(line, format!("node {id}"), "it again", "each number once"));
@@ -192,6 +207,11 @@ impl Builder {
         self.made.element_sets.entry(name.to_string()).or_default().extend(elements);
     }
 
+    /// Adds faces (element, side) to a set, which is made when it is new.
+    pub fn face_set(&mut self, name: &str, faces: impl IntoIterator<Item = [u32; 2]>) {
+        self.made.face_sets.entry(name.to_string()).or_default().extend(faces);
+    }
+
     /// The file read: without unused nodes, with sets in order. A file without volume elements is refused.
     pub fn finish(mut self) -> Result<MeshFile, ReadError> {
         for (name, count) in std::mem::take(&mut self.left_out) {
@@ -207,13 +227,33 @@ impl Builder {
             };
             return Err(self.fault(0, "elements", found, "at least one volume element"));
         }
-        let MeshFile { mesh, constraints, node_sets, element_sets, warnings, .. } = &mut self.made;
+        check_faces(&self.file, &self.made.mesh)?;
+        let MeshFile { mesh, constraints, node_sets, element_sets, face_sets, warnings, .. } = &mut self.made;
+        for (name, faces) in face_sets {
+            faces.sort_unstable();
+            faces.dedup();
+            let nodes = faces.iter().flat_map(|[e, side]| {
+                let face = mesh.face(*e as usize, *side as usize);
+                face.nodes().to_vec()
+            });
+            if !node_sets.contains_key(name) {
+                node_sets.insert(name.clone(), nodes.collect());
+            }
+        }
         for set in node_sets.values_mut().chain(element_sets.values_mut()) {
             set.sort_unstable();
             set.dedup();
         }
         drop_unused_nodes(&self.file, mesh, constraints, node_sets, warnings);
         Ok(self.made)
+    }
+}
+
+/// Refuses elements that cannot lie side by side.
+pub(super) fn check_faces(file: &Path, mesh: &Mesh) -> Result<(), ReadError> {
+    match Faces::of(mesh).fault(mesh) {
+        None => Ok(()),
+        Some((key, found, expected)) => Err(ReadError::whole(file, key, found, expected)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: vertices and polygons.
 //!
 //! Read are `v x y z` (a weight or colours behind them are left out) and `f`, whose corners name a vertex as `v`, `v/vt`,
-//! `v//vn` or `v/vt/vn`, counted from 1, or backwards from the last one as −1, −2, …. A polygon becomes a fan of
+//! `v//vn` or `v/vt/vn` (either may be left empty), counted from 1, or backwards from the last one as −1, −2, …. A polygon becomes a fan of
 //! triangles about its first corner. Left out: textures, normals, groups, names, materials, smoothing, points and
 //! lines. Anything else, such as curved surfaces, is refused.
 //!
@@ -121,13 +121,7 @@ fn corner(file: &Path, line: usize, word: &str, count: usize) -> Result<u32, Rea
     let vertex = parts.next().unwrap_or_default();
     let rest: Vec<&str> = parts.collect();
     let whole = |t: &&str| t.parse::<i64>().is_ok_and(|n| n != 0);
-    // v/vt, v//vn, v/vt/vn
-    let well = match rest.as_slice() {
-        [] => true,
-        [texture] => whole(texture),
-        [texture, normal] => (texture.is_empty() || whole(texture)) && whole(normal),
-        _ => false,
-    };
+    let well = rest.len() <= 2 && rest.iter().all(|text| text.is_empty() || whole(text));
     let number: i64 = vertex
         .parse()
         .ok()

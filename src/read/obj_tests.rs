@@ -59,7 +59,7 @@ fn damaged_files_are_named_by_line() {
     ] {
         assert_eq!(read(&format!("{triangle}{text}")).unwrap_err(), error);
     }
-    for corner in ["0", "1/", "1//", "1/1/1/1", "a", "1.0", "//1"] {
+    for corner in ["0", "1/0", "1/x/", "1/1/1/1", "a", "1.0", "//1"] {
         let error = read(&format!("{triangle}f {corner} 2 3\n")).unwrap_err();
         assert!(error.starts_with(&format!("s.obj:4: corner of a face: found \"{corner}\"")), "{error}");
     }

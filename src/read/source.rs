@@ -2,7 +2,7 @@
 //! cannot hold.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Take};
 use std::path::Path;
 
 use crate::machine;
@@ -45,41 +45,58 @@ impl From<io::Error> for Refusal {
     }
 }
 
-/// The bytes of a regular file of at most `most` bytes.
+/// A regular file of at most `most` bytes, opened, which ends at that limit.
 ///
 /// # Errors
 /// The file is missing or unreadable, no regular file (a folder, a device, a pipe), or too large.
-pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
+pub(crate) fn open(file: &Path, most: u64) -> Result<Take<File>, Refusal> {
     // Before it is opened: opening a pipe waits for its other end.
     let found = fs::metadata(file)?;
     if !found.is_file() {
         let kind = if found.is_dir() { "a folder" } else { "a device or a pipe" };
         return Err(Refusal::Unfit(kind.into(), "a regular file".into()));
     }
+    if found.len() > most {
+        return Err(too_large(found.len(), most, ""));
+    }
+    Ok(File::open(file)?.take(most + 1))
+}
+
+fn too_large(size: u64, most: u64, why: &str) -> Refusal {
+    Refusal::Unfit(format!("{size} bytes"), format!("at most {most} bytes{why}"))
+}
+
+/// The bytes of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// As [`open`]; the memory cannot hold it.
+pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
+    let mut source = open(file, most)?;
     let free = machine::available().map_or(most, |free| free / SHARE);
     let (least, why) = if free < most { (free, ", what the free memory allows") } else { (most, "") };
-    let too_large =
-        |size: u64| Refusal::Unfit(format!("{size} bytes"), format!("at most {least} bytes{why}"));
-    if found.len() > least {
-        return Err(too_large(found.len()));
+    let size = source.get_ref().metadata()?.len();
+    if size > least {
+        return Err(too_large(size, least, why));
     }
-    let mut bytes = Vec::with_capacity(found.len() as usize);
+    let mut bytes = Vec::with_capacity(size as usize);
     // A file of the system that has no size, or one that grows meanwhile, ends at the limit as well.
-    File::open(file)?.take(least + 1).read_to_end(&mut bytes)?;
+    source.set_limit(least + 1);
+    source.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > least {
-        return Err(too_large(bytes.len() as u64));
+        return Err(too_large(bytes.len() as u64, least, why));
     }
     Ok(bytes)
 }
 
-/// The text of a regular file of at most [`LARGEST_TEXT`] bytes.
+/// The text of a regular file of at most [`LARGEST_TEXT`] bytes, without a byte order mark.
 ///
 /// # Errors
 /// As [`bytes`]; it is not UTF-8.
 pub(crate) fn text(file: &Path) -> Result<String, Refusal> {
     // The words of the standard library for the same fault.
     let not_utf8 = |_| io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
-    Ok(String::from_utf8(bytes(file, LARGEST_TEXT)?).map_err(not_utf8)?)
+    let text = String::from_utf8(bytes(file, LARGEST_TEXT)?).map_err(not_utf8)?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 use std::path::Path;
 
 use super::error::ReadError;
+use super::header::Content;
 use super::table::Table;
 use super::{MESH_ENDINGS, asc, geotiff, obj, skin, stl};
 
@@ -64,7 +65,7 @@ fn mended(soup: &Surface) -> Surface {
 /// Counts that do not fit the rows, rows of another width, coordinates that are no finite numbers, and triangles that
 /// name a vertex that does not exist.
 pub fn read_plain(file: &Path) -> Result<Surface, ReadError> {
-    let table = Table::read(file, "surface")?;
+    let table = Table::read(file, Content::Surface)?;
     let Some(head) = table.rows.first() else {
         return Err(ReadError::whole(
             file,

@@ -1,21 +1,25 @@
 //! A text file as rows of fields: what is common to the three lists.
 //!
-//! Fields are separated by blanks, tabs or commas. Left out are empty lines, comments (a line that starts
-//! with `!`, `#`, `/` or `*`, and the rest of a line after `!` or `#`) and headers: lines whose first field
-//! does not start as a number does. Below the first row of numbers a header that holds numbers of its own is
-//! taken only as a repeat of an earlier one (page titles of a listing); anything else there is more likely a
-//! damaged row, and an error.
+//! Fields are separated by blanks, tabs or commas. A line is a row of numbers, a comment by its own mark (it starts with `!`, `#`,
+//! `/` or `*`; the rest of a line after `!` or `#` is one too), or a header of a known form (`header`); anything else is an error.
+//! Pages of a listing may repeat the program's banner, up to the column heading.
 
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
+use super::header::{self, Content};
 use super::mesh_file::read_bytes;
 use super::number;
+
+/// Lines from the banner of a page to its column heading, at most.
+const PAGE: usize = 15;
 
 /// One line of a file that holds data.
 pub struct Row {
     /// Line number, from 1.
     pub line: usize,
+    /// Place of the line in the text.
+    start: usize,
     fields: Vec<(usize, usize)>,
 }
 
@@ -25,30 +29,40 @@ pub struct Table {
     pub file: PathBuf,
     /// Its lines with data, in file order.
     pub rows: Vec<Row>,
-    /// Headers left out although they hold numbers, as sentences for the user.
-    pub warnings: Vec<String>,
     text: String,
 }
 
 impl Table {
-    /// Reads `file`; `what` names its content in messages.
-    pub fn read(file: &Path, what: &str) -> Result<Table, ReadError> {
-        let bytes = read_bytes(file, what)?;
+    /// Reads `file`.
+    pub fn read(file: &Path, content: Content) -> Result<Table, ReadError> {
+        let bytes = read_bytes(file, content.name())?;
         // Headers may hold any 8-bit code page; the data are ASCII.
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        Self::parse(file, what, text)
+        Self::parse(file, content, text)
     }
 
-    fn parse(file: &Path, what: &str, text: String) -> Result<Table, ReadError> {
+    fn parse(file: &Path, content: Content, text: String) -> Result<Table, ReadError> {
         let mut rows: Vec<Row> = Vec::new();
-        let mut headers: Vec<&str> = Vec::new();
-        let mut warnings = Vec::new();
+        // Line of the banner of a page whose column heading is still to come.
+        let mut page: Option<usize> = None;
         let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let mut offset = start;
         for (number, raw) in text[start..].split('\n').enumerate() {
             let (line, at) = (number + 1, offset);
             offset += raw.len() + 1;
-            let body = raw.trim_start();
+            let body = raw.trim();
+            if is_banner(body) {
+                page = page.or(Some(line));
+                continue;
+            }
+            if let Some(banner) = page {
+                if line - banner > PAGE {
+                    return Err(open_page(file, banner));
+                }
+                page = page.filter(|_| !header::is_heading(body, content));
+                continue;
+            }
+            check_overflow(file, line, body, !rows.is_empty())?;
             if body.starts_with(['!', '#', '/', '*']) {
                 continue;
             }
@@ -56,27 +70,26 @@ impl Table {
             if body.is_empty() {
                 continue;
             }
+            if !number::looks_numeric(body) {
+                match header::refusal(body, content) {
+                    Some((key, found, expected)) => {
+                        return Err(ReadError::at(file, line, key, found, expected));
+                    }
+                    None => continue,
+                }
+            }
+            check_separators(file, line, body)?;
             let base = at + (body.as_ptr() as usize - raw.as_ptr() as usize);
             let fields = split(body, base).map_err(|column| {
                 let key = format!("column {column}");
                 ReadError::at(file, line, key, "nothing between two commas", "a number")
             })?;
-            let field = |f: &(usize, usize)| &text[f.0..f.1];
-            if fields.first().is_some_and(|f| number::looks_numeric(field(f))) {
-                rows.push(Row { line, fields });
-                continue;
-            }
-            if fields.iter().any(|f| number::looks_numeric(field(f))) && !headers.contains(&body) {
-                if !rows.is_empty() {
-                    let found = format!("\"{}\"", fields.first().map_or("", field));
-                    return Err(ReadError::at(file, line, what, found, "a number"));
-                }
-                warnings
-                    .push(format!("{}:{line}: taken as a header and left out: \"{body}\"", file.display()));
-            }
-            headers.push(body);
+            rows.push(Row { line, start: at, fields });
         }
-        Ok(Table { file: file.to_path_buf(), rows, warnings, text })
+        match page {
+            Some(banner) => Err(open_page(file, banner)),
+            None => Ok(Table { file: file.to_path_buf(), rows, text }),
+        }
     }
 
     /// The fields of a row.
@@ -88,6 +101,12 @@ impl Table {
     pub fn field<'a>(&'a self, row: &Row, column: usize) -> &'a str {
         let (from, to) = row.fields[column];
         &self.text[from..to]
+    }
+
+    /// First and last column of a field in its line, the first of all is 0.
+    pub fn extent(&self, row: &Row, column: usize) -> (usize, usize) {
+        let (from, to) = row.fields[column];
+        (from - row.start, to - row.start)
     }
 
     /// Field `column` of a row as an identifier.
@@ -115,6 +134,56 @@ impl Row {
 pub fn whole(file: &Path, line: usize, text: &str, key: &str) -> Result<u32, ReadError> {
     number::whole(text)
         .ok_or_else(|| ReadError::at(file, line, key, format!("\"{text}\""), "a whole number of 0 or more"))
+}
+
+/// Whether a line begins a page of a listing: `*** MAPDL - ENGINEERING ANALYSIS SYSTEM  RELEASE … ***`.
+fn is_banner(body: &str) -> bool {
+    let upper = body.to_ascii_uppercase();
+    upper.starts_with("***") && ["ANALYSIS SYSTEM", "ANSYS", "MAPDL"].iter().any(|name| upper.contains(name))
+}
+
+fn open_page(file: &Path, banner: usize) -> ReadError {
+    let found = format!("no column heading in the {PAGE} lines below it");
+    ReadError::at(file, banner, "page of a listing", found, "a heading such as NODE LABEL REAL IMAG")
+}
+
+fn check_overflow(file: &Path, line: usize, body: &str, within: bool) -> Result<(), ReadError> {
+    let tail = body.find('#').map(|at| &body[at..]).filter(|_| number::looks_numeric(body));
+    let within = within && body.starts_with('*');
+    match header::overflow(body, within).or_else(|| header::overflow(tail?, true)) {
+        None => Ok(()),
+        Some(found) => {
+            let expected = "a number: its field was too narrow; comments begin with !";
+            Err(ReadError::at(file, line, "row", format!("\"{found}\""), expected))
+        }
+    }
+}
+
+/// Refuses decimal commas and semicolons, which would be columns of their own or no columns at all.
+fn check_separators(file: &Path, line: usize, body: &str) -> Result<(), ReadError> {
+    let fault = |found: &str, expected: &str| {
+        let shown: String = found.chars().take(40).collect();
+        Err(ReadError::at(file, line, "row", format!("\"{shown}\""), expected))
+    };
+    if body.contains(';') {
+        return fault(body, "columns separated by blanks, tabs or commas, and a decimal point");
+    }
+    if !body.contains(',') {
+        return Ok(());
+    }
+    let words: Vec<&str> = body.split_whitespace().collect();
+    let separate = words.iter().any(|word| word.starts_with(',') || word.ends_with(','));
+    let decimal = |word: &&&str| {
+        let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+        let parts = word.split_once(',').filter(|(_, behind)| !behind.contains([',', '.']));
+        parts.is_some_and(|(front, behind)| {
+            digit(front.chars().last()) && digit(behind.chars().next()) && !front.contains('.')
+        })
+    };
+    match words.iter().find(decimal) {
+        Some(word) if words.len() > 1 && !separate => fault(word, "a decimal point"),
+        _ => Ok(()),
+    }
 }
 
 /// Byte ranges of the fields of a trimmed line; the error is the number of a column left empty between
@@ -145,46 +214,5 @@ fn split(body: &str, base: usize) -> Result<Vec<(usize, usize)>, usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn rows(text: &str) -> Result<Vec<(usize, Vec<String>)>, ReadError> {
-        let table = Table::parse(Path::new("F.DAT"), "rows", text.to_string())?;
-        Ok(table.rows.iter().map(|r| (r.line, table.fields(r).map(String::from).collect())).collect())
-    }
-
-    fn row(line: usize, fields: &[&str]) -> (usize, Vec<String>) {
-        (line, fields.iter().map(|f| f.to_string()).collect())
-    }
-
-    #[test]
-    fn separators_line_ends_comments_and_the_byte_order_mark() {
-        let text = "\u{feff}! c\r\n# c\r\n/PREP7\r\n*** c\r\n\r\n 1, 2.0 ,3\t4 \r\n5 6 ! rest\n7,8,\n\n9";
-        let expected =
-            vec![row(6, &["1", "2.0", "3", "4"]), row(7, &["5", "6"]), row(8, &["7", "8"]), row(10, &["9"])];
-        assert_eq!(rows(text).unwrap(), expected);
-    }
-
-    #[test]
-    fn headers_and_their_repeats_are_left_out() {
-        let text = "LIST 3 NODES\nNODE X\n1 2\nNODE X\nLIST 3 NODES\n---\n3 4\n";
-        assert_eq!(rows(text).unwrap(), vec![row(3, &["1", "2"]), row(7, &["3", "4"])]);
-        let table = Table::parse(Path::new("F.DAT"), "rows", text.to_string()).unwrap();
-        assert_eq!(table.warnings, ["F.DAT:1: taken as a header and left out: \"LIST 3 NODES\""]);
-    }
-
-    #[test]
-    fn a_damaged_row_is_no_header() {
-        let error = rows("1 2\nO3 4\n").unwrap_err();
-        assert_eq!(error.to_string(), "F.DAT:2: rows: found \"O3\", expected a number");
-    }
-
-    #[test]
-    fn an_empty_field_between_commas_is_named() {
-        let error = rows("1,2\n3,,4\n").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "F.DAT:2: column 2: found nothing between two commas, expected a number"
-        );
-    }
-}
+#[path = "table_tests.rs"]
+mod tests;

@@ -5,6 +5,7 @@
 //! | points: `node_id` | numbers of the nodes; else 1, 2, … |
 //! | points: `constraint`, `constraint_value` | 1 for x, plus 2 for y, plus 4 for z; three values, else 0 |
 //! | points: `node_set:NAME`, cells: `element_set:NAME` | members where not 0 |
+//! | cells: `face_set:NAME` | bits of the faces that are members: 1 for the first of the kind, plus 2 for the second, … |
 //! | cells: `element_id` | numbers of the elements; else 1, 2, … |
 //! | cells: `material` (or MaterialIds, MaterialID, gmsh:physical, CellEntityIds) | material numbers; else 1 |
 //!
@@ -75,7 +76,8 @@ pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadErr
             return Err(builder.fault(0, format!("{what} array {}", array.name), found, expected));
         }
     }
-    let node_ids = ids(&builder, &grid.point_data, &["node_id"], nodes, 1)?;
+    let ids = Ids::of(&grid.point_data, &["node_id"], 1);
+    let node_ids = (0..nodes).map(|at| ids.get(&builder, at)).collect::<Result<Vec<u32>, _>>()?;
     for (id, x) in node_ids.iter().zip(grid.points.chunks_exact(3)) {
         builder.node(0, *id, [x[0], x[1], x[2]])?;
     }
@@ -88,6 +90,9 @@ pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadErr
         }
     }
     for array in grid.cell_data.iter().filter(|a| a.components == 1) {
+        if let Some(name) = array.name.strip_prefix("face_set:") {
+            face_set(&mut builder, name, &kept, array)?;
+        }
         if let Some(name) = array.name.strip_prefix("element_set:") {
             let set = kept.iter().enumerate().filter(|(_, cell)| array.values[**cell] != 0.0);
             builder.element_set(name, set.map(|(index, _)| index as u32));
@@ -96,33 +101,37 @@ pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadErr
     builder.finish()
 }
 
-/// The first of the named arrays as identifiers; else `first`, `first + step`…
-fn ids(
-    builder: &Builder,
-    data: &[Array],
-    names: &[&str],
-    count: usize,
+/// Identifiers of points or cells: the first of the named arrays, else `first`, `first + step`…
+struct Ids<'a> {
+    array: Option<&'a Array>,
     step: u32,
-) -> Result<Vec<u32>, ReadError> {
-    let found = names.iter().find_map(|name| data.iter().find(|a| a.name == *name && a.components == 1));
-    let Some(array) = found else { return Ok((0..count as u32).map(|i| 1 + i * step).collect()) };
-    let whole = |v: &f64| {
-        let fits = v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v);
-        fits.then_some(*v as u32).ok_or_else(|| {
-            builder.fault(0, format!("array {}", array.name), v.to_string(), "whole numbers of 0 or more")
+}
+
+impl Ids<'_> {
+    fn of<'a>(data: &'a [Array], names: &[&str], step: u32) -> Ids<'a> {
+        let array = names.iter().find_map(|name| data.iter().find(|a| a.name == *name && a.components == 1));
+        Ids { array, step }
+    }
+
+    /// The identifier of one point or cell: those of cells that are left out do not matter.
+    fn get(&self, builder: &Builder, at: usize) -> Result<u32, ReadError> {
+        let Some(array) = self.array else { return Ok(1 + at as u32 * self.step) };
+        let value = array.values[at];
+        let fits = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
+        fits.then_some(value as u32).ok_or_else(|| {
+            builder.fault(0, format!("array {}", array.name), value.to_string(), "whole numbers of 0 or more")
         })
-    };
-    array.values.iter().map(whole).collect()
+    }
 }
 
 /// Adds the cells of three dimensions; returns which they are.
 fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<usize>, ReadError> {
     let cells = grid.types.len();
-    let element_ids = ids(builder, &grid.cell_data, &["element_id"], cells, 1)?;
-    let materials = ids(builder, &grid.cell_data, &MATERIALS, cells, 0)?;
+    let element_ids = Ids::of(&grid.cell_data, &["element_id"], 1);
+    let materials = Ids::of(&grid.cell_data, &MATERIALS, 0);
     let (mut start, mut turned, mut kept) = (0, 0, Vec::with_capacity(cells));
     for cell in 0..cells {
-        let (type_number, end, id) = (grid.types[cell], grid.ends[cell], element_ids[cell]);
+        let (type_number, end) = (grid.types[cell], grid.ends[cell]);
         let in_order = end >= start as f64 && end <= grid.connectivity.len() as f64;
         let key = || format!("cell {cell}");
         if !in_order {
@@ -159,7 +168,8 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
                 return Err(builder.fault(0, key(), format!("VTK type {type_number}"), expected));
             }
         };
-        builder.element(0, id, materials[cell], (kind, &format!("{name} {}", kind.name())), &of_cell)?;
+        let (id, material) = (element_ids.get(builder, cell)?, materials.get(builder, cell)?);
+        builder.element(0, id, material, (kind, &format!("{name} {}", kind.name())), &of_cell)?;
         let index = builder.made.mesh.element_count() - 1;
         if kind.linear() == ElementKind::Wedge6 && builder.made.mesh.element_volume(index) < 0.0 {
             turn(&mut builder.made.mesh.connectivity[index]);
@@ -171,6 +181,27 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
         builder.warn(format!("{turned} wedges whose first triangle is seen from outside were turned"));
     }
     Ok(kept)
+}
+
+/// A set of faces: bit k of a cell's value is its face k, from 0.
+fn face_set(builder: &mut Builder, name: &str, kept: &[usize], array: &Array) -> Result<(), ReadError> {
+    let mut faces = Vec::new();
+    for (element, cell) in kept.iter().enumerate() {
+        let (bits, sides) = (array.values[*cell], builder.made.mesh.connectivity.kind(element).faces().len());
+        if bits.fract() != 0.0 || !(0.0..f64::from(1_u32 << sides)).contains(&bits) {
+            let expected = format!("0 to {}: a bit for each of {sides} faces", (1 << sides) - 1);
+            return Err(builder.fault(
+                0,
+                format!("array {} of cell {cell}", array.name),
+                bits.to_string(),
+                expected,
+            ));
+        }
+        let of_cell = (0..sides as u32).filter(|side| bits as u32 & (1 << side) != 0);
+        faces.extend(of_cell.map(|side| [element as u32, side]));
+    }
+    builder.face_set(name, faces);
+    Ok(())
 }
 
 /// A wedge numbered the other way round.
@@ -189,7 +220,10 @@ fn constraints(builder: &mut Builder, grid: &Grid) -> Result<(), ReadError> {
     let array = |name: &str, components| {
         grid.point_data.iter().find(|a| a.name == name && a.components == components)
     };
-    let Some(mask) = array("constraint", 1) else { return Ok(()) };
+    let Some(mask) = array("constraint", 1) else {
+        builder.made.no_constraints = true;
+        return Ok(());
+    };
     let values = array("constraint_value", 3);
     for (node, bits) in mask.values.iter().enumerate() {
         if bits.fract() != 0.0 || !(0.0..=7.0).contains(bits) {

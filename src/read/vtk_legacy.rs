@@ -68,7 +68,8 @@ impl Reader<'_> {
             }
             "POINT_DATA" | "CELL_DATA" => {
                 self.of_points = Some(word(0).eq_ignore_ascii_case("POINT_DATA"));
-                self.count = self.number("number of values", word(1))?;
+                // A section may hold no array, so that the rest of the file says nothing about its count.
+                self.count = self.unlimited("number of values", word(1))? as usize;
                 Ok(())
             }
             "SCALARS" => {
@@ -138,13 +139,17 @@ impl Reader<'_> {
         while self.tokens.rest_of_line().is_some_and(|line| !line.is_empty()) {}
     }
 
+    /// A count that the rest of the file can hold.
     fn number(&mut self, key: &str, word: &str) -> Result<usize, ReadError> {
-        let count = word.parse::<u64>().ok();
-        let Some(count) = count else {
-            let shown: String = word.chars().take(40).collect();
-            return Err(self.tokens.fault(key, format!("\"{shown}\""), "a whole number of 0 or more"));
-        };
+        let count = self.unlimited(key, word)?;
         self.tokens.plausible(count, key)
+    }
+
+    fn unlimited(&mut self, key: &str, word: &str) -> Result<u64, ReadError> {
+        word.parse().map_err(|_| {
+            let shown: String = word.chars().take(40).collect();
+            self.tokens.fault(key, format!("\"{shown}\""), "a whole number of 0 or more")
+        })
     }
 
     /// `CELLS cells numbers` with the count of nodes before those of each cell, or, since version 5, `CELLS ends numbers`

@@ -11,6 +11,7 @@ use std::path::Path;
 use trackbed_fem::ElementKind;
 
 use crate::read::MeshFile;
+use crate::read::abaqus_faces::face_number;
 use crate::read::degenerate::to_brick;
 
 use super::atomic;
@@ -78,13 +79,34 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
             writeln!(out, "{}", rows.join(",\n"))?;
         }
     }
+    // Sets of the sections, by their materials.
+    let sections: BTreeSet<String> = mesh.materials.iter().map(|m| format!("MATERIAL_{m}")).collect();
+    let sections: Vec<String> = sections.into_iter().collect();
+    let node_sets = plain_names(&file.node_sets, &[], NAME, lost);
+    // A set of faces keeps the name of the set of its nodes.
+    let of_nodes: BTreeMap<&String, String> =
+        file.node_sets.keys().zip(node_sets.iter().map(|(name, _)| name.clone())).collect();
     for (what, sets, ids) in [
-        ("*NSET, NSET", plain_names(&file.node_sets, NAME, lost), &mesh.node_ids),
-        ("*ELSET, ELSET", plain_names(&file.element_sets, NAME, lost), &mesh.element_ids),
+        ("*NSET, NSET", node_sets, &mesh.node_ids),
+        ("*ELSET, ELSET", plain_names(&file.element_sets, &sections, NAME, lost), &mesh.element_ids),
     ] {
         for (name, members) in sets {
             writeln!(out, "{what}={name}")?;
             numbers(&mut out, members.iter().map(|m| ids[*m as usize]))?;
+        }
+    }
+    let own = plain_names(&file.face_sets, &[], NAME, &mut Vec::new());
+    for (set, (own, faces)) in file.face_sets.keys().zip(own) {
+        let name = of_nodes.get(set).unwrap_or(&own);
+        writeln!(out, "*SURFACE, TYPE=ELEMENT, NAME={name}")?;
+        for [element, side] in faces {
+            let face = mesh.face(*element as usize, *side as usize);
+            let number = face_number(
+                mesh.connectivity.kind(*element as usize),
+                &mesh.connectivity[*element as usize],
+                face.corners(),
+            );
+            writeln!(out, "{}, S{number}", mesh.element_ids[*element as usize])?;
         }
     }
     let used: BTreeSet<u32> = mesh.materials.iter().chain(file.materials.keys()).copied().collect();

@@ -22,8 +22,8 @@ const NAME: usize = 32;
 pub(super) fn write_cdb(path: &Path, file: &MeshFile) -> Result<Vec<String>, WriteError> {
     no_zero(path, file)?;
     let mut lost = Vec::new();
-    let node_sets = plain_names(&file.node_sets, NAME, &mut lost);
-    let element_sets = plain_names(&file.element_sets, NAME, &mut lost);
+    let node_sets = plain_names(&file.node_sets, &[], NAME, &mut lost);
+    let element_sets = plain_names(&file.element_sets, &[], NAME, &mut lost);
     let text = text(file, &node_sets, &element_sets).map_err(|e| WriteError::format(path, e))?;
     atomic::write(path, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(path)))?;
     Ok(lost)

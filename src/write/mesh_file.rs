@@ -18,12 +18,13 @@ pub struct MeshOptions {
 /// Writes a mesh in the form that the ending of `path` names: `.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`; without an ending
 /// a folder with the three ANSYS lists. Returns what the form cannot hold, one sentence each.
 ///
-/// | form | constraints | sets | elastic constants |
-/// |---|---|---|---|
-/// | `.cdb`, `.inp` | yes | yes | yes |
-/// | `.msh` | no | yes | no |
-/// | `.vtu`, `.vtk` | yes | yes | no |
-/// | lists | yes | no | no |
+/// | form | constraints | sets | sets of faces | elastic constants |
+/// |---|---|---|---|---|
+/// | `.cdb` | yes | yes | as sets of nodes | yes |
+/// | `.inp` | yes | yes | yes | yes |
+/// | `.msh` | no | yes | yes | no |
+/// | `.vtu`, `.vtk` | yes | yes | yes | no |
+/// | lists | yes | no | no | no |
 ///
 /// # Errors
 /// Another ending, a number that is not finite, a node number 0 where the form cannot hold it, and what the system
@@ -38,23 +39,23 @@ pub fn write_mesh_file(
     let values: Vec<f64> = file.constraints.iter().map(|c| c.value).collect();
     check_field(path, "values of constraints", &values, 1, values.len())?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let (mut lost, [constraints, sets, materials]) = match ending.as_str() {
-        "cdb" => (cdb::write_cdb(path, file)?, [true, true, true]),
-        "inp" => (abaqus::write_inp(path, file)?, [true, true, true]),
-        "msh" => (gmsh::write_gmsh(path, file, options.msh2)?, [false, true, false]),
+    let (mut lost, [constraints, sets, faces, materials]) = match ending.as_str() {
+        "cdb" => (cdb::write_cdb(path, file)?, [true, true, false, true]),
+        "inp" => (abaqus::write_inp(path, file)?, [true, true, true, true]),
+        "msh" => (gmsh::write_gmsh(path, file, options.msh2)?, [false, true, true, false]),
         "vtu" => {
             vtu::write_mesh_file(path, file)?;
-            (Vec::new(), [true, true, false])
+            (Vec::new(), [true, true, true, false])
         }
         "vtk" => {
             vtk_legacy::write_vtk(path, file)?;
-            (Vec::new(), [true, true, false])
+            (Vec::new(), [true, true, true, false])
         }
         "" => {
             no_zero(path, file)?;
             std::fs::create_dir_all(path).map_err(WriteError::io(path))?;
             ansys_lists::write_lists(&file.mesh, &file.constraints, path)?;
-            (Vec::new(), [true, false, false])
+            (Vec::new(), [true, false, false, false])
         }
         _ => {
             let expected = ".cdb, .msh, .inp, .vtu, .vtk, or none for a folder of lists";
@@ -68,10 +69,12 @@ pub fn write_mesh_file(
     for (held, what, count) in [
         (constraints, "constraints", file.constraints.len()),
         (sets, "sets", count),
+        (faces, "sets of faces", file.face_sets.len()),
         (materials, "materials with elastic constants", file.materials.len()),
     ] {
         if !held && count > 0 {
-            lost.push(format!("this form holds no {what}: {count} are left out"));
+            let left = if what == "sets of faces" && sets { "become sets of nodes" } else { "are left out" };
+            lost.push(format!("this form holds no {what}: {count} {left}"));
         }
     }
     Ok(lost)
@@ -99,12 +102,14 @@ pub(super) fn fortran(value: f64) -> String {
 
 /// Names of sets that a form allows: other characters become `_`, a name that does not start with a letter gets an `S`
 /// in front, long ones are cut, and names that are the same then get a number. Changed ones are listed in `lost`.
-pub(super) fn plain_names<'a>(
-    sets: &'a BTreeMap<String, Vec<u32>>,
+/// No set gets a name that is `reserved`.
+pub(super) fn plain_names<'a, T>(
+    sets: &'a BTreeMap<String, Vec<T>>,
+    reserved: &[String],
     most: usize,
     lost: &mut Vec<String>,
-) -> Vec<(String, &'a [u32])> {
-    let mut used: Vec<String> = Vec::new();
+) -> Vec<(String, &'a [T])> {
+    let mut used: Vec<String> = reserved.to_vec();
     sets.iter()
         .map(|(name, members)| {
             let fits = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
@@ -146,10 +151,11 @@ mod tests {
     #[test]
     fn names_are_made_plain_and_distinct() {
         let sets: BTreeMap<String, Vec<u32>> =
-            ["a b", "a_b", "1st", "Ä", "A_B"].map(|n| (n.to_string(), vec![])).into();
+            ["a b", "a_b", "1st", "Ä", "A_B", "x"].map(|n| (n.to_string(), vec![])).into();
         let mut lost = Vec::new();
-        let names: Vec<String> = plain_names(&sets, 5, &mut lost).into_iter().map(|n| n.0).collect();
-        assert_eq!(names, ["S1st", "A_B", "a_b_2", "a_b_3", "_"]);
-        assert_eq!(lost.len(), 4);
+        let names: Vec<String> =
+            plain_names(&sets, &["X".into()], 5, &mut lost).into_iter().map(|n| n.0).collect();
+        assert_eq!(names, ["S1st", "A_B", "a_b_2", "a_b_3", "x_2", "_"]);
+        assert_eq!(lost.len(), 5);
     }
 }

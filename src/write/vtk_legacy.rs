@@ -8,7 +8,7 @@ use crate::read::vtk_grid::TYPES;
 
 use super::atomic;
 use super::error::WriteError;
-use super::vtu::{constraint_arrays, membership};
+use super::vtu::{cell_sets, constraint_arrays, membership};
 
 /// Writes a mesh.
 pub(super) fn write_vtk(path: &Path, file: &MeshFile) -> Result<(), WriteError> {
@@ -52,12 +52,12 @@ fn text(file: &MeshFile) -> Result<String, std::fmt::Error> {
         let name = encode(&format!("node_set:{name}"));
         column(&mut out, &name, "unsigned_char", &membership(members, nodes))?;
     }
-    writeln!(out, "CELL_DATA {cells}\nFIELD cells {}", 2 + file.element_sets.len())?;
+    let sets = cell_sets(file);
+    writeln!(out, "CELL_DATA {cells}\nFIELD cells {}", 2 + sets.len())?;
     column(&mut out, "material", "unsigned_int", &mesh.materials)?;
     column(&mut out, "element_id", "unsigned_int", &mesh.element_ids)?;
-    for (name, members) in &file.element_sets {
-        let name = encode(&format!("element_set:{name}"));
-        column(&mut out, &name, "unsigned_char", &membership(members, cells))?;
+    for (name, values) in &sets {
+        column(&mut out, &encode(name), "unsigned_char", values)?;
     }
     Ok(out)
 }

@@ -3,7 +3,6 @@
 //! VTK numbers the nodes of all eight kinds as this program does: VTK_QUADRATIC_HEXAHEDRON as SOLID186, and VTK_WEDGE,
 //! whatever old documentation says, with the first triangle seen from inside. So the connectivity goes out unchanged.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::read::MeshFile;
@@ -33,7 +32,7 @@ pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Resul
         fields.tensor(name, values)?;
     }
     fields.ids("node_id", &frame.mesh.node_ids)?;
-    write_grid(file, frame.mesh, fields, &BTreeMap::new())
+    write_grid(file, frame.mesh, fields, &[])
 }
 
 /// Writes the shape of a natural mode: point data `displacement` (largest component 1) and `node_id`.
@@ -44,11 +43,12 @@ pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteEr
     let mut fields = Fields::of_points(file, mesh.node_count());
     fields.vector("displacement", shape)?;
     fields.ids("node_id", &mesh.node_ids)?;
-    write_grid(file, mesh, fields, &BTreeMap::new())
+    write_grid(file, mesh, fields, &[])
 }
 
 /// Writes a mesh alone: point data `node_id`, `constraint` (1 for x, plus 2 for y, plus 4 for z), `constraint_value` [m]
-/// and `node_set:NAME`; cell data `material`, `element_id` and `element_set:NAME` (1 for members of a set, else 0).
+/// and `node_set:NAME`; cell data `material`, `element_id`, `element_set:NAME` (1 for members of a set, else 0)
+/// and `face_set:NAME` (a bit for each face).
 ///
 /// # Errors
 /// As [`write_solid`].
@@ -62,7 +62,7 @@ pub fn write_mesh_file(file: &Path, content: &MeshFile) -> Result<(), WriteError
     for (name, members) in &content.node_sets {
         fields.ids(&format!("node_set:{name}"), &membership(members, mesh.node_count()))?;
     }
-    write_grid(file, mesh, fields, &content.element_sets)
+    write_grid(file, mesh, fields, &cell_sets(content))
 }
 
 /// For each node the directions that are constrained, as bits, and the values.
@@ -74,6 +74,25 @@ pub(super) fn constraint_arrays(content: &MeshFile) -> (Vec<u32>, Vec<[f64; 3]>)
         values[c.node as usize][c.direction as usize] = c.value;
     }
     (mask, values)
+}
+
+/// Names and values of the arrays of cells that stand for sets of elements and of faces.
+pub(super) fn cell_sets(content: &MeshFile) -> Vec<(String, Vec<u32>)> {
+    let elements = content.mesh.element_count();
+    let of_elements = content.element_sets.iter();
+    let of_elements = of_elements.map(|(n, m)| (format!("element_set:{n}"), membership(m, elements)));
+    let of_faces = content.face_sets.iter();
+    let of_faces = of_faces.map(|(n, m)| (format!("face_set:{n}"), face_bits(m, elements)));
+    of_elements.chain(of_faces).collect()
+}
+
+/// For each element the bits of its faces that are members of a set.
+fn face_bits(members: &[[u32; 2]], elements: usize) -> Vec<u32> {
+    let mut bits = vec![0; elements];
+    for [element, side] in members {
+        bits[*element as usize] |= 1 << side;
+    }
+    bits
 }
 
 /// 1 for the members of a set of `count` items, else 0.
@@ -89,14 +108,14 @@ fn write_grid(
     file: &Path,
     mesh: &Mesh,
     point_fields: Fields,
-    element_sets: &BTreeMap<String, Vec<u32>>,
+    sets: &[(String, Vec<u32>)],
 ) -> Result<(), WriteError> {
     let elements = mesh.element_count();
     let mut cell_fields = Fields::of_cells(file, elements);
     cell_fields.ids("material", &mesh.materials)?;
     cell_fields.ids("element_id", &mesh.element_ids)?;
-    for (name, members) in element_sets {
-        cell_fields.ids(&format!("element_set:{name}"), &membership(members, elements))?;
+    for (name, values) in sets {
+        cell_fields.ids(name, values)?;
     }
     let (nodes, kinds) = (mesh.connectivity.nodes(), mesh.connectivity.kinds());
     let ends = kinds.iter().scan(0, |end, kind| {

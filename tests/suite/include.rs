@@ -32,7 +32,8 @@ fn the_same_scene_in_pieces() {
              [output]\nframes = 2\n"
         ),
         &[
-            ("stone.toml", &MATERIAL.replace("friction = 0.5", "friction = 0.1")),
+            // With a byte order mark, as editors on Windows write it.
+            ("stone.toml", &format!("\u{feff}{}", MATERIAL.replace("friction = 0.5", "friction = 0.1"))),
             ("box.toml", &format!("{WALL}\n{}", REST.replace("frames = 2", "frames = 7"))),
         ],
     );

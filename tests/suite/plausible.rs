@@ -72,6 +72,12 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     // Gravity and what holds the bed.
     (BOX, "gravity=[0.0, 0.0, 9.81]", "gravity", true),
     (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", false),
+    (BOX, "gravity=[0.0, -9.81, 0.0]", "gravity", true),
+    (CYCLIC, "gravity=[9.81, 0.0, 0.0]", "gravity", true),
+    (CYCLIC, "gravity=[0.0, -9.0, -3.0]", "gravity", true),
+    // Meshes in millimetres: by their length, their elements, or their weight on soft ground.
+    (CYCLIC, "solid.scale=1000", "solid", true),
+    (FOOTING, "solid.block.z.lines=[-4000.0, 0.0]", "solid", true),
     (GRAINS, "walls=", "walls", true),
     // Settling.
     (BOX, "deposition.max_time=\"1 ms\"", "deposition.max_time", true),
@@ -81,6 +87,11 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (BOX, "deposition.level=-0.1", "deposition.level", true),
     // Places.
     (BOX, "track.sleeper.centre=[30.0, 0.15]", "track.sleeper.centre", true),
+    (CYCLIC, "track.sleeper.centre=[0.3, 0.3]", "track.sleeper.centre", true),
+    (CYCLIC, "track.sleeper.centre=[0.0, 0.0]", "track.sleeper.centre", true),
+    (CYCLIC, "track.sleeper.size=[3.2, 0.28, 0.20]", "track.sleeper.centre", true),
+    (CYCLIC, "walls.3.point=[1.2, 0.0, 0.0]", "track.sleeper.centre", true),
+    (CYCLIC, "walls.1.normal=[0.5, -1.0, 0.0]", "track.sleeper.centre", true),
     (CYCLIC, "grains.0.fill={ low = [-1.5, 0.0, -2.0], high = [1.5, 0.6] }", "grains.0", true),
     (CYCLIC, "grains.0.fill={ low = [50.0, 0.0, 0.0], high = [53.0, 0.6] }", "grains.0", true),
     // Sleepers and loads.
@@ -123,6 +134,19 @@ fn what_is_not_plausible_is_named_with_its_key() {
         assert!(order.is_sorted(), "the implausible come first: {all:?}");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A ground whose weight makes it a tenth lower: soft ground 800 m high, not with a stiff one, nor without weight.
+#[test]
+fn a_solid_that_its_weight_flattens_is_in_millimetres() {
+    let high = ["solid.block.z.lines=[-800.0, 0.0]", "solid.gravity=true"];
+    let found = |more: &str| found(FOOTING, &[high[0], high[1], more]);
+    let all = found("title=\"soft\"");
+    let solid = all.iter().find(|f| f.key == "solid").unwrap_or_else(|| panic!("{all:?}"));
+    assert!(solid.serious && solid.found.contains("that its own weight makes"), "{solid}");
+    for more in ["solid.material.0.young=\"2 GPa\"", "solid.gravity=false"] {
+        assert!(found(more).iter().all(|f| f.key != "solid"), "{more}");
+    }
 }
 
 /// Every scene below `inputs`.

@@ -18,6 +18,8 @@ pub struct Geometry {
     pub constraints: Vec<Constraint>,
     /// Node sets of the file: node indices, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Face sets of the file: element index and face number, ascending.
+    pub face_sets: BTreeMap<String, Vec<[u32; 2]>>,
     /// Types of elements as the file names them, with their counts.
     pub element_types: Vec<(String, usize)>,
     /// File that the elements come from, for messages.
@@ -80,6 +82,11 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
         solid.check("scale", factor, |v| v > 0.0, "above 0, such as 0.001 for millimetres")?;
         geometry.mesh.coordinates.iter_mut().flatten().for_each(|x| *x *= factor);
         geometry.constraints.iter_mut().for_each(|c| c.value *= factor);
+        let largest = geometry.mesh.coordinates.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if largest > read::FARTHEST {
+            let found = format!("{factor:e}, coordinates up to {largest:e} m");
+            return Err(solid.error("scale", found, "coordinates up to 1e15 m").into());
+        }
     }
     if !solid.support.is_empty() && solid.constraints.is_none() && geometry.constraints.is_empty() {
         geometry.constraint_file = solid.scene_file().to_path_buf();
@@ -100,8 +107,17 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
 }
 
 fn from_file(read: MeshFile, element_file: PathBuf, constraint_file: PathBuf) -> Geometry {
-    let MeshFile { mesh, constraints, node_sets, element_types, warnings, .. } = read;
-    Geometry { mesh, constraints, node_sets, element_types, element_file, constraint_file, warnings }
+    let MeshFile { mesh, constraints, node_sets, face_sets, element_types, warnings, .. } = read;
+    Geometry {
+        mesh,
+        constraints,
+        node_sets,
+        face_sets,
+        element_types,
+        element_file,
+        constraint_file,
+        warnings,
+    }
 }
 
 /// Changes the order of the elements; constraints and sets keep the nodes that are left.
@@ -116,9 +132,15 @@ fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
         .iter()
         .filter_map(|c| moved(c.node).map(|node| Constraint { node, ..*c }))
         .collect();
-    for set in geometry.node_sets.values_mut() {
+    let of_faces = &geometry.face_sets;
+    for (name, set) in &mut geometry.node_sets {
         *set = set.iter().filter_map(|n| moved(*n)).collect();
+        // New mid-side nodes of the faces of the same name.
+        for [element, side] in of_faces.get(name).into_iter().flatten() {
+            set.extend(geometry.mesh.face(*element as usize, *side as usize).nodes());
+        }
         set.sort_unstable();
+        set.dedup();
     }
 }
 

@@ -197,9 +197,9 @@ pub fn build(
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
     // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
+    let inside_out = mesh_tools::all_inside_out(&mesh, &faults);
     let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
-    let warnings =
-        warnings.into_iter().chain(faults.iter().map(ToString::to_string)).chain(locking).collect();
+    let warnings = warnings.into_iter().chain(mesh_tools::sentences(&mesh, &faults)).chain(locking).collect();
     let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
     let sleepers = sleepers
         .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
@@ -222,7 +222,7 @@ pub fn build(
         gravity: weight,
         rayleigh: motion::rayleigh(solid.optional("rayleigh", &solid.rayleigh))?,
     })
-    .map_err(|e| refused(&element_file, &e))?;
+    .map_err(|e| refused(&element_file, &e, inside_out))?;
     let position = |dof: u32| {
         let fixed = model.supports().fixed();
         fixed.binary_search_by_key(&dof, |(d, _)| *d).expect("a support of the model")
@@ -261,13 +261,16 @@ pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure
     let solid = &Table::top(document, "solid", solid);
     let geometry = geometry(solid)?;
     let constraints = boundary::supports(solid, &geometry)?.constraints;
-    let Geometry { mesh, node_sets, element_types, warnings, .. } = geometry;
-    Ok(MeshFile { mesh, constraints, node_sets, element_types, warnings, ..MeshFile::default() })
+    let Geometry { mesh, node_sets, face_sets, element_types, warnings, .. } = geometry;
+    Ok(MeshFile { mesh, constraints, node_sets, face_sets, element_types, warnings, ..MeshFile::default() })
 }
 
 /// What is wrong with the mesh, which shows only when its model is made.
-fn refused(elements: &Path, error: &fem::ModelError) -> SceneError {
+fn refused(elements: &Path, error: &fem::ModelError, inside_out: Option<String>) -> SceneError {
     let (key, found, expected) = match error {
+        fem::ModelError::Inverted { .. } if inside_out.is_some() => {
+            ("mesh".into(), inside_out.unwrap_or_default(), "elements with a positive volume")
+        }
         fem::ModelError::Inverted { element, point: [xi, eta, zeta], determinant } => (
             format!("element {element}"),
             format!(

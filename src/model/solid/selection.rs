@@ -85,6 +85,10 @@ pub fn faces<T>(
             let on = on_side(mesh, side);
             boundary("side", "on this side", &|f| f.nodes().iter().all(|n| on(mesh.coordinates[*n as usize])))
         }
+        (None, None, None, Some(name)) if geometry.face_sets.contains_key(name) => {
+            let set = &geometry.face_sets[name];
+            boundary("set", "in the set", &|f| set.binary_search(&[f.element, u32::from(f.side)]).is_ok())
+        }
         (None, None, None, Some(name)) => {
             let set = node_set(table, geometry, name)?;
             let mut member = vec![false; mesh.node_count()];

@@ -2,6 +2,7 @@
 
 use super::{fault, rows, text};
 use crate::read::ReadError;
+use std::collections::BTreeSet;
 use std::path::Path;
 use trackbed_dem::insert::gradation::Gradation;
 
@@ -22,6 +23,11 @@ impl Grading {
     }
 }
 
+/// A name without blanks, dashes and capitals: `EN 13450` is `EN13450`.
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric() || *c == '.').flat_map(char::to_lowercase).collect()
+}
+
 /// The limits of one grade of a sieve table and the curve in their middle.
 ///
 /// # Errors
@@ -30,6 +36,7 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, Re
     let content = text(file, "gradation")?;
     let mut columns: Option<[usize; 5]> = None;
     let mut table: Vec<[f64; 3]> = Vec::new();
+    let mut others = BTreeSet::new();
     for (line, fields) in rows(&content) {
         let Some([s, g, size, low, high]) = columns else {
             let names = ["standard", "grade", "sieve_mm", "passing_lo_pct", "passing_hi_pct"];
@@ -43,7 +50,8 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, Re
             continue;
         };
         let field = |k: usize| fields.get(k).copied().unwrap_or_default();
-        if field(s) != standard || field(g) != grade {
+        if plain(field(s)) != plain(standard) || plain(field(g)) != plain(grade) {
+            others.insert(format!("{} {}", field(s), field(g)));
             continue;
         }
         let number = |k: usize, name: &str| {
@@ -60,13 +68,12 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, Re
         ]);
     }
     if table.is_empty() {
-        return Err(fault(
-            file,
-            None,
-            "gradation",
-            format!("no row of {standard} {grade}"),
-            "rows of this grade",
-        ));
+        let found = format!("\"{standard}\" \"{grade}\"");
+        let expected = match others.is_empty() {
+            true => "rows of grades below the heading".to_string(),
+            false => format!("one of {}", others.into_iter().collect::<Vec<_>>().join(", ")),
+        };
+        return Err(fault(file, None, "gradation", found, expected));
     }
     table.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let limits = table.clone();

@@ -87,7 +87,7 @@ pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> R
         SeatLoadKind::History => {
             let factor = l.check("factor", l.factor.unwrap_or(1.0), |f| f != 0.0, "other than 0")?;
             let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
-            let rows = tables::history(&l.locate(file))?;
+            let rows = tables::history(&l.locate(file), tables::FORCE)?;
             let first = rows[0].0;
             if rows.len() < 2 {
                 return Err(l.error("file", "one row", "two or more").into());

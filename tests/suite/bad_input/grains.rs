@@ -102,7 +102,7 @@ fn absent_grade() {
             "g.csv",
             "standard,grade,sieve_mm,passing_lo_pct,passing_hi_pct\nX,A,63,100,100\nX,A,31.5,0,0\n",
         )
-        .refused("g.csv: gradation: found no row of X B, expected rows of this grade");
+        .refused("scene.toml:15: grains.0.gradation: found \"X\" \"B\", expected one of X A");
 }
 
 #[test]

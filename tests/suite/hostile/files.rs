@@ -277,7 +277,10 @@ fn packings_with_decimal_commas_are_refused() {
             "x,y,z,r\n0,01,0,0,0,051,0,05\n",
             "packing.csv:2: row: found 8 columns, expected x, y, z, r: 4 columns, as in the heading",
         ),
-        ("x;y;z;r\n0,01;0,0;0,051;0,05\n", "packing.csv:2: row: found 5 columns"),
+        (
+            "x;y;z;r\n0,01;0,0;0,051;0,05\n",
+            "packing.csv:1: heading: found \"x;y;z;r\", expected a column of x",
+        ),
         ("0.0,0.0,0.051\n", "packing.csv:1: row: found 3 columns, expected x, y, z, r: 4 columns"),
     ] {
         folder.write("packing.csv", text);

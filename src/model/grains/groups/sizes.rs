@@ -25,7 +25,12 @@ impl SizeSource {
         match (&group.gradation, &group.size, &group.sizes) {
             (Some(g), None, None) => {
                 group.check("gradation.scale", g.scale, |s| s > 0.0, "above 0")?;
-                let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade)?;
+                let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade);
+                let grading = grading.map_err(|e| match e.line {
+                    // Of the grade as a whole: the key of the scene is at fault.
+                    None if e.key == "gradation" => group.error("gradation", e.found, e.expected),
+                    _ => e,
+                })?;
                 Ok(SizeSource::Graded(grading.scaled(g.scale)))
             }
             (None, Some([low, high]), None) => {

@@ -1,0 +1,107 @@
+//! Geometry that cannot be meant: a mesh in millimetres, sleepers through walls, gravity across the axis of the bed.
+
+use super::bed::of_solid;
+use super::findings::{Findings, shown};
+use super::grains::length;
+use crate::model::Job;
+use crate::scene::Scene;
+use crate::scene::walls::WallKind;
+
+/// Edge of an element that no ground is meshed with [m].
+const ELEMENT: f64 = 30.0;
+/// Length of a solid that no ground has [m].
+const SOLID: f64 = 3000.0;
+/// Mean vertical strain under the weight of the solid that small strains do not allow.
+const STRAIN: f64 = 0.1;
+/// Least Young's modulus of ground [Pa].
+const SOFT: f64 = 1e6;
+/// Depth of a sleeper behind a wall that rounding does not explain [m].
+const BEHIND: f64 = 1e-3;
+/// Share of gravity along z below which grains do not lie on a floor across z.
+const ACROSS: f64 = 0.5;
+
+/// Weighs what scene and job say about the geometry.
+pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
+    millimetres(findings, scene, job);
+    sleepers_through_walls(findings, scene);
+    gravity_across(findings, scene);
+}
+
+/// A solid whose size, elements or settlement are a thousand times too large.
+fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
+    let (Some(table), Some(part), Some(extent)) = (&scene.solid, &job.solid, of_solid(job)) else { return };
+    let mesh = part.model.mesh();
+    let volume: f64 = (0..mesh.element_count()).map(|e| mesh.element_volume(e).abs()).sum();
+    let element = libm::cbrt(volume / mesh.element_count().max(1) as f64);
+    let height = extent.high[2] - extent.low[2];
+    let softest = table.material.iter().filter_map(|m| m.young).map(|y| y.si).fold(f64::INFINITY, f64::min);
+    let weight = length(&scene.gravity) * part.model.total_mass() / volume;
+    // A modulus that no ground has is another finding.
+    let weighs = table.gravity && softest >= SOFT;
+    let strain = if weighs { 0.5 * weight * height / softest } else { 0.0 };
+    let longest = extent.longest();
+    let found = if longest > SOLID || element > ELEMENT {
+        format!("{} with elements of {}", shown(longest, "m"), shown(element, "m"))
+    } else if strain > STRAIN {
+        let percent = (100.0 * strain).round();
+        format!("a height of {} that its own weight makes {percent} % less", shown(height, "m"))
+    } else {
+        return;
+    };
+    let remedy = match table.block.is_some() {
+        true => "lengths of `solid.block` in metres",
+        false => "a mesh in metres; this one looks like millimetres: solid.scale = 0.001",
+    };
+    findings.add(true, "solid", found, remedy);
+}
+
+/// Sleepers of which a part lies behind a plane that stands.
+fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
+    let Some(track) = &scene.track else { return };
+    let sleeper = &track.sleeper;
+    let step = sleeper.spacing.map_or(0.0, |s| s.si);
+    let (mut deepest, mut through) = (0.0, None);
+    for number in 0..sleeper.count {
+        let mut centre = [sleeper.centre[0].si, sleeper.centre[1].si];
+        centre[sleeper.along.axis()] += f64::from(number) * step;
+        for (k, wall) in scene.walls.iter().enumerate() {
+            let moves = wall.velocity.is_some() || wall.servo.is_some() || wall.oscillation.is_some();
+            let (WallKind::Plane, Some(point), Some(n), false) = (wall.kind, &wall.point, wall.normal, moves)
+            else {
+                continue;
+            };
+            let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
+            // The height of the sleeper follows from the bed: only upright walls are compared.
+            if size == 0.0 || n[2].abs() > 1e-6 * size {
+                continue;
+            }
+            let offset: f64 = (0..2).map(|d| (centre[d] - point[d].si) * n[d]).sum::<f64>() / size;
+            let reach: f64 = (0..2).map(|d| 0.5 * sleeper.size[d].si * n[d].abs()).sum::<f64>() / size;
+            let behind = reach - offset;
+            if behind > deepest && behind > BEHIND {
+                (deepest, through) = (behind, Some((k, number)));
+            }
+        }
+    }
+    if let Some((wall, number)) = through {
+        let which = if sleeper.count > 1 { format!("sleeper {}", number + 1) } else { "the sleeper".into() };
+        let found = format!("{which} {} through walls.{wall}", shown(deepest, "m"));
+        findings.add(true, "track.sleeper.centre", found, "sleepers between the walls");
+    }
+}
+
+/// Gravity across z, along which grains are stacked and sleepers set down.
+fn gravity_across(findings: &mut Findings, scene: &Scene) {
+    let size = length(&scene.gravity);
+    let along_z = scene.track.is_some() || scene.coupling.is_some() || scene.deposition.is_some();
+    if size == 0.0 || !along_z || scene.gravity[2].si.abs() > ACROSS * size {
+        return;
+    }
+    let axis = if scene.gravity[0].si.abs() > scene.gravity[1].si.abs() { 0 } else { 1 };
+    let sign = if scene.gravity[axis].si < 0.0 { "-" } else { "+" };
+    let mut what = vec!["grains"];
+    what.extend(scene.track.is_some().then_some("sleepers"));
+    what.extend(scene.coupling.is_some().then_some("coupling.direction"));
+    let found = format!("{} m/s2 along {sign}{}", shown(size, ""), ["x", "y"][axis]);
+    findings.add(true, "gravity", found, format!("along -z, as {} are", what.join(", ")));
+}
