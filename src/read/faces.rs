@@ -47,7 +47,7 @@ impl Faces {
         let faults = self.0.chunk_by(|a, b| a.0 == b.0).filter(|group| crowded(mesh, group));
         let of_elements =
             |group: &[(Key, [u32; 2])]| group.iter().map(|(_, [e, _])| *e).collect::<Vec<u32>>();
-        let mut groups: Vec<(Vec<u32>, &[(Key, [u32; 2])])> = faults.map(|g| (of_elements(g), g)).collect();
+        let mut groups: Vec<_> = faults.map(|g| (of_elements(g), g)).collect();
         groups.sort_by(|a, b| a.0.cmp(&b.0));
         groups.dedup_by(|a, b| a.0 == b.0);
         let first = groups.first()?.1;

@@ -4,6 +4,7 @@
 //! ball. At θ = ½ the bound of the growth per window is W² Ω²/48.
 
 use crate::support::*;
+use std::f64::consts::FRAC_PI_8;
 use trackbed_coupling::interface::{Interface, InterfaceNumbers};
 use trackbed_coupling::stability::theta_for;
 use trackbed_coupling::surface::SolidSurface;
@@ -118,7 +119,7 @@ fn undamped_ball_stays_at_rest() {
         let place = match places.get(case) {
             Some(place) if bend == 0.0 => *place,
             None if bend == 0.0 => [0.8 + 0.25 * random.symmetric(), 0.2 + 0.05 * random.symmetric()],
-            _ => [[0.392_7, 0.2], [1.178_1, 0.2]][case / 2 % 2],
+            _ => [[FRAC_PI_8, 0.2], [3.0 * FRAC_PI_8, 0.2]][case / 2 % 2],
         };
         let density = 2600.0 * 2.0_f64.powf(random.symmetric());
         let make = || ball(&solid, place, density, 2e6, SUBSTEPS);
