@@ -163,6 +163,13 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
     Ok((lines, numbers))
 }
 
+/// Whether no grain moves by forces, so that none limits the step.
+fn all_prescribed(grains: &GrainsPart) -> bool {
+    let groups = &grains.groups;
+    let prescribed = |part: u32| groups.moving.iter().any(|m| m.part == part);
+    !groups.bodies.is_empty() && groups.bodies.iter().all(|b| prescribed(b.part))
+}
+
 /// The model of the grains with rigid sleepers, and its lines with those of the stages.
 fn grain_lines(
     document: &Document,
@@ -176,6 +183,9 @@ fn grain_lines(
             spheres => format!("grains: {} bodies with {spheres} spheres", alone.body_count()),
         },
         match model.measured() {
+            _ if all_prescribed(grains) => {
+                format!("  step {:.4e} s; the motion of all bodies is prescribed", model.dt())
+            }
             None => format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
             Some(share) => format!(
                 "  step {:.4e} s at first, then {share} of what the contacts allow, {:.4e} s at most; {}",

@@ -81,7 +81,7 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
              {:.1e}. Remove coupling.theta, set it to {:.3}, or set tangential_damping_ratio.",
             model.theta,
             largest_phase(model.theta),
-            watch.growth.min(700.0).exp(),
+            libm::exp(watch.growth.min(700.0)),
             theta_for(phase)
         )
     })

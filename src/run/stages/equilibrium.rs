@@ -147,6 +147,7 @@ fn couple<'b>(
         work: seat_work,
     });
     Ok(CoupledSystem {
+        last_window: model.window(),
         model,
         state,
         work,

@@ -51,6 +51,8 @@ pub struct CoupledSystem<'a> {
     pub work: coupling::step::Work<Steps>,
     /// Whether something has changed the grains that a device has taken over.
     pub changed: bool,
+    /// Length of the last part of a window [s], which impulses of contacts belong to.
+    pub last_window: f64,
     /// Whether windows may become shorter where the interface asks for it.
     pub automatic: bool,
     /// Loads on the solid.
@@ -113,7 +115,7 @@ impl TrackSystem for CoupledSystem<'_> {
             place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
             height: z + moved.seats,
             moved,
-            contact: self.work.contact_force_on(first..first + faces, self.model.window()),
+            contact: self.work.contact_force_on(first..first + faces, self.last_window),
         })
     }
 
@@ -136,6 +138,7 @@ impl System for CoupledSystem<'_> {
             self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
         }
         // A division that begins now is for the windows after this one.
+        self.last_window = self.model.window();
         for _ in 0..self.model.division {
             self.part_of_window(applied)?;
         }
@@ -174,11 +177,11 @@ impl System for CoupledSystem<'_> {
     }
 
     fn contact_force(&self) -> [f64; 3] {
-        self.work.contact_force_on(0..self.ground_faces, self.model.window())
+        self.work.contact_force_on(0..self.ground_faces, self.last_window)
     }
 
     fn peak_pressure(&self) -> f64 {
-        self.work.peak_pressure_on(0..self.ground_faces, self.model.window())
+        self.work.peak_pressure_on(0..self.ground_faces, self.last_window)
     }
 
     fn seat_work(&self) -> f64 {
