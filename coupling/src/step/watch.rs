@@ -64,7 +64,7 @@ pub fn watch<B: dem::BackEnd>(
         own.largest = own.largest.max(&own.last.at(model.window()));
     }
     let now = own.last.at(model.window());
-    own.growth += interface_growth(model.scheme, model.theta, &now);
+    own.growth += f64::from(model.division) * interface_growth(model.scheme, model.theta, &now);
     if !automatic || interface_excess(model.scheme, model.theta, &now) <= 1.0 {
         return Ok(());
     }
@@ -74,8 +74,9 @@ pub fn watch<B: dem::BackEnd>(
         let possible = model.grains.measured().is_some() || model.substeps.is_multiple_of(*parts);
         possible && interface_excess(model.scheme, model.theta, &own.last.at(window)) <= 1.0
     };
-    let least = if model.grains.measured().is_some() { PARTS } else { model.substeps };
-    let parts = (model.division + 1..=PARTS).find(suits).unwrap_or(least.max(model.division));
+    // The shortest windows, where none suits.
+    let most = if model.grains.measured().is_some() { PARTS } else { model.substeps };
+    let parts = (model.division + 1..=most).find(suits).unwrap_or(most.max(model.division));
     if parts != model.division {
         (model.division, own.division) = (parts, parts);
         work.refactor(model, state.solid.points.is_empty())?;
