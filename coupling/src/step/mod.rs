@@ -18,18 +18,18 @@
 //! the last window's force) gains energy at every step size.
 
 mod account;
+mod interface_check;
 mod model;
 mod rest;
 mod solver;
 mod state;
 mod stiffened;
-mod watch;
 mod window;
 
 pub use account::{spent, spent_by_grains, stored};
+pub use interface_check::{InterfaceCheck, check_interface};
 pub use model::Model;
 pub use rest::resting_load;
 pub use solver::StepError;
 pub use state::{State, Work};
-pub use watch::{Watch, watch};
 pub use window::{exchange, step};

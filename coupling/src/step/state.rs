@@ -1,9 +1,9 @@
 //! State and scratch memory of the coupled step.
 
+use super::interface_check::InterfaceCheck;
 use super::model::Model;
 use super::solver::SolidSolver;
 use super::stiffened::{Held, Stiffened};
-use super::watch::Watch;
 use crate::accelerate::Accelerator;
 use crate::interface::Interface;
 use crate::ledger::Spent;
@@ -38,8 +38,8 @@ pub struct State {
     pub(super) lagged: [Vec<f64>; 2],
     /// Contacts of the last grain step, for the stiffened scheme.
     pub(super) held: Vec<Held>,
-    /// What checks of the interface have found.
-    pub watch: Watch,
+    /// Results of the interface checks.
+    pub interface_check: InterfaceCheck,
 }
 
 /// Scratch memory and factors; `B` computes the steps of the grains.
@@ -73,7 +73,7 @@ impl State {
             passes: Passes::default(),
             lagged: Default::default(),
             held: Vec::new(),
-            watch: Watch::default(),
+            interface_check: InterfaceCheck::default(),
         }
     }
 
@@ -84,7 +84,7 @@ impl State {
         self.audit = TransferAudit::default();
         self.spent = Spent::default();
         self.passes = Passes::default();
-        self.watch = Watch::default();
+        self.interface_check = InterfaceCheck::default();
     }
 
     /// The same with a contact load [N], shape `[3·nodes]`, that the solid carries from the start: the lagged scheme begins

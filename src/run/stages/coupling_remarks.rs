@@ -58,9 +58,9 @@ const GROWTH: f64 = 1.0;
 
 /// A warning about an interface whose contacts, all together, were beyond what the windows allow.
 pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -> Option<String> {
-    let (model, watch) = (&system.model, &system.state.watch);
-    let InterfaceNumbers { stiffness, damping, phase } = watch.largest;
-    let numbers = InterfaceNumbers { phase: 0.0, ..watch.largest };
+    let (model, check) = (&system.model, &system.state.interface_check);
+    let InterfaceNumbers { stiffness, damping, phase } = check.largest;
+    let numbers = InterfaceNumbers { phase: 0.0, ..check.largest };
     let excess = interface_excess(model.scheme, model.theta, &numbers);
     if !system.automatic && excess > 1.0 {
         let fitting = (f64::from(record.substeps) / excess) as u32;
@@ -75,13 +75,13 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
             INTERFACE[0]
         ));
     }
-    (watch.growth > GROWTH).then(|| {
+    (check.growth > GROWTH).then(|| {
         format!(
             "undamped contacts at rest: phase {phase:.2} per window, theta = {} damps up to {:.2}: amplitudes may have grown by a factor of \
              {:.1e}. Remove coupling.theta, set it to {:.3}, or set tangential_damping_ratio.",
             model.theta,
             largest_phase(model.theta),
-            libm::exp(watch.growth.min(700.0)),
+            libm::exp(check.growth.min(700.0)),
             theta_for(phase)
         )
     })

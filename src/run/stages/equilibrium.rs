@@ -123,7 +123,7 @@ fn couple<'b>(
         dead_load,
         reference,
         substeps,
-        division: state.watch.division.max(1),
+        division: state.interface_check.division.max(1),
         scheme: plan.scheme,
         theta,
         newton: solid.newton,

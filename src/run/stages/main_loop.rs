@@ -107,7 +107,7 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
         record.transfer = system.state.audit;
         record.passes = system.state.passes;
         record.interface_work_error = system.spent().interface();
-        record.interface = system.state.watch.largest;
+        record.interface = system.state.interface_check.largest;
         record.division = system.model.division;
         summary.warnings.extend(unstable_interface(&system, record));
     }

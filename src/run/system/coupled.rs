@@ -142,7 +142,7 @@ impl System for CoupledSystem<'_> {
         for _ in 0..self.model.division {
             self.part_of_window(applied)?;
         }
-        coupling::step::watch(&mut self.model, &mut self.state, &mut self.work, self.automatic)
+        coupling::step::check_interface(&mut self.model, &mut self.state, &mut self.work, self.automatic)
             .map_err(|e| Failure::Numerical(format!("solid, in shorter coupling windows: {e}")))
     }
 

@@ -1,4 +1,4 @@
-//! Whether windows suit the contacts that there are: the [numbers of the interface](crate::interface), looked at while a run goes on.
+//! Checks of the coupling windows during a run, by the [numbers of the interface](crate::interface).
 
 use super::model::Model;
 use super::state::{State, Work};
@@ -16,9 +16,9 @@ const FEWEST: u64 = 16;
 /// Most parts of a window.
 const PARTS: u32 = 64;
 
-/// What checks of the interface have found; part of the state of a run.
+/// Results of the interface checks; part of the state of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Watch {
+pub struct InterfaceCheck {
     /// Largest numbers of the interface at the windows they were found in.
     pub largest: InterfaceNumbers,
     /// Sum of the bounds of growth over all windows: amplitudes grow by no more than its exponential. Zero where the interface is stable.
@@ -33,7 +33,7 @@ pub struct Watch {
     contacts: usize,
 }
 
-impl Watch {
+impl InterfaceCheck {
     fn due(&self, contacts: usize) -> bool {
         let since = self.windows - self.checked;
         self.windows == 1
@@ -42,19 +42,19 @@ impl Watch {
     }
 }
 
-/// After a window: checks the interface if it is time to. Where `automatic`, windows become as short as it needs from the next on; their
-/// solver is made anew.
+/// Checks the interface after a window, if a check is due. With `automatic`, the following windows become as short as required, with a new
+/// factorization.
 ///
 /// # Errors
 /// The matrix of shorter windows cannot be factored.
-pub fn watch<B: dem::BackEnd>(
+pub fn check_interface<B: dem::BackEnd>(
     model: &mut Model<'_>,
     state: &mut State,
     work: &mut Work<B>,
     automatic: bool,
 ) -> Result<(), SolveError> {
     let contacts = work.grains.surface_contacts();
-    let own = &mut state.watch;
+    let own = &mut state.interface_check;
     own.windows += 1;
     if own.due(contacts.len()) {
         own.interval = (2 * own.interval).clamp(1, MOST);
