@@ -77,7 +77,7 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
     }
     (check.growth > GROWTH).then(|| {
         format!(
-            "undamped contacts at rest: phase {phase:.2} per window, theta = {} damps up to {:.2}: amplitudes may have grown by a factor of \
+            "undamped contacts at rest: phase {phase:.2} per window, theta = {:.4} damps up to {:.2}: amplitudes may have grown by a factor of \
              {:.1e}. Remove coupling.theta, set it to {:.3}, or set tangential_damping_ratio.",
             model.theta,
             largest_phase(model.theta),

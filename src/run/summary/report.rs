@@ -160,7 +160,7 @@ impl Summary {
             }
             let n = &c.interface;
             lines.push(format!(
-                "  all contacts together, largest of the run: W = {:.3}, D = {:.3}, phase of undamped contacts {:.3}; theta = {}, \
+                "  all contacts together, largest of the run: W = {:.3}, D = {:.3}, phase of undamped contacts {:.3}; theta = {:.4}, \
                  windows divided by {}",
                 n.stiffness, n.damping, n.phase, c.theta, c.division
             ));
