@@ -94,7 +94,7 @@ pub fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneEr
             Ok(Some(step.si))
         }
         (Some(step), true) if step.si > 0.0 && step.si <= end => {
-            let found = format!("{} s, of which the run has {:.1e}", step.si, end / step.si);
+            let found = format!("{end} s in steps of {:.1e} s", step.si);
             Err(time.error("solid_step", found, format!("at most {MOST_STEPS:.0e} steps")))
         }
         (Some(step), true) => {

@@ -53,10 +53,9 @@ pub fn with_sleepers(grains: &GrainsPart) -> ModelInput {
 /// # Errors
 /// Bad input.
 pub fn check_steps(document: &Document, key: &str, time: f64, dt: f64) -> Result<(), SceneError> {
-    let steps = time / dt;
-    if steps <= MOST_STEPS {
+    if time / dt <= MOST_STEPS {
         return Ok(());
     }
-    let found = format!("{time} s, which is {steps:.1e} steps of {dt:.1e} s");
+    let found = format!("{time} s in steps of {dt:.1e} s");
     Err(document.error(key, found, format!("at most {MOST_STEPS:.0e} steps")))
 }
