@@ -55,8 +55,10 @@ pub trait Respond: Send + Sync + 'static {
 struct Connection {
     /// Milliseconds since the server's start at which bytes went either way.
     progress: AtomicU64,
-    /// Whether its response is being computed.
+    /// Whether its response is being computed, or waits for a thread.
     computing: AtomicBool,
+    /// Whether a thread computes its response.
+    running: AtomicBool,
     /// Bytes of its response that are not sent.
     queued: AtomicUsize,
 }
@@ -86,8 +88,9 @@ impl Connections {
             if open.len() <= most && (queued <= QUEUED || open.len() <= 1) {
                 return;
             }
+            // Of clients that wait for a thread, the oldest have often gone.
             let age =
-                |c: &Connection| (c.computing.load(Ordering::Relaxed), c.progress.load(Ordering::Relaxed));
+                |c: &Connection| (c.running.load(Ordering::Relaxed), c.progress.load(Ordering::Relaxed));
             let longest = open.iter().min_by_key(|(_, (c, _))| age(c)).map(|(id, _)| *id);
             if let Some((_, task)) = longest.and_then(|id| open.remove(&id)) {
                 task.abort();
@@ -133,6 +136,7 @@ fn open(id: u64, stream: TcpStream, connections: &Arc<Connections>, site: &Arc<i
     let connection = Arc::new(Connection {
         progress: AtomicU64::new(connections.now()),
         computing: AtomicBool::new(false),
+        running: AtomicBool::new(false),
         queued: AtomicUsize::new(0),
     });
     let (all, site, own) = (connections.clone(), site.clone(), connection.clone());
@@ -186,8 +190,10 @@ async fn response(
     let fields = site.fields();
     connection.computing.store(true, Ordering::Relaxed);
     let thread = connections.threads.acquire().await;
+    connection.running.store(true, Ordering::Relaxed);
     let computed = tokio::task::spawn_blocking(move || site.respond(&head)).await;
     drop(thread);
+    connection.running.store(false, Ordering::Relaxed);
     connection.progress.store(connections.now(), Ordering::Relaxed);
     connection.computing.store(false, Ordering::Relaxed);
     let failed = |_| Reply {
