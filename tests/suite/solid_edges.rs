@@ -77,7 +77,45 @@ fn elements_that_lock_are_named_with_the_key_that_helps() {
         assert_eq!((code, warnings), (0, Vec::new()));
     }
     assert_eq!(column(&soft, &[]).2, Vec::<String>::new());
-    assert_eq!(column(&soft, &["solid.order=linear"]).2, Vec::<String>::new());
+    // Linear hexahedra do not lock; theirs are too deep at the clamped base.
+    let warnings = column(&soft, &["solid.order=linear"]).2;
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    remarked(&warnings, "deep at a clamped face");
+}
+
+/// A cantilever of hex8 elements as deep at the clamped face as it is high (6 % too stiff at ν = 0.4999), and thinner there.
+#[test]
+fn deep_elements_at_a_clamped_face_are_named() {
+    let beam = |counts: &str, set: &[&str]| {
+        let change = [
+            ("x = { lines = [0.0, 0.5], counts = [2] }", "x = { lines = [0.0, 5.0], counts = COUNTS }"),
+            (
+                "z = { lines = [0.0, 1.0, 2.0], counts = [2, 2] }",
+                "z = { lines = [0.0, 0.25, 0.5], counts = [1, 1] }",
+            ),
+            ("top = 1.0", "top = 0.25"),
+            ("COUNTS", counts),
+            ("poisson = 0.25", "poisson = 0.4999"),
+            ("poisson = 0.25", "poisson = 0.4999"),
+            ("side = \"z-\"", "side = \"x-\""),
+            ("kind = \"pressure\"", "kind = \"traction\""),
+            ("side = \"z+\"", "side = \"x+\""),
+            ("pressure = \"10 kPa\"", "traction = [0, 0, 10]"),
+        ];
+        let (code, error, warnings) = column(&change, set);
+        assert_eq!(code, 0, "{error}");
+        warnings
+    };
+    let linear = "solid.order=linear";
+    remarked(
+        &beam("[10]", &[linear]),
+        "material 1 has Poisson's ratio 0.4999, and 2 of its hex8 elements are up to 1.00 widths of the section deep at a clamped face",
+    );
+    let none = Vec::<String>::new();
+    assert_eq!(beam("[10]", &[]), none);
+    assert_eq!(beam("[40]", &[linear]), none);
+    let soft = ["solid.material.0.poisson=0.4", "solid.material.1.poisson=0.4", linear];
+    assert_eq!(beam("[10]", &soft), none);
 }
 
 #[test]

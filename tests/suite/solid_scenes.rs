@@ -229,6 +229,22 @@ fn drained_triaxial_test_of_clay_follows_the_closed_form() {
     }
 }
 
+/// The tolerance of Newton's iteration by default, against 1e-11: displacement of the cavity's wall and reactions of the drained test
+/// within 1e-6 at all times (1e-4 leaves 4.8e-6 and 3.0e-6).
+#[test]
+fn default_tolerance_keeps_paths_within_1e_6() {
+    for (name, column) in
+        [("verify/cavity/scene.toml", "wall_u_x"), ("solid/triaxial_drained.toml", "plate_reaction_z")]
+    {
+        let path = |set: &[&str]| finished(name, set).1.column(column);
+        let (found, exact) = (path(&[]), path(&["solid.newton.tolerance=1e-11"]));
+        let size = exact.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+        let error = found.iter().zip(&exact).map(|(f, e)| (f - e).abs() / size).fold(0.0, f64::max);
+        println!("{name}: {error:.1e}");
+        assert!(found.len() == exact.len() && error < 1e-6, "{name}: {error:e}");
+    }
+}
+
 /// A wave in one dimension: below 1 % of the energy may stay behind, and every point ends lower by ∫ p dt/(ρ c_p), to
 /// 0.5 %.
 #[test]

@@ -2,6 +2,7 @@
 
 mod analysis;
 mod boundary;
+mod clamped;
 mod common;
 mod conditioning;
 mod equations;
@@ -199,7 +200,9 @@ pub fn build(
     let faults = mesh_tools::check(&mesh, &supports.constraints);
     let inside_out = mesh_tools::all_inside_out(&mesh, &faults);
     let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
-    let warnings = warnings.into_iter().chain(mesh_tools::sentences(&mesh, &faults)).chain(locking).collect();
+    let clamped = clamped::remarks(&mesh, &materials.constants, &supports.constraints);
+    let faults = mesh_tools::sentences(&mesh, &faults);
+    let warnings = warnings.into_iter().chain(faults).chain(locking).chain(clamped).collect();
     let weight = sleepers.as_ref().map_or(if solid.gravity { gravity } else { [0.0; 3] }, |s| s.gravity);
     let sleepers = sleepers
         .map(|plan| SleeperBodies::add(plan, &mut mesh, &mut materials.constants, &mut supports.constraints));
