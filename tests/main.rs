@@ -3,6 +3,7 @@
 
 mod suite {
     mod bad_input;
+    mod balance;
     mod ballast;
     mod bedding;
     mod bonds;
@@ -59,6 +60,7 @@ mod suite {
     mod trade;
     mod train;
     mod tutorials;
+    mod validity;
     mod verdict;
     mod view;
     mod view_clients;

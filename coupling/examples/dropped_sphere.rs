@@ -59,7 +59,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     while state.grains.time < 0.02 {
         step::step(&model, &mut state, &mut work, |_, _, _| {}, |_, _| {})?;
     }
-    let balance = Balance { start, now: step::stored(&model, &state), spent: step::spent(&state) };
+    let balance = Balance {
+        start,
+        now: step::stored(&model, &state),
+        spent: step::spent(&state),
+        ..Balance::default()
+    };
     let speed = state.grains.velocity(0).z;
     println!("rebound at {speed:.3} m/s, error of the energy {:.1e} J of 0.69 J", balance.error());
     assert!(speed > 0.3 && speed < 0.9, "it bounces, and leaves energy in the block");

@@ -183,6 +183,10 @@ pub struct Balance {
     pub now: Stored,
     /// Work and dissipation since the start.
     pub spent: Spent,
+    /// Energy below which an error means nothing, whatever has been turned over [J]: of the grains, see
+    /// [`reference_energy`](trackbed_dem::measure::reference_energy).
+    #[serde(default)]
+    pub reference: f64,
 }
 
 impl Balance {
@@ -207,11 +211,12 @@ impl Balance {
         self.spent.turned_over().max(self.now.changes(&self.start))
     }
 
-    /// Below this an error means nothing [J]: a thousandth of what springs and motion hold, and what rounding leaves of
-    /// the potential of gravity, whose zero is anywhere.
+    /// Below this an error means nothing [J]: a thousandth of the energy in springs and motion, the rounding of
+    /// the potential of gravity, whose zero is anywhere, or the reference energy.
     pub fn floor(&self) -> f64 {
         let gravity = |s: &Stored| s.grains_gravity.abs() + s.solid_gravity.abs();
-        1e-3 * self.start.held().max(self.now.held()) + 1e-9 * gravity(&self.start).max(gravity(&self.now))
+        let held = 1e-3 * self.start.held().max(self.now.held());
+        (held + 1e-9 * gravity(&self.start).max(gravity(&self.now))).max(self.reference)
     }
 }
 
@@ -227,7 +232,7 @@ mod tests {
         assert_eq!((balance.error(), balance.turnover()), (0.0, 54e9));
         let start = Stored { contact_springs: 2.0, ..Stored::default() };
         let now = Stored { grains_kinetic: 3.0, ..Stored::default() };
-        let balance = Balance { start, now, spent: Spent::default() };
+        let balance = Balance { start, now, ..Balance::default() };
         assert_eq!((balance.error(), balance.turnover(), balance.floor()), (1.0, 5.0, 3e-3));
     }
 
@@ -254,7 +259,7 @@ mod tests {
         for (name, spent, gain) in cases {
             let start = Stored { solid_strain: 5.0, ..Stored::default() };
             let now = Stored { solid_strain: 5.0 + gain, ..Stored::default() };
-            assert_eq!(Balance { start, now, spent }.error(), 0.0, "{name}");
+            assert_eq!(Balance { start, now, spent, ..Balance::default() }.error(), 0.0, "{name}");
             let named: f64 = spent.losses().into_iter().map(|(_, loss)| loss).sum();
             assert_eq!(named, spent.dissipated(), "{name}");
         }

@@ -3,13 +3,17 @@
 use crate::element::stiffness_points;
 use crate::model::Model;
 
-/// The largest strain and the largest displacement of a body.
+/// The largest strain, rotation and displacement of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
     /// Largest strain at a Gauss point, the square root of `ε:ε` [-].
     pub strain: f64,
     /// Element that has it, as the user's files number it.
     pub strained: u32,
+    /// Largest rotation at a Gauss point, half the curl of the displacement [rad].
+    pub rotation: f64,
+    /// The element.
+    pub rotated: u32,
     /// Displacement against the mean of the body [m] that is largest compared with the element.
     pub displacement: f64,
     /// Longest side of the element's bounds [m].
@@ -27,11 +31,16 @@ pub fn extent(model: &Model, u: &[f64]) -> Extent {
     for (e, &id) in mesh.element_ids.iter().enumerate() {
         let (strains, moved) = (model.element_strains(e), mesh.element_values(e, u));
         for point in stiffness_points(mesh.connectivity.kind(e), model.quadrature()) {
-            let s = strains.strain(&strains.at_point(point), &moved);
+            let at = strains.at_point(point);
+            let s = strains.strain(&at, &moved);
             let normal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
             let size = (normal + 0.5 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt();
             if size > found.strain {
                 (found.strain, found.strained) = (size, id);
+            }
+            let rotation = rotation(&at.gradients, &moved[..mesh.connectivity[e].len()]);
+            if rotation > found.rotation {
+                (found.rotation, found.rotated) = (rotation, id);
             }
         }
         let nodes = &mesh.connectivity[e];
@@ -48,4 +57,11 @@ pub fn extent(model: &Model, u: &[f64]) -> Extent {
         }
     }
     found
+}
+
+/// Half the curl of a displacement with these values at the nodes [m] and gradients of their functions [1/m].
+fn rotation(gradients: &[[f64; 3]], moved: &[[f64; 3]]) -> f64 {
+    let slope = |i: usize, j: usize| gradients.iter().zip(moved).map(|(g, u)| u[i] * g[j]).sum::<f64>();
+    let axis = [slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)];
+    0.5 * axis.iter().map(|w| w * w).sum::<f64>().sqrt()
 }

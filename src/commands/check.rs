@@ -79,7 +79,8 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
 /// Bad input that shows only when models are made; a solid that needs more than `memory` [bytes]; where it is `strict`, values
 /// that are not plausible.
 pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
-    let findings = plausible::weigh(&document.read()?, job);
+    let mut findings = plausible::weigh(&document.read()?, job);
+    findings.extend(plausible::near_mode(job));
     if strict {
         plausible::refuse(document, &findings)?;
     }

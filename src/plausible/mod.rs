@@ -6,11 +6,13 @@
 //! none on what is odd.
 
 mod bed;
+mod borders;
 mod findings;
 mod geometry;
 mod grains;
 mod inertia;
 mod materials;
+mod resonance;
 mod run;
 mod solid;
 mod track;
@@ -20,6 +22,7 @@ use crate::model::Job;
 use crate::scene::{Document, Scene};
 pub use findings::Finding;
 use findings::Findings;
+pub use resonance::{AMPLIFICATION, Resonance, near_mode, resonance};
 
 /// Everything of a scene that is not plausible, the implausible first.
 pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
@@ -29,6 +32,7 @@ pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     grains::weigh(&mut findings, scene);
     bed::weigh(&mut findings, scene, job);
     geometry::weigh(&mut findings, scene, job);
+    borders::weigh(&mut findings, scene, job);
     track::weigh(&mut findings, scene, job);
     run::weigh(&mut findings, scene, job);
     inertia::weigh(&mut findings, scene, job);

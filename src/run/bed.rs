@@ -1,6 +1,7 @@
 //! A bed of grains on its way to the run proper: it settles, is shaken, pressed, squeezed.
 
 use super::checkpoint_store::CheckpointStore;
+use super::packing::StageEnergy;
 use crate::failure::Failure;
 use crate::model::grains::DepositionPlan;
 use trackbed_coupling::surface::SolidSurface;
@@ -84,6 +85,14 @@ impl<'a> Bed<'a> {
             }
         }
         Ok(false)
+    }
+
+    /// Energy balance of the stage, which has come to its end.
+    ///
+    /// # Errors
+    /// The balance does not close.
+    pub fn energy(&self, stage: &str) -> Result<StageEnergy, Failure> {
+        StageEnergy::of(stage, &self.model, &self.state, self.surface)
     }
 
     /// The first bodies of the model where they are now, at rest: as many as `inputs`, which hold all else.

@@ -37,6 +37,7 @@ mod summary;
 mod system;
 mod threads;
 mod track_output;
+mod validity;
 mod wall_output;
 
 pub use checkpoint::check_file as check_checkpoint;
@@ -264,6 +265,7 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
         stages::of(run.job).try_for_each(|stage| stage.run(run, &mut state))
     });
     let summary = &mut state.summary;
+    summary.warnings.extend(validity::messages(&summary.validity));
     summary.verdict = Verdict::of(summary);
     let result = result.and_then(|()| summary.verdict.judge());
     if let Err(Failure::Numerical(_)) = &result {

@@ -59,6 +59,9 @@ pub struct Grains {
     /// Whether these grains foul the bed: fines in the voids of the others; default false.
     #[serde(default)]
     pub fouling: bool,
+    /// Whether these grains may overlap at the start by more than a tenth of a radius, as prestressed ones do; default false.
+    #[serde(default)]
+    pub accept_overlap: bool,
     /// Initial velocity [m/s].
     pub velocity: Option<[Quantity<Velocity>; 3]>,
     /// Initial angular velocity [rad/s].

@@ -287,10 +287,7 @@ fn a_stone_that_leaves_the_mesh_is_named() {
     let s = json(&folder.join("out/summary.json"));
     let warnings = s["warnings"].to_string();
     println!("{warnings}, energy {}", s["energy"]["relative_error"]);
-    assert!(
-        warnings
-            .contains("bodies that have left the solid and are below its surface: 1, the first is body 0 at")
-    );
+    assert!(warnings.contains("bodies lost below the surface of the solid: 1, the first is body 0 at"));
     let start: f64 = s["energy"]["start"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
     assert!(number(&s, "/energy/largest_error") < 5e-3 * start.abs(), "{:#}", s["energy"]);
     // One that stays is not.

@@ -1,7 +1,7 @@
 //! Grains at and beyond what their contacts can follow, through scenes: refused with the key (exit code 2), or stopped
 //! with the names of both partners (exit code 3).
 
-use super::support::{Folder, GRAINS, json, run};
+use super::support::{Folder, GRAINS, Table, json, run};
 
 /// Stops with code 3 and `what` on standard error; the summary says the same.
 fn stops(name: &str, text: &str, what: &str) {
@@ -56,4 +56,44 @@ fn floor_struck_at_a_thousand_metres_per_second() {
     stops("fast_floor", &text, "body 0 moves at 1000");
     let short = text.replace("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"5 us\"");
     stops("fast_floor_short", &short, "body 0 and plane 0 overlap");
+}
+
+/// A light grain in a stream that carries it along within 0.1 µs, on contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m. A
+/// fixed step that passes that time is rejected.
+#[test]
+fn stiff_drag_limits_the_step() {
+    let text = r#"
+gravity = [0, 0, 0]
+[wind]
+drag = 1.0
+velocity = [100.0, 0, 0]
+density = 1000
+[[material]]
+name = "foam"
+density = 10
+stiffness = 10
+restitution = 0.9
+friction = 0.5
+[[grains]]
+name = "g"
+shape = "sphere"
+material = "foam"
+spheres = [[0, 0, 0, 0.001]]
+record = true
+[time]
+end = 2e-5
+[output]
+frames = 0
+vtk = false
+"#;
+    let folder = Folder::new("stiff_drag");
+    let scene = folder.write("scene.toml", text);
+    run(&scene, &folder.join("out"), &[]).good();
+    let way = *Table::read(&folder.join("out/history.csv")).column("g_x").last().unwrap();
+    let c = 0.5 * 1000.0 * std::f64::consts::PI * 1e-6 / (10.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9);
+    let expected = 100.0 * 2e-5 - (1.0_f64 + c * 100.0 * 2e-5).ln() / c;
+    assert!((way / expected - 1.0).abs() < 0.01, "{way} {expected}");
+    let fixed = run(&scene, &folder.join("fixed"), &["time.grain_step=1e-6"]);
+    assert_eq!(fixed.code, 2, "{fixed:?}");
+    assert!(fixed.stderr.contains("the drag or lift of a fluid"), "{}", fixed.stderr);
 }

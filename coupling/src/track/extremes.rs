@@ -147,7 +147,7 @@ pub struct TrackRecord {
 }
 
 /// One sleeper while the load cycles last.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct SleeperRecord {
     /// Largest downward force on its seats together [N], at the end of any window.
     pub largest_force: f64,

@@ -191,6 +191,17 @@ impl Pass {
 }
 
 impl CyclicLoad {
+    /// Frequencies that the load excites the ground with for many periods [Hz]: of waves, of flanks without a pause, of an uneven rail.
+    /// Of measured forces none are known.
+    pub fn frequencies(&self) -> Vec<f64> {
+        match &self.waveform {
+            Waveform::Wave { frequency, .. } => vec![*frequency],
+            Waveform::Ramp { rise, hold, fall: Some(fall), .. } => vec![1.0 / (rise + hold + fall)],
+            Waveform::Ramp { .. } | Waveform::Measured { .. } => Vec::new(),
+            Waveform::Pass(pass) => pass.waves.iter().map(|[_, length]| pass.speed / length).collect(),
+        }
+    }
+
     /// Downward force on sleeper `k` at time `t` [N], that of a rail with mass excepted.
     pub fn on(&self, k: usize, t: f64) -> f64 {
         let since = t - self.rest;

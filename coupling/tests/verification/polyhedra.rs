@@ -70,8 +70,12 @@ fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
         let reaction: f64 =
             fem::energy::reactions(&solid, &c.state.solid, &load).iter().skip(2).step_by(3).sum();
         let audit = c.state.audit;
-        let balance =
-            Balance { start: start.0, now: step::stored(&c.model, &c.state), spent: step::spent(&c.state) };
+        let balance = Balance {
+            start: start.0,
+            now: step::stored(&c.model, &c.state),
+            spent: step::spent(&c.state),
+            ..Balance::default()
+        };
         let weight = 9.81 * mass;
         println!(
             "{place:?}: {} points; contact/weight - 1 = {:.1e}, base/weight - 1 = {:.1e}, force and moment errors {:.1e}, {:.1e}, \
@@ -156,7 +160,10 @@ fn jumping_stones_keep_the_account_of_energy() {
         c.step(&[]);
         let (now, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
         let fall = start.total() - now.grains_gravity;
-        worst = worst.max(Balance { start, now, spent }.error().abs() / fall.max(0.05 * start.total().abs()));
+        worst = worst.max(
+            Balance { start, now, spent, ..Balance::default() }.error().abs()
+                / fall.max(0.05 * start.total().abs()),
+        );
     }
     let shaken = step::stored(&c.model, &c.state);
     let interface = step::spent(&c.state).interface() / start.total();

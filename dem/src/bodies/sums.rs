@@ -60,6 +60,26 @@ pub(crate) struct WallSum {
     /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
     pub stiffness: f64,
     pub damping: f64,
+    /// Force of their dashpots on the grains; of driven walls only.
+    pub dashpots: DashpotSum,
+}
+
+/// Forces of dashpots by the speed of the wall that their loss was computed with [N].
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct DashpotSum {
+    /// The speed of half a step ago.
+    pub latest: Vec3,
+    /// That speed, extrapolated from the step before.
+    pub extrapolated: Vec3,
+}
+
+impl DashpotSum {
+    /// Loss [W] that the dashpots have beyond the computed one where the wall's speed was `now` [m/s] half a step ago, `change`
+    /// more than a step before, and is `next` half a step on: the loss over a step is that of the mean speed.
+    pub fn lag(&self, now: &Vec3, change: &Vec3, next: &Vec3) -> f64 {
+        let beyond = (next - now) * 0.5;
+        self.latest.dot(&beyond) + self.extrapolated.dot(&(beyond - change * 0.5))
+    }
 }
 
 impl AddAssign<&WallSum> for WallSum {
@@ -68,5 +88,7 @@ impl AddAssign<&WallSum> for WallSum {
         self.moment += other.moment;
         self.stiffness += other.stiffness;
         self.damping += other.damping;
+        self.dashpots.latest += other.dashpots.latest;
+        self.dashpots.extrapolated += other.dashpots.extrapolated;
     }
 }

@@ -77,14 +77,22 @@ body_forces! {
 }
 
 impl BodyForce {
-    /// Longest step that resolves what it does to a body [s].
-    pub(crate) fn longest(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
+    /// Shortest time in which it changes the motion of a body [s].
+    fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
         match self {
-            BodyForce::Water(water) => water.longest(bodies, gravity),
-            BodyForce::Wind(_) => f64::INFINITY,
+            BodyForce::Water(water) => water.time_constant(bodies, gravity),
+            BodyForce::Wind(wind) => wind.time_constant(bodies, gravity),
         }
     }
 }
+
+/// Shortest time in which any of the forces changes the motion of a body [s].
+pub(crate) fn time_constant(forces: &[BodyForce], bodies: &Bodies, gravity: &Vec3) -> f64 {
+    forces.iter().map(|f| f.time_constant(bodies, gravity)).fold(f64::INFINITY, f64::min)
+}
+
+/// Longest step over that time: velocities then err by 1 %. Beyond the time itself explicit steps grow.
+pub(crate) const RESOLVED: f64 = 0.02;
 
 /// Surfaces of all shapes, where one of the forces asks for them, or ground that is scarred.
 pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Vec<Skin> {

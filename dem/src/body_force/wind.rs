@@ -8,6 +8,7 @@
 use super::four::{self, ActOnFour, Bodies4};
 use super::work::{Act, ForceWork, Seen};
 use crate::base::Vec3;
+use crate::bodies::table::{Bodies, Body};
 use crate::lanes::{Real, V3};
 
 /// Where it is published.
@@ -34,6 +35,21 @@ impl Wind {
             .into_iter()
             .find(|&(_, x)| !good(x))
             .map(|(what, x)| (what, x, "be zero or positive, and finite"))
+    }
+}
+
+impl Wind {
+    /// Time in which the lightest body takes on the speed of the fluid [s]: m/(ρ C_d π r² u), r of the sphere around it, u the speed of
+    /// the fluid and that at which the body falls in it.
+    pub(super) fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
+        let time = |b: Body| {
+            let area = self.density * self.drag * std::f64::consts::PI * b.radius * b.radius;
+            let falling = (2.0 * b.mass * gravity.norm() / area).sqrt();
+            b.mass / (area * (self.velocity.norm() + falling))
+        };
+        let free = bodies.iter().filter(|b| b.inverse_mass > 0.0);
+        // A fluid without density or drag has none.
+        free.map(time).filter(|t| t.is_finite()).fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -463,7 +463,7 @@ fn apply<S: Surface>(
     let (mut dashpot, mut friction) = (0.0, work.ended);
     let mut exchange = Exchange::default();
     for (result, contact) in forces.iter().zip(live) {
-        contact.history = result.history();
+        let before = std::mem::replace(&mut contact.history, result.history());
         let (a, force, moment) = (result.body as usize, result.force(), result.moment());
         let spent = result.dissipated();
         dashpot += spent.0;
@@ -501,6 +501,18 @@ fn apply<S: Surface>(
                 let mass = 1.0 / (block.velocity[a][3] + surface.inverse_mass(contact.patch));
                 sum.stiffness += stiffness;
                 sum.damping += (stiffness * mass).sqrt();
+                let &mut PatchContact { point, normal, overlap, .. } = contact;
+                let geometry = ContactGeometry { point, normal, overlap, radius: result.radius() };
+                let memory = [&before, &contact.history];
+                single::add_dashpot(
+                    &mut sum.dashpots,
+                    setting.laws,
+                    materials,
+                    &geometry,
+                    memory,
+                    &force,
+                    1.0,
+                );
             }
         }
     }

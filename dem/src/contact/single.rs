@@ -3,6 +3,7 @@
 
 use crate::base::Vec3;
 use crate::bodies::block::PointMotion;
+use crate::bodies::sums::DashpotSum;
 use crate::lanes::record::xyz;
 use crate::lanes::{Real, Simd, V3};
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, Laws, with_law};
@@ -129,4 +130,25 @@ pub(crate) fn springs(
     history: &History,
 ) -> (f64, f64) {
     with_law!(laws, laws => laws.get(a, b).springs(overlap, radius, history))
+}
+
+/// Adds to `sum` the part of a contact's `force` [N] that springs do not explain; `before` and `after`: memory of the contact before
+/// and after this step.
+pub(crate) fn add_dashpot(
+    sum: &mut DashpotSum,
+    laws: &Laws,
+    [a, b]: [u32; 2],
+    geometry: &ContactGeometry,
+    [before, after]: [&History; 2],
+    force: &Vec3,
+    weight: f64,
+) {
+    let (normal, tangential) = springs(laws, [a, b], geometry.overlap, geometry.radius, after);
+    let dashpot = (force - geometry.normal * normal + after.spring * tangential) * weight;
+    // A law that remembers another number than the approach speed extrapolates nothing.
+    if before.is_fresh() || laws.begun(a, b, 1.0) == 0.0 {
+        sum.latest += dashpot;
+    } else {
+        sum.extrapolated += dashpot;
+    }
 }

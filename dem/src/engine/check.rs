@@ -379,3 +379,17 @@ pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
     }
     Ok(())
 }
+
+/// Checks a fixed step against the time in which drag or lift of a fluid changes the motion of a body [s].
+///
+/// # Errors
+/// The step is longer.
+pub(crate) fn fluid_step(step: &TimeStep, time: f64) -> Result<(), ModelError> {
+    match *step {
+        TimeStep::Fixed(dt) if dt > time => {
+            let cause = "the drag or lift of a fluid on the lightest body".to_string();
+            Err(ModelError::TimeStep { dt, limit: time, cause })
+        }
+        _ => Ok(()),
+    }
+}

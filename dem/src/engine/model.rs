@@ -142,10 +142,11 @@ impl Model {
         let rigid = rigid.min(timestep::shells(&mut walls, &mut limit, &shells, &laws));
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
-        let of_fluids = input.body_forces.iter().map(|f| f.longest(&bodies, &input.gravity));
-        let longest =
-            of_fluids.fold(rigid.min(timestep::landing(&bodies, &input, &laws, expected)), f64::min);
-        let steps = Steps::new(&input.time_step, &limit, longest, collision)?;
+        let fluids = body_force::time_constant(&input.body_forces, &bodies, &input.gravity);
+        check::fluid_step(&input.time_step, fluids)?;
+        let landing = timestep::landing(&bodies, &input, &laws, expected);
+        let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);
+        let steps = Steps::new(&input.time_step.damped(input.damping), &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
         let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
         let solids = round < bodies.len();

@@ -46,6 +46,7 @@ impl State {
             drift: 0.0,
             wall_drift: 0.0,
             lasted: 0,
+            driven_speed: 0.0,
             stale: true,
         };
         let positions = model.bodies.positions().expect("a model that has not given its start up");

@@ -58,6 +58,8 @@ pub struct State {
     pub(crate) bonds: BondState,
     pub(crate) planes: Vec<PlaneMotion>,
     pub(crate) walls: Vec<WallState>,
+    /// Largest speed that walls with prescribed motion and driven walls have had [m/s].
+    pub(crate) driven_speed: f64,
     /// Place and velocity of each corner of the external surface in the last step, where bodies with faces may touch it.
     pub(crate) sheet: Vec<[Vec3; 2]>,
     /// What each body does to ground that is scarred, by number; empty where no ground is.
@@ -273,6 +275,7 @@ impl State {
         // Steps are counted on: every so many the bodies are put in order, and that decides the last bits of sums.
         self.before = self.steps;
         self.ledger = Ledger::default();
+        self.driven_speed = 0.0;
         self.bonds.breaks.clear();
     }
 

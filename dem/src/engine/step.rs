@@ -352,7 +352,9 @@ pub(crate) fn conclude(
     let mut wall_speed = wall_speed.max(surface_speed);
     for wall in &mut state.planes {
         wall.offset += wall.velocity * dt;
-        wall_speed = wall_speed.max(wall.velocity.norm());
+        let speed = wall.velocity.norm();
+        wall_speed = wall_speed.max(speed);
+        state.driven_speed = state.driven_speed.max(speed);
     }
     state.drift += fastest * dt;
     state.wall_drift += wall_speed * dt;

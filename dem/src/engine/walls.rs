@@ -56,8 +56,8 @@ pub(crate) fn advance(
                 let mut speed = own.drive;
                 if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
                     let impedance = sum.stiffness * kick + 2.0 * wall.damping * 2.0 * sum.damping;
-                    speed =
-                        servo.direction * servo.speed(state.time, sum.force.dot(&servo.direction), impedance);
+                    let d = servo.direction;
+                    speed = d * servo.speed(state.time, sum.force.dot(&d), impedance, own.velocity.dot(&d));
                 }
                 let before = own.velocity;
                 own.steady += speed * dt;
@@ -82,12 +82,17 @@ pub(crate) fn advance(
                 let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * kick;
                 if wall.servo.is_some() {
                     ledger.work_servo += done;
+                    // A drive without mass may jump within a step, which dashpots do not know of before the next one.
+                    ledger.dissipated_dashpot += sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
+                    own.change = own.velocity - before;
                 } else {
                     ledger.work_walls += done;
                 }
                 ledger.walls.add(&centre, &(sum.force * kick));
                 ledger.walls.angular += sum.moment * kick;
-                own.velocity.norm() + spin.norm() * wall.reach
+                let speed = own.velocity.norm() + spin.norm() * wall.reach;
+                state.driven_speed = state.driven_speed.max(speed);
+                speed
             }
         };
         // Whatever moves a wall, it must not pass by a grain within a step.

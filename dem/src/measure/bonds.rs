@@ -89,6 +89,32 @@ pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
     out
 }
 
+/// Rotation of a bond: of one end against the other, or of the line of centres by shear.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondRotation {
+    /// Number of the bond in the model.
+    pub bond: usize,
+    /// Angle [rad].
+    pub angle: f64,
+}
+
+/// The largest rotation that an unbroken bond resists; none where no bond resists any.
+pub fn largest_rotation(model: &Model, state: &State) -> Option<BondRotation> {
+    let mut largest: Option<BondRotation> = None;
+    state.each_bond(|number, (_, e)| {
+        let k = &model.bonds[number as usize].values;
+        let resisted = |at: usize, size: f64| if k[kernel::STIFFNESS + at] > 0.0 { size } else { 0.0 };
+        let turn = resisted(2, e.memory.turn.norm2().sqrt());
+        let shear = resisted(1, e.memory.shear.norm2().sqrt() / (k[kernel::LENGTH] - k[kernel::OFFSET]));
+        let angle = turn.max(shear);
+        let bends = k[kernel::STIFFNESS + 1] > 0.0 || k[kernel::STIFFNESS + 2] > 0.0;
+        if bends && largest.is_none_or(|l| angle > l.angle) {
+            largest = Some(BondRotation { bond: number as usize, angle });
+        }
+    });
+    largest
+}
+
 /// Calls `f` with each debonded pair, its blocks, and the geometry of its contact beyond the reference.
 pub(crate) fn each_touch(
     blocks: &[Block],

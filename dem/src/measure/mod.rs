@@ -21,7 +21,7 @@ mod region;
 mod sieve;
 mod stress;
 
-pub use bonds::{BondRecord, records as bond_records};
+pub use bonds::{BondRecord, BondRotation, largest_rotation, records as bond_records};
 pub use breakage::{Breakage, breakage};
 pub use clip::sphere_box_volume;
 pub(crate) use contacts::visit;
@@ -29,9 +29,9 @@ pub use contacts::{ContactRecord, contact_forces, contact_forces_of, contacts, c
 pub use coordination::{
     Coordination, StrongNetwork, coordination_of, fabric, neighbours, strong_network, unbalanced_ratio,
 };
-pub use energy::{Energies, energies, momentum};
+pub use energy::{Energies, energies, momentum, reference_energy};
 pub(crate) use energy::{energies_of, momentum_of};
-pub use extent::{highest_over, lowest};
+pub use extent::{highest_over, lowest, lowest_wall};
 pub use footprint::{bytes, kernels};
 pub use force_on::{force_on, loads_on};
 pub use fragments::{Fragments, fragments};

@@ -183,6 +183,7 @@ impl Walls {
                     frame: UnitQuaternion::identity(),
                     momentum: Vec3::zeros(),
                     acceleration: Vec3::zeros(),
+                    change: Vec3::zeros(),
                     feet: Vec::new(),
                     meets: Vec::new(),
                 };

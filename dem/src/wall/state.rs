@@ -39,6 +39,8 @@ pub(crate) struct WallState {
     pub momentum: Vec3,
     /// Acceleration of its centre in the last step [m/s²].
     pub acceleration: Vec3,
+    /// Change of the velocity of a driven wall in the last step [m/s].
+    pub change: Vec3,
     pub feet: Vec<Foot>,
     /// Where a body of triangles touches other walls, by these and by what touches.
     pub meets: Vec<Meet>,

@@ -2,6 +2,7 @@
 //! after its bed has settled.
 
 use super::bonds::{check_gaps, check_joinable, check_joined};
+use super::overlap::check_overlaps;
 use super::part::GrainsPart;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
@@ -32,6 +33,7 @@ pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, Scen
         check_joined(document, &grains.bonds, &input.bonds)?;
     }
     let alone = Model::new(input).map_err(|e| refused(document, &e))?;
+    check_overlaps(document, grains, &alone)?;
     let whole = Model::new(with_sleepers(grains)).map_err(|e| refused(document, &e))?;
     let dt = whole.dt();
     grains.track.check_pads(document, dt)?;

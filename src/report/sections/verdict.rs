@@ -61,11 +61,24 @@ fn sentence(run: &RunData) -> String {
         State::Passed if judged == 0 => "The run is done; it has no account to judge.".into(),
         State::Passed => format!("The run is done, and its accounts close: {judged} judged, none remarked."),
         State::Warned => {
-            format!("The run is done; of {judged} accounts some are remarked: look at the results with care.")
+            let remarked = |list: &str, key: &str| {
+                let list = run.list(list);
+                list.iter().filter(|j| j[key] != "passed").count()
+            };
+            format!(
+                "The run is done; warned about: {} of {judged} accounts and {} of {} checks of validity. Look at the results with care.",
+                remarked("verdict.judged", "outcome"),
+                remarked("validity", "status"),
+                run.list("validity").len()
+            )
         }
         State::Failed => {
             let status = run.text("status").unwrap_or_default();
-            let status = if status == "done" { "an account says that there is no result" } else { status };
+            let status = if status == "done" {
+                "an account or a check of validity says that there is no result"
+            } else {
+                status
+            };
             let status = status.strip_prefix("failed: ").unwrap_or(status);
             format!("{status}. What is below is what was written until then.{reached}{on}")
         }
@@ -120,7 +133,7 @@ fn remarks(run: &RunData) -> Vec<String> {
     out
 }
 
-/// The accounts with their limits.
+/// The accounts and the checks of validity with their limits.
 fn judged(runs: &[RunData]) -> String {
     let several = runs.len() > 1;
     let mut rows = Vec::new();
@@ -131,6 +144,13 @@ fn judged(runs: &[RunData]) -> String {
             let number = |key: &str| Cell::of(j[key].as_f64(), "");
             let outcome = Cell::text(j["outcome"].as_str().unwrap_or_default());
             rows.push((name, vec![number("value"), number("warn_above"), number("stop_above"), outcome]));
+        }
+        for c in run.list("validity") {
+            let what = format!("validity: {}", c["name"].as_str().unwrap_or_default());
+            let name = if several { format!("{}: {what}", run.label) } else { what };
+            let number = |key: &str| Cell::of(c[key].as_f64(), "");
+            let status = Cell::text(c["status"].as_str().unwrap_or_default());
+            rows.push((name, vec![number("value"), number("limit"), number("fail_above"), status]));
         }
     }
     table(&["judged", "found", "remarked above", "no result above", "outcome"], &rows)

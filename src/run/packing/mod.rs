@@ -5,11 +5,14 @@ mod files;
 mod records;
 mod report;
 mod sieves;
+mod stage_energy;
 
 pub use records::{CompactionRecord, FoulingRecord, GrowthRecord, MeasureRecord, PackingRecord};
 pub(super) use report::report;
+pub use stage_energy::StageEnergy;
 
 use super::system::GrainsView;
+use super::validity::{Check, measure_box};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{GrainsPart, MeasurePlan};
@@ -28,9 +31,7 @@ pub fn record(
     grains: &GrainsPart,
 ) -> Result<PackingRecord, Failure> {
     let GrainsView { model, state } = view;
-    let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
-    // Those that are not there at the end do not count.
-    let is_grain = |b: usize| state.present(b) && Some(model.part(b)) != sleeper;
+    let is_grain = grain_of(view, grains);
     let contacts = measure::contacts(model, state);
     let stress = measure::mean_stress_of(model, state, &contacts);
     let all = measure::coordination_of(model, state, &contacts, is_grain);
@@ -74,6 +75,19 @@ pub fn record(
         fouling: fouling(view, grains, is_grain),
         gradations,
     })
+}
+
+/// Which bodies are grains: those that are not there at the end do not count, nor does the sleeper.
+fn grain_of<'a>(view: GrainsView<'a>, grains: &GrainsPart) -> impl Fn(usize) -> bool + Copy + 'a {
+    let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
+    move |b: usize| view.state.present(b) && Some(view.model.part(b)) != sleeper
+}
+
+/// Checks that the bed fills the boxes that are measured.
+pub fn checks(view: GrainsView<'_>, grains: &GrainsPart) -> Vec<Check> {
+    let is_grain = grain_of(view, grains);
+    let boxes = grains.measures.iter();
+    boxes.filter_map(|m| measure_box(&m.name, view, &m.region, is_grain)).collect()
 }
 
 /// How much of the fouling groups is in the bed.

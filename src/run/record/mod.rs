@@ -64,6 +64,9 @@ struct Course {
     /// Loads on structures.
     #[serde(default)]
     loads: Vec<LoadRecord>,
+    /// Largest kinetic energy of the grains at any row [J].
+    #[serde(default)]
+    largest_kinetic: f64,
 }
 
 /// How far the files have come.
@@ -91,7 +94,7 @@ impl<'a> Results<'a> {
         let course = Course {
             cycles: load.map(|load| cycle_file::recorder(job, system, load)),
             jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(Jumper::new),
-            balance: Balance { start: stored, now: stored, spent: system.spent() },
+            balance: Balance { start: stored, now: stored, spent: system.spent(), ..Balance::default() },
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
@@ -149,10 +152,21 @@ impl<'a> Results<'a> {
         body.put(&self.course)
     }
 
+    /// Brings the energy balance to the present state, and checks it.
+    ///
+    /// # Errors
+    /// The balance does not close.
+    pub fn check<S: System>(&mut self, system: &S, track: &Track<'_>) -> Result<(), Failure> {
+        let course = &mut self.course;
+        course.take(system, track);
+        course.largest_error = course.largest_error.max(course.balance.error().abs());
+        course.watch.follow(&course.balance)
+    }
+
     /// Adds a row to the history.
     ///
     /// # Errors
-    /// A value is not finite, the account of energy has failed, or the disk refuses.
+    /// A value is not finite, or the disk refuses.
     pub fn row<S: System>(
         &mut self,
         time: f64,
@@ -166,17 +180,13 @@ impl<'a> Results<'a> {
         if let Some((plan, view)) = plan.zip(system.grains()) {
             course.specimen.push(specimen::point(plan, view, time));
         }
-        course.balance.now = system.stored();
-        course.balance.spent = system.spent();
-        course.balance.spent.jumps = course.jump_energy;
-        track.account(&mut course.balance.now, &mut course.balance.spent);
-        course.largest_error = course.largest_error.max(course.balance.error().abs());
-        let judged = course.watch.follow(&course.balance);
+        course.take(system, track);
+        course.largest_kinetic = course.largest_kinetic.max(course.balance.now.grains_kinetic);
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
         let values = columns::values(&now);
         self.history.row(&values)?;
         structures::follow(&self.columns, &values, &mut self.course.loads);
-        judged
+        Ok(())
     }
 
     /// Follows the load cycles; call after every window.
@@ -219,7 +229,8 @@ impl<'a> Results<'a> {
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
-        Balance { start: self.course.balance.start, now: system.stored(), spent }.error()
+        Balance { start: self.course.balance.start, now: system.stored(), spent, ..Balance::default() }
+            .error()
     }
 
     /// Number of the last finished cycle and of all cycles; none without a cyclic load.
@@ -285,6 +296,11 @@ impl<'a> Results<'a> {
         self.course.largest_error
     }
 
+    /// Largest kinetic energy of the grains at any row [J].
+    pub fn largest_kinetic(&self) -> f64 {
+        self.course.largest_kinetic
+    }
+
     /// How the energy account stands to what was turned over.
     pub fn energy_watch(&self) -> &EnergyWatch {
         &self.course.watch
@@ -319,6 +335,16 @@ fn of_structures(job: &Job, columns: Vec<Column>) -> Vec<Column> {
 }
 
 impl Course {
+    /// Brings the balance to the present state.
+    fn take<S: System>(&mut self, system: &S, track: &Track<'_>) {
+        let balance = &mut self.balance;
+        balance.now = system.stored();
+        balance.spent = system.spent();
+        balance.spent.jumps = self.jump_energy;
+        balance.reference = system.reference_energy();
+        track.account(&mut balance.now, &mut balance.spent);
+    }
+
     /// Takes the heights of the sleepers into the settlement curves.
     fn settle<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) {
         for (k, s) in (0..track.count()).filter_map(|k| Some((k, track.sleeper(k, time, system)?))) {

@@ -3,6 +3,9 @@
 use crate::model::Job;
 use trackbed_coupling::track::CyclicLoad;
 
+/// Checks of the energy balance in a run.
+const CHECKS: f64 = 1000.0;
+
 /// When something is written, in windows.
 pub(super) struct Cadence {
     /// Length of a window [s].
@@ -13,6 +16,8 @@ pub(super) struct Cadence {
     last: Option<(u64, u64)>,
     /// Windows between two rows of the history.
     pub every: u64,
+    /// Windows between two checks of the energy balance: the outcome of a run does not depend on the rows of its history.
+    pub checked: u64,
     /// Windows after the last cycle, whenever that ends.
     pub tail: u64,
     /// Whether cycles are jumped over: then neither time nor steps show how far a run is.
@@ -22,6 +27,7 @@ pub(super) struct Cadence {
 impl Cadence {
     /// Of a run of `windows` windows of length `window` [s]; `jumps` says whether cycles of the `load` are jumped over.
     pub fn new(job: &Job, window: f64, windows: u64, load: Option<&CyclicLoad>, jumps: bool) -> Cadence {
+        let every = |interval: f64| ((interval / window).round() as u64).max(1);
         Cadence {
             window,
             frames: u64::from(job.output.frames).min(windows),
@@ -29,7 +35,8 @@ impl Cadence {
                 let begin = (((job.end - time) / window).floor().max(0.0) as u64).min(windows - 1);
                 (begin, u64::from(frames).min(windows - begin))
             }),
-            every: ((job.output.history_interval / window).round() as u64).max(1),
+            every: every(job.output.history_interval),
+            checked: every(job.end / CHECKS),
             tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
             jumps,
         }

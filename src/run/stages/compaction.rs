@@ -1,6 +1,6 @@
 //! Compaction of a settled bed: planes that swing, a plate that presses, a plane that moves in.
 
-use super::bedding;
+use super::bedding::{self, Poured};
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -10,6 +10,8 @@ use crate::run::bed::{Bed, rms_speed, top_below};
 use crate::run::context::Run;
 use crate::run::packing::CompactionRecord;
 use crate::run::summary::StageRecord;
+use crate::run::system::GrainsView;
+use crate::run::validity::region_not_filled;
 use std::f64::consts::TAU;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -74,6 +76,20 @@ impl Stage for Compaction {
     }
 }
 
+/// Warns of a region that the bed does not fill, and of grains that have not come to rest.
+fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, index: usize) {
+    let view = GrainsView { model: &done.bed.model, state: &done.bed.state };
+    let key = format!("compaction.{index}.region");
+    settled.warnings.extend(region_not_filled(&key, view, &done.region, |b| b < settled.bodies.len()));
+    if !done.rested {
+        settled.warnings.push(format!(
+            "the grains were still moving at {:.2e} m/s (root mean square) after stage {} of the compaction",
+            rms_speed(&done.bed.model, &done.bed.state),
+            index + 1
+        ));
+    }
+}
+
 /// One stage of compaction.
 fn compact(
     run: &Run<'_>,
@@ -87,6 +103,8 @@ fn compact(
     let mut bed = new_bed(run, grains, &plan, settled.all(), surface)?;
     let before = porosity(&bed, settled.bodies.len(), &plan.region);
     let region = plan.region;
+    let name = format!("compaction {}: {}", index + 1, plan.press.name());
+    let mut poured_from = Vec::new();
     let done = match &plan.press {
         Press::Vibration { planes, amplitude, frequency, cycles } => {
             shake(&mut bed, planes, amplitude, *frequency, *cycles)?;
@@ -119,7 +137,9 @@ fn compact(
         }
         Press::Pouring { parts, layers, .. } => {
             let new = |now: &Settled| new_bed(run, grains, &plan, now.all(), surface);
-            let (bed, steps, rested) = bedding::pour(grains, settled, (parts, *layers), &plan.rest, new)?;
+            let poured = bedding::pour(grains, settled, (&name, parts, *layers), &plan.rest, new)?;
+            let Poured { bed, before, steps, rested } = poured;
+            poured_from = before;
             Pressed { steps, bed, rested, region, wall_force: None }
         }
         Press::Tamping { .. } => {
@@ -129,20 +149,16 @@ fn compact(
         }
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
-    settled.take(&done.bed);
+    warn_of_bed(settled, &done, index);
     if let Press::Pouring { parts, level, .. } = &plan.press {
-        bedding::cut(settled, parts, *level);
-    }
-    if !done.rested {
-        settled.warnings.push(format!(
-            "the grains were still moving at {:.2e} m/s (root mean square) after stage {} of the compaction",
-            rms_speed(&done.bed.model, &done.bed.state),
-            index + 1
-        ));
+        settled.take(&done.bed);
+        bedding::cut(settled, &done.bed, &poured_from, parts, *level);
+    } else {
+        settled.energy.push(done.bed.energy(&name)?);
+        settled.take(&done.bed);
     }
     let kind = plan.press.name();
     let seconds = progress.finish(&format!("{kind}: porosity {before:.4} to {after:.4}"));
-    let name = format!("compaction {}: {kind}", index + 1);
     settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0, windows: 0 });
     settled.compaction.push(CompactionRecord {
         kind: kind.into(),

@@ -36,23 +36,6 @@ pub fn late(spent: &Spent) -> Option<String> {
     })
 }
 
-/// A remark on grains that have left the solid and lie or fall below its surface, whose lowest point was at `lowest` [m].
-pub fn fallen(system: &CoupledSystem<'_>, lowest: f64) -> Option<String> {
-    let (model, state) = (&system.model.grains, &system.state.grains);
-    let fell = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);
-    let mut below = (0..model.body_count()).filter(fell);
-    let first = below.next()?;
-    let x = state.position(first);
-    Some(format!(
-        "bodies that have left the solid and are below its surface: {}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the \
-         mesh, or put walls at its borders",
-        1 + below.count(),
-        x.x,
-        x.y,
-        x.z
-    ))
-}
-
 /// Growth of amplitudes over a run, as an exponent, above which undamped contacts are warned about.
 const GROWTH: f64 = 1.0;
 

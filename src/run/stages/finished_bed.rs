@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::run::checkpoint::Moment;
 use crate::run::context::Run;
+use crate::run::packing::StageEnergy;
 
 /// The end of the packing: the bed is kept, with the walls where compaction has left them.
 pub struct FinishedBed;
@@ -32,6 +33,8 @@ impl Stage for FinishedBed {
         summary.stages.extend(bed.stages.iter().cloned());
         summary.bed.growth.clone_from(&bed.growth);
         summary.bed.compaction.clone_from(&bed.compaction);
+        summary.bed.stage_energy.clone_from(&bed.energy);
+        summary.validity.extend(StageEnergy::check(&bed.energy));
         grains.bodies.clone_from(&bed.bodies);
         bed.planes.iter().enumerate().for_each(|(k, point)| grains.part.place_plane(k, *point));
         Ok(())

@@ -57,6 +57,7 @@ pub fn drop_layers(
                 plan.max_time
             ));
         }
+        bed.energy.push(falling.energy(&format!("layer {}", k + 1))?);
         for (&b, now) in below.iter().zip(falling.at_rest(&inputs)) {
             grains.groups.bodies[b] = now;
         }

@@ -1,9 +1,9 @@
 //! The main loop of a run: grains, a solid, or both through time, under their loads.
 
-use super::coupling_remarks::{fallen, late, unconverged, unstable_interface};
+use super::coupling_remarks::{late, unconverged, unstable_interface};
 use super::solid_loop::solid_alone;
 use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps, planes};
-use super::{solid_remarks, statics, time_loop};
+use super::{statics, time_loop};
 use crate::failure::Failure;
 use crate::message;
 use crate::model::Job;
@@ -15,6 +15,7 @@ use crate::run::packing;
 use crate::run::runout;
 use crate::run::summary::NewtonRecord;
 use crate::run::system::{GrainsSystem, System};
+use crate::run::validity::{fallen_bodies, load_near_mode, lost_bodies, small_strain};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 
@@ -91,6 +92,9 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
         system.traffic().iter().for_each(|line| message::note(&format!("ranks: {line}")));
     }
     state.summary.bed.packing = record_packing(run, &system, grains)?;
+    state.summary.validity.extend(system.grains().into_iter().flat_map(|v| packing::checks(v, &grains.part)));
+    let dry = grains.part.water.is_none();
+    state.summary.validity.extend(system.grains().filter(|_| dry).and_then(fallen_bodies));
     if let Some(view) = system.grains() {
         state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;
     }
@@ -113,10 +117,16 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
     }
     summary.warnings.extend(unconverged(&system.state.passes));
     summary.warnings.extend(late(&system.spent()));
-    summary.warnings.extend(fallen(&system, lowest));
-    summary.warnings.extend(solid_remarks::large(solid, &system.state.solid.u));
+    if let Some(view) = system.grains() {
+        let (check, few) = lost_bodies(view, lowest);
+        summary.validity.push(check);
+        summary.warnings.extend(few);
+    }
+    summary.validity.extend(small_strain(solid, &system.state.solid.u));
+    summary.validity.extend(load_near_mode(run.job));
     outcome?;
     summary.bed.packing = record_packing(run, &system, grains)?;
+    summary.validity.extend(system.grains().into_iter().flat_map(|v| packing::checks(v, &grains.part)));
     if run.job.output.tables {
         let moved = &system.state.solid;
         let reactions = fem::energy::reactions(solid, moved, system.work.load());

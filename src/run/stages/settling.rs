@@ -9,6 +9,7 @@ use crate::progress::Progress;
 use crate::run::bed;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
+use crate::run::packing::StageEnergy;
 use crate::run::summary::StageRecord;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -114,7 +115,11 @@ fn settle(
             plan.max_time
         ));
     }
+    let mut energy = StageEnergy::of(SETTLING, &model, &state, surface)?;
     let (bodies, removed) = at_rest(&grains.groups.bodies, &model, &state, plan);
+    bed.warnings.extend(energy.remove(&model, &state, &grains.groups.bodies, &removed));
+    bed.energy.push(energy);
+    let removed = removed.len();
     let seconds = progress.finish(&format!(
         "{} grains at rest after {:.2} s, {removed} above the level taken away",
         bodies.iter().filter(|b| !b.absent).count(),
@@ -135,14 +140,14 @@ fn settle(
     Ok(())
 }
 
-/// Bodies where they have come to lie, at rest, without those above the level.
+/// Bodies where they have come to lie, at rest, without those above the level; and the numbers of those.
 fn at_rest(
     inputs: &[BodyInput],
     model: &dem::Model,
     state: &dem::State,
     plan: &DepositionPlan,
-) -> (Vec<BodyInput>, usize) {
-    let mut bodies = Vec::with_capacity(inputs.len());
+) -> (Vec<BodyInput>, Vec<usize>) {
+    let (mut bodies, mut removed) = (Vec::with_capacity(inputs.len()), Vec::new());
     for (b, input) in inputs.iter().enumerate() {
         if input.absent {
             bodies.push(input.clone());
@@ -150,6 +155,7 @@ fn at_rest(
         }
         let position = model.wrap(&state.position(b));
         if plan.level.is_some_and(|level| position.z > level) {
+            removed.push(b);
             continue;
         }
         bodies.push(BodyInput {
@@ -160,6 +166,5 @@ fn at_rest(
             ..input.clone()
         });
     }
-    let removed = inputs.len() - bodies.len();
     (bodies, removed)
 }

@@ -1,7 +1,7 @@
 //! A solid that runs alone through time: dynamic or quasi-static.
 
 use super::stage::RunState;
-use super::{solid_remarks, statics, time_loop};
+use super::{statics, time_loop};
 use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
 use crate::run::checkpoint::Loaded;
@@ -9,6 +9,7 @@ use crate::run::context::Run;
 use crate::run::plastic::{PlasticDynamics, QuasiStaticSystem};
 use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
 use crate::run::system::{SolidSystem, System};
+use crate::run::validity::small_strain;
 
 /// Runs a solid without grains.
 ///
@@ -69,7 +70,7 @@ fn march<S: System>(
         Err(_) => return outcome,
     }
     let view = system.solid().expect("a system with a solid");
-    summary.warnings.extend(solid_remarks::large(view.model, &view.state.u));
+    summary.validity.extend(small_strain(view.model, &view.state.u));
     let reactions = system.reactions().unwrap_or_default();
     summary.solid.reactions = solid
         .named_sums(&reactions)

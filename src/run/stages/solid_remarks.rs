@@ -1,33 +1,6 @@
-//! Remarks on a solid that leaves what its equations assume.
+//! Remarks on loads that the steps of a solid pass by.
 
 use crate::model::Job;
-use trackbed_fem::limits::extent;
-use trackbed_fem::model::Model;
-
-/// Strain above which small strains are a poor assumption.
-const STRAIN: f64 = 0.05;
-
-/// Remarks on strains and displacements that are not small. Shape of `u` `[3·nodes]`.
-pub fn large(model: &Model, u: &[f64]) -> Vec<String> {
-    let found = extent(model, u);
-    let mut remarks = Vec::new();
-    if found.strain > STRAIN {
-        remarks.push(format!(
-            "the solid is strained by {:.3} % in element {}: its equations are those of small strains, good to some {} %",
-            100.0 * found.strain,
-            found.strained,
-            100.0 * STRAIN
-        ));
-    }
-    if found.displacement > found.size {
-        remarks.push(format!(
-            "element {} of the solid is displaced by {:.4} m, more than its own size of {:.4} m: its equations are those of \
-             small displacements",
-            found.moved, found.displacement, found.size
-        ));
-    }
-    remarks
-}
 
 /// Remarks on loads and moving supports that pass between the steps of the solid, or between the rows of the history.
 pub fn missed(job: &Job) -> Vec<String> {

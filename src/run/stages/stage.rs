@@ -3,12 +3,12 @@
 use super::carried::Carried;
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GrainsPart, check_gaps, check_joined, check_steps, refused};
+use crate::model::grains::{GrainsPart, check_gaps, check_joined, check_overlaps, check_steps, refused};
 use crate::run::bed::Bed;
 use crate::run::checkpoint::{self, Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::from::END;
-use crate::run::packing::{CompactionRecord, GrowthRecord};
+use crate::run::packing::{CompactionRecord, GrowthRecord, StageEnergy};
 use crate::run::sources;
 use crate::run::summary::{StageRecord, Summary};
 use crate::run::system::CoupledSystem;
@@ -99,6 +99,8 @@ pub struct Settled {
     pub growth: Vec<GrowthRecord>,
     /// Results of compaction.
     pub compaction: Vec<CompactionRecord>,
+    /// Energy balances of the stages.
+    pub energy: Vec<StageEnergy>,
 }
 
 impl Settled {
@@ -291,6 +293,9 @@ impl RunState<'_> {
             summary.sources.extend(sources::BONDS);
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
+        if !part.is_packed() {
+            check_overlaps(run.document, part, &model)?;
+        }
         check_steps(run.document, "time.end", run.job.end, model.dt())?;
         part.track.check_ram(run.document, model.dt())?;
         part.track.check_pads(run.document, model.dt())?;

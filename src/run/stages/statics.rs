@@ -1,6 +1,5 @@
 //! A static solid: one solve, its reactions, its tables.
 
-use super::solid_remarks;
 use super::stage::{RunState, Stage, Steps};
 use crate::failure::Failure;
 use crate::model::Job;
@@ -9,6 +8,7 @@ use crate::run::context::Run;
 use crate::run::frames;
 use crate::run::summary::{StageRecord, StaticsRecord, Summary};
 use crate::run::system::SolidView;
+use crate::run::validity::small_strain;
 use crate::write::csv::{Column, Field, History, write_table};
 use std::path::Path;
 use std::time::Instant;
@@ -64,7 +64,7 @@ fn solve(
         let found = format!("its strain energy comes out as {energy} J under these loads");
         return Err(Failure::Numerical(format!("solid: {found}, beyond what a number holds")));
     }
-    summary.warnings.extend(solid_remarks::large(model, &state.u));
+    summary.validity.extend(small_strain(model, &state.u));
     prepare()?;
     let view = SolidView { model, state: &state };
     frames::write_state(dir, &job.output, view)?;

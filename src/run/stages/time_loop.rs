@@ -19,6 +19,7 @@ use crate::run::summary::{
 };
 use crate::run::system::System;
 use crate::run::track_output;
+use crate::run::validity::{Check, Fall, bond_rotation, free_sleeper, scaled_inertia, stiffness_drift};
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::track::cycles::Cycle;
 use trackbed_coupling::track::{Track, TrackInput};
@@ -158,6 +159,7 @@ impl<'a> TimeLoop<'a> {
             None => {
                 let mut recorder = Results::start(job, run.dir, system, &track, flow.as_ref())?;
                 recorder.row(0.0, system, &track, flow.as_ref())?;
+                recorder.check(system, &track)?;
                 recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
             }
@@ -194,6 +196,9 @@ impl<'a> TimeLoop<'a> {
         }
         if k % self.cadence.every == 0 || k == self.place.windows {
             self.row(time, system).map_err(|e| e.at(time))?;
+        }
+        if k % self.cadence.checked == 0 || k == self.place.windows {
+            self.recorder.check(system, &self.track).map_err(|e| e.at(time))?;
         }
         self.place.done = k;
         let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
@@ -321,6 +326,8 @@ impl<'a> TimeLoop<'a> {
         summary.track.sleepers = self.track.record();
         summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
         summary.energy = Some(energy(&self.recorder));
+        summary.validity.extend(summary.track.sleepers.as_ref().and_then(|t| free_sleeper(t, end)));
+        summary.validity.extend(validity_of(system, part, &self.recorder));
         summary.bed.specimen = self.recorder.specimen(system)?;
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
         self.recorder.end()?;
@@ -351,6 +358,18 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
         largest_error: recorder.largest_error(),
         largest_relative_error: watch.worst(),
     }
+}
+
+/// Checks of validity by the course of the run: stiffness over load cycles, kinetic energy where masses are scaled, rotation of bonds.
+fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Results<'_>) -> Vec<Check> {
+    let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
+    let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
+    let inertia = scaled.map(|(g, view)| {
+        let (kinetic, reference) = (recorder.largest_kinetic(), recorder.balance().turnover());
+        scaled_inertia(g.steps.mass_factor, kinetic, reference, Fall::of(view))
+    });
+    let bonds = system.grains().and_then(bond_rotation);
+    stiffness_drift(&secants).into_iter().chain(inertia).chain(bonds).collect()
 }
 
 fn settlement(

@@ -8,9 +8,10 @@ pub use records::*;
 pub use verdict::Verdict;
 
 use super::flow::FlowRecord;
-use super::packing::{CompactionRecord, GrowthRecord, PackingRecord};
+use super::packing::{CompactionRecord, GrowthRecord, PackingRecord, StageEnergy};
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
+use super::validity::Check;
 use crate::failure::Failure;
 use crate::write::WriteError;
 use serde::Serialize;
@@ -29,6 +30,9 @@ pub struct Summary {
     pub run: RunRecord,
     /// What the run was judged by.
     pub verdict: Verdict,
+    /// Whether the run has stayed within the limits of its theory.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub validity: Vec<Check>,
     /// Stages in order, with seconds of wall time and steps.
     pub stages: Vec<StageRecord>,
     /// Sizes of the model.
@@ -131,6 +135,9 @@ pub struct BedRecord {
     /// Stages of compaction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compaction: Vec<CompactionRecord>,
+    /// Energy balances of the stages of packing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stage_energy: Vec<StageEnergy>,
     /// The grains at the end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<PackingRecord>,

@@ -6,6 +6,7 @@ use crate::run::flow::FlowRecord;
 use crate::run::packing;
 use crate::run::runout::RunoutRecord;
 use crate::run::specimen::SpecimenRecord;
+use crate::run::validity;
 use trackbed_coupling::scheme::Scheme;
 
 impl Summary {
@@ -23,6 +24,7 @@ impl Summary {
         lines.extend(self.bed.runout.iter().flat_map(RunoutRecord::report));
         lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
         lines.extend(self.verdict.report());
+        lines.extend(validity::report(&self.validity));
         lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
         lines.join("\n") + "\n"
     }

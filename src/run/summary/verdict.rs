@@ -4,6 +4,7 @@
 use super::Summary;
 use crate::failure::Failure;
 use crate::run::energy_watch::ENERGY;
+use crate::run::validity::{self, Outcome};
 use serde::Serialize;
 
 /// Imbalance of loads and reactions of a static solid over the sum of their sizes: remarked, and refused.
@@ -17,19 +18,6 @@ const TRANSFER: f64 = 1e-8;
 
 /// A loss below zero by this share of the energy turned over is remarked.
 const NEGATIVE: f64 = 0.01;
-
-/// How a judgement ended; the last is the worst.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// Nothing to remark.
-    #[default]
-    Passed,
-    /// Results are to be looked at with care.
-    Warned,
-    /// There is no result.
-    Failed,
-}
 
 /// One account.
 #[derive(Clone, Debug, Serialize)]
@@ -63,7 +51,7 @@ impl Judged {
 /// What a run was judged by, and how that ended.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Verdict {
-    /// The worst outcome of all.
+    /// The worst outcome of all accounts and of all checks of validity.
     pub outcome: Outcome,
     /// The accounts.
     pub judged: Vec<Judged>,
@@ -99,7 +87,8 @@ impl Verdict {
             judged.push(Judged::new("force and moment error across the interface", transfer, TRANSFER, None));
             judged.push(Judged::new("windows without convergence", c.passes.unconverged as f64, 0.0, None));
         }
-        let outcome = judged.iter().map(|j| j.outcome).max().unwrap_or_default();
+        let accounts = judged.iter().map(|j| j.outcome).max().unwrap_or_default();
+        let outcome = accounts.max(validity::worst(&summary.validity));
         Verdict { outcome, judged }
     }
 
@@ -110,18 +99,13 @@ impl Verdict {
 
     /// Lines for the end of a run.
     pub fn report(&self) -> Vec<String> {
-        let word = |outcome: Outcome| match outcome {
-            Outcome::Passed => "passed",
-            Outcome::Warned => "warned",
-            Outcome::Failed => "failed",
-        };
         let count = self.judged.len();
         let accounts = if count == 1 { "account" } else { "accounts" };
-        let mut lines = vec![format!("verdict: {}, {count} {accounts} judged", word(self.outcome))];
+        let mut lines = vec![format!("verdict: {}, {count} {accounts} judged", self.outcome.word())];
         for j in self.judged.iter().filter(|j| j.outcome != Outcome::Passed) {
             lines.push(format!(
                 "  {}: {} is {:.3e}, expected at most {:.0e}",
-                word(j.outcome),
+                j.outcome.word(),
                 j.what,
                 j.value,
                 j.warn_above

@@ -56,6 +56,10 @@ pub trait System: TrackSystem {
     fn stored(&self) -> Stored;
     /// Work and dissipation so far [J].
     fn spent(&self) -> Spent;
+    /// Energy in proportion to which an error of the balance means something at least [J].
+    fn reference_energy(&self) -> f64 {
+        self.grains().map_or(0.0, |g| dem::measure::reference_energy(g.model, g.state))
+    }
     /// The solid, if there is one.
     fn solid(&self) -> Option<SolidView<'_>> {
         None

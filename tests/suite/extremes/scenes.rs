@@ -19,7 +19,7 @@ pub fn stone(keys: &str) -> String {
 pub fn ball(name: &str, place: [f64; 3], radius: f64, velocity: [f64; 3]) -> String {
     let [x, y, z] = place;
     format!(
-        "\n[[grains]]\nname = \"{name}\"\nshape = \"sphere\"\nmaterial = \"stone\"\nrecord = true\n\
+        "\n[[grains]]\nname = \"{name}\"\nshape = \"sphere\"\nmaterial = \"stone\"\nrecord = true\naccept_overlap = true\n\
          spheres = [[{x:?}, {y:?}, {z:?}, {radius:?}]]\nvelocity = {velocity:?}\n"
     )
 }

@@ -24,9 +24,6 @@ use std::f64::consts::PI;
 pub(super) const SOURCE: &str =
     "drag: Liu, Long & Ji, Chin. J. Theor. Appl. Mech. 47, 2015; waves: Dean & Dalrymple 1991";
 
-/// Longest step over the time in which a body heaves by a radian.
-const RESOLVED: f64 = 0.02;
-
 /// Area that drag belongs to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DragArea {
@@ -78,11 +75,11 @@ impl Water {
         .map(|(what, x)| (what, x, "be zero or positive, and finite"))
     }
 
-    /// Longest step that resolves the heaving of any body: a share of √(m/(ρ g A)), A no less than any section of it.
-    pub(super) fn longest(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
+    /// Time in which a body heaves by a radian [s]: √(m/(ρ g A)), A no less than any section of it.
+    pub(super) fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
         let stiffness = |radius: f64| self.density * gravity.norm() * PI * radius * radius;
         let time = |b: crate::bodies::table::Body| (b.mass / stiffness(b.radius)).sqrt();
-        RESOLVED * bodies.iter().map(time).fold(f64::INFINITY, f64::min)
+        bodies.iter().map(time).fold(f64::INFINITY, f64::min)
     }
 
     /// The surface and the water without its current at a place of the world.

@@ -425,7 +425,7 @@ impl<K: PairKind> Of<K> {
         *books.friction += weigh(setting.laws, materials, g, memory, weight);
         let ends = (&own, &its);
         let friction = Self::scar(now, b, [i, other as u32, j]).map(|s| s.friction);
-        let history = &mut memory.history;
+        let (before, history) = (memory.history, &mut memory.history);
         let f = single::between(setting.laws, materials, friction, g, ends, share, history, setting.dt);
         let force = f.force * weight;
         sums[0] += force;
@@ -451,6 +451,8 @@ impl<K: PairKind> Of<K> {
                 let mass = 1.0 / (own.inverse_mass() + its.inverse_mass());
                 sum.stiffness += stiffness;
                 sum.damping += weight.signum() * (stiffness.abs() * mass).sqrt();
+                let (sum, memory) = (&mut sum.dashpots, [&before, &*history]);
+                single::add_dashpot(sum, setting.laws, materials, g, memory, &f.force, weight);
             }
         } else if !K::Second::BODY {
             let impulse = force * setting.dt;

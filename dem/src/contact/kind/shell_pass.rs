@@ -62,6 +62,7 @@ impl Two<'_> {
             ledger.dissipated_friction += weigh(laws, touch.materials, g, &mut memory, touch.weight);
             let [own, its] = self.motions(&g.point);
             let ends = (&own, &its);
+            let before = memory.history;
             let f =
                 single::between(laws, touch.materials, None, g, ends, touch.share, &mut memory.history, dt);
             let (w, force) = (touch.weight, f.force * touch.weight);
@@ -77,6 +78,8 @@ impl Two<'_> {
                 let stiffness = w * laws.stiffness(a, b, g.overlap, g.radius);
                 second.stiffness += stiffness;
                 second.damping += w.signum() * (stiffness.abs() / own.inverse_mass()).sqrt();
+                let memory = [&before, &memory.history];
+                single::add_dashpot(&mut second.dashpots, laws, touch.materials, g, memory, &f.force, w);
             }
             if g.overlap > touch.bound && w > 0.0 && deep.is_none() {
                 // Of an edge that has come through, what it adds up to has no meaning.

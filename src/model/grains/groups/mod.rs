@@ -50,6 +50,9 @@ pub(super) fn build(
         if group.fouling {
             part.fouling.push(part.names.len() as u32);
         }
+        if group.accept_overlap {
+            part.overlapping.push(part.names.len() as u32);
+        }
         part.names.push(group.name.clone());
         let density = materials.all[material].density;
         add(&group, (material, density), &mut part, bonds)?;

@@ -25,6 +25,8 @@ pub struct GroupsPart {
     pub moving: Vec<Moving>,
     /// Groups that foul the bed.
     pub fouling: Vec<u32>,
+    /// Groups whose grains may overlap at the start.
+    pub overlapping: Vec<u32>,
     /// Groups whose mean place and force are recorded.
     pub recorded: Vec<u32>,
     /// What the summary should say about them.

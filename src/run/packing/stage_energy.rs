@@ -1,0 +1,132 @@
+//! Energy balance of a stage of packing, and the energy of the grains that the stage removes.
+
+use crate::failure::Failure;
+use crate::run::validity::{Check, Limits};
+use serde::{Deserialize, Serialize};
+use trackbed_coupling::ledger::{Balance, Stored};
+use trackbed_coupling::step::spent_by_grains;
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_dem as dem;
+use trackbed_dem::BodyInput;
+
+/// Energy made over that turned over.
+const GAIN: Limits = Limits { warn: 0.01, fail: Some(0.2) };
+
+/// Energy balance of a stage of packing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageEnergy {
+    /// Name of the stage.
+    pub stage: String,
+    /// Energy in springs of contacts at its start and at its end [J].
+    pub springs: [f64; 2],
+    /// Kinetic energy at its end, which the next stage begins without [J].
+    pub kinetic: f64,
+    /// Energy turned over [J].
+    pub turned_over: f64,
+    /// Error of the balance [J], and its share of the energy turned over.
+    pub error: f64,
+    /// See `error`.
+    pub relative_error: f64,
+    /// Stored energy beyond that of the start and the work of walls and forces, over the energy turned over: energy from nowhere.
+    pub gain: f64,
+    /// Grains that were removed above the level.
+    pub removed: usize,
+    /// Their kinetic energy [J].
+    pub removed_kinetic: f64,
+}
+
+impl StageEnergy {
+    /// Balance of a stage that began with `model` at rest or as given, and has come to `state`; `surface`: the rigid solid.
+    ///
+    /// # Errors
+    /// Contacts at the start that cannot be found.
+    pub fn of(
+        stage: &str,
+        model: &dem::Model,
+        state: &dem::State,
+        surface: Option<&SolidSurface>,
+    ) -> Result<StageEnergy, Failure> {
+        let mut start = dem::State::new(model);
+        let mut work = dem::Work::new(model, &start);
+        match surface {
+            Some(s) => dem::find_contacts(model, &mut start, &mut work, s),
+            None => dem::find_contacts(model, &mut start, &mut work, &dem::surface::NoSurface),
+        }
+        .map_err(|e| Failure::Numerical(format!("grains at the start of {stage}: {e}")))?;
+        let balance = Balance {
+            start: stored(model, &start),
+            now: stored(model, state),
+            spent: spent_by_grains(state),
+            reference: dem::measure::reference_energy(model, state),
+        };
+        let (error, turned_over) = (balance.error(), balance.turnover().max(balance.floor()));
+        let relative_error = if error == 0.0 { 0.0 } else { error.abs() / turned_over };
+        let made = balance.now.total() - balance.start.total() - balance.spent.work();
+        let gain = made.max(0.0) / turned_over.max(f64::MIN_POSITIVE);
+        let springs = [balance.start, balance.now].map(|s| s.contact_springs);
+        let kinetic = balance.now.grains_kinetic;
+        let stage = stage.to_string();
+        Ok(StageEnergy {
+            stage,
+            springs,
+            kinetic,
+            turned_over,
+            error,
+            relative_error,
+            gain,
+            ..StageEnergy::default()
+        })
+    }
+
+    /// Checks that no stage has made energy; none without stages.
+    pub fn check(stages: &[StageEnergy]) -> Option<Check> {
+        let worst = stages.iter().max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+        Some(Check::new("energy made in a stage of packing over that turned over", worst.gain, GAIN, || {
+            format!(
+                "{}: the grains have more energy at its end than at its start with the work of walls and forces; take a smaller \
+                 time.grain_step_fraction",
+                worst.stage
+            )
+        }))
+    }
+
+    /// Notes the grains (numbers in the model) that are removed; returns a warning that names the fastest of those that
+    /// rise beyond every height of `before`, the grains at the start: gravity alone cannot do that.
+    pub fn remove(
+        &mut self,
+        model: &dem::Model,
+        state: &dem::State,
+        before: &[BodyInput],
+        removed: &[usize],
+    ) -> Option<String> {
+        let g = model.gravity().norm();
+        let kinetic = |&b: &usize| 0.5 * model.mass(b) * state.velocity(b).norm_squared();
+        self.removed = removed.len();
+        self.removed_kinetic = removed.iter().map(kinetic).sum();
+        let top = before.iter().filter(|b| !b.absent).map(|b| b.position.z).fold(f64::NEG_INFINITY, f64::max);
+        let rises = |b: usize| state.position(b).z + 0.5 * state.velocity(b).norm_squared() / g - top;
+        let shot = removed.iter().copied().filter(|&b| rises(b) > 1e-3 * top.abs().max(1e-3));
+        let worst = shot.max_by(|&a, &b| rises(a).total_cmp(&rises(b)))?;
+        Some(format!(
+            "grain {worst} at z = {:.3} m and {:.2e} m/s was removed above the level after {}: it rises {:.2e} m above every place at \
+             which a grain began to fall. Look for grains that overlap at the start of the stage",
+            state.position(worst).z,
+            state.velocity(worst).norm(),
+            self.stage,
+            rises(worst)
+        ))
+    }
+}
+
+/// Energy that grains alone store.
+fn stored(model: &dem::Model, state: &dem::State) -> Stored {
+    let e = dem::measure::energies(model, state);
+    Stored {
+        grains_kinetic: e.kinetic(),
+        contact_springs: e.elastic_normal + e.elastic_tangential,
+        bonds: e.elastic_bonds,
+        mounts: e.elastic_mounts,
+        grains_gravity: e.gravity,
+        ..Stored::default()
+    }
+}

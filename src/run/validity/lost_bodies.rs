@@ -1,0 +1,52 @@
+//! Bodies that have left the solid and lie or fall below its surface: they are missing from the bed.
+
+use super::{Check, Limits};
+use trackbed_coupling::track::GrainsView;
+
+/// Bodies lost over all bodies. A single one changes no bed; of half a bed nothing can be said.
+const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };
+
+/// Bodies that fall below all walls of a run without a solid; of a hopper that empties all are below.
+const FALLEN: Limits = Limits { warn: 0.01, fail: None };
+
+/// Bodies below all walls of a run of grains alone; none where nothing can fall, or nothing but falls: without gravity, walls, or an
+/// open floor.
+pub fn fallen_bodies(view: GrainsView<'_>) -> Option<Check> {
+    let g = view.model.gravity();
+    let falls = g.z < 0.0 && g.z.abs() > 0.5 * g.norm();
+    let lowest = trackbed_dem::measure::lowest_wall(view.model, view.state).filter(|_| falls)?;
+    Some(below(view, lowest, FALLEN, "the lowest wall", "close the walls below, or set an [[outlet]]").0)
+}
+
+/// Bodies lost beside a solid whose lowest point was at `lowest` [m]; the message, where any body was lost, beside the check.
+pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>) {
+    below(view, lowest, LOST, "the surface of the solid", "enlarge the mesh, or put walls at its borders")
+}
+
+/// Bodies below the height `lowest` [m] of `what`.
+fn below(
+    view: GrainsView<'_>,
+    lowest: f64,
+    limits: Limits,
+    what: &str,
+    remedy: &str,
+) -> (Check, Option<String>) {
+    let (model, state) = (view.model, view.state);
+    let lost = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);
+    let mut below = (0..model.body_count()).filter(lost);
+    let first = below.next();
+    let count = first.map_or(0, |_| 1 + below.count());
+    let present = (0..model.body_count()).filter(|b| state.present(*b)).count();
+    let message = first.map(|first| {
+        let x = state.position(first);
+        format!(
+            "bodies lost below {what}: {count}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: {remedy}",
+            x.x, x.y, x.z
+        )
+    });
+    let value = count as f64 / present.max(1) as f64;
+    let text = message.clone();
+    let check = Check::new("bodies lost over all bodies", value, limits, || text.unwrap_or_default());
+    let few = message.filter(|_| check.message.is_empty());
+    (check, few)
+}

@@ -1,0 +1,62 @@
+//! Boxes that porosity is measured in and that the bed does not reach up to: their porosity is mostly that of the air above the bed.
+
+use super::bed_surface::BedSurface;
+use super::{Check, Limits};
+use trackbed_coupling::track::GrainsView;
+use trackbed_dem::measure::BoxRegion;
+
+/// Height of the box above the surface of the bed over the height of the box.
+const EMPTY: Limits = Limits { warn: 0.0, fail: None };
+
+/// Where the surface of the bed lies over a box [m]; none where gravity does not act downwards, so that there is no top.
+fn surface(view: GrainsView<'_>, region: &BoxRegion, is_grain: &impl Fn(usize) -> bool) -> Option<f64> {
+    let (model, state) = (view.model, view.state);
+    let gravity = model.gravity();
+    if gravity.z >= 0.0 || (gravity.x * gravity.x + gravity.y * gravity.y).sqrt() > 0.5 * gravity.z.abs() {
+        return None;
+    }
+    // A body that has not come in yet has no place.
+    let grains = || (0..model.body_count()).filter(|&b| state.present(b) && is_grain(b));
+    let count = grains().count().max(1) as f64;
+    let size = 2.0 * grains().map(|b| model.radius(b)).sum::<f64>() / count;
+    let mut surface = BedSurface::new(region, size);
+    for b in grains() {
+        let x = model.wrap(&state.position(b));
+        surface.add([x.x, x.y, x.z], model.radius(b));
+    }
+    Some(surface.height())
+}
+
+fn text(name: &str, region: &BoxRegion, height: f64) -> String {
+    format!(
+        "{name}: its top is at z = {:.4} m, above the bed, whose surface is at z = {height:.4} m on average: its porosity counts the air above the \
+         bed; lower the top, or fill in more grains",
+        region.high.z
+    )
+}
+
+/// Checks a box named by a scene, after the run; none where there is no top of a bed.
+pub fn measure_box(
+    name: &str,
+    view: GrainsView<'_>,
+    region: &BoxRegion,
+    is_grain: impl Fn(usize) -> bool,
+) -> Option<Check> {
+    let height = surface(view, region, &is_grain)?;
+    let value = (region.high.z - height) / (region.high.z - region.low.z);
+    let name = format!("measure {name}");
+    Some(Check::new(format!("part of {name} above the bed"), value.clamp(0.0, 1.0), EMPTY, || {
+        text(&name, region, height)
+    }))
+}
+
+/// The warning on the `region` of a stage of compaction that the bed does not fill.
+pub fn region_not_filled(
+    name: &str,
+    view: GrainsView<'_>,
+    region: &BoxRegion,
+    is_grain: impl Fn(usize) -> bool,
+) -> Option<String> {
+    let height = surface(view, region, &is_grain)?;
+    (height < region.high.z).then(|| text(name, region, height))
+}

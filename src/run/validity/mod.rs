@@ -1,0 +1,148 @@
+//! Validity of a run: whether it has stayed within the limits of the theory that it was computed with. Balances can close on a result
+//! that the equations do not cover. One file per check; each says what it found, its limits and the remedy.
+
+mod bed_surface;
+mod bond_rotation;
+mod free_sleeper;
+mod lost_bodies;
+mod measure_box;
+mod resonance;
+mod scaled_inertia;
+mod small_strain;
+mod stiffness_drift;
+
+pub use bond_rotation::bond_rotation;
+pub use free_sleeper::free_sleeper;
+pub use lost_bodies::{fallen_bodies, lost_bodies};
+pub use measure_box::{measure_box, region_not_filled};
+pub use resonance::load_near_mode;
+pub use scaled_inertia::{Fall, scaled_inertia};
+pub use small_strain::small_strain;
+pub use stiffness_drift::stiffness_drift;
+
+use serde::Serialize;
+
+/// Result of a check; the last is the worst.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Within its limit.
+    #[default]
+    Passed,
+    /// Results are to be looked at with care.
+    Warned,
+    /// There is no result.
+    Failed,
+}
+
+impl Outcome {
+    /// The outcome in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outcome::Passed => "passed",
+            Outcome::Warned => "warned",
+            Outcome::Failed => "failed",
+        }
+    }
+}
+
+/// Limits of a value: above the first it is warned about; above the second, where there is one, the result is not valid.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Above this a value is warned about.
+    pub warn: f64,
+    /// Above this the result is not valid.
+    pub fail: Option<f64>,
+}
+
+/// One check of validity.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// What was checked.
+    pub name: String,
+    /// Value found, a ratio.
+    pub value: f64,
+    /// Above this it is warned about.
+    pub limit: f64,
+    /// Above this the result is not valid; absent where no value says so for certain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fail_above: Option<f64>,
+    /// Result of the check.
+    pub status: Outcome,
+    /// What was found, and the remedy; empty where the check passed.
+    pub message: String,
+}
+
+impl Check {
+    /// Compares a value with its limits; `message` is computed where it exceeds one.
+    pub fn new(
+        name: impl Into<String>,
+        value: f64,
+        limits: Limits,
+        message: impl FnOnce() -> String,
+    ) -> Check {
+        let above = |limit: f64| value.is_nan() || value > limit;
+        let status = match limits.fail {
+            Some(limit) if above(limit) => Outcome::Failed,
+            _ if above(limits.warn) => Outcome::Warned,
+            _ => Outcome::Passed,
+        };
+        let message = if status == Outcome::Passed { String::new() } else { message() };
+        Check { name: name.into(), value, limit: limits.warn, fail_above: limits.fail, status, message }
+    }
+}
+
+/// The worst result of all checks.
+pub fn worst(checks: &[Check]) -> Outcome {
+    checks.iter().map(|c| c.status).max().unwrap_or_default()
+}
+
+/// Messages of the checks that did not pass.
+pub fn messages(checks: &[Check]) -> impl Iterator<Item = String> {
+    checks.iter().filter(|c| c.status != Outcome::Passed).map(|c| c.message.clone())
+}
+
+/// Lines for the end of a run; none where nothing could be checked.
+pub fn report(checks: &[Check]) -> Vec<String> {
+    if checks.is_empty() {
+        return Vec::new();
+    }
+    let noun = if checks.len() == 1 { "check" } else { "checks" };
+    let mut lines = vec![format!("validity: {}, {} {noun}", worst(checks).word(), checks.len())];
+    for c in checks.iter().filter(|c| c.status != Outcome::Passed) {
+        let (status, limit) = match c.fail_above {
+            Some(limit) if c.status == Outcome::Failed => ("failed", limit),
+            _ => ("warned", c.limit),
+        };
+        lines.push(format!("  {status}: {} is {:.3e}, expected at most {limit}", c.name, c.value));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits { warn: 1.0, fail: Some(2.0) };
+
+    #[test]
+    fn values_are_compared_with_both_limits() {
+        let status = |value: f64| Check::new("x", value, LIMITS, || "far".into()).status;
+        assert_eq!(status(1.0), Outcome::Passed);
+        assert_eq!(status(1.5), Outcome::Warned);
+        assert_eq!(status(2.5), Outcome::Failed);
+        assert_eq!(status(f64::NAN), Outcome::Failed);
+    }
+
+    #[test]
+    fn the_report_names_what_did_not_pass() {
+        assert!(report(&[]).is_empty());
+        let check = |name: &str, value: f64| Check::new(name, value, LIMITS, || format!("{name} is far"));
+        let checks = [check("a", 0.5), check("b", 1.5), check("c", 3.0)];
+        let lines = report(&checks);
+        assert_eq!(lines[0], "validity: failed, 3 checks");
+        assert_eq!(lines[1], "  warned: b is 1.500e0, expected at most 1");
+        assert_eq!(lines[2], "  failed: c is 3.000e0, expected at most 2");
+        assert_eq!(messages(&checks).collect::<Vec<_>>(), ["b is far", "c is far"]);
+    }
+}

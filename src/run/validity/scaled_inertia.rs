@@ -1,0 +1,74 @@
+//! Scaled masses (`time.mass_factor`) are for beds that are pressed slowly. Where grains fall or fly, inertia rules, and the result is that of
+//! another body.
+
+use super::{Check, Limits};
+use trackbed_coupling::track::GrainsView;
+
+/// Kinetic energy over the reference energy, and over the weight times the radius of a grain, the smaller of both: a bed that is pressed
+/// slowly stays far below.
+const INERTIA: Limits = Limits { warn: 0.05, fail: Some(0.25) };
+
+/// What weight the grains have and how large they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Fall {
+    /// Weight of all grains, of true masses [N].
+    pub weight: f64,
+    /// Mean radius of the grains [m].
+    pub radius: f64,
+}
+
+impl Fall {
+    /// Of the grains of a running system: gravity is weaker there by what the masses are scaled with.
+    pub fn of(view: GrainsView<'_>) -> Fall {
+        let (model, count) = (view.model, view.model.body_count());
+        let mass: f64 = (0..count).map(|b| model.mass(b)).sum();
+        let radius = (0..count).map(|b| model.radius(b)).sum::<f64>() / count.max(1) as f64;
+        Fall { weight: mass * model.gravity().norm(), radius }
+    }
+}
+
+/// Checks the largest kinetic energy of grains [J] of a run with masses scaled by `factor` against its reference energy [J].
+pub fn scaled_inertia(factor: f64, kinetic: f64, reference: f64, fall: Fall) -> Check {
+    let share = |whole: f64| match kinetic {
+        0.0 => 0.0,
+        _ if whole > 0.0 => kinetic / whole,
+        _ => f64::INFINITY,
+    };
+    let by_energy = share(reference);
+    let by_fall = if fall.weight > 0.0 { share(fall.weight * fall.radius) } else { f64::INFINITY };
+    let value = by_energy.min(by_fall);
+    Check::new("kinetic energy of grains with scaled masses", value, INERTIA, || {
+        format!(
+            "time.mass_factor: found {factor} where grains accelerate: their kinetic energy reaches {kinetic:.3e} J, {:.0} % of the reference \
+             energy, and scaled masses are for beds pressed slowly; remove time.mass_factor",
+            100.0 * by_energy.min(1.0)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::validity::Outcome;
+
+    const FALL: Fall = Fall { weight: 0.109, radius: 0.01 };
+
+    /// Free fall: all of the work is kinetic. A bed in slow motion, and one that merely trembles at rest, pass.
+    #[test]
+    fn falling_and_pressing_differ() {
+        let status = |kinetic: f64, reference: f64| scaled_inertia(100.0, kinetic, reference, FALL).status;
+        assert_eq!(status(4.8e-4, 4.8e-4), Outcome::Failed);
+        assert_eq!(status(4.8e-4, 6e-3), Outcome::Warned);
+        assert_eq!(status(4.8e-4, 1.0), Outcome::Passed);
+        assert_eq!(status(1e-7, 1e-7), Outcome::Passed);
+        assert_eq!(status(0.0, 0.0), Outcome::Passed);
+    }
+
+    /// Without gravity the reference energy alone decides.
+    #[test]
+    fn without_weight_energy_decides() {
+        let flying =
+            |reference: f64| scaled_inertia(8.0, 1.0, reference, Fall { weight: 0.0, radius: 0.01 }).status;
+        assert_eq!([flying(1.0), flying(100.0)], [Outcome::Failed, Outcome::Passed]);
+    }
+}

@@ -1,0 +1,77 @@
+//! Strains and displacements of the solid against those that its equations assume.
+
+use super::{Check, Limits};
+use trackbed_fem::limits::{Extent, extent};
+use trackbed_fem::model::Model;
+
+/// Strain above which small strains are a poor assumption, and above which it does not hold: terms left out are half of those kept.
+const STRAIN: Limits = Limits { warn: 0.05, fail: Some(1.0) };
+
+/// Displacement against the mean of the body over the size of the element.
+const DISPLACEMENT: Limits = Limits { warn: 1.0, fail: Some(10.0) };
+
+/// Rotation above which its cosine differs from 1 by 2 %, and above which the linear strain of a rigid rotation is half of it [rad].
+const ROTATION: Limits = Limits { warn: 0.2, fail: Some(1.0) };
+
+/// Checks the strains, rotations and displacements of a solid, shape of `u` `[3·nodes]` [m].
+pub fn small_strain(model: &Model, u: &[f64]) -> [Check; 3] {
+    let found = extent(model, u);
+    [strain(&found), rotation(&found), displacement(&found)]
+}
+
+/// Largest rotation of the solid.
+fn rotation(found: &Extent) -> Check {
+    Check::new("largest rotation of the solid [rad]", found.rotation, ROTATION, || {
+        format!(
+            "element {} of the solid is turned by {:.1} degrees: its equations are those of small rotations, good to some {:.0} degrees; reduce \
+             the load, or make the solid stiffer",
+            found.rotated,
+            found.rotation.to_degrees(),
+            ROTATION.warn.to_degrees()
+        )
+    })
+}
+
+/// Largest strain of the solid.
+fn strain(found: &Extent) -> Check {
+    Check::new("largest strain of the solid", found.strain, STRAIN, || {
+        format!(
+            "the solid is strained by {:.3} % in element {}: its equations are those of small strains, good to some {} %; reduce the load, or \
+             find the load it bears by strength reduction",
+            100.0 * found.strain,
+            found.strained,
+            100.0 * STRAIN.warn
+        )
+    })
+}
+
+/// Largest displacement of the solid over the size of its element.
+fn displacement(found: &Extent) -> Check {
+    let value = if found.size > 0.0 { found.displacement / found.size } else { 0.0 };
+    Check::new("largest displacement of the solid over its element's size", value, DISPLACEMENT, || {
+        format!(
+            "element {} of the solid is displaced by {:.4} m, more than its own size of {:.4} m: its equations are those of \
+             small displacements",
+            found.moved, found.displacement, found.size
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::validity::Outcome;
+
+    #[test]
+    fn strains_pass_are_warned_about_and_fail() {
+        let status = |s: f64| strain(&Extent { strain: s, ..Extent::default() }).status;
+        assert_eq!([0.01, 0.2, 559.3].map(status), [Outcome::Passed, Outcome::Warned, Outcome::Failed]);
+    }
+
+    #[test]
+    fn a_solid_at_rest_passes() {
+        assert_eq!(displacement(&Extent::default()).status, Outcome::Passed);
+        let far = Extent { displacement: 132.4, size: 0.5, ..Extent::default() };
+        assert_eq!(displacement(&far).status, Outcome::Failed);
+    }
+}

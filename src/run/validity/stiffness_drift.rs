@@ -1,0 +1,40 @@
+//! Stiffness that falls over load cycles: a bed settles and becomes stiffer; one that softens has failed, or its ground resonates.
+
+use super::{Check, Limits};
+
+/// Loss of secant stiffness from the second cycle to the last, over that of the second.
+const LOSS: Limits = Limits { warn: 0.25, fail: None };
+
+/// Checks the secant stiffness of load cycles in order [N/m]; none of fewer than three.
+pub fn stiffness_drift(secants: &[f64]) -> Option<Check> {
+    // The first cycle beds the sleeper.
+    let (&second, &last) = (secants.get(1)?, secants.get(2..)?.last()?);
+    if second <= 0.0 {
+        return None;
+    }
+    let value = 1.0 - last / second;
+    Some(Check::new("loss of secant stiffness since the second cycle", value.max(0.0), LOSS, || {
+        format!(
+            "the secant stiffness falls from {:.4} MN/m in cycle 2 to {:.4} MN/m in the last: the load may be near a natural frequency of the \
+             solid on its supports (`trackbed modal`), or the bed fails; load slower, deepen the mesh, use [[solid.absorbing]], or reduce the load",
+            1e-6 * second,
+            1e-6 * last
+        )
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::validity::Outcome;
+
+    #[test]
+    fn softening_is_warned_about_and_stiffening_is_not() {
+        let status = |k: &[f64]| stiffness_drift(k).map(|c| c.status);
+        assert_eq!(status(&[77e6, 39.5e6, 31e6, 28e6, 28.6e6]), Some(Outcome::Warned));
+        assert_eq!(status(&[77e6, 39.5e6, 39e6, 36e6]), Some(Outcome::Passed));
+        assert_eq!(status(&[20e6, 30e6, 40e6]), Some(Outcome::Passed));
+        assert_eq!(status(&[77e6, 39.5e6]), None);
+        assert_eq!(status(&[0.0, 0.0, 0.0]), None);
+    }
+}
