@@ -1,6 +1,6 @@
 //! Runs whose balances close and whose results lie outside of their theory: the second part of the verdict names them.
 
-use super::support::{Folder, json, run, trackbed};
+use super::support::{Folder, json, repository, run, trackbed};
 use serde_json::Value;
 use std::fs;
 
@@ -145,6 +145,16 @@ fn soil_that_flows_away_has_no_result() {
     let (near, log) = summary("validity-stands", COLLAPSE, &["solid.load.0.pressure=2e4"]);
     assert_eq!(near["verdict"]["outcome"], "passed", "{near:#}");
     assert!(log.contains("validity: passed, 3 checks"), "{log}");
+}
+
+/// A collapse load in equilibrium is what small strains are for: 70 % of strain at the corner of the footing are no remark.
+#[test]
+fn footing_at_its_collapse_load_passes() {
+    let folder = Folder::new("validity-footing");
+    run(&repository().join("inputs/solid/footing.toml"), &folder.join("out"), &["output.vtk=false"]).good();
+    let s = json(&folder.join("out/summary.json"));
+    assert_eq!(s["verdict"]["outcome"], "passed", "{s:#}");
+    assert!(s["warnings"].as_array().is_none_or(Vec::is_empty), "{}", s["warnings"]);
 }
 
 /// Free fall of 0.05 m becomes one of 0.5 mm with a hundred times the mass.

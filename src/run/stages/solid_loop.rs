@@ -9,7 +9,7 @@ use crate::run::context::Run;
 use crate::run::plastic::{PlasticDynamics, QuasiStaticSystem};
 use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
 use crate::run::system::{SolidSystem, System};
-use crate::run::validity::small_strain;
+use crate::run::validity::{quasi_static_strain, small_strain};
 
 /// Runs a solid without grains.
 ///
@@ -70,7 +70,11 @@ fn march<S: System>(
         Err(_) => return outcome,
     }
     let view = system.solid().expect("a system with a solid");
-    summary.validity.extend(small_strain(view.model, &view.state.u));
+    let check = match solid.analysis {
+        Analysis::QuasiStatic(_) => quasi_static_strain,
+        _ => small_strain,
+    };
+    summary.validity.extend(check(view.model, &view.state.u));
     let reactions = system.reactions().unwrap_or_default();
     summary.solid.reactions = solid
         .named_sums(&reactions)

@@ -17,7 +17,7 @@ pub use lost_bodies::{fallen_bodies, lost_bodies};
 pub use measure_box::{measure_box, region_not_filled};
 pub use resonance::load_near_mode;
 pub use scaled_inertia::{Fall, scaled_inertia};
-pub use small_strain::small_strain;
+pub use small_strain::{quasi_static_strain, small_strain};
 pub use stiffness_drift::stiffness_drift;
 
 use serde::Serialize;

@@ -13,15 +13,25 @@ const DISPLACEMENT: Limits = Limits { warn: 1.0, fail: Some(10.0) };
 /// Rotation above which its cosine differs from 1 by 2 %, and above which the linear strain of a rigid rotation is half of it [rad].
 const ROTATION: Limits = Limits { warn: 0.2, fail: Some(1.0) };
 
+/// Strain and rotation of a quasi-static collapse, which small strains describe up to the mechanism: its load is that of the theory of
+/// plasticity, while points of the mechanism are strained without bound.
+const COLLAPSE: Limits = Limits { warn: 1.0, fail: Some(10.0) };
+
 /// Checks the strains, rotations and displacements of a solid, shape of `u` `[3·nodes]` [m].
 pub fn small_strain(model: &Model, u: &[f64]) -> [Check; 3] {
     let found = extent(model, u);
-    [strain(&found), rotation(&found), displacement(&found)]
+    [strain(&found, STRAIN), rotation(&found, ROTATION), displacement(&found)]
+}
+
+/// The same of a solid that yields in equilibrium.
+pub fn quasi_static_strain(model: &Model, u: &[f64]) -> [Check; 3] {
+    let found = extent(model, u);
+    [strain(&found, COLLAPSE), rotation(&found, COLLAPSE), displacement(&found)]
 }
 
 /// Largest rotation of the solid.
-fn rotation(found: &Extent) -> Check {
-    Check::new("largest rotation of the solid [rad]", found.rotation, ROTATION, || {
+fn rotation(found: &Extent, limits: Limits) -> Check {
+    Check::new("largest rotation of the solid [rad]", found.rotation, limits, || {
         format!(
             "element {} of the solid is turned by {:.1} degrees: its equations are those of small rotations, good to some {:.0} degrees; reduce \
              the load, or make the solid stiffer",
@@ -33,8 +43,8 @@ fn rotation(found: &Extent) -> Check {
 }
 
 /// Largest strain of the solid.
-fn strain(found: &Extent) -> Check {
-    Check::new("largest strain of the solid", found.strain, STRAIN, || {
+fn strain(found: &Extent, limits: Limits) -> Check {
+    Check::new("largest strain of the solid", found.strain, limits, || {
         format!(
             "the solid is strained by {:.3} % in element {}: its equations are those of small strains, good to some {} %; reduce the load, or \
              find the load it bears by strength reduction",
@@ -64,8 +74,10 @@ mod tests {
 
     #[test]
     fn strains_pass_are_warned_about_and_fail() {
-        let status = |s: f64| strain(&Extent { strain: s, ..Extent::default() }).status;
-        assert_eq!([0.01, 0.2, 559.3].map(status), [Outcome::Passed, Outcome::Warned, Outcome::Failed]);
+        let status = |s: f64, limits| strain(&Extent { strain: s, ..Extent::default() }, limits).status;
+        let all = [Outcome::Passed, Outcome::Warned, Outcome::Failed];
+        assert_eq!([0.01, 0.2, 559.3].map(|s| status(s, STRAIN)), all);
+        assert_eq!([0.7, 2.0, 559.3].map(|s| status(s, COLLAPSE)), all);
     }
 
     #[test]
