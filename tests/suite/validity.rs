@@ -273,37 +273,3 @@ frames = 0
     assert_eq!(status(&stiff, "largest rotation of a bond"), "passed", "{stiff:#}");
     assert_eq!(stiff["verdict"]["outcome"], "passed");
 }
-
-/// Spheres roll off a plate of two triangles that nothing surrounds.
-#[test]
-fn bodies_that_fall_below_all_walls_are_counted() {
-    let plate = r#"
-[[material]]
-name = "m"
-density = 2650
-stiffness = 1e5
-friction = 0.5
-restitution = 0.3
-[[walls]]
-kind = "triangles"
-vertices = [[-0.1, -0.1, 0], [0.1, -0.1, 0], [0.1, 0.1, 0], [-0.1, 0.1, 0]]
-triangles = [[0, 1, 2], [0, 2, 3]]
-material = "m"
-[[grains]]
-name = "g"
-shape = "sphere"
-material = "m"
-spheres = [[0, 0, 0.01, 0.01], [0.3, 0, 0.01, 0.01]]
-[time]
-end = 0.5
-[output]
-vtk = false
-frames = 0
-"#;
-    let (off, _) = summary("validity-fallen", plate, &[]);
-    assert_eq!(status(&off, "bodies lost"), "warned", "{off:#}");
-    assert!(warned(&off, "bodies lost below the lowest wall: 1, the first is body 1 at"), "{off:#}");
-    let (on, _) =
-        summary("validity-held", plate, &["grains.0.spheres=[[0, 0, 0.01, 0.01], [0.03, 0, 0.01, 0.01]]"]);
-    assert_eq!(status(&on, "bodies lost"), "passed", "{on:#}");
-}

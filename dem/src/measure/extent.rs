@@ -7,14 +7,6 @@ use crate::shape::Shape;
 use crate::shape::dilated::Dilated;
 use nalgebra::UnitQuaternion;
 
-/// Lowest height that walls reach down to [m]; none without walls, or where a plane faces upwards: nothing falls below that.
-pub fn lowest_wall(model: &Model, state: &State) -> Option<f64> {
-    let floor = model.planes.iter().any(|plane| plane.normal.z > 0.1);
-    let walls = model.walls.walls.iter().zip(&state.walls);
-    let lowest = walls.map(|(wall, now)| wall.centre.z + now.offset.z - wall.reach).reduce(f64::min);
-    lowest.filter(|_| !floor)
-}
-
 /// A polyhedron where it is.
 struct Standing<'a> {
     it: &'a Dilated,

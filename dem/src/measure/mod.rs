@@ -31,7 +31,7 @@ pub use coordination::{
 };
 pub use energy::{Energies, energies, momentum, reference_energy};
 pub(crate) use energy::{energies_of, momentum_of};
-pub use extent::{highest_over, lowest, lowest_wall};
+pub use extent::{highest_over, lowest};
 pub use footprint::{bytes, kernels};
 pub use force_on::{force_on, loads_on};
 pub use fragments::{Fragments, fragments};

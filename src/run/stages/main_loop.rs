@@ -15,7 +15,7 @@ use crate::run::packing;
 use crate::run::runout;
 use crate::run::summary::NewtonRecord;
 use crate::run::system::{GrainsSystem, System};
-use crate::run::validity::{fallen_bodies, load_near_mode, lost_bodies, small_strain};
+use crate::run::validity::{load_near_mode, lost_bodies, small_strain};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 
@@ -93,8 +93,6 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     }
     state.summary.bed.packing = record_packing(run, &system, grains)?;
     state.summary.validity.extend(system.grains().into_iter().flat_map(|v| packing::checks(v, &grains.part)));
-    let dry = grains.part.water.is_none();
-    state.summary.validity.extend(system.grains().filter(|_| dry).and_then(fallen_bodies));
     if let Some(view) = system.grains() {
         state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;
     }

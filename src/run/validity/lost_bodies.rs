@@ -6,18 +6,6 @@ use trackbed_coupling::track::GrainsView;
 /// Bodies lost over all bodies. A single one changes no bed; of half a bed nothing can be said.
 const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };
 
-/// Bodies that fall below all walls of a run without a solid; of a hopper that empties all are below.
-const FALLEN: Limits = Limits { warn: 0.01, fail: None };
-
-/// Bodies below all walls of a run of grains alone; none where nothing can fall, or nothing but falls: without gravity, walls, or an
-/// open floor.
-pub fn fallen_bodies(view: GrainsView<'_>) -> Option<Check> {
-    let g = view.model.gravity();
-    let falls = g.z < 0.0 && g.z.abs() > 0.5 * g.norm();
-    let lowest = trackbed_dem::measure::lowest_wall(view.model, view.state).filter(|_| falls)?;
-    Some(below(view, lowest, FALLEN, "the lowest wall", "close the walls below, or set an [[outlet]]").0)
-}
-
 /// Bodies lost beside a solid whose lowest point was at `lowest` [m]; the message, where any body was lost, beside the check.
 pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>) {
     below(view, lowest, LOST, "the surface of the solid", "enlarge the mesh, or put walls at its borders")

@@ -13,7 +13,7 @@ mod stiffness_drift;
 
 pub use bond_rotation::bond_rotation;
 pub use free_sleeper::free_sleeper;
-pub use lost_bodies::{fallen_bodies, lost_bodies};
+pub use lost_bodies::lost_bodies;
 pub use measure_box::{measure_box, region_not_filled};
 pub use resonance::load_near_mode;
 pub use scaled_inertia::{Fall, scaled_inertia};
