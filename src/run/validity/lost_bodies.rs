@@ -8,17 +8,6 @@ const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };
 
 /// Bodies lost beside a solid whose lowest point was at `lowest` [m]; the message, where any body was lost, beside the check.
 pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>) {
-    below(view, lowest, LOST, "the surface of the solid", "enlarge the mesh, or put walls at its borders")
-}
-
-/// Bodies below the height `lowest` [m] of `what`.
-fn below(
-    view: GrainsView<'_>,
-    lowest: f64,
-    limits: Limits,
-    what: &str,
-    remedy: &str,
-) -> (Check, Option<String>) {
     let (model, state) = (view.model, view.state);
     let lost = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);
     let mut below = (0..model.body_count()).filter(lost);
@@ -28,13 +17,14 @@ fn below(
     let message = first.map(|first| {
         let x = state.position(first);
         format!(
-            "bodies lost below {what}: {count}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: {remedy}",
+            "bodies lost below the surface of the solid: {count}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the mesh, \
+             or put walls at its borders",
             x.x, x.y, x.z
         )
     });
     let value = count as f64 / present.max(1) as f64;
     let text = message.clone();
-    let check = Check::new("bodies lost over all bodies", value, limits, || text.unwrap_or_default());
+    let check = Check::new("bodies lost over all bodies", value, LOST, || text.unwrap_or_default());
     let few = message.filter(|_| check.message.is_empty());
     (check, few)
 }
