@@ -105,7 +105,7 @@ pub fn largest_rotation(model: &Model, state: &State) -> Option<BondRotation> {
         let k = &model.bonds[number as usize].values;
         let resisted = |at: usize, size: f64| if k[kernel::STIFFNESS + at] > 0.0 { size } else { 0.0 };
         let turn = resisted(2, e.memory.turn.norm2().sqrt());
-        let shear = resisted(1, e.memory.shear.norm2().sqrt() / (k[kernel::LENGTH] - k[kernel::OFFSET]));
+        let shear = resisted(1, e.memory.shear.norm2().sqrt() / k[kernel::LENGTH]);
         let angle = turn.max(shear);
         let bends = k[kernel::STIFFNESS + 1] > 0.0 || k[kernel::STIFFNESS + 2] > 0.0;
         if bends && largest.is_none_or(|l| angle > l.angle) {

@@ -64,7 +64,7 @@ struct Course {
     /// Loads on structures.
     #[serde(default)]
     loads: Vec<LoadRecord>,
-    /// Largest kinetic energy of the grains at any row [J].
+    /// Largest kinetic energy of the grains at any check [J].
     #[serde(default)]
     largest_kinetic: f64,
 }
@@ -152,13 +152,18 @@ impl<'a> Results<'a> {
         body.put(&self.course)
     }
 
-    /// Brings the energy balance to the present state, and checks it.
+    /// Brings the energy balance to the present state: before a row, and before a check.
+    pub fn measure<S: System>(&mut self, system: &S, track: &Track<'_>) {
+        self.course.take(system, track);
+    }
+
+    /// Checks the energy balance.
     ///
     /// # Errors
     /// The balance does not close.
-    pub fn check<S: System>(&mut self, system: &S, track: &Track<'_>) -> Result<(), Failure> {
+    pub fn check(&mut self) -> Result<(), Failure> {
         let course = &mut self.course;
-        course.take(system, track);
+        course.largest_kinetic = course.largest_kinetic.max(course.balance.now.grains_kinetic);
         course.largest_error = course.largest_error.max(course.balance.error().abs());
         course.watch.follow(&course.balance)
     }
@@ -180,8 +185,6 @@ impl<'a> Results<'a> {
         if let Some((plan, view)) = plan.zip(system.grains()) {
             course.specimen.push(specimen::point(plan, view, time));
         }
-        course.take(system, track);
-        course.largest_kinetic = course.largest_kinetic.max(course.balance.now.grains_kinetic);
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
         let values = columns::values(&now);
         self.history.row(&values)?;
@@ -296,7 +299,7 @@ impl<'a> Results<'a> {
         self.course.largest_error
     }
 
-    /// Largest kinetic energy of the grains at any row [J].
+    /// Largest kinetic energy of the grains at any check [J].
     pub fn largest_kinetic(&self) -> f64 {
         self.course.largest_kinetic
     }

@@ -158,8 +158,9 @@ impl<'a> TimeLoop<'a> {
             }
             None => {
                 let mut recorder = Results::start(job, run.dir, system, &track, flow.as_ref())?;
+                recorder.measure(system, &track);
                 recorder.row(0.0, system, &track, flow.as_ref())?;
-                recorder.check(system, &track)?;
+                recorder.check()?;
                 recorder.frame(0.0, system, &track)?;
                 (recorder, Place { done: 0, next_frame: 1, seconds: 0.0, windows })
             }
@@ -194,11 +195,16 @@ impl<'a> TimeLoop<'a> {
         if let Some(cycle) = self.recorder.follow(time, system, &self.track)? {
             self.after_cycle(&cycle, k, time);
         }
-        if k % self.cadence.every == 0 || k == self.place.windows {
+        let [row, check] =
+            [self.cadence.every, self.cadence.checked].map(|n| k % n == 0 || k == self.place.windows);
+        if row || check {
+            self.recorder.measure(system, &self.track);
+        }
+        if row {
             self.row(time, system).map_err(|e| e.at(time))?;
         }
-        if k % self.cadence.checked == 0 || k == self.place.windows {
-            self.recorder.check(system, &self.track).map_err(|e| e.at(time))?;
+        if check {
+            self.recorder.check().map_err(|e| e.at(time))?;
         }
         self.place.done = k;
         let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
@@ -289,6 +295,7 @@ impl<'a> TimeLoop<'a> {
             && system.keeps_its_state()
             && let Some(time) = system.solid().map(|s| s.state.time)
         {
+            self.recorder.measure(system, &self.track);
             self.row(time, system)?;
             self.recorder.frame(time, system, &self.track)?;
         }
