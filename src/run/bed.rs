@@ -90,7 +90,7 @@ impl<'a> Bed<'a> {
     /// Energy balance of the stage, which has come to its end.
     ///
     /// # Errors
-    /// The balance does not close.
+    /// Contacts at the start that cannot be found.
     pub fn energy(&self, stage: &str) -> Result<StageEnergy, Failure> {
         StageEnergy::of(stage, &self.model, &self.state, self.surface)
     }
