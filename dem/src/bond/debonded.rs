@@ -121,7 +121,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
         velocity,
         spin: a.w - b.w,
     };
-    let f = L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+    let f = L::acting::<R, ROLL>(law, &input, memory, on, step);
     Forces {
         force: f.force,
         torque_a: arm_a.cross(f.force) + f.moment,

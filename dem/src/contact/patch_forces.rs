@@ -131,7 +131,7 @@ pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
         spin: spin - wall_spin,
     };
     let LawOutput { force, moment, dashpot, friction, .. } =
-        L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+        L::acting::<R, ROLL>(law, &input, memory, on, step);
     let mut torque = t.arm.cross(force);
     if ROLL {
         torque = torque + moment;

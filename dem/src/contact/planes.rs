@@ -186,7 +186,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool
         spin: t.spin,
     };
     let LawOutput { force, moment, dashpot, friction, .. } =
-        L::evaluate::<R, ROLL>(law, &input, memory, on, step);
+        L::acting::<R, ROLL>(law, &input, memory, on, step);
     let force = force.only(on);
     let mut torque = arm.cross(force);
     let mut about_origin = (t.position + to_point).cross(force);

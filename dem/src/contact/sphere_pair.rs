@@ -103,7 +103,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool
     let m = Approach::<R>::new::<RIGID>(pair);
     let overlap = m.input.overlap;
     let LawOutput { force, moment, dashpot, friction, .. } =
-        L::evaluate::<R, ROLL>(law, &m.input, memory, on, step);
+        L::acting::<R, ROLL>(law, &m.input, memory, on, step);
     let force = force.only(on);
     let lever = force.cross(m.input.normal).only(on);
     let (la, lb) = m.levers;

@@ -65,6 +65,27 @@ fn put(op: Op) -> u32 {
     })
 }
 
+/// Writes an operation down. A formula makes hundreds of these calls, once a run: inlined they were a third of the engine's code.
+#[cold]
+#[inline(never)]
+fn infix(sign: &'static str, a: u32, b: u32) -> u32 {
+    put(Op::Infix(sign, a, b))
+}
+
+/// As [`infix`], of one operand.
+#[cold]
+#[inline(never)]
+fn prefix(op: fn(u32) -> Op, a: u32) -> u32 {
+    put(op(a))
+}
+
+/// As [`infix`], of a number that is known.
+#[cold]
+#[inline(never)]
+fn constant(x: f64) -> Recorded {
+    Recorded(put(Op::Constant(x.to_bits())))
+}
+
 /// A number on the tape of this thread.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recorded(u32);
@@ -81,6 +102,8 @@ pub(super) fn begin() {
     TAPE.set(Tape::default());
 }
 
+#[cold]
+#[inline(never)]
 fn named(expression: String) -> u32 {
     let k = TAPE.with_borrow_mut(|t| {
         t.inputs.push(expression);
@@ -95,6 +118,8 @@ pub(super) fn input(expression: impl Into<String>) -> Recorded {
 }
 
 /// The numbers x, y, z of a record of C.
+#[cold]
+#[inline(never)]
 pub(super) fn vector(record: &str) -> V3<Recorded> {
     V3::new(input(format!("{record}.x")), input(format!("{record}.y")), input(format!("{record}.z")))
 }
@@ -129,7 +154,7 @@ macro_rules! infix {
         impl $trait for Recorded {
             type Output = Recorded;
             fn $f(self, o: Recorded) -> Recorded {
-                Recorded(put(Op::Infix($sign, self.0, o.0)))
+                Recorded(infix($sign, self.0, o.0))
             }
         }
     };
@@ -142,34 +167,37 @@ infix!(Div, div, "/");
 impl Neg for Recorded {
     type Output = Recorded;
     fn neg(self) -> Recorded {
-        Recorded(put(Op::Negate(self.0)))
+        Recorded(prefix(Op::Negate, self.0))
     }
 }
 
 impl BitAnd for Truth {
     type Output = Truth;
+    #[inline(never)]
     fn bitand(self, o: Truth) -> Truth {
         match (self, o) {
             (Truth::Known(true), x) | (x, Truth::Known(true)) => x,
             (Truth::Known(false), _) | (_, Truth::Known(false)) => Truth::Known(false),
-            (Truth::Open(a), Truth::Open(b)) => Truth::Open(put(Op::Infix("&", a, b))),
+            (Truth::Open(a), Truth::Open(b)) => Truth::Open(infix("&", a, b)),
         }
     }
 }
 
 impl BitOr for Truth {
     type Output = Truth;
+    #[inline(never)]
     fn bitor(self, o: Truth) -> Truth {
         match (self, o) {
             (Truth::Known(false), x) | (x, Truth::Known(false)) => x,
             (Truth::Known(true), _) | (_, Truth::Known(true)) => Truth::Known(true),
-            (Truth::Open(a), Truth::Open(b)) => Truth::Open(put(Op::Infix("|", a, b))),
+            (Truth::Open(a), Truth::Open(b)) => Truth::Open(infix("|", a, b)),
         }
     }
 }
 
 impl Not for Truth {
     type Output = Truth;
+    #[inline(never)]
     fn not(self) -> Truth {
         match self {
             Truth::Known(x) => Truth::Known(!x),
@@ -180,31 +208,35 @@ impl Not for Truth {
 
 impl Real for Recorded {
     type Mask = Truth;
+    const RECORDS: bool = true;
 
     fn splat(x: f64) -> Recorded {
-        Recorded(put(Op::Constant(x.to_bits())))
+        constant(x)
     }
     fn sqrt(self) -> Recorded {
-        Recorded(put(Op::Root(self.0)))
+        Recorded(prefix(Op::Root, self.0))
     }
     fn abs(self) -> Recorded {
-        Recorded(put(Op::Magnitude(self.0)))
+        Recorded(prefix(Op::Magnitude, self.0))
     }
+    #[inline(never)]
     fn min(self, o: Recorded) -> Recorded {
         Recorded(put(Op::Smaller(self.0, o.0)))
     }
+    #[inline(never)]
     fn max(self, o: Recorded) -> Recorded {
         Recorded(put(Op::Larger(self.0, o.0)))
     }
     fn lt(self, o: Recorded) -> Truth {
-        Truth::Open(put(Op::Infix("<", self.0, o.0)))
+        Truth::Open(infix("<", self.0, o.0))
     }
     fn le(self, o: Recorded) -> Truth {
-        Truth::Open(put(Op::Infix("<=", self.0, o.0)))
+        Truth::Open(infix("<=", self.0, o.0))
     }
     fn equals(self, o: Recorded) -> Truth {
-        Truth::Open(put(Op::Infix("==", self.0, o.0)))
+        Truth::Open(infix("==", self.0, o.0))
     }
+    #[inline(never)]
     fn select(mask: Truth, yes: Recorded, no: Recorded) -> Recorded {
         match mask {
             Truth::Known(true) => yes,

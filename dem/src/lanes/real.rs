@@ -9,6 +9,9 @@ pub trait Real:
     /// One truth value per lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
+    /// Whether operations are written down in place of being computed ([`crate::device`]).
+    const RECORDS: bool = false;
+
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
     /// Square root.

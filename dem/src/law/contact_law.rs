@@ -25,6 +25,22 @@ pub trait ContactLaw: Constants {
         step: R,
     ) -> LawOutput<R>;
 
+    /// As [`ContactLaw::evaluate`], which all loops inline but those that record: they share one copy.
+    #[inline(always)]
+    fn acting<R: Real, const ROLL: bool>(
+        law: &Self::Lanes<R>,
+        touch: &LawInput<R>,
+        memory: &mut Memory<R>,
+        on: R::Mask,
+        step: R,
+    ) -> LawOutput<R> {
+        if R::RECORDS {
+            apart::<Self, R, ROLL>(law, touch, memory, on, step)
+        } else {
+            Self::evaluate::<R, ROLL>(law, touch, memory, on, step)
+        }
+    }
+
     /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
@@ -116,4 +132,16 @@ pub trait ContactLaw: Constants {
         *history = History::NONE;
         Self::stored_in_springs::<f64, true>(&self.splat(), &memory)
     }
+}
+
+#[cold]
+#[inline(never)]
+fn apart<L: ContactLaw, R: Real, const ROLL: bool>(
+    law: &L::Lanes<R>,
+    touch: &LawInput<R>,
+    memory: &mut Memory<R>,
+    on: R::Mask,
+    step: R,
+) -> LawOutput<R> {
+    L::evaluate::<R, ROLL>(law, touch, memory, on, step)
 }

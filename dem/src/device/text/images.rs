@@ -51,7 +51,7 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
         velocity,
         spin,
     };
-    let f = L::evaluate::<Recorded, ROLL>(&law, &law_input, &mut m, on, input("step"));
+    let f = L::acting::<Recorded, ROLL>(&law, &law_input, &mut m, on, input("step"));
     let mut out = Results::default();
     out.vector("o->force", f.force);
     let (torque_a, torque_b) = if clumps || ROLL {
