@@ -2,11 +2,9 @@
 //! own way in would cut a list that is too long, and take a list for a table.
 
 use serde::de::value::StrDeserializer;
-use serde::de::{
-    self, DeserializeSeed, Deserializer, Error as _, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
-    Visitor,
-};
+use serde::de::{self, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
+use std::borrow::Cow;
 use std::fmt;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -45,12 +43,6 @@ impl de::Error for Fault {
     }
 }
 
-impl From<toml::de::Error> for Fault {
-    fn from(error: toml::de::Error) -> Fault {
-        Fault::custom(error.message())
-    }
-}
-
 /// A value of the file.
 pub(super) struct Value<'i>(Spanned<DeValue<'i>>);
 
@@ -66,14 +58,28 @@ impl<'de> Deserializer<'de> for Value<'de> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        let span = self.0.span();
         match self.0.into_inner() {
             DeValue::Array(items) => visitor.visit_seq(Items(items.into_iter().enumerate())),
             DeValue::Table(entries) => visitor.visit_map(Entries(entries.into_iter(), None)),
             DeValue::Datetime(_) => Err(Fault::invalid_type(Unexpected::Other("a date"), &visitor)),
-            single => {
-                Spanned::new(span, single).into_deserializer().deserialize_any(visitor).map_err(Fault::from)
-            }
+            DeValue::String(text) => match text {
+                Cow::Borrowed(text) => visitor.visit_borrowed_str(text),
+                Cow::Owned(text) => visitor.visit_string(text),
+            },
+            DeValue::Boolean(value) => visitor.visit_bool(value),
+            DeValue::Integer(digits) => match i64::from_str_radix(digits.as_str(), digits.radix()) {
+                Ok(number) => visitor.visit_i64(number),
+                Err(_) => match u64::from_str_radix(digits.as_str(), digits.radix()) {
+                    Ok(number) => visitor.visit_u64(number),
+                    Err(_) => Err(Fault::custom("integer number overflowed")),
+                },
+            },
+            DeValue::Float(digits) => match digits.as_str().parse::<f64>() {
+                Ok(number) if number.is_finite() || digits.as_str().contains("inf") || number.is_nan() => {
+                    visitor.visit_f64(number)
+                }
+                _ => Err(Fault::custom("floating-point number overflowed")),
+            },
         }
     }
 
