@@ -8,7 +8,7 @@ use super::rows;
 use crate::failure::Failure;
 use crate::read::ReadError;
 use crate::write::csv::{Field, write_table};
-use crate::write::{GrainFrame, WriteError, atomic};
+use crate::write::{GrainFrame, Values, WriteError, atomic};
 use std::path::Path;
 
 /// What a moment begins with.
@@ -40,20 +40,20 @@ impl Moment {
         let whole = values.iter().all(|v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v));
         let number = |v: &f64| if whole { *v as u32 } else { place(v) };
         let part = self.part.as_ref().map_or_else(|| vec![0; count], |p| p.iter().map(number).collect());
-        GrainFrame {
-            position: self.position.clone(),
-            radius: self.radius.clone(),
-            velocity: self.velocity.clone(),
-            spin: vec![[0.0; 3]; count],
-            orientation: vec![[1.0, 0.0, 0.0, 0.0]; count],
-            id: (0..count as u32).collect(),
-            part: part.clone(),
-            mean_stress: vec![0.0; count],
-            force: vec![[0.0; 3]; count],
-            coordination: vec![0; count],
-            fragment: part,
-            extra: Vec::new(),
-        }
+        let none = || Values::Vectors(vec![[0.0; 3]; count]);
+        let fields = vec![
+            ("radius", Values::Numbers(self.radius.clone())),
+            ("velocity", Values::Vectors(self.velocity.clone())),
+            ("spin", none()),
+            ("orientation", Values::Quaternions(vec![[1.0, 0.0, 0.0, 0.0]; count])),
+            ("id", Values::Counts((0..count as u32).collect())),
+            ("part", Values::Counts(part.clone())),
+            ("mean_stress", Values::Numbers(vec![0.0; count])),
+            ("force", none()),
+            ("coordination", Values::Counts(vec![0; count])),
+            ("fragment", Values::Counts(part)),
+        ];
+        GrainFrame { position: self.position.clone(), fields }
     }
 }
 

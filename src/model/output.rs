@@ -2,7 +2,7 @@
 
 use super::duration::counted_step;
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
-use crate::write::{CHOSEN, EXTRA, FORMATS, Format, Part, SOLID_EXTRA};
+use crate::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields};
 use std::collections::BTreeSet;
 use std::time::Duration;
 
@@ -117,14 +117,10 @@ fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, Scen
 /// # Errors
 /// One that this scene has not.
 fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
-    let [solid, grains] = CHOSEN;
-    let has = |present: bool, names: &'static [&'static str]| names.iter().filter(move |_| present);
-    let known: BTreeSet<&str> = has(scene.solid.is_some(), solid)
-        .chain(has(!scene.grains.is_empty(), grains))
-        .chain(has(scene.solid.is_some(), &SOLID_EXTRA))
-        .chain(EXTRA.iter().filter(|name| has_extra(scene, name)))
-        .copied()
-        .collect();
+    let solid = SOLID_FIELDS.into_iter().chain(SOLID_EXTRA).filter(|_| scene.solid.is_some());
+    let bodies = body_fields(Written::ByDefault).filter(|_| !scene.grains.is_empty());
+    let more = body_fields(Written::OnRequest).filter(|name| has_extra(scene, name));
+    let known: BTreeSet<&str> = solid.chain(bodies).chain(more).collect();
     for (k, name) in o.fields.iter().flatten().enumerate() {
         if !known.contains(name.as_str()) {
             let expected = format!("one of {}", known.iter().copied().collect::<Vec<_>>().join(", "));
@@ -177,7 +173,7 @@ fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
             _ => false,
         },
     };
-    EXTRA.into_iter().filter(|name| has_extra(scene, name) && wanted(name)).collect()
+    body_fields(Written::OnRequest).filter(|name| has_extra(scene, name) && wanted(name)).collect()
 }
 
 /// Whether a format shows nothing but the solid.

@@ -1,18 +1,10 @@
 //! Names and units of fields as people read them, and numbers of legends.
 
-/// Fields of grains: name, label, unit.
-const GRAINS: [(&str, &str, &str); 10] = [
-    ("speed", "Speed", "m/s"),
-    ("diameter", "Diameter", "m"),
-    ("mean_stress", "Mean stress", "Pa"),
-    ("force", "Contact force", "N"),
-    ("spin", "Spin", "rad/s"),
-    ("coordination", "Coordination", ""),
-    ("fragment", "Fragment", ""),
-    ("displacement", "Displacement", "m"),
-    ("part", "Group", ""),
-    ("piece", "Piece", ""),
-];
+use crate::write::BODY_FIELDS;
+
+/// Fields of grains that are made from others: name, label, unit.
+const MADE: [(&str, &str, &str); 3] =
+    [("speed", "Speed", "m/s"), ("diameter", "Diameter", "m"), ("piece", "Piece", "")];
 
 /// Fields of the solid: name, label.
 const SOLID: [(&str, &str); 15] = [
@@ -35,8 +27,12 @@ const SOLID: [(&str, &str); 15] = [
 
 /// Label and unit of a field of grains.
 pub fn grains(field: &str) -> (String, &'static str) {
-    let known = GRAINS.iter().find(|g| g.0 == field);
-    known.map_or_else(|| (field.to_string(), ""), |(_, label, unit)| (label.to_string(), *unit))
+    let made = MADE.iter().copied().find(|made| made.0 == field);
+    let known = made.or_else(|| {
+        let field = BODY_FIELDS.iter().find(|known| known.name == field)?;
+        Some((field.name, field.label, field.unit))
+    });
+    known.map_or_else(|| (field.to_string(), ""), |(_, label, unit)| (label.to_string(), unit))
 }
 
 /// Label and unit of a field of the solid.

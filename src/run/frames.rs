@@ -7,7 +7,8 @@ use crate::failure::Failure;
 use crate::model::OutputPlan;
 use crate::model::grains::GrainsPart;
 use crate::write::{
-    ChainFrame, Extra, Frame, GrainFrame, NO_BODY, Part, SolidFrame, WallFrame, WallKind, Writers,
+    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
+    WallKind, Writers, Written,
 };
 use std::path::Path;
 use trackbed_dem as dem;
@@ -114,14 +115,14 @@ pub fn write(
     let stones = writers.show(Part::Walls) && view.model.has_faces();
     let any = stones || writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
-    let bodies = (stones || writers.show(Part::Grains)).then(|| BodyFields::of(view, &contacts));
-    let spheres = bodies.as_ref().filter(|_| writers.show(Part::Grains)).map(|b| spheres(view, b, extra));
+    let bodies = (stones || writers.show(Part::Grains)).then(|| BodyFields::of(view, &contacts, extra));
+    let spheres = bodies.as_ref().filter(|_| writers.show(Part::Grains)).map(BodyFields::spheres);
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
         let (mut walls, of) = walls(view, part);
         draw(&mut walls);
         if let Some(fields) = bodies.as_ref().filter(|_| stones) {
-            walls.grains = fields.of_polygons(view, &of, walls.polygons.len(), extra);
+            walls.grains = fields.of_polygons(&of, walls.polygons.len());
         }
         walls
     });
@@ -162,109 +163,127 @@ fn kind(partner: &dem::Partner) -> u32 {
 /// Kind of a chain that is a bond; its normal force is negative where it pulls.
 const BOND: u32 = 5;
 
-/// What frames show of bodies, by number.
-struct BodyFields {
+/// What the fields of bodies are computed from.
+struct BodyFields<'a> {
+    view: GrainsView<'a>,
     stress: Vec<[f64; 6]>,
     neighbours: Vec<u32>,
     force: Vec<dem::Vec3>,
     fragments: Vec<u32>,
+    /// Fields beside those that are written by default.
+    more: &'a [&'static str],
 }
 
-impl BodyFields {
-    fn of(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord]) -> BodyFields {
+/// An item of a frame: a sphere or a polygon.
+struct Item {
+    /// Number of its body; [`NO_BODY`] for what is no body.
+    body: u32,
+    /// Centre [m] and radius [m] of a sphere.
+    sphere: Option<(dem::Vec3, f64)>,
+}
+
+impl<'a> BodyFields<'a> {
+    fn of(
+        view: GrainsView<'a>,
+        contacts: &[dem::measure::ContactRecord],
+        more: &'a [&'static str],
+    ) -> BodyFields<'a> {
         BodyFields {
+            view,
             stress: dem::measure::mean_stress_of(view.model, view.state, contacts),
             neighbours: dem::measure::neighbours(view.model, contacts),
             force: dem::measure::contact_forces_of(view.model, view.state, contacts),
             fragments: dem::measure::fragments(view.model, view.state).of,
+            more,
         }
     }
 
-    fn mean_stress(&self, body: usize) -> f64 {
-        (self.stress[body][0] + self.stress[body][1] + self.stress[body][2]) / 3.0
+    /// All fields of items but those `without`.
+    fn all(&self, items: &[Item], without: &[&str]) -> Vec<(&'static str, Values)> {
+        let wanted = |field: &&BodyField| match field.written {
+            Written::OnRequest => self.more.contains(&field.name),
+            _ => !without.contains(&field.name),
+        };
+        BODY_FIELDS.iter().filter(wanted).map(|field| (field.name, self.values(field.name, items))).collect()
     }
 
-    /// The same for each of `count` polygons, of which the first belong to the bodies `of`; zero for those that belong to none.
-    fn of_polygons(
-        &self,
-        view: GrainsView<'_>,
-        of: &[u32],
-        count: usize,
-        more: &[&'static str],
-    ) -> Vec<(&'static str, Extra)> {
-        let GrainsView { model, state } = view;
-        let all: Vec<u32> = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count).collect();
-        let body = |b: &u32| (*b != NO_BODY).then_some(*b as usize);
-        let vectors = |f: &dyn Fn(usize) -> dem::Vec3| {
-            Extra::Vectors(all.iter().map(|b| body(b).map_or([0.0; 3], |b| f(b).into())).collect())
+    /// One field; zero for items of no body.
+    fn values(&self, name: &str, items: &[Item]) -> Values {
+        let GrainsView { model, state } = self.view;
+        let body = |item: &Item| (item.body != NO_BODY).then_some(item.body as usize);
+        let vectors = |of: &dyn Fn(usize) -> dem::Vec3| {
+            Values::Vectors(items.iter().map(|i| body(i).map_or([0.0; 3], |b| of(b).into())).collect())
+        };
+        let numbers = |of: &dyn Fn(usize) -> f64| {
+            Values::Numbers(items.iter().map(|i| body(i).map_or(0.0, of)).collect())
         };
         let counts =
-            |f: &dyn Fn(usize) -> u32| Extra::Counts(all.iter().map(|b| body(b).map_or(0, f)).collect());
-        let stress = all.iter().map(|b| body(b).map_or(0.0, |b| self.mean_stress(b)));
-        let mut fields = vec![
-            ("velocity", vectors(&|b| state.velocity(b))),
-            ("spin", vectors(&|b| state.spin(b))),
-            ("part", counts(&|b| model.part(b))),
-            ("mean_stress", Extra::Numbers(stress.collect())),
-            ("force", vectors(&|b| self.force[b])),
-            ("coordination", counts(&|b| self.neighbours[b])),
-            ("fragment", counts(&|b| self.fragments[b])),
-        ];
-        fields.extend(more.iter().map(|name| (*name, extra(name, view, &all, &self.force))));
-        fields
-    }
-}
-
-/// The grains: one point per sphere.
-fn spheres(view: GrainsView<'_>, fields: &BodyFields, extra: &[&'static str]) -> GrainFrame {
-    let mut frame = GrainFrame::default();
-    for body in (0..view.model.body_count()).filter(|&b| view.state.present(b)) {
-        let q = view.state.orientation(view.model, body);
-        let (x, v, w) = (view.state.position(body), view.state.velocity(body), view.state.spin(body));
-        let back = into_box(view, body);
-        for (centre, radius) in view.state.spheres(view.model, body) {
-            frame.position.push(moved(centre, back).into());
-            frame.radius.push(radius);
-            frame.velocity.push((v + w.cross(&(centre - x))).into());
-            frame.spin.push(w.into());
-            frame.orientation.push([q.w, q.i, q.j, q.k]);
-            frame.id.push(body as u32);
-            frame.part.push(view.model.part(body));
-            frame.mean_stress.push(fields.mean_stress(body));
-            frame.force.push(fields.force[body].into());
-            frame.coordination.push(fields.neighbours[body]);
-            frame.fragment.push(fields.fragments[body]);
+            |of: &dyn Fn(usize) -> u32| Values::Counts(items.iter().map(|i| body(i).map_or(0, of)).collect());
+        let broken = |which: &dyn Fn(&Break) -> bool| {
+            let mut count = vec![0; model.body_count()];
+            let breaks = state.breaks().iter().filter(|b| which(b));
+            breaks.flat_map(|b| b.bodies).for_each(|b| count[b as usize] += 1);
+            counts(&|b| count[b])
+        };
+        match name {
+            "radius" => Values::Numbers(items.iter().map(|i| i.sphere.map_or(0.0, |(_, r)| r)).collect()),
+            "velocity" => {
+                let of = |item: &Item| {
+                    let Some(b) = body(item) else { return [0.0; 3] };
+                    let v = state.velocity(b);
+                    item.sphere.map_or(v, |(x, _)| v + state.spin(b).cross(&(x - state.position(b)))).into()
+                };
+                Values::Vectors(items.iter().map(of).collect())
+            }
+            "spin" => vectors(&|b| state.spin(b)),
+            "orientation" => {
+                let of = |item: &Item| {
+                    let q = body(item).map(|b| state.orientation(model, b)).unwrap_or_default();
+                    [q.w, q.i, q.j, q.k]
+                };
+                Values::Quaternions(items.iter().map(of).collect())
+            }
+            "id" => Values::Counts(items.iter().map(|i| i.body).collect()),
+            "part" => counts(&|b| model.part(b)),
+            "mean_stress" => numbers(&|b| (self.stress[b][0] + self.stress[b][1] + self.stress[b][2]) / 3.0),
+            "force" => vectors(&|b| self.force[b]),
+            "coordination" => counts(&|b| self.neighbours[b]),
+            "fragment" => counts(&|b| self.fragments[b]),
+            "displacement" => {
+                let from = runout::origins(model);
+                vectors(&|b| state.position(b) - from[b])
+            }
+            "initial_position" => {
+                let from = runout::origins(model);
+                vectors(&|b| from[b])
+            }
+            "acceleration" => vectors(&|b| self.force[b] / model.mass(b) + model.gravity()),
+            "broken_by_shear" => broken(&|b| b.mode == BreakMode::Shear),
+            "broken_bonds" => broken(&|_| true),
+            other => unreachable!("the field {other} of bodies has no values"),
         }
     }
-    frame.extra =
-        extra.iter().map(|name| (*name, self::extra(name, view, &frame.id, &fields.force))).collect();
-    frame
-}
 
-/// A field that not every frame has, for items of the bodies `id`, zero for those of none; `force` is that of contacts and bonds on each body.
-fn extra(name: &str, view: GrainsView<'_>, id: &[u32], force: &[dem::Vec3]) -> Extra {
-    let GrainsView { model, state } = view;
-    let body = |b: &u32| (*b != NO_BODY).then_some(*b as usize);
-    let vectors = |of: &dyn Fn(usize) -> dem::Vec3| {
-        Extra::Vectors(id.iter().map(|b| body(b).map_or([0.0; 3], |b| of(b).into())).collect())
-    };
-    let counts = |of: &dyn Fn(&Break) -> bool| {
-        let mut count = vec![0; model.body_count()];
-        state.breaks().iter().filter(|b| of(b)).flat_map(|b| b.bodies).for_each(|b| count[b as usize] += 1);
-        Extra::Counts(id.iter().map(|b| body(b).map_or(0, |b| count[b])).collect())
-    };
-    match name {
-        "displacement" => {
-            let from = runout::origins(model);
-            vectors(&|b| state.position(b) - from[b])
+    /// The grains: one point per sphere.
+    fn spheres(&self) -> GrainFrame {
+        let GrainsView { model, state } = self.view;
+        let (mut position, mut items) = (Vec::new(), Vec::new());
+        for body in (0..model.body_count()).filter(|&b| state.present(b)) {
+            let back = into_box(self.view, body);
+            for (centre, radius) in state.spheres(model, body) {
+                position.push(moved(centre, back).into());
+                items.push(Item { body: body as u32, sphere: Some((centre, radius)) });
+            }
         }
-        "initial_position" => {
-            let from = runout::origins(model);
-            vectors(&|b| from[b])
-        }
-        "acceleration" => vectors(&|b| force[b] / model.mass(b) + model.gravity()),
-        "broken_by_shear" => counts(&|b| b.mode == BreakMode::Shear),
-        _ => counts(&|_| true),
+        let fields = self.all(&items, &[]);
+        GrainFrame { position, fields }
+    }
+
+    /// Fields of `count` polygons, of which the first belong to the bodies `of`.
+    fn of_polygons(&self, of: &[u32], count: usize) -> Vec<(&'static str, Values)> {
+        let bodies = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count);
+        let items: Vec<Item> = bodies.map(|body| Item { body, sphere: None }).collect();
+        self.all(&items, &["radius", "orientation", "id"])
     }
 }
 

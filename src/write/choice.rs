@@ -1,14 +1,10 @@
 //! Which fields of solid and grains frames hold.
 
-/// Fields that a scene may choose from, of the solid and of the grains.
-pub const CHOSEN: [&[&str]; 2] = [
-    &["velocity", "stress", "von_mises", "equivalent_plastic_strain", "yield_function"],
-    &["velocity", "spin", "orientation", "mean_stress", "force", "coordination", "fragment"],
-];
+use super::body_fields::{Written, body_fields};
 
-/// Fields of the grains that are written where a scene names them, or where it has what they show: bonds, a slide.
-pub const EXTRA: [&str; 5] =
-    ["displacement", "initial_position", "acceleration", "broken_bonds", "broken_by_shear"];
+/// Fields of the solid that are written unless the scene names others.
+pub const SOLID_FIELDS: [&str; 5] =
+    ["velocity", "stress", "von_mises", "equivalent_plastic_strain", "yield_function"];
 
 /// Fields of the solid that are written where a scene names them.
 pub const SOLID_EXTRA: [&str; 2] = ["strain", "plastic_strain"];
@@ -21,7 +17,7 @@ pub struct Choice<'a>(pub Option<&'a [String]>);
 impl Choice<'_> {
     /// Whether a field is written.
     pub fn has(self, name: &str) -> bool {
-        let free = CHOSEN.iter().any(|names| names.contains(&name));
+        let free = SOLID_FIELDS.contains(&name) || body_fields(Written::ByDefault).any(|field| field == name);
         !free || self.0.is_none_or(|names| names.iter().any(|n| n == name))
     }
 }

@@ -44,40 +44,22 @@ pub struct SolidFrame<'a> {
 }
 
 /// The grains at one moment: one item per sphere, the spheres of a clump with the `id` of their body.
-/// Every field has the shape `[spheres]`.
+/// `position` and every field have the shape `[spheres]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrainFrame {
     /// Centre of the sphere [m].
     pub position: Vec<[f64; 3]>,
-    /// Radius of the sphere [m].
-    pub radius: Vec<f64>,
-    /// Velocity of the centre [m/s].
-    pub velocity: Vec<[f64; 3]>,
-    /// Angular velocity of the body, world axes [rad/s].
-    pub spin: Vec<[f64; 3]>,
-    /// Orientation of the body: quaternion w, x, y, z [1].
-    pub orientation: Vec<[f64; 4]>,
-    /// Number of the body.
-    pub id: Vec<u32>,
-    /// Number of the part (group) that the body belongs to.
-    pub part: Vec<u32>,
-    /// Mean stress of the body, tension positive [Pa].
-    pub mean_stress: Vec<f64>,
-    /// Sum of contact forces on the body [N].
-    pub force: Vec<[f64; 3]>,
-    /// Number of partners that press on the body.
-    pub coordination: Vec<u32>,
-    /// Number of the fragment: the bodies that bonds hold together.
-    pub fragment: Vec<u32>,
-    /// Fields that not every frame has, by name.
-    pub extra: Vec<(&'static str, Extra)>,
+    /// Fields by name, as [`super::BODY_FIELDS`] lists them.
+    pub fields: Vec<(&'static str, Values)>,
 }
 
-/// A field of its own.
+/// The values of a field.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Extra {
+pub enum Values {
     /// Three numbers for each item.
     Vectors(Vec<[f64; 3]>),
+    /// Four numbers for each item: a quaternion w, x, y, z.
+    Quaternions(Vec<[f64; 4]>),
     /// A number for each item.
     Numbers(Vec<f64>),
     /// A whole number for each item.
@@ -117,7 +99,7 @@ pub struct WallFrame {
     pub kind: Vec<u32>,
     /// Fields of grains with faces by name, as those of [`GrainFrame`], for each polygon; zero for those of other things. None without such
     /// grains.
-    pub grains: Vec<(&'static str, Extra)>,
+    pub grains: Vec<(&'static str, Values)>,
 }
 
 /// What a polygon of a [`WallFrame`] is part of.

@@ -7,6 +7,7 @@
 mod abaqus;
 pub mod ansys_lists;
 pub mod atomic;
+mod body_fields;
 mod cdb;
 mod choice;
 pub mod csv;
@@ -33,9 +34,10 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
-pub use choice::{CHOSEN, Choice, EXTRA, SOLID_EXTRA};
+pub use body_fields::{BODY_FIELDS, BodyField, Written, body_fields};
+pub use choice::{Choice, SOLID_EXTRA, SOLID_FIELDS};
 pub use error::WriteError;
-pub use frame::{ChainFrame, Extra, Frame, GrainFrame, NO_BODY, SolidFrame, WallFrame, WallKind};
+pub use frame::{ChainFrame, Frame, GrainFrame, NO_BODY, SolidFrame, Values, WallFrame, WallKind};
 pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 

@@ -1,5 +1,7 @@
 //! Meshes and folders for the tests of readers and writers.
 
+use super::body_fields::{BODY_FIELDS, Written};
+use super::frame::{GrainFrame, Values};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -12,6 +14,23 @@ pub fn folder(name: &str) -> PathBuf {
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();
     dir
+}
+
+/// Grains with all fields that are written by default, whose vectors are `vector` of their number.
+pub fn grains(count: usize, vector: impl Fn(usize) -> [f64; 3]) -> GrainFrame {
+    let vectors = || (0..count).map(&vector).collect::<Vec<_>>();
+    let values = |name: &str| match name {
+        "radius" => Values::Numbers(vec![0.02; count]),
+        "mean_stress" => Values::Numbers(vec![-2.0e3; count]),
+        "orientation" => Values::Quaternions(vec![[0.5; 4]; count]),
+        "id" => Values::Counts((0..count as u32).collect()),
+        "part" | "fragment" => Values::Counts(vec![1; count]),
+        "coordination" => Values::Counts(vec![6; count]),
+        _ => Values::Vectors(vectors()),
+    };
+    let written = BODY_FIELDS.iter().filter(|field| field.written != Written::OnRequest);
+    let fields = written.map(|field| (field.name, values(field.name))).collect();
+    GrainFrame { position: vectors(), fields }
 }
 
 /// Corners and mid-sides of a hex20 on the lattice of half sides, SOLID186 order.

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::pvd::Series;
-use super::{ChainFrame, Extra, GrainFrame, SolidFrame, WallFrame, sample, vtp, vtu};
+use super::{ChainFrame, GrainFrame, SolidFrame, Values, WallFrame, sample, vtp, vtu};
 use crate::mesh_tools;
 use crate::read::MeshFile;
 
@@ -66,21 +66,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
 }
 
 fn grains(count: usize) -> GrainFrame {
-    let vector = |i: usize| [i as f64, libm::sin(i as f64), -0.5];
-    GrainFrame {
-        position: (0..count).map(vector).collect(),
-        radius: vec![0.02; count],
-        velocity: (0..count).map(vector).collect(),
-        spin: (0..count).map(vector).collect(),
-        orientation: vec![[0.5; 4]; count],
-        id: (0..count as u32).collect(),
-        part: vec![1; count],
-        mean_stress: vec![-2.0e3; count],
-        force: (0..count).map(vector).collect(),
-        coordination: vec![6; count],
-        extra: Vec::new(),
-        fragment: vec![1; count],
-    }
+    sample::grains(count, |i| [i as f64, libm::sin(i as f64), -0.5])
 }
 
 fn chains(count: usize) -> ChainFrame {
@@ -117,8 +103,8 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
             id: vec![0, 1],
             kind: vec![0, 2],
             grains: vec![
-                ("velocity", Extra::Vectors(vec![[0.0; 3], [1.0, 2.0, 3.0]])),
-                ("part", Extra::Counts(vec![0, 7])),
+                ("velocity", Values::Vectors(vec![[0.0; 3], [1.0, 2.0, 3.0]])),
+                ("part", Values::Counts(vec![0, 7])),
             ],
         };
         vtp::write_walls(&path(&name("walls", "vtp")), &walls, Choice::default()).unwrap();

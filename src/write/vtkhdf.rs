@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::choice::Choice;
 use super::error::{WriteError, check_field};
-use super::frame::{Extra, Frame, GrainFrame, SolidFrame};
+use super::frame::{Frame, GrainFrame, SolidFrame, Values as FieldValues};
 use super::hdf5::{Attribute, File, GroupId, Kind};
 use super::vtk::matrices;
 use super::vtu::cell_type;
@@ -278,23 +278,13 @@ impl Series {
 
     /// Adds a step of the grains.
     fn grains(&mut self, time: f64, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
-        let mut fields = vec![
-            doubles("radius", 1, &frame.radius),
-            doubles("velocity", 3, frame.velocity.as_flattened()),
-            doubles("spin", 3, frame.spin.as_flattened()),
-            doubles("orientation", 4, frame.orientation.as_flattened()),
-            ids("id", &frame.id),
-            ids("part", &frame.part),
-            doubles("mean_stress", 1, &frame.mean_stress),
-            doubles("force", 3, frame.force.as_flattened()),
-            ids("coordination", &frame.coordination),
-            ids("fragment", &frame.fragment),
-        ];
-        fields.extend(frame.extra.iter().map(|(name, extra)| match extra {
-            Extra::Vectors(values) => doubles(name, 3, values.as_flattened()),
-            Extra::Numbers(values) => doubles(name, 1, values),
-            Extra::Counts(values) => ids(name, values),
-        }));
+        let fields = frame.fields.iter().map(|(name, values)| match values {
+            FieldValues::Vectors(values) => doubles(name, 3, values.as_flattened()),
+            FieldValues::Quaternions(values) => doubles(name, 4, values.as_flattened()),
+            FieldValues::Numbers(values) => doubles(name, 1, values),
+            FieldValues::Counts(values) => ids(name, values),
+        });
+        let fields: Vec<Field<'_>> = fields.collect();
         let count = frame.position.len();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", frame.position.as_flattened(), 3, count)?;

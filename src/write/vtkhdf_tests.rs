@@ -30,38 +30,40 @@ fn array(out: &mut String, name: &str, components: usize, values: &[f64]) {
 /// Grains whose number changes: each field is a function of item and time.
 fn grains(count: usize, time: f64) -> GrainFrame {
     let v = |i: usize, d: f64| [i as f64 + d, time * d, -(i as f64)];
-    GrainFrame {
-        position: (0..count).map(|i| v(i, 0.25)).collect(),
-        radius: (0..count).map(|i| 0.1 + i as f64).collect(),
-        velocity: (0..count).map(|i| v(i, 1.0)).collect(),
-        spin: (0..count).map(|i| v(i, 2.0)).collect(),
-        orientation: (0..count).map(|i| [1.0, time, 0.0, i as f64]).collect(),
-        id: (0..count as u32).collect(),
-        part: vec![2; count],
-        mean_stress: vec![-time; count],
-        force: (0..count).map(|i| v(i, 3.0)).collect(),
-        coordination: vec![6; count],
-        extra: Vec::new(),
-        fragment: vec![1; count],
+    let mut frame = sample::grains(count, |i| v(i, 0.25));
+    for (k, (name, values)) in frame.fields.iter_mut().enumerate() {
+        match values {
+            FieldValues::Vectors(values) => *values = (0..count).map(|i| v(i, k as f64)).collect(),
+            FieldValues::Quaternions(values) => {
+                *values = (0..count).map(|i| [1.0, time, 0.0, i as f64]).collect();
+            }
+            FieldValues::Numbers(values) => {
+                *values = (0..count).map(|i| 0.1 * k as f64 + i as f64 - time).collect()
+            }
+            FieldValues::Counts(values) if *name == "id" => *values = (0..count as u32).collect(),
+            FieldValues::Counts(values) => *values = vec![k as u32; count],
+        }
     }
+    frame
 }
 
 /// What VTK should find in them.
 fn expected_grains(count: usize, time: f64) -> String {
     let f = grains(count, time);
     let mut out = format!("t = {time:.17e}: {count} points, {count} cells\n");
-    let whole = |list: &[u32]| list.iter().map(|n| f64::from(*n)).collect::<Vec<_>>();
     array(&mut out, "points", 3, f.position.as_flattened());
-    array(&mut out, "coordination", 1, &whole(&f.coordination));
-    array(&mut out, "force", 3, f.force.as_flattened());
-    array(&mut out, "fragment", 1, &whole(&f.fragment));
-    array(&mut out, "id", 1, &whole(&f.id));
-    array(&mut out, "mean_stress", 1, &f.mean_stress);
-    array(&mut out, "orientation", 4, f.orientation.as_flattened());
-    array(&mut out, "part", 1, &whole(&f.part));
-    array(&mut out, "radius", 1, &f.radius);
-    array(&mut out, "spin", 3, f.spin.as_flattened());
-    array(&mut out, "velocity", 3, f.velocity.as_flattened());
+    let by_name: std::collections::BTreeMap<_, _> =
+        f.fields.iter().map(|(name, values)| (name, values)).collect();
+    for (name, values) in by_name {
+        match values {
+            FieldValues::Vectors(values) => array(&mut out, name, 3, values.as_flattened()),
+            FieldValues::Quaternions(values) => array(&mut out, name, 4, values.as_flattened()),
+            FieldValues::Numbers(values) => array(&mut out, name, 1, values),
+            FieldValues::Counts(values) => {
+                array(&mut out, name, 1, &values.iter().map(|n| f64::from(*n)).collect::<Vec<_>>());
+            }
+        }
+    }
     out
 }
 
@@ -152,7 +154,9 @@ fn a_value_that_is_not_finite_is_named_and_its_frame_left_out() {
     write(&mut *writer, 0, &grains(4, 0.0));
     let before = std::fs::read(&file).unwrap();
     let mut bad = grains(4, 0.5);
-    bad.force[2][1] = f64::NAN;
+    let force = bad.fields.iter().position(|field| field.0 == "force").unwrap();
+    let FieldValues::Vectors(values) = &mut bad.fields[force].1 else { unreachable!() };
+    values[2][1] = f64::NAN;
     let frame = Frame { number: 1, time: 0.5, grains: Some(&bad), ..Frame::default() };
     let error = writer.frame(&frame).unwrap_err();
     assert_eq!(error.to_string(), format!("{}: force at index 2 is NaN: not written", file.display()));

@@ -7,38 +7,29 @@ use std::path::Path;
 
 use super::choice::Choice;
 use super::error::WriteError;
-use super::frame::{ChainFrame, Extra, GrainFrame, WallFrame};
+use super::frame::{ChainFrame, GrainFrame, Values, WallFrame};
 use super::vtk::{self, Fields, Section};
 
-/// Writes the grains: point data of the names of [`GrainFrame`], as far as they are chosen.
+/// Writes the grains: point data of their fields, as far as they are chosen.
 ///
 /// # Errors
 /// A field of the wrong length or with a number that is not finite, and what the system refuses.
 pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let count = frame.position.len();
     let mut fields = Fields::of_points(file, count).only(choice);
-    fields.scalar("radius", &frame.radius)?;
-    fields.vector("velocity", frame.velocity.as_flattened())?;
-    fields.vector("spin", frame.spin.as_flattened())?;
-    fields.generic("orientation", frame.orientation.as_flattened(), 4)?;
-    fields.ids("id", &frame.id)?;
-    fields.ids("part", &frame.part)?;
-    fields.scalar("mean_stress", &frame.mean_stress)?;
-    fields.vector("force", frame.force.as_flattened())?;
-    fields.ids("coordination", &frame.coordination)?;
-    fields.ids("fragment", &frame.fragment)?;
-    more(&mut fields, &frame.extra)?;
+    add(&mut fields, &frame.fields)?;
     let verts = Section::cells_in_order("Verts", count, 1);
     write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
 }
 
 /// Adds fields by name.
-fn more(fields: &mut Fields, extra: &[(&'static str, Extra)]) -> Result<(), WriteError> {
-    for (name, extra) in extra {
-        match extra {
-            Extra::Vectors(values) => fields.vector(name, values.as_flattened())?,
-            Extra::Numbers(values) => fields.scalar(name, values)?,
-            Extra::Counts(values) => fields.ids(name, values)?,
+fn add(fields: &mut Fields, all: &[(&'static str, Values)]) -> Result<(), WriteError> {
+    for (name, values) in all {
+        match values {
+            Values::Vectors(values) => fields.vector(name, values.as_flattened())?,
+            Values::Quaternions(values) => fields.generic(name, values.as_flattened(), 4)?,
+            Values::Numbers(values) => fields.scalar(name, values)?,
+            Values::Counts(values) => fields.ids(name, values)?,
         }
     }
     Ok(())
@@ -84,7 +75,7 @@ pub fn write_walls(file: &Path, frame: &WallFrame, choice: Choice<'_>) -> Result
     let mut fields = Fields::of_cells(file, frame.polygons.len()).only(choice);
     fields.ids("id", &frame.id)?;
     fields.ids("kind", &frame.kind)?;
-    more(&mut fields, &frame.grains)?;
+    add(&mut fields, &frame.grains)?;
     let connectivity = frame.polygons.iter().flatten().map(|c| u64::from(*c));
     let ends = frame.polygons.iter().scan(0, |end, polygon| {
         *end += polygon.len() as u64;
@@ -111,24 +102,10 @@ mod tests {
     use vtkio::model::DataSet;
 
     use super::*;
-    use crate::write::sample::folder;
+    use crate::write::sample::{self, folder};
 
     fn grains(count: usize) -> GrainFrame {
-        let v = |i: usize| [i as f64, 0.5, -1.0];
-        GrainFrame {
-            position: (0..count).map(v).collect(),
-            radius: vec![0.1; count],
-            velocity: (0..count).map(v).collect(),
-            spin: (0..count).map(v).collect(),
-            orientation: vec![[1.0, 0.0, 0.0, 0.0]; count],
-            id: (0..count as u32).collect(),
-            part: vec![2; count],
-            mean_stress: vec![-3.0; count],
-            force: (0..count).map(v).collect(),
-            coordination: vec![6; count],
-            extra: Vec::new(),
-            fragment: vec![1; count],
-        }
+        sample::grains(count, |i| [i as f64, 0.5, -1.0])
     }
 
     #[test]
@@ -136,7 +113,10 @@ mod tests {
         let dir = folder("vtp_nan");
         let file = dir.join("grains.vtp");
         let mut frame = grains(5);
-        frame.orientation[3][2] = f64::NAN;
+        let of = |frame: &GrainFrame, name: &str| frame.fields.iter().position(|f| f.0 == name).unwrap();
+        let (orientation, id) = (of(&frame, "orientation"), of(&frame, "id"));
+        let Values::Quaternions(values) = &mut frame.fields[orientation].1 else { unreachable!() };
+        values[3][2] = f64::NAN;
         let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -147,7 +127,8 @@ mod tests {
         let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("points at index 4 is -inf"), "{error}");
         let mut frame = grains(5);
-        frame.id.pop();
+        let Values::Counts(values) = &mut frame.fields[id].1 else { unreachable!() };
+        values.pop();
         let error = write_grains(&file, &frame, Choice::default()).unwrap_err();
         assert!(error.to_string().contains("id has 4 values, expected 5"), "{error}");
         assert!(!file.exists());

@@ -1,6 +1,6 @@
 use super::*;
 use crate::write::sample::{self, folder};
-use crate::write::{ChainFrame, FORMATS, GrainFrame, SolidFrame, WallFrame};
+use crate::write::{ChainFrame, FORMATS, SolidFrame, WallFrame};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -19,20 +19,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
         yield_function: &scalar,
         tensors: &[],
     };
-    let grains = GrainFrame {
-        position: vec![[0.0; 3]],
-        radius: vec![0.1],
-        velocity: vec![[0.0; 3]],
-        spin: vec![[0.0; 3]],
-        orientation: vec![[1.0, 0.0, 0.0, 0.0]],
-        id: vec![0],
-        part: vec![0],
-        mean_stress: vec![0.0],
-        force: vec![[0.0; 3]],
-        coordination: vec![0],
-        extra: Vec::new(),
-        fragment: vec![0],
-    };
+    let grains = sample::grains(1, |_| [0.0; 3]);
     let chains = ChainFrame {
         ends: vec![[[0.0; 3], [1.0; 3]]],
         normal_force: vec![1.0],
