@@ -20,9 +20,9 @@ fn two_halves_are_a_whole() {
         ["grains.0.count=300", "output.history_interval=0.001", "output.packing=true", "output.frames=2"];
     let with = |end: &'static str| [&common[..], &[end]].concat();
     let [whole, first, second, short] = ["whole", "first", "second", "short"].map(|name| folder.join(name));
-    run(&scene, &whole, &with("time.end=0.1993")).good();
-    run(&scene, &first, &with("time.end=0.0995")).good();
-    from(&scene, &second, &first, &with("time.end=0.0995")).good();
+    run(&scene, &whole, &with("time.end=0.2")).good();
+    run(&scene, &first, &with("time.end=0.1")).good();
+    from(&scene, &second, &first, &with("time.end=0.1")).good();
     let packing = |out: &Path| std::fs::read_to_string(out.join("packing.csv")).unwrap();
     assert!(packing(&second) == packing(&whole), "the second half ends elsewhere");
     assert!(packing(&first) != packing(&whole));
@@ -38,14 +38,14 @@ fn two_halves_are_a_whole() {
     let again = folder.join("again");
     let mut words = vec!["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap(), "--threads", "1"];
     words.extend(["--from", first.to_str().unwrap()]);
-    let set = with("time.end=0.0995");
+    let set = with("time.end=0.1");
     set.iter().for_each(|s| words.extend(["--set", s]));
     trackbed(words).good();
     let (a, b) = (results(&second), results(&again));
     assert!(a.keys().eq(b.keys()) && a.iter().all(|(name, bytes)| *bytes == b[name]));
     // A run that did not keep its end cannot be gone on from.
     run(&scene, &short, &with("output.state=false")).good();
-    let refused = from(&scene, &folder.join("none"), &short, &with("time.end=0.0995"));
+    let refused = from(&scene, &folder.join("none"), &short, &with("time.end=0.1"));
     assert_eq!((refused.code, refused.stderr.lines().count()), (2, 1), "{refused:?}");
     assert!(
         refused.stderr.contains("found no end.state, expected the folder of a finished run"),

@@ -100,19 +100,39 @@ impl GrainsSystem {
     }
 }
 
-/// A window of grains alone: one step where the scene fixes it, else so many first steps that few long ones find room in their
-/// place, and about a whole number of windows in an interval of the history [s].
+/// A window of grains alone [s]: one step where the scene fixes it, else 1, 1.25, 2, 2.5 or 5 times a power of ten, and at most so many
+/// first steps that few long ones find room in their place. Round times are whole numbers of such windows, and windows do not
+/// depend on the history unless its rows are close.
 fn window(model: &dem::Model, interval: f64) -> f64 {
-    if model.measured().is_none() {
-        return model.dt();
+    match model.measured() {
+        None => model.dt(),
+        Some(_) => round_window([model.dt(), STEPS * model.dt()], interval),
     }
-    let windows = (interval / (STEPS * model.dt())).ceil().max(1.0);
-    let steps = (interval / (windows * model.dt())).round();
-    model.dt() * steps.clamp(1.0, STEPS)
 }
 
-/// Steps in a window when a run begins.
+/// Steps in a window when a run begins, at most.
 const STEPS: f64 = 64.0;
+
+/// The longest round window within the bounds [s] that an interval of the history [s] has about a whole number of; for close rows
+/// that none fits, a part of the interval, but for a first step at least.
+fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
+    let decade = libm::floor(libm::log10(longest)) as i32;
+    let round = [0, -1].into_iter().flat_map(|less| {
+        // A division by a power of ten rounds once, its inverse twice.
+        let unit = libm::exp10(f64::from((decade + less).abs()));
+        [5.0, 2.5, 2.0, 1.25, 1.0].map(|n| if decade + less < 0 { n / unit } else { n * unit })
+    });
+    let fits = |window: &f64| {
+        let rows = (interval / window).round();
+        let fits = rows >= 1.0 && (interval / (rows * window) - 1.0).abs() <= MISFIT;
+        fits && (shortest..=longest).contains(window)
+    };
+    let part = || (interval / (interval / longest).ceil().max(1.0)).max(shortest);
+    round.into_iter().find(fits).unwrap_or_else(part)
+}
+
+/// Largest deviation of the interval between rows from the one asked for, as a share.
+const MISFIT: f64 = 0.05;
 
 impl TrackSystem for GrainsSystem {
     fn window(&self) -> f64 {
@@ -172,5 +192,29 @@ impl System for GrainsSystem {
 
     fn spent(&self) -> Spent {
         coupling::step::spent_by_grains(&self.state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_are_round_and_do_not_follow_the_history() {
+        let window = |longest: f64, interval: f64| round_window([longest / STEPS, longest], interval);
+        // Intervals that a round window divides, or that are long.
+        for interval in [1.0, 0.5, 0.05, 1e-3, 2e-3, 0.0213, 0.037] {
+            assert_eq!(window(1.47e-4, interval), 1.25e-4, "{interval}");
+        }
+        for (longest, round) in
+            [(1e-3, 1e-3), (0.99e-3, 5e-4), (4.9e-6, 2.5e-6), (2.4e-6, 2e-6), (64.0, 50.0), (0.3, 0.25)]
+        {
+            assert_eq!(window(longest, 1e4 * round), round);
+        }
+        // Close rows: a part of their interval, but no shorter than a step.
+        assert_eq!(window(1.47e-4, 1e-4), 1e-4);
+        assert_eq!(window(1.47e-4, 3e-5), 1e-5);
+        assert_eq!(window(1e-3, 1.4e-3), 2e-4);
+        assert_eq!(window(6.4e-3, 2e-5), 1e-4);
     }
 }
