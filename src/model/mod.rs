@@ -20,6 +20,7 @@ use crate::message::shown;
 use crate::scene::units::vector;
 use crate::scene::{Document, Scene, SceneError, Table};
 use std::sync::Arc;
+use trackbed_coupling::surface::SolidSurface;
 use trackbed_fem as fem;
 
 /// Longest title [characters].
@@ -46,6 +47,12 @@ pub struct Job {
 }
 
 impl Job {
+    /// The surface of the ground that grains touch, in the place of the mesh; none without both.
+    pub fn ground(&self) -> Option<SolidSurface> {
+        let (plan, solid, grains) = (self.coupling.as_ref()?, self.solid.as_ref()?, self.grains.as_ref()?);
+        Some(plan.ground(solid, grains))
+    }
+
     /// Resolves a scene.
     ///
     /// # Errors

@@ -154,6 +154,25 @@ fn poured_grains_lie_around_the_sleeper() {
     assert!(crib.iter().all(|&z| z < 0.17), "{crib:?}");
 }
 
+/// Stones of 50 MPa whose corners crush under the sleeper, then grains poured with contacts of a tenth of the stiffness: crushed corners
+/// stay crushed, so the pouring begins without energy. With elastic corners they held 0.2 J, as much as a stone that falls by 0.3 m.
+#[test]
+fn pouring_begins_without_energy() {
+    let folder = Folder::new("poured_crushed");
+    let soft = pouring().replace("local_damping", "stiffness_factor = 0.1\nlocal_damping");
+    let corners = "young = \"50 MPa\"\npoisson = 0.2\ncorner_strength = \"2 MPa\"\ncorner_angle = \"70 deg\"";
+    let text = scene(&[bedding("2 kN"), soft]).replace("stiffness = \"2 MN/m\"", corners);
+    let file = folder.write("scene.toml", &text);
+    run(&file, &folder.join("out"), &["track.load.cycles=1"]).good();
+    let summary = json(&folder.join("out/summary.json"));
+    let stages = summary["stage_energy"].as_array().unwrap();
+    let springs: Vec<[f64; 2]> =
+        stages.iter().map(|s| [0, 1].map(|k| s["springs"][k].as_f64().unwrap())).collect();
+    println!("{springs:?}");
+    assert!(stages.len() == 4 && springs[1][1] > 0.0, "{stages:?}");
+    springs.windows(2).for_each(|pair| assert!(pair[1][0] <= 1.5 * pair[0][1], "{pair:?}"));
+}
+
 /// What bedding and pouring cannot be used with is refused.
 #[test]
 fn refusals() {

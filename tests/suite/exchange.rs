@@ -277,6 +277,20 @@ end = 0.6
 frames = 2
 "#;
 
+/// The surface of a solid counts as a wall does: a stone that begins 20 mm within it is rejected.
+#[test]
+fn rejects_start_overlap_with_the_solid() {
+    let head = COUPLED.split_once("[[grains]]").unwrap().0;
+    let folder = scene_folder("overlaps", &format!("{head}{ROLLING}"));
+    let place = ["time.end=0.001", "grains.0.spheres=[[1.0, 1.0, 0.08, 0.1]]"];
+    let outcome = run(&folder.join("scene.toml"), &folder.join("out"), &place);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+    let said = ["surface patch", "20 % of the smaller radius, expected at most 10 % at the start"];
+    assert!(said.iter().all(|words| outcome.stderr.contains(words)), "{}", outcome.stderr);
+    assert!(!folder.join("out/summary.json").exists());
+    run(&folder.join("scene.toml"), &folder.join("out"), &["time.end=0.001"]).good();
+}
+
 /// A stone that rolls off the border of the mesh falls past it: the run ends well, with the account closed, and the summary
 /// names it.
 #[test]

@@ -2,6 +2,7 @@
 
 use super::part::GrainsPart;
 use crate::scene::{Document, SceneError};
+use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::surface::NoSurface;
@@ -12,16 +13,25 @@ const LARGEST: f64 = 0.1;
 /// Shares above it by less than this are rounding of the places.
 const ROUNDING: f64 = 1e-9;
 
-/// Rejects grains that overlap each other or a wall at the start by more than a tenth of the smaller radius, unless their
+/// Rejects grains that overlap each other, a wall or the solid's surface `ground` at the start by more than a tenth of the smaller radius, unless their
 /// group has `accept_overlap`.
 ///
 /// # Errors
 /// Bad input: the deepest such overlap.
-pub fn check_overlaps(document: &Document, grains: &GrainsPart, model: &Model) -> Result<(), SceneError> {
+pub fn check_overlaps(
+    document: &Document,
+    grains: &GrainsPart,
+    model: &Model,
+    ground: Option<&SolidSurface>,
+) -> Result<(), SceneError> {
     let mut state = dem::State::new(model);
     let mut work = dem::Work::new(model, &state);
     // An overlap that no step can be made with is found, and rejected with its time, by the run.
-    if dem::find_contacts(model, &mut state, &mut work, &NoSurface).is_err() {
+    let found = match ground {
+        Some(ground) => dem::find_contacts(model, &mut state, &mut work, ground),
+        None => dem::find_contacts(model, &mut state, &mut work, &NoSurface),
+    };
+    if found.is_err() {
         return Ok(());
     }
     let group = |body: usize| grains.groups.bodies.get(body).map(|b| b.part);

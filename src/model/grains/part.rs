@@ -84,10 +84,8 @@ fn soften(input: &mut ModelInput, factor: f64) {
     for material in &mut input.materials {
         material.stiffness *= factor;
         material.young = material.young.map(|young| young * factor);
-        // Corners of softer stones would crush under forces that the true ones bear.
-        if factor < 1.0 {
-            material.corner_strength = f64::INFINITY;
-        }
+        // Corners crush under the forces that the true ones bear, which go as strength³ / modulus².
+        material.corner_strength *= libm::cbrt(factor * factor);
     }
     for pair in &mut input.contacts {
         pair.stiffness = pair.stiffness.map(|stiffness| stiffness * factor);

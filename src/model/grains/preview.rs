@@ -6,6 +6,7 @@ use super::overlap::check_overlaps;
 use super::part::GrainsPart;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
+use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::{Model, ModelInput};
 
 /// Most steps of the grains in a stage: at ten million steps a second, more than any run takes, it lasts a day.
@@ -19,11 +20,15 @@ pub struct Preview {
     pub whole: Model,
 }
 
-/// Makes the models, and checks what depends on their step and on all bodies together.
+/// Makes the models, and checks what depends on their step and on all bodies together, and on the solid's surface `ground`.
 ///
 /// # Errors
 /// Bad input.
-pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, SceneError> {
+pub fn preview(
+    document: &Document,
+    grains: &GrainsPart,
+    ground: Option<&SolidSurface>,
+) -> Result<Preview, SceneError> {
     check_gaps(document, &grains.bonds, &grains.groups.bodies, &grains.groups.shapes)?;
     // First without the sleeper, as a run does to find its place.
     let input = grains.input(grains.groups.bodies.clone());
@@ -33,7 +38,7 @@ pub fn preview(document: &Document, grains: &GrainsPart) -> Result<Preview, Scen
         check_joined(document, &grains.bonds, &input.bonds)?;
     }
     let alone = Model::new(input).map_err(|e| refused(document, &e))?;
-    check_overlaps(document, grains, &alone)?;
+    check_overlaps(document, grains, &alone, ground)?;
     let whole = Model::new(with_sleepers(grains)).map_err(|e| refused(document, &e))?;
     let dt = whole.dt();
     grains.track.check_pads(document, dt)?;

@@ -34,7 +34,7 @@ impl Stage for FinishedBed {
         summary.bed.growth.clone_from(&bed.growth);
         summary.bed.compaction.clone_from(&bed.compaction);
         summary.bed.stage_energy.clone_from(&bed.energy);
-        summary.validity.extend(StageEnergy::check(&bed.energy));
+        summary.validity.extend(StageEnergy::checks(&bed.energy));
         grains.bodies.clone_from(&bed.bodies);
         bed.planes.iter().enumerate().for_each(|(k, point)| grains.part.place_plane(k, *point));
         Ok(())

@@ -46,7 +46,7 @@ static STAGES: [&dyn Stage; 9] = [
 /// # Errors
 /// Bad input: what the main loop would refuse, and stages of more steps than anyone waits for.
 pub fn preview(document: &Document, job: &Job, grains: &GrainsPart) -> Result<Preview, SceneError> {
-    let preview = grains::preview(document, grains)?;
+    let preview = grains::preview(document, grains, job.ground().as_ref())?;
     for stage in of(job) {
         let (key, time) = match stage.grain_time(job) {
             None => continue,

@@ -234,10 +234,7 @@ impl RunState<'_> {
     /// A checkpoint of something else.
     pub fn begin(&mut self, job: &Job) -> Result<(), Failure> {
         let Some(part) = job.grains.clone() else { return Ok(()) };
-        let ground = match (&job.coupling, &job.solid) {
-            (Some(plan), Some(solid)) => Some(plan.ground(solid, &part)),
-            _ => None,
-        };
+        let ground = job.ground();
         let (bed, bodies, bases) = (Settled::default(), Vec::new(), Vec::new());
         let mut grains =
             GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases, carried: None };
@@ -294,7 +291,7 @@ impl RunState<'_> {
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
         if !part.is_packed() {
-            check_overlaps(run.document, part, &model)?;
+            check_overlaps(run.document, part, &model, grains.ground.as_ref())?;
         }
         check_steps(run.document, "time.end", run.job.end, model.dt())?;
         part.track.check_ram(run.document, model.dt())?;

@@ -12,6 +12,7 @@ use crate::run::context::Run;
 use crate::run::events;
 use crate::run::flow::Flow;
 use crate::run::from::{self, END};
+use crate::run::packing::StageEnergy;
 use crate::run::record::Results;
 use crate::run::summary::{
     BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord,
@@ -335,6 +336,12 @@ impl<'a> TimeLoop<'a> {
         summary.energy = Some(energy(&self.recorder));
         summary.validity.extend(summary.track.sleepers.as_ref().and_then(|t| free_sleeper(t, end)));
         summary.validity.extend(validity_of(system, part, &self.recorder));
+        let stages = self.settled.map_or(&[][..], |settled| &settled.energy);
+        let balance = self.recorder.balance();
+        summary.validity.extend(StageEnergy::check_changes(
+            stages,
+            [balance.start.contact_springs, balance.turnover().max(balance.floor())],
+        ));
         summary.bed.specimen = self.recorder.specimen(system)?;
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
         self.recorder.end()?;
