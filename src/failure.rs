@@ -1,5 +1,6 @@
 //! How a command can fail, and with which exit code.
 
+use crate::machine;
 use crate::read::ReadError;
 use std::fmt;
 
@@ -40,6 +41,14 @@ impl Failure {
             Failure::Faults(faults) => faults.iter().map(ToString::to_string).collect(),
             other => vec![other.to_string()],
         }
+    }
+
+    /// A thread that the system does not start.
+    pub(crate) fn thread(error: impl fmt::Display) -> Failure {
+        let expected = "memory and processes for all; use fewer (--threads), or raise the limits of the system (ulimit -v, ulimit -u)";
+        Failure::Numerical(format!(
+            "threads: found that one cannot be started ({error}), expected {expected}"
+        ))
     }
 
     /// The same; a numerical failure also says in which stage it happened.
@@ -83,7 +92,7 @@ impl From<ReadError> for Failure {
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Failure {
-        Failure::Other(error.to_string())
+        Failure::Other(machine::words(&error))
     }
 }
 

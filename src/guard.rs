@@ -2,9 +2,11 @@
 //! kept before.
 
 use crate::failure::Failure;
+use crate::machine;
 use std::any::Any;
+use std::fs::File;
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Place of the first panic, until it is reported.
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
@@ -25,7 +27,58 @@ pub fn install() {
     }));
 }
 
-/// Has an abort of the process, for which no memory is left or whose stack has overflowed, end it with exit code 3 and one line.
+/// Files and connections that a command opens at a time, besides those of a viewer's clients and of the runs of a study.
+const FILES: usize = 16;
+
+/// Checks that as many files can be opened as a command needs: later the lack of one would be found in the middle of a run.
+///
+/// # Errors
+/// The limit of open files, of this process or of the system, is too low.
+pub fn check_files() -> Result<(), Failure> {
+    let mut open = Vec::with_capacity(FILES);
+    while open.len() < FILES {
+        match File::open("/dev/null") {
+            Ok(file) => open.push(file),
+            Err(error) if machine::lacks_files(&error) => {
+                let found = open.len();
+                let text = format!(
+                    "open files: found room for {found}, expected room for {FILES}; raise the limit of the system (ulimit -n)"
+                );
+                return Err(Failure::Other(text));
+            }
+            // A system without this file.
+            Err(_) => break,
+        }
+    }
+    Ok(())
+}
+
+/// Address space for one arena of the C library's allocator [bytes]: it reserves 64 MiB for each.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+const ARENA: u64 = 1 << 30;
+
+/// Under a limit of the address space has threads share arenas: a thread that gets none has each of its allocations mapped by the system, 100 times
+/// slower.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+pub fn share_arenas() {
+    let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
+    // SAFETY: the call fills the structure that it is given, and does nothing else.
+    let code = unsafe { libc::getrlimit(libc::RLIMIT_AS, &mut limit) };
+    if code == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
+        let arenas = (limit.rlim_cur / ARENA).clamp(1, 1024) as libc::c_int;
+        // SAFETY: the call sets a parameter of the allocator, before there are other threads.
+        unsafe { libc::mallopt(libc::M_ARENA_MAX, arenas) };
+    }
+}
+
+/// Has a file that grows beyond the limit of its size (SIGXFSZ) be an error of that file instead of the end of the process.
+#[cfg(unix)]
+pub fn report_large_files() {
+    // Having any action, the signal does not end the process, and the system returns an error to the writer.
+    drop(signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()));
+}
+
+/// Has an abort of the process, such as one whose stack has overflowed, end it with exit code 3 and one line.
 #[cfg(unix)]
 pub fn end_at_abort() {
     const LINE: &[u8] = b"error: memory: found none left, or a stack that has overflowed. Make the scene smaller, or raise the limits of \

@@ -6,6 +6,7 @@
 // A closed or full output must not end a run: see `message`.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod allocator;
 pub mod cli;
 pub mod commands;
 pub mod convert;

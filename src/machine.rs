@@ -1,5 +1,6 @@
 //! What the system says of this machine and this process.
 
+use std::io;
 use std::path::Path;
 
 /// Resident memory of this process now [bytes].
@@ -40,4 +41,22 @@ fn field(file: &Path, name: &str) -> Option<u64> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find(|l| l.starts_with(name))?;
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
+}
+
+/// Whether an error is that no further file can be opened.
+#[cfg(unix)]
+pub(crate) fn lacks_files(error: &io::Error) -> bool {
+    matches!(error.raw_os_error(), Some(libc::EMFILE | libc::ENFILE))
+}
+
+/// Not known on this system.
+#[cfg(not(unix))]
+pub(crate) fn lacks_files(_: &io::Error) -> bool {
+    false
+}
+
+/// An error of the system as text, with the remedy for a lack of files.
+pub(crate) fn words(error: &io::Error) -> String {
+    let remedy = if lacks_files(error) { "; raise the limit of open files (ulimit -n)" } else { "" };
+    format!("{error}{remedy}")
 }

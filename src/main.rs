@@ -3,14 +3,27 @@
 use clap::Parser;
 use std::process::ExitCode;
 use trackbed::failure::Failure;
-use trackbed::{guard, message};
+use trackbed::{allocator, guard, message};
+
+#[global_allocator]
+static ALLOCATOR: allocator::Allocator = allocator::Allocator;
 
 fn main() -> ExitCode {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    guard::share_arenas();
     guard::install();
     #[cfg(unix)]
-    guard::end_at_abort();
+    {
+        guard::report_large_files();
+        guard::end_at_abort();
+    }
     // clap's own code for wrong usage is 2, which is the code for bad input here too.
-    match guard::guarded(|| trackbed::commands::execute(trackbed::cli::Cli::parse().command)) {
+    let work = || {
+        let command = trackbed::cli::Cli::parse().command;
+        guard::check_files()?;
+        trackbed::commands::execute(command)
+    };
+    match guard::guarded(work) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             match failure {

@@ -24,7 +24,7 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
         return Err(refuse("threads", "0", "1 or more"));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Other(format!("threads: {error}")))?;
+    let pool = pool.map_err(Failure::thread)?;
     let Written { file, size, frames, times } = pool.install(|| render::render(&options))?;
     let what = match (&frames[..], &times[..]) {
         ([frame], [time]) => format!("frame {frame}, t = {time} s"),

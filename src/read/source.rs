@@ -34,7 +34,7 @@ impl Refusal {
 
     /// The same in one sentence about `file`.
     pub fn sentence(self, file: &Path) -> String {
-        let (found, expected) = self.words(|e| e.to_string());
+        let (found, expected) = self.words(|e| machine::words(&e));
         format!("{}: found {found}, expected {expected}", file.display())
     }
 }

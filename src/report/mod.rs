@@ -12,6 +12,7 @@ mod sections;
 use crate::failure::Failure;
 use crate::write::{WriteError, atomic};
 use data::RunData;
+use maud::Markup;
 use std::path::{Path, PathBuf};
 
 /// What to report.
@@ -71,7 +72,7 @@ fn title(runs: &[RunData]) -> String {
 }
 
 /// The line below the title.
-fn head(runs: &[RunData]) -> String {
+fn head(runs: &[RunData]) -> Markup {
     let whose = match runs {
         [run] => format!("Results in {}", run.dir.display()),
         _ => "Results of several runs".into(),

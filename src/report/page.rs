@@ -1,24 +1,25 @@
 //! The page: its head with the style sheet, sections, tables. It is well-formed as XML too, and needs nothing from outside.
+//!
+//! Content is of the type [`Markup`], into which every text goes escaped. [`PreEscaped`] is used for constants of the program only.
 
 use super::quantity::{Scale, exact, number, scale, with_unit};
-use quick_xml::escape::escape;
-use std::fmt::Write;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A part of the page.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Section {
     /// Name for links.
     pub id: &'static str,
     /// Its head.
     pub title: &'static str,
     /// Its content.
-    pub html: String,
+    pub html: Markup,
 }
 
 impl Section {
     /// A section; none where it has no content.
-    pub fn new(id: &'static str, title: &'static str, html: String) -> Option<Section> {
-        (!html.trim().is_empty()).then_some(Section { id, title, html })
+    pub fn new(id: &'static str, title: &'static str, html: Markup) -> Option<Section> {
+        (!html.0.trim().is_empty()).then_some(Section { id, title, html })
     }
 }
 
@@ -63,46 +64,74 @@ summary { cursor: pointer; }
   h2 { break-after: avoid; } .plots { grid-template-columns: 1fr 1fr; } a { color: inherit; text-decoration: none; } }
 ";
 
+/// Elements of the head without an end, closed as XML has it.
+const METAS: &str =
+    "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+
 /// The whole page.
-pub fn page(title: &str, head: &str, sections: &[Section]) -> String {
-    let title = escaped(title);
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n\
-         <h1>{title}</h1>\n{head}"
-    );
-    let mut add = |text: String| out.push_str(&text);
-    add("<nav>\n".into());
-    sections.iter().for_each(|s| add(format!("<a href=\"#{}\">{}</a>\n", s.id, s.title)));
-    add("</nav>\n".into());
-    for s in sections {
-        add(format!("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", s.id, s.title, s.html));
-    }
-    add("</body>\n</html>\n".into());
-    out
+pub fn page(title: &str, head: &Markup, sections: &[Section]) -> String {
+    let page = html! {
+        (DOCTYPE) "\n"
+        html lang="en" {
+            head {
+                "\n" (PreEscaped(METAS))
+                title { (title) } "\n"
+                // A style sheet has no references: `>` is itself there.
+                style { (PreEscaped(STYLE)) } "\n"
+            }
+            "\n"
+            body {
+                "\n"
+                h1 { (title) } "\n"
+                (head)
+                nav { "\n" @for s in sections { a href={ "#" (s.id) } { (s.title) } "\n" } } "\n"
+                @for s in sections {
+                    section id=(s.id) { "\n" h2 { (s.title) } "\n" (s.html) } "\n"
+                }
+            }
+        }
+        "\n"
+    };
+    page.0.chars().map(printable).collect()
 }
 
-/// A text of others as content or attribute of the page: escaped, without control characters, which XML cannot hold.
-pub fn escaped(text: &str) -> String {
-    let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
-    let printable: String =
-        text.chars().map(|c| if fits(c) || matches!(c, '\n' | '\t') { c } else { '\u{fffd}' }).collect();
-    escape(&printable).into_owned()
+/// The character, or a sign for a control character, which XML cannot hold.
+fn printable(c: char) -> char {
+    let fits = !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    if fits || matches!(c, '\n' | '\t') { c } else { '\u{fffd}' }
 }
 
 /// A paragraph of plain text.
-pub fn paragraph(text: &str) -> String {
-    format!("<p class=\"note\">{}</p>\n", escaped(text))
+pub fn paragraph(text: &str) -> Markup {
+    html! { p class="note" { (text) } "\n" }
+}
+
+/// Content below a heading; nothing without content.
+pub fn headed(heading: &str, content: Markup) -> Markup {
+    if content.0.is_empty() {
+        content
+    } else {
+        html! { h3 { (heading) } "\n" (content) }
+    }
 }
 
 /// Plots beside each other; nothing where there is none.
-pub fn plots(figures: impl IntoIterator<Item = String>) -> String {
-    let all: String = figures.into_iter().collect();
-    if all.is_empty() { all } else { format!("<div class=\"plots\">\n{all}</div>\n") }
+pub fn plots(figures: impl IntoIterator<Item = Markup>) -> Markup {
+    let all = joined(figures);
+    if all.0.is_empty() {
+        all
+    } else {
+        html! { div class="plots" { "\n" (all) } "\n" }
+    }
+}
+
+/// Parts of the page one after the other.
+pub fn joined(parts: impl IntoIterator<Item = Markup>) -> Markup {
+    html! { @for part in parts { (part) } }
 }
 
 /// A cell of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Cell {
     /// Nothing is known.
     Nothing,
@@ -112,8 +141,8 @@ pub enum Cell {
     Value(f64, &'static str),
     /// A value in SI units whose unit stands in the head of the column.
     Scaled(f64, Scale, &'static str),
-    /// Content that is HTML already.
-    Html(String),
+    /// Content with elements of its own.
+    Html(Markup),
 }
 
 impl Cell {
@@ -127,20 +156,16 @@ impl Cell {
         Cell::Text(text.into())
     }
 
-    fn html(&self) -> String {
-        match self {
-            Cell::Nothing => "<td class=\"n\">\u{2013}</td>".into(),
-            Cell::Text(text) => format!("<td>{}</td>", escaped(text)),
-            Cell::Html(html) => format!("<td>{html}</td>"),
-            Cell::Value(v, unit) => {
-                format!(
-                    "<td class=\"n\" title=\"{}\">{}</td>",
-                    exact(*v, unit),
-                    escaped(&with_unit(*v, unit))
-                )
-            }
-            Cell::Scaled(v, scale, unit) => {
-                format!("<td class=\"n\" title=\"{}\">{}</td>", exact(*v, unit), number(v * scale.factor))
+    fn html(&self) -> Markup {
+        html! {
+            @match self {
+                Cell::Nothing => td class="n" { "\u{2013}" },
+                Cell::Text(text) => td { (text) },
+                Cell::Html(content) => td { (content) },
+                Cell::Value(v, unit) => td class="n" title=(exact(*v, unit)) { (with_unit(*v, unit)) },
+                Cell::Scaled(v, scale, unit) => {
+                    td class="n" title=(exact(*v, unit)) { (number(v * scale.factor)) }
+                },
             }
         }
     }
@@ -151,38 +176,47 @@ impl Cell {
 }
 
 /// A table whose values stand under each other at their left, for rows of different kinds.
-pub fn facts_table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> String {
-    table(heads, rows).replacen("<table>", "<table class=\"facts\">", 1)
+pub fn facts_table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
+    table_of(Some("facts"), heads, rows)
 }
 
 /// A table: heads, and rows whose first cell names them. Nothing without rows.
-pub fn table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> String {
+pub fn table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
+    table_of(None, heads, rows)
+}
+
+fn table_of(class: Option<&str>, heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
     if rows.is_empty() {
-        return String::new();
+        return Markup::default();
     }
-    let mut out = String::from("<div class=\"tables\"><table>\n<thead><tr>");
-    let mut add =
-        |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("writing to a string does not fail");
-    for (k, head) in heads.iter().enumerate() {
-        let number = k > 0 && rows.iter().any(|r| r.1.get(k - 1).is_some_and(Cell::is_number));
-        add(format_args!(
-            "<th scope=\"col\"{}>{}</th>",
-            if number { " class=\"n\"" } else { "" },
-            escaped(head)
-        ));
+    let is_number = |k: usize| k > 0 && rows.iter().any(|r| r.1.get(k - 1).is_some_and(Cell::is_number));
+    html! {
+        div class="tables" {
+            table class=[class] {
+                "\n"
+                thead {
+                    tr {
+                        @for (k, head) in heads.iter().enumerate() {
+                            th scope="col" class=[is_number(k).then_some("n")] { (head) }
+                        }
+                    }
+                }
+                "\n"
+                tbody {
+                    "\n"
+                    @for (name, cells) in rows {
+                        tr { th scope="row" { (name) } @for cell in cells { (cell.html()) } } "\n"
+                    }
+                }
+            }
+        }
+        "\n"
     }
-    add(format_args!("</tr></thead>\n<tbody>\n"));
-    for (name, cells) in rows {
-        let cells: String = cells.iter().map(Cell::html).collect();
-        add(format_args!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", escaped(name)));
-    }
-    add(format_args!("</tbody></table></div>\n"));
-    out
 }
 
 /// A table of columns of values, each with its unit in the head and one prefix: (name, unit, values), beside the names of
 /// the rows.
-pub fn columns(first: &str, names: &[String], columns: &[(&str, &'static str, Vec<Option<f64>>)]) -> String {
+pub fn columns(first: &str, names: &[String], columns: &[(&str, &'static str, Vec<Option<f64>>)]) -> Markup {
     let scales: Vec<Scale> = columns
         .iter()
         .map(|(_, unit, values)| scale(unit, values.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()))))

@@ -38,23 +38,20 @@ const TRACE: Duration = Duration::from_millis(20);
 impl Interrupt {
     /// A request that comes with Ctrl-C (SIGINT), SIGTERM, or SIGHUP, of a terminal that is closed, unless it is ignored as
     /// under `nohup`. It is acknowledged at once on standard error, with what the program stops after. A second signal ends the
-    /// program at once, with exit code 130, as the first does where nothing could be kept. A file that grows beyond the limit of
-    /// its size (SIGXFSZ) is an error of that file.
+    /// program at once, with exit code 130, as the first does where nothing could be kept.
     ///
     /// # Errors
-    /// The system refuses the handlers.
-    pub fn on_signals(after: &'static str) -> io::Result<Interrupt> {
+    /// The system refuses the handlers, or has no thread.
+    pub fn on_signals(after: &'static str) -> Result<Interrupt, Failure> {
         use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
         let mut signals = vec![SIGINT, SIGTERM];
         #[cfg(unix)]
         {
-            use signal_hook::consts::{SIGHUP, SIGXFSZ};
+            use signal_hook::consts::SIGHUP;
             if !is_ignored(SIGHUP) {
                 signals.push(SIGHUP);
             }
-            // Having any action, it does not end the program, and the system says to the writer what is wrong.
-            flag::register(SIGXFSZ, Arc::default())?;
         }
         let interrupt = Interrupt::default();
         let again = Arc::new(AtomicBool::new(false));
@@ -65,7 +62,8 @@ impl Interrupt {
             flag::register(signal, interrupt.stop.clone())?;
         }
         let watched = interrupt.clone();
-        std::thread::Builder::new().name("signals".into()).spawn(move || watched.watch(after))?;
+        let builder = std::thread::Builder::new().name("signals".into());
+        builder.spawn(move || watched.watch(after)).map_err(Failure::thread)?;
         Ok(interrupt)
     }
 

@@ -4,7 +4,7 @@
 //! however that ends: the file that a killed run leaves behind locks nobody out. It is removed at the end.
 
 use crate::failure::Failure;
-use crate::message;
+use crate::{machine, message};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ impl Lock {
         if dir.exists() && !dir.is_dir() {
             return Err(Failure::Other(format!("{}: found a file, expected a folder", dir.display())));
         }
-        let system = |e: io::Error| Failure::Other(format!("{}: {e}", dir.display()));
+        let system = |e: io::Error| Failure::Other(format!("{}: {}", dir.display(), machine::words(&e)));
         let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
         let mut made: Vec<PathBuf> = missing.map(PathBuf::from).collect();
         made.reverse();

@@ -14,5 +14,5 @@ pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, F
         .num_threads(threads.unwrap_or(0))
         .stack_size(16 << 20)
         .build()
-        .map_err(|e| Failure::Other(e.to_string()))
+        .map_err(Failure::thread)
 }

@@ -24,7 +24,7 @@ pub fn export(file: &Path, title: &str, results: &Results) -> Result<(), Failure
     // A damaged result ends the writing; it is bad input, not a fault of the disk.
     let mut damaged = None;
     let written = atomic::write(file, |out| {
-        out.write_all(head.as_bytes()).map_err(WriteError::io(file))?;
+        out.write_all(head.0.as_bytes()).map_err(WriteError::io(file))?;
         for name in &names {
             let block = match results.block(name) {
                 Ok(Some(block)) => block,
@@ -37,9 +37,9 @@ pub fn export(file: &Path, title: &str, results: &Results) -> Result<(), Failure
             let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
             let deflated = encoder.write_all(&block).and_then(|()| encoder.finish());
             let text = page::embedded(name, &deflated.map_err(WriteError::io(file))?);
-            out.write_all(text.as_bytes()).map_err(WriteError::io(file))?;
+            out.write_all(text.0.as_bytes()).map_err(WriteError::io(file))?;
         }
-        out.write_all(tail.as_bytes()).map_err(WriteError::io(file))
+        out.write_all(tail.0.as_bytes()).map_err(WriteError::io(file))
     });
     match damaged {
         Some(failure) => Err(failure),

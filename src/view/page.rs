@@ -4,6 +4,7 @@
 //! server and from a disk, where a browser loads no second file.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
 /// Modules by the names that they import each other by. The first two are three.js (licence: `web/three.LICENSE.txt`).
@@ -34,65 +35,82 @@ const MODULES: [(&str, &str); 24] = [
     ("main", include_str!("web/main.js")),
 ];
 
-const FRAME: &str = include_str!("web/index.html");
+/// Elements of the page that are the same for all results: the program's own HTML.
+const BODY: &str = include_str!("web/body.html");
 const STYLE: &str = include_str!("web/style.css");
 
 /// What a browser may load for the page: nothing from elsewhere.
 pub const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; \
                           connect-src 'self'; img-src data: blob:; media-src blob:; base-uri 'none'; form-action 'none'";
 
-/// A text within a `script` element, which `</script>` would end.
-fn quoted(value: &Value) -> String {
-    value.to_string().replace('<', "\\u003c")
-}
+/// JSON as the content of a `script` element, in which references such as `&lt;` stay what they are, and only `<` begins an end.
+struct ScriptJson<'a>(&'a Value);
 
-/// A text within HTML.
-fn escaped(text: &str) -> String {
-    quick_xml::escape::escape(text).into_owned()
+impl Render for ScriptJson<'_> {
+    fn render_to(&self, buffer: &mut String) {
+        buffer.push_str(&self.0.to_string().replace('<', "\\u003c"));
+    }
 }
 
 /// The page in two pieces, between which the data of an exported file stand. `settings` are given to the page.
-pub fn pieces(title: &str, settings: &Value) -> (String, String) {
-    let imports: serde_json::Map<String, Value> = MODULES
+pub fn pieces(title: &str, settings: &Value) -> (Markup, Markup) {
+    let head = html! {
+        (DOCTYPE) "\n"
+        // Its end, which HTML does not require, follows the data.
+        (PreEscaped("<html lang=\"en\">\n"))
+        head {
+            "\n"
+            meta charset="utf-8"; "\n"
+            meta name="viewport" content="width=device-width, initial-scale=1"; "\n"
+            meta http-equiv="Content-Security-Policy" content=(POLICY); "\n"
+            link rel="icon" href="data:,"; "\n"
+            title { (title) " \u{2013} trackbed" } "\n"
+            // A style sheet has no references: `>` is itself there.
+            style { (PreEscaped(STYLE)) } "\n"
+        }
+        "\n"
+        (PreEscaped("<body>\n"))
+        (PreEscaped(BODY))
+        (about())
+        script id="settings" type="application/json" { (ScriptJson(settings)) } "\n"
+        script type="importmap" { (ScriptJson(&imports())) } "\n"
+    };
+    let tail = html! {
+        // No text of others; a reference for `'` would be no JavaScript.
+        script type="module" { (PreEscaped("import 'main';")) } "\n"
+        (PreEscaped("</body>\n</html>\n"))
+    };
+    (head, tail)
+}
+
+/// What the page says of the program.
+fn about() -> Markup {
+    html! {
+        dialog id="about" {
+            "\n" h2 { "trackbed " (env!("CARGO_PKG_VERSION")) } "\n"
+            p { "Coupled discrete-element and finite-element solver for ballasted railway track; viewer of its results." } "\n"
+            p { "Licence: MIT or Apache-2.0. Drawn with three.js, © 2010–2024 three.js authors, MIT licence." } "\n"
+            button class="close" { "Close" } "\n"
+        }
+        "\n"
+    }
+}
+
+/// The import map of the modules.
+fn imports() -> Value {
+    let addresses: serde_json::Map<String, Value> = MODULES
         .iter()
         .map(|(name, text)| {
             let address = format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text));
             (name.to_string(), json!(address))
         })
         .collect();
-    let (head, tail) = FRAME.split_once("{{DATA}}").expect("the page has a place for data");
-    let place = |name: &str| match name {
-        "TITLE" => escaped(title),
-        "POLICY" => escaped(POLICY),
-        "VERSION" => escaped(env!("CARGO_PKG_VERSION")),
-        "STYLE" => STYLE.to_string(),
-        "SETTINGS" => quoted(settings),
-        "IMPORTS" => quoted(&json!({ "imports": imports })),
-        other => unreachable!("the frame of the page has no place {other}"),
-    };
-    (filled(head, place), filled(tail, place))
-}
-
-/// A frame with its places `{{NAME}}` filled. What is filled in is not searched for places: a folder may have the name of one.
-fn filled(frame: &str, place: impl Fn(&str) -> String) -> String {
-    let mut out = String::new();
-    let mut rest = frame;
-    while let Some((before, after)) = rest.split_once("{{") {
-        let (name, after) = after.split_once("}}").expect("a place of the frame ends");
-        out += before;
-        out += &place(name);
-        rest = after;
-    }
-    out + rest
+    json!({ "imports": addresses })
 }
 
 /// A block within the page, deflated.
-pub fn embedded(name: &str, deflated: &[u8]) -> String {
-    format!(
-        "<script type=\"text/plain\" data-block=\"{}\">{}</script>\n",
-        escaped(name),
-        BASE64_STANDARD.encode(deflated)
-    )
+pub fn embedded(name: &str, deflated: &[u8]) -> Markup {
+    html! { script type="text/plain" data-block=(name) { (BASE64_STANDARD.encode(deflated)) } "\n" }
 }
 
 #[cfg(test)]
@@ -103,10 +121,19 @@ mod tests {
     fn hostile_titles_stay_text() {
         let evil = "</title><script>alert(1)</script>\"'&";
         let (head, tail) = pieces(evil, &json!({ "title": evil }));
-        let page = head + &tail;
+        let page = head.0 + &tail.0;
         assert!(!page.contains("<script>alert"), "the title is escaped");
         assert!(page.contains("&lt;/title&gt;&lt;script&gt;"), "the title is there");
-        assert!(embedded("grains/0/\"><b>", b"x").contains("data-block=\"grains/0/&quot;&gt;&lt;b&gt;\""));
+        assert!(embedded("grains/0/\"><b>", b"x").0.contains("data-block=\"grains/0/&quot;&gt;&lt;b&gt;\""));
+    }
+
+    #[test]
+    fn script_content_has_no_element() {
+        let evil = json!({ "</script><!--": "</script><script>alert(1)</script>", "quote": "\"&'" });
+        let text = html! { script { (ScriptJson(&evil)) } }.0;
+        let content = text.strip_prefix("<script>").unwrap().strip_suffix("</script>").unwrap();
+        assert!(!content.contains('<'), "{content}");
+        assert_eq!(serde_json::from_str::<Value>(content).unwrap(), evil);
     }
 
     #[test]
@@ -117,9 +144,9 @@ mod tests {
             ["{{DATA}}", "{{TITLE}}", "{{STYLE}}", "{{SETTINGS}}{{IMPORTS}}", "}}{{", "{{", "{{{{DATA}}}}"]
         {
             let (head, tail) = pieces(title, &settings);
-            assert!(head.contains(&format!("<title>{title} ")), "{title}");
-            assert_eq!(head.len() - title.len(), plain.0.len() - "bed".len(), "{title}");
-            assert_eq!(tail, plain.1, "{title}");
+            assert!(head.0.contains(&format!("<title>{title} ")), "{title}");
+            assert_eq!(head.0.len() - title.len(), plain.0.0.len() - "bed".len(), "{title}");
+            assert_eq!(tail.0, plain.1.0, "{title}");
         }
     }
 }

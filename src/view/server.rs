@@ -60,7 +60,7 @@ pub fn serve(listener: TcpListener, port: u16, dir: &Path) -> Result<(), Failure
     let root = dir.canonicalize()?;
     let title = root.file_name().map(|n| n.to_string_lossy().into_owned());
     let (head, tail) = page::pieces(&title.unwrap_or_default(), &json!({ "served": true }));
-    let site = Site { root, port, page: (head + &tail).into(), runs: Mutex::default() };
+    let site = Site { root, port, page: (head.0 + &tail.0).into(), runs: Mutex::default() };
     Ok(connections::serve(listener, Arc::new(site))?)
 }
 

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::machine;
+
 /// A file that could not or must not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The system refused: no space, no permission, no such folder.
-    #[error("{}: cannot be written: {source}", file.display())]
+    #[error("{}: cannot be written: {}", file.display(), machine::words(source))]
     Io {
         /// The file.
         file: PathBuf,

@@ -4,6 +4,7 @@
 
 mod files;
 mod folders;
+mod limits;
 mod mutations;
 mod readers;
 mod streams;

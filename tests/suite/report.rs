@@ -53,7 +53,7 @@ impl Page {
                             b"title" if name == "td" => {
                                 page.numbers.push(value.split(' ').next().unwrap().parse().unwrap());
                             }
-                            b"src" | b"onload" | b"onclick" => panic!("{value}"),
+                            b"src" | b"onload" | b"onclick" | b"onerror" => panic!("{value}"),
                             b"href" => assert!(value.starts_with('#'), "{value}"),
                             _ => {}
                         }
@@ -276,16 +276,35 @@ fn modes_and_several_runs() {
 #[test]
 fn hostile_names_are_escaped() {
     let folder = Folder::new("report_hostile");
-    let scene = folder.write("x.toml", GRAINS);
-    let out = folder.join("a<b>&\"c\" 'd'");
+    let wall = "wall</script><script>alert(4)</script>";
+    let material = "<img src=x onerror=alert(2)>";
+    let group = "'><svg onload=alert(3)>";
+    let text = GRAINS
+        .replace("\"stone\"", &format!("\"{material}\""))
+        .replace("\"pair\"", &format!("\"{group}\""))
+        .replace("[[walls]]\n", &format!("[[walls]]\nname = \"{wall}\"\nrecord = true\n"));
+    let scene = folder.write("x.toml", &text);
     let title = "title=\"<script>alert(1)</script> & \\u0007 ]]> \\\"q\\\" </title>\"";
-    run(&scene, &out, &[title]).good();
-    report(&[&out]).good();
-    let page = Page::read(&out.join("report.html"));
-    page.contains("<script>alert(1)</script> & \\u{7} ]]> \"q\" </title>");
-    page.contains("a<b>&\"c\" 'd'");
-    report(&[&out, Path::new("--title"), Path::new("<b>\"own\"</b>")]).good();
-    Page::read(&out.join("report.html")).contains("<b>\"own\"</b>");
+    let names = ["a<b>&\"c\" 'd'", "{{DATA}}", "\"><img src=x onerror=alert(1)>", "<script>alert(5)<!--"];
+    let outs = names.map(|name| folder.join(name));
+    for (name, out) in names.iter().zip(&outs) {
+        run(&scene, out, &[title]).good();
+        report(&[out]).good();
+        let page = Page::read(&out.join("report.html"));
+        page.contains("<script>alert(1)</script> & \\u{7} ]]> \"q\" </title>");
+        page.contains(name);
+        page.contains(material);
+        page.contains(group);
+        page.contains(&format!("{wall}, z"));
+    }
+    report(&[&outs[0], Path::new("--title"), Path::new("<b>\"own\"</b>")]).good();
+    Page::read(&outs[0].join("report.html")).contains("<b>\"own\"</b>");
+    // The names of several runs stand in legends and heads as well.
+    let html = folder.join("all.html");
+    report(&[&outs[1], &outs[2], &outs[3], Path::new("--out"), &html]).good();
+    let page = Page::read(&html);
+    names[1..].iter().for_each(|name| page.contains(name));
+    names[1..].iter().for_each(|name| page.contains(&format!("{name}: {wall}, z")));
 }
 
 /// Runs that have no good end: interrupted, failed, killed, and still going on.

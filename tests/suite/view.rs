@@ -331,28 +331,50 @@ fn requests_of_other_sites_are_refused() {
     }
 }
 
-/// A folder may have the name of a place of the page's frame.
+/// Folders with the names of places of a frame, and of elements; with them a title, a material, a group and a wall.
 #[test]
-fn folder_named_like_place_is_text() {
-    let folder = Folder::new("view_places");
-    let out = bed(&folder, "bed");
-    // Names of the blocks: their content has the name of the folder.
-    let data = |page: &str| -> Vec<String> {
-        page.split("data-block=\"").skip(1).map(|b| b[..b.find('"').unwrap()].to_string()).collect()
+fn hostile_names_stay_text() {
+    let folder = Folder::new("view_names");
+    let text = BED
+        .replace("LIBRARY", "</title><script>alert(1)</script>")
+        .replace("STONES", &repository().join("inputs/track/cyclic/stones.toml").display().to_string())
+        .replace("\"stone\"", "\"<img src=x onerror=alert(2)>\"")
+        .replace("\"marbles\"", "\"'><svg onload=alert(3)>\"")
+        .replace(
+            "[[walls]]\n",
+            "[[walls]]\nname = \"wall</script><script>alert(4)</script>\"\nrecord = true\n",
+        );
+    let mut dir = folder.join("results");
+    run(&folder.write("scene.toml", &text), &dir, &[]).good();
+    // Names of the blocks, whose content has the name of the folder, and numbers of the elements.
+    let parts = |page: &str| {
+        let names = page.split("data-block=\"").skip(1).map(|b| b[..b.find('"').unwrap()].to_string());
+        let count = |element: &str| page.matches(element).count();
+        (names.collect::<Vec<_>>(), ["<script", "</script", "<img", "<svg", "<style", "<"].map(count))
     };
     let mut plain = None;
-    for name in ["plain", "{{DATA}}", "{{TITLE}}", "{{STYLE}}{{DATA}}", "{{", "}}", "{{DATA}}{{DATA}}"] {
+    for (name, shown) in [
+        ("plain", "plain"),
+        ("{{DATA}}", "{{DATA}}"),
+        ("{{STYLE}}{{DATA}}", "{{STYLE}}{{DATA}}"),
+        ("}}{{", "}}{{"),
+        ("\"><img src=x onerror=alert(1)>", "&quot;&gt;&lt;img src=x onerror=alert(1)&gt;"),
+        ("<script>alert(5)<!--", "&lt;script&gt;alert(5)&lt;!--"),
+        ("&lt;img src=x>", "&amp;lt;img src=x&gt;"),
+    ] {
         let named = folder.join(name);
-        fs::rename(plain.as_ref().map_or(&out, |(dir, _)| dir), &named).unwrap();
+        fs::rename(&dir, &named).unwrap();
+        dir = named;
         let html = folder.join("page.html");
-        trackbed(["view", named.to_str().unwrap(), "--force", "--export", html.to_str().unwrap()]).good();
+        trackbed(["view", dir.to_str().unwrap(), "--force", "--export", html.to_str().unwrap()]).good();
         let page = fs::read_to_string(&html).unwrap();
-        assert!(page.contains(&format!("<title>{name} \u{2013} trackbed</title>")), "{name}");
+        assert!(page.contains(&format!("<title>{shown} \u{2013} trackbed</title>")), "{name}");
         assert!(page.find("data-block").unwrap() > page.find("type=\"importmap\"").unwrap(), "{name}");
-        let (_, first) = plain.get_or_insert_with(|| (named.clone(), data(&page)));
-        assert!(*first == data(&page), "{name}");
-        assert!(Server::start(&named).get("/").1.len() > 500_000, "{name}");
-        plain.as_mut().unwrap().0 = named;
+        let served = Server::start(&dir).get("/").1;
+        let served = String::from_utf8(served).unwrap();
+        assert!(served.len() > 500_000 && served.contains(&format!("<title>{shown} ")), "{name}");
+        let found = (parts(&page), parts(&served));
+        assert!(*plain.get_or_insert_with(|| found.clone()) == found, "{name}");
     }
 }
 

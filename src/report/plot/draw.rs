@@ -1,16 +1,17 @@
 //! The SVG of a plot.
 
-use super::ruler::Ruler;
+use super::ruler::{Ruler, Tick};
 use super::{Curve, Look};
-use crate::report::page::escaped;
 use crate::write::svg::{COLOURS, DASHES, round, text_width, thinned};
-use std::fmt::Write;
+use maud::{Markup, html};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 340.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 50.0;
 const FONT: f64 = 13.0;
+/// Width of a line.
+const STROKE: f64 = 1.6;
 
 /// The rectangle that curves are drawn in, with its sides.
 struct Area<'a> {
@@ -34,109 +35,92 @@ impl Area<'_> {
 }
 
 /// The plot as SVG; points are those that have a place.
-pub fn svg(title: &str, labels: [String; 2], sides: (&Ruler, &Ruler, bool), curves: &[Curve]) -> String {
+pub fn svg(title: &str, labels: [String; 2], sides: (&Ruler, &Ruler, bool), curves: &[Curve]) -> Markup {
     let (x, y, downwards) = sides;
     let width = |label: &Option<String>| label.as_ref().map_or(0.0, |l| text_width(l, FONT));
     let widest = y.ticks.iter().map(|t| width(&t.label)).fold(0.0, f64::max);
     let last = x.ticks.iter().rev().find_map(|t| t.label.as_ref()).map_or(0.0, |l| text_width(l, FONT));
     let area = Area { left: widest + 38.0, right: WIDTH - 0.5 * last - 6.0, x, y, downwards };
-    let title = escaped(title);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\" \
-         font-size=\"{FONT}\">\n"
-    );
-    frame(&mut svg, &area, &labels);
-    curves.iter().for_each(|c| curve(&mut svg, c, &area));
-    svg + "</svg>\n"
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label=(title) font-size=(FONT) {
+            "\n"
+            (frame(&area, &labels))
+            @for c in curves { (curve(c, &area)) }
+        }
+        "\n"
+    }
 }
 
-fn frame(svg: &mut String, area: &Area<'_>, labels: &[String; 2]) {
+fn frame(area: &Area<'_>, labels: &[String; 2]) -> Markup {
     let (left, right, bottom) = (round(area.left), round(area.right), HEIGHT - BOTTOM);
-    let colour = |named: bool| if named { "#d8d8d8" } else { "#efefef" };
-    for tick in &area.x.ticks {
-        let (at, colour) = (area.x(tick.value), colour(tick.label.is_some()));
-        add(svg, format_args!("<path d=\"M{at} {TOP}V{bottom}\" stroke=\"{colour}\"/>"));
-        tick.label.iter().for_each(|label| text(svg, at, bottom + 17.0, "middle", label));
-    }
-    for tick in &area.y.ticks {
-        let (at, colour) = (area.y(tick.value), colour(tick.label.is_some()));
-        add(svg, format_args!("<path d=\"M{left} {at}H{right}\" stroke=\"{colour}\"/>"));
-        tick.label.iter().for_each(|label| text(svg, left - 7.0, at + 0.35 * FONT, "end", label));
-    }
+    let colour = |tick: &Tick| if tick.label.is_some() { "#d8d8d8" } else { "#efefef" };
     let (w, h) = (round(right - left), round(bottom - TOP));
-    add(
-        svg,
-        format_args!(
-            "<rect x=\"{left}\" y=\"{TOP}\" width=\"{w}\" height=\"{h}\" fill=\"none\" stroke=\"#333\"/>"
-        ),
-    );
-    text(svg, 0.5 * (left + right), bottom + 40.0, "middle", &labels[0]);
     let font = (FONT * (h / text_width(&labels[1], FONT)).min(1.0) * 10.0).floor() / 10.0;
-    add(
-        svg,
-        format_args!(
-            "<g transform=\"translate(15 {}) rotate(-90)\" font-size=\"{font}\">",
-            round(0.5 * (TOP + bottom))
-        ),
-    );
-    text(svg, 0.0, 0.0, "middle", &labels[1]);
-    add(svg, format_args!("</g>"));
+    html! {
+        @for (tick, at) in area.x.ticks.iter().map(|t| (t, area.x(t.value))) {
+            path d={ "M" (at) " " (TOP) "V" (bottom) } stroke=(colour(tick)) {} "\n"
+            @if let Some(label) = &tick.label { (text(at, bottom + 17.0, "middle", label)) }
+        }
+        @for (tick, at) in area.y.ticks.iter().map(|t| (t, area.y(t.value))) {
+            path d={ "M" (left) " " (at) "H" (right) } stroke=(colour(tick)) {} "\n"
+            @if let Some(label) = &tick.label { (text(left - 7.0, at + 0.35 * FONT, "end", label)) }
+        }
+        rect x=(left) y=(TOP) width=(w) height=(h) fill="none" stroke="#333" {} "\n"
+        (text(0.5 * (left + right), bottom + 40.0, "middle", &labels[0]))
+        g transform={ "translate(15 " (round(0.5 * (TOP + bottom))) ") rotate(-90)" } font-size=(font) {
+            (text(0.0, 0.0, "middle", &labels[1]))
+        }
+        "\n"
+    }
 }
 
-fn curve(svg: &mut String, curve: &Curve, area: &Area<'_>) {
+fn curve(curve: &Curve, area: &Area<'_>) -> Markup {
     let pixels = thinned(curve.points.iter().map(|p| [area.x(p[0]), area.y(p[1])]));
     let colour = COLOURS[curve.look.colour % COLOURS.len()];
-    if curve.look.line && pixels.len() > 1 {
-        let list: Vec<String> = pixels.iter().map(|[x, y]| format!("{x},{y}")).collect();
-        add(svg, format_args!("<polyline points=\"{}\" {}/>", list.join(" "), stroke(curve.look)));
-    }
-    if curve.look.marks || pixels.len() == 1 {
-        for [x, y] in &pixels {
-            add(svg, format_args!("{}", mark(curve.look.dash, colour, *x, *y)));
+    let joined = curve.look.line && pixels.len() > 1;
+    let marked = curve.look.marks || pixels.len() == 1;
+    let list: Vec<String> = pixels.iter().filter(|_| joined).map(|[x, y]| format!("{x},{y}")).collect();
+    html! {
+        @if joined {
+            polyline points=(list.join(" ")) fill="none" stroke=(colour) stroke-width=(STROKE) stroke-dasharray=(dashes(curve.look))
+                stroke-linejoin="round" {}
+            "\n"
         }
+        @for [x, y] in pixels.iter().filter(|_| marked) { (mark(curve.look.dash, colour, *x, *y)) "\n" }
     }
 }
 
 /// A marker; shapes go with the dashes.
-fn mark(shape: usize, colour: &str, x: f64, y: f64) -> String {
-    match shape % 4 {
-        0 => format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"3\" fill=\"{colour}\"/>"),
-        1 => format!(
-            "<rect x=\"{}\" y=\"{}\" width=\"5.6\" height=\"5.6\" fill=\"white\" stroke=\"{colour}\" stroke-width=\"1.4\"/>",
-            round(x - 2.8),
-            round(y - 2.8)
-        ),
-        2 => format!("<path d=\"M{x} {y}m-4 0l4 -4l4 4l-4 4z\" fill=\"{colour}\"/>"),
-        _ => format!(
-            "<path d=\"M{x} {y}m0 -4l4 7h-8z\" fill=\"white\" stroke=\"{colour}\" stroke-width=\"1.4\"/>"
-        ),
+fn mark(shape: usize, colour: &str, x: f64, y: f64) -> Markup {
+    let (left, top) = (round(x - 2.8), round(y - 2.8));
+    html! {
+        @match shape % 4 {
+            0 => circle cx=(x) cy=(y) r="3" fill=(colour) {},
+            1 => rect x=(left) y=(top) width="5.6" height="5.6" fill="white" stroke=(colour) stroke-width="1.4" {},
+            2 => path d={ "M" (x) " " (y) "m-4 0l4 -4l4 4l-4 4z" } fill=(colour) {},
+            _ => path d={ "M" (x) " " (y) "m0 -4l4 7h-8z" } fill="white" stroke=(colour) stroke-width="1.4" {},
+        }
     }
 }
 
 /// Line and marker beside a name in the legend.
-pub fn sample(look: Look) -> String {
-    let mut out = String::from("<svg viewBox=\"0 0 34 12\" width=\"34\" height=\"12\" aria-hidden=\"true\">");
-    if look.line {
-        write!(out, "<path d=\"M1 6h32\" {}/>", stroke(look)).expect("writing to a string does not fail");
+pub fn sample(look: Look) -> Markup {
+    let colour = COLOURS[look.colour % COLOURS.len()];
+    html! {
+        svg viewBox="0 0 34 12" width="34" height="12" aria-hidden="true" {
+            @if look.line {
+                path d="M1 6h32" fill="none" stroke=(colour) stroke-width=(STROKE) stroke-dasharray=(dashes(look))
+                    stroke-linejoin="round" {}
+            }
+            @if look.marks { (mark(look.dash, colour, 17.0, 6.0)) }
+        }
     }
-    if look.marks {
-        out += &mark(look.dash, COLOURS[look.colour % COLOURS.len()], 17.0, 6.0);
-    }
-    out + "</svg>"
 }
 
-fn stroke(look: Look) -> String {
-    let (colour, dash) = (COLOURS[look.colour % COLOURS.len()], DASHES[look.dash % DASHES.len()]);
-    format!(
-        "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\" stroke-dasharray=\"{dash}\" stroke-linejoin=\"round\""
-    )
+fn dashes(look: Look) -> &'static str {
+    DASHES[look.dash % DASHES.len()]
 }
 
-fn text(svg: &mut String, x: f64, y: f64, anchor: &str, content: &str) {
-    let (x, y, content) = (round(x), round(y), escaped(content));
-    add(svg, format_args!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{content}</text>"));
-}
-
-fn add(svg: &mut String, line: std::fmt::Arguments<'_>) {
-    writeln!(svg, "{line}").expect("writing to a string does not fail");
+fn text(x: f64, y: f64, anchor: &str, content: &str) -> Markup {
+    html! { text x=(round(x)) y=(round(y)) text-anchor=(anchor) { (content) } "\n" }
 }

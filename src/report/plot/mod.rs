@@ -6,10 +6,9 @@
 mod draw;
 mod ruler;
 
-use super::page::escaped;
 use super::quantity::{Scale, scale};
+use maud::{Markup, html};
 use ruler::Ruler;
-use std::fmt::Write;
 
 /// A side of a plot.
 #[derive(Clone, Debug, Default)]
@@ -117,7 +116,7 @@ impl Plot {
     }
 
     /// The plot as a figure of a page; nothing where no curve has two points that can be shown.
-    pub fn figure(&self) -> String {
+    pub fn figure(&self) -> Markup {
         let values = |d: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[d]));
         let largest = |d: usize| values(d).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
         let scales = [scale(&self.x.unit, largest(0)), scale(&self.y.unit, largest(1))];
@@ -135,28 +134,33 @@ impl Plot {
             .filter(|c| !c.points.is_empty())
             .collect();
         if curves.iter().all(|c| c.points.len() < 2) {
-            return String::new();
+            return Markup::default();
         }
         let labels = [self.x.label(&scales[0]), self.y.label(&scales[1])];
         let svg = draw::svg(&self.title, labels, (&x, &y, self.y.downwards), &curves);
-        let legend = legend(&curves);
-        format!("<figure>\n<figcaption>{}</figcaption>\n{svg}{legend}</figure>\n", escaped(&self.title))
+        html! {
+            figure {
+                "\n" figcaption { (self.title) } "\n"
+                (svg)
+                (legend(&curves))
+            }
+            "\n"
+        }
     }
 }
 
 /// The list of the curves that have names.
-fn legend(curves: &[Curve]) -> String {
+fn legend(curves: &[Curve]) -> Markup {
     let named: Vec<&Curve> = curves.iter().filter(|c| !c.name.is_empty()).collect();
-    if named.is_empty() {
-        return String::new();
+    html! {
+        @if !named.is_empty() {
+            ul class="legend" {
+                "\n"
+                @for curve in named { li { (draw::sample(curve.look)) (curve.name) } "\n" }
+            }
+            "\n"
+        }
     }
-    let mut out = String::from("<ul class=\"legend\">\n");
-    for curve in named {
-        let sample = draw::sample(curve.look);
-        writeln!(out, "<li>{sample}{}</li>", escaped(&curve.name))
-            .expect("writing to a string does not fail");
-    }
-    out + "</ul>\n"
 }
 
 #[cfg(test)]
@@ -179,7 +183,7 @@ mod tests {
                 curve("run 2", &[[1.0, f64::NAN], [2.0, 0.02]], 1),
             ],
         );
-        let text = plot.figure();
+        let text = plot.figure().0;
         assert!(text.contains("settlement [mm]") && text.contains("cycle N") && text.contains("a &lt; b"));
         assert!(text.contains("run &lt;1&gt;") && !text.contains("NaN"), "{text}");
         assert_eq!(text.matches("<li>").count(), 2);
@@ -187,6 +191,6 @@ mod tests {
         let line = text.split("<polyline points=\"").nth(1).unwrap().split('"').next().unwrap();
         let y: Vec<f64> = line.split(' ').map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
         assert!(y.len() == 2 && y[1] > y[0], "{y:?}");
-        assert_eq!(Plot::new("x", Side::default(), Side::default(), vec![curve("a", &[], 0)]).figure(), "");
+        assert_eq!(Plot::new("x", Side::default(), Side::default(), vec![curve("a", &[], 0)]).figure().0, "");
     }
 }

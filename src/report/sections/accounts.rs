@@ -2,8 +2,9 @@
 
 use super::overlay::{facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, plots};
+use crate::report::page::{Cell, Section, columns, joined, plots};
 use crate::report::plot::{Plot, Side};
+use maud::{Markup, html};
 use serde_json::Value;
 
 /// Columns of the history that store energy, with their names.
@@ -48,7 +49,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
     let error = one(runs, |r| r.table("history")?.points("time", "energy_error"));
     // Of several runs the parts would be too many lines.
     let single = runs.len() == 1;
-    let part = |plot: Plot| if single { plot.figure() } else { String::new() };
+    let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };
     let figures = plots([
         part(Plot::new("Work and losses", time(), Side::new("energy", "J"), curves(&SPENT, false))),
         part(Plot::new(
@@ -58,7 +59,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
             curves(&STORED, true),
         )),
         if single {
-            String::new()
+            Markup::default()
         } else {
             Plot::new("Work", time(), Side::new("work", "J"), curves(&SPENT[..1], false)).figure()
         },
@@ -81,18 +82,17 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
             ("interface: work as both sides see it, difference", &path("coupling.interface_work_error", "J")),
         ],
     );
-    Section::new("energy", "Energy and other accounts", figures + &sums + &parts(runs))
+    Section::new("energy", "Energy and other accounts", joined([figures, sums, parts(runs)]))
 }
 
 /// What was stored at both ends, and what was spent, part by part.
-fn parts(runs: &[RunData]) -> String {
-    let mut html = String::new();
-    for run in runs {
+fn parts(runs: &[RunData]) -> Markup {
+    joined(runs.iter().map(|run| {
         let object = |path: &str| run.value(path).as_object().cloned().unwrap_or_default();
         let (start, end, spent) = (object("energy.start"), object("energy.end"), object("energy.spent"));
         let whose = match runs.len() {
             1 => String::new(),
-            _ => format!(": {}", crate::report::page::escaped(&run.label)),
+            _ => format!(": {}", run.label),
         };
         let number = |v: Option<&Value>| v.and_then(Value::as_f64);
         let stored: Vec<&String> = start
@@ -108,13 +108,15 @@ fn parts(runs: &[RunData]) -> String {
             spent.iter().filter_map(|(k, v)| Some((k, v.as_f64().filter(|v| *v != 0.0)?))).collect();
         let spent_names: Vec<String> = lost.iter().map(|(k, _)| k.replace('_', " ")).collect();
         let spent_values = [("energy", "J", lost.iter().map(|(_, v)| Some(*v)).collect::<Vec<_>>())];
-        if !names.is_empty() || !spent_names.is_empty() {
-            html += &format!(
-                "<details>\n<summary>Part by part{whose}</summary>\n{}{}</details>\n",
-                columns("stored", &names, &both),
-                columns("work and losses", &spent_names, &spent_values)
-            );
+        html! {
+            @if !names.is_empty() || !spent_names.is_empty() {
+                details {
+                    "\n" summary { "Part by part" (whose) } "\n"
+                    (columns("stored", &names, &both))
+                    (columns("work and losses", &spent_names, &spent_values))
+                }
+                "\n"
+            }
         }
-    }
-    html
+    }))
 }

@@ -2,7 +2,7 @@
 
 use super::overlay::{facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, plots};
+use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
 
 /// Bonds.
@@ -39,5 +39,5 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
             ("ballast breakage index", &path("bonds.breakage.ballast_index", "")),
         ],
     );
-    Section::new("bonds", "Bonds", figures + &sums)
+    Section::new("bonds", "Bonds", joined([figures, sums]))
 }

@@ -2,7 +2,8 @@
 
 use super::overlay::facts;
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, table};
+use crate::report::page::{Cell, Section, joined, paragraph, table};
+use maud::Markup;
 use std::collections::BTreeSet;
 
 /// Most keys that are listed.
@@ -13,12 +14,11 @@ pub fn compare(runs: &[RunData]) -> Option<Section> {
     if runs.len() < 2 {
         return None;
     }
-    let html = format!("{}{}", different_keys(runs), results(runs));
-    Section::new("compare", "Comparison", html)
+    Section::new("compare", "Comparison", joined([different_keys(runs), results(runs)]))
 }
 
 /// Keys of the scenes that are not alike in all runs.
-fn different_keys(runs: &[RunData]) -> String {
+fn different_keys(runs: &[RunData]) -> Markup {
     let all: BTreeSet<&String> = runs.iter().flat_map(|r| r.keys.keys()).collect();
     let known = runs.iter().all(|r| !r.keys.is_empty());
     let differ = |key: &&String| runs.iter().any(|r| r.keys.get(*key) != runs[0].keys.get(*key));
@@ -37,7 +37,7 @@ fn different_keys(runs: &[RunData]) -> String {
         } else {
             "Not all runs have their scene with them."
         };
-        return crate::report::page::paragraph(text);
+        return paragraph(text);
     }
     let heads: Vec<&str> =
         std::iter::once("key of the scene").chain(runs.iter().map(|r| r.label.as_str())).collect();
@@ -69,7 +69,7 @@ fn largest_of(run: &RunData, column: &str) -> Option<f64> {
     run.table("history")?.column(column)?.iter().copied().reduce(f64::max)
 }
 
-fn results(runs: &[RunData]) -> String {
+fn results(runs: &[RunData]) -> Markup {
     let last = runs.iter().filter_map(|r| last_of(r, "cycle"));
     let common = last.fold(f64::INFINITY, f64::min);
     let at_common = format!("settlement after cycle {common}");

@@ -2,7 +2,7 @@
 
 use super::overlay::{facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, plots, table};
+use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
 
 /// Stretches of the run that a mean rate is given for.
@@ -57,7 +57,7 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
             rows.push((head, vec![amount("grains", ""), amount("mass", "kg")]));
         }
     }
-    Section::new("flow", "Inlets and outlets", figures + &sums + &table(&["", "grains", "mass"], &rows))
+    Section::new("flow", "Inlets and outlets", joined([figures, sums, table(&["", "grains", "mass"], &rows)]))
 }
 
 /// Mean mass flow out over stretches of equal length.

@@ -2,7 +2,7 @@
 
 use super::overlay::overlay;
 use crate::report::data::RunData;
-use crate::report::page::{Section, columns, plots};
+use crate::report::page::{Section, columns, joined, plots};
 use crate::report::plot::{Plot, Side};
 use serde_json::Value;
 
@@ -53,8 +53,8 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
         ("largest deviation of the mass passing", "", of("largest_deviation")),
     ];
     let html = plots([figure]);
-    if html.is_empty() {
+    if html.0.is_empty() {
         return None;
     }
-    Section::new("gradation", "Sieve curves", html + &columns("group", &names, &figures))
+    Section::new("gradation", "Sieve curves", joined([html, columns("group", &names, &figures)]))
 }

@@ -2,7 +2,7 @@
 
 use super::overlay::overlay;
 use crate::report::data::RunData;
-use crate::report::page::{Section, paragraph, plots};
+use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Plot, Side};
 use crate::results::tables::Table;
 use std::f64::consts::TAU;
@@ -56,7 +56,7 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
         "The closed curve has for each sector a point in the direction that the sector looks to, as far from the origin as its largest load \
          towards the axis.",
     );
-    if html.is_empty() { None } else { Section::new("loads", "Loads on structures", html + &note) }
+    if html.0.is_empty() { None } else { Section::new("loads", "Loads on structures", joined([html, note])) }
 }
 
 /// Names of structures.

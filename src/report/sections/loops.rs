@@ -2,8 +2,9 @@
 
 use super::overlay::one;
 use crate::report::data::RunData;
-use crate::report::page::{Section, paragraph, plots};
+use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Curve, Look, Plot, Side};
+use maud::Markup;
 use std::f64::consts::PI;
 
 /// Rows of the history that a loop needs.
@@ -42,7 +43,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
     };
     let (figure, note) = single_loops(runs);
     let html = plots(std::iter::once(figure).chain(over_cycles));
-    if html.is_empty() {
+    if html.0.is_empty() {
         return None;
     }
     let formulas = paragraph(
@@ -50,7 +51,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
          the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
          ratio D = 2 E/(π K u²): E over 4π times the energy of a spring K at half the range of u.",
     );
-    Section::new("loops", "Load and deflection", html + &note + &formulas)
+    Section::new("loops", "Load and deflection", joined([html, note, formulas]))
 }
 
 /// Damping ratio of each cycle: E/(4π ½ K (u/2)²).
@@ -65,7 +66,7 @@ fn damping(run: &RunData) -> Option<Vec<[f64; 2]>> {
 }
 
 /// The plot of single loops, and what to say about it.
-fn single_loops(runs: &[RunData]) -> (String, String) {
+fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
     let mut curves = Vec::new();
     let mut coarse = false;
     for (r, run) in runs.iter().enumerate() {
@@ -85,7 +86,7 @@ fn single_loops(runs: &[RunData]) -> (String, String) {
     }
     let text = "Loops are drawn from the rows of the history; a cycle with fewer than 12 of them is left out \
                 (output.history_interval sets the time between rows).";
-    let note = if coarse { paragraph(text) } else { String::new() };
+    let note = if coarse { paragraph(text) } else { Markup::default() };
     let x = Side::new("lowering since the start", "m");
     (
         Plot::new(

@@ -3,6 +3,7 @@
 use crate::report::data::RunData;
 use crate::report::page::{Cell, facts_table};
 use crate::report::plot::{Curve, Look};
+use maud::Markup;
 
 /// More points than these have no markers: the line is dense.
 const FEW: usize = 60;
@@ -39,11 +40,11 @@ pub fn one(runs: &[RunData], of: impl Fn(&RunData) -> Option<Vec<[f64; 2]>>) -> 
 pub type Fact<'a> = (&'a str, &'a dyn Fn(&RunData) -> Cell);
 
 /// A table with a column for each run and a row for each fact that any of them has.
-pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> String {
+pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> Markup {
     let rows: Vec<(String, Vec<Cell>)> = rows
         .iter()
         .map(|(name, of)| (name.to_string(), runs.iter().map(of).collect::<Vec<_>>()))
-        .filter(|(_, cells)| cells.iter().any(|c| *c != Cell::Nothing))
+        .filter(|(_, cells)| !cells.iter().all(|c| matches!(c, Cell::Nothing)))
         .collect();
     let labels = runs.iter().map(|r| if runs.len() > 1 { r.label.as_str() } else { "value" });
     let heads: Vec<&str> = std::iter::once("").chain(labels).collect();

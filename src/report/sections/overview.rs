@@ -3,7 +3,8 @@
 use super::compare::shown;
 use super::overlay::facts;
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, escaped, paragraph, table};
+use crate::report::page::{Cell, Section, headed, joined, paragraph, table};
+use maud::Markup;
 use std::collections::BTreeSet;
 
 /// Keys that have sections of their own, or are long.
@@ -13,7 +14,7 @@ const OPTIONS: usize = 60;
 
 /// What was run.
 pub fn overview(runs: &[RunData]) -> Option<Section> {
-    let mut html = counts(runs);
+    let mut parts = vec![counts(runs)];
     // Of runs of one scene the materials that differ stand in the comparison.
     let alike = |run: &RunData| run.keys == runs[0].keys;
     let shown: Vec<&RunData> = if runs.iter().all(alike) { vec![&runs[0]] } else { runs.iter().collect() };
@@ -27,17 +28,14 @@ pub fn overview(runs: &[RunData]) -> Option<Section> {
             ("material", "Materials of stones, walls and sleepers"),
             ("solid.material", "Materials of the solid"),
         ] {
-            let text = materials(run, kind);
-            if !text.is_empty() {
-                html += &format!("<h3>{what}{}</h3>\n{text}", escaped(&whose));
-            }
+            parts.push(headed(&format!("{what}{whose}"), materials(run, kind)));
         }
-        html += &options(run, &whose);
+        parts.push(options(run, &whose));
     }
-    Section::new("overview", "What was run", html)
+    Section::new("overview", "What was run", joined(parts))
 }
 
-fn counts(runs: &[RunData]) -> String {
+fn counts(runs: &[RunData]) -> Markup {
     let path = |path: &'static str, unit: &'static str| {
         move |r: &RunData| Cell::of(r.number(path).filter(|v| *v > 0.0), unit)
     };
@@ -74,7 +72,7 @@ fn counts(runs: &[RunData]) -> String {
 }
 
 /// Materials of a kind, a row each, with the keys that any of them has.
-fn materials(run: &RunData, kind: &str) -> String {
+fn materials(run: &RunData, kind: &str) -> Markup {
     let key_of = |key: &str| {
         let rest = key.strip_prefix(kind)?.strip_prefix('.')?;
         let (index, key) = rest.split_once('.')?;
@@ -101,7 +99,7 @@ fn materials(run: &RunData, kind: &str) -> String {
 }
 
 /// The other keys of the scene, as they were written: a row for each table.
-fn options(run: &RunData, whose: &str) -> String {
+fn options(run: &RunData, whose: &str) -> Markup {
     let elsewhere = |key: &str| {
         let first = key.split('.').next().unwrap_or(key);
         ELSEWHERE.contains(&first) || key.starts_with("solid.material.")
@@ -118,13 +116,10 @@ fn options(run: &RunData, whose: &str) -> String {
     let shown = tables.iter().take(OPTIONS);
     let rows: Vec<(String, Vec<Cell>)> =
         shown.map(|(name, keys)| (name.to_string(), vec![Cell::Text(keys.join(", "))])).collect();
-    if rows.is_empty() {
-        return String::new();
-    }
     let rest = match tables.len().saturating_sub(OPTIONS) {
-        0 => String::new(),
+        0 => Markup::default(),
         rest => paragraph(&format!("{rest} further tables stand in the scene below.")),
     };
-    let head = format!("<h3>Options of the scene{}, as written there</h3>\n", escaped(whose));
-    head + &table(&["table", "keys"], &rows) + &rest
+    let table = table(&["table", "keys"], &rows);
+    headed(&format!("Options of the scene{whose}, as written there"), joined([table, rest]))
 }

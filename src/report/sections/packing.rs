@@ -2,8 +2,9 @@
 
 use super::overlay::{facts, one};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, plots, table};
+use crate::report::page::{Cell, Section, columns, headed, joined, plots, table};
 use crate::report::plot::{Plot, Side};
+use maud::Markup;
 use serde_json::Value;
 
 /// Packing.
@@ -39,9 +40,10 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
         let points = table.points("distance", "g")?;
         Some(points.into_iter().zip(of_first).filter(|(_, own)| *own).map(|(p, _)| p).collect())
     });
-    let html = figures
-        + &measures(runs)
-        + &plots([
+    let html = joined([
+        figures,
+        measures(runs),
+        plots([
             Plot::new(
                 "How many neighbours grains have",
                 Side::count("neighbours").with_zero(),
@@ -56,13 +58,14 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
                 radial,
             )
             .figure(),
-        ])
-        + &made(runs);
+        ]),
+        made(runs),
+    ]);
     Section::new("packing", "Packing", html)
 }
 
 /// The boxes that the scene measures: packing and stress.
-fn measures(runs: &[RunData]) -> String {
+fn measures(runs: &[RunData]) -> Markup {
     let mut names = Vec::new();
     let mut found: Vec<&Value> = Vec::new();
     for run in runs {
@@ -73,7 +76,7 @@ fn measures(runs: &[RunData]) -> String {
         }
     }
     if names.is_empty() {
-        return String::new();
+        return Markup::default();
     }
     let of = |key: &str| -> Vec<Option<f64>> { found.iter().map(|m| m[key].as_f64()).collect() };
     let solid = of("porosity").into_iter().map(|p| Some(1.0 - p?)).collect();
@@ -97,15 +100,14 @@ fn measures(runs: &[RunData]) -> String {
         ("σyz", "Pa", stress(4)),
         ("σzx", "Pa", stress(5)),
     ];
-    format!(
-        "<h3>Measured boxes</h3>\n{}<h3>Stress in them, tension positive</h3>\n{}",
-        columns("box", &names, &packing),
-        columns("box", &names, &stresses)
-    )
+    joined([
+        headed("Measured boxes", columns("box", &names, &packing)),
+        headed("Stress in them, tension positive", columns("box", &names, &stresses)),
+    ])
 }
 
 /// Growth and compaction.
-fn made(runs: &[RunData]) -> String {
+fn made(runs: &[RunData]) -> Markup {
     let several = runs.len() > 1;
     let (mut growth, mut compaction) = (Vec::new(), Vec::new());
     for run in runs {
@@ -122,13 +124,8 @@ fn made(runs: &[RunData]) -> String {
             compaction.push((name(&format!("{}: {}", k + 1, c["kind"].as_str().unwrap_or_default())), cells));
         }
     }
-    let section =
-        |head: &str, text: String| if text.is_empty() { text } else { format!("<h3>{head}</h3>\n{text}") };
-    section(
-        "Growth",
-        table(&["group", "porosity", "largest overlap over radius", "unbalanced force"], &growth),
-    ) + &section(
-        "Compaction",
-        table(&["stage", "porosity before", "porosity after", "force on the plane"], &compaction),
-    )
+    let growth = table(&["group", "porosity", "largest overlap over radius", "unbalanced force"], &growth);
+    let compaction =
+        table(&["stage", "porosity before", "porosity after", "force on the plane"], &compaction);
+    joined([headed("Growth", growth), headed("Compaction", compaction)])
 }

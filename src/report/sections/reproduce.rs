@@ -1,33 +1,32 @@
 //! How the results come again: command, scene, overrides, sources.
 
 use crate::report::data::RunData;
-use crate::report::page::{Section, escaped, paragraph};
+use crate::report::page::{Section, paragraph};
 use crate::run::quoted;
+use maud::{Markup, html};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
 /// How to reproduce the runs.
 pub fn reproduce(runs: &[RunData]) -> Option<Section> {
-    let mut html = String::new();
-    for run in runs {
-        if runs.len() > 1 {
-            html += &format!("<h3>{}</h3>\n", escaped(&run.label));
-        }
-        html += &one(run);
-    }
     let sources: BTreeSet<&str> =
         runs.iter().flat_map(|r| r.list("sources")).filter_map(Value::as_str).collect();
-    if !sources.is_empty() {
-        html += "<h3>Sources of the methods</h3>\n<ul>\n";
-        sources.iter().for_each(|s| html += &format!("<li>{}</li>\n", escaped(s)));
-        html += "</ul>\n";
-    }
+    let html = html! {
+        @for run in runs {
+            @if runs.len() > 1 { h3 { (run.label) } "\n" }
+            (one(run))
+        }
+        @if !sources.is_empty() {
+            h3 { "Sources of the methods" } "\n"
+            ul { "\n" @for source in &sources { li { (source) } "\n" } } "\n"
+        }
+    };
     Section::new("reproduce", "How to reproduce", html)
 }
 
-fn one(run: &RunData) -> String {
-    let Some(file) = &run.file else { return String::new() };
+fn one(run: &RunData) -> Markup {
+    let Some(file) = &run.file else { return Markup::default() };
     let mut command = format!("trackbed run {} --out {}", quoted(Path::new(&file.scene)), quoted(&run.dir));
     file.overrides.iter().for_each(|o| command += &format!(" --set {}", quoted(Path::new(o))));
     file.source().iter().for_each(|source| command += &source.words());
@@ -39,10 +38,9 @@ fn one(run: &RunData) -> String {
         ),
         None => format!("Version {} of the program.", file.version),
     };
-    format!(
-        "<pre>{}</pre>\n{}<details>\n<summary>Text of the scene, without overrides</summary>\n<pre>{}</pre>\n</details>\n",
-        escaped(&command),
-        paragraph(&hash),
-        escaped(&file.text)
-    )
+    html! {
+        pre { (command) } "\n"
+        (paragraph(&hash))
+        details { "\n" summary { "Text of the scene, without overrides" } "\n" pre { (file.text) } "\n" } "\n"
+    }
 }

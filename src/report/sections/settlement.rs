@@ -3,9 +3,10 @@
 use super::laws::Law;
 use super::overlay::{facts, one};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, paragraph, plots, table};
+use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
 use crate::report::plot::{Curve, Look, Plot, Side};
 use crate::report::quantity::{exact, number};
+use maud::{Markup, html};
 use serde_json::Value;
 
 /// Cycles that the table has: 1, 2, 5 of each power of ten, and the last.
@@ -51,11 +52,11 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
                 let x = Side::count("load cycle N").logarithmic();
                 Plot::new("The same over the logarithm of N", x, y(), curves).figure()
             }
-            false => String::new(),
+            false => Markup::default(),
         },
         lowering(runs),
     ];
-    let html = plots(figures) + &figures_of(runs) + &fits(runs, &laws) + &by_cycle(runs);
+    let html = joined([plots(figures), figures_of(runs), fits(runs, &laws), by_cycle(runs)]);
     Section::new("settlement", "Settlement", html)
 }
 
@@ -65,7 +66,7 @@ fn fitted(law: &Law, name: String, k: usize) -> Curve {
 }
 
 /// Lowering of the sleepers against time.
-fn lowering(runs: &[RunData]) -> String {
+fn lowering(runs: &[RunData]) -> Markup {
     let curves = super::overlay::overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
         let stems = table.before("_tilt");
@@ -84,7 +85,7 @@ fn lowering(runs: &[RunData]) -> String {
     Plot::new("Lowering of the sleeper in time", Side::new("time", "s"), y, curves).figure()
 }
 
-fn figures_of(runs: &[RunData]) -> String {
+fn figures_of(runs: &[RunData]) -> Markup {
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     facts(
         runs,
@@ -100,7 +101,7 @@ fn figures_of(runs: &[RunData]) -> String {
 }
 
 /// The laws with their parameters.
-fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> String {
+fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
     let mut rows = Vec::new();
     for (run, laws) in runs.iter().zip(laws) {
         for law in laws {
@@ -109,11 +110,7 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> String {
                 law.parameters.iter().map(|(name, v)| format!("{name} = {}", number(*v))).collect();
             let precise: Vec<String> =
                 law.parameters.iter().map(|(name, v)| format!("{name} = {}", exact(*v, ""))).collect();
-            let text = format!(
-                "<span title=\"{}\">{}</span>",
-                crate::report::page::escaped(&precise.join(", ")),
-                crate::report::page::escaped(&parameters.join(", "))
-            );
+            let text = html! { span title=(precise.join(", ")) { (parameters.join(", ")) } };
             let [from, to] = law.range;
             rows.push((
                 name,
@@ -137,15 +134,14 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> String {
         }
     };
     let missing = runs.iter().all(|r| r.value("settlement") == &Value::Null && r.table("cycles").is_none());
-    let note = if missing { String::new() } else { paragraph(note) };
+    let note = if missing { Markup::default() } else { paragraph(note) };
     let heads = ["law", "form", "parameters", "R²", "rms error", "cycles"];
-    let head = if rows.is_empty() { "" } else { "<h3>Settlement laws</h3>\n" };
-    format!("{head}{}{note}", table(&heads, &rows))
+    joined([headed("Settlement laws", table(&heads, &rows)), note])
 }
 
 /// Single cycles in figures.
-fn by_cycle(runs: &[RunData]) -> String {
-    let mut html = String::new();
+fn by_cycle(runs: &[RunData]) -> Markup {
+    let mut parts = Vec::new();
     for run in runs {
         let Some(table) = run.table("cycles") else { continue };
         let Some(cycles) = table.column("cycle") else { continue };
@@ -171,12 +167,8 @@ fn by_cycle(runs: &[RunData]) -> String {
             ("peak formation pressure", "Pa", known("peak_formation_pressure")),
         ];
         let some: Vec<_> = all.into_iter().filter(|c| c.2.iter().flatten().any(|v| *v != 0.0)).collect();
-        let whose = if runs.len() > 1 {
-            format!(" of {}", crate::report::page::escaped(&run.label))
-        } else {
-            String::new()
-        };
-        html += &format!("<h3>Load cycles{whose}</h3>\n{}", columns("cycle", &names, &some));
+        let whose = if runs.len() > 1 { format!(" of {}", run.label) } else { String::new() };
+        parts.push(headed(&format!("Load cycles{whose}"), columns("cycle", &names, &some)));
     }
-    html
+    joined(parts)
 }

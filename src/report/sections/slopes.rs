@@ -2,7 +2,7 @@
 
 use super::overlay::{facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, plots};
+use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
 
 /// Run-out of a slide.
@@ -39,7 +39,7 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
             ("grains below the ground", &path("runout.below_ground", "")),
         ],
     );
-    Section::new("runout", "Run-out", figures + &sums)
+    Section::new("runout", "Run-out", joined([figures, sums]))
 }
 
 /// Curve and constants of a specimen.
@@ -78,5 +78,5 @@ pub fn specimen(runs: &[RunData]) -> Option<Section> {
             ("its error", &path("bonds.events.b_error", "")),
         ],
     );
-    Section::new("specimen", "Specimen", figures + &sums)
+    Section::new("specimen", "Specimen", joined([figures, sums]))
 }

@@ -2,9 +2,10 @@
 
 use super::overlay::{dominant, facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, paragraph, plots, table};
+use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
 use crate::report::plot::{Plot, Side};
 use crate::scene::history::TimeFunction;
+use maud::Markup;
 
 /// The solid.
 pub fn solid(runs: &[RunData]) -> Option<Section> {
@@ -31,7 +32,7 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
         })
     };
     let note = match driven.is_empty() {
-        true => String::new(),
+        true => Markup::default(),
         false => paragraph(
             "Load and displacement of supports that are moved: force of the support on the solid against its given displacement, \
              both positive in the direction of the displacement.",
@@ -50,7 +51,7 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
         Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes("u")).figure(),
         Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes("v")).figure(),
     ]);
-    Section::new("solid", "Solid", figures + &note + &equilibrium(runs) + &supports(runs))
+    Section::new("solid", "Solid", joined([figures, note, equilibrium(runs), supports(runs)]))
 }
 
 /// Force of moved supports against their displacement.
@@ -71,7 +72,7 @@ fn load_displacement(run: &RunData) -> Vec<(String, Vec<[f64; 2]>)> {
     moved.collect()
 }
 
-fn equilibrium(runs: &[RunData]) -> String {
+fn equilibrium(runs: &[RunData]) -> Markup {
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let index = |path: &'static str, k: usize, unit: &'static str| {
         move |r: &RunData| Cell::of(r.value(path).get(k).and_then(|v| v.as_f64()), unit)
@@ -114,7 +115,7 @@ fn plastic_share(run: &RunData) -> Option<f64> {
 }
 
 /// Sums of the reactions of named supports at the end.
-fn supports(runs: &[RunData]) -> String {
+fn supports(runs: &[RunData]) -> Markup {
     let mut names = Vec::new();
     let mut forces = Vec::new();
     for run in runs {
@@ -125,11 +126,11 @@ fn supports(runs: &[RunData]) -> String {
         }
     }
     if names.is_empty() {
-        return String::new();
+        return Markup::default();
     }
     let of = |k: usize| forces.iter().map(|f| f[k]).collect();
     let all = [("x", "N", of(0)), ("y", "N", of(1)), ("z", "N", of(2))];
-    format!("<h3>Reactions at the end</h3>\n{}", columns("support", &names, &all))
+    headed("Reactions at the end", columns("support", &names, &all))
 }
 
 /// Factor of safety.
@@ -170,12 +171,12 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
         }
     }
     let heads = ["factor", "", "share of the load carried", "iterations", "largest displacement"];
-    Section::new("safety", "Factor of safety", sums + &plots([figure]) + &table(&heads, &rows))
+    Section::new("safety", "Factor of safety", joined([sums, plots([figure]), table(&heads, &rows)]))
 }
 
 /// Natural modes.
 pub fn modes(runs: &[RunData]) -> Option<Section> {
-    let mut html = String::new();
+    let mut parts = Vec::new();
     for run in runs {
         let Some(table) = run.table("modes") else { continue };
         let names: Vec<String> =
@@ -190,10 +191,8 @@ pub fn modes(runs: &[RunData]) -> Option<Section> {
             ("effective mass z", "kg", of("effective_mass_z")),
             ("residual", "", of("residual")),
         ];
-        if runs.len() > 1 {
-            html += &format!("<h3>{}</h3>\n", crate::report::page::escaped(&run.label));
-        }
-        html += &columns("mode", &names, &all);
+        let columns = columns("mode", &names, &all);
+        parts.push(if runs.len() > 1 { headed(&run.label, columns) } else { columns });
     }
-    Section::new("modes", "Natural modes", html)
+    Section::new("modes", "Natural modes", joined(parts))
 }

@@ -3,6 +3,7 @@
 use super::overlay::facts;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, table};
+use maud::{Markup, html};
 use serde_json::Value;
 
 /// Width of the bar of the longest stage [px].
@@ -45,6 +46,11 @@ pub fn steps(runs: &[RunData]) -> Option<Section> {
     Section::new("steps", "Steps and windows", html)
 }
 
+/// A bar of a width [px] with its share [%].
+fn bar(width: f64, share: f64) -> Markup {
+    html! { span class="bar" style={ "width:" (width) "px" } {} " " (format!("{share:.0}")) " %" }
+}
+
 /// Time by the clock of each stage.
 pub fn timings(runs: &[RunData]) -> Option<Section> {
     let seconds = |s: &Value| s["seconds"].as_f64().unwrap_or(0.0);
@@ -62,7 +68,7 @@ pub fn timings(runs: &[RunData]) -> Option<Section> {
                 name,
                 vec![
                     Cell::of(s["seconds"].as_f64(), "s"),
-                    Cell::Html(format!("<span class=\"bar\" style=\"width:{width}px\"></span> {share:.0} %")),
+                    Cell::Html(bar(width, share)),
                     count("grain_steps"),
                     count("solid_steps"),
                     count("windows"),

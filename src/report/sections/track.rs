@@ -2,7 +2,7 @@
 
 use super::overlay::{facts, one, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, plots, table};
+use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
 
 /// Pressure on the formation and force on the solid.
@@ -87,7 +87,7 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
         "over the static force",
         "lifted off for",
     ];
-    let html = plots([
+    let figures = plots([
         Plot::new("Load on the seats", time(), Side::new("load", "N"), load).figure(),
         Plot::new(
             "Deflection of the rail over the sleepers",
@@ -96,8 +96,8 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
             rail,
         )
         .figure(),
-    ]) + &table(&heads, &rows);
-    Section::new("sleepers", "Sleepers", html)
+    ]);
+    Section::new("sleepers", "Sleepers", joined([figures, table(&heads, &rows)]))
 }
 
 /// Lateral push of a sleeper.
@@ -121,5 +121,5 @@ pub fn push(runs: &[RunData]) -> Option<Section> {
             ("rise of the sleeper at the end", &path("push.uplift", "m")),
         ],
     );
-    Section::new("push", "Lateral push", html + &figures)
+    Section::new("push", "Lateral push", joined([html, figures]))
 }

@@ -1,19 +1,19 @@
 //! How the runs ended, what they were judged by and what they remark: first of all.
 
 use crate::report::data::{RunData, State};
-use crate::report::page::{Cell, Section, escaped, table};
+use crate::report::page::{Cell, Section, joined, table};
 use crate::report::quantity::with_unit;
+use maud::{Markup, html};
 use serde_json::Value;
-use std::fmt::Write;
 
 /// Verdict and warnings.
 pub fn verdict(runs: &[RunData]) -> Option<Section> {
-    let cards: String = runs.iter().map(card).collect();
-    Section::new("verdict", "Verdict and warnings", cards + &judged(runs))
+    let cards = joined(runs.iter().map(card));
+    Section::new("verdict", "Verdict and warnings", joined([cards, judged(runs)]))
 }
 
 /// A run with its state and remarks.
-fn card(run: &RunData) -> String {
+fn card(run: &RunData) -> Markup {
     let remarks = remarks(run);
     let class = match run.state() {
         State::Passed if !remarks.is_empty() => "warned",
@@ -22,17 +22,16 @@ fn card(run: &RunData) -> String {
         State::Failed | State::Stopped => "failed",
         State::Interrupted | State::Running => "open",
     };
-    let mut out = format!("<div class=\"run {class}\">\n<h3>{}</h3>\n", escaped(&run.label));
-    let mut add =
-        |text: std::fmt::Arguments<'_>| out.write_fmt(text).expect("writing to a string does not fail");
-    add(format_args!("<p><strong>{}</strong> {}</p>\n", word(run), escaped(&sentence(run))));
-    if !remarks.is_empty() {
-        add(format_args!("<ul>\n"));
-        remarks.iter().for_each(|r| add(format_args!("<li>{}</li>\n", escaped(r))));
-        add(format_args!("</ul>\n"));
+    html! {
+        div class={ "run " (class) } {
+            "\n" h3 { (run.label) } "\n"
+            p { strong { (word(run)) } " " (sentence(run)) } "\n"
+            @if !remarks.is_empty() {
+                ul { "\n" @for remark in &remarks { li { (remark) } "\n" } } "\n"
+            }
+        }
+        "\n"
     }
-    add(format_args!("</div>\n"));
-    out
 }
 
 /// The verdict in a word.
@@ -134,7 +133,7 @@ fn remarks(run: &RunData) -> Vec<String> {
 }
 
 /// The accounts and the checks of validity with their limits.
-fn judged(runs: &[RunData]) -> String {
+fn judged(runs: &[RunData]) -> Markup {
     let several = runs.len() > 1;
     let mut rows = Vec::new();
     for run in runs {

@@ -2,7 +2,7 @@
 
 use super::overlay::{dominant, overlay};
 use crate::report::data::RunData;
-use crate::report::page::{Section, paragraph, plots};
+use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Plot, Side};
 use crate::results::tables::Table;
 use crate::scene::walls::{Wall, WallKind};
@@ -55,7 +55,7 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
         ),
         false => paragraph("Of each wall the component that varies most."),
     };
-    if html.is_empty() { None } else { Section::new("walls", "Walls", html + &note) }
+    if html.0.is_empty() { None } else { Section::new("walls", "Walls", joined([html, note])) }
 }
 
 /// Names of recorded walls.

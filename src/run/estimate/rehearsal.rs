@@ -71,7 +71,7 @@ pub fn rehearse(
     let moves = flows || job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| w.moves()));
     let begun = Instant::now();
     let clock = Clock::start(threads.unwrap_or_else(rayon::current_num_threads));
-    let timer = thread::spawn(move || {
+    let timer = thread::Builder::new().spawn(move || {
         let passes = |time| over.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
         let (mut on, most) = (true, if grows { GROWTH } else { PREPARATION });
         while on && begun.elapsed() < most * budget && come(&followed).is_none() {
@@ -93,6 +93,7 @@ pub fn rehearse(
             watched.request();
         }
     });
+    let timer = timer.map_err(Failure::thread)?;
     let options = Options {
         out: Some(folder.0.clone()),
         threads,

@@ -111,28 +111,6 @@ fn absurd_sizes_are_rejected_at_once() {
     trackbed(["check", &scene].into_iter().chain(sets)).good();
 }
 
-/// Without file handles a run names these, not another run.
-#[test]
-fn missing_file_handles_are_named() {
-    let folder = Folder::new("handles");
-    let scene = repository().join("inputs/grains/box.toml");
-    for handles in [4, 5] {
-        let out = folder.join(&format!("out_{handles}"));
-        let limit = format!("ulimit -n {handles}; exec \"$0\" \"$@\"");
-        let mut command = Command::new("sh");
-        command
-            .args(["-c", &limit, env!("CARGO_BIN_EXE_trackbed"), "run"])
-            .arg(&scene)
-            .arg("--out")
-            .arg(&out);
-        let output = command.args(["--set", "time.end=0.001", "--quiet"]).output().unwrap();
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert!(!text.contains("in use by process"), "{handles}: {text}");
-        assert!(matches!(output.status.code(), Some(0..=2)), "{handles}: {:?} {text}", output.status);
-        assert!(output.status.success() || text.contains("Too many open files"), "{handles}: {text}");
-    }
-}
-
 /// F3: steps that would never end.
 #[test]
 fn runs_without_end_are_refused() {
