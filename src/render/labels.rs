@@ -1,10 +1,6 @@
 //! Names and units of fields as people read them, and numbers of legends.
 
-use crate::write::BODY_FIELDS;
-
-/// Fields of grains that are made from others: name, label, unit.
-const MADE: [(&str, &str, &str); 3] =
-    [("speed", "Speed", "m/s"), ("diameter", "Diameter", "m"), ("piece", "Piece", "")];
+use crate::write::body_field;
 
 /// Fields of the solid: name, label.
 const SOLID: [(&str, &str); 15] = [
@@ -27,12 +23,7 @@ const SOLID: [(&str, &str); 15] = [
 
 /// Label and unit of a field of grains.
 pub fn grains(field: &str) -> (String, &'static str) {
-    let made = MADE.iter().copied().find(|made| made.0 == field);
-    let known = made.or_else(|| {
-        let field = BODY_FIELDS.iter().find(|known| known.name == field)?;
-        Some((field.name, field.label, field.unit))
-    });
-    known.map_or_else(|| (field.to_string(), ""), |(_, label, unit)| (label.to_string(), unit))
+    body_field(field).map_or_else(|| (field.to_string(), ""), |known| (known.label.to_string(), known.unit))
 }
 
 /// Label and unit of a field of the solid.

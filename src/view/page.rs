@@ -3,6 +3,7 @@
 //! Modules name each other by bare names, which an import map resolves to `data:` addresses: the same text works from a
 //! server and from a disk, where a browser loads no second file.
 
+use crate::write::{BODY_FIELDS, MADE_FIELDS};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
@@ -96,15 +97,17 @@ fn about() -> Markup {
     }
 }
 
-/// The import map of the modules.
+/// The import map of the modules; the module `fields` has labels and units of the fields of grains.
 fn imports() -> Value {
-    let addresses: serde_json::Map<String, Value> = MODULES
-        .iter()
-        .map(|(name, text)| {
-            let address = format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text));
-            (name.to_string(), json!(address))
-        })
+    let all = BODY_FIELDS.iter().chain(&MADE_FIELDS);
+    let fields: serde_json::Map<String, Value> = all
+        .map(|field| (field.name.to_string(), json!({ "label": field.label, "unit": field.unit })))
         .collect();
+    let fields = format!("export const FIELDS = {};", Value::from(fields));
+    let address = |text: &str| json!(format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text)));
+    let modules = MODULES.iter().map(|(name, text)| (name.to_string(), address(text)));
+    let addresses: serde_json::Map<String, Value> =
+        modules.chain([("fields".to_string(), address(&fields))]).collect();
     json!({ "imports": addresses })
 }
 

@@ -1,4 +1,4 @@
-//! The fields of bodies in frames. A new one is a row here, and an arm of `values` in `run/frames.rs`.
+//! The fields of bodies in frames, pictures and the viewer. A new one is a row here, and an arm of `values` in `run/frames.rs`.
 
 /// When a frame has a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,18 @@ pub const BODY_FIELDS: [BodyField; 15] = [
     field("broken_bonds", "Broken bonds", "", OnRequest),
     field("broken_by_shear", "Bonds broken by shear", "", OnRequest),
 ];
+
+/// Fields that pictures make of those of the files.
+pub const MADE_FIELDS: [BodyField; 3] = [
+    field("speed", "Speed", "m/s", Always),
+    field("diameter", "Diameter", "m", Always),
+    field("piece", "Piece", "", Always),
+];
+
+/// A field of files or pictures by its name.
+pub fn body_field(name: &str) -> Option<&'static BodyField> {
+    BODY_FIELDS.iter().chain(&MADE_FIELDS).find(|field| field.name == name)
+}
 
 const fn field(name: &'static str, label: &'static str, unit: &'static str, written: Written) -> BodyField {
     BodyField { name, label, unit, written }

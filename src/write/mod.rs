@@ -34,7 +34,7 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
-pub use body_fields::{BODY_FIELDS, BodyField, Written, body_fields};
+pub use body_fields::{BODY_FIELDS, BodyField, MADE_FIELDS, Written, body_field, body_fields};
 pub use choice::{Choice, SOLID_EXTRA, SOLID_FIELDS};
 pub use error::WriteError;
 pub use frame::{ChainFrame, Frame, GrainFrame, NO_BODY, SolidFrame, Values, WallFrame, WallKind};

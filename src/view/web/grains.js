@@ -1,25 +1,15 @@
 // Grains of a frame: places of all spheres from those of their bodies, colours, removal by the section.
 import * as THREE from 'three';
+import { FIELDS } from 'fields';
 import { groupTexture, mapTexture, pieceTexture, rgb } from 'colours';
 import { Spheres } from 'spheres';
 
 /** Number of the kind in pictures for picking. */
 export const GRAIN = 1;
 
-/** Units of the fields that the program writes. */
-const UNITS = {
-  speed: 'm/s', diameter: 'm', mean_stress: 'Pa', force: 'N', spin: 'rad/s', coordination: '', fragment: '', part: '',
-  displacement: 'm',
-};
-
-/** What the user reads. */
-const LABELS = {
-  speed: 'Speed', diameter: 'Diameter', mean_stress: 'Mean stress', force: 'Contact force', spin: 'Spin',
-  coordination: 'Coordination', fragment: 'Fragment', displacement: 'Displacement since the reference frame', part: 'Group', piece: 'Piece',
-};
-
-export const label = (field) => LABELS[field] ?? field;
-export const unit = (field) => UNITS[field] ?? '';
+/** What the user reads of a field, and its unit. */
+export const label = (field) => FIELDS[field]?.label ?? field;
+export const unit = (field) => FIELDS[field]?.unit ?? '';
 
 export class Grains {
   constructor() {
