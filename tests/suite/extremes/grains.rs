@@ -163,7 +163,9 @@ fn restitution() -> Row {
             + &time(if e < 0.1 { 0.1 } else { 0.01 }, 1000)
     };
     for e in [1e-2, 0.1, 0.5, 1.0] {
-        let case = Case::run(&text(e), &[]).good();
+        // With the default steps the balance of such an impact is off by 0.3 to 3 %, by where in a step it begins.
+        let shorter: &[&str] = if e < 0.5 { &["time.grain_step_fraction=0.4"] } else { &[] };
+        let case = Case::run(&text(e), shorter).good();
         errors.push((case.velocity("ball", 0.1)[2] - e).abs());
         assert!(case.value("/energy/largest_relative_error") < 0.01);
     }
@@ -181,7 +183,8 @@ fn restitution() -> Row {
     Row::new(
         "0.01, 0.1, 0.5, 1; 1e-3; 1e-4; 0, 9e-5, 1 + 1e-9",
         format!(
-            "right from 0.01: speed after the impact off by {} of that before; 1e-3 warned: speed right, energy account of a \
+            "right from 0.01: speed after the impact off by {} of that before, energy account within 1 %, below 0.5 with \
+             `grain_step_fraction = 0.4` (0.3 to 3 % with the default, by where in a step the impact begins); 1e-3 warned: speed right, energy account of a \
              single impact off by {} %; 1e-4 stopped by that account; outside 1e-4 to 1 refused: `material.0.restitution`",
             figures(&errors),
             figure(100.0 * account)
