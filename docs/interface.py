@@ -7,9 +7,15 @@ Linear systems drawn at random: a solid of 1 to 5 degrees of freedom with a full
 contacts, bodies of one or several contacts whose masses are 0.01 to 1000, contacts undamped, damped alike, damped at random or in part.
 The window is as long as W, D and Omega allow (docs/guide/exchange.md, "how long a window"). One window of the predicted scheme is a linear
 map; printed is the largest growth per window over all systems, less 1.
+
+Then one node and one body on a tangential spring, which is a sum of velocities: its growth per window by what the spring feels between
+windows: nothing, the jump of the surface, the jump and half a sub-step of the change of velocity; and of a spring of positions.
 """
 
 import numpy as np
+
+# What a tangential spring feels of the surface between windows.
+FEELS = ("nothing", "jump", "jump, half step", "positions")
 
 
 def window(solid, contacts, bodies, dt, theta, steps):
@@ -73,12 +79,40 @@ def growth(limits, theta, count=300):
     return worst
 
 
+def summed(feels, mass, dt, steps, windows=4000):
+    """Growth per window of a node (mass 1, spring 0.3 below, theta 1/2) and a body on a spring 1 that feels `feels`."""
+    h, u, v, y, w, spring, before, jump = dt / steps, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0
+    sizes = []
+    for _ in range(windows):
+        impulse = 0.0
+        for k in range(steps):
+            if k == 0 and feels in ("jump", "jump, half step"):
+                spring -= jump
+            if k == 0 and feels == "jump, half step":
+                spring -= 0.5 * h * (before - v)
+            spring = y - (u + v * (k + 0.5) * h) if feels == "positions" else spring + (w - v) * h
+            impulse += h * spring
+            w -= h * spring / mass
+            y += h * w
+        change = (impulse / dt - 0.3 * (u + 0.5 * dt * v)) / (2 / dt + 0.15 * dt)
+        end = u + dt * (v + change)
+        jump, before, u, v = end - u - v * dt, v, end, v + 2 * change
+        sizes.append(abs(y) + abs(u) + abs(v) + abs(w))
+    quarter = windows // 4
+    return np.log(max(sizes[3 * quarter :]) / max(sizes[quarter : 2 * quarter])) / (2 * quarter)
+
+
 def main():
     print("  W   Omega  theta covered |", "  ".join(f"theta {t:5.3f}" for t in (0.5, 0.51, 0.52, 0.55, 0.6)))
     for w in (0.2, 0.5, 1.0):
         for omega in (0.3, 0.5, 0.8, 1.0):
             row = "  ".join(f"{growth((w, 1.0, omega), t):11.0e}" for t in (0.5, 0.51, 0.52, 0.55, 0.6))
             print(f"{w:4.1f} {omega:6.1f} {0.5 + omega**2 / 24:12.4f}   |", row)
+    print("steps  mass |", "  ".join(f"{feels:>15s}" for feels in FEELS))
+    for steps in (1, 2, 8):
+        for mass in (0.03, 0.3, 3.0):
+            row = "  ".join(f"{summed(feels, mass, 0.1 if mass < 0.1 else 0.3, steps):15.0e}" for feels in FEELS)
+            print(f"{steps:5d} {mass:5.2f} |", row)
 
 
 if __name__ == "__main__":

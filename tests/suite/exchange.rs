@@ -350,8 +350,9 @@ fn at_rest(scene: &str, set: &[&str]) -> (Value, [Vec<f64>; 2]) {
 }
 
 /// Stones settled in a box on soft ground, and a ball where discs are cut by the border: they come to rest
-/// with kinetic energies below 1e-6 J. With windows of one contact they shake the ground for ever (1e-4 J). Right values: the same scenes with
-/// `substeps = 1`.
+/// with kinetic energies below 1e-6 J. With windows of one contact they shake the ground for ever (1e-4 J); loose stones on ground without any
+/// damping did so while tangential springs did not follow the corrections of the surface (8e-3 J unaccounted for after 0.9 s). Right values:
+/// the same scenes with `substeps = 1`.
 #[test]
 fn beds_on_soft_ground_come_to_rest() {
     let bed = r#"
@@ -374,12 +375,15 @@ coupling = { material = "w", substeps = "auto", transfer = TRANSFER }
 solid.gravity = false
 solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
 "#;
+    let loose =
+        bed.replace("count = 60", "count = 40").replace("damping_ratio = 0.03", "damping_ratio = 0.0");
     let undamped = "friction = 0.6\nrestitution = 0.3\n";
     let damped = format!("{undamped}rolling_friction = 0.1\ntangential_damping_ratio = 1\n");
-    for (name, text, size, transfer, contact) in [
-        ("bed under wide discs", bed, "0.6", "{ spread_factor = 2.0 }", undamped),
-        ("bed under discs", bed, "0.6", "{ spread_factor = 1.0 }", undamped),
-        ("ball at a corner", ball, "1.0", "{ spread = \"50 mm\" }", &damped),
+    for (name, text, size, transfer, contact, divided) in [
+        ("bed under wide discs", bed, "0.6", "{ spread_factor = 2.0 }", undamped, true),
+        ("bed under discs", bed, "0.6", "{ spread_factor = 1.0 }", undamped, true),
+        ("ball at a corner", ball, "1.0", "{ spread = \"50 mm\" }", &damped, true),
+        ("loose stones", &loose, "0.6", "\"point\"", undamped, false),
     ] {
         let side = format!("lines = [0, {size}], counts = [3]");
         let soft = ground([&side, &side, "lines = [-0.5, 0], counts = [2]"], "20 MPa", "2 MN/m", contact);
@@ -391,7 +395,8 @@ solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
             kinetic[0], kinetic[1], c["division"], c["theta"], c["interface"]
         );
         assert!(kinetic[0] < 1e-6 && kinetic[1] < 1e-6, "{name}: {kinetic:?}");
-        assert!(number(c, "/division") > 1.0, "{name}: {c:#}");
+        assert_eq!(number(c, "/division") > 1.0, divided, "{name}: {c:#}");
+        assert!(divided || number(&s, "/energy/largest_error") < 1e-4, "{name}: {:#}", s["energy"]);
     }
 }
 

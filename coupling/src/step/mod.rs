@@ -10,6 +10,10 @@
 //! 3. the nodal impulses, divided by Δt, load the solid for one implicit step with the window's mean force (see
 //!    [`trackbed_fem::window`]), so that the momentum given by the grains is the momentum received by the solid.
 //!
+//! A window begins where the solid is, not where the window before left the surface. Normal springs follow from positions;
+//! tangential springs, sums of velocities, are displaced by this correction in the first step of the grains. Without it they follow
+//! the surface late by θ Δt, a dashpot of −θ Δt Kₜ.
+//!
 //! Why the middle: the leapfrog's velocities are those of half a step before its places, and the window begins where they are. A
 //! surface taken at the start of each grain step would answer half a step late, and gain ½ dt ∫ K v² dt at a contact K.
 //!

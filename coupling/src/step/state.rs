@@ -32,6 +32,9 @@ pub struct State {
     pub(super) spent: Spent,
     /// Velocity that the surface went on with in the last window [m/s], shape `[3·nodes]`; empty before the first.
     pub(super) rate: Vec<f64>,
+    /// Displacement at the end of the last window less the one that its rate predicted [m], shape `[3·nodes]`; empty before the first and for
+    /// the lagged scheme.
+    pub(super) correction: Vec<f64>,
     /// Repeated windows.
     pub passes: Passes,
     /// Mean contact load of the last window and of the one before [N], shape `[3·nodes]`; empty but for the lagged scheme.
@@ -55,6 +58,7 @@ pub struct Work<B = dem::Work> {
     pub(super) other_load: Vec<f64>,
     pub(super) before: fem::state::State,
     pub(super) rate: Vec<f64>,
+    pub(super) correction: Vec<f64>,
     pub(super) applied: Vec<dem::AppliedForce>,
     pub(super) accelerator: Accelerator,
     pub(super) stiffened: Stiffened,
@@ -70,6 +74,7 @@ impl State {
             audit: TransferAudit::default(),
             spent: Spent::default(),
             rate: Vec::new(),
+            correction: Vec::new(),
             passes: Passes::default(),
             lagged: Default::default(),
             held: Vec::new(),
@@ -128,6 +133,7 @@ impl<B: dem::BackEnd> Work<B> {
             other_load: vec![0.0; n],
             before: fem::state::State { points: Default::default(), ..state.solid.clone() },
             rate: vec![0.0; n],
+            correction: Vec::new(),
             applied: Vec::new(),
             accelerator: Accelerator::default(),
             stiffened: Stiffened::default(),

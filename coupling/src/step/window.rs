@@ -48,9 +48,11 @@ pub fn step<B: BackEnd>(
     state.passes.passes += u64::from(passes);
     book(model, state, work, &audit);
     // The surface of the next window begins where the solid is, not where this window left it.
-    let (u, before, rate) = (&state.solid.u, &work.before.u, &work.rate);
+    state.correction.clear();
+    let motion = state.solid.u.iter().zip(&work.before.u).zip(&work.rate);
+    state.correction.extend(motion.map(|((u, before), rate)| u - before - rate * window));
     let jump = work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
-    let jump = jump.fold(0.0_f64, |m, i| m.max((u[i] - before[i] - rate[i] * window).abs()));
+    let jump = jump.fold(0.0_f64, |m, i| m.max(state.correction[i].abs()));
     state.grains.allow_for_jump(work.surface.reach_of(2.0 * jump));
     Ok(())
 }
@@ -172,6 +174,7 @@ fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), 
         reference: &model.reference,
         rate: &work.rate,
         velocity,
+        correction: (!work.correction.is_empty()).then_some(&work.correction),
         duration: model.window(),
     };
     work.surface.begin(model.solid.mesh(), &motion);
@@ -182,6 +185,19 @@ fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), 
             let element = model.solid.mesh().element_ids[element];
             Err(StepError::Folded { element, time: work.before.time })
         }
+    }
+}
+
+/// What tangential springs feel at the first step beside the rate of this window. Between the middles of the last step and of the first one the
+/// surface moves half a step with the old rate, by the correction, and half a step with the new one; the spring of that step takes
+/// the new rate for all of it.
+fn correct<B>(state: &State, work: &mut Work<B>) {
+    work.correction.clear();
+    let half = state.grains.kick() - 0.5 * state.grains.dt();
+    if state.rate.len() == state.correction.len() {
+        let rates = state.rate.iter().zip(&work.rate);
+        let all = state.correction.iter().zip(rates);
+        work.correction.extend(all.map(|(jump, (old, new))| jump + (old - new) * half));
     }
 }
 
@@ -197,10 +213,14 @@ fn grains<B: BackEnd>(
         stability::divide(&model.grains, &mut state.grains, model.window(), most)
     };
     let dt = state.grains.dt();
+    correct(state, work);
     begin(model, state, work)?;
     work.transfer.begin_window();
     for k in 0..substeps {
         work.surface.advance((f64::from(k) + 0.5) * dt);
+        if k == 1 {
+            work.surface.end_correction();
+        }
         work.applied.clear();
         applied(state.grains.time, &state.grains, &mut work.applied);
         // The solid gets what the grains get, also in the step in which their length changes.

@@ -44,6 +44,8 @@ pub struct SolidSurface {
     rate: Vec<[f64; 3]>,
     /// Velocity at the start of the window and its change over it, where it is not the rate.
     velocity: Option<[Vec<[f64; 3]>; 2]>,
+    /// Displacement of the nodes at the start of the window that no velocity contains [m]; empty where there is none or it has been applied.
+    correction: Vec<[f64; 3]>,
     /// The faces at the start of the window, and their rates.
     forms: Vec<[Form; 2]>,
     moving: bool,
@@ -70,6 +72,8 @@ pub struct Motion<'a> {
     pub rate: &'a [f64],
     /// Velocity at the start and at the end that damping and friction see [m/s]; the rate where it is none.
     pub velocity: Option<[&'a [f64]; 2]>,
+    /// Displacement that tangential springs feel in the first step beside its rate [m].
+    pub correction: Option<&'a [f64]>,
     /// Length of the window [s].
     pub duration: f64,
 }
@@ -95,6 +99,7 @@ impl SolidSurface {
             shape: start.clone(),
             rate: vec![[0.0; 3]; start.len()],
             velocity: None,
+            correction: Vec::new(),
             forms,
             moving: false,
             tau: 0.0,
@@ -242,7 +247,10 @@ impl SolidSurface {
     /// Begins a window of `duration` [s]: nodes at X + (u − reference), moving with `v`. All arrays have shape
     /// `[3·nodes]` of the solid; `reference` is the displacement in the shape that the mesh file describes.
     pub fn begin_window(&mut self, mesh: &Mesh, u: &[f64], reference: &[f64], v: &[f64], duration: f64) {
-        self.begin(mesh, &Motion { start: u, reference, rate: v, velocity: None, duration });
+        self.begin(
+            mesh,
+            &Motion { start: u, reference, rate: v, velocity: None, correction: None, duration },
+        );
     }
 
     /// Begins a window in which the nodes of the solid move as given.
@@ -271,6 +279,12 @@ impl SolidSurface {
             let change = last.iter().zip(&first).map(|(b, a)| [0, 1, 2].map(|d| b[d] - a[d])).collect();
             [first, change]
         });
+        self.correction.clear();
+        if let Some(correction) = motion.correction {
+            self.scratch.iter_mut().zip(&self.nodes).for_each(|(s, &n)| *s = at(correction, n));
+            self.correction.resize(self.nodes.len(), [0.0; 3]);
+            smooth(self.spread.as_ref(), &self.scratch, &mut self.correction);
+        }
         // The absolute sum of the shape functions is at most 3 (8 nodes, at the centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
         self.max_speed = 3.0 * speed;
         self.moving = speed > 0.0;
@@ -291,6 +305,11 @@ impl SolidSurface {
             }
         }
         self.tree.refit(&self.boxes);
+    }
+
+    /// Ends the correction of the start: springs have felt it.
+    pub(crate) fn end_correction(&mut self) {
+        self.correction.clear();
     }
 
     /// Moves the nodes to time `tau` [s] after the start of the window.
@@ -396,6 +415,17 @@ impl Surface for SolidSurface {
             Location::Corner(c) => Feature::Vertex(nodes[c as usize]),
         };
         PatchPoint { point: closest.point, normal: closest.normal, velocity, local: closest.natural, feature }
+    }
+
+    fn correction(&self, patch: u32, local: [f64; 2]) -> Option<[f64; 3]> {
+        (!self.correction.is_empty()).then(|| {
+            let nodes = self.face_nodes[patch as usize];
+            face::interpolate(self.shape(patch), &nodes.map(|n| self.correction[n as usize]), local)
+        })
+    }
+
+    fn vertex_correction(&self, vertex: u32) -> Option<[f64; 3]> {
+        self.correction.get(vertex as usize).copied()
     }
 
     fn vertex(&self, vertex: u32) -> Option<[Vec3; 2]> {

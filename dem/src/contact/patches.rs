@@ -424,6 +424,9 @@ fn find<S: Surface>(
                 let partner = (against.partner)(t.patch);
                 tally.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }
+            if let Some(way) = surface.correction(t.patch, t.closest.local) {
+                contact.history.displace(&way.into(), &contact.normal);
+            }
             forces.push(input(a, contact, t.geometry.radius, t.closest.local));
         }
     }

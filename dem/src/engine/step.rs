@@ -115,6 +115,9 @@ fn sheet<S: Surface>(
         *corner = surface.vertex(k as u32).ok_or(StepError::SurfaceMesh)?;
     }
     model.sheet.now(&state.sheet, 0.0, &mut work.sheet);
+    if surface.vertex_correction(0).is_some() {
+        model.sheet.correct(|v| surface.vertex_correction(v).map(crate::base::Vec3::from), &mut work.sheet);
+    }
     Ok(())
 }
 

@@ -43,6 +43,14 @@ impl History {
         self.rate == FRESH
     }
 
+    /// Moves the partner of the tangential spring by `way` [m] where no step has: the part across `normal` counts.
+    #[inline(always)]
+    pub(crate) fn displace(&mut self, way: &Vec3, normal: &Vec3) {
+        if !self.is_fresh() {
+            self.spring -= way - normal * normal.dot(way);
+        }
+    }
+
     /// The same contact seen from the other partner. A twist has the same sense from both sides.
     pub(crate) fn turned(&self) -> History {
         if self.is_fresh() {

@@ -34,6 +34,8 @@ pub(crate) struct SheetFacet {
     pub facet: Facet,
     /// Velocities of its corners [m/s].
     pub velocity: [Vec3; 3],
+    /// Displacements of its corners that their velocities do not contain [m].
+    pub correction: Option<[Vec3; 3]>,
 }
 
 /// Where a force acts on a triangle: natural coordinates, the point of the triangle there [m], and the way from it to the force [m].
@@ -64,8 +66,19 @@ impl Sheet {
         out.clear();
         out.extend(self.facets.iter().zip(&self.triangles).map(|(rest, t)| {
             let now = t.map(|v| corners[v as usize]);
-            SheetFacet { facet: rest.at(now.map(|[x, v]| x - v * back)), velocity: now.map(|[_, v]| v) }
+            SheetFacet {
+                facet: rest.at(now.map(|[x, v]| x - v * back)),
+                velocity: now.map(|[_, v]| v),
+                correction: None,
+            }
         }));
+    }
+
+    /// Gives triangles the displacements of their corners that no velocity contains [m].
+    pub fn correct(&self, of: impl Fn(u32) -> Option<Vec3>, out: &mut [SheetFacet]) {
+        for (facet, t) in out.iter_mut().zip(&self.triangles) {
+            facet.correction = of(t[0]).zip(of(t[1])).zip(of(t[2])).map(|((a, b), c)| [a, b, c]);
+        }
     }
 }
 
@@ -89,12 +102,22 @@ impl SheetFacet {
 
     /// Velocity at a foot, and the turn [rad/s].
     pub fn motion(&self, foot: &Foot) -> (Vec3, Vec3) {
-        let [a, b, c] = self.velocity;
+        self.linear(&self.velocity, foot)
+    }
+
+    /// Displacement at a foot that no velocity contains [m].
+    pub fn correction(&self, foot: &Foot) -> Option<Vec3> {
+        self.correction.as_ref().map(|corners| self.linear(corners, foot).0)
+    }
+
+    /// A field of the corners at a foot, and its turn.
+    fn linear(&self, corners: &[Vec3; 3], foot: &Foot) -> (Vec3, Vec3) {
+        let &[a, b, c] = corners;
         if a == Vec3::zeros() && b == a && c == a {
             return (a, a);
         }
         let [s, t] = foot.local;
-        let spin = turn(&self.facet.corners, &self.velocity);
+        let spin = turn(&self.facet.corners, corners);
         (a * (1.0 - s - t) + b * s + c * t + spin.cross(&foot.aside), spin)
     }
 }

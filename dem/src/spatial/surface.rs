@@ -137,6 +137,17 @@ pub trait Surface: Sync {
         None
     }
 
+    /// Displacement [m] of a point of `patch` since the last step that its velocity does not contain: tangential springs are shortened by it.
+    /// `None` where velocities tell the whole motion.
+    fn correction(&self, _patch: u32, _local: [f64; 2]) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// The same of a vertex.
+    fn vertex_correction(&self, _vertex: u32) -> Option<[f64; 3]> {
+        None
+    }
+
     /// Whether there is nothing to touch.
     fn is_empty(&self) -> bool {
         false

@@ -21,7 +21,7 @@ use std::io::{self, Write};
 /// First line of a checkpoint, with the number of its form.
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
 /// The form that this program writes and reads.
-pub(super) const FORM: u32 = 16;
+pub(super) const FORM: u32 = 17;
 /// Bytes of the checksum at the end.
 pub(super) const CHECKSUM: usize = 8;
 /// Bytes that are gathered before they are summed and written.

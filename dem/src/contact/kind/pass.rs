@@ -423,6 +423,9 @@ impl<K: PairKind> Of<K> {
         let (own, its) =
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
         *books.friction += weigh(setting.laws, materials, g, memory, weight);
+        if let Some(displacement) = K::Second::correction(now, j, &g.point) {
+            memory.history.displace(&displacement, &g.normal);
+        }
         let ends = (&own, &its);
         let friction = Self::scar(now, b, [i, other as u32, j]).map(|s| s.friction);
         let (before, history) = (memory.history, &mut memory.history);

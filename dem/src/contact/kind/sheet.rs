@@ -92,6 +92,11 @@ impl Side for SheetFacets {
         PointMotion::of_whole(&velocity, &spin, Vec3::zeros(), 0.0)
     }
 
+    fn correction(scene: &(impl Scene + ?Sized), number: u32, point: &Vec3) -> Option<Vec3> {
+        let facet = Self::view(scene, 0, number);
+        facet.correction.is_some().then(|| facet.correction(&facet.foot(point))).flatten()
+    }
+
     #[inline(always)]
     fn material(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> u32 {
         scene.sheet().material(number)

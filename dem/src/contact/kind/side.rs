@@ -50,6 +50,11 @@ pub(crate) trait Side {
     /// Block and number after a new order of the bodies; `None` where the body does not stay.
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]>;
 
+    /// Displacement at a point that no velocity contains [m] ([`Surface::correction`](crate::spatial::surface::Surface::correction)).
+    fn correction(_scene: &(impl Scene + ?Sized), _number: u32, _point: &Vec3) -> Option<Vec3> {
+        None
+    }
+
     /// Motion at a point.
     #[inline(always)]
     fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
