@@ -114,7 +114,7 @@ fn window(model: &dem::Model, interval: f64) -> f64 {
 const STEPS: f64 = 64.0;
 
 /// The longest round window within the bounds [s] that an interval of the history [s] has about a whole number of; for close rows
-/// that none fits, a part of the interval, but for a first step at least.
+/// that only far shorter ones fit, whole first steps in about a part of the interval.
 fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     let decade = libm::floor(libm::log10(longest)) as i32;
     let round = [0, -1].into_iter().flat_map(|less| {
@@ -127,8 +127,9 @@ fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
         let fits = rows >= 1.0 && (interval / (rows * window) - 1.0).abs() <= MISFIT;
         fits && (shortest..=longest).contains(window)
     };
-    let part = || (interval / (interval / longest).ceil().max(1.0)).max(shortest);
-    round.into_iter().find(fits).unwrap_or_else(part)
+    let part = interval / (interval / longest).ceil().max(1.0);
+    let whole = || shortest * (part / shortest).round().max(1.0);
+    round.into_iter().find(fits).filter(|window| 2.0 * window >= part).unwrap_or_else(whole)
 }
 
 /// Largest deviation of the interval between rows from the one asked for, as a share.
@@ -211,10 +212,9 @@ mod tests {
         {
             assert_eq!(window(longest, 1e4 * round), round);
         }
-        // Close rows: a part of their interval, but no shorter than a step.
+        // Close rows: a round part of their interval, or about a part in whole steps.
         assert_eq!(window(1.47e-4, 1e-4), 1e-4);
-        assert_eq!(window(1.47e-4, 3e-5), 1e-5);
-        assert_eq!(window(1e-3, 1.4e-3), 2e-4);
+        assert_eq!(window(6.4e-3, 1.7e-3), 17.0 * 1e-4);
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);
     }
 }
