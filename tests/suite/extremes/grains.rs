@@ -156,12 +156,13 @@ fn friction() -> Row {
 
 fn restitution() -> Row {
     let mut errors = Vec::new();
-    let text = |e: f64| {
+    let from = |height: f64, e: f64| {
         stone(&format!("weightless\nrestitution = {e:?}\n"))
-            + &ball("ball", [0.0, 0.0, 0.0105], 0.01, [0.0, 0.0, -1.0])
+            + &ball("ball", [0.0, 0.0, height], 0.01, [0.0, 0.0, -1.0])
             + &floor()
             + &time(if e < 0.1 { 0.1 } else { 0.01 }, 1000)
     };
+    let text = |e: f64| from(0.0105, e);
     for e in [1e-2, 0.1, 0.5, 1.0] {
         // With the default steps the balance of such an impact is off by 0.3 to 3 %, by where in a step it begins.
         let shorter: &[&str] = if e < 0.5 { &["time.grain_step_fraction=0.4"] } else { &[] };
@@ -170,12 +171,11 @@ fn restitution() -> Row {
         assert!(case.value("/energy/largest_relative_error") < 0.01);
     }
     assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
-    // The dashpot of the first steps is larger than the account can follow.
-    let sticky = Case::run(&text(1e-3), &[]).good();
-    assert!(
-        sticky.velocity("ball", 0.1)[2].abs() < 5e-3 && sticky.summary()["verdict"]["outcome"] == "warned"
-    );
-    let account = sticky.value("/energy/largest_relative_error");
+    // The dashpot of the first steps is larger than the account can follow, by where in a step the impact begins.
+    let sticky = [0.0105, 0.010_505, 0.010_51].map(|height| Case::run(&from(height, 1e-3), &[]).good());
+    assert!(sticky.iter().all(|case| case.velocity("ball", 0.1)[2].abs() < 5e-3));
+    assert!(sticky.iter().any(|case| case.summary()["verdict"]["outcome"] == "warned"));
+    let account = sticky.iter().map(|case| case.value("/energy/largest_relative_error")).fold(0.0, f64::max);
     Case::run(&text(1e-4), &[]).stopped("the energy account does not close");
     for e in [0.0, 9e-5, 1.0 + 1e-9] {
         Case::run(&text(e), &[]).refused("material.0.restitution: found ");
