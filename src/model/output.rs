@@ -62,7 +62,7 @@ impl OutputPlan {
         };
         let selected = |format: &&'static Format| {
             let shown = scene.solid.is_some() || !of_solid_alone(format);
-            shown && o.formats.get(format.key).copied().unwrap_or(format.default)
+            shown && o.format(format.key).unwrap_or(format.default)
         };
         Ok(OutputPlan {
             frames,
@@ -185,7 +185,7 @@ fn of_solid_alone(format: &Format) -> bool {
 fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), SceneError> {
     let formats = FORMATS.into_iter().filter(|format| of_solid_alone(format));
     let mut of_solid: Vec<(&str, bool)> =
-        formats.map(|format| (format.key, o.formats.contains_key(format.key))).collect();
+        formats.map(|format| (format.key, o.format(format.key).is_some())).collect();
     of_solid.push(("tables", o.tables.is_some()));
     let of_grains =
         [("packing", o.packing.is_some()), ("state", o.state.is_some()), ("chains", o.chains.is_some())];

@@ -1,17 +1,12 @@
-//! `[output]`: what a run writes. Beside the keys listed here it takes the key of every format of frames that the program
-//! has ([`crate::write::FORMATS`]).
+//! `[output]`: what a run writes.
 
 use super::units::{Quantity, Time};
-use crate::write::FORMATS;
 use schemars::JsonSchema;
-use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
-use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::LazyLock;
+use serde::Deserialize;
 
 /// What a run writes.
-#[derive(Clone, Debug, Default, JsonSchema)]
-#[schemars(deny_unknown_fields, transform = super::schema::formats)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Output {
     /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
     pub frames: Option<u32>,
@@ -37,13 +32,28 @@ pub struct Output {
     pub fields: Option<Vec<String>>,
     /// Last part of the run, with frames of its own.
     pub last: Option<Last>,
-    /// Formats of the frames by key: switched on or off.
-    #[schemars(skip)]
-    pub formats: BTreeMap<&'static str, bool>,
+    /// Write frames as VTK files with a series `results.pvd`; default true.
+    pub vtk: Option<bool>,
+    /// Write frames of the solid as Tecplot files; default false.
+    pub tecplot: Option<bool>,
+    /// Write all frames into VTKHDF files; default false.
+    pub vtkhdf: Option<bool>,
+}
+
+impl Output {
+    /// Whether a format of frames is switched on or off by its key.
+    pub fn format(&self, key: &str) -> Option<bool> {
+        match key {
+            "vtk" => self.vtk,
+            "tecplot" => self.tecplot,
+            "vtkhdf" => self.vtkhdf,
+            other => unreachable!("the format {other} has no key"),
+        }
+    }
 }
 
 /// Last part of a run, with frames of its own.
-#[derive(Clone, Copy, Debug, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Last {
     /// How long it is [s].
@@ -53,7 +63,7 @@ pub struct Last {
 }
 
 /// Contacts that the frames show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Chains {
     /// All of them.
@@ -61,77 +71,4 @@ pub enum Chains {
     All,
     /// Those with more than the mean normal force.
     Strong,
-}
-
-/// Every key of the table: its own, then those of the formats.
-static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let own = [
-        "frames",
-        "history_interval",
-        "frame_steps",
-        "history_steps",
-        "checkpoint",
-        "tables",
-        "packing",
-        "state",
-        "chains",
-        "fields",
-        "last",
-    ];
-    own.into_iter().chain(FORMATS.iter().map(|format| format.key)).collect()
-});
-
-/// One of [`KEYS`]. Refused here, an unknown key is named with its line.
-struct Key(&'static str);
-
-impl<'de> Deserialize<'de> for Key {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct KeyVisitor;
-        impl Visitor<'_> for KeyVisitor {
-            type Value = Key;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a key")
-            }
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<Key, E> {
-                let known = KEYS.iter().find(|key| **key == text);
-                known.map(|key| Key(key)).ok_or_else(|| E::unknown_field(text, &KEYS))
-            }
-        }
-        deserializer.deserialize_identifier(KeyVisitor)
-    }
-}
-
-impl<'de> Deserialize<'de> for Output {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OutputVisitor;
-        impl<'de> Visitor<'de> for OutputVisitor {
-            type Value = Output;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Output, A::Error> {
-                let mut output = Output::default();
-                while let Some(Key(key)) = map.next_key()? {
-                    match key {
-                        "frames" => output.frames = Some(map.next_value()?),
-                        "history_interval" => output.history_interval = Some(map.next_value()?),
-                        "frame_steps" => output.frame_steps = Some(map.next_value()?),
-                        "history_steps" => output.history_steps = Some(map.next_value()?),
-                        "checkpoint" => output.checkpoint = Some(map.next_value()?),
-                        "tables" => output.tables = Some(map.next_value()?),
-                        "packing" => output.packing = Some(map.next_value()?),
-                        "state" => output.state = Some(map.next_value()?),
-                        "chains" => output.chains = Some(map.next_value()?),
-                        "last" => output.last = Some(map.next_value()?),
-                        "fields" => output.fields = Some(map.next_value()?),
-                        format => {
-                            output.formats.insert(format, map.next_value()?);
-                        }
-                    }
-                }
-                Ok(output)
-            }
-        }
-        deserializer.deserialize_map(OutputVisitor)
-    }
 }

@@ -4,7 +4,6 @@ use super::Scene;
 use super::coupling::{SpreadTable, Substeps, TransferTable};
 use super::include;
 use super::units::{Dimension, Quantity};
-use crate::write::FORMATS;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -23,18 +22,6 @@ pub fn schema() -> Value {
     schema["if"] = json!({ "not": { "required": [include::KEY] } });
     schema["then"] = json!({ "properties": { "material": { "items": { "required": required } } } });
     schema
-}
-
-/// The keys that formats of frames add to `[output]`.
-pub(super) fn formats(schema: &mut Schema) {
-    for format in FORMATS {
-        let default = if format.default { "on" } else { "off" };
-        let key = json!({
-            "description": format!("Write frames in this format; {default} by default."),
-            "type": ["boolean", "null"],
-        });
-        schema.ensure_object()["properties"][format.key] = key;
-    }
 }
 
 impl<D: Dimension> JsonSchema for Quantity<D> {
