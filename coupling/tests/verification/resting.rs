@@ -105,12 +105,11 @@ fn swings(mut c: Coupled<'_>, theta: Option<f64>, windows: u64) -> ([f64; 2], In
     (largest, numbers, theta)
 }
 
-/// Balls on corners, sides and anywhere, light and heavy, on flat and curved ground of three stiffnesses: with the chosen θ kinetic
-/// energy falls over 2,500 windows, with θ = ½ it grows under most.
+/// Balls on corners, sides and anywhere, light and heavy, on flat and curved ground of three stiffnesses: kinetic energy falls over 2,500
+/// windows with the chosen θ, and in these windows with θ = ½ as well.
 #[test]
 fn undamped_ball_stays_at_rest() {
     let mut random = Scatter::new(11);
-    let mut grown = 0;
     let places = [[0.8, 0.2], [0.0, 0.0], [0.4, 0.2], [0.0, 0.0], [0.6, 0.2]];
     for case in 0..8 {
         let bend = if case % 2 == 0 { 0.0 } else { 0.05 };
@@ -127,6 +126,7 @@ fn undamped_ball_stays_at_rest() {
         let (held, ..) = swings(make(), Some(theta), 2500);
         let (free, ..) = swings(make(), Some(0.5), 2500);
         let growth = free[1] / free[0];
+        assert!(growth < 1.0, "{free:?}");
         println!(
             "{place:?}, {density:.0} kg/m3: W = {:.3}, D = {:.3}, phase {:.3}; theta = {theta}: kinetic energy x {:.1e}, theta = 0.5: x {growth:.1e}",
             numbers.stiffness,
@@ -136,9 +136,170 @@ fn undamped_ball_stays_at_rest() {
         );
         assert!(numbers.stiffness < 1.0 && numbers.damping < 1.0);
         assert!(held[1] < held[0], "{held:?}");
-        grown += usize::from(growth > 1.5);
     }
-    assert!(grown >= 3, "{grown} of 8");
+}
+
+/// A ball at rest drawn at random: ground flat or curved, a corner, side or face under it, all ratios of mass and stiffness.
+struct Draw {
+    bend: f64,
+    place: [f64; 2],
+    name: &'static str,
+    spread: Option<f64>,
+    young: f64,
+    stone: dem::Material,
+}
+
+impl Draw {
+    fn new(case: usize) -> Draw {
+        let mut random = Scatter::new(100 + case as u64);
+        let mut log = |low: f64, high: f64| low * (high / low).powf(0.5 * (1.0 + random.symmetric()));
+        let bend = if case % 2 == 0 { 0.0 } else { 0.05 };
+        // On curved ground on its crest, where a ball stays.
+        let (name, place) =
+            [("corner", [0.8, 0.2]), ("side", [0.6, 0.2]), ("face", [0.6, 0.1])][case / 2 % 3];
+        let place = if bend > 0.0 { [FRAC_PI_8, place[1]] } else { place };
+        let stone = dem::Material {
+            rolling_friction: 0.9,
+            tangential_damping_ratio: if case % 4 == 3 { 1.0 } else { 0.0 },
+            ..material(log(500.0, 2e4), log(3e5, 1e7), 2.0, log(0.1, 0.8))
+        };
+        let spread = (case / 6 % 2 == 1).then(|| log(0.05, 0.2));
+        Draw { bend, place, name, spread, young: log(1e7, 4e8), stone }
+    }
+
+    /// The ball in windows of `window` [s].
+    fn coupled<'a>(&self, solid: &'a fem::Model, window: f64) -> Coupled<'a> {
+        let [x, y] = self.place;
+        let mass = self.stone.density * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);
+        // The fastest swing of the ball alone takes 150 steps.
+        let fastest = (6.0 * self.stone.stiffness / mass).sqrt();
+        let substeps = (window * fastest * 25.0).ceil().max(4.0);
+        let surface = || match self.spread {
+            Some(radius) => top(solid).spread_over(radius),
+            None => top(solid),
+        };
+        let overlap = 9.81 * mass / self.stone.stiffness;
+        let ball = dem::BodyInput {
+            position: Vec3::new(x, y, touching_height(&surface(), self.place) - overlap),
+            velocity: Vec3::new(3e-4, 2e-4, 0.0),
+            ..Default::default()
+        };
+        let grains = dem::ModelInput {
+            materials: vec![self.stone.clone()],
+            shapes: vec![dem::Shape::Sphere { radius: RADIUS }],
+            bodies: vec![ball],
+            gravity: Vec3::new(0.0, 0.0, -9.81),
+            surface_material: Some(0),
+            time_step: dem::TimeStep::Fixed(window / substeps),
+            ..Default::default()
+        };
+        Coupled::with_surface(solid, grains, substeps as u32, surface())
+    }
+}
+
+/// Windows of one period of the slowest swing of the contact, at least four.
+fn period(numbers: &InterfaceNumbers) -> u64 {
+    let swing = numbers.phase.max(numbers.stiffness.min(1.0) / 3.0);
+    (2.0 * std::f64::consts::PI / swing).ceil().clamp(4.0, 60.0) as u64
+}
+
+/// Growth of amplitudes per window over the second half of `windows`; minus infinity of a system at rest, 1 of one that has grown beyond what
+/// weight and start explain.
+fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
+    c.model.theta = theta;
+    let surface = c.work.surface;
+    c.work = trackbed_coupling::step::Work::new(&c.model, &c.state, surface).unwrap();
+    let mut largest = [0.0_f64; 2];
+    for k in 1..=windows {
+        c.step(&[]);
+        let part = 4 * k / (windows + 1);
+        if part < 2 {
+            continue;
+        }
+        let stored = trackbed_coupling::step::stored(&c.model, &c.state);
+        let kinetic = stored.solid_kinetic + stored.grains_kinetic;
+        largest[part as usize - 2] = largest[part as usize - 2].max(kinetic);
+    }
+    let grains = &c.model.grains;
+    let (mass, stiffness) = (grains.mass(0), grains.contact_stiffness(0, 0).0);
+    let start = 0.5 * mass * 1.3e-7 + (9.81 * mass).powi(2) / stiffness;
+    match largest[1] {
+        // Rounding of places.
+        late if late < 1e-21 => f64::NEG_INFINITY,
+        late if late > 100.0 * start => 1.0,
+        late => 0.5 * (late / largest[0]).ln() / (0.25 * windows as f64),
+    }
+}
+
+/// Border of stability from both sides: windows of 0.7 to 3 times the limit (W = 1, D = 1, Ω = 0.85) under the θ of the limit. Growth per
+/// window over 100 periods of the contact, at the limit also over 10 and 1,000.
+fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    for case in cases {
+        let draw = Draw::new(case);
+        let solid = ground(draw.young, draw.bend);
+        let mut first = draw.coupled(&solid, 1e-5);
+        first.step(&[]);
+        let contacts = first.work.grains.surface_contacts().to_vec();
+        let mut interface = Interface::new(&solid, &first.work.surface);
+        let unit =
+            interface.numbers(&first.model.grains, &first.state.grains, &first.work.surface, &contacts);
+        let window =
+            (1.0 / unit.stiffness).min(1.0 / unit.damping.max(1e-9)).min(0.85 / unit.phase.max(1e-9));
+        let n = unit.at(window);
+        let theta = theta_for(n.phase);
+        let mut line = format!(
+            "border {case} {} {} {} | mass {:.3} kg, W {:.2} D {:.2} phase {:.2} theta {theta:.4} |",
+            draw.name,
+            if draw.bend > 0.0 { "curved" } else { "flat" },
+            if draw.spread.is_some() { "spread" } else { "point" },
+            first.model.grains.mass(0),
+            n.stiffness,
+            n.damping,
+            n.phase
+        );
+        for factor in [0.7, 0.9, 1.0, 1.1, 1.3, 2.0, 3.0] {
+            let rate = |periods: u64| {
+                let windows = (periods as f64 * period(&n) as f64 / factor) as u64;
+                growth(draw.coupled(&solid, factor * window), theta, windows)
+            };
+            let rates = if factor == 1.0 {
+                vec![rate(10), rate(periods[0]), rate(periods[1])]
+            } else {
+                vec![rate(periods[0])]
+            };
+            let list: Vec<String> = rates.iter().map(|r| format!("{r:.1e}")).collect();
+            line += &format!(" {factor}: {}", list.join(", "));
+            found.push([factor, *rates.last().expect("one at least")]);
+        }
+        println!("{line}");
+    }
+    found
+}
+
+/// Within the limits no ball shakes the ground.
+#[test]
+fn resting_balls_within_the_border_decay() {
+    for [factor, rate] in border(0..6, [30, 100]) {
+        assert!(factor > 1.0 || rate < 1e-5, "{rate:.1e} per window at {factor} of the limit");
+    }
+}
+
+/// The whole figure of the guide (docs/interface_border.py).
+#[test]
+#[ignore = "minutes"]
+fn border_from_both_sides_in_full() {
+    let found = border(0..24, [100, 1000]);
+    let grow =
+        |low: f64, high: f64| found.iter().filter(|[f, r]| *f >= low && *f <= high && *r > 1e-6).count();
+    println!(
+        "grow within the limit {}, at 1.1 to 2 {}, beyond {}",
+        grow(0.0, 1.0),
+        grow(1.05, 2.0),
+        grow(2.5, 9.0)
+    );
+    assert_eq!(grow(0.0, 1.0), 0);
+    assert!(grow(2.5, 9.0) > 0);
 }
 
 /// W of one contact is Δt √(K/m) with the mass of the point; n contacts at one point multiply W² and D by n; Ω of a ball is
