@@ -153,7 +153,7 @@ impl Draw {
     fn new(case: usize) -> Draw {
         let mut random = Scatter::new(100 + case as u64);
         let mut log = |low: f64, high: f64| low * (high / low).powf(0.5 * (1.0 + random.symmetric()));
-        let bend = if case % 2 == 0 { 0.0 } else { 0.05 };
+        let bend = if case.is_multiple_of(2) { 0.0 } else { 0.05 };
         // On curved ground on its crest, where a ball stays.
         let (name, place) =
             [("corner", [0.8, 0.2]), ("side", [0.6, 0.2]), ("face", [0.6, 0.1])][case / 2 % 3];
@@ -185,7 +185,7 @@ impl Draw {
             ..Default::default()
         };
         let grains = dem::ModelInput {
-            materials: vec![self.stone.clone()],
+            materials: vec![self.stone],
             shapes: vec![dem::Shape::Sphere { radius: RADIUS }],
             bodies: vec![ball],
             gravity: Vec3::new(0.0, 0.0, -9.81),
