@@ -3,6 +3,7 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 
 import scene_hashes
@@ -86,7 +87,9 @@ def limits(bench, rng):
         for words in commands if limit.startswith("-n") else commands[:-1]:
             bench.fresh("limited")
             wrap = ["sh", "-c", f'ulimit {limit}; exec "$0" "$@"']
-            codes = {0, 3, 127} if "-v" in limit else {1} if "-n" in limit else {0, 1, 2, 3, 130}
+            # At the limit of processor time the system ends whatever runs.
+            at_limit = {-signal.SIGKILL, -signal.SIGXCPU} if "-t" in limit else set()
+            codes = {0, 3, 127} if "-v" in limit else {1} if "-n" in limit else {0, 1, 2, 3, 130} | at_limit
             # With a backtrace asked for, which takes memory.
             env = {"RAYON_NUM_THREADS": "2", "RUST_BACKTRACE": "1"}
             code, said = bench.attempt(*words, wrap=wrap, codes=codes, env=env)
