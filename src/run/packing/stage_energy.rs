@@ -114,7 +114,9 @@ impl StageEnergy {
         };
         let next = stages.iter().skip(1).chain([&run]);
         let made = |(before, after): (&StageEnergy, &StageEnergy)| {
-            let energy = (after.springs[0] - before.springs[1]).max(0.0);
+            // The balance of tamping begins where its plate has pressed last and is taken away.
+            let pressed = after.stage.ends_with("tamping");
+            let energy = if pressed { 0.0 } else { (after.springs[0] - before.springs[1]).max(0.0) };
             (energy / after.turned_over.max(f64::MIN_POSITIVE), energy, after.stage.clone())
         };
         let (share, energy, stage) = stages.iter().zip(next).map(made).max_by(|a, b| a.0.total_cmp(&b.0))?;
