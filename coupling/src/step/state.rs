@@ -32,8 +32,7 @@ pub struct State {
     pub(super) spent: Spent,
     /// Velocity that the surface went on with in the last window [m/s], shape `[3·nodes]`; empty before the first.
     pub(super) rate: Vec<f64>,
-    /// Displacement at the end of the last window less the one that its rate predicted [m], shape `[3·nodes]`; empty before the first and for
-    /// the lagged scheme.
+    /// Displacement at the end of the last window less the one that its rate predicted [m], shape `[3·nodes]`; empty before the first.
     pub(super) correction: Vec<f64>,
     /// Repeated windows.
     pub passes: Passes,

@@ -218,15 +218,13 @@ fn grains<B: BackEnd>(
     work.transfer.begin_window();
     for k in 0..substeps {
         work.surface.advance((f64::from(k) + 0.5) * dt);
-        if k == 1 {
-            work.surface.end_correction();
-        }
         work.applied.clear();
         applied(state.grains.time, &state.grains, &mut work.applied);
         // The solid gets what the grains get, also in the step in which their length changes.
         let kick = state.grains.kick();
         work.grains.step(&model.grains, &mut state.grains, &work.surface, &work.applied)?;
         work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
+        work.surface.end_correction();
     }
     work.grains.download(&model.grains, &mut state.grains)?;
     work.contact_load.fill(0.0);

@@ -35,7 +35,7 @@ pub trait ContactLaw: Constants {
         step: R,
     ) -> LawOutput<R> {
         if R::RECORDS {
-            apart::<Self, R, ROLL>(law, touch, memory, on, step)
+            apart(|| Self::evaluate::<R, ROLL>(law, touch, memory, on, step))
         } else {
             Self::evaluate::<R, ROLL>(law, touch, memory, on, step)
         }
@@ -134,14 +134,9 @@ pub trait ContactLaw: Constants {
     }
 }
 
+/// A call that is not inlined.
 #[cold]
 #[inline(never)]
-fn apart<L: ContactLaw, R: Real, const ROLL: bool>(
-    law: &L::Lanes<R>,
-    touch: &LawInput<R>,
-    memory: &mut Memory<R>,
-    on: R::Mask,
-    step: R,
-) -> LawOutput<R> {
-    L::evaluate::<R, ROLL>(law, touch, memory, on, step)
+fn apart<T>(call: impl FnOnce() -> T) -> T {
+    call()
 }

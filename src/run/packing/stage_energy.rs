@@ -9,11 +9,11 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 
-/// Energy made over that turned over.
+/// Energy gained over the reference energy.
 const GAIN: Limits = Limits { warn: 0.01, fail: Some(0.2) };
-/// Error of the balance over the energy turned over: long steps count dashpots up to 7 % too high.
+/// Error of the balance over the reference energy: long steps count dashpots up to 8 % too high.
 const ERROR: Limits = Limits { warn: 0.1, fail: Some(0.5) };
-/// Energy of springs that a change of the contacts makes, over that turned over in the stage that begins with it.
+/// Energy that springs gain where one stage follows another, over the reference energy of the later one.
 const CHANGE: Limits = Limits { warn: 0.1, fail: Some(0.5) };
 
 /// Energy balance of a stage of packing.
@@ -86,7 +86,7 @@ impl StageEnergy {
     pub fn checks(stages: &[StageEnergy]) -> Vec<Check> {
         let worst = |of: fn(&StageEnergy) -> f64| stages.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let gain = worst(|stage| stage.gain).map(|worst| {
-            Check::new("energy made in a stage of packing over that turned over", worst.gain, GAIN, || {
+            Check::new("energy gained in a stage of packing over its reference energy", worst.gain, GAIN, || {
                 format!(
                     "{}: the grains have more energy at its end than at its start with the work of walls and forces; take a smaller \
                      time.grain_step_fraction",
@@ -97,7 +97,7 @@ impl StageEnergy {
         let error = worst(|stage| stage.relative_error).map(|worst| {
             Check::new("error of the energy balance of a stage of packing", worst.relative_error, ERROR, || {
                 let StageEnergy { stage, error, turned_over, .. } = worst;
-                format!("{stage}: {error:.3e} J of {turned_over:.3e} J turned over; take a smaller time.grain_step_fraction")
+                format!("{stage}: energy error {error:.3e} J of the reference energy {turned_over:.3e} J; reduce time.grain_step_fraction")
             })
         });
         gain.into_iter().chain(error).collect()
@@ -114,18 +114,21 @@ impl StageEnergy {
         };
         let next = stages.iter().skip(1).chain([&run]);
         let made = |(before, after): (&StageEnergy, &StageEnergy)| {
-            // The balance of tamping begins where its plate has pressed last and is taken away.
-            let pressed = after.stage.ends_with("tamping");
-            let energy = if pressed { 0.0 } else { (after.springs[0] - before.springs[1]).max(0.0) };
+            let energy = (after.springs[0] - before.springs[1]).max(0.0);
             (energy / after.turned_over.max(f64::MIN_POSITIVE), energy, after.stage.clone())
         };
         let (share, energy, stage) = stages.iter().zip(next).map(made).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(Check::new("energy made between stages of packing over that turned over", share, CHANGE, || {
-            format!(
-                "{stage}: its contacts hold {energy:.3e} J more at its start than at the end of the stage before, as overlaps of soft \
-                 contacts do in stiff ones; take stiffness_factor nearer to 1 in the stage before"
-            )
-        }))
+        Some(Check::new(
+            "energy gained between stages of packing over the reference energy",
+            share,
+            CHANGE,
+            || {
+                format!(
+                    "{stage}: contact springs hold {energy:.3e} J more at its start than at the end of the stage before, as soft contacts do when they \
+                 become stiff; raise stiffness_factor of the stage before"
+                )
+            },
+        ))
     }
 
     /// Notes the grains (numbers in the model) that are removed; returns a warning that names the fastest of those that

@@ -145,7 +145,7 @@ fn compact(
         Press::Tamping { .. } => {
             let start = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
             let new = |bodies: Vec<BodyInput>| new_bed(run, grains, &plan, bodies, surface);
-            tamp(start, &plan, &settled.all(), surface, new)?
+            tamp(start, &plan, settled, (&name, surface), new)?
         }
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
@@ -188,22 +188,28 @@ fn porosity(bed: &Bed<'_>, grains: usize, region: &BoxRegion) -> f64 {
     1.0 - solid / region.volume()
 }
 
-/// A plate presses at one place after the other; `bodies` are those of the bed before.
+/// A plate presses at one place after the other. Balances of the stage `name` are those of each press and of each rest after it; that of the
+/// last rest is the caller's.
 fn tamp<'b>(
     mut done: Pressed<'b>,
     plan: &CompactionPlan,
-    bodies: &[BodyInput],
-    surface: Option<&SolidSurface>,
+    settled: &mut Settled,
+    (name, surface): (&str, Option<&SolidSurface>),
     new: impl Fn(Vec<BodyInput>) -> Result<Bed<'b>, Failure>,
 ) -> Result<Pressed<'b>, Failure> {
     let Press::Tamping { plate, half, at, force, frequency, cycles } = &plan.press else { return Ok(done) };
-    for place in at {
+    let bodies = &settled.all();
+    for (k, place) in at.iter().enumerate() {
+        if k > 0 {
+            settled.energy.push(done.bed.energy(name)?);
+        }
         // A model with the plate for every place, and one without it to come to rest in.
         let mut all = done.bed.at_rest(bodies);
         let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
         all.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
         let mut pressed = new(all)?;
         bedding::press(&mut pressed, bodies.len(), *force, *frequency, *cycles)?;
+        settled.energy.push(pressed.energy(name)?);
         done.bed = new(pressed.at_rest(bodies))?;
         done.rested &= done.bed.rest(&plan.rest)?;
         done.steps += pressed.state.steps + done.bed.state.steps;
