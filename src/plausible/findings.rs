@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use std::fmt;
+use trackbed_dem::law::parameter::{Parameter, Typical};
 
 /// Factor beyond the usual range from which a value is implausible.
 const FAR: f64 = 30.0;
@@ -43,6 +44,12 @@ impl Usual {
     /// A range.
     pub const fn new(low: f64, high: f64, unit: &'static str) -> Usual {
         Usual { low, high, unit, zero: false }
+    }
+
+    /// The typical range of a parameter.
+    pub fn of<T>(parameter: &Parameter<T>) -> Usual {
+        let Typical { low, high, or_zero } = parameter.typical;
+        Usual { low, high, unit: parameter.unit, zero: or_zero }
     }
 
     /// The same with zero, which switches something off.

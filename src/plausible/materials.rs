@@ -1,28 +1,18 @@
 //! Constants of materials, of pairs of them, and of bonds.
 
 use super::findings::{Findings, Usual};
+use crate::model::grains::parameters;
 use crate::scene::Scene;
 use crate::scene::material::{GrainMaterial, PairContact};
+use trackbed_dem::PairOverride;
+use trackbed_dem::law::damping::Damping;
+use trackbed_dem::law::parameter::{self, Parameter};
 
-/// From light plastics to lead.
-const DENSITY: Usual = Usual::new(300.0, 12_000.0, "kg/m3");
-/// From soft models of small grains to blocks of rock of tens of metres.
-const STIFFNESS: Usual = Usual::new(10.0, 2e10, "N/m");
 /// From soft models to diamond.
 const YOUNG: Usual = Usual::new(1e4, 1.2e12, "Pa");
 const POISSON: Usual = Usual::or_zero(0.01, 0.495, "");
 /// From gas-like soils on a model scale to steel.
 const SOLID_YOUNG: Usual = Usual::new(1e5, 1e12, "Pa");
-const FRICTION: Usual = Usual::or_zero(0.01, 1.5, "");
-/// Joints of rough rock reach 70 degrees at small stress.
-const ASPERITIES: Usual = Usual::or_zero(0.05, 3.0, "");
-const ASPERITY_PRESSURE: Usual = Usual::new(1e4, 1e9, "Pa");
-/// From weak model corners to a tenth of the modulus of hard rock.
-const CORNER_STRENGTH: Usual = Usual::new(1e4, 1e10, "Pa");
-const RESTITUTION: Usual = Usual::new(0.01, 1.0, "");
-const ROLLING: Usual = Usual::or_zero(1e-4, 0.9, "");
-const RATIO: Usual = Usual::or_zero(0.05, 2.0, "");
-const ADHESION: Usual = Usual::or_zero(1e-4, 100.0, "J/m2");
 const STRENGTH: Usual = Usual::new(100.0, 5e9, "Pa");
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
@@ -35,35 +25,28 @@ pub fn weigh(findings: &mut Findings, scene: &Scene) {
 }
 
 fn grain(findings: &mut Findings, k: usize, m: &GrainMaterial) {
-    let key = |name: &str| format!("material.{k}.{name}");
-    findings.weigh_some(key("density"), m.density.map(|v| v.si), DENSITY);
-    findings.weigh_some(key("stiffness"), m.stiffness.map(|v| v.si), STIFFNESS);
-    findings.weigh_some(key("young"), m.young.map(|v| v.si), YOUNG);
-    findings.weigh_some(key("poisson"), m.poisson, POISSON);
-    findings.weigh_some(key("edge_factor"), m.edge_factor, Usual::new(0.2, 5.0, ""));
-    findings.weigh_some(key("corner_strength"), m.corner_strength.map(|v| v.si), CORNER_STRENGTH);
-    findings.weigh_some(
-        key("corner_angle"),
-        m.corner_angle.map(|v| v.si / DEGREE),
-        Usual::new(30.0, 89.9, "deg"),
-    );
-    findings.weigh_some(key("tangential_ratio"), m.tangential_ratio, RATIO);
-    findings.weigh(key("friction"), m.friction, FRICTION);
-    findings.weigh(key("asperity_friction"), m.asperity_friction, ASPERITIES);
-    findings.weigh_some(key("asperity_pressure"), m.asperity_pressure.map(|v| v.si), ASPERITY_PRESSURE);
-    findings.weigh(key("restitution"), m.restitution, RESTITUTION);
-    findings.weigh(key("rolling_friction"), m.rolling_friction, ROLLING);
-    findings.weigh(key("twisting_friction"), m.twisting_friction, ROLLING);
+    let material = parameters(m);
+    // The density of walls has no effect.
+    let is_set = |p: &&Parameter<_>| p.key != "density" || m.density.is_some();
+    for p in parameter::MATERIAL.iter().filter(is_set) {
+        findings.weigh_some(format!("material.{k}.{}", p.key), p.value(&material), Usual::of(p));
+    }
 }
 
 fn pair(findings: &mut Findings, k: usize, c: &PairContact) {
-    let key = |name: &str| format!("contact.{k}.{name}");
-    findings.weigh_some(key("stiffness"), c.stiffness.map(|v| v.si), STIFFNESS);
-    findings.weigh_some(key("friction"), c.friction, FRICTION);
-    findings.weigh_some(key("restitution"), c.restitution, RESTITUTION);
-    findings.weigh_some(key("adhesion"), c.adhesion.map(|v| v.si), ADHESION);
-    findings.weigh_some(key("rolling_friction"), c.rolling_friction, ROLLING);
-    findings.weigh_some(key("twisting_friction"), c.twisting_friction, ROLLING);
+    let pair = PairOverride {
+        friction: c.friction,
+        restitution: c.restitution,
+        stiffness: c.stiffness.map(|s| s.si),
+        adhesion: c.adhesion.map(|w| w.si),
+        damping: c.damping_ratio.map(Damping::Ratio),
+        rolling_friction: c.rolling_friction,
+        twisting_friction: c.twisting_friction,
+        ..PairOverride::default()
+    };
+    for p in &parameter::PAIR {
+        findings.weigh_some(format!("contact.{k}.{}", p.key), p.value(&pair), Usual::of(p));
+    }
 }
 
 fn solid(findings: &mut Findings, scene: &Scene) {

@@ -154,8 +154,8 @@ fn poured_grains_lie_around_the_sleeper() {
     assert!(crib.iter().all(|&z| z < 0.17), "{crib:?}");
 }
 
-/// Stones of 50 MPa whose corners crush under the sleeper, then grains poured with contacts of a tenth of the stiffness: crushed corners
-/// stay crushed, so the pouring begins without energy. With elastic corners they held 0.2 J, as much as a stone that falls by 0.3 m.
+/// Corners of 50 MPa grains crush under the sleeper, then grains are poured with a tenth of the contact stiffness. Crushed corners stay
+/// crushed, so each stage starts with almost no energy in its springs. With elastic corners the last stage starts with 7.6e-2 J.
 #[test]
 fn pouring_begins_without_energy() {
     let folder = Folder::new("poured_crushed");
@@ -170,7 +170,7 @@ fn pouring_begins_without_energy() {
         stages.iter().map(|s| [0, 1].map(|k| s["springs"][k].as_f64().unwrap())).collect();
     println!("{springs:?}");
     assert!(stages.len() == 4 && springs[1][1] > 0.0, "{stages:?}");
-    springs.windows(2).for_each(|pair| assert!(pair[1][0] <= 1.5 * pair[0][1], "{pair:?}"));
+    springs.iter().skip(1).for_each(|[start, _]| assert!(*start < 1e-6, "{springs:?}"));
 }
 
 /// What bedding and pouring cannot be used with is refused.

@@ -231,6 +231,32 @@ fn frames_have_the_fields_of_polyhedra() {
     assert_eq!(names, ["id", "kind", "part", "spin"]);
 }
 
+/// The spheres of a spinning clump move as points of one rigid body: v − v' = ω × (x − x').
+#[test]
+fn spheres_of_clumps_rotate() {
+    let library = repository().join("inputs/data/clumps_six.toml").display().to_string();
+    let text = FLYING.replace("\"polyhedron\"", "\"clump\"").replace("LIBRARY", &library);
+    let (folder, scene) = written("spinning_clump", &text);
+    folder.write("slow.csv", "0, 0, 0, 1, 0, 0, 0, 0.03, 0\n");
+    folder.write("fast.csv", "0.2, 0, 0, 1, 0, 0, 0, 0.03, 0\n");
+    run(&scene, &folder.join("out"), &[]).good();
+    let (points, fields, _) = vtk(&folder.join("out/frames/grains_00000.vtp"));
+    let vector = |of: &[f64], k: usize| [0, 1, 2].map(|d| of[3 * k + d]);
+    let mut pairs = 0;
+    let spheres: Vec<usize> = (0..points.len() / 3).filter(|&k| fields["part"].1[k] == 0.0).collect();
+    for &k in &spheres[1..] {
+        let apart = |of: &[f64]| {
+            let (a, b) = (vector(of, spheres[0]), vector(of, k));
+            [0, 1, 2].map(|d| b[d] - a[d])
+        };
+        let (x, v) = (apart(&points), apart(&fields["velocity"].1));
+        let expected = [-5.0 * x[1], 5.0 * x[0], 0.0];
+        assert!((0..3).all(|d| (v[d] - expected[d]).abs() < 1e-9), "{v:?}, expected {expected:?}");
+        pairs += usize::from(v[0].hypot(v[1]) > 1e-2);
+    }
+    assert!(pairs > 2, "{} spheres, {pairs} of them apart", spheres.len());
+}
+
 /// A small bed of polyhedra on the main job's mesh, pressed by its sleeper, under one quick cycle: the accounts
 /// close (energy within 0.5 %, force and moment across the interface within 1e-11).
 #[test]

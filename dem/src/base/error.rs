@@ -13,28 +13,28 @@ pub enum ModelError {
         quantity: &'static str,
     },
     /// A material constant is out of range.
-    #[error("material {material}: {quantity} is {value}; it must {requirement}")]
+    #[error("material {material}: {parameter}: found {value}, expected {expected}")]
     Material {
         /// Index of the material.
         material: usize,
-        /// Name of the constant.
-        quantity: &'static str,
-        /// The value found.
+        /// Key of the parameter.
+        parameter: &'static str,
+        /// Value found, in the unit of the parameter.
         value: f64,
-        /// What it must satisfy.
-        requirement: &'static str,
+        /// Valid values.
+        expected: String,
     },
-    /// A value of an override is out of range.
-    #[error("contact override {index}: {quantity} is {value}; it must {requirement}")]
-    Override {
-        /// Index of the override.
+    /// A parameter of a pair of materials is out of range.
+    #[error("pair {index} of materials: {parameter}: found {value}, expected {expected}")]
+    Pair {
+        /// Index of the pair.
         index: usize,
-        /// Name of the constant.
-        quantity: &'static str,
-        /// The value found.
+        /// Key of the parameter.
+        parameter: &'static str,
+        /// Value found, in the unit of the parameter.
         value: f64,
-        /// What it must satisfy.
-        requirement: &'static str,
+        /// Valid values.
+        expected: String,
     },
     /// Two materials have no law of contact.
     #[error("contact of materials {a} and {b}: {problem}")]

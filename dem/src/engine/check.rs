@@ -5,6 +5,7 @@ use super::timestep;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, Kind};
 use crate::law::material::Material;
+use crate::law::parameter::{self, first_invalid};
 use crate::law::{self, Laws, conical_damage};
 use crate::shape::Shape;
 use crate::wall::check::in_range;
@@ -13,7 +14,6 @@ use crate::wall::shells::Shells;
 
 const POSITIVE: &str = "be positive and finite";
 const NOT_NEGATIVE: &str = "be zero or positive, and finite";
-const RESTITUTION: &str = "lie above 0 and not above 1";
 
 fn positive(x: f64) -> bool {
     x > 0.0 && x.is_finite()
@@ -23,16 +23,10 @@ fn not_negative(x: f64) -> bool {
     x >= 0.0 && x.is_finite()
 }
 
-/// Cones of corners that crush: crushing takes energy.
-fn corner(m: &Material) -> bool {
+fn crushing_takes_energy(m: &Material) -> bool {
     let modulus = m.young.map_or(f64::INFINITY, |young| 0.5 * young / (1.0 - m.poisson * m.poisson));
-    let angle = m.corner_angle > 0.0 && m.corner_angle < std::f64::consts::FRAC_PI_2;
     m.corner_strength.is_infinite()
-        || (angle && m.corner_strength < conical_damage::greatest_strength(modulus, m.corner_angle))
-}
-
-fn restitution(x: f64) -> bool {
-    x > 0.0 && x <= 1.0
+        || m.corner_strength < conical_damage::greatest_strength(modulus, m.corner_angle)
 }
 
 /// Ranges and indices.
@@ -46,69 +40,21 @@ pub(crate) fn input(input: &ModelInput) -> Result<(), ModelError> {
 
 fn materials(input: &ModelInput) -> Result<(), ModelError> {
     for (material, m) in input.materials.iter().enumerate() {
-        for (quantity, value, good, requirement) in [
-            ("density", m.density, positive(m.density), POSITIVE),
-            ("stiffness", m.stiffness, m.stiffness > 0.0, "be positive (infinite for a rigid wall)"),
-            ("tangential ratio", m.tangential_ratio, not_negative(m.tangential_ratio), NOT_NEGATIVE),
-            (
-                "tangential damping ratio",
-                m.tangential_damping_ratio,
-                not_negative(m.tangential_damping_ratio),
-                NOT_NEGATIVE,
-            ),
-            ("friction", m.friction, not_negative(m.friction), NOT_NEGATIVE),
-            ("asperity friction", m.asperity_friction, not_negative(m.asperity_friction), NOT_NEGATIVE),
-            ("asperity pressure", m.asperity_pressure, m.asperity_pressure > 0.0, POSITIVE),
-            ("restitution", m.restitution, restitution(m.restitution), RESTITUTION),
-            ("Young's modulus", m.young.unwrap_or(1.0), m.young.is_none_or(positive), POSITIVE),
-            (
-                "Poisson's ratio",
-                m.poisson,
-                m.poisson > -1.0 && m.poisson <= 0.5,
-                "lie above -1 and not above 0.5",
-            ),
-            ("edge factor", m.edge_factor, positive(m.edge_factor), POSITIVE),
-            ("corner strength", m.corner_strength, m.corner_strength > 0.0, POSITIVE),
-            (
-                "corner angle",
-                m.corner_angle,
-                corner(m),
-                "lie above 0 and below 90 degrees, and let crushing take energy",
-            ),
-            ("rolling friction", m.rolling_friction, not_negative(m.rolling_friction), NOT_NEGATIVE),
-            ("twisting friction", m.twisting_friction, not_negative(m.twisting_friction), NOT_NEGATIVE),
-        ] {
-            if !good {
-                return Err(ModelError::Material { material, quantity, value, requirement });
-            }
+        if let Some((p, value)) = first_invalid(&parameter::MATERIAL, m) {
+            return Err(ModelError::Material { material, parameter: p.key, value, expected: p.expected() });
+        }
+        if !crushing_takes_energy(m) {
+            let expected = "a strength with which crushing takes energy".to_string();
+            let (parameter, value) = ("corner_strength", m.corner_strength);
+            return Err(ModelError::Material { material, parameter, value, expected });
         }
     }
-    for (index, e) in input.contacts.iter().enumerate() {
-        for found in [e.a, e.b] {
+    for (index, pair) in input.contacts.iter().enumerate() {
+        for found in [pair.a, pair.b] {
             in_range("contact override", index, "material", found, input.materials.len())?;
         }
-        for (quantity, value, good, requirement) in [
-            ("friction", e.friction, e.friction.is_none_or(not_negative), NOT_NEGATIVE),
-            ("restitution", e.restitution, e.restitution.is_none_or(restitution), RESTITUTION),
-            ("stiffness", e.stiffness, e.stiffness.is_none_or(positive), POSITIVE),
-            ("adhesion", e.adhesion, e.adhesion.is_none_or(not_negative), NOT_NEGATIVE),
-            (
-                "rolling friction",
-                e.rolling_friction,
-                e.rolling_friction.is_none_or(not_negative),
-                NOT_NEGATIVE,
-            ),
-            (
-                "twisting friction",
-                e.twisting_friction,
-                e.twisting_friction.is_none_or(not_negative),
-                NOT_NEGATIVE,
-            ),
-        ] {
-            if !good {
-                let value = value.unwrap_or(f64::NAN);
-                return Err(ModelError::Override { index, quantity, value, requirement });
-            }
+        if let Some((p, value)) = first_invalid(&parameter::PAIR, pair) {
+            return Err(ModelError::Pair { index, parameter: p.key, value, expected: p.expected() });
         }
     }
     law::check::laws(&input.materials, &input.contacts)

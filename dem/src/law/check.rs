@@ -20,39 +20,31 @@ pub(crate) fn laws(materials: &[Material], exceptions: &[PairOverride]) -> Resul
         for j in 0..count {
             uses |= law(i, j)?.is_some_and(|c| c.uses("stiffness"));
         }
-        let of_material = |quantity, value, requirement| {
-            Err(ModelError::Material { material: i, quantity, value, requirement })
+        let of_material = |parameter, value, expected: &str| {
+            Err(ModelError::Material { material: i, parameter, value, expected: expected.into() })
         };
         if m.stiffness.is_finite() && !uses {
-            return of_material(
-                "stiffness",
-                m.stiffness,
-                "be absent (infinite) where no law of contact uses it",
-            );
+            return of_material("stiffness", m.stiffness, "none (infinite): no contact law uses it");
         }
         let first = m.normal.and_then(|_| law(i, i).ok().flatten()).map(|c| c.normal_keys[0]);
         if first == Some("stiffness") && m.stiffness.is_infinite() {
-            return of_material("stiffness", m.stiffness, "be finite, as its normal law needs it");
+            return of_material("stiffness", m.stiffness, "a finite value, which its normal law needs");
         }
         if first == Some("young") && m.young.is_none() {
-            return of_material("Young's modulus", 0.0, "be there, as its normal law needs it");
+            return of_material("young", 0.0, "a modulus, which its normal law needs");
         }
     }
     for (index, e) in exceptions.iter().enumerate() {
         let Some(c) = law(e.a, e.b)? else { continue };
-        let of_pair =
-            |quantity, value, requirement| Err(ModelError::Override { index, quantity, value, requirement });
+        let of_pair = |parameter, value, expected: &str| {
+            Err(ModelError::Pair { index, parameter, value, expected: expected.into() })
+        };
         if let Some(stiffness) = e.stiffness.filter(|_| !c.uses("stiffness")) {
-            return of_pair("stiffness", stiffness, "be absent where the law of contact does not use it");
+            return of_pair("stiffness", stiffness, "none: its contact law does not use it");
         }
-        match e.damping {
-            Some(Damping::Ratio(zeta)) if !(zeta >= 0.0 && zeta.is_finite()) => {
-                return of_pair("damping ratio", zeta, "be zero or positive, and finite");
-            }
-            Some(_) if !c.dashpot => {
-                return of_pair("damping", f64::NAN, "be absent where the normal law has no dashpot");
-            }
-            _ => {}
+        if e.damping.is_some() && !c.dashpot {
+            let ratio = if let Some(Damping::Ratio(ratio)) = e.damping { ratio } else { 0.0 };
+            return of_pair("damping", ratio, "none: its normal law has no dashpot");
         }
     }
     Ok(())

@@ -23,6 +23,7 @@ pub mod material;
 pub mod mindlin;
 mod mixed;
 pub mod normal;
+pub mod parameter;
 pub mod restitution;
 pub mod rough;
 pub mod rough_mindlin;

@@ -24,11 +24,11 @@ fn materials_out_of_range() {
         ("friction", |m| m.friction = -0.1),
         ("restitution", |m| m.restitution = 0.0),
         ("restitution", |m| m.restitution = 1.1),
-        ("tangential ratio", |m| m.tangential_ratio = f64::NAN),
+        ("tangential_ratio", |m| m.tangential_ratio = f64::NAN),
     ];
     for (name, change) in cases {
         match refused(|i| change(&mut i.materials[0])) {
-            ModelError::Material { material: 0, quantity, .. } => assert_eq!(quantity, name),
+            ModelError::Material { material: 0, parameter, .. } => assert_eq!(parameter, name),
             other => panic!("{other}"),
         }
     }

@@ -8,13 +8,10 @@ use crate::scene::{Scene, SceneError, Table};
 use std::f64::consts::FRAC_PI_2;
 use trackbed_dem::law::conical_damage;
 use trackbed_dem::law::damping::Damping;
+use trackbed_dem::law::parameter::{self, Parameter};
 use trackbed_dem::law::table;
 use trackbed_dem::material::LawName;
 use trackbed_dem::{Material, PairOverride};
-
-/// Least coefficient of restitution: the step of the grains falls with it without bound, and nobody tells a hundredth of
-/// a per cent of the speed from none.
-const LEAST_RESTITUTION: f64 = 1e-4;
 
 /// Materials of a scene.
 #[derive(Clone)]
@@ -74,53 +71,63 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
         if scene.material[..i].iter().any(|other| other.name == m.name) {
             return Err(m.error("name", format!("\"{}\" again", m.name), "each name once"));
         }
-        m.check("density", m.density, |d| d > 0.0, "a density above 0")?;
-        m.check("stiffness", m.stiffness, |k| k > 0.0, "a stiffness above 0")?;
-        m.check("young", m.young, |y| y > 0.0, "a modulus above 0")?;
-        m.check("poisson", m.poisson, |p| p > -1.0 && p <= 0.5, "above -1, at most 0.5")?;
+        // Infinite values would mean that the key is not there.
+        m.check("stiffness", m.stiffness, |_| true, "a finite stiffness")?;
+        m.check("corner_strength", m.corner_strength, |_| true, "a finite strength")?;
+        m.check("asperity_pressure", m.asperity_pressure, |_| true, "a finite pressure")?;
+        let material = Material { normal: normal(&m, m.normal.as_deref())?, ..parameters(&m) };
+        check_ranges(&m, &parameter::MATERIAL, &material)?;
         poisson_beside_young(&m)?;
         corners(&m)?;
-        m.check("tangential_ratio", m.tangential_ratio, |r| (0.0..=1.0).contains(&r), "0 to 1")?;
-        m.check(
-            "tangential_damping_ratio",
-            m.tangential_damping_ratio,
-            |r| (0.0..=1.0).contains(&r),
-            "0 to 1",
-        )?;
-        m.check("friction", m.friction, |f| f >= 0.0, "0 or more")?;
         asperities(&m)?;
-        m.check("restitution", m.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
-        for (k, value) in
-            [("rolling_friction", m.rolling_friction), ("twisting_friction", m.twisting_friction)]
-        {
-            m.check(k, Some(value), |f| f >= 0.0, "0 or more")?;
-        }
-        out.push(Material {
-            // Bodies need a density and say so; walls never use it.
-            density: m.density.map_or(1.0, |d| d.si),
-            stiffness: m.stiffness.map_or(f64::INFINITY, |s| s.si),
-            tangential_ratio: m.tangential_ratio.unwrap_or(0.5),
-            tangential_damping_ratio: m.tangential_damping_ratio,
-            friction: m.friction,
-            asperity_friction: m.asperity_friction,
-            asperity_pressure: m.asperity_pressure.map_or(f64::INFINITY, |p| p.si),
-            restitution: m.restitution,
-            young: m.young.map(|y| y.si),
-            poisson: m.poisson.unwrap_or(0.0),
-            edge_factor: m.edge_factor.unwrap_or(1.0),
-            corner_strength: m.corner_strength.map_or(f64::INFINITY, |s| s.si),
-            corner_angle: m.corner_angle.map_or(FRAC_PI_2, |a| a.si),
-            rolling_friction: m.rolling_friction,
-            twisting_friction: m.twisting_friction,
-            normal: normal(&m, m.normal.as_deref())?,
-        });
+        out.push(material);
     }
     Ok(out)
 }
 
+/// Parameters of a material as written, with defaults; its normal law is not set.
+pub fn parameters(m: &GrainMaterial) -> Material {
+    Material {
+        // Bodies need a density and say so; walls never use it.
+        density: m.density.map_or(1.0, |d| d.si),
+        stiffness: m.stiffness.map_or(f64::INFINITY, |s| s.si),
+        tangential_ratio: m.tangential_ratio.unwrap_or(0.5),
+        tangential_damping_ratio: m.tangential_damping_ratio,
+        friction: m.friction,
+        asperity_friction: m.asperity_friction,
+        asperity_pressure: m.asperity_pressure.map_or(f64::INFINITY, |p| p.si),
+        restitution: m.restitution,
+        young: m.young.map(|y| y.si),
+        poisson: m.poisson.unwrap_or(0.0),
+        edge_factor: m.edge_factor.unwrap_or(1.0),
+        corner_strength: m.corner_strength.map_or(f64::INFINITY, |s| s.si),
+        corner_angle: m.corner_angle.map_or(FRAC_PI_2, |a| a.si),
+        rolling_friction: m.rolling_friction,
+        twisting_friction: m.twisting_friction,
+        normal: None,
+    }
+}
+
+/// Checks the parameters of a material or a pair in their order.
+fn check_ranges<T, P>(row: &Table<T>, table: &[Parameter<P>], of: &P) -> Result<(), SceneError> {
+    for p in table {
+        match p.value(of) {
+            Some(value) if !p.range.contains(value) => {
+                let found = format!("{} {}", round_12(value), p.unit);
+                return Err(row.error(p.key, found.trim_end(), p.expected()));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// A value without the rounding of its conversion to SI units and back.
+fn round_12(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
 fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
-    m.check("asperity_friction", m.asperity_friction, |f| f >= 0.0, "0 or more")?;
-    m.check("asperity_pressure", m.asperity_pressure, |p| p > 0.0, "a pressure above 0")?;
     match (m.asperity_friction > 0.0, &m.asperity_pressure) {
         (true, None) => {
             Err(m.missing("asperity_pressure", "the pressure at which half of `asperity_friction` is left"))
@@ -134,8 +141,6 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
 
 /// Corners that crush: strength and angle come in twos, beside a modulus, and crushing takes energy.
 fn corners(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
-    m.check("corner_strength", m.corner_strength, |s| s > 0.0, "a strength above 0")?;
-    m.check("corner_angle", m.corner_angle, |a| a > 0.0 && a < FRAC_PI_2, "above 0, below 90 deg")?;
     let (strength, angle) = match (m.corner_strength, m.corner_angle) {
         (None, None) => return Ok(()),
         (None, Some(_)) => {
@@ -165,7 +170,7 @@ fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         (None, None) if m.edge_factor.is_some() => {
             Err(m.error("edge_factor", "a value", "no such key without `young`"))
         }
-        _ => m.check("edge_factor", m.edge_factor, |f| (0.01..=100.0).contains(&f), "0.01 to 100").map(drop),
+        _ => Ok(()),
     }
 }
 
@@ -189,22 +194,15 @@ fn tangential(c: &Table<PairContact>) -> Result<Option<LawName>, SceneError> {
 fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
     let mut out = Vec::new();
     for c in scene.rows("contact", &scene.contact) {
-        c.check("friction", c.friction, |f| f >= 0.0, "0 or more")?;
-        c.check("restitution", c.restitution, |e| (LEAST_RESTITUTION..=1.0).contains(&e), "0.0001 to 1")?;
-        c.check("stiffness", c.stiffness, |k| k > 0.0, "above 0")?;
-        c.check("adhesion", c.adhesion, |w| w >= 0.0, "0 or more")?;
-        let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| {
-            c.check(k, value, |f| f >= 0.0, "0 or more")?;
-            match (kind, value) {
-                (Some(Resistance::None), Some(_)) => {
-                    let expected = "no such key without the resistance";
-                    Err(c.error(k, "a value", expected))
-                }
-                (Some(Resistance::None), None) => Ok(Some(0.0)),
-                (Some(Resistance::Spring) | None, value) => Ok(value),
+        let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| match (kind, value) {
+            (Some(Resistance::None), Some(_)) => {
+                let expected = "no such key without the resistance";
+                Err(c.error(k, "a value", expected))
             }
+            (Some(Resistance::None), None) => Ok(Some(0.0)),
+            (Some(Resistance::Spring) | None, value) => Ok(value),
         };
-        out.push(PairOverride {
+        let pair = PairOverride {
             a: find(scene, &c, "between", &c.between[0])?,
             b: find(scene, &c, "between", &c.between[1])?,
             friction: c.friction,
@@ -216,13 +214,14 @@ fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
             damping: damping(&c)?,
             rolling_friction: resist("rolling_friction", c.rolling, c.rolling_friction)?,
             twisting_friction: resist("twisting_friction", c.twisting, c.twisting_friction)?,
-        });
+        };
+        check_ranges(&c, &parameter::PAIR, &pair)?;
+        out.push(pair);
     }
     Ok(out)
 }
 
 fn damping(c: &Table<PairContact>) -> Result<Option<Damping>, SceneError> {
-    c.check("damping_ratio", c.damping_ratio, |z| z >= 0.0, "0 or more")?;
     match (c.damping, c.damping_ratio) {
         (Some(DampingKind::Ratio), Some(zeta)) => Ok(Some(Damping::Ratio(zeta))),
         (Some(DampingKind::Ratio), None) => Err(c.missing("damping_ratio", "the damping ratio")),

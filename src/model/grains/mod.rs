@@ -36,6 +36,7 @@ pub use compaction::{CompactionPlan, Press};
 pub use deposition::DepositionPlan;
 pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use groups::{GradedGroup, GroupsPart};
+pub use materials::parameters;
 pub use measure::{MeasurePlan, RadialPlan};
 pub use overlap::check_overlaps;
 pub use part::{GrainsPart, PackingPlan, SurfacePlan};

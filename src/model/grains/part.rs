@@ -230,3 +230,20 @@ impl GrainsPart {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corner crushes at the force π³ σ³ R²/(6 E*²) (Hertz), so softened corners crush at the force of the true ones.
+    #[test]
+    fn softened_corners_crush_at_the_same_force() {
+        let granite = Material { young: Some(50e9), corner_strength: 800e6, ..Material::RIGID };
+        let mut input = ModelInput { materials: vec![granite], ..ModelInput::default() };
+        soften(&mut input, 0.02);
+        let force = |m: &Material| m.corner_strength.powi(3) / m.young.expect("a modulus").powi(2);
+        let soft = &input.materials[0];
+        assert_eq!(soft.young, Some(1e9));
+        assert!((force(soft) / force(&granite) - 1.0).abs() < 1e-12, "{soft:?}");
+    }
+}

@@ -171,3 +171,60 @@ fn stored(model: &dem::Model, state: &dem::State) -> Stored {
         ..Stored::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::validity::Outcome;
+
+    fn stage(name: &str, springs: [f64; 2], [error, gain]: [f64; 2]) -> StageEnergy {
+        let turned_over = 10.0;
+        let relative_error = error / turned_over;
+        StageEnergy {
+            stage: name.into(),
+            springs,
+            turned_over,
+            error,
+            relative_error,
+            gain,
+            ..StageEnergy::default()
+        }
+    }
+
+    #[test]
+    fn energy_between_stages_is_checked() {
+        let status = |start: f64, run: f64| {
+            let stages = [stage("fill", [0.0, 1.0], [0.0; 2]), stage("pour", [start, 0.5], [0.0; 2])];
+            let check = StageEnergy::check_changes(&stages, [run, 10.0]).expect("stages");
+            (check.status, check.message)
+        };
+        assert_eq!(status(1.0, 0.5).0, Outcome::Passed);
+        assert_eq!(status(0.0, 0.5).0, Outcome::Passed);
+        let (outcome, message) = status(3.0, 0.5);
+        assert!(
+            outcome == Outcome::Warned && message.starts_with("pour: contact springs hold 2.000e0 J more"),
+            "{message}"
+        );
+        let (outcome, message) = status(1.0, 7.0);
+        assert!(
+            outcome == Outcome::Failed && message.starts_with("run: contact springs hold 6.500e0 J more"),
+            "{message}"
+        );
+        assert!(StageEnergy::check_changes(&[], [1.0, 1.0]).is_none());
+    }
+
+    #[test]
+    fn worst_stage_decides_error_and_gain() {
+        let status = |worst: [f64; 2]| {
+            let stages = [stage("fill", [0.0; 2], [0.1, 0.0]), stage("pour", [0.0; 2], worst)];
+            let checks = StageEnergy::checks(&stages);
+            let [gain, error] = &checks[..] else { panic!("{checks:?}") };
+            [gain.status, error.status]
+        };
+        use Outcome::{Failed, Passed, Warned};
+        assert_eq!(status([0.5, 0.005]), [Passed, Passed]);
+        assert_eq!(status([2.0, 0.005]), [Passed, Warned]);
+        assert_eq!(status([6.0, 0.1]), [Warned, Failed]);
+        assert_eq!(status([0.5, 0.3]), [Failed, Passed]);
+    }
+}

@@ -15,7 +15,7 @@ use crate::run::packing;
 use crate::run::runout;
 use crate::run::summary::NewtonRecord;
 use crate::run::system::{GrainsSystem, System};
-use crate::run::validity::{load_near_mode, lost_bodies, small_strain};
+use crate::run::validity::{grains_below_walls, load_near_mode, lost_bodies, small_strain};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 
@@ -94,6 +94,7 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     state.summary.bed.packing = record_packing(run, &system, grains)?;
     state.summary.validity.extend(system.grains().into_iter().flat_map(|v| packing::checks(v, &grains.part)));
     if let Some(view) = system.grains() {
+        state.summary.validity.extend(grains_below_walls(view, &grains.part));
         state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;
     }
     Ok(())

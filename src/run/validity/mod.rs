@@ -2,6 +2,7 @@
 //! that the equations do not cover. One file per check; each says what it found, its limits and the remedy.
 
 mod bed_surface;
+mod below_walls;
 mod bond_rotation;
 mod free_sleeper;
 mod lost_bodies;
@@ -11,6 +12,7 @@ mod scaled_inertia;
 mod small_strain;
 mod stiffness_drift;
 
+pub use below_walls::grains_below_walls;
 pub use bond_rotation::bond_rotation;
 pub use free_sleeper::free_sleeper;
 pub use lost_bodies::lost_bodies;

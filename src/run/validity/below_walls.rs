@@ -1,0 +1,64 @@
+//! Grains that have fallen below every wall of a scene without a solid: they are missing from the bed.
+
+use super::{Check, Limits};
+use crate::model::grains::GrainsPart;
+use crate::run::runout;
+use trackbed_coupling::track::GrainsView;
+use trackbed_dem::{Vec3, WallShape};
+
+/// Grains lost over all grains. A run that only watches grains leave is a study of its own, hence no failure.
+const LOST: Limits = Limits { warn: 0.01, fail: None };
+
+/// Grains that started above the lowest point of the walls and ended below it. `None` without gravity, where a plane bounds the fall,
+/// where no wall is bounded, and for slides, whose summary counts grains below and beyond the ground.
+pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<Check> {
+    let (model, state) = (view.model, view.state);
+    let up = -model.gravity().try_normalize(0.0)?;
+    let is_floor = |normal: &Vec3| normal.dot(&up) > 1e-9;
+    let walls = &grains.walls;
+    if grains.runout.is_some() || walls.planes.iter().any(|p| is_floor(&p.normal)) {
+        return None;
+    }
+    let mut lowest = f64::INFINITY;
+    for (w, wall) in walls.others.iter().enumerate() {
+        let height = |x: &Vec3| state.wall_point(model, w, x).dot(&up);
+        let low = match &wall.shape {
+            WallShape::Plane { normal, .. } if is_floor(normal) => return None,
+            WallShape::Plane { .. } => f64::INFINITY,
+            WallShape::Triangles { vertices, .. } => {
+                vertices.iter().map(height).fold(f64::INFINITY, f64::min)
+            }
+            WallShape::Frustum { base, axis, height: length, radii, .. } => {
+                let ends = [(*base, radii[0]), (base + axis.normalize() * *length, radii[1])];
+                ends.iter().map(|(x, r)| height(x) - r).fold(f64::INFINITY, f64::min)
+            }
+            WallShape::Sphere { centre, radius } => height(centre) - radius,
+        };
+        lowest = lowest.min(low);
+    }
+    // Grains that hold their place, such as a floor of fixed grains, support others.
+    let start = runout::origins(model);
+    let prescribed = |b: &usize| grains.groups.moving.iter().any(|m| m.part == model.part(*b));
+    let supports = (0..model.body_count()).filter(prescribed);
+    let lowest = supports.map(|b| state.position(b).dot(&up) - model.radius(b)).fold(lowest, f64::min);
+    if lowest == f64::INFINITY {
+        return None;
+    }
+    let present: Vec<usize> = (0..model.body_count()).filter(|&b| state.present(b)).collect();
+    let below = |x: &Vec3, b: usize| x.dot(&up) < lowest - model.radius(b);
+    let lost: Vec<usize> =
+        present.iter().copied().filter(|&b| below(&state.position(b), b) && !below(&start[b], b)).collect();
+    let value = lost.len() as f64 / present.len().max(1) as f64;
+    Some(Check::new("grains below all walls over all grains", value, LOST, || {
+        let x = state.position(lost[0]);
+        format!(
+            "grains lost below all walls: {}, the first is body {} at ({:.4}, {:.4}, {:.4}) m: close the walls, or take grains away with an \
+             [[outlet]]",
+            lost.len(),
+            lost[0],
+            x.x,
+            x.y,
+            x.z
+        )
+    }))
+}
