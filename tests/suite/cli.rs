@@ -60,10 +60,8 @@ fn wrong_usage_is_bad_input() {
     let folder = scene_folder("threads_zero", SOLID);
     let scene = folder.join("scene.toml").display().to_string();
     let outcome = trackbed_in(folder.path(), ["run", &scene, "--threads", "0"]);
-    assert_eq!(
-        (outcome.code, outcome.stderr.as_str()),
-        (2, "error: --threads: found 0, expected 1 to 1024\n")
-    );
+    assert_eq!(outcome.code, 2);
+    assert!(outcome.stderr.starts_with("error: --threads: found 0, expected 1 to "), "{outcome:?}");
     assert!(!folder.join("results").exists());
 }
 

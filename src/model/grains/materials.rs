@@ -76,9 +76,10 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
         m.check("corner_strength", m.corner_strength, |_| true, "a finite strength")?;
         m.check("asperity_pressure", m.asperity_pressure, |_| true, "a finite pressure")?;
         let material = Material { normal: normal(&m, m.normal.as_deref())?, ..parameters(&m) };
-        check_ranges(&m, &parameter::MATERIAL, &material)?;
         poisson_beside_young(&m)?;
-        corners(&m)?;
+        corner_keys(&m)?;
+        check_ranges(&m, &parameter::MATERIAL, &material)?;
+        crushing(&m)?;
         asperities(&m)?;
         out.push(material);
     }
@@ -114,7 +115,7 @@ fn check_ranges<T, P>(row: &Table<T>, table: &[Parameter<P>], of: &P) -> Result<
         match p.value(of) {
             Some(value) if !p.range.contains(value) => {
                 let found = format!("{} {}", round_12(value), p.unit);
-                return Err(row.error(p.key, found.trim_end(), p.expected()));
+                return Err(row.error(p.key, found.trim_end(), p.range.to_string()));
             }
             _ => {}
         }
@@ -139,24 +140,29 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     }
 }
 
-/// Corners that crush: strength and angle come in twos, beside a modulus, and crushing takes energy.
-fn corners(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
-    let (strength, angle) = match (m.corner_strength, m.corner_angle) {
-        (None, None) => return Ok(()),
-        (None, Some(_)) => {
-            return Err(m.error("corner_angle", "a value", "no such key without `corner_strength`"));
+/// Corners that crush have a strength, an angle and a modulus.
+fn corner_keys(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
+    match (m.corner_strength, m.corner_angle) {
+        (None, None) => Ok(()),
+        (None, Some(_)) => Err(m.error("corner_angle", "a value", "no such key without `corner_strength`")),
+        (Some(_), None) => Err(m.missing("corner_angle", "half the angle of the cones that crush")),
+        (Some(_), Some(_)) if m.young.is_none() => {
+            Err(m.error("corner_strength", "a value", "no such key without `young`"))
         }
-        (Some(_), None) => return Err(m.missing("corner_angle", "half the angle of the cones that crush")),
-        (Some(strength), Some(angle)) => (strength.si, angle.si),
-    };
-    let Some(young) = m.young else {
-        return Err(m.error("corner_strength", "a value", "no such key without `young`"));
+        (Some(_), Some(_)) => Ok(()),
+    }
+}
+
+/// Crushing takes energy.
+fn crushing(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
+    let (Some(strength), Some(angle), Some(young)) = (m.corner_strength, m.corner_angle, m.young) else {
+        return Ok(());
     };
     let poisson = m.poisson.unwrap_or(0.0);
-    let most = conical_damage::greatest_strength(0.5 * young.si / (1.0 - poisson * poisson), angle);
+    let most = conical_damage::greatest_strength(0.5 * young.si / (1.0 - poisson * poisson), angle.si);
     m.check(
         "corner_strength",
-        Some(strength),
+        Some(strength.si),
         |s| s < most,
         &format!("below {most:.3e} Pa with this modulus and angle, so that crushing takes energy"),
     )?;

@@ -37,11 +37,11 @@ fn corners_out_of_place() {
         ),
         (
             "corner_strength = 0.0\ncorner_angle = 1.4",
-            "scene.toml:8: material.0.corner_strength: found 0, expected a strength above 0",
+            "scene.toml:8: material.0.corner_strength: found 0 Pa, expected above 0",
         ),
         (
             "corner_strength = 6e7\ncorner_angle = \"90 deg\"",
-            "scene.toml:9: material.0.corner_angle: found 1.5707963267948966, expected above 0, below 90 deg",
+            "scene.toml:9: material.0.corner_angle: found 90 deg, expected above 0, below 90",
         ),
         (
             "corner_strength = \"2 GPa\"\ncorner_angle = \"85 deg\"",
@@ -89,7 +89,7 @@ fn adhesion_below_zero() {
     let pair = "[[contact]]\nbetween = [\"stone\", \"stone\"]\nadhesion = -0.1\n";
     grains_scene()
         .scene("[time]", &format!("{pair}[time]"))
-        .refused("scene.toml:24: contact.0.adhesion: found -0.1, expected 0 or more");
+        .refused("scene.toml:24: contact.0.adhesion: found -0.1 J/m2, expected 0 or more");
 }
 
 const PAIR: &str = "[[contact]]\nbetween = [\"stone\", \"stone\"]\n";
