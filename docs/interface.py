@@ -1,11 +1,11 @@
-"""Stability of the coupling windows with many sticking contacts (docs/developer/exchange-order.md).
+"""Stability of the coupling windows with many sticking contacts (docs/theory/coupling.md).
 
     python3 -m venv venv && venv/bin/pip install numpy
     venv/bin/python docs/interface.py
 
 Linear systems drawn at random: a solid of 1 to 5 degrees of freedom with a full mass matrix and weak or strong springs below, 1 to 6
 contacts, bodies of one or several contacts whose masses are 0.01 to 1000, contacts undamped, damped alike, damped at random or in part.
-The window is as long as W, D and Omega allow (docs/guide/exchange.md, "how long a window"). One window of the predicted scheme is a linear
+The window is as long as W, D and Omega allow (docs/theory/coupling.md, "how long a window"). One window of the predicted scheme is a linear
 map; printed is the largest growth per window over all systems, less 1.
 
 Then one node and one body on a tangential spring, which is a sum of velocities: its growth per window by what the spring feels between

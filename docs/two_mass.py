@@ -1,4 +1,4 @@
-"""The order of the exchange, studied on two masses (docs/developer/exchange-order.md).
+"""The order of the exchange, studied on two masses (docs/theory/coupling.md).
 
     python3 -m venv venv && venv/bin/pip install numpy
     venv/bin/python docs/two_mass.py

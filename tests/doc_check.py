@@ -1,10 +1,13 @@
 """Checks the pages: python3 tests/doc_check.py [PROGRAM]
 
-Every relative link of a page leads to a file, and its #anchor to a heading there. With PROGRAM, `trackbed check` reads the examples
+Every relative link of a page leads to a file, and its #anchor to a heading there. The pages have at most WORDS words, README outside
+of tables and code README_WORDS. With PROGRAM, `trackbed check` reads the examples
 of docs/scene.md, put together into small scenes; an example that is in none of them is a fault. Exit code 1 where there is a fault.
 """
 import os, re, shutil, subprocess, sys, tempfile
 
+WORDS = 50_500
+README_WORDS = 600
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -28,11 +31,28 @@ def anchors(page):
     return {s if k == 0 else f"{s}-{k}" for s, n in found.items() for k in range(n)}
 
 
-def links():
+def words(text):
+    return sum(1 for word in text.split() if re.search("[A-Za-z0-9]", word))
+
+
+def too_long():
+    """Faults of the pages' lengths."""
+    text = {name: open(os.path.join(ROOT, name), encoding="utf-8").read() for name in pages()}
+    prose = [line for _, line in lines(os.path.join(ROOT, "README.md")) if not line.startswith("|")]
+    for name, found, most in [("pages", sum(map(words, text.values())), WORDS), ("README.md", words("".join(prose)), README_WORDS)]:
+        if found > most:
+            yield f"{name}: found {found} words, expected at most {most}"
+
+
+def pages():
     names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=ROOT, capture_output=True, text=True, check=True)
-    for name in names.stdout.split():
+    return [name for name in names.stdout.split() if os.path.exists(os.path.join(ROOT, name))]
+
+
+def links():
+    for name in pages():
         page = os.path.join(ROOT, name)
-        for number, line in lines(page) if os.path.exists(page) else []:
+        for number, line in lines(page):
             for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", line)):
                 path, _, anchor = target.partition("#")
                 if re.match(r"https?:", target):
@@ -133,6 +153,6 @@ def examples(program):
                 yield f"docs/scene.md: the examples as scene {name}: {done.stderr.strip()}"
 
 
-faults = list(links()) + (list(examples(sys.argv[1])) if len(sys.argv) > 1 else [])
+faults = list(links()) + list(too_long()) + (list(examples(sys.argv[1])) if len(sys.argv) > 1 else [])
 print("\n".join(faults) or "links" + (" and examples" if len(sys.argv) > 1 else "") + " are right")
 sys.exit(bool(faults))

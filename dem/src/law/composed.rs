@@ -4,7 +4,7 @@
 //! What a contact loses is right to second order in spite of the leapfrog's velocities at half steps (the phase of a damped
 //! swing to first). The dashpot sees the approach speed of half a step ago, with a coefficient that makes up for it
 //! (`lag.rs`). (The speed extrapolated to the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2), takes steps up to a half shorter and errs five times as much; a speed at the full
-//! step predicted from the contact alone softens the springs of contacts at rest: `docs/developer/grain-engine.md`.) What
+//! step predicted from the contact alone softens the springs of contacts at rest: `docs/developer/engine.md`.) What
 //! the dashpot takes is booked with the extrapolated speed.
 //!
 //! A force that jumps from zero at first touch (the linear law's dashpot, adhesion) first counts for the part θ + ½ of the

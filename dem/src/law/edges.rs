@@ -4,7 +4,7 @@
 //! E*/4 per unit of length: F = E*/4 ∫ δ ds, which is linear in δ. Two edges of radius r that cross at right angles overlap by
 //! δ − s²/(4 r) in the distance s from where they cross; summed up over both edges that is 4/3 E* √r δ^(3/2), Hertz's force of
 //! crossing cylinders. An edge that lies on a face has E* L δ/4, where the half-space gives π E* L δ/Λ with Λ between 11 and 17 for L = 12 r
-//! (`docs/verification-grains.md`).
+//! (`docs/guide/verification.md`).
 //!
 //! So edges are contacts after the linear law, between materials that are added to those of a model: with springs of E/(8(1 − ν²))
 //! for a metre, and the tangential over normal stiffness 2(1 − ν)/(2 − ν) of Mindlin's circle. What contacts weigh is their length.

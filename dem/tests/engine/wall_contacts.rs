@@ -104,7 +104,7 @@ impl Throw {
 }
 
 /// What a block of triangles does at walls of triangles, round ones and another block is what the same block does as a polyhedron, whose
-/// contacts have references of their own (`docs/verification-grains.md`): the same velocity and spin after the hit.
+/// contacts have references of their own (`docs/guide/verification.md`): the same velocity and spin after the hit.
 #[test]
 fn as_polyhedra_with_the_same_faces() {
     let frustum = |radii, height: f64, caps| WallShape::Frustum {
