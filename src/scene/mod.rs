@@ -17,6 +17,7 @@ mod include;
 pub mod material;
 mod output;
 pub mod periodic;
+pub mod reference;
 pub mod runout;
 pub mod schema;
 pub mod solid;
