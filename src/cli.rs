@@ -56,8 +56,12 @@ pub enum Command {
     Report(ReportArgs),
     /// Make a folder with a commented scene that runs, to begin with; without arguments, list what there is.
     New(NewArgs),
-    /// Print the form of scene files as a JSON schema, by which editors complete and check keys.
-    Schema,
+    /// Print the JSON schema of scene files, by which editors complete and check keys.
+    Schema {
+        /// Print the tables of keys in Markdown instead; with PAGE, renew the tables of this file.
+        #[arg(long, value_name = "PAGE", num_args = 0..=1)]
+        markdown: Option<Option<PathBuf>>,
+    },
     /// Print the completions of a shell.
     Completions {
         /// The shell.

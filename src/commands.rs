@@ -8,6 +8,7 @@ mod modal;
 mod output;
 mod render;
 mod report;
+mod schema;
 mod stone;
 mod study;
 mod view;
@@ -16,7 +17,6 @@ use crate::cli::{Cli, Command, MeshCommand, NewArgs, RunArgs};
 use crate::failure::Failure;
 use crate::message;
 use crate::run;
-use crate::scene::schema;
 use crate::start;
 use clap::CommandFactory;
 use output::print;
@@ -39,7 +39,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             print(&if json { report.json() } else { report.text() })
         }
         Command::New(args) => new(&args),
-        Command::Schema => print(&format!("{:#}\n", schema::schema())),
+        Command::Schema { markdown } => schema::schema(markdown),
         Command::Completions { shell } => completions(shell),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),

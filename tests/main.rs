@@ -40,6 +40,7 @@ mod suite {
     mod rail;
     mod random_runs;
     mod ranks;
+    mod reference;
     mod render;
     mod report;
     mod runout;

@@ -39,16 +39,16 @@ use super::table::{self, Row, Table};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementColumns {
-    /// Recognised by their count; of 21 columns the first is a material where its values repeat.
+    /// By count (of 21, material first if values repeat).
     #[default]
     Auto,
-    /// `id mat n1…n20`.
+    /// `id material n1 … n20`.
     IdMaterialNodes,
-    /// `id n1…n20`.
+    /// `id n1 … n20`.
     IdNodes,
-    /// `mat n1…n20`.
+    /// `material n1 … n20`.
     MaterialNodes,
-    /// `n1…n20`.
+    /// `n1 … n20`.
     Nodes,
 }
 
@@ -56,9 +56,9 @@ pub enum ElementColumns {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ListLayout {
-    /// Columns of the element list. Default: recognised.
+    /// Columns of the element list; default `"auto"`.
     pub columns: ElementColumns,
-    /// Material number of elements in a list without a material column. Default 1.
+    /// Material number without such a column; default 1.
     pub material: u32,
 }
 

@@ -8,24 +8,24 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CycleJump {
-    /// What jumps; default `account`.
+    /// Method; default `"account"`; `"grains"` not with bonds, periodic axes, plastic solid, meshed sleepers.
     #[serde(default)]
     pub method: JumpMethod,
-    /// Cycles simulated before the first jump; default 100.
+    /// Cycles before the first jump; default 100; ≥ 10, ≥ `measure` + 2, < `cycles`.
     #[serde(default = "hundred")]
     pub first: u32,
-    /// Cycles of each stretch whose rate is measured; default 10.
+    /// Cycles of a measured rate (`"account"`: a tenth of all or more); default 10; ≥ 2.
     #[serde(default = "ten")]
     pub measure: u32,
-    /// Cycles after a jump whose rate does not count, for `grains`; default 3.
+    /// Cycles after a jump without measured rate; default 3; with `"grains"`.
     pub settle: Option<u32>,
-    /// Error of a jump over the settlement, up to which the next jump is longer; default 0.02.
+    /// Relative error below which jumps double, else halve; default 0.02; > 0, ≤ 10.
     #[serde(default = "fiftieth")]
     pub tolerance: f64,
-    /// Largest jump over the cycles before it; default 1, which doubles them.
+    /// Largest jump over preceding cycles, the first a quarter; default 1; > 0, ≤ 10.
     #[serde(default = "unity")]
     pub largest: f64,
-    /// Share by which a jump may change the overlaps of the contacts in the mean, for `grains`; default 0.5.
+    /// Largest mean relative change of overlaps; default 0.5; > 0, ≤ 2; with `"grains"`.
     pub overlap: Option<f64>,
 }
 
@@ -33,10 +33,10 @@ pub struct CycleJump {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum JumpMethod {
-    /// The settlement only; the grains stay where they are.
+    /// Advances the settlement.
     #[default]
     Account,
-    /// The places of the grains and the sleepers.
+    /// Also displaces grains and sleepers.
     Grains,
 }
 
@@ -57,22 +57,22 @@ fn unity() -> f64 {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Push {
-    /// Horizontal direction across the track or along it, any length.
+    /// Direction in plan `[x, y]`, not held.
     pub direction: [f64; 2],
-    /// Speed of the ram [m/s].
+    /// Actuator speed [m/s]; > 0.
     pub speed: Quantity<Velocity>,
-    /// How far it goes [m].
+    /// Actuator displacement [m]; > 0.
     pub displacement: Quantity<Length>,
-    /// Vertical force on the sleeper meanwhile, beside its weight [N]; default 0.
+    /// Vertical force on the sleeper, besides weight [N]; default 0; ≥ 0.
     #[serde(default = "none")]
     pub load: Quantity<Force>,
-    /// Time from the last cycle to the push, in which the vertical force goes over to `load` [s]; default 0.1 s.
+    /// Preceding time, in which force becomes `load` [s]; default 0.1; ≥ 0.
     #[serde(default = "tenth")]
     pub rest: Quantity<Time>,
-    /// Height of the ram above the sleeper's centre [m]; default 0.
+    /// Height above the sleeper's centre [m]; default 0.
     #[serde(default = "level")]
     pub height: Quantity<Length>,
-    /// Stiffness of the ram [N/m]; default 20 MN/m.
+    /// Actuator stiffness (0.7 of critical damping), limited by the step [N/m]; default `"20 MN/m"`; > 0.
     #[serde(default = "stiff")]
     pub stiffness: Quantity<Stiffness>,
 }

@@ -9,34 +9,34 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BondTable {
-    /// Name, for reports and for `bond` of bonded grains.
+    /// Name in reports and `grains.bond`.
     pub name: String,
-    /// The two groups whose grains are joined (the same name twice for one group); default: any.
+    /// Names of both groups; default any; with `gap`.
     pub between: Option<[String; 2]>,
-    /// Join spheres whose surfaces are nearer than this at the start of the run proper [m].
+    /// Surface distance of joined spheres [m]; or `pairs`, neither for stones, floes; ≥ 0, ≤ ten largest radii.
     pub gap: Option<Quantity<Length>>,
-    /// Instead of a gap: CSV file with the numbers of two grains in each row, counted from 0 over all groups.
+    /// CSV file of grain index pairs, from 0 over all groups; or `gap`; not with `deposition.level`.
     pub pairs: Option<PathBuf>,
-    /// A disk of cement: force and moment.
+    /// Cement disc with moments; or `contact_point`, `direct`, `face`.
     pub parallel: Option<Parallel>,
-    /// A glue at the contact point: force only.
+    /// Adhesive point without moments; or `parallel`.
     pub contact_point: Option<ContactPoint>,
-    /// Stiffnesses and strengths of the bond itself.
+    /// Given stiffnesses and strengths; or `parallel`.
     pub direct: Option<Direct>,
-    /// What fills the faces between the floes of a sheet: force and moment.
+    /// Beam between floes with their face's section; or `parallel`.
     pub face: Option<FaceTable>,
-    /// Fraction of critical damping; default 0.
+    /// Fraction of critical damping, each spring; default 0; ≥ 0.
     pub damping: Option<f64>,
-    /// Instead: coefficients of tension and shear [N s/m], bending and twisting [N m s].
+    /// List of dashpots: tension, shear [N s/m], bending, twisting [N m s]; or `damping`; ≥ 0.
     pub damping_coefficients: Option<[f64; 4]>,
-    /// Whether the contact of a joined pair acts beside the bond; default false.
+    /// Whether contacts act before the break, with `face` always; default false.
     #[serde(default)]
     pub contact: bool,
-    /// Spread of the strengths; default none.
+    /// Spread of strengths; default none.
     pub spread: Option<StrengthSpreadTable>,
-    /// Spread of the stiffnesses; default none.
+    /// Spread of stiffnesses, one factor a bond; default none.
     pub stiffness_spread: Option<StiffnessSpreadTable>,
-    /// Boxes in which strength or stiffness are others.
+    /// Boxes with factors on bonds; default none.
     #[serde(default)]
     pub region: Vec<StrengthRegion>,
 }
@@ -45,25 +45,25 @@ pub struct BondTable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Parallel {
-    /// Radius of the disk over the smaller radius of the two spheres; default 1.
+    /// Disc radius over smaller sphere radius; default 1; > 0.
     pub radius_factor: Option<f64>,
-    /// Young's modulus [Pa]: normal stiffness per area E/L, L the distance of the centres.
+    /// Young's modulus: stiffness per area times length [Pa]; or `normal_stiffness`; > 0.
     pub young: Option<Quantity<Stress>>,
-    /// With `young`: normal over shear stiffness; default 1.
+    /// Normal over shear stiffness; default 1; > 0; with `young`.
     pub stiffness_ratio: Option<f64>,
-    /// Instead of `young`: normal stiffness per area [Pa/m].
+    /// Normal stiffness per area [Pa/m]; or `young`; > 0.
     pub normal_stiffness: Option<f64>,
-    /// With `normal_stiffness`: shear stiffness per area [Pa/m].
+    /// Shear stiffness per area [Pa/m]; ≥ 0; with `normal_stiffness`.
     pub shear_stiffness: Option<f64>,
-    /// Tensile strength [Pa], 0: the first load breaks it; default unbreakable.
+    /// Tensile strength [Pa]; default unbreakable; ≥ 0.
     pub tensile_strength: Option<Quantity<Stress>>,
-    /// Shear strength [Pa], with `friction_angle` the cohesion; default unbreakable.
+    /// Shear strength, cohesion with `friction_angle` [Pa]; default unbreakable; ≥ 0.
     pub shear_strength: Option<Quantity<Stress>>,
-    /// Friction angle, by which pressure adds to the shear strength; default 0.
+    /// Friction angle of the shear strength [rad]; default 0; ≥ 0, < 90°; with `shear_strength`.
     pub friction_angle: Option<Quantity<Angle>>,
-    /// Part of the bending moment that counts in the tensile stress, 0–1; default 1.
+    /// Bending moment fraction in the tensile stress; default 1; 0–1.
     pub moment_factor: Option<f64>,
-    /// When it breaks; default `stress`.
+    /// Criterion of breakage; default `"stress"`.
     #[serde(default)]
     pub criterion: CriterionName,
 }
@@ -72,13 +72,13 @@ pub struct Parallel {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactPoint {
-    /// Stiffness in tension and pressure [N/m].
+    /// Normal stiffness [N/m]; > 0.
     pub normal_stiffness: Quantity<Stiffness>,
-    /// Stiffness in shear [N/m].
+    /// Shear stiffness [N/m]; ≥ 0.
     pub shear_stiffness: Quantity<Stiffness>,
-    /// Largest tension [N]; default unbreakable.
+    /// Largest tension [N]; default unbreakable; > 0.
     pub tension_limit: Option<Quantity<Force>>,
-    /// Largest shear force [N]; default unbreakable.
+    /// Largest shear force [N]; default unbreakable; > 0.
     pub shear_limit: Option<Quantity<Force>>,
 }
 
@@ -86,11 +86,11 @@ pub struct ContactPoint {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Direct {
-    /// Tension and shear [N/m], bending and twisting [N m/rad].
+    /// List: tension, shear [N/m], bending, twisting [N m/rad]; > 0 (tension), ≥ 0.
     pub stiffness: [f64; 4],
-    /// Largest tension and shear [N], bending and twisting moment [N m]; default unbreakable.
+    /// List: tension, shear [N], bending, twisting moment [N m]; default unbreakable; > 0.
     pub strength: Option<[f64; 4]>,
-    /// When it breaks; default `stress`.
+    /// Criterion of breakage; default `"stress"`.
     #[serde(default)]
     pub criterion: CriterionName,
 }
@@ -99,17 +99,17 @@ pub struct Direct {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FaceTable {
-    /// Young's modulus [Pa].
+    /// Young's modulus [Pa]; > 0.
     pub young: Quantity<Stress>,
-    /// Normal over shear stiffness; default 2.5.
+    /// Normal over shear stiffness; default 2.5; > 0.
     pub stiffness_ratio: Option<f64>,
-    /// Strength in tension and bending [Pa], 0: the first load breaks it; default unbreakable.
+    /// Tensile or flexural strength [Pa]; default unbreakable; ≥ 0.
     pub tensile_strength: Option<Quantity<Stress>>,
-    /// Shear strength [Pa], with `friction_angle` the cohesion; default unbreakable.
+    /// Shear strength, cohesion with `friction_angle` [Pa]; default unbreakable; ≥ 0.
     pub shear_strength: Option<Quantity<Stress>>,
-    /// Friction angle, by which pressure adds to the shear strength; default 0.
+    /// Friction angle of the shear strength [rad]; default 0; ≥ 0, < 90°; with `shear_strength`.
     pub friction_angle: Option<Quantity<Angle>>,
-    /// When it breaks; default `stress`.
+    /// Criterion of breakage; default `"stress"`.
     #[serde(default)]
     pub criterion: CriterionName,
 }
@@ -118,10 +118,10 @@ pub struct FaceTable {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CriterionName {
-    /// When the tensile or the shear stress reaches its strength.
+    /// Tensile or shear stress reaches strength.
     #[default]
     Stress,
-    /// When the shares of all four loads add up to 1.
+    /// Load fractions add up to 1.
     Sum,
 }
 
@@ -131,13 +131,13 @@ pub enum CriterionName {
 pub struct StrengthSpreadTable {
     /// Distribution.
     pub kind: SpreadKind,
-    /// Standard deviation over the mean, of `normal`.
+    /// Standard deviation over mean; > 0, ≤ 10; with `"normal"`.
     pub deviation: Option<f64>,
-    /// Modulus m of `weibull`.
+    /// Weibull modulus; > 0.05, ≤ 1000; with `"weibull"`.
     pub modulus: Option<f64>,
-    /// Seed; default 1.
+    /// Random seed; default 1.
     pub seed: Option<u64>,
-    /// Whether tension and shear of a bond have the same factor; default false, each draws its own.
+    /// Whether tension and shear share a factor; default false.
     #[serde(default)]
     pub together: bool,
 }
@@ -148,11 +148,11 @@ pub struct StrengthSpreadTable {
 pub struct StiffnessSpreadTable {
     /// Distribution.
     pub kind: SpreadKind,
-    /// Standard deviation over the mean, of `normal`.
+    /// Standard deviation over mean; > 0, ≤ 10; with `"normal"`.
     pub deviation: Option<f64>,
-    /// Modulus m of `weibull`.
+    /// Weibull modulus; > 0.05, ≤ 1000; with `"weibull"`.
     pub modulus: Option<f64>,
-    /// Seed; default 1.
+    /// Random seed; default 1.
     pub seed: Option<u64>,
 }
 
@@ -160,9 +160,9 @@ pub struct StiffnessSpreadTable {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpreadKind {
-    /// Normal about the strength given, cut off at zero.
+    /// Cut off at zero.
     Normal,
-    /// Weibull, the strength given being its scale.
+    /// Scale as given.
     Weibull,
 }
 
@@ -172,10 +172,10 @@ pub enum SpreadKind {
 pub struct StrengthRegion {
     /// Lower corner [m].
     pub low: [Quantity<Length>; 3],
-    /// Upper corner [m].
+    /// Upper corner [m]; > `low`.
     pub high: [Quantity<Length>; 3],
-    /// Factor on both strengths; default 1.
+    /// Factor on strength of bonds with middle inside; default 1; > 0.
     pub strength: Option<f64>,
-    /// Factor on all stiffnesses; default 1.
+    /// Factor on their stiffness; default 1; > 0.
     pub stiffness: Option<f64>,
 }

@@ -8,48 +8,48 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Compaction {
-    /// What is done.
+    /// Kind of stage.
     pub kind: CompactionKind,
-    /// Corners of the box whose porosity is measured before and after [m].
+    /// Box `[low, high]` of the measured porosity, inside the bed [m].
     pub region: [[Quantity<Length>; 3]; 2],
-    /// Friction between grains in this stage, instead of their own.
+    /// Friction between grains; default unchanged; ≥ 0.
     pub friction: Option<f64>,
-    /// Contact stiffness in this stage, as a share of their own; default 1.
+    /// Factor on contact stiffness, not corner strength; default 1; > 0, ≤ 1.
     pub stiffness_factor: Option<f64>,
-    /// Local non-viscous damping in this stage, 0–1; default 0.
+    /// Non-viscous damping; default 0; ≥ 0, < 1.
     #[serde(default)]
     pub local_damping: f64,
-    /// Longest time of coming to rest afterwards [s]; default 0.2 s.
+    /// Longest time to rest afterwards, as in `[deposition]` [s]; default 0.2; > 0.
     pub rest: Option<Quantity<Time>>,
-    /// Of `vibration`: numbers of the planes in `[[walls]]` that move, from 0; default all planes.
+    /// Indices of moving planes in `[[walls]]`, from 0; default all planes; with `"vibration"`.
     pub walls: Option<Vec<usize>>,
-    /// Of `vibration`: direction of the motion; default up.
+    /// Direction of motion; default up; with `"vibration"`.
     pub direction: Option<[f64; 3]>,
-    /// Of `vibration`: largest displacement from the middle [m].
+    /// Amplitude A of A sin 2πft [m]; > 0; with `"vibration"`.
     pub amplitude: Option<Quantity<Length>>,
-    /// Of `vibration`, `tamping` and `bedding`.
+    /// Frequency f [Hz]; > 0; with `"vibration"`, `"tamping"`, `"bedding"`.
     pub frequency: Option<Quantity<Frequency>>,
-    /// Of `vibration`, `tamping` and `bedding`: number of cycles (at each place).
+    /// Cycles, at each position; ≥ 1; with `"vibration"`, `"tamping"`, `"bedding"`.
     pub cycles: Option<u32>,
-    /// Of `tamping`: the plate.
+    /// Rigid box that moves vertically; with `"tamping"`.
     pub plate: Option<Plate>,
-    /// Of `tamping` and `bedding`: largest force on the plate or on each sleeper, downwards [N].
+    /// Force F sin² πft, besides weight [N]; > 0; with `"tamping"` (plate), `"bedding"` (each rigid sleeper).
     pub force: Option<Quantity<Force>>,
-    /// Of `tamping`: places of the plate's centre in x and y, one after the other [m].
+    /// Successive plate positions `[[x, y], …]` [m]; with `"tamping"`.
     pub at: Option<Vec<[Quantity<Length>; 2]>>,
-    /// Of `squeeze`: number of the plane in `[[walls]]` that moves, from 0.
+    /// Index of a plane across an axis, from 0; with `"squeeze"`.
     pub wall: Option<usize>,
-    /// Of `squeeze`: its speed along its normal [m/s].
+    /// Speed along the normal [m/s]; > 0; with `"squeeze"`.
     pub speed: Option<Quantity<Velocity>>,
-    /// Of `squeeze`: porosity of `region`, cut off at the wall, at which the wall stops.
+    /// Final porosity of `region`, up to the plane; > 0, < 1; with `"squeeze"`.
     pub porosity: Option<f64>,
-    /// Of `squeeze`: longest way of the wall [m].
+    /// Travel that ends it with a warning [m]; default half of `region`; > 0; with `"squeeze"`.
     pub max_travel: Option<Quantity<Length>>,
-    /// Of `pouring`: names of the groups of grains that wait for it.
+    /// Names of waiting groups; with `"pouring"`; not bonded, with `motion`, or only an `inlet`.
     pub groups: Option<Vec<String>>,
-    /// Of `pouring`: parts that they are dropped in, one after the other; default 1.
+    /// Parts dropped successively, `rest` each; default 1; 1–1000; with `"pouring"`.
     pub layers: Option<u32>,
-    /// Of `pouring`: those with their centre above are taken away at its end [m].
+    /// Height above which centres are removed [m]; default none; with `"pouring"`.
     pub level: Option<Quantity<Length>>,
 }
 
@@ -57,15 +57,15 @@ pub struct Compaction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CompactionKind {
-    /// Planes swing.
+    /// Oscillating planes.
     Vibration,
-    /// A plate presses from above.
+    /// Plate pressing from above.
     Tamping,
-    /// A plane moves in until a porosity is reached.
+    /// Plane moving in.
     Squeeze,
-    /// The sleepers are set down, and pressed into the bed.
+    /// Sleepers placed and pressed.
     Bedding,
-    /// Grains are dropped on the bed, around the sleepers that lie there.
+    /// Grains dropped around sleepers.
     Pouring,
 }
 
@@ -73,24 +73,24 @@ pub enum CompactionKind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
-    /// Edge lengths [m].
+    /// Edge lengths [m]; > 0.
     pub size: [Quantity<Length>; 3],
-    /// Mass [kg].
+    /// Mass [kg]; > 0.
     pub mass: Quantity<Mass>,
-    /// Name of its `[[material]]`.
+    /// Name of a `[[material]]`.
     pub material: String,
 }
 
-/// `[[measure]]`: a box whose packing is measured at the start and the end of the run proper.
+/// `[[measure]]`: a box whose packing is measured at the end of the main stage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
     /// Name in the summary.
     pub name: String,
-    /// Corners of the box [m].
+    /// Box `[low, high]` [m].
     #[serde(rename = "box")]
     pub region: [[Quantity<Length>; 3]; 2],
-    /// Radial distribution function of the grains inside.
+    /// Radial distribution function, to `radial.csv`; default none.
     pub radial: Option<Radial>,
 }
 
@@ -98,8 +98,8 @@ pub struct Measure {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Radial {
-    /// Largest distance [m].
+    /// Largest distance, with periodic images [m]; > 0, ≤ half the shortest side.
     pub reach: Quantity<Length>,
-    /// Number of shells of equal width up to it.
+    /// Shells of equal width; 1–100,000.
     pub bins: usize,
 }

@@ -10,32 +10,31 @@ use std::fmt;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Coupling {
-    /// Steps of the grains, as long as the first, per step of the solid, 1–1000, or `"auto"`; default 10.
+    /// DEM steps (as the first) in a window, or stable number up to 20; default 10; or `window`; 1–1000.
     pub substeps: Option<Substeps>,
-    /// Step of the solid [s], in place of `substeps`.
+    /// Length of a coupling window [s]; or `substeps`; > 0.
     pub window: Option<Quantity<Time>>,
-    /// Order of the exchange.
+    /// Coupling scheme; default `"predicted"`.
     #[serde(default)]
     pub scheme: SchemeName,
-    /// Largest relative change of the surface's motion between passes of the iterated scheme; default 1e-4.
+    /// Relative change of surface velocity at convergence; default 1e-4; > 0, < 1; with `"iterated"`.
     pub tolerance: Option<f64>,
-    /// Passes of the iterated scheme at most; default 20.
+    /// Largest number of passes, then the best; default 20; 2–1000; with `"iterated"`.
     pub max_passes: Option<u32>,
-    /// How contact forces reach the solid.
+    /// Load transfer at points, or over discs; default `"point"`.
     #[serde(default)]
     pub transfer: TransferTable,
-    /// Implicitness of the solid's window step, 0.5–1; 0.5 is Newmark ¼, ½ and conserves energy. Default 0.5, with meshed
-    /// sleepers 0.6.
+    /// Implicitness: 0.5 conserves energy, 1 backward Euler; default by contacts (0.5–0.633), 0.6 with meshed sleepers; 0.5–1.
     pub theta: Option<f64>,
-    /// Name of the `[[material]]` that grains feel when they touch the solid.
+    /// Name of the `[[material]]` of the surface.
     pub material: String,
-    /// Direction that the touched faces look to; default up (0, 0, 1).
+    /// Direction that contact faces look in; default `[0, 0, 1]`.
     #[serde(default = "up")]
     pub direction: [f64; 3],
-    /// Largest angle between a face's normal and `direction` [rad]; default 75 degrees.
+    /// Largest angle between normals and `direction` [rad]; default `"75 deg"`; > 0, ≤ π.
     #[serde(default = "steep")]
     pub max_angle: Quantity<Angle>,
-    /// What grains touch of the faces of the ground; default `curved`, with polyhedra `flat`.
+    /// Geometry of ground faces; default `"curved"`, with polyhedra `"flat"`.
     pub faces: Option<FacesName>,
 }
 
@@ -43,9 +42,9 @@ pub struct Coupling {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum FacesName {
-    /// The faces themselves, with the curvature that their mid-side nodes and the deformation give them.
+    /// As deformed (no polyhedra).
     Curved,
-    /// Flat triangles between the nodes of the faces.
+    /// Flat triangles, less accurate.
     Flat,
 }
 
@@ -97,14 +96,14 @@ impl<'de> Deserialize<'de> for Substeps {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum SchemeName {
-    /// Grains first on the predicted motion of the surface.
+    /// Grains first, on predicted surface motion.
     #[default]
     Predicted,
-    /// Solid first with the force of the window before.
+    /// Solid first, with previous force.
     Lagged,
-    /// As predicted, the prediction knowing the stiffness of the contacts.
+    /// Predicted with contact stiffness (linear solids without reduction, no polyhedra).
     Stiffened,
-    /// Windows are repeated until both sides agree.
+    /// Until both sides agree.
     Iterated,
 }
 
@@ -122,9 +121,9 @@ pub enum TransferTable {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpreadTable {
-    /// Radius of the discs [m].
+    /// Radius of the discs [m]; or `spread_factor`; > 0.
     pub spread: Option<Quantity<Length>>,
-    /// Radius of the discs over the mean radius of the stones.
+    /// Radius over mean bounding radius of grains; or `spread`; > 0, ≤ 100.
     pub spread_factor: Option<f64>,
 }
 

@@ -8,23 +8,23 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Deposition {
-    /// Longest time [s].
+    /// Longest duration, then a warning [s]; > 0.
     pub max_time: Quantity<Time>,
-    /// Settled when the root-mean-square speed of the grains stays below this [m/s]; default 5 mm/s.
+    /// Root-mean-square speed at rest [m/s]; default 0.005; > 0.
     pub settled_speed: Option<Quantity<Velocity>>,
-    /// Settled when instead the mean unbalanced force over the mean contact force is below this, above 0 and below 1.
+    /// Mean unbalanced over contact force at rest, for or with `settled_speed`; default none; > 0, < 1.
     pub unbalanced_ratio: Option<f64>,
-    /// Parts that the grains are dropped in, each on the settled ones before, 1 to 1000; default 1: all at once.
+    /// Equal parts dropped successively, `max_time` each; default 1; 1–1000.
     #[serde(default = "one")]
     pub layers: u32,
-    /// Friction between grains while they settle, instead of their own: lower packs denser.
+    /// Friction between grains: lower packs denser; default unchanged; ≥ 0.
     pub friction: Option<f64>,
-    /// Contact stiffness while they settle, as a share of their own; default 1. Lower takes longer steps.
+    /// Factor on contact stiffness, not corner strength; default 1; > 0, ≤ 1.
     pub stiffness_factor: Option<f64>,
-    /// Local non-viscous damping while they settle, 0–1; default 0.
+    /// Non-viscous damping, above 0.4 with shorter steps; default 0; ≥ 0, < 1.
     #[serde(default)]
     pub local_damping: f64,
-    /// Grains whose centre lies above this height are taken away after settling [m]: a levelled bed.
+    /// Height above which centres are removed afterwards [m]; default none.
     pub level: Option<Quantity<Length>>,
 }
 

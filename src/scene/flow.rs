@@ -8,18 +8,18 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Inlet {
-    /// Corners of the box that they come in at, each wholly inside and touching nothing [m].
+    /// Box `[low, high]` of contact-free positions, wider than a grain [m].
     #[serde(rename = "box")]
     pub region: [[Quantity<Length>; 3]; 2],
-    /// Mass per time [kg/s].
+    /// Mass rate [kg/s]; or `grains_per_second`; > 0.
     pub rate: Option<Quantity<MassRate>>,
-    /// In place of `rate`: number per time [1/s].
+    /// Grain rate [1/s]; or `rate`; > 0.
     pub grains_per_second: Option<Quantity<Rate>>,
-    /// Velocity that they come in at [m/s]; default at rest.
+    /// Velocity of inserted grains, without spin [m/s]; default at rest.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
-    /// When the first may come in [s]; default 0.
+    /// Time of the first insertion [s]; default 0; ≥ 0.
     pub start: Option<Quantity<Time>>,
-    /// When no more come in [s]; default never.
+    /// Time of the last insertion [s]; default none; > `start`.
     pub stop: Option<Quantity<Time>>,
 }
 
@@ -27,18 +27,18 @@ pub struct Inlet {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outlet {
-    /// Name in reports; default `outlet<number>`, counted from 0.
+    /// Name in reports; default `outlet<number>`, from 0.
     pub name: Option<String>,
-    /// Corners of a box [m].
+    /// Box `[low, high]` that removes centres inside [m]; or `point`.
     #[serde(rename = "box")]
     pub region: Option<[[Quantity<Length>; 3]; 2]>,
-    /// In place of a box: a point of a plane [m].
+    /// Point of a plane that removes centres beyond [m]; or `box`.
     pub point: Option<[Quantity<Length>; 3]>,
-    /// Normal of that plane, towards the side where grains are taken out; any length but zero.
+    /// Normal towards removed grains; with `point`.
     pub normal: Option<[f64; 3]>,
-    /// Names of the groups; default all that move freely.
+    /// Names of removed groups; default all without `motion`.
     pub groups: Option<Vec<String>>,
-    /// Whether grains taken out come in again at the inlet of their group; default false.
+    /// Whether removed grains queue at their inlet; default false.
     #[serde(default)]
     pub again: bool,
 }

@@ -9,62 +9,63 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grains {
-    /// Name for reports.
+    /// Name in reports.
     pub name: String,
-    /// Shape of the grains.
+    /// Shape (and sources).
     pub shape: GrainShape,
-    /// Name of their material.
+    /// Name of a `[[material]]` with density.
     pub material: String,
-    /// Stone library of `clump`, `bonded` and `polyhedron` grains.
+    /// Stone library; with `"clump"`, `"bonded"`, `"polyhedron"`; not with `floes`, `frustum`.
     pub library: Option<PathBuf>,
-    /// Spheres by hand: `[[x, y, z, r], …]` [m].
+    /// Spheres `[[x, y, z, r], …]` [m]; or another source; > 0 (r).
     pub spheres: Option<Vec<[Quantity<Length>; 4]>>,
-    /// Grains of an earlier run from a CSV file: spheres as x, y, z, r; clumps and polyhedra as x, y, z, qw, qx, qy, qz, scale, stone.
+    /// CSV file as of `output.packing`; or another source; columns `x, y, z, r` or `x, y, z, qw, qx, qy, qz, scale, stone` (disks:
+    /// diameter, 0).
     pub packing: Option<PathBuf>,
-    /// Equal spheres on a lattice.
+    /// Regular packing of spheres; or another source.
     pub lattice: Option<LatticeFill>,
-    /// A field of ice floes.
+    /// Field of ice floes; or another source.
     pub floes: Option<Floes>,
-    /// One body: a pile or a cone with flat sides.
+    /// Pile or cone, a polyhedron; or another source.
     pub frustum: Option<Frustum>,
-    /// Container that grains are scattered in, or grown in.
+    /// Container with grains at random; or another source.
     pub region: Option<Region>,
-    /// Share of the container's volume that scattered grains fill, in place of `count`.
+    /// Solid fraction, 0.3 at random positions; or `count`; > 0, < 1; with `region`; not with `growth`.
     pub concentration: Option<f64>,
-    /// Thickness of `disk` grains over their diameter, above 0 and below 1.
+    /// Thickness over diameter; > 0, < 1; with `"disk"`; not with `floes`.
     pub aspect: Option<f64>,
-    /// Growth of the grains in a `region` to a porosity.
+    /// Radius expansion to a porosity; default none; with `region`.
     pub growth: Option<GrowthSource>,
-    /// Number of grains to fill in.
+    /// Number of grains; or `concentration`; 1–10,000,000; with `fill`, `region`, only an `inlet` (queue); optional with `growth`.
     pub count: Option<usize>,
-    /// Sizes of filled grains from a sieve table.
+    /// Sieve table; or `size`, `sizes`; with `fill`, `region`, only an `inlet`, floes of disks.
     pub gradation: Option<GradationSource>,
-    /// Instead of a gradation: smallest and largest size [m], uniform in number.
+    /// Smallest and largest size, uniform in number [m]; or `gradation`; > 0.
     pub size: Option<[Quantity<Length>; 2]>,
-    /// Instead of a gradation: a law of sizes.
+    /// Law of sizes; or `gradation`.
     pub sizes: Option<Sizes>,
-    /// Box that filled grains start in: [[x, y, z] low, [x, y] high]; they are stacked upwards as high as needed.
+    /// Box with a contact-free stack up to 200 m; or another source.
     pub fill: Option<FillBox>,
-    /// Seed of the random sizes, places and orientations; default 1.
+    /// Seed of sizes, positions, orientations; default 1.
     #[serde(default = "one")]
     pub seed: u64,
-    /// Name of the `[[bond]]` that holds `bonded` stones, or the floes of a sheet, together.
+    /// Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`.
     pub bond: Option<String>,
-    /// Velocity that the grains keep whatever the forces, without turning: a grip [m/s]. They stand while others settle.
+    /// Prescribed velocity without rotation, 0 during deposition [m/s]; default free.
     pub motion: Option<[Quantity<Velocity>; 3]>,
-    /// Whether the mean place of the grains and the force on them go to `history.csv`; default: with `motion`.
+    /// Whether mean position and force are recorded; default true with `motion`.
     pub record: Option<bool>,
-    /// Where and how fast grains of the group come in during the run proper.
+    /// Insertion during the run; default none.
     pub inlet: Option<super::flow::Inlet>,
-    /// Whether these grains foul the bed: fines in the voids of the others; default false.
+    /// Whether grains are fines in voids, for the summary; default false.
     #[serde(default)]
     pub fouling: bool,
-    /// Whether these grains may overlap at the start by more than a tenth of a radius, as prestressed ones do; default false.
+    /// Whether initial overlaps may exceed 10 % of a radius; default false.
     #[serde(default)]
     pub accept_overlap: bool,
-    /// Initial velocity [m/s].
+    /// Initial velocity [m/s]; default at rest; not with `motion`.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
-    /// Initial angular velocity [rad/s].
+    /// Initial angular velocity [rad/s]; default none; not with `motion`.
     pub spin: Option<[Quantity<Spin>; 3]>,
 }
 
@@ -76,15 +77,15 @@ fn one() -> u64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GrainShape {
-    /// Single spheres.
+    /// Sphere.
     Sphere,
-    /// Rigid clumps from a stone library.
+    /// Rigid cluster of spheres (`fill`, `region`, `packing`).
     Clump,
-    /// Stones of bonded spheres from a stone library, which can break.
+    /// Breakable cluster of spheres (`fill`).
     Bonded,
-    /// Dilated polyhedra: of a stone library, ice floes, or a frustum.
+    /// Dilated convex body (`fill`, `region`, `packing`, `floes`, `frustum`).
     Polyhedron,
-    /// Dilated disks: flat and round, with a rounded rim.
+    /// Flat round body (`fill`, `region`, `packing`, `floes`).
     Disk,
 }
 
@@ -92,13 +93,13 @@ pub enum GrainShape {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GradationSource {
-    /// CSV file with columns standard, grade, sieve_mm, passing_lo_pct, passing_hi_pct.
+    /// CSV file: `standard`, `grade`, `sieve_mm`, `passing_lo_pct`, `passing_hi_pct`; limits averaged.
     pub file: PathBuf,
-    /// Value of the column `standard`.
+    /// Value of that column, without regard to blanks, dashes, case.
     pub standard: String,
-    /// Value of the column `grade`.
+    /// Value of that column, likewise.
     pub grade: String,
-    /// Factor on all sieve sizes; default 1.
+    /// Factor on sieve sizes; default 1; > 0.
     #[serde(default = "unity")]
     pub scale: f64,
 }
@@ -111,9 +112,9 @@ fn unity() -> f64 {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillBox {
-    /// Lower corner [m].
+    /// Lower corner `[x, y, z]` [m].
     pub low: [Quantity<Length>; 3],
-    /// Upper corner in x and y [m].
+    /// Upper corner `[x, y]` [m].
     pub high: [Quantity<Length>; 2],
 }
 
@@ -121,15 +122,15 @@ pub struct FillBox {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LatticeFill {
-    /// Kind of lattice.
+    /// Packing, and its porosity.
     pub kind: LatticeKind,
-    /// Diameter of the spheres [m].
+    /// Diameter [m]; > 0.
     pub size: Quantity<Length>,
-    /// Lower corner of the box around the lattice [m].
+    /// Lower corner of the box [m].
     pub low: [Quantity<Length>; 3],
-    /// Upper corner [m]: as many spheres as fit.
+    /// Upper corner of the box [m]; or `counts`.
     pub high: Option<[Quantity<Length>; 3]>,
-    /// In place of `high`: number of columns, rows and layers.
+    /// Numbers of columns, rows, layers; or `high`.
     pub counts: Option<[usize; 3]>,
 }
 
@@ -137,26 +138,25 @@ pub struct LatticeFill {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Floes {
-    /// Lower corner of the box in x and y [m].
+    /// Lower corner `[x, y]` of the field [m].
     pub low: [Quantity<Length>; 2],
-    /// Upper corner [m].
+    /// Upper corner `[x, y]` [m]; > `low`.
     pub high: [Quantity<Length>; 2],
-    /// Of polyhedra: number of cells, 1 to 100000.
+    /// Number of Voronoi cells; 1–100,000; with `"polyhedron"`.
     pub count: Option<usize>,
-    /// Area of the floes, before their corners are rounded, over that of the box; above 0 and below 1. Of disks: over that of the box less the
-    /// circles that are clear.
+    /// Floe area before rounding over field area, disks without `clear`; or `gap`; > 0, < 1 (disks 0.75).
     pub concentration: Option<f64>,
-    /// Of polyhedra, instead: distance between neighbouring floes [m].
+    /// Distance between neighbours [m]; or `concentration`; > 0; with `"polyhedron"`.
     pub gap: Option<Quantity<Length>>,
-    /// Of polyhedra: how often sites are moved to the centroids of their cells, which makes floes alike; 0 to 10000, default 0.
+    /// Moves to cell centroids: uniform floes; default 0; 0–10,000; with `"polyhedron"`.
     pub relax: Option<usize>,
-    /// Thickness [m]: of polyhedra above twice the radius, of disks below their diameter.
+    /// Thickness [m]; > 2 `radius`, of disks < smallest diameter.
     pub thickness: Quantity<Length>,
-    /// Of polyhedra: radius that edges and corners are rounded with [m]. Disks are rounded with half of their thickness.
+    /// Rounding radius, of disks half thickness [m]; > 0; with `"polyhedron"`.
     pub radius: Option<Quantity<Length>>,
     /// Height of the mid-plane [m]; default 0.
     pub elevation: Option<Quantity<Length>>,
-    /// Circles that floes must not reach: `[[x, y, r], …]` [m].
+    /// Circles `[[x, y, r], …]` without floes [m]; default none; ≥ 0 (r).
     #[serde(default)]
     pub clear: Vec<[Quantity<Length>; 3]>,
 }
@@ -169,11 +169,11 @@ pub struct Frustum {
     pub from: [Quantity<Length>; 3],
     /// Middle of the other end [m].
     pub to: [Quantity<Length>; 3],
-    /// Radius at `from` and at `to` [m], the mean of those of the inscribed and the circumscribed circle.
+    /// Mean of inscribed, circumscribed radius at `from`, `to` [m]; > 0.
     pub radii: [Quantity<Length>; 2],
-    /// Number of sides, 6 to 32; default 24.
+    /// Number of sides; default 24; 6–32.
     pub sides: Option<usize>,
-    /// Radius that edges and corners are rounded with [m]; default a tenth of the smaller of `radii`.
+    /// Rounding radius of edges [m]; default tenth of smaller; > 0, < half the length.
     pub radius: Option<Quantity<Length>>,
 }
 
@@ -181,11 +181,11 @@ pub struct Frustum {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
-    /// Simple cubic.
+    /// Simple cubic, 0.4764.
     Loose,
-    /// Hexagonal close packed.
+    /// 0.2595.
     Hexagonal,
-    /// Face-centred cubic.
+    /// 0.2595.
     FaceCentred,
 }
 
@@ -193,16 +193,16 @@ pub enum LatticeKind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
-    /// Corners of a box along the axes [m].
+    /// Box `[low, high]` [m]; or `cone`, `surface`.
     #[serde(rename = "box")]
     pub cuboid: Option<[[Quantity<Length>; 3]; 2]>,
-    /// A cylinder or a cut cone.
+    /// Cylinder or cut cone; or `box`.
     pub cone: Option<ConeRegion>,
-    /// File of a closed triangle surface: STL, OBJ, or lists of vertices and triangles.
+    /// File of a closed surface, or mesh; or `box`.
     pub surface: Option<PathBuf>,
-    /// With `surface`: factor on its coordinates; default 1.
+    /// Factor on coordinates; default 1; > 0; with `surface`.
     pub scale: Option<f64>,
-    /// With `surface`: displacement after scaling [m]; default none.
+    /// Shift after scaling [m]; default none; with `surface`.
     pub shift: Option<[Quantity<Length>; 3]>,
 }
 
@@ -214,7 +214,7 @@ pub struct ConeRegion {
     pub from: [Quantity<Length>; 3],
     /// Middle of the other end [m].
     pub to: [Quantity<Length>; 3],
-    /// Radius at `from` and at `to` [m].
+    /// Radii at `from` and `to` [m]; ≥ 0, one > 0.
     pub radii: [Quantity<Length>; 2],
 }
 
@@ -222,13 +222,13 @@ pub struct ConeRegion {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrowthSource {
-    /// Porosity of the container at the end, above 0 and below 1.
+    /// Final porosity of the container; > 0, < 1; `count` scales sizes.
     pub porosity: f64,
-    /// Rounds of growing and relaxing, 1 to 1000; default 20.
+    /// Growth steps, each relaxed; default 20; 1–1000.
     pub rounds: Option<usize>,
-    /// Friction while growing, 0 or more; default 0.
+    /// Friction meanwhile: more packs looser; default 0; ≥ 0.
     pub friction: Option<f64>,
-    /// Unbalanced-force ratio that ends the last relaxation, above 0 and below 1; default 1e-3.
+    /// Final unbalanced over contact force, means; default 1e-3; > 0, < 1.
     pub unbalanced_ratio: Option<f64>,
 }
 
@@ -236,50 +236,50 @@ pub struct GrowthSource {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Sizes {
-    /// All alike.
+    /// One size.
     Equal {
-        /// The size [m].
+        /// Size [m].
         size: Quantity<Length>,
     },
     /// Two sizes.
     Two {
-        /// The small size [m].
+        /// Small size [m].
         small: Quantity<Length>,
-        /// The large size [m].
+        /// Large size [m].
         large: Quantity<Length>,
-        /// Share of the large grains in the volume of all, 0 to 1.
+        /// Volume fraction of large grains; 0–1.
         large_share: f64,
     },
-    /// Uniform between two sizes.
+    /// Uniform.
     Uniform {
-        /// Smallest [m].
+        /// Smallest size [m].
         low: Quantity<Length>,
-        /// Largest [m].
+        /// Largest size [m].
         high: Quantity<Length>,
-        /// Whether equal steps of size hold equal number (default) or equal volume.
+        /// Distributed quantity; default `"number"`.
         #[serde(default)]
         by: Share,
     },
-    /// Normal in number, cut at both ends.
+    /// In number, truncated.
     Normal {
-        /// Mean before cutting [m].
+        /// Mean [m].
         mean: Quantity<Length>,
-        /// Standard deviation before cutting [m].
+        /// Standard deviation [m].
         deviation: Quantity<Length>,
-        /// Smallest [m].
+        /// Smallest size [m].
         low: Quantity<Length>,
-        /// Largest [m].
+        /// Largest size [m].
         high: Quantity<Length>,
     },
-    /// Log-normal in number, cut at both ends.
+    /// In number, truncated.
     LogNormal {
-        /// Median before cutting [m].
+        /// Median [m].
         median: Quantity<Length>,
-        /// Standard deviation of the natural logarithm of the size before cutting.
+        /// Standard deviation of ln(size).
         deviation: f64,
-        /// Smallest [m].
+        /// Smallest size [m].
         low: Quantity<Length>,
-        /// Largest [m].
+        /// Largest size [m].
         high: Quantity<Length>,
     },
 }
@@ -288,9 +288,9 @@ pub enum Sizes {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Share {
-    /// Number of grains.
+    /// Number.
     #[default]
     Number,
-    /// Volume of grains.
+    /// Volume.
     Volume,
 }

@@ -10,15 +10,15 @@ use std::path::PathBuf;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HistoryKind {
-    /// 1 at all times.
+    /// Constant.
     Constant,
-    /// From 0 to 1 over `duration`, then 1.
+    /// From 0 to 1 over `duration`.
     Ramp,
-    /// sin 2πft.
+    /// As sin 2πft.
     Sine,
-    /// (1 − cos 2πft)/2 = sin² πft: from 0 to 1 and back in each period.
+    /// As sin² πft.
     Haversine,
-    /// Straight lines between given points.
+    /// Linear between points, constant beyond.
     Table,
 }
 
@@ -26,19 +26,19 @@ pub enum HistoryKind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct History {
-    /// Shape.
+    /// Factor on the load.
     pub kind: HistoryKind,
-    /// Frequency of `sine` and `haversine` [Hz].
+    /// Frequency [Hz]; > 0; with `"sine"`, `"haversine"`.
     pub frequency: Option<Quantity<Frequency>>,
-    /// Number of periods after which the factor is 0; default: no end.
+    /// Number of periods, then 0; default unlimited; with `"sine"`, `"haversine"`.
     pub cycles: Option<f64>,
-    /// Rise time of `ramp` [s].
+    /// Rise time [s]; > 0; with `"ramp"`.
     pub duration: Option<Quantity<Time>>,
-    /// Points of `table`: [[time, factor], …], times ascending; constant before the first and after the last.
+    /// Points `[[time, factor], …]`, ascending [s]; or `file`; with `"table"`.
     pub points: Option<Vec<(Quantity<Time>, f64)>>,
-    /// CSV file with the points of `table`: rows time [s], factor.
+    /// CSV file `time, factor`, header optional (`time [ms]`) [s]; or `points`; with `"table"`.
     pub file: Option<PathBuf>,
-    /// Time before which the factor is 0 [s]; default 0.
+    /// Time before which it is 0 [s]; default 0.
     pub start: Option<Quantity<Time>>,
 }
 

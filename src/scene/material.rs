@@ -9,43 +9,42 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GrainMaterial {
-    /// Name by which groups and walls refer to it.
+    /// Name, each once.
     pub name: String,
-    /// Density [kg/m³]; needed by materials of grains and sleepers.
+    /// Density [kg/m³]; > 0; needed for grains.
     pub density: Option<Quantity<Density>>,
-    /// Contact stiffness of a like pair [N/m]; absent: rigid (a contact with it is twice as stiff as a like pair).
+    /// Normal stiffness of two of this material [N/m]; default rigid; > 0.
     pub stiffness: Option<Quantity<Stiffness>>,
-    /// Normal law of its contacts, by name; default: `hertz` with a Young's modulus, `linear` with a stiffness.
+    /// Normal law, see `[[contact]]`; default by `young`, `corner_strength`, `stiffness`.
     pub normal: Option<String>,
-    /// Young's modulus [Pa], in place of a stiffness: contact after Hertz and Mindlin.
+    /// Young's modulus, of Hertzian laws [Pa]; default none; > 0.
     pub young: Option<Quantity<Stress>>,
-    /// Poisson's ratio, above −1 and at most 0.5; needed with a Young's modulus.
+    /// Poisson's ratio; > −1, ≤ 0.5; with `young`.
     pub poisson: Option<f64>,
-    /// Factor on the stiffness of edges of polyhedra and disks after Hertz, 0.01 to 100; default 1.
+    /// Factor on edge stiffness, 3.14 for line contact; default 1; 0.01–100; with `young`.
     pub edge_factor: Option<f64>,
-    /// Pressure that its corners bear before they crush [Pa]; beside a Young's modulus; absent: they do not crush.
+    /// Pressure at which corners crush [Pa]; default none; > 0, < limit by modulus, angle; with `young`.
     pub corner_strength: Option<Quantity<Stress>>,
-    /// Half the angle of the cones that corners are, above 0 and below 90 degrees; needed with `corner_strength`.
+    /// Half cone angle of corners [rad]; > 0, < 90°; with `corner_strength`.
     pub corner_angle: Option<Quantity<Angle>>,
-    /// Tangential over normal stiffness, 0–1; default 0.5.
+    /// Tangential over normal stiffness, linear law; default 0.5; 0–1.
     pub tangential_ratio: Option<f64>,
-    /// Tangential over normal damping coefficient, 0–1; default 0.
+    /// Tangential over normal dashpot; default 0; 0–1.
     #[serde(default)]
     pub tangential_damping_ratio: f64,
-    /// Coulomb friction coefficient, 0 or more.
+    /// Friction coefficient μ, at large forces; ≥ 0.
     pub friction: f64,
-    /// Friction that asperities add at vanishing force: μ + μₐ/(1 + F/(p R²)); default 0, none.
+    /// Friction μₐ of asperities in μ + μₐ/(1 + F/(p R²)); default 0; ≥ 0; with `"linear"`, `corner_strength`.
     #[serde(default)]
     pub asperity_friction: f64,
-    /// p of it [Pa]: normal force over the effective radius squared at which half is left (mean pressure beside `corner_strength`); needed with
-    /// `asperity_friction`.
+    /// Pressure p of it, mean contact pressure with `corner_strength` [Pa]; > 0; with `asperity_friction`.
     pub asperity_pressure: Option<Quantity<Stress>>,
-    /// Coefficient of restitution, above 0 and at most 1.
+    /// Coefficient of restitution; 0.0001–1; shorter steps if small.
     pub restitution: f64,
-    /// Rolling resistance: largest moment over effective radius times normal force; default 0, none.
+    /// Largest rolling moment over R F; default 0; ≥ 0.
     #[serde(default)]
     pub rolling_friction: f64,
-    /// Twisting resistance: largest moment about the normal over effective radius times normal force; default 0, none.
+    /// Largest twisting moment over R F; default 0; ≥ 0.
     #[serde(default)]
     pub twisting_friction: f64,
 }
@@ -54,31 +53,31 @@ pub struct GrainMaterial {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PairContact {
-    /// Names of the two materials (twice the same for a like pair).
+    /// Names of the two materials.
     pub between: [String; 2],
-    /// Friction coefficient of the pair.
+    /// Friction coefficient; default the smaller; ≥ 0.
     pub friction: Option<f64>,
-    /// Restitution of the pair.
+    /// Coefficient of restitution; default the smaller; 0.0001–1; not with `"none"`.
     pub restitution: Option<f64>,
-    /// Normal stiffness of the pair [N/m].
+    /// Normal stiffness [N/m]; default mixed; > 0; with `"linear"`, `"walton_braun"`.
     pub stiffness: Option<Quantity<Stiffness>>,
-    /// Work of adhesion [J/m²].
+    /// Work of adhesion w, force 2π w R in contact [J/m²]; default 0; ≥ 0; not with boxes, bonds, rigid bodies.
     pub adhesion: Option<Quantity<Adhesion>>,
-    /// Normal law of the pair, by name; default: that of both materials.
+    /// Normal law, `"linear"` and others; default by materials.
     pub normal: Option<String>,
-    /// Tangential law of the pair, by name, or `none`; default: the one that belongs to the normal law.
+    /// Tangential law, `"none"` or others; default by normal law.
     pub tangential: Option<String>,
-    /// Where the normal damping is from; default: the restitution.
+    /// Damping; default `"restitution"`; not with `"walton_braun"`.
     pub damping: Option<DampingKind>,
-    /// Damping ratio of the pair [-], with `damping = "ratio"`.
+    /// Damping ratio C/(2 √(m* K)); ≥ 0; with `"ratio"`.
     pub damping_ratio: Option<f64>,
-    /// Rolling resistance; default: a spring where both materials have a coefficient.
+    /// Rolling resistance; default `"spring"`.
     pub rolling: Option<Resistance>,
-    /// Rolling resistance of the pair: largest moment over effective radius times normal force.
+    /// Coefficient of `rolling`; default the smaller; ≥ 0.
     pub rolling_friction: Option<f64>,
-    /// Twisting resistance; default: a spring where both materials have a coefficient.
+    /// Twisting resistance; default `"spring"`.
     pub twisting: Option<Resistance>,
-    /// Twisting resistance of the pair: largest moment about the normal over effective radius times normal force.
+    /// Coefficient of `twisting`; default the smaller; ≥ 0.
     pub twisting_friction: Option<f64>,
 }
 
@@ -86,11 +85,11 @@ pub struct PairContact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingKind {
-    /// The dashpot that gives the restitution.
+    /// Restitution.
     Restitution,
-    /// The dashpot of a damping ratio.
+    /// Ratio.
     Ratio,
-    /// No dashpot.
+    /// None.
     None,
 }
 
@@ -98,7 +97,7 @@ pub enum DampingKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Resistance {
-    /// A spring that yields.
+    /// Spring.
     Spring,
     /// None.
     None,

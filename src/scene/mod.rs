@@ -17,6 +17,7 @@ mod include;
 pub mod material;
 mod output;
 pub mod periodic;
+pub mod reference;
 pub mod runout;
 pub mod schema;
 pub mod solid;
@@ -46,66 +47,66 @@ use units::{Acceleration, Length, Quantity, Time, Velocity};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// One line that says what the scene is; it heads the summary.
+    /// Title of the summary; default file name.
     #[serde(default)]
     pub title: String,
-    /// Gravity [m/s²]; default (0, 0, −9.81).
+    /// Gravity [m/s²]; default `[0, 0, -9.81]`.
     #[serde(default = "earth")]
     pub gravity: [Quantity<Acceleration>; 3],
-    /// Solid part: mesh, materials, loads.
+    /// Finite element model.
     pub solid: Option<solid::Solid>,
-    /// Materials of grains, walls and sleeper.
+    /// Contact materials.
     #[serde(default)]
     pub material: Vec<material::GrainMaterial>,
-    /// Constants of single material pairs, in place of the mixing rules.
+    /// Constants of material pairs.
     #[serde(default)]
     pub contact: Vec<material::PairContact>,
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,
-    /// Where grains are taken out of the run.
+    /// Removal of grains.
     #[serde(default)]
     pub outlet: Vec<flow::Outlet>,
     /// Bonds between grains.
     #[serde(default)]
     pub bond: Vec<bonds::BondTable>,
-    /// Air or another fluid that streams past grains.
+    /// Uniform flow of a fluid.
     pub wind: Option<Wind>,
-    /// Water that grains float or sink in.
+    /// Water with waves.
     pub water: Option<water::Water>,
-    /// Fixed or moving walls.
+    /// Walls and rigid bodies.
     #[serde(default)]
     pub walls: Vec<walls::Wall>,
-    /// Structures whose loads are recorded.
+    /// Structures with recorded loads.
     #[serde(default)]
     pub structure: Vec<structure::Structure>,
-    /// Axes along which the grains repeat themselves.
+    /// Periodic axes of grains.
     pub periodic: Option<periodic::Periodic>,
-    /// Gravity deposition before the run proper.
+    /// Deposition under gravity.
     pub deposition: Option<deposition::Deposition>,
-    /// Compaction after it, stage by stage.
+    /// Stages of compaction.
     #[serde(default)]
     pub compaction: Vec<compaction::Compaction>,
-    /// Boxes whose packing is measured.
+    /// Boxes of packing measurements.
     #[serde(default)]
     pub measure: Vec<compaction::Measure>,
-    /// How far a slide runs and what it leaves.
+    /// Run-out of a slide.
     pub runout: Option<runout::Runout>,
-    /// Stress and strain of a specimen between platens.
+    /// Stress and strain between platens.
     pub specimen: Option<specimen::Specimen>,
-    /// How breaks of bonds are joined to acoustic events.
+    /// Acoustic events of bond breaks.
     pub events: Option<specimen::Events>,
-    /// Sleeper and its load.
+    /// Sleepers, load and rail; default none.
     pub track: Option<track::TrackTable>,
-    /// Exchange between grains and solid; needed when a scene has both.
+    /// Coupling of grains and solid.
     pub coupling: Option<coupling::Coupling>,
-    /// Time steps and duration.
+    /// Duration and time steps.
     #[serde(default)]
     pub time: TimeControl,
-    /// What is written and how often.
+    /// Written files.
     #[serde(default)]
     pub output: Output,
-    /// Points whose history is recorded.
+    /// Nodes, grains, boxes in `history.csv`.
     #[serde(default)]
     pub probe: Vec<Probe>,
 }
@@ -118,29 +119,27 @@ fn earth() -> [Quantity<Acceleration>; 3] {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeControl {
-    /// Physical time of the run proper [s], deposition not counted. Not needed for a static solid, nor with a
-    /// counted cyclic load, which sets it.
+    /// Duration of the main stage [s]; default end of cycles or push; > 0; not with a static solid.
     pub end: Option<Quantity<Time>>,
-    /// Number of steps of the run proper, in place of `end`: of the solid that runs alone, else of the grains, with a `grain_step`.
+    /// Number of FEM steps, with grains DEM steps; or `end`; 1–10¹²; with `solid_step`, `grain_step`; rounded up to whole windows.
     pub steps: Option<u64>,
-    /// Step of a solid that runs alone [s]. In a coupled run the solid's step is `coupling.substeps` grain steps.
+    /// FEM time step without `[[grains]]` [s]; > 0, ≤ `end`, ≤ 10⁹ steps; with `dynamics`, `quasi_static`.
     pub solid_step: Option<Quantity<Time>>,
-    /// Step of the grains [s]; default: `grain_step_fraction` of the limit.
+    /// Fixed DEM time step, within the limit of possible contacts [s]; default follows contacts; > 0, ≤ 10¹² steps.
     pub grain_step: Option<Quantity<Time>>,
-    /// Fraction of the stability limit that the grains take, 0–1; default 0.9 (the limit is a safe bound).
+    /// Fraction of the critical time step, below 0.8 for collisions too; default 0.8; 1e-6 – 1; not with `grain_step`.
     pub grain_step_fraction: Option<f64>,
-    /// Accept a `grain_step` above the limit; default false.
+    /// Whether `grain_step` may exceed the limit; default false; with `grain_step`.
     #[serde(default)]
     pub accept_step_above_limit: bool,
-    /// Largest speed at which grains are expected to meet [m/s], for the step limit of contacts after Hertz;
-    /// default: an estimate.
+    /// Impact speed of the step limit, larger under loads [m/s]; default from motion, fall, weight; ≥ 0; with `young`.
     pub impact_speed: Option<Quantity<Velocity>>,
-    /// Distance beyond touch up to which the search lists neighbours, over the mean radius of all spheres, 0.01–2; default 0.2.
+    /// Neighbour cut-off over mean sphere radius, affects speed only; default 0.2; 0.01–2.
     pub search_skin: Option<f64>,
-    /// Factor on the inertial mass of grains, rigid sleepers and rigid bodies in the run proper, 1–10,000, their weight kept;
-    /// default 1.
+    /// Factor on inertia at constant weight, for quasi-static results; default 1; 1–10,000; not with `[wind]`, `[water]`, `[runout]`,
+    /// inlets, outlets, `scarring`, `mount`, rail mass.
     pub mass_factor: Option<f64>,
-    /// Time between two looks at inlets and outlets of grains [s]; default 1 ms, at least one step or window.
+    /// Interval between checks of inlets, outlets [s]; default 1 ms; > 0.
     pub flow_interval: Option<Quantity<Time>>,
 }
 
@@ -153,16 +152,16 @@ fn yes() -> bool {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// Name used in the column heads; default `n<number>`.
+    /// Header of columns; default `n<number>`, `grain<number>`, group, `region`.
     pub name: Option<String>,
-    /// Node number of the mesh.
+    /// Number of a node: displacement, velocity; or `at`, `grain`, `group`, `region`.
     pub node: Option<u32>,
-    /// Place [m]; the nearest node is taken.
+    /// Position, of the nearest node [m]; or `node`.
     pub at: Option<[Quantity<Length>; 3]>,
-    /// Number of a grain, from 0.
+    /// Index of a grain, from 0: position, velocity, spin, mean stress; or `node`.
     pub grain: Option<u32>,
-    /// Name of a group of grains.
+    /// Name of a group: number, means of these; or `node`.
     pub group: Option<String>,
-    /// Box `[[x, y, z], [x, y, z]]` whose grains are observed [m].
+    /// Box `[low, high]`: number, means of centres inside [m]; or `node`.
     pub region: Option<[[Quantity<Length>; 3]; 2]>,
 }

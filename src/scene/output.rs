@@ -8,35 +8,33 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// Number of frames of the animation over the run proper, 0–100000; default 20. The start is one more.
+    /// Frames of the run, after the first; default 20; 0–100,000.
     pub frames: Option<u32>,
-    /// Time between rows of `history.csv` [s]; default a thousandth of the run proper. Rows fall on steps of the
-    /// solid (coupled and solid runs) or of the grains.
+    /// Interval of `history.csv`, rows within 64 steps shorten them [s]; default duration/1000; > 0.
     pub history_interval: Option<Quantity<Time>>,
-    /// Steps between two frames, in place of `frames`: as `time.steps` counts them.
+    /// Steps between frames; or `frames`; ≥ 1; with `grain_step`, `solid_step`.
     pub frame_steps: Option<u64>,
-    /// Steps between two rows of `history.csv`, in place of `history_interval`.
+    /// Steps between rows; or `history_interval`; ≥ 1; with `grain_step`, `solid_step`.
     pub history_steps: Option<u64>,
-    /// Time by the clock after which the state of the run is kept anew for `--resume` [s]; default 10 minutes. The state is
-    /// kept too when settling ends and when the run is interrupted.
+    /// Wall time between checkpoints, for `--resume` [s]; default `"10 min"`; > 0.
     pub checkpoint: Option<Quantity<Time>>,
-    /// Write nodal displacements, reactions and Gauss-point stresses of the last state as CSV; default false.
+    /// Whether `nodes.csv`, `gauss.csv` are written; default false; with `[solid]`.
     pub tables: Option<bool>,
-    /// Write the grains at the end as `packing.csv`, which `[[grains]] packing` reads; default false.
+    /// Whether `packing.csv` (`packing_0.csv`, … by group) is written; default false.
     pub packing: Option<bool>,
-    /// Keep the state at the end, from which another run can go on (`run NEXT --from DIR`); default true.
+    /// Whether `end.state` is written, for `run --from`; default true; with `[[grains]]`.
     pub state: Option<bool>,
-    /// Force chains of the frames: all contacts (default), or those above the mean normal force.
+    /// Contacts in frames; default `"all"`; with `[[grains]]`.
     pub chains: Option<Chains>,
-    /// Fields of solid and grains that frames hold beside what they need to be drawn; default all.
+    /// Fields in frames, see below; default unmarked.
     pub fields: Option<Vec<String>>,
-    /// Last part of the run, with frames of its own.
+    /// Separate frames of the last part; default none; not with `[track.jump]`.
     pub last: Option<Last>,
-    /// Write frames as VTK files with a series `results.pvd`; default true.
+    /// Whether `results.pvd`, `frames/` are written; default true.
     pub vtk: Option<bool>,
-    /// Write frames of the solid as Tecplot files; default false.
+    /// Whether `tecplot/` is written; default false; with `[solid]`.
     pub tecplot: Option<bool>,
-    /// Write all frames into VTKHDF files; default false.
+    /// Whether `grains.vtkhdf`, `solid.vtkhdf` are written; default false.
     pub vtkhdf: Option<bool>,
 }
 
@@ -56,9 +54,9 @@ impl Output {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Last {
-    /// How long it is [s].
+    /// Length of that part [s]; > 0, < duration.
     pub time: Quantity<Time>,
-    /// Frames in it.
+    /// Number of its frames; 1–100,000 with `frames`.
     pub frames: u32,
 }
 
@@ -66,9 +64,9 @@ pub struct Last {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Chains {
-    /// All of them.
+    /// All.
     #[default]
     All,
-    /// Those with more than the mean normal force.
+    /// Above mean normal force.
     Strong,
 }

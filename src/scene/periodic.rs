@@ -8,10 +8,10 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Periodic {
-    /// Along x.
+    /// Borders `[low, high]` along x [m]; default not periodic.
     pub x: Option<[Quantity<Length>; 2]>,
-    /// Along y.
+    /// Borders `[low, high]` along y [m]; default not periodic.
     pub y: Option<[Quantity<Length>; 2]>,
-    /// Along z.
+    /// Borders `[low, high]` along z [m]; default not periodic.
     pub z: Option<[Quantity<Length>; 2]>,
 }

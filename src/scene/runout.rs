@@ -8,14 +8,14 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Runout {
-    /// Direction of the slide in plan, any length but zero.
+    /// Direction in plan `[x, y]`.
     pub direction: [f64; 2],
-    /// Groups that slide; default all that are not gripped by `motion`.
+    /// Names of sliding groups; default all without `motion`.
     pub groups: Option<Vec<String>>,
-    /// Side of the cells of the depth map [m]; default twice the mean diameter.
+    /// Cell of the depth map [m]; default twice mean diameter; > 0.
     pub cell: Option<Quantity<Length>>,
-    /// Depth above which a cell belongs to the deposit [m]; default half the mean diameter.
+    /// Smallest depth of the deposit [m]; default half mean diameter; > 0.
     pub depth: Option<Quantity<Length>>,
-    /// Share of the mass, from behind, at which the front is taken; 0.5–1, default 0.99.
+    /// Mass fraction behind the front; default 0.99; 0.5–1.
     pub share: Option<f64>,
 }

@@ -8,9 +8,14 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 use std::borrow::Cow;
 
+/// The tables and keys of a scene file on its own, as their types and comments describe them.
+pub fn keys() -> Value {
+    schemars::schema_for!(Scene).to_value()
+}
+
 /// The schema of a scene.
 pub fn schema() -> Value {
-    let mut schema = schemars::schema_for!(Scene).to_value();
+    let mut schema = keys();
     schema["title"] = json!("Scene of trackbed");
     schema["properties"][include::KEY] = json!({
         "description": "Files whose tables are put under those of the scene; paths relative to it.",

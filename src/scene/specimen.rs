@@ -8,29 +8,29 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
-    /// Which test it is.
+    /// Kind of test.
     pub test: SpecimenTest,
-    /// Recorded wall, or recorded group, at the lower end of the axis.
+    /// Recorded wall, or group with `motion`, at the lower end.
     pub bottom: String,
-    /// The same at the upper end.
+    /// Recorded wall, or group with `motion`, at the upper end.
     pub top: String,
-    /// Axis that it is loaded along; default z.
+    /// Axis of loading; default `"z"`.
     #[serde(default)]
     pub axis: SpecimenAxis,
-    /// Distance of the platens [m]; of the Brazilian test the diameter.
+    /// Distance of platens, or disc diameter [m]; > 0.
     pub length: Quantity<Length>,
-    /// Of `compression`: section [m²].
+    /// Cross-section [m²]; > 0; with `"compression"`.
     pub area: Option<f64>,
-    /// Of `brazilian`: thickness of the disc [m].
+    /// Disc thickness [m]; > 0; with `"brazilian"`.
     pub thickness: Option<Quantity<Length>>,
-    /// Recorded walls at the sides, whose pressure is the confinement.
+    /// Recorded walls whose pressure confines; default none.
     #[serde(default)]
     pub sides: Vec<String>,
-    /// Area of each of them [m²].
+    /// Area of each side [m²]; > 0; with `sides`.
     pub side_area: Option<f64>,
-    /// Groups of the specimen; default all that are not gripped by `motion`.
+    /// Groups of the specimen; default all without `motion`.
     pub groups: Option<Vec<String>>,
-    /// Shares of the peak between which modulus and Poisson's ratio are taken; default 0.2 and 0.5.
+    /// Peak stress fractions of the elastic constants; default `[0.2, 0.5]`; 0–1, rising.
     pub between: Option<[f64; 2]>,
 }
 
@@ -38,9 +38,9 @@ pub struct Specimen {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpecimenTest {
-    /// Uniaxial or triaxial compression: force over section.
+    /// Force over `area`.
     Compression,
-    /// Splitting of a disc across its diameter: tension 2 F/(π D t) in its middle.
+    /// Splitting, tension 2F/(πDt).
     Brazilian,
 }
 
@@ -61,8 +61,8 @@ pub enum SpecimenAxis {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Events {
-    /// Largest distance of two breaks of one event [m].
+    /// Largest distance of breaks in an event [m]; ≥ 0.
     pub distance: Quantity<Length>,
-    /// Longest time between them [s].
+    /// Longest time between breaks in an event [s]; ≥ 0.
     pub time: Quantity<super::units::Time>,
 }

@@ -9,16 +9,16 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Structure {
-    /// Name used in the column heads.
+    /// Prefix of columns, each once.
     pub name: String,
-    /// Names of walls, other than plain planes, and of groups of grains.
+    /// Names of groups and walls (planes recorded); at most one rigid body.
     pub parts: Vec<String>,
-    /// Where the vertical axis is, x and y [m].
+    /// Position `[x, y]` of the fixed axis [m].
     pub axis: [Quantity<Length>; 2],
     /// Height that moments refer to [m]; default 0.
     pub foot: Option<Quantity<Length>>,
-    /// Sectors of equal angle around the axis, the first from x towards y; default none.
+    /// Sectors of equal angle, from x towards y; default 0; 0–360.
     pub sectors: Option<usize>,
-    /// Heights between layers, ascending [m]; default none.
+    /// Ascending heights between layers [m]; default none.
     pub levels: Option<Vec<Quantity<Length>>>,
 }

@@ -13,18 +13,17 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename = "Track", deny_unknown_fields)]
 pub struct TrackTable {
-    /// The sleepers.
+    /// Sleepers.
     pub sleeper: Sleeper,
-    /// The load on their seats, or the wheels on the rail; without it the sleepers only rest.
+    /// Forces or wheels.
     pub load: Option<SeatLoad>,
-    /// Cycles that are not simulated one by one.
+    /// Extrapolated cycles.
     pub jump: Option<CycleJump>,
-    /// Lateral push at the end.
+    /// Lateral push.
     pub push: Option<Push>,
-    /// Two loads between which the stiffness of the bed is taken in each cycle [N]; default a quarter and three quarters
-    /// of the range.
+    /// Two loads between which bed stiffness is evaluated [N]; default 25 %, 75 % of range; with cycles.
     pub bed_stiffness: Option<[Quantity<Force>; 2]>,
-    /// The rail that brings the loads of axles to the sleepers.
+    /// Rail on the seats.
     pub rail: Option<RailTable>,
 }
 
@@ -32,26 +31,26 @@ pub struct TrackTable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sleeper {
-    /// Edge lengths in x, y, z [m].
+    /// Edge lengths in x, y, z [m]; > 0.
     pub size: [Quantity<Length>; 3],
-    /// Mass [kg]; of the slice that is modelled. A meshed sleeper may have a density instead.
+    /// Mass of the modelled part [kg]; or `mesh.density`; > 0.
     pub mass: Option<Quantity<Mass>>,
-    /// Name of its material.
+    /// Name of a `[[material]]`.
     pub material: String,
-    /// Place of its centre in x and y [m], of the first of several; it is lowered onto the highest grain below it.
+    /// Position `[x, y]` of the first centre [m].
     pub centre: [Quantity<Length>; 2],
-    /// Number of sleepers in a row; default 1.
+    /// Number of sleepers; default 1; 1–1000.
     #[serde(default = "one")]
     pub count: u32,
-    /// Distance from centre to centre [m]; needed by several sleepers and by a rail.
+    /// Distance of centres [m]; > width; with `count`, `[track.rail]`.
     pub spacing: Option<Quantity<Length>>,
-    /// Direction of the track, in which the row goes on and wheels roll; default y.
+    /// Direction of the track; default `"y"`.
     #[serde(default)]
     pub along: Along,
-    /// Motions that are held: any of "x", "y", "z", "rx", "ry", "rz"; default none.
+    /// Fixed motions, meshed `["y", "rx", "rz"]`, `["x", "ry", "rz"]` or both; default none.
     #[serde(default)]
     pub hold: Vec<HeldMotion>,
-    /// Elements that make it an elastic body of the solid; default a rigid body.
+    /// Elastic sleepers; default rigid.
     pub mesh: Option<SleeperMesh>,
 }
 
@@ -59,16 +58,15 @@ pub struct Sleeper {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SleeperMesh {
-    /// Number of elements along x, y, z.
+    /// Elements along x, y, z; ≥ 1 (reduced: two ≥ 2), ≤ 100,000 in all.
     pub elements: [u32; 3],
-    /// Young's modulus [Pa].
+    /// Young's modulus [Pa]; > 0.
     pub young: Quantity<Stress>,
-    /// Poisson's ratio, above −1 and below 0.5.
+    /// Poisson's ratio; > −1, < 0.5.
     pub poisson: f64,
-    /// Density [kg/m³], where `mass` is not given.
+    /// Density [kg/m³]; or `mass`; > 0.
     pub density: Option<Quantity<Density>>,
-    /// Lengths in x and y of the rectangle about each seat over which its force is spread [m]; default 0.15 m across the
-    /// track and the whole width along it, no farther than to the edge.
+    /// Area `[x, y]` that spreads the force of a seat, within edges [m]; default 0.15 across track, full width along; ≥ 0.
     pub foot: Option<[Quantity<Length>; 2]>,
 }
 
@@ -119,52 +117,51 @@ pub enum HeldMotion {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeatLoad {
-    /// Shape of a cycle.
+    /// Kind of cycle.
     pub kind: SeatLoadKind,
-    /// Smallest downward force [N]: `sine`, `haversine`, `ramp`.
+    /// Smallest downward force, negative pulls [N]; with `"sine"`, `"haversine"`, `"ramp"` (default 0).
     pub minimum: Option<Quantity<Force>>,
-    /// Largest downward force [N]: `sine`, `haversine`, `ramp`; peak of one pulse: `gauss`.
+    /// Largest downward force, or pulse [N]; > `minimum`; with `"sine"`, `"haversine"`, `"ramp"`, `"gauss"`.
     pub maximum: Option<Quantity<Force>>,
-    /// Cycles per second [Hz]: `sine`, `haversine`.
+    /// Frequency f [Hz]; > 0; with `"sine"`, `"haversine"`.
     pub frequency: Option<Quantity<Frequency>>,
-    /// Number of cycles, or passes; default 1, needed by `sine` and `haversine`.
+    /// Cycles or passes; default 1; ≥ 1; needed with `"sine"`, `"haversine"`.
     pub cycles: Option<u32>,
-    /// Times of rise, of the largest force and of the fall [s]: `ramp`; without a fall the load stays.
+    /// Rise time [s]; > 0; with `"ramp"`.
     pub rise: Option<Quantity<Time>>,
-    /// See `rise`.
+    /// Time at the maximum [s]; ≥ 0; with `"ramp"`.
     pub hold: Option<Quantity<Time>>,
-    /// See `rise`.
+    /// Fall time [s]; default stays; > 0; with `"ramp"`.
     pub fall: Option<Quantity<Time>>,
-    /// Measured force: `history`; table of trains: `train`.
+    /// CSV file `time, force` [s, N], header optional; for `"train"` a table; with `"history"`, `"train"`.
     pub file: Option<PathBuf>,
-    /// Factor on a measured force: `history`; default 1.
+    /// Factor on the force, not 0; default 1; with `"history"`.
     pub factor: Option<f64>,
-    /// Speed along the track [m/s].
+    /// Speed along the track [m/s]; > 0; with `"gauss"`, `"bogie"`, `"train"`, `"history"` (default infinite).
     pub speed: Option<Quantity<Velocity>>,
-    /// Half the width ℓ of a Gaussian pulse where it has fallen to 1/e [m]: `gauss`.
+    /// Half width ℓ of a pulse at 1/e [m]; > 0; with `"gauss"`.
     pub width: Option<Quantity<Length>>,
-    /// Distances of the pulses behind the first one [m]: `gauss`; default one pulse.
+    /// Distances behind the first pulse, ascending from 0 [m]; default `[0]`; with `"gauss"`.
     pub axles: Option<Vec<Quantity<Length>>>,
-    /// Load of an axle [N]: `bogie`; `train`, in place of the table's.
+    /// Axle load, all rails together [N]; > 0; with `"bogie"`, `"train"` (default table).
     pub axle_load: Option<Quantity<Force>>,
-    /// Distance of the two axles [m]: `bogie`.
+    /// Axle distance [m]; > 0; with `"bogie"`.
     pub wheelbase: Option<Quantity<Length>>,
-    /// Name of the train: `train`.
+    /// Name of the train; with `"train"`.
     pub train: Option<String>,
-    /// Number of its cars: `train`; default 1.
+    /// Number of cars; default 1; 1–1000; with `"train"`.
     pub cars: Option<u32>,
-    /// What an uneven rail adds to the load of an axle: `bogie`, `train`.
+    /// Uneven rail: Σ M a w² sin wt, w = 2πv/L; default none; with `"bogie"`, `"train"`.
     pub excitation: Option<Excitation>,
-    /// Time for the sleepers to come to rest under their own weight before any load [s]; default 0.1 s.
+    /// Time at rest, before the rail is laid [s]; default 0.1; ≥ 0.
     #[serde(default = "tenth")]
     pub rest: Quantity<Time>,
-    /// Pulses that press the sleepers into the bed before the first cycle, and do not count.
+    /// Pulses before the first cycle; default none.
     pub seating: Option<SeatingTable>,
-    /// Time over which the load of the first instant, and the rail's weight, are brought on [s]; default 0.1 s.
+    /// Time to reach first load and rail weight [s]; default 0.1; ≥ 0.
     #[serde(default = "tenth")]
     pub ramp: Quantity<Time>,
-    /// Points of a sleeper's top that share the load, and carry the rails, as offsets in x and y from its centre [m];
-    /// default the centre.
+    /// Rail seats `[[x, y], …]` from the centre, with equal force [m]; default centre.
     #[serde(default)]
     pub seats: Vec<[Quantity<Length>; 2]>,
 }
@@ -177,11 +174,11 @@ fn tenth() -> Quantity<Time> {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SeatingTable {
-    /// Number of pulses.
+    /// Number of pulses; 1–1,000,000.
     pub cycles: u32,
-    /// Largest downward force on each sleeper [N].
+    /// Largest downward force on each sleeper [N]; > first load.
     pub maximum: Quantity<Force>,
-    /// Pulses per second [Hz].
+    /// Frequency [Hz]; > 0.
     pub frequency: Quantity<Frequency>,
 }
 
@@ -189,19 +186,19 @@ pub struct SeatingTable {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SeatLoadKind {
-    /// Mean plus amplitude times sin 2πft: starts at the mean.
+    /// Starting at the mean.
     Sine,
-    /// Minimum plus range times (1 − cos 2πft)/2: starts and ends at the minimum.
+    /// (1 − cos 2πft)/2 from the minimum.
     Haversine,
-    /// Smooth rise, hold and fall.
+    /// Half cosines, hold.
     Ramp,
-    /// A measured force.
+    /// Measured.
     History,
-    /// Gaussian pulses that run along the sleepers.
+    /// Pulses Σ F exp(−((x − xᵢ − vt)/ℓ)²).
     Gauss,
-    /// Two axles on the rail.
+    /// Two axles.
     Bogie,
-    /// The axles of a train on the rail.
+    /// Axles of a train.
     Train,
 }
 
@@ -209,9 +206,9 @@ pub enum SeatLoadKind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Excitation {
-    /// Unsprung mass of an axle [kg].
+    /// Unsprung axle mass M [kg]; > 0.
     pub mass: Quantity<Mass>,
-    /// Waves: [length L, amplitude a] [m].
+    /// Waves `[[L, a], …]` [m]; > 0 (L).
     pub waves: Vec<[Quantity<Length>; 2]>,
 }
 
@@ -219,24 +216,23 @@ pub struct Excitation {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RailTable {
-    /// How it shares the load of an axle among the sleepers.
+    /// Model of the rail.
     pub kind: RailKind,
-    /// Bending stiffness EI of one rail [N m²].
+    /// Bending stiffness EI of one rail [N m²]; > 0.
     pub bending_stiffness: Quantity<Bending>,
-    /// Stiffness under one seat of a sleeper [N/m]: of pad and bed together with `winkler`, of the bed under the
-    /// sleepers beyond the model with `beam`.
+    /// Stiffness of pad and bed, with `"beam"` of outer beds [N/m]; > 0.
     pub foundation: Quantity<Stiffness>,
-    /// Damping of that bed [N s/m]: `beam`; default 0.
+    /// Damping of that bed [N s/m]; default 0; ≥ 0; with `"beam"`.
     pub foundation_damping: Option<Quantity<Dashpot>>,
-    /// Mass of one rail per length [kg/m]: `beam`.
+    /// Mass of one rail [kg/m]; > 0; with `"beam"`.
     pub mass: Option<Quantity<LineMass>>,
-    /// Stiffness of a pad [N/m]: `beam`.
+    /// Stiffness of a pad, limited by the step [N/m]; > 0; with `"beam"`.
     pub pad_stiffness: Option<Quantity<Stiffness>>,
-    /// Damping of a pad [N s/m]: `beam`; default 0.
+    /// Damping of a pad, limited by the step [N s/m]; default 0; ≥ 0; with `"beam"`.
     pub pad_damping: Option<Quantity<Dashpot>>,
-    /// Length of rail beyond the first and the last sleeper [m]: `beam`.
+    /// Rail beyond outer sleepers, load rising over two spacings [m]; ≥ three spacings; with `"beam"`.
     pub extension: Option<Quantity<Length>>,
-    /// Beam elements between two sleepers: `beam`; default 4.
+    /// Elements between sleepers; default 4; 1–100; with `"beam"`.
     pub elements: Option<u32>,
 }
 
@@ -244,8 +240,8 @@ pub struct RailTable {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RailKind {
-    /// Quasi-static, by the formula of a beam on a continuous elastic foundation.
+    /// Quasi-static, on an elastic foundation.
     Winkler,
-    /// A beam with mass on pads.
+    /// Beam with mass on pads.
     Beam,
 }

@@ -13,53 +13,53 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
-    /// Kind of wall.
+    /// Shape.
     pub kind: WallKind,
-    /// Name for the history and for reports; default `wall<number>`, counted from 0.
+    /// Name in `history.csv`; default `wall<number>`, from 0.
     pub name: Option<String>,
-    /// Name of its material.
+    /// Name of a `[[material]]`.
     pub material: String,
-    /// A point of a `plane` [m].
+    /// Point of the plane [m]; with `"plane"`.
     pub point: Option<[Quantity<Length>; 3]>,
-    /// Normal of a `plane`, towards the grains.
+    /// Normal towards grains; with `"plane"`.
     pub normal: Option<[f64; 3]>,
-    /// Vertices of `triangles` [m].
+    /// Vertices `[[x, y, z], …]` [m]; with `"triangles"`.
     pub vertices: Option<Vec<[Quantity<Length>; 3]>>,
-    /// Vertex numbers of `triangles`, counted from 0.
+    /// Vertex indices `[[a, b, c], …]`, from 0; with `"triangles"`.
     pub triangles: Option<Vec<[u32; 3]>>,
-    /// Surface file of a `mesh`.
+    /// File of a surface, terrain or mesh; with `"mesh"`.
     pub file: Option<PathBuf>,
-    /// Factor on the lengths of a `mesh`; default 1.
+    /// Factor on file lengths; default 1; > 0; with `"mesh"`.
     pub scale: Option<f64>,
-    /// Shift of a `mesh`, after scaling [m]; default none.
+    /// Shift after scaling [m]; default none; with `"mesh"`.
     pub translation: Option<[Quantity<Length>; 3]>,
-    /// Middle of the first end of a `cylinder` or `cone`, middle of a `sphere` [m].
+    /// Middle of the first end, or of the sphere [m]; with `"cylinder"`, `"cone"`, `"sphere"`.
     pub base: Option<[Quantity<Length>; 3]>,
-    /// Direction from the first end to the second; default up (0, 0, 1).
+    /// Direction to the second end; default up; with `"cylinder"`, `"cone"`.
     pub axis: Option<[f64; 3]>,
-    /// Distance of the ends [m], 0 or more: 0 makes a `cone` a flat ring.
+    /// Distance of the ends [m]; > 0 (`"cone"` ≥ 0); with `"cylinder"`, `"cone"`.
     pub height: Option<Quantity<Length>>,
-    /// Radius of a `cylinder` or `sphere` [m].
+    /// Radius [m]; > 0; with `"cylinder"`, `"sphere"`.
     pub radius: Option<Quantity<Length>>,
-    /// Radii of the two ends of a `cone` [m].
+    /// Radii of both ends [m]; ≥ 0; with `"cone"`.
     pub radii: Option<[Quantity<Length>; 2]>,
-    /// Whether discs close the two ends; default neither.
+    /// Whether discs close the ends; default `[false, false]`; with `"cylinder"`, `"cone"`.
     pub caps: Option<[bool; 2]>,
-    /// Constant velocity [m/s]; default at rest.
+    /// Velocity [m/s]; default at rest.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
-    /// Constant angular velocity [rad/s]; default none.
+    /// Angular velocity, of planes along the normal [rad/s]; default none.
     pub angular_velocity: Option<[Quantity<Spin>; 3]>,
-    /// Point that the wall turns about, at the start; it goes along with the velocity [m].
+    /// Centre of rotation at the start [m]; default `point`, `base`, middle of vertices; with `angular_velocity`.
     pub centre: Option<[Quantity<Length>; 3]>,
-    /// Oscillation on top of the velocity.
+    /// Displacement a (sin(2πft + φ) − sin φ); default none.
     pub oscillation: Option<Oscillation>,
-    /// Drive by a force.
+    /// Servo-controlled force; default none; not with motions, `body`.
     pub servo: Option<Servo>,
-    /// Makes a wall other than a plane a rigid body.
+    /// Rigid body; default none; not with motions, `servo`, `"plane"`.
     pub body: Option<Body>,
-    /// Makes `triangles` or a `mesh` ground that rocks scar.
+    /// Ground that grains penetrate; default none; with `"triangles"`, `"mesh"`; not with motions, `servo`, `body`.
     pub scarring: Option<Scarring>,
-    /// Write the force of the grains on the wall, its moment and the wall's displacement to `history.csv`.
+    /// Whether force, moment, displacement go to `history.csv`; default false.
     #[serde(default)]
     pub record: bool,
 }
@@ -68,17 +68,17 @@ pub struct Wall {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum WallKind {
-    /// Infinite plane, one-sided.
+    /// Infinite, one-sided (others two-sided).
     Plane,
-    /// Side of a cylinder, touched from inside and outside.
+    /// Cylinder.
     Cylinder,
-    /// Side of a frustum of a cone, touched from inside and outside.
+    /// Cone.
     Cone,
-    /// Sphere, touched from inside and outside.
+    /// Sphere.
     Sphere,
-    /// Triangles, two-sided.
+    /// Triangles.
     Triangles,
-    /// Triangles from a file, two-sided.
+    /// From a file.
     Mesh,
 }
 
@@ -86,13 +86,13 @@ pub enum WallKind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Oscillation {
-    /// Amplitude [m].
+    /// Amplitude a [m]; > 0.
     pub amplitude: Quantity<Length>,
-    /// Direction, any length but zero.
+    /// Direction.
     pub direction: [f64; 3],
-    /// Frequency [Hz].
+    /// Frequency f [Hz]; > 0.
     pub frequency: Quantity<Frequency>,
-    /// Phase at the start [rad]; default 0.
+    /// Phase φ [rad]; default 0.
     pub phase: Option<Quantity<Angle>>,
 }
 
@@ -100,21 +100,21 @@ pub struct Oscillation {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Servo {
-    /// Direction in which the wall presses; default the normal of a plane.
+    /// Direction of pressing; default plane normal.
     pub direction: Option<[f64; 3]>,
-    /// Force to hold [N].
+    /// Target force [N]; or `pressure`.
     pub force: Option<Quantity<Force>>,
-    /// Pressure to hold, in place of a force [Pa].
+    /// Target pressure [Pa]; or `force`.
     pub pressure: Option<Quantity<Stress>>,
-    /// Area that the pressure acts on [m²].
+    /// Area of `pressure` [m²]; > 0; with `pressure`.
     pub area: Option<f64>,
-    /// Factor on the force against time: [[time, factor], …], straight in between; default 1 at all times.
+    /// Factors on the force `[[time, factor], …]`, linear between [s]; default 1; or `pulses`.
     pub history: Option<Vec<(Quantity<Time>, f64)>>,
-    /// Pulses on top of the force, in place of `history`.
+    /// Haversine factors from 1 to `peak`; or `history`.
     pub pulses: Option<Pulses>,
-    /// Greatest speed [m/s].
+    /// Largest speed, rising by a tenth per step [m/s]; > 0.
     pub max_speed: Quantity<Velocity>,
-    /// Gain, above 0 and at most 1; default 0.5.
+    /// Gain, smaller against oscillation; default 0.5; > 0, ≤ 1.
     pub gain: Option<f64>,
 }
 
@@ -122,13 +122,13 @@ pub struct Servo {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pulses {
-    /// Largest factor on the force, 0 or more.
+    /// Largest factor; ≥ 0.
     pub peak: f64,
-    /// Pulses in a second [Hz].
+    /// Frequency [Hz]; > 0.
     pub frequency: Quantity<Frequency>,
-    /// Number of pulses.
+    /// Number of pulses; 1–1,000,000.
     pub count: u32,
-    /// When the first begins [s]; default 0.
+    /// Time of the first [s]; default 0; ≥ 0.
     pub start: Option<Quantity<Time>>,
 }
 
@@ -136,24 +136,22 @@ pub struct Pulses {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
-    /// Mass [kg].
+    /// Mass [kg]; > 0.
     pub mass: Quantity<Mass>,
-    /// Centre of mass [m]; default that of the enclosed solid, or the middle of a round shape.
+    /// Centre of mass [m]; default of the enclosed volume.
     pub centre: Option<[Quantity<Length>; 3]>,
-    /// Inertia about the centre in world axes, xx, yy, zz, xy, yz, zx [kg m²]; default that of the enclosed solid; a round
-    /// shape without it does not turn.
+    /// Inertia about the centre `[xx, yy, zz, xy, yz, zx]` [kg m²]; default of the enclosed volume, no rotation if round.
     pub inertia: Option<[f64; 6]>,
-    /// Velocity at the start [m/s].
+    /// Initial velocity [m/s]; default at rest.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
-    /// Angular velocity at the start [rad/s].
+    /// Initial angular velocity [rad/s]; default none.
     pub spin: Option<[Quantity<Spin>; 3]>,
-    /// Motions that keep their starting velocity.
+    /// Motions at constant velocity; default none.
     #[serde(default)]
     pub hold: Vec<HeldMotion>,
-    /// Springs and dashpots to where its centre of mass started; default none.
+    /// Spring–dashpot support; default none.
     pub mount: Option<Mount>,
-    /// Radius that corners and edges of triangles are rounded with where they touch other walls [m]; default a fiftieth of the smallest side
-    /// of the bounds.
+    /// Corner and edge radius against walls [m]; default smallest side/50 or less; > 0; with triangles.
     pub rounding: Option<Quantity<Length>>,
 }
 
@@ -161,13 +159,13 @@ pub struct Body {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mount {
-    /// Stiffnesses [N/m]; 0 where nothing holds.
+    /// Stiffness along x, y, z, 0 along held axes [N/m]; or `frequency`; ≥ 0.
     pub stiffness: Option<[Quantity<Stiffness>; 3]>,
-    /// Natural frequencies of the body on the springs [Hz], in place of `stiffness`.
+    /// Frequencies f of stiffness m (2πf)² [Hz]; or `stiffness`; ≥ 0.
     pub frequency: Option<[Quantity<Frequency>; 3]>,
-    /// Dampings [N s/m]; default none.
+    /// Damping along x, y, z [N s/m]; default 0; ≥ 0.
     pub damping: Option<[Quantity<Dashpot>; 3]>,
-    /// Shares of critical damping, in place of `damping`.
+    /// Ratios ζ of damping 2ζ √(k m); or `damping`; ≥ 0.
     pub damping_ratio: Option<[f64; 3]>,
 }
 
@@ -175,16 +173,16 @@ pub struct Mount {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scarring {
-    /// Mechanical strength of the soil [Pa].
+    /// Mechanical strength of the soil [Pa]; > 0.
     pub strength: Quantity<Stress>,
-    /// Drag coefficient of the soil; default 2.5.
+    /// Soil drag coefficient; default 2.5; ≥ 0.
     pub drag: Option<f64>,
-    /// Density of the soil [kg/m³]; default 1700.
+    /// Soil density [kg/m³]; default 1700; ≥ 0.
     pub density: Option<Quantity<Density>>,
-    /// Friction coefficient at first and after a long slide; default 0.55 and 2.
+    /// Initial and final friction; default `[0.55, 2]`; ≥ 0, rising.
     pub friction: Option<[f64; 2]>,
-    /// How fast friction grows with the way that a rock slides [1/m]; default 3.
+    /// Growth of friction with sliding distance [1/m]; default 3; ≥ 0.
     pub growth: Option<f64>,
-    /// How fast that way is forgotten after the contact [1/s]; default 185.
+    /// Decay of that distance without contact [1/s]; default 185; ≥ 0.
     pub decay: Option<f64>,
 }

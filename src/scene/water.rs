@@ -8,31 +8,31 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
-    /// Height of still water [m]; default 0.
+    /// Level of still water [m]; default 0.
     #[serde(default = "nothing")]
     pub level: Quantity<Length>,
-    /// Density [kg/m³]; default 1000.
+    /// Density (sea water 1025) [kg/m³]; default 1000; > 0, ≤ 20,000.
     #[serde(default = "fresh")]
     pub density: Quantity<Density>,
-    /// Depth of still water [m], which waves feel; default deeper than that. No bed: grains need a wall there.
+    /// Depth that waves feel, without bed [m]; default deep; > 0; with `wave`.
     pub depth: Option<Quantity<Length>>,
-    /// Velocity along x and y [m/s]; default still.
+    /// Velocity `[x, y]` of the current [m/s]; default `[0, 0]`; ≤ 20.
     #[serde(default = "still")]
     pub current: [Quantity<Velocity>; 2],
-    /// Waves; default none.
+    /// Linear (Airy) wave; default none.
     pub wave: Option<Wave>,
-    /// Drag coefficient [-] of `drag_area`.
+    /// Drag coefficient on `drag_area` (floes 0.6); 0–100.
     pub drag: f64,
-    /// Area that drag belongs to; default what the wet part shows to the flow.
+    /// Drag area; default `"projected"`.
     #[serde(default)]
     pub drag_area: DragArea,
-    /// Drag coefficient of the whole wet surface beside it [-]; default 0.
+    /// Drag coefficient of the wet surface (ice 0.001–0.005); default 0; 0–100.
     #[serde(default)]
     pub skin_drag: f64,
-    /// Coefficient of the moment that brakes turning [-]; default 0.1.
+    /// Coefficient of the moment against rotation; default 0.1; 0–100.
     #[serde(default = "turning")]
     pub drag_moment: f64,
-    /// Mass of water that a grain takes along, over that of its wet volume [-]; default 0.
+    /// Added mass over wet volume's, translation only (sphere 0.5); default 0; 0–100.
     #[serde(default)]
     pub added_mass: f64,
 }
@@ -41,16 +41,16 @@ pub struct Water {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// From trough to crest [m].
+    /// Height from trough to crest [m]; > 0, ≤ 0.142 L tanh kh.
     pub height: Quantity<Length>,
-    /// Period, as seen from a fixed place [s]; this or `length`.
+    /// Period at a fixed position [s]; or `length`; > 0.
     pub period: Option<Quantity<Time>>,
-    /// From crest to crest [m]; this or `period`.
+    /// Wavelength L [m]; or `period`; > 0.
     pub length: Option<Quantity<Length>>,
-    /// Where it runs, from x to y [rad]; default along x.
+    /// Direction, from x to y [rad]; default 0.
     #[serde(default = "ahead")]
     pub direction: Quantity<Angle>,
-    /// Phase at the origin at the start [rad]; default 0, a crest.
+    /// Phase at origin and start, 0 crest [rad]; default 0.
     #[serde(default = "ahead")]
     pub phase: Quantity<Angle>,
 }
@@ -59,10 +59,10 @@ pub struct Wave {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DragArea {
-    /// What the wet part shows to the flow.
+    /// Wet part seen by the flow.
     #[default]
     Projected,
-    /// The whole wet surface.
+    /// Whole wet surface, tenfold for floes.
     Wetted,
 }
 

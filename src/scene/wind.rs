@@ -8,13 +8,13 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {
-    /// Velocity [m/s]; default still.
+    /// Velocity of the fluid [m/s]; default `[0, 0, 0]`; ≤ 1000.
     #[serde(default = "still")]
     pub velocity: [Quantity<Velocity>; 3],
-    /// Density [kg/m³]; default 1.225, dry air of 15 °C at sea level (ISO 2533).
+    /// Density of the fluid [kg/m³]; default 1.225; > 0, ≤ 20,000.
     #[serde(default = "air")]
     pub density: Quantity<Density>,
-    /// Drag coefficient of the sphere of a grain's volume [-].
+    /// Drag coefficient C, sphere of equal volume; > 0, ≤ 100.
     pub drag: f64,
 }
 

@@ -115,7 +115,7 @@ fn the_schema_explains_keys() {
     let schema: Value = serde_json::from_str(&printed).unwrap();
     let text = |place: &str| schema.pointer(place).and_then(Value::as_str).unwrap_or_default().to_string();
     assert!(text("/properties/gravity/description").starts_with("Gravity"), "{printed}");
-    assert!(text("/$defs/Wall/properties/normal/description").starts_with("Normal of a `plane`"));
+    assert!(text("/$defs/Wall/properties/normal/description").starts_with("Normal towards grains"));
     let without: Vec<&String> = schema["$defs"]["Wall"]["properties"]
         .as_object()
         .unwrap()

@@ -8,13 +8,13 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dynamics {
-    /// Newmark α (β elsewhere); default 0.25.
+    /// Newmark's α (β elsewhere); default 0.25.
     pub alpha: Option<f64>,
-    /// Newmark δ (γ elsewhere); default 0.5.
+    /// Newmark's δ (γ elsewhere); default 0.5.
     pub delta: Option<f64>,
-    /// α of Hilber, Hughes and Taylor, −1/3 to 0, in place of `alpha` and `delta`.
+    /// α of Hilber–Hughes–Taylor, instead of Newmark's; default none; −1/3 – 0.
     pub hht_alpha: Option<f64>,
-    /// Accept α and δ that are not unconditionally stable; default false.
+    /// Whether conditionally stable constants are accepted; default false.
     #[serde(default)]
     pub accept_conditional_stability: bool,
 }
@@ -23,13 +23,13 @@ pub struct Dynamics {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
-    /// Coefficient of the mass [1/s].
+    /// Mass coefficient α [1/s]; default 0; ≥ 0.
     pub alpha_m: Option<Quantity<Rate>>,
-    /// Coefficient of the stiffness [s].
+    /// Stiffness coefficient β [s]; default 0; ≥ 0.
     pub beta_k: Option<Quantity<Time>>,
-    /// Damping ratio at both `frequencies`, 0–1.
+    /// Damping ratio; or `alpha_m`, `beta_k`; ≥ 0, < 1.
     pub damping_ratio: Option<f64>,
-    /// The two frequencies [Hz].
+    /// Two rising frequencies [Hz]; > 0; with `damping_ratio`.
     pub frequencies: Option<[Quantity<Frequency>; 2]>,
 }
 
@@ -37,9 +37,9 @@ pub struct Rayleigh {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reduction {
-    /// What it is reduced to.
+    /// Basis of the model.
     pub kind: ReductionKind,
-    /// Natural modes; default 0 beside `surface`, 60 of `modes`.
+    /// Natural modes; default 0 (surface), 60 (modes); ≤ 1000 with static shapes, ≤ half the dofs.
     pub modes: Option<usize>,
 }
 
@@ -47,9 +47,9 @@ pub struct Reduction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReductionKind {
-    /// The dofs of the contact surface.
+    /// Dofs of the contact surface, exact for slow loads.
     Surface,
-    /// The slowest natural modes, with static corrections for pressures on the contact surface.
+    /// Slowest modes with static corrections.
     Modes,
 }
 
@@ -57,9 +57,9 @@ pub enum ReductionKind {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QuasiStatic {
-    /// Smallest part of `time.solid_step` that is tried before the run gives up; default 1/1024.
+    /// Fraction of `solid_step` at which the run stops; default 1/1024; 1e-9 – 1.
     pub smallest_step: Option<f64>,
-    /// Newton iterations above which the next step is made shorter; default 40.
+    /// Iterations above which the next step is shorter; default 40; 2–1000.
     pub target_iterations: Option<u32>,
 }
 
@@ -67,19 +67,19 @@ pub struct QuasiStatic {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialStress {
-    /// How it is found.
+    /// Method.
     pub method: InitialStressMethod,
-    /// Horizontal over vertical stress, of `k0`; a material's own `k0` comes first.
+    /// Horizontal over vertical stress without material `k0`; ≥ 0; with `"k0"`.
     pub k0: Option<f64>,
-    /// Height of level ground's surface [m], of `k0`; default the top of the mesh.
+    /// Surface of ground of one density [m]; default mesh top; with `"k0"`.
     pub surface: Option<Quantity<Length>>,
-    /// Layers of different density, of `k0`, in place of `surface`: [[height of the top, density], …] from the top down.
+    /// Layers `[[top, density], …]` downwards, needed for different densities [m, kg/m³]; or `surface`; with `"k0"`.
     pub layers: Option<Vec<(Quantity<Length>, Quantity<Density>)>>,
-    /// Stress xx, yy, zz, xy, yz, zx [Pa], of `uniform`.
+    /// Stress `[xx, yy, zz, xy, yz, zx]`, tension positive [Pa]; with `"uniform"`.
     pub stress: Option<[Quantity<Stress>; 6]>,
-    /// Steps in which equilibrium is sought; default 10.
+    /// Steps to equilibrium; default 10; 1–10,000.
     pub steps: Option<u32>,
-    /// Whether the loads at time 0 take part in the equilibrium and act from then on; default false.
+    /// Whether loads at time 0 take part and stay; default false; not under grains.
     #[serde(default)]
     pub loads: bool,
 }
@@ -88,11 +88,11 @@ pub struct InitialStress {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InitialStressMethod {
-    /// Weight of the ground above, times K₀ sideways; then brought into equilibrium.
+    /// Weight above, times K₀ sideways.
     K0,
-    /// Gravity turned on in steps.
+    /// In steps.
     Gravity,
-    /// The same stress everywhere; then brought into equilibrium.
+    /// Everywhere equal.
     Uniform,
 }
 
@@ -100,11 +100,11 @@ pub enum InitialStressMethod {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrengthReduction {
-    /// First factor tried; default 1.
+    /// First trial factor; default 1; 0.001–1000.
     pub start: Option<f64>,
-    /// Width of the bracket that ends the search; default 0.02.
+    /// Width of the final bracket; default 0.02; 0.0001–10.
     pub tolerance: Option<f64>,
-    /// Factors beyond it, or below its reciprocal, are not tried; default 16.
+    /// Largest trial factor, and reciprocal of the smallest; default 16; > `start`, ≤ 10,000.
     pub largest: Option<f64>,
 }
 
@@ -112,16 +112,15 @@ pub struct StrengthReduction {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Newton {
-    /// Which matrix the iteration takes; default `full`.
+    /// Matrix of the iteration; default `"full"`.
     pub variant: Option<NewtonVariant>,
-    /// Whether steps of the iteration are shortened where the energy asks for it; default true.
+    /// Whether a line search shortens iterations; default true.
     pub line_search: Option<bool>,
-    /// Residual force over the largest force at which equilibrium counts as found; default 1e-4 (quasi-static), 1e-3 (strength reduction)
-    /// or 1e-6.
+    /// Residual over largest force; default 1e-5 quasi-static, 1e-3 strength reduction, else 1e-6; 1e-12 – 0.01.
     pub tolerance: Option<f64>,
-    /// Iterations at most; default 50 (full), 60 (modified) or 400 (initial stiffness).
+    /// Largest number of iterations; default 50 full, 60 modified, 400 initial, 100 strength reduction; 1–10,000.
     pub max_iterations: Option<u32>,
-    /// How unsymmetric equations are solved; default `auto`.
+    /// Solver of unsymmetric equations (dilation below friction); default `"auto"`.
     pub solver: Option<LinearSolver>,
 }
 
@@ -129,12 +128,12 @@ pub struct Newton {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Equations {
-    /// Method; default `auto`.
+    /// Solver; default `"auto"`.
     #[serde(default)]
     pub method: EquationMethod,
-    /// Residual at which an iteration ends, over the right-hand side; default 1e-8.
+    /// Preconditioned residual over right-hand side; default 1e-8; 1e-13 – 1e-4.
     pub tolerance: Option<f64>,
-    /// Whether the factor of MUMPS lies in files; default false.
+    /// Whether the factor lies on disk, in `TMPDIR` (`/tmp`); default false; with `"mumps"`.
     pub out_of_core: Option<bool>,
 }
 
@@ -142,14 +141,14 @@ pub struct Equations {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EquationMethod {
-    /// What is faster by the number of nodes and the kind of mass.
+    /// Iterative from 25,000 nodes (static), 100,000 (steps, lumped mass), else direct.
     #[default]
     Auto,
-    /// Cholesky factor.
+    /// Sparse Cholesky factor.
     Direct,
     /// Conjugate gradients.
     Iterative,
-    /// Factor by the library MUMPS, in programs that are built with it.
+    /// Factor by an optional library.
     Mumps,
 }
 
@@ -157,11 +156,11 @@ pub enum EquationMethod {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NewtonVariant {
-    /// The consistent tangent, new in every iteration.
+    /// Consistent tangent.
     Full,
-    /// The tangent of the start of the step.
+    /// Tangent of the step's start.
     Modified,
-    /// The elastic matrix, factored once.
+    /// Elastic matrix.
     InitialStiffness,
 }
 
@@ -169,9 +168,9 @@ pub enum NewtonVariant {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolver {
-    /// `direct` for small systems, `krylov` for large ones.
+    /// By size.
     Auto,
-    /// LU factorization.
+    /// LU.
     Direct,
     /// GMRES on a kept factor.
     Krylov,

@@ -47,21 +47,21 @@ impl Side {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Name, under which the sum of its reactions is recorded; default not recorded.
+    /// Name of the recorded reaction sum; default not recorded.
     pub name: Option<String>,
-    /// All nodes on this side of the bounding box.
+    /// Side of the bounding box; or `nodes_in`, `set`, `node`.
     pub side: Option<Side>,
-    /// All nodes in this box [m], [[x, y, z] low, high].
+    /// Box `[low, high]` of nodes [m]; or `side`.
     pub nodes_in: Option<[[Quantity<Length>; 3]; 2]>,
-    /// All nodes of this set of the mesh file.
+    /// Node set of the mesh; or `side`.
     pub set: Option<String>,
-    /// One node, by its number.
+    /// Node number; or `side`.
     pub node: Option<u32>,
-    /// Directions that are held, out of "x", "y", "z".
+    /// Fixed directions, of `"x"`, `"y"`, `"z"`.
     pub directions: Vec<String>,
-    /// Displacement in each of them [m]; default 0.
+    /// Displacement in each direction [m]; default 0.
     pub displacement: Option<Quantity<Length>>,
-    /// How the displacement varies in time; default constant.
+    /// Time history; default constant.
     pub history: Option<History>,
 }
 
@@ -70,19 +70,19 @@ pub struct Support {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Absorbing {
-    /// All boundary faces on this side of the bounding box.
+    /// Side of the bounding box; or `faces_in`, `set`.
     pub side: Option<Side>,
-    /// All boundary faces with their centre in this box [m], [[x, y, z] low, high].
+    /// Box `[low, high]` of face centres [m]; or `side`.
     pub faces_in: Option<[[Quantity<Length>; 3]; 2]>,
-    /// All boundary faces whose nodes belong to this node set of the mesh file.
+    /// Face set, or node set around faces; or `side`.
     pub set: Option<String>,
-    /// Factor on ρ c_p, the dashpot along the normal; default 1.
+    /// Factor on normal dashpots ρ c_p; default 1; ≥ 0.
     #[serde(default = "one")]
     pub normal: f64,
-    /// Factor on ρ c_s, the dashpot across the normal; default 1.
+    /// Factor on tangential dashpots ρ c_s; default 1; ≥ 0.
     #[serde(default = "one")]
     pub tangential: f64,
-    /// Distance of the source of the waves [m]: adds springs that carry the static load of the ground beyond.
+    /// Distance of the wave source, for springs [m]; default no springs; > 0.
     pub radius: Option<Quantity<Length>>,
 }
 

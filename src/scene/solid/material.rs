@@ -11,55 +11,56 @@ use trackbed_fem::material::{
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidMaterial {
-    /// Material number of the mesh.
+    /// Material number.
     pub id: u32,
-    /// Name for reports.
+    /// Name in reports; default `material <id>`.
     #[serde(default)]
     pub name: String,
-    /// Yield criterion; default `elastic`.
+    /// Yield criterion; default `"elastic"`.
     #[serde(default)]
     pub model: MaterialModel,
-    /// Young's modulus [Pa], above 0; of all models but `modified_cam_clay`.
+    /// Young's modulus [Pa]; > 0; not with `"modified_cam_clay"`.
     pub young: Option<Quantity<Stress>>,
-    /// Poisson's ratio, above −1 and below 0.5.
+    /// Poisson's ratio; or `shear_modulus` (clay); > −1, < 0.5.
     pub poisson: Option<f64>,
-    /// Density [kg/m³], above 0.
+    /// Density [kg/m³]; > 0.
     pub density: Quantity<Density>,
-    /// Cohesion [Pa].
+    /// Cohesion c [Pa]; ≥ 0, > 0 without friction; with `"mohr_coulomb"`, `"drucker_prager"`.
     pub cohesion: Option<Quantity<Stress>>,
-    /// Friction angle [rad].
+    /// Friction angle φ [rad]; 0–80°; with `"mohr_coulomb"`, `"drucker_prager"`.
     pub friction: Option<Quantity<Angle>>,
-    /// Angle of dilation [rad].
+    /// Dilation angle [rad]; 0 – `friction`; with `"mohr_coulomb"`, `"drucker_prager"`.
     pub dilation: Option<Quantity<Angle>>,
-    /// Tension cut-off [Pa]: largest principal stress (Mohr–Coulomb) or mean stress (Drucker–Prager).
+    /// Tension cut-off: principal, with `"drucker_prager"` mean stress [Pa]; default apex; 0 – c cot φ; with `"mohr_coulomb"`,
+    /// `"drucker_prager"`.
     pub tension: Option<Quantity<Stress>>,
-    /// Which meridian of Mohr–Coulomb the cone of `drucker_prager` passes through.
+    /// Meridian shared with Mohr–Coulomb; with `"drucker_prager"`.
     pub cone: Option<Cone>,
-    /// Yield stress in uniaxial tension [Pa], of `von_mises` and `tresca`.
+    /// Yield stress in tension [Pa]; > 0; with `"von_mises"`, `"tresca"`.
     pub yield_stress: Option<Quantity<Stress>>,
-    /// Rise of the cohesion, or of the yield stress, per unit of equivalent plastic strain [Pa].
+    /// Strength slope over plastic strain, softening to 1 % [Pa]; default 0; with all but elastic, clay.
     pub hardening: Option<Quantity<Stress>>,
-    /// Cohesion, or yield stress, against equivalent plastic strain: [[strain, Pa], …].
+    /// Strength over plastic strain `[[strain, Pa], …]`; or `cohesion`, `yield_stress`.
     pub hardening_table: Option<Vec<(f64, Quantity<Stress>)>>,
-    /// Friction angle against equivalent plastic strain: [[strain, angle], …].
+    /// Friction angle `[[strain, angle], …]`; or `friction`; with `"mohr_coulomb"`, `"drucker_prager"`.
     pub friction_table: Option<Vec<(f64, Quantity<Angle>)>>,
-    /// Slope of the normal compression line of `modified_cam_clay`, specific volume against ln p.
+    /// Slope of normal compression over ln p; > `kappa`; with `"modified_cam_clay"`.
     pub lambda: Option<f64>,
-    /// Slope of its swelling lines.
+    /// Slope of swelling lines over ln p; > 0; with `"modified_cam_clay"`.
     pub kappa: Option<f64>,
-    /// Stress ratio q/p of its critical state.
+    /// Critical stress ratio M, 6 sin φ/(3 − sin φ) in compression; > 0, < 3; with `"modified_cam_clay"`.
     pub critical_ratio: Option<f64>,
-    /// Its void ratio at the start.
+    /// Initial void ratio e₀; > 0; with `"modified_cam_clay"`.
     pub void_ratio: Option<f64>,
-    /// Its preconsolidation pressure [Pa].
+    /// Initial preconsolidation pressure p_c [Pa]; or `overconsolidation`; > 0; with `"modified_cam_clay"`.
     pub preconsolidation: Option<Quantity<Stress>>,
-    /// In place of it, its overconsolidation ratio under the initial stress.
+    /// p_c over the ellipse of the initial stress; or `preconsolidation`; ≥ 1; with `"modified_cam_clay"`.
     pub overconsolidation: Option<f64>,
-    /// Its constant shear modulus [Pa], in place of `poisson`.
+    /// Constant shear modulus [Pa]; or `poisson`; > 0; with `"modified_cam_clay"`.
     pub shear_modulus: Option<Quantity<Stress>>,
-    /// Pressure below which its stiffness falls no further [Pa]; default 1 kPa.
+    /// Lower bound of pressure in stiffness and p_c [Pa]; default 1 kPa; > 0; with `"modified_cam_clay"`.
     pub minimum_pressure: Option<Quantity<Stress>>,
-    /// Horizontal over vertical initial stress; default that of `initial_stress`.
+    /// Horizontal over vertical initial stress; default of `initial_stress`; ≥ 0.
     pub k0: Option<f64>,
 }
 
@@ -67,14 +68,14 @@ pub struct SolidMaterial {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialModel {
-    /// No yield.
+    /// Elastic.
     #[default]
     Elastic,
     /// Mohr–Coulomb.
     MohrCoulomb,
     /// Drucker–Prager.
     DruckerPrager,
-    /// von Mises.
+    /// Von Mises.
     VonMises,
     /// Tresca.
     Tresca,
@@ -86,11 +87,11 @@ pub enum MaterialModel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cone {
-    /// That of triaxial compression: the cone around the hexagon.
+    /// Compression.
     Compression,
-    /// That of triaxial extension.
+    /// Extension.
     Extension,
-    /// The same collapse load as Mohr–Coulomb in plane strain.
+    /// Equal collapse load.
     PlaneStrain,
 }
 

@@ -8,15 +8,15 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Block {
-    /// Grid along x.
+    /// Grid planes along x.
     pub x: Axis,
-    /// Grid along y.
+    /// Grid planes along y.
     pub y: Axis,
-    /// Grid along z.
+    /// Grid planes along z.
     pub z: Axis,
-    /// Where the top begins and ends along x [m]: an embankment or a slope with straight sides. Default: a box.
+    /// Start and end of the top along x, for slopes [m]; default box.
     pub crest: Option<[Quantity<Length>; 2]>,
-    /// Materials by layers from below; the last reaches the top. Default: material 1 everywhere.
+    /// Layers from below; default material 1.
     #[serde(default)]
     pub layer: Vec<Layer>,
 }
@@ -25,11 +25,11 @@ pub struct Block {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// Ascending coordinates [m] that become grid planes.
+    /// Two or more ascending coordinates [m].
     pub lines: Vec<Quantity<Length>>,
-    /// Number of elements between each two of them.
+    /// Elements in each interval; ≥ 1, ≤ 20 million in all.
     pub counts: Vec<usize>,
-    /// Length of the last element over that of the first, for each interval; default 1.
+    /// Last over first element length in each interval; default 1; > 0.
     pub ratios: Option<Vec<f64>>,
 }
 
@@ -39,7 +39,7 @@ pub struct Axis {
 pub struct Layer {
     /// Material number.
     pub material: u32,
-    /// Height of its top [m]; elements with their centre below it (and above the layer beneath) belong to it.
+    /// Height of the top [m]; needed except in the last.
     pub top: Option<Quantity<Length>>,
 }
 
@@ -47,8 +47,8 @@ pub struct Layer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// Corners only: 8-node hexahedra with mean dilatation and their companions.
+    /// Corners only, fast.
     Linear,
-    /// With mid-side nodes: 20-node hexahedra and their companions.
+    /// With mid-side nodes, file constraints at corners.
     Quadratic,
 }

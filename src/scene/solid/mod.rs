@@ -26,61 +26,61 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Solid {
-    /// Mesh file (`.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`) or a folder with the three lists; relative to the scene.
+    /// Mesh file (`.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`), or directory of the three lists; or `nodes`, `block`.
     pub mesh: Option<PathBuf>,
-    /// Node list, `id x y z`; path relative to the scene file.
+    /// Node list `id x y z` [m]; or `mesh`.
     pub nodes: Option<PathBuf>,
-    /// Element list, `id mat n1 … n20` in SOLID186 order.
+    /// Element list `id material n1 … n20`, SOLID186 order; with `nodes`.
     pub elements: Option<PathBuf>,
-    /// Constraint list, `node dir value`.
+    /// Constraint list `node direction value` (1, 2, 3, `UX`, `UY`, `UZ`, `ALL`; value 0 if absent) [m]; default none; with `nodes`.
     pub constraints: Option<PathBuf>,
-    /// Factor from the lengths of the mesh's files to metres, such as 0.001 for millimetres; default 1.
+    /// Factor from file lengths to metres, displacements too; default 1; > 0 (0.001 for mm).
     pub scale: Option<f64>,
-    /// Columns of the lists, where their number alone does not tell.
+    /// Columns of the lists; default recognised.
     pub layout: Option<ListLayout>,
-    /// A block of bricks made on the spot.
+    /// Generated hexahedra; or `mesh`.
     pub block: Option<Block>,
-    /// Elements with or without mid-side nodes; default as the mesh has them.
+    /// Order of elements; default of the mesh.
     pub order: Option<Order>,
-    /// Integration rule of the stiffness; default `reduced`.
+    /// Integration rule; default `"reduced"`.
     #[serde(default)]
     pub integration: Integration,
-    /// Volume strain of quadratic elements; default `pointwise`.
+    /// Volumetric strain of quadratic elements; default `"pointwise"`.
     pub dilatation: Option<Dilatation>,
-    /// Whether 8-node hexahedra have incompatible modes; default true.
+    /// Whether 8-node hexahedra have bending modes; default true.
     pub incompatible_modes: Option<bool>,
-    /// Mass matrix; default `consistent`.
+    /// Mass matrix; default `"consistent"`.
     #[serde(default)]
     pub mass: Mass,
-    /// One entry per material number of the element list.
+    /// Materials.
     #[serde(default)]
     pub material: Vec<SolidMaterial>,
     /// Whether gravity acts on the solid; default true.
     #[serde(default = "super::yes")]
     pub gravity: bool,
-    /// Supports, beside those of the mesh file.
+    /// Supports.
     #[serde(default)]
     pub support: Vec<Support>,
-    /// Boundaries that let waves out.
+    /// Absorbing boundaries.
     #[serde(default)]
     pub absorbing: Vec<Absorbing>,
-    /// Stress before the run; default none.
+    /// Initial stress; default none.
     pub initial_stress: Option<InitialStress>,
-    /// Dynamics; without it a solid alone is solved statically. A coupled solid is always dynamic.
+    /// Time integration; or `quasi_static`, `strength_reduction`.
     pub dynamics: Option<Dynamics>,
-    /// Equilibrium in steps of a pseudo-time.
+    /// Equilibrium in steps; or `dynamics`.
     pub quasi_static: Option<QuasiStatic>,
-    /// Factor of safety by strength reduction.
+    /// Factor of safety; or `dynamics`.
     pub strength_reduction: Option<StrengthReduction>,
-    /// How equilibrium is found in a plastic solid.
+    /// Iteration of plastic solids.
     pub newton: Option<Newton>,
-    /// How the equations of an elastic solid are solved; default by their size.
+    /// Solver of elastic solids; default by size.
     pub equations: Option<Equations>,
-    /// Rayleigh damping C = α M + β K; default none.
+    /// Rayleigh damping; default none.
     pub rayleigh: Option<Rayleigh>,
-    /// Reduction of an elastic solid under grains; default none.
+    /// Reduced model under grains; default none.
     pub reduction: Option<Reduction>,
-    /// Loads on the solid.
+    /// Loads.
     #[serde(default)]
     pub load: Vec<SolidLoad>,
 }
@@ -89,10 +89,10 @@ pub struct Solid {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {
-    /// ∫ ρ Nₐ N_b dV.
+    /// Consistent.
     #[default]
     Consistent,
-    /// Its diagonal, scaled to the mass of the element.
+    /// Scaled diagonal.
     Lumped,
 }
 
@@ -100,10 +100,10 @@ pub enum Mass {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Integration {
-    /// 2 × 2 × 2 points, the default of SOLID186.
+    /// 2 × 2 × 2 points.
     #[default]
     Reduced,
-    /// Irons' 14 points, the "full" rule of SOLID186.
+    /// 14 points.
     Irons14,
     /// 3 × 3 × 3 points.
     Full,
@@ -113,10 +113,10 @@ pub enum Integration {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Dilatation {
-    /// At the points of the rule.
+    /// Pointwise.
     #[default]
     Pointwise,
-    /// Averaged over the element.
+    /// Average, for ν ≥ 0.49 and plastic flow without `"reduced"` hexahedra.
     Mean,
 }
 
@@ -124,28 +124,27 @@ pub enum Dilatation {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolidLoad {
-    /// What it is.
+    /// Kind of load.
     pub kind: SolidLoadKind,
-    /// Faces of `pressure` and `traction` as pairs [element number, face from 1].
+    /// Faces `[[element, face], …]`, numbered as SOLID186; or `faces_in`, `side`, `set`; with `"pressure"`, `"traction"`.
     pub faces: Option<Vec<[u32; 2]>>,
-    /// Instead of `faces`: all boundary faces whose centre lies in this box [m], [[x, y, z] low, high].
+    /// Box `[low, high]` of face centres [m]; or `faces`.
     pub faces_in: Option<[[Quantity<Length>; 3]; 2]>,
-    /// Instead of `faces`: all boundary faces on this side of the bounding box.
+    /// Side of the bounding box; or `faces`.
     pub side: Option<Side>,
-    /// Instead of `faces`: all boundary faces whose nodes belong to this node set of the mesh file.
+    /// Face set, or node set around faces; or `faces`.
     pub set: Option<String>,
-    /// Pressure [Pa]; positive compresses.
+    /// Pressure, compression positive [Pa]; with `"pressure"`.
     pub pressure: Option<Quantity<Stress>>,
-    /// Traction vector [Pa].
+    /// Traction vector [Pa]; with `"traction"`.
     pub traction: Option<[Quantity<Stress>; 3]>,
-    /// Node number of a `point` load.
+    /// Node number; or `at`; with `"point"`.
     pub node: Option<u32>,
-    /// Place of a `point` load [m]: the point of the solid's surface or inside it, loaded through the shape
-    /// functions.
+    /// Point of the solid [m]; or `node`; with `"point"`.
     pub at: Option<[Quantity<Length>; 3]>,
-    /// Force of a `point` load [N].
+    /// Force vector [N]; with `"point"`.
     pub force: Option<[Quantity<Force>; 3]>,
-    /// How the load varies in time; default constant.
+    /// Time history; default constant.
     pub history: Option<History>,
 }
 
@@ -153,10 +152,10 @@ pub struct SolidLoad {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SolidLoadKind {
-    /// Normal pressure on faces.
+    /// Normal to faces.
     Pressure,
-    /// Traction vector on faces.
+    /// On faces.
     Traction,
-    /// Force at a node or a point.
+    /// Force.
     Point,
 }

@@ -1,0 +1,35 @@
+//! `trackbed schema`: the keys of scene files, for editors and for the reference.
+
+use super::output::print;
+use crate::failure::Failure;
+use crate::read::source;
+use crate::scene::{reference, schema as scene_schema};
+use crate::write::{WriteError, atomic};
+use std::path::{Path, PathBuf};
+
+/// Prints the JSON schema, or with `markdown` the tables of keys; with a page there, its tables are renewed.
+///
+/// # Errors
+/// A page that cannot be read or written, or that has a mark without a table.
+pub fn schema(markdown: Option<Option<PathBuf>>) -> Result<(), Failure> {
+    let keys = scene_schema::keys();
+    match markdown {
+        None => print(&format!("{:#}\n", scene_schema::schema())),
+        Some(None) => {
+            let frame = reference::frame(&keys);
+            print(&reference::fill(&keys, &frame).map_err(|mark| fault(Path::new("tables"), &mark))?)
+        }
+        Some(Some(page)) => {
+            let text = source::text(&page).map_err(|refusal| Failure::Input(refusal.sentence(&page)))?;
+            let text = reference::fill(&keys, &text).map_err(|mark| fault(&page, &mark))?;
+            atomic::write(&page, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(&page)))?;
+            print(&format!("{} written\n", page.display()))
+        }
+    }
+}
+
+fn fault(page: &Path, mark: &reference::BadMark) -> Failure {
+    let reference::BadMark { line, keys } = mark;
+    let expected = "the keys of a table of a scene, or `scene`";
+    Failure::Input(format!("{}:{line}: keys: found {keys}, expected {expected}", page.display()))
+}
