@@ -132,9 +132,7 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         (true, None) => {
             Err(m.missing("asperity_pressure", "the pressure at which half of `asperity_friction` is left"))
         }
-        (false, Some(_)) => {
-            Err(m.error("asperity_pressure", "a value", "no such key without `asperity_friction`"))
-        }
+        (false, Some(_)) => Err(m.no_effect("asperity_pressure", "`asperity_friction`")),
         _ => Ok(()),
     }
 }
@@ -144,13 +142,13 @@ fn corners(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     let (strength, angle) = match (m.corner_strength, m.corner_angle) {
         (None, None) => return Ok(()),
         (None, Some(_)) => {
-            return Err(m.error("corner_angle", "a value", "no such key without `corner_strength`"));
+            return Err(m.no_effect("corner_angle", "`corner_strength`"));
         }
         (Some(_), None) => return Err(m.missing("corner_angle", "half the angle of the cones that crush")),
         (Some(strength), Some(angle)) => (strength.si, angle.si),
     };
     let Some(young) = m.young else {
-        return Err(m.error("corner_strength", "a value", "no such key without `young`"));
+        return Err(m.requirement("corner_strength", "`young`"));
     };
     let poisson = m.poisson.unwrap_or(0.0);
     let most = conical_damage::greatest_strength(0.5 * young.si / (1.0 - poisson * poisson), angle);
@@ -158,18 +156,16 @@ fn corners(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         "corner_strength",
         Some(strength),
         |s| s < most,
-        &format!("below {most:.3e} Pa with this modulus and angle, so that crushing takes energy"),
+        &format!("below {most:.3e} Pa with this modulus and angle, so that crushing dissipates energy"),
     )?;
     Ok(())
 }
 
 fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (&m.young, m.poisson) {
-        (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio beside `young`")),
-        (None, Some(_)) => Err(m.error("poisson", "a value", "no such key without `young`")),
-        (None, None) if m.edge_factor.is_some() => {
-            Err(m.error("edge_factor", "a value", "no such key without `young`"))
-        }
+        (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio with `young`")),
+        (None, Some(_)) => Err(m.requirement("poisson", "`young`")),
+        (None, None) if m.edge_factor.is_some() => Err(m.no_effect("edge_factor", "`young`")),
         _ => Ok(()),
     }
 }
@@ -196,8 +192,8 @@ fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
     for c in scene.rows("contact", &scene.contact) {
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| match (kind, value) {
             (Some(Resistance::None), Some(_)) => {
-                let expected = "no such key without the resistance";
-                Err(c.error(k, "a value", expected))
+                let resistance = k.trim_end_matches("_friction");
+                Err(c.conflict(k, format!("`{resistance} = \"none\"`")))
             }
             (Some(Resistance::None), None) => Ok(Some(0.0)),
             (Some(Resistance::Spring) | None, value) => Ok(value),
@@ -225,13 +221,9 @@ fn damping(c: &Table<PairContact>) -> Result<Option<Damping>, SceneError> {
     match (c.damping, c.damping_ratio) {
         (Some(DampingKind::Ratio), Some(zeta)) => Ok(Some(Damping::Ratio(zeta))),
         (Some(DampingKind::Ratio), None) => Err(c.missing("damping_ratio", "the damping ratio")),
-        (_, Some(_)) => {
-            let expected = "no such key without `damping = \"ratio\"`";
-            Err(c.error("damping_ratio", "a value", expected))
-        }
+        (_, Some(_)) => Err(c.no_effect("damping_ratio", "`damping = \"ratio\"`")),
         (Some(_), None) if c.restitution.is_some() && c.damping == Some(DampingKind::None) => {
-            let expected = "no such key beside `damping = \"none\"`";
-            Err(c.error("restitution", "a value", expected))
+            Err(c.conflict("restitution", "`damping = \"none\"`"))
         }
         (Some(DampingKind::None), None) => Ok(Some(Damping::None)),
         (Some(DampingKind::Restitution), None) => Ok(Some(Damping::Restitution)),
