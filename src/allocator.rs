@@ -52,9 +52,9 @@ fn exhausted(size: usize) {
     let mut digits = [0; 20];
     let number = decimal(size, &mut digits);
     let parts: [&[u8]; 3] = [
-        b"error: memory: found no room for ",
+        b"error: memory: found no free memory for ",
         number,
-        b" bytes, expected more free memory; make the scene smaller, or raise the limit of the system (ulimit -v)\n",
+        b" bytes, expected more. Reduce the scene, or raise the system limit (ulimit -v)\n",
     ];
     let mut line = [0; 200];
     let mut length = 0;

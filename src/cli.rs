@@ -16,7 +16,7 @@ pub use render::RenderArgs;
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true)]
 pub struct Cli {
-    /// What to do.
+    /// Command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -24,66 +24,66 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Run a scene: fill, settle, load, and write the results.
+    /// Run a scene: packing, equilibrium, main stage; write the results.
     Run(RunArgs),
-    /// Validate a scene without running it, and say what a run would do and need.
+    /// Check a scene without running it; print its models, step sizes and memory.
     Check {
-        /// The scene.
+        /// Scene.
         #[command(flatten)]
         args: CheckArgs,
-        /// Print JSON, for programs.
+        /// Print JSON.
         #[arg(long)]
         json: bool,
     },
-    /// As `check`, with the stages, the loops, the memory per sphere and, from a short rehearsal, the time that a run will take.
+    /// Like `check`; also stages, contact kernels, memory, and run time from a short trial run.
     Explain {
-        /// The scene.
+        /// Scene.
         #[command(flatten)]
         args: CheckArgs,
-        /// Threads that the run will have; default: all cores.
+        /// Threads of the run [default: all cores].
         #[arg(long)]
         threads: Option<usize>,
-        /// Time of the rehearsal [s], more where it says little by then; 0: none, and no estimate of the time.
+        /// Duration of the trial run [s]; 0: no trial run and no estimate of the run time.
         #[arg(long, value_name = "SECONDS", default_value_t = 3.0)]
         rehearse: f64,
-        /// Print JSON, for programs.
+        /// Print JSON.
         #[arg(long)]
         json: bool,
     },
-    /// Run variations of a scene, and compare error and cost of each: the trade of speed against accuracy.
+    /// Run variants of a scene and compare their errors and costs (speed–accuracy trade-off).
     Study(StudyArgs),
-    /// Make one page (HTML) with tables and plots of the results of one run, or of several beside each other.
+    /// Write an HTML report with tables and plots of one run, or a comparison of several.
     Report(ReportArgs),
-    /// Make a folder with a commented scene that runs, to begin with; without arguments, list what there is.
+    /// Create a directory with a commented example scene; without arguments, list the templates.
     New(NewArgs),
-    /// Print the JSON schema of scene files, by which editors complete and check keys.
+    /// Print the JSON schema of scene files, for completion and validation in editors.
     Schema {
         /// Print the tables of keys in Markdown instead; with PAGE, renew the tables of this file.
         #[arg(long, value_name = "PAGE", num_args = 0..=1)]
         markdown: Option<Option<PathBuf>>,
     },
-    /// Print the completions of a shell.
+    /// Print a completion script for a shell.
     Completions {
-        /// The shell.
+        /// Shell.
         shell: clap_complete::Shell,
     },
-    /// Natural frequencies and modes of the solid part of a scene.
+    /// Compute natural frequencies and modes of the solid of a scene.
     Modal(ModalArgs),
-    /// Show the results of a run in a browser: grains, force chains, solid, walls; or write them as one HTML file.
+    /// Show the results of a run in a browser, or export them as one HTML file.
     View(ViewArgs),
-    /// Draw a picture, or a video, of the results of a run into a file: no display, no browser.
+    /// Render an image or a video of the results of a run to a file, without a display.
     Render(Box<RenderArgs>),
-    /// Convert parameter decks, packings, animations and force chains of older programs, and frames of ours, into each other.
+    /// Convert decks, packings, animations and force chains of older programs, and frames.
     Convert(ConvertArgs),
-    /// Read a mesh: count and measure it, find its faults, or convert it.
+    /// Inspect, check or convert a mesh.
     Mesh {
-        /// What to do with the mesh.
+        /// Command.
         #[command(subcommand)]
         command: MeshCommand,
     },
-    /// Make stones of spheres from surfaces or at random, for a stone library; measure libraries and surfaces.
+    /// Generate stones for a library, from surfaces or at random; measure libraries and surfaces.
     Stone {
-        /// What to do with stones.
+        /// Command.
         #[command(subcommand)]
         command: StoneCommand,
     },
@@ -94,41 +94,40 @@ pub enum Command {
 pub struct RunArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// Folder of the results; default `results/<name of the scene's folder or file>`, with a hash of the overrides.
+    /// Results directory [default: results/<scene>, with a hash of the overrides].
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads; default all cores. The results do not depend on it.
+    /// Threads; the results do not depend on it [default: all cores].
     #[arg(long)]
     pub threads: Option<usize>,
-    /// Where the steps of grains are computed in the run proper: spheres, clumps, planes, triangles and bonds on a CUDA device, all
-    /// else on the processor.
+    /// Device for the DEM steps of the main stage; unsupported contacts stay on the CPU.
     #[arg(long, value_enum, default_value_t)]
     pub device: Place,
-    /// Replace one key of the scene, as key.path=value; may be given again.
+    /// Set one key of the scene, as key.path=value; repeatable.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
+    /// Memory limit of the solid, such as 8GB; larger ones are rejected [default: free memory].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
-    /// Go on from the last checkpoint in the folder of the results. Scene and overrides must be the same, threads need not.
+    /// Resume from the last checkpoint; scene and overrides unchanged, threads may differ.
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Go on from the end of the finished run in a folder, with another load, other materials or more time; the model is the same.
+    /// Restart from the final state of a completed run of the same model.
     #[arg(long, value_name = "DIR")]
     pub from: Option<PathBuf>,
-    /// With --from: put only the bed of that run into this scene, which has the same [[grains]] and may differ in all else.
+    /// With --from: import only the grains; [[grains]] must be the same, the rest may differ.
     #[arg(long, requires = "from")]
     pub bed: bool,
-    /// Replace what is in the folder of the results: results, the checkpoint of an interrupted run, files of others.
+    /// Overwrite the results directory, including checkpoints and unrelated files.
     #[arg(long)]
     pub force: bool,
-    /// Refuse a scene with values that are not plausible, instead of remarking on them.
+    /// Treat warnings about implausible values as errors.
     #[arg(long)]
     pub strict: bool,
-    /// Print nothing but errors.
+    /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
-    /// Print a line each second of what the run does, in place of the bar.
+    /// Print a line of progress each second instead of the progress bar.
     #[arg(long, conflicts_with = "quiet")]
     pub verbose: bool,
 }
@@ -147,9 +146,9 @@ impl RunArgs {
 /// Arguments of `new`.
 #[derive(Debug, Args)]
 pub struct NewArgs {
-    /// What to begin with: track, box, footing, …
+    /// Template: track, box, footing, …
     pub template: Option<String>,
-    /// Folder to write to; default the template's name.
+    /// Directory to create [default: name of the template].
     pub folder: Option<PathBuf>,
 }
 
@@ -158,28 +157,28 @@ pub struct NewArgs {
 pub struct StudyArgs {
     /// Study file (TOML).
     pub study: PathBuf,
-    /// Folder of the results; default `results/<name of the study file>`.
+    /// Results directory [default: results/<name of the study file>].
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads of each run; default as many as there are cores for the runs at a time.
+    /// Threads of each run [default: cores divided by simultaneous runs].
     #[arg(long)]
     pub threads: Option<usize>,
-    /// Runs at a time; default `jobs` of the study, else as many as there are cores for.
+    /// Simultaneous runs [default: `jobs` of the study, or as the cores permit].
     #[arg(long)]
     pub jobs: Option<usize>,
-    /// Carry out the runs k, k + N, … alone, counted from 1, and make no tables: for arrays of jobs.
+    /// Perform only runs k, k + N, … (from 1) and write no tables; for job arrays.
     #[arg(long, value_name = "k/N", conflicts_with = "merge")]
     pub task: Option<String>,
-    /// Carry out nothing: make the tables from the runs that are there, and name those that are missing.
+    /// Run nothing: write the tables from existing runs and list the missing ones.
     #[arg(long, conflicts_with_all = ["resume", "force", "jobs", "threads"])]
     pub merge: bool,
-    /// Skip the runs that are done, and go on with those that were interrupted.
+    /// Skip completed runs and resume interrupted ones.
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Replace the runs that are there.
+    /// Overwrite existing runs.
     #[arg(long)]
     pub force: bool,
-    /// Print nothing but errors.
+    /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
 }
@@ -187,13 +186,13 @@ pub struct StudyArgs {
 /// Arguments of `report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Folders of results.
+    /// Results directories.
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// The page; default `report.html` in the folder, where it is a single one.
+    /// HTML file to write [default for one directory: report.html in it].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Title of the page; default that of the scene.
+    /// Title of the report [default: title of the scene].
     #[arg(long)]
     pub title: Option<String>,
 }
@@ -206,13 +205,13 @@ pub struct ModalArgs {
     /// Number of modes.
     #[arg(short = 'n', long, default_value_t = 6)]
     pub count: usize,
-    /// Folder of the results; default `results/<name>_modes`.
+    /// Results directory [default: results/<name>_modes].
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads; default all cores. The results do not depend on it.
+    /// Threads; the results do not depend on it [default: all cores].
     #[arg(long)]
     pub threads: Option<usize>,
-    /// Replace one key of the scene, as key.path=value; may be given again.
+    /// Set one key of the scene, as key.path=value; repeatable.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 }
@@ -220,18 +219,18 @@ pub struct ModalArgs {
 /// Arguments of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
-    /// Folder of the results of a run, or one with such folders below it.
+    /// Results directory of a run, or a parent of results directories.
     pub dir: PathBuf,
-    /// Port on this machine (127.0.0.1); default any that is free.
+    /// Port on 127.0.0.1 [default: any free port].
     #[arg(long, default_value_t = 0, hide_default_value = true)]
     pub port: u16,
-    /// Write one HTML file that needs no server and no network, instead of serving.
+    /// Write one self-contained HTML file instead of starting a server.
     #[arg(long, value_name = "FILE.html")]
     pub export: Option<PathBuf>,
-    /// Every N-th frame alone, and the last one, in the exported file.
+    /// Export every N-th frame and the last one.
     #[arg(long, value_name = "N", default_value = "1", requires = "export")]
     pub every: NonZeroUsize,
-    /// Replace the exported file if it exists.
+    /// Overwrite an existing file.
     #[arg(long, requires = "export")]
     pub force: bool,
     /// Do not start a browser.
@@ -244,13 +243,13 @@ pub struct ViewArgs {
 pub struct CheckArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// Refuse a scene with values that are not plausible, instead of remarking on them.
+    /// Treat warnings about implausible values as errors.
     #[arg(long)]
     pub strict: bool,
-    /// Replace one key of the scene, as key.path=value; may be given again.
+    /// Set one key of the scene, as key.path=value; repeatable.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Refuse a solid that needs more memory than this, such as 8GB; default: what the machine has free.
+    /// Memory limit of the solid, such as 8GB; larger ones are rejected [default: free memory].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
 }
@@ -258,18 +257,18 @@ pub struct CheckArgs {
 /// The commands of `mesh`.
 #[derive(Debug, Subcommand)]
 pub enum MeshCommand {
-    /// Counts, sizes, materials, volumes and quality.
+    /// Print counts, sizes, materials, volumes and quality.
     Info(MeshArgs),
-    /// Faults of the mesh; exit code 2 when there are any.
+    /// Check for defects; exit code 2 if there are any.
     Check(MeshArgs),
-    /// Write the mesh in another form.
+    /// Write the mesh in another format.
     Convert {
-        /// The mesh.
+        /// Mesh.
         #[command(flatten)]
         mesh: MeshArgs,
-        /// File to write, ending in .cdb, .msh, .inp, .vtu or .vtk; without an ending a folder with the ANSYS lists.
+        /// Output: .cdb, .msh, .inp, .vtu, .vtk; without an extension, a directory of ANSYS lists.
         output: PathBuf,
-        /// Version of a .msh file; default 4.1.
+        /// Version of a .msh file [default: 4.1].
         #[arg(long)]
         format: Option<MeshFormat>,
     },
@@ -287,24 +286,23 @@ pub enum MeshFormat {
 /// Where a mesh is.
 #[derive(Debug, Args)]
 pub struct MeshArgs {
-    /// File ending in .cdb, .msh, .inp, .vtu or .vtk, folder with NODECOORD.DAT, ELEMENTNUM.DAT and DOF.DAT, or scene file
-    /// (.toml) whose solid is meant.
+    /// Mesh file (.cdb, .msh, .inp, .vtu, .vtk), directory of ANSYS lists, or scene (.toml).
     pub input: PathBuf,
 }
 
 /// The commands of `stone`.
 #[derive(Debug, Subcommand)]
 pub enum StoneCommand {
-    /// Make stones of closed surfaces.
+    /// Generate stones from closed surfaces.
     Make {
-        /// Surfaces: .stl, .obj, or lists of vertices and triangles (.dat, .txt, .tri, .srf); one stone each.
+        /// Surfaces (.stl, .obj, or lists .dat, .txt, .tri, .srf), one stone each.
         #[arg(required = true)]
         surfaces: Vec<PathBuf>,
-        /// How.
+        /// Options of stones.
         #[command(flatten)]
         stones: StoneArgs,
     },
-    /// Make random stones: convex, with given elongation, flatness and angularity.
+    /// Generate random convex stones of given elongation, flatness and angularity.
     Random {
         /// Number of stones.
         #[arg(long)]
@@ -315,19 +313,19 @@ pub enum StoneCommand {
         /// Shortest over intermediate extent (c/b), a number or a range low:high.
         #[arg(long, default_value = "0.6:0.95")]
         flatness: String,
-        /// From 0, blunt, to 1, sharp; a number or a range low:high.
+        /// Angularity from 0 (blunt) to 1 (sharp), a number or a range low:high.
         #[arg(long, default_value = "0.5:0.9")]
         angularity: String,
-        /// Folder for the surfaces themselves, as binary STL.
+        /// Directory for the surfaces, as binary STL.
         #[arg(long)]
         surfaces: Option<PathBuf>,
-        /// How.
+        /// Options of stones.
         #[command(flatten)]
         stones: StoneArgs,
     },
-    /// Make rough stones at random: few spheres that hardly overlap, with hollows in which neighbours interlock.
+    /// Generate random concave clumps of few spheres, which interlock.
     Rough(RoughArgs),
-    /// Numbers of the stones of a library (.toml) or of a surface.
+    /// Print the properties of the stones of a library (.toml) or of a surface.
     Info {
         /// Library or surface.
         input: PathBuf,
@@ -343,10 +341,10 @@ pub struct RoughArgs {
     /// Spheres of each stone, 2 to 12.
     #[arg(long, default_value_t = 4)]
     pub spheres: usize,
-    /// Largest overlap of two spheres as a share of the sum of their radii, 0 to 0.5.
+    /// Largest overlap of two spheres, as a fraction of the sum of their radii, 0 to 0.5.
     #[arg(long, default_value_t = 0.1)]
     pub overlap: f64,
-    /// Radii differ by this share up and down, 0 to 0.5.
+    /// Relative variation of radii, up and down, 0 to 0.5.
     #[arg(long, default_value_t = 0.2)]
     pub spread: f64,
     /// Intermediate over longest extent (b/a), a number or a range low:high.
@@ -355,13 +353,13 @@ pub struct RoughArgs {
     /// Shortest over intermediate extent (c/b), a number or a range low:high.
     #[arg(long, default_value = "0.6:0.95")]
     pub flatness: String,
-    /// Starts everything random.
+    /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Library to write (.toml); without it only the measures are printed.
+    /// Library to write (.toml); without it, only the properties are printed.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Replace files that exist.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
 }
@@ -381,25 +379,25 @@ pub struct StoneArgs {
     /// Spheres of each stone: 1 to 200 for clumps, 1 to 2000 for bonded stones.
     #[arg(long)]
     pub spheres: usize,
-    /// Rigid clumps or breakable stones.
+    /// Rigid clumps or breakable bonded stones.
     #[arg(long = "as", value_name = "KIND", default_value = "clump")]
     pub kind: StoneKind,
-    /// Library to write (.toml); without it only the measures are printed.
+    /// Library to write (.toml); without it, only the properties are printed.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Replace files that exist.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
-    /// Clumps: how far spheres may stand out over the surface, as a share of the largest inscribed radius; default 0.1.
+    /// Clumps: protrusion of spheres, in radii of the largest inscribed sphere [default: 0.1].
     #[arg(long)]
     pub overhang: Option<f64>,
-    /// Starts everything random; default 1.
+    /// Seed of the random numbers [default: 1].
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Bonded stones: radii differ by this share up and down; default 0.2.
+    /// Bonded stones: relative variation of radii, up and down [default: 0.2].
     #[arg(long)]
     pub spread: Option<f64>,
-    /// Bonded stones: largest gap of bonded spheres, as a share of their mean radius; default 0.2.
+    /// Bonded stones: largest gap of bonded spheres, in mean radii of the pair [default: 0.2].
     #[arg(long)]
     pub gap: Option<f64>,
 }

@@ -107,7 +107,7 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
         bed: args.bed,
         force: args.force,
         strict: args.strict,
-        interrupt: run::Interrupt::on_signals("the present step")?,
+        interrupt: run::Interrupt::on_signals("the current step")?,
         accompanied: run::Accompanied::default(),
         verbosity,
     };
@@ -115,14 +115,14 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
         run::Outcome::Done(_) if args.quiet => Ok(()),
         run::Outcome::Done(summary) => {
             // The results are in their folder, and the same text in its log: nobody need listen.
-            let text = format!("{}results are in {}\n", summary.report(), summary.dir.display());
+            let text = format!("{}results are in {}\n", summary.report(args.verbose), summary.dir.display());
             if let Err(failure) = print(&text) {
-                message::note(&format!("standard output: {failure}"));
+                message::warn(&format!("standard output: {failure}"));
             }
             Ok(())
         }
         run::Outcome::WasDone(dir) => {
-            print(&format!("{}: the run is finished, there is nothing to go on with\n", dir.display()))
+            print(&format!("{}: run completed, nothing to resume\n", dir.display()))
         }
     }
 }

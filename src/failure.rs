@@ -45,9 +45,9 @@ impl Failure {
 
     /// A thread that the system does not start.
     pub(crate) fn thread(error: impl fmt::Display) -> Failure {
-        let expected = "memory and processes for all; use fewer (--threads), or raise the limits of the system (ulimit -v, ulimit -u)";
+        let expected = "memory and processes for all. Reduce --threads, or raise the system limits (ulimit -v, ulimit -u)";
         Failure::Numerical(format!(
-            "threads: found that one cannot be started ({error}), expected {expected}"
+            "threads: found a thread that cannot be started ({error}), expected {expected}"
         ))
     }
 

@@ -42,7 +42,7 @@ pub fn check_files() -> Result<(), Failure> {
             Err(error) if machine::lacks_files(&error) => {
                 let found = open.len();
                 let text = format!(
-                    "open files: found room for {found}, expected room for {FILES}; raise the limit of the system (ulimit -n)"
+                    "open files: found a limit of {found}, expected {FILES} or more. Raise the system limit (ulimit -n)"
                 );
                 return Err(Failure::Other(text));
             }
@@ -81,8 +81,7 @@ pub fn report_large_files() {
 /// Has an abort of the process, such as one whose stack has overflowed, end it with exit code 3 and one line.
 #[cfg(unix)]
 pub fn end_at_abort() {
-    const LINE: &[u8] = b"error: memory: found none left, or a stack that has overflowed. Make the scene smaller, or raise the limits of \
-                          the system (ulimit -v, ulimit -s).\n";
+    const LINE: &[u8] = b"error: memory: found none free, or a stack overflow. Reduce the scene, or raise the system limits (ulimit -v, ulimit -s).\n";
     let action = || {
         // SAFETY: the bytes are those of a constant.
         unsafe { libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len()) };
@@ -103,9 +102,7 @@ pub fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failur
         let place = PLACE.lock().unwrap_or_else(PoisonError::into_inner).take();
         let place = place.map_or(String::new(), |place| format!(" ({place})"));
         let text = text(payload.as_ref());
-        Err(Failure::Numerical(format!(
-            "the program has failed: {text}{place}; please report it with the scene"
-        )))
+        Err(Failure::Numerical(format!("internal error: {text}{place}; please report it with the scene")))
     })
 }
 
@@ -126,14 +123,14 @@ mod tests {
         let failure = guarded(|| Ok(parts[std::hint::black_box(3)])).unwrap_err();
         assert_eq!(failure.code(), 3);
         let text = failure.to_string();
-        assert!(text.starts_with("the program has failed: index out of bounds"), "{text}");
+        assert!(text.starts_with("internal error: index out of bounds"), "{text}");
         assert_eq!(text.lines().count(), 1);
         // In a thread of the pool.
         let failure = guarded(|| {
             rayon::join(|| panic!("two\nlines"), || ());
             Ok(())
         });
-        assert!(failure.unwrap_err().to_string().starts_with("the program has failed: two lines"));
+        assert!(failure.unwrap_err().to_string().starts_with("internal error: two lines"));
         assert_eq!(guarded(|| Ok(7)).unwrap(), 7);
     }
 }

@@ -195,11 +195,7 @@ impl fmt::Display for MeshInfo {
         writeln!(f, "volume            {:>10.4} m³", self.volume)?;
         if self.inside_out > 0 {
             let all = if self.inside_out == self.elements { ", all" } else { "" };
-            writeln!(
-                f,
-                "inside out        {:>10}   elements{all}: their volume counts as negative",
-                self.inside_out
-            )?;
+            writeln!(f, "inverted          {:>10}   elements{all}: negative volume", self.inside_out)?;
         }
         for m in &self.materials {
             writeln!(f, "  material {:<6} {:>10.4} m³   {} elements", m.id, m.volume, m.elements)?;

@@ -20,9 +20,14 @@ pub fn error(sentence: &str) {
     headed("error:", AnsiColor::Red.on_default().bold(), sentence);
 }
 
-/// Says a remark.
-pub(crate) fn note(remark: &str) {
-    headed("note:", AnsiColor::Yellow.on_default().bold(), remark);
+/// Prints a warning.
+pub(crate) fn warn(warning: &str) {
+    headed("warning:", AnsiColor::Yellow.on_default().bold(), warning);
+}
+
+/// Prints a note: nothing is wrong.
+pub(crate) fn note(fact: &str) {
+    headed("note:", AnsiColor::Cyan.on_default().bold(), fact);
 }
 
 /// Says a line whose head is coloured on a terminal that shows colours, unless `NO_COLOR` is set.

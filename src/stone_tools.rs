@@ -62,9 +62,7 @@ pub enum StoneError {
         pieces: usize,
     },
     /// There is hardly any body in its bounding box.
-    #[error(
-        "stone '{name}': the body fills {share:e} of its bounding box, too thin to be filled with spheres"
-    )]
+    #[error("stone '{name}': volume is {share:e} of the bounding box, too thin to be filled with spheres")]
     Thin {
         /// Name of the stone.
         name: String,
@@ -80,7 +78,7 @@ pub enum StoneError {
         source: ShapeError,
     },
     /// The spheres make no bonded stone.
-    #[error("stone '{name}': {source}; a wider gap for bonds or more spheres help")]
+    #[error("stone '{name}': {source}; increase --gap or --spheres")]
     Cluster {
         /// Name of the stone.
         name: String,

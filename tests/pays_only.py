@@ -1,7 +1,7 @@
 """A scene pays only for what it models: python3 tests/pays_only.py PROGRAM
 
 Each feature is added to a scene without it, and taken away again by an override (`--set KEY=`). Taken away, it must leave nothing
-behind: the same stages, contact loop, predicted memory and files, instructions within 1 % and the largest memory within 6 %
+behind: the same stages, contact kernels, predicted memory and files, instructions within 1 % and the largest memory within 6 %
 (the system's pages scatter by 4) of the scene that never had it. With it, a stage, a
 loop, a file or instructions must be there that were not, or the comparison says nothing. Instructions are counted by `perf stat`, on one
 thread. One row per feature; the exit code is 0 only when all hold.
@@ -45,7 +45,7 @@ FEATURES = [
 
 
 def run(program, scene, sets, out):
-    """Instructions; stages, contact loop, predicted memory and files with their sizes; bytes at most."""
+    """Instructions; stages, contact kernels, predicted memory and files with their sizes; bytes at most."""
     scene = os.path.join(ROOT, scene)
     sets = [part for s in sets for part in ("--set", s)]
     count = os.path.join(out, "count")
@@ -56,7 +56,7 @@ def run(program, scene, sets, out):
     instructions = next(int(line.split(",")[0]) for line in open(count) if "instructions" in line)
     summary = json.load(open(os.path.join(out, "results", "summary.json")))
     said = subprocess.run([program, "explain", scene, "--rehearse", "0"] + sets, capture_output=True, text=True, check=True).stdout
-    lines = [line.strip() for line in said.splitlines() if re.match(r"\s*(stages|contact loop|packed bed):", line)]
+    lines = [line.strip() for line in said.splitlines() if re.match(r"\s*(stages|contact kernels|packed bed):", line)]
     # The speed of the probe is the machine's.
     lines = [re.sub(r"; [0-9.]+ M sphere-steps/s.*", "", line) for line in lines]
     # What these say of the run itself differs by its clock.

@@ -62,7 +62,7 @@ class Case:
         start = time.monotonic()
         done = subprocess.run([*command(self.case, self.binary, out, self.threads), *self.more], capture_output=True, text=True)
         self.seconds = time.monotonic() - start
-        return "on a device" not in done.stderr or done.returncode != 2
+        return "on a GPU" not in done.stderr or done.returncode != 2
 
     def attempt(self, rng, stages):
         """Kills a run one to three times and lets it end; the number of kills that met a run, and what differs then."""

@@ -152,8 +152,8 @@ def digest_of(path):
     except (Unreadable, ElementTree.ParseError, ValueError, KeyError, struct.error, zlib.error) as error:
         return f"unreadable: {error}"
     if path.name == "log.txt":
-        content = re.sub(rb"; seconds in assembly .*", b"", content)
-        content = re.sub(rb"(?m)^(.+): [0-9.]+ s, ([0-9]+ grain steps)", rb"\1: \2", content)
+        content = re.sub(rb"; time: assembly .*", b"", content)
+        content = re.sub(rb"(?m)^(.+): [0-9.]+ s, ([0-9]+ DEM steps)", rb"\1: \2", content)
     return hashlib.sha256(content).hexdigest()
 
 
@@ -204,7 +204,7 @@ def scene_rows(case, binary, threads, work, device):
         command += ["--device", "gpu"]
     start = time.monotonic()
     done, status = execute([*command, "--out", str(out)], None)
-    if device and done.returncode == 2 and "on a device" in done.stderr:
+    if device and done.returncode == 2 and "on a GPU" in done.stderr:
         raise NotOnDevice
     seconds = time.monotonic() - start
     rows |= {"(exit)": status.replace(str(ROOT), ".")} | files(out)

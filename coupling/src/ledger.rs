@@ -156,7 +156,7 @@ impl Spent {
             ("plastic flow", self.plastic),
             ("time integration of the solid", self.numerical),
             ("dashpots under rails", self.pads),
-            ("track beyond the model", self.track_beyond),
+            ("track outside the model", self.track_beyond),
         ]
     }
 
@@ -254,7 +254,7 @@ mod tests {
             ("absorbing boundaries", Spent { absorbed: 1.0, ..none() }, -1.0),
             ("plastic flow", Spent { plastic: 1.0, ..none() }, -1.0),
             ("pads", Spent { pads: 1.0, ..none() }, -1.0),
-            ("track beyond the model", Spent { track_beyond: 1.0, ..none() }, -1.0),
+            ("track outside the model", Spent { track_beyond: 1.0, ..none() }, -1.0),
         ];
         for (name, spent, gain) in cases {
             let start = Stored { solid_strain: 5.0, ..Stored::default() };

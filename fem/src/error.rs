@@ -26,8 +26,7 @@ pub enum ModelError {
     #[error("material {material}: {constant} is {value}, expected {expected}")]
     MaterialConstant { material: u32, constant: &'static str, value: f64, expected: &'static str },
     #[error(
-        "element {element} is inverted or degenerate: the Jacobian determinant is {determinant:.6e} m³ at the Gauss \
-         point {point:?}, expected above 0"
+        "element {element} is inverted or degenerate: Jacobian determinant {determinant:.6e} m³ at integration point {point:?}, expected above 0"
     )]
     Inverted { element: u32, point: [f64; 3], determinant: f64 },
     #[error("constraint {index} names node index {node}, direction {direction}; that dof does not exist")]
@@ -93,29 +92,25 @@ pub(crate) fn size(value: f64) -> String {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs, reason = "the messages are the documentation")]
 pub enum SolveError {
-    #[error("the body is not held: node {node} is free to move in {direction}; add supports")]
+    #[error("insufficiently constrained: rigid-body motion of node {node} in {direction}; add supports")]
     NotHeld { node: u32, direction: &'static str },
     #[error(
-        "the body is not held: no stiffness is left at node {node} in {direction} (pivot {} of the diagonal); add \
-         supports, join elements by whole faces, and use the full rule where a row of elements is one element wide",
+        "singular stiffness matrix: zero pivot at node {node} in {direction} ({} of the diagonal), rigid-body motion or zero-energy mode; add supports, connect elements by whole faces, or use full integration in rows one element wide",
         size(*pivot)
     )]
     NoStiffness { node: u32, direction: &'static str, pivot: f64 },
-    #[error("the solution misses equilibrium by {} of the load at node {node} in {direction}", size(*residual))]
+    #[error("equilibrium error at node {node} in {direction}: {} of the load", size(*residual))]
     Inaccurate { node: u32, direction: &'static str, residual: f64 },
-    #[error("material {material} has density 0; dynamics needs a mass")]
+    #[error("material {material}: density 0, expected a mass for dynamics")]
     NoMass { material: u32 },
     #[error("the {what} has {found} values, expected {expected}")]
     Length { what: &'static str, found: usize, expected: usize },
-    #[error("{what} is not a finite number at node {node} in {direction}, at time {time} s")]
+    #[error("not finite: {what} at node {node} in {direction}, t = {time} s")]
     NotFinite { what: &'static str, node: u32, direction: &'static str, time: f64 },
-    #[error(
-        "material {material} is plastic: this solver is linear and would treat it as elastic; use the nonlinear one"
-    )]
+    #[error("material {material} is plastic, not supported by the linear solver; use the nonlinear solver")]
     Plastic { material: u32 },
     #[error(
-        "no equilibrium after time {time}: {iterations} iterations left a residual of {} of the forces; worst at \
-         element {element}, Gauss point {point} (natural coordinates {xi:?}), which returned to: {region:?}",
+        "not converged at time {time}: residual {} of the forces after {iterations} iterations; largest at element {element}, integration point {point} (natural coordinates {xi:?}), returned to {region:?}",
         size(*residual)
     )]
     Diverged {
@@ -127,7 +122,7 @@ pub enum SolveError {
         xi: [f64; 3],
         region: Region,
     },
-    #[error("the step was given up between two iterations, as requested")]
+    #[error("step stopped between two iterations, as requested")]
     Stopped,
     #[error("{what} is {value}, expected {expected}")]
     Option { what: &'static str, value: f64, expected: &'static str },
@@ -137,17 +132,14 @@ pub enum SolveError {
     Theta { theta: f64 },
     #[error(transparent)]
     Newmark(#[from] NewmarkError),
-    #[error(
-        "the mass matrix could not be solved: {residual:.3e} of the load left after {iterations} iterations"
-    )]
+    #[error("mass matrix not converged: residual {residual:.3e} after {iterations} iterations")]
     MassNotSolved { residual: f64, iterations: usize },
     #[error(
-        "conjugate gradients did not solve the equations of the solid: {stopped}, expected {tolerance:.1e}; a larger \
-         `solid.equations.tolerance` or `method = \"direct\"` may help"
+        "conjugate gradients not converged: {stopped} (limit {tolerance:.1e}). Increase `solid.equations.tolerance`, or use `method = \"direct\"`."
     )]
     NotConverged { stopped: Stopped, tolerance: f64 },
     #[error(
-        "the body is not held: a part of it has no stiffness; `solid.equations.method = \"direct\"` names a node of it"
+        "singular stiffness matrix: rigid-body motion of a part of the solid. Add supports; `solid.equations.method = \"direct\"` names a node."
     )]
     Singular,
     #[error(transparent)]

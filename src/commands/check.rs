@@ -84,7 +84,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
     if strict {
         plausible::refuse(document, &findings)?;
     }
-    let mut lines: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    let mut lines: Vec<String> = findings.iter().map(|f| format!("warning: {f}")).collect();
     let mut numbers = json!({ "findings": findings, "solid": null, "grains": null, "coupling": null });
     if let Some(solid) = &job.solid {
         let (own, values) = solid_lines(solid, memory)?;
@@ -146,10 +146,10 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
         0.0 => String::new(),
         flops => format!("; one factorization {:.2} Gflop", 1e-9 * flops),
     };
-    lines.push(format!("  memory: {all} in all, {solver} of it for the equations{factorization}"));
+    lines.push(format!("  memory: {all}, of which {solver} for the equations{factorization}"));
     let (methods, equations): (Vec<_>, Vec<_>) = run::methods(solid)?.into_iter().unzip();
     lines.extend(methods.iter().map(|line| format!("  {line}")));
-    lines.extend(solid.warnings.iter().map(|warning| format!("  note: {warning}")));
+    lines.extend(solid.warnings.iter().map(|warning| format!("  warning: {warning}")));
     let numbers = json!({
         "nodes": mesh.node_count(),
         "elements": mesh.element_count(),
@@ -185,11 +185,11 @@ fn grain_lines(
         },
         match model.measured() {
             _ if all_prescribed(grains) => {
-                format!("  step {:.4e} s; the motion of all bodies is prescribed", model.dt())
+                format!("  DEM time step {:.4e} s; the motion of all bodies is prescribed", model.dt())
             }
-            None => format!("  step {:.4e} s; {}", model.dt(), model.dt_limit()),
+            None => format!("  DEM time step {:.4e} s; {}", model.dt(), model.dt_limit()),
             Some(share) => format!(
-                "  step {:.4e} s at first, then {share} of what the contacts allow, {:.4e} s at most; {}",
+                "  DEM time step {:.4e} s initially, then {share} of the critical time step, at most {:.4e} s; {}",
                 model.dt(),
                 model.longest(true),
                 model.dt_limit()
@@ -205,7 +205,7 @@ fn grain_lines(
     };
     let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}")));
-    lines.extend(grains.groups.remarks.iter().map(|remark| format!("  note: {remark}")));
+    lines.extend(grains.groups.remarks.iter().map(|remark| format!("  warning: {remark}")));
     Ok((model, lines))
 }
 
@@ -233,8 +233,7 @@ fn coupling_lines(
     let window = model.dt() * f64::from(substeps);
     let s = exchange::stability(&classes);
     let mut lines = vec![format!(
-        "coupling: {} faces, {} grain steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of \
-         all contacts); scheme {}, transfer: {}",
+        "coupling: {} faces, {} DEM steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of all contacts); scheme {}, transfer: {}",
         coupling.faces.len(),
         substeps,
         if coupling.automatic() { " (automatic)" } else { "" },
@@ -245,7 +244,7 @@ fn coupling_lines(
     )];
     lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
     let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
-    lines.extend(remarks.iter().map(|remark| format!("  note: {remark}")));
+    lines.extend(remarks.iter().map(|remark| format!("  warning: {remark}")));
     let numbers = json!({
         "faces": coupling.faces.len(),
         "substeps": substeps,

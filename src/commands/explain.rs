@@ -48,10 +48,10 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
     if let Some(grains) = &job.grains {
         let model = dem::Model::new(grains.input(grains.groups.bodies.clone()))
             .map_err(|e| refused(&document, &e))?;
-        report.add(format!("contact loop: {}", dem::measure::kernels(&model)));
+        report.add(format!("contact kernels: {}", dem::measure::kernels(&model)));
         match Probe::run(grains, &model) {
             Ok(probe) => report.add(probe.line(&model)),
-            Err(error) => report.add(format!("no estimate of memory: a probe of the grains fails: {error}")),
+            Err(error) => report.add(format!("no estimate of memory: trial bed failed: {error}")),
         }
     }
     if how.rehearse > 0.0 {
@@ -59,7 +59,7 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
         let budget = Duration::from_secs_f64(how.rehearse);
         match pool.install(|| Estimate::of(scene, set, &job, how.threads, budget)) {
             Ok(estimate) => report.estimate(&estimate),
-            Err(failure) => report.add(format!("no estimate of the time: the rehearsal ended: {failure}")),
+            Err(failure) => report.add(format!("no estimate of the run time: trial run failed: {failure}")),
         }
     }
     Ok(report)

@@ -42,13 +42,13 @@ pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     let mut notes = file.warnings.clone();
     if file.no_constraints {
         problems.retain(|problem| !matches!(problem, Problem::Unconstrained { .. }));
-        notes.push("no constraints in this form: give [[solid.support]] in the scene".into());
+        notes.push("this format contains no constraints; add [[solid.support]] to the scene".into());
     }
     if problems.is_empty() {
-        return print(&format!("{}: no fault found\n{}", args.input.display(), remarks(&notes)));
+        return print(&format!("{}: no defects found\n{}", args.input.display(), remarks(&notes)));
     }
     let text = mesh_tools::sentences(&file.mesh, &problems).join("; ");
-    Err(Failure::Input(format!("{}: found {text}, expected a mesh without faults", args.input.display())))
+    Err(Failure::Input(format!("{}: found {text}, expected a mesh without defects", args.input.display())))
 }
 
 /// Writes the mesh in another form.
@@ -57,14 +57,12 @@ pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>
     if !ending.is_empty() && !MESH_ENDINGS.contains(&ending.as_str()) {
         let found = output.display();
         return Err(Failure::Input(format!(
-            "output: found {found}, expected a file ending in .cdb, .msh, .inp, .vtu or .vtk, or a folder for the lists"
+            "output: found {found}, expected a file .cdb, .msh, .inp, .vtu or .vtk, or a directory for the lists"
         )));
     }
     if format.is_some() && ending != "msh" {
         let found = output.display();
-        return Err(Failure::Input(format!(
-            "--format: found {found}, expected a file ending in .msh with it"
-        )));
+        return Err(Failure::Input(format!("--format: found {found}, expected an output file .msh")));
     }
     refuse_input(&args.input, output)?;
     let file = read(args)?;
@@ -90,7 +88,7 @@ fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
     match both {
         None => Ok(()),
         Some(file) => {
-            let found = format!("{}, which the mesh is read from", file.display());
+            let found = format!("{}, the input file", file.display());
             Err(Failure::Input(format!("output: found {found}, expected another file")))
         }
     }
@@ -114,5 +112,5 @@ fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
 }
 
 fn remarks(warnings: &[String]) -> String {
-    warnings.iter().map(|w| format!("note: {w}\n")).collect()
+    warnings.iter().map(|w| format!("warning: {w}\n")).collect()
 }

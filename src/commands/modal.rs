@@ -35,7 +35,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         let part = solid::build(&document, part, vector(&scene.gravity), true, None)?;
         let unknowns = part.model.free_dof_count();
         if args.count == 0 || args.count > unknowns {
-            let expected = format!("1 to {unknowns}, the number of unknowns");
+            let expected = format!("1 to {unknowns} (number of unknowns)");
             return Err(Failure::Input(format!("-n: found {}, expected {expected}", args.count)));
         }
         let mass = part.model.total_mass();
@@ -53,7 +53,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         });
         let _lock = run::Lock::take(&dir)?;
         if dir.join("results.pvd").exists() && !dir.join("modes.csv").exists() {
-            let found = "results.pvd, which no modes have left there";
+            let found = "an unrelated results.pvd";
             return Err(Failure::Input(format!("{}: found {found}, expected another --out", dir.display())));
         }
         write_modes(&part.model, &modes, &dir)?;
@@ -64,10 +64,10 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
                 .expect("writing to a string does not fail");
         }
         if !part.model.is_linear() {
-            text += "  note: materials that yield vibrate with their elastic stiffness here\n";
+            text += "  note: plastic materials vibrate with their elastic stiffness\n";
         }
         let total = part.model.total_mass();
-        writeln!(text, "  total mass {total:.6e} kg; modes are in {}", dir.display())
+        writeln!(text, "  total mass {total:.6e} kg; modes in {}", dir.display())
             .expect("writing to a string does not fail");
         Ok(text)
     })

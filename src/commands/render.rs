@@ -12,9 +12,9 @@ use crate::render::{self, Written};
 /// Bad input; a file that cannot be written.
 pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     if !args.dir.is_dir() {
-        let found = if args.dir.exists() { "a file" } else { "no such folder" };
+        let found = if args.dir.exists() { "a file" } else { "no such directory" };
         return Err(Failure::Input(format!(
-            "{}: found {found}, expected the folder of the results of a run",
+            "{}: found {found}, expected the results directory of a run",
             args.dir.display()
         )));
     }

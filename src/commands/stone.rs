@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::output::print;
 use crate::cli::{RoughArgs, StoneArgs, StoneCommand, StoneKind};
 use crate::failure::Failure;
-use crate::read::read_surface;
+use crate::read::{Problem, read_surface};
 use crate::scene::Document;
 use crate::stone_tools::{Kind, Source, fill, grow, library_file, make, measure, random, rough};
 use crate::write::{atomic, stl::stl_bytes};
@@ -95,8 +95,8 @@ fn rough_stones(args: &RoughArgs) -> Result<(), Failure> {
     };
     free(args.out.as_deref(), args.force)?;
     let made = rough::stones(args.seed, args.count, &form).map_err(|draws| {
-        let found = format!("no stone of these ratios in {draws} draws");
-        bad("--elongation, --flatness", &found, "wider ranges, another number of spheres or another overlap")
+        let found = format!("no stone of these ratios in {draws} trials");
+        bad("--elongation, --flatness", &found, "wider ranges, another number of spheres, or another overlap")
     })?;
     let mut text: String = made.iter().map(|m| format!("{}: {m}\n", m.stone.name)).collect();
     if let Some(out) = &args.out {
@@ -122,7 +122,7 @@ fn write_surfaces(dir: &Path, sources: &[Source], force: bool) -> Result<(), Fai
     let digits = sources.len().to_string().len();
     let file = |i: usize| dir.join(format!("stone_{:0digits$}.stl", i + 1));
     if !dir.is_dir() {
-        return Err(bad("--surfaces", &dir.display().to_string(), "a folder that exists"));
+        return Err(bad("--surfaces", &dir.display().to_string(), "an existing directory"));
     }
     for i in 0..sources.len() {
         free(Some(&file(i)), force)?;
@@ -139,7 +139,7 @@ fn write_surfaces(dir: &Path, sources: &[Source], force: bool) -> Result<(), Fai
 fn source(file: &Path) -> Result<Source, Failure> {
     let surface = read_surface(file)?;
     let body = Polyhedron::new(&surface).map_err(|e| {
-        Failure::Input(format!("{}: surface: found that {e}, expected one closed surface", file.display()))
+        Failure::Input(format!("{}: surface: found {e}, expected one closed surface", file.display()))
     })?;
     let name = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Source { name, body })
@@ -174,19 +174,16 @@ fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
         }
         Err(bad(option, &v.to_string(), &format!("0 to {most}")))
     };
-    let foreign = |option: &str, given: bool, expected: &str| {
-        if given { Err(bad(option, "it", expected)) } else { Ok(()) }
+    let foreign = |option: &str, given: bool, without: &str| match given {
+        true => Err(Failure::Input(format!("{option}: {}", Problem::no_effect(without)))),
+        false => Ok(()),
     };
     match args.kind {
         StoneKind::Clump => {
             within("--spheres", args.spheres, MOST_CLUMP)?;
-            foreign("--spread", args.spread.is_some(), "it with --as bonded only")?;
-            foreign("--gap", args.gap.is_some(), "it with --as bonded only")?;
-            foreign(
-                "--seed",
-                args.seed.is_some() && !random,
-                "it with --as bonded only: clumps have no chance in them",
-            )?;
+            foreign("--spread", args.spread.is_some(), "`--as bonded`")?;
+            foreign("--gap", args.gap.is_some(), "`--as bonded`")?;
+            foreign("--seed", args.seed.is_some() && !random, "`--as bonded`")?;
             Ok(Kind::Clump(fill::Options {
                 spheres: args.spheres,
                 overhang: share("--overhang", args.overhang, 0.1, 1.0)?,
@@ -194,7 +191,7 @@ fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
         }
         StoneKind::Bonded => {
             within("--spheres", args.spheres, MOST_BONDED)?;
-            foreign("--overhang", args.overhang.is_some(), "it with --as clump only")?;
+            foreign("--overhang", args.overhang.is_some(), "`--as clump`")?;
             Ok(Kind::Bonded(grow::Options {
                 spheres: args.spheres,
                 seed: args.seed.unwrap_or(1),
@@ -214,10 +211,14 @@ fn free(out: Option<&Path>, force: bool) -> Result<(), Failure> {
     }
     let folder = out.parent().filter(|p| !p.as_os_str().is_empty()).map(PathBuf::from);
     if folder.is_some_and(|p| !p.is_dir()) {
-        return Err(bad("--out", &shown, "a file in a folder that exists"));
+        return Err(bad("--out", &shown, "a file in an existing directory"));
     }
     if out.exists() && !force {
-        return Err(bad("--out", &format!("{shown}, which exists"), "a new file, or --force to replace it"));
+        return Err(bad(
+            "--out",
+            &format!("{shown}, which exists"),
+            "a new file, or --force to overwrite it",
+        ));
     }
     Ok(())
 }
@@ -237,7 +238,7 @@ fn info(input: &Path) -> Result<(), Failure> {
     line(format!("edges             {:>12}", topology.edges));
     line(format!("  open            {:>12}", topology.open_edges));
     line(format!("  branching       {:>12}", topology.branching_edges));
-    line(format!("  turned          {:>12}   wound unlike their neighbours", topology.turned_edges));
+    line(format!("  inverted        {:>12}   orientation differs from neighbours", topology.turned_edges));
     line(format!("pieces            {:>12}", topology.pieces));
     for (k, name) in ["x", "y", "z"].iter().enumerate() {
         line(format!("{name}                 {:>12.6} to {:.6} m", lo[k], hi[k]));

@@ -23,7 +23,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         resume: args.resume,
         force: args.force,
         quiet,
-        interrupt: Interrupt::on_signals("the runs under way have kept where they are")?,
+        interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
     let text = study::execute(&args.study, &options, &check)?;

@@ -17,9 +17,9 @@ use crate::view::{self, Coding, Results};
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let dir = &args.dir;
     if !dir.is_dir() {
-        let found = if dir.exists() { "a file" } else { "no such folder" };
+        let found = if dir.exists() { "a file" } else { "no such directory" };
         return Err(Failure::Input(format!(
-            "{}: found {found}, expected the folder of the results of a run",
+            "{}: found {found}, expected the results directory of a run",
             dir.display()
         )));
     }
@@ -32,7 +32,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
 fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
     if file.exists() && !args.force {
         return Err(Failure::Input(format!(
-            "{}: found a file of this name, expected none, or --force to replace it",
+            "{}: found an existing file, expected a new file, or --force to overwrite it",
             file.display()
         )));
     }
@@ -50,7 +50,7 @@ fn serve(args: &ViewArgs) -> Result<(), Failure> {
     }
     let (listener, port) = view::server::bind(args.port)?;
     let address = format!("http://127.0.0.1:{port}/");
-    print(&format!("{address} shows {}; Ctrl-C ends it\n", args.dir.display()))?;
+    print(&format!("{address} shows {}; Ctrl-C stops the server\n", args.dir.display()))?;
     if !args.no_open {
         open(&address);
     }
@@ -72,6 +72,6 @@ fn open(address: &str) {
         .stderr(quiet())
         .spawn();
     if started.is_err() {
-        message::note(&format!("no browser could be started ({program}): open {address} in one"));
+        message::note(&format!("no browser started ({program}); open {address}"));
     }
 }

@@ -48,12 +48,13 @@ pub fn convert(input: &Path, output: &Path, options: &Options) -> Result<Vec<Str
         (Input::Animation(text), "csv") => animation::to_csv(&animation::parse(input, &text)?, output),
         (Input::Animation(text), "dat") => animation::write(&animation::parse(input, &text)?, output),
         (Input::Animation(text), "") => folder(output, options, &animation::parse(input, &text)?, &[]),
-        (Input::Animation(_), _) => no_form(".csv, .dat, or a folder for frames"),
+        (Input::Animation(_), _) => no_form(".csv, .dat, or a directory for frames"),
         (Input::Chains(text), "csv") => chains::to_csv(&chains::parse(input, &text)?, output),
         (Input::Chains(text), "3df") => chains::write(&chains::parse(input, &text)?, output),
         (Input::Chains(text), "") => {
             let Some(grains) = &options.grains else {
-                let expected = "--grains ANIMATION beside a folder of frames: the file has no places";
+                let expected =
+                    "--grains ANIMATION with a directory of frames, as the file contains no positions";
                 return Err(Failure::Input(format!(
                     "{}: found chains, expected {expected}",
                     input.display()
@@ -66,12 +67,12 @@ pub fn convert(input: &Path, output: &Path, options: &Options) -> Result<Vec<Str
             let moments = animation::parse(grains, &animation)?;
             folder(output, options, &moments, &chains::parse(input, &text)?)
         }
-        (Input::Chains(_), _) => no_form(".csv, .3df, or a folder for frames"),
+        (Input::Chains(_), _) => no_form(".csv, .3df, or a directory for frames"),
         (Input::Results, "csv") => animation::to_csv(&results::grains(input)?, output),
         (Input::Results, "dat") => animation::write(&results::grains(input)?, output),
         (Input::Results, "3df") => chains::write(&results::chains(input)?, output),
         (Input::Results, "") => folder(output, options, &results::grains(input)?, &results::chains(input)?),
-        (Input::Results, _) => no_form(".csv, .dat (animation), .3df (chains), or a folder for frames"),
+        (Input::Results, _) => no_form(".csv, .dat (animation), .3df (chains), or a directory for frames"),
     }
 }
 
@@ -129,8 +130,7 @@ fn folder(
     writers.end()?;
     let mut lines = vec![format!("{} frames", moments.len())];
     if missed > 0 {
-        lines
-            .push(format!("{missed} chains to walls left out: the files do not say where these are touched"));
+        lines.push(format!("{missed} chains to walls omitted: the files contain no contact points"));
     }
     Ok(lines)
 }

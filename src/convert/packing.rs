@@ -40,7 +40,7 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<[f64; 4]>, ReadError> {
         }
     }
     if let Some(n) = count.filter(|n| *n != spheres.len() as f64) {
-        let expected = format!("{n}, as its first row says");
+        let expected = format!("{n}, as in the first row");
         return Err(ReadError::whole(file, "spheres", spheres.len().to_string(), expected));
     }
     if spheres.is_empty() {

@@ -79,6 +79,6 @@ fn complete(file: &Path, block: &Block, count: usize) -> Result<(), ReadError> {
     if block.rows.len() == count {
         return Ok(());
     }
-    let expected = format!("{count}, as the head says");
+    let expected = format!("{count}, as in the header");
     Err(ReadError::at(file, block.line, "rows", block.rows.len().to_string(), expected))
 }

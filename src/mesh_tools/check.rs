@@ -23,9 +23,7 @@ pub enum Problem {
     #[error("the mesh has no elements")]
     Empty,
     /// The Jacobian determinant is not positive.
-    #[error(
-        "element {element} is turned inside out at {place}: the Jacobian determinant is {determinant:e} m³"
-    )]
+    #[error("element {element} is inverted at {place}: Jacobian determinant {determinant:e} m³")]
     Inverted {
         /// Number of the element.
         element: u32,
@@ -37,7 +35,7 @@ pub enum Problem {
         volume: f64,
     },
     /// Two nodes in one place, so that elements that look joined are not.
-    #[error("nodes {first} and {second} coincide: they are {distance:e} m apart")]
+    #[error("nodes {first} and {second} coincide: distance {distance:e} m")]
     Coincident {
         /// Number of a node.
         first: u32,
@@ -47,13 +45,13 @@ pub enum Problem {
         distance: f64,
     },
     /// The mesh falls apart into bodies that share no node.
-    #[error("the mesh has {} parts that share no node: {}", parts.len(), name(parts))]
+    #[error("the mesh has {} unconnected parts: {}", parts.len(), name(parts))]
     Disconnected {
         /// The parts, in the order of their first elements.
         parts: Vec<Part>,
     },
     /// A body that no constraint holds.
-    #[error("nothing is constrained in the part of {}", name(std::slice::from_ref(part)))]
+    #[error("no constraint in the part of {}", name(std::slice::from_ref(part)))]
     Unconstrained {
         /// The part.
         part: Part,
@@ -112,7 +110,7 @@ pub fn all_inside_out(mesh: &Mesh, problems: &[Problem]) -> Option<String> {
     let order = if bricks { "; right: M N O P I J K L, U V W X Q R S T, Y Z A B" } else { "" };
     let elements = if all == 1 { "the only element".to_string() } else { format!("all {all} elements") };
     Some(format!(
-        "{elements} inside out: bottom and top faces are exchanged (order of the nodes, or a mirrored mesh){order}"
+        "{elements} inverted: bottom and top faces are exchanged (order of the nodes, or a mirrored mesh){order}"
     ))
 }
 
@@ -153,7 +151,7 @@ fn joined(group: &[&Problem]) -> Vec<String> {
             };
             let worst = group.iter().min_by(|a, b| determinant(a).total_cmp(&determinant(b)));
             let worst = worst.map_or(String::new(), |p| p.to_string());
-            format!("elements {} are turned inside out; the worst: {worst}", list(ids.collect()))
+            format!("elements {} are inverted; the worst: {worst}", list(ids.collect()))
         }
         Problem::Coincident { .. } => {
             let pairs = shown().filter_map(|p| match p {
@@ -167,7 +165,7 @@ fn joined(group: &[&Problem]) -> Vec<String> {
                 Problem::Unconstrained { part } => Some(name(std::slice::from_ref(part))),
                 _ => None,
             });
-            format!("nothing is constrained in {} parts: {}", group.len(), list(parts.collect()))
+            format!("no constraint in {} parts: {}", group.len(), list(parts.collect()))
         }
         _ => return group.iter().map(ToString::to_string).collect(),
     };
@@ -179,7 +177,7 @@ fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
     let place = match quality.worst_point.checked_sub(kind.corner_count()) {
         None if kind.linear() == ElementKind::Hex8 => format!("corner {}", CORNERS[quality.worst_point]),
         None => format!("corner {}", quality.worst_point + 1),
-        Some(point) => format!("Gauss point {} of {}", point + 1, mass_points(kind).len()),
+        Some(point) => format!("integration point {} of {}", point + 1, mass_points(kind).len()),
     };
     let (element, determinant) = (mesh.element_ids[element], quality.determinant);
     let volume = quality.volume;
@@ -292,8 +290,8 @@ mod tests {
         }
         let found = super::sentences(&mesh, &check(&mesh, &held(&mesh)));
         assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].contains(", … (12 in all) are turned inside out; the worst: element "), "{found:?}");
-        assert_eq!(found[0].split(" are turned").next().unwrap().matches(", ").count(), 10, "{found:?}");
+        assert!(found[0].contains(", … (12 in all) are inverted; the worst: element "), "{found:?}");
+        assert_eq!(found[0].split(" are inverted").next().unwrap().matches(", ").count(), 10, "{found:?}");
     }
 
     #[test]
@@ -310,7 +308,7 @@ mod tests {
         mesh.coordinates[middle][0] = 0.2;
         let found = sentences(&check(&mesh, &held(&mesh)));
         assert_eq!(found.len(), 1);
-        assert!(found[0].starts_with("element 1000 is turned inside out at corner I: "), "{found:?}");
+        assert!(found[0].starts_with("element 1000 is inverted at corner I: "), "{found:?}");
     }
 
     #[test]
@@ -319,7 +317,7 @@ mod tests {
         mesh.node_ids.push(5000);
         mesh.coordinates.push([9.0; 3]);
         let expected = [
-            "nothing is constrained in the part of element 1000 (2 in all)",
+            "no constraint in the part of element 1000 (2 in all)",
             "nodes in no element: 1, the first is node 5000",
         ];
         assert_eq!(sentences(&check(&mesh, &[])), expected);
@@ -344,8 +342,8 @@ mod tests {
         assert_eq!((shared.len(), coincident), (8, 7));
         let text = sentences(&problems[7..]);
         let expected = [
-            "the mesh has 2 parts that share no node: element 1000 (1 in all), element 999 (1 in all)",
-            "nothing is constrained in the part of element 999 (1 in all)",
+            "the mesh has 2 unconnected parts: element 1000 (1 in all), element 999 (1 in all)",
+            "no constraint in the part of element 999 (1 in all)",
         ];
         assert_eq!(text, expected);
     }

@@ -6,6 +6,8 @@ use trackbed_coupling::track::CyclicLoad;
 
 /// Most steps that a run may be given: a run of so many would take years.
 const MOST: u64 = 1_000_000_000_000;
+/// Tables that give a solid without grains a time integration.
+pub(super) const TIME_INTEGRATION: &str = "[solid.dynamics] or [solid.quasi_static]";
 
 /// Length of the steps that are counted where a scene counts steps [s]: of the solid that runs alone, else of the grains, which then
 /// have a step that stays the same.
@@ -52,7 +54,7 @@ pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64
     let dynamic = grains.is_some() || scene.solid.as_ref().is_some_and(steps);
     let time = scene.below("time", &scene.time);
     let given = match (time.steps, time.end) {
-        (Some(_), Some(_)) => return Err(time.error("steps", "steps beside `end`", "one of the two")),
+        (Some(_), Some(_)) => return Err(time.conflict("steps", "`end`")),
         (Some(steps), None) => Some(after(scene, steps)?),
         (None, end) => end.map(|end| end.si),
     };
@@ -67,11 +69,7 @@ pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64
                 if push.is_some() { "push" } else { "last load cycle" }
             ),
         )),
-        (Some(_), None, false) => Err(time.error(
-            key,
-            "a time",
-            "no such key for a static solid, or [solid.dynamics] or [solid.quasi_static]",
-        )),
+        (Some(_), None, false) => Err(time.no_effect(key, TIME_INTEGRATION)),
         (Some(end), _, true) => Ok(end),
         (None, Some(counted), _) => Ok(counted),
         (None, None, true) => Err(time.missing("end", "the time to simulate")),
@@ -100,12 +98,11 @@ pub fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneEr
         (Some(step), true) => {
             Err(time.error("solid_step", format!("{} s", step.si), format!("above 0, at most {end} s")))
         }
-        (Some(_), false) if !scene.grains.is_empty() => Err(time.error(
-            "solid_step",
-            "a time",
-            "no such key: the solid's step is coupling.substeps grain steps",
-        )),
-        (Some(_), false) => Err(time.error("solid_step", "a time", "no such key for a static solid")),
+        (Some(_), false) if !scene.grains.is_empty() => {
+            let remedy = "The FEM time step is `coupling.substeps` DEM time steps";
+            Err(time.conflict("solid_step", "[[grains]]").remedy(remedy))
+        }
+        (Some(_), false) => Err(time.no_effect("solid_step", TIME_INTEGRATION)),
         (None, true) => Err(time.missing("solid_step", "the step of the solid")),
         (None, false) => Ok(None),
     }

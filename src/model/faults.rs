@@ -2,7 +2,7 @@
 
 use super::Job;
 use crate::failure::Failure;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Document, Problem, Scene, SceneError};
 use std::time::{Duration, Instant};
 
 /// Most faults that are reported.
@@ -94,8 +94,13 @@ fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
         return Vec::new();
     }
     let gone = format!("{key}=");
-    let meant = fault.expected.strip_prefix('`').and_then(|e| e.strip_suffix('`'));
-    let meant = meant.filter(|_| fault.found.starts_with("the unknown key")).zip(document.value(key));
+    let meant = match &fault.problem {
+        Problem::Value { found, expected } if found.starts_with("the unknown key") => {
+            expected.strip_prefix('`').and_then(|e| e.strip_suffix('`'))
+        }
+        _ => None,
+    };
+    let meant = meant.zip(document.value(key));
     let renamed = meant.map(|(meant, value)| {
         let table = key.rsplit_once('.').map_or(String::new(), |(table, _)| format!("{table}."));
         vec![gone.clone(), format!("{table}{meant}={value}")]

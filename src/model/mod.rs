@@ -82,7 +82,11 @@ impl Job {
         }
         let coupling = match (scene.optional("coupling", &scene.coupling), &solid, &grains) {
             (Some(c), Some(s), Some(g)) => Some(exchange::build(&c, s, g.groups.polyhedra())?),
-            (Some(c), _, _) => return Err(c.here("only one side", "both [solid] and [[grains]]").into()),
+            (Some(_), _, _) => {
+                return Err(scene
+                    .requirement("coupling", if solid.is_some() { "[[grains]]" } else { "[solid]" })
+                    .into());
+            }
             (None, Some(_), Some(_)) => {
                 let expected = "[coupling], since the scene has [solid] and [[grains]]";
                 return Err(scene.missing("coupling", expected).into());
@@ -97,7 +101,7 @@ impl Job {
         }
         let jumps = grains.as_ref().and_then(|g| g.track.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
-            let expected = "\"account\": the state of a plastic solid is not extrapolated";
+            let expected = "\"account\". The state of a plastic solid is not extrapolated";
             return Err(scene.error("track.jump.method", "\"grains\"", expected).into());
         }
         let end = duration::end_time(scene, grains.as_ref())?;
@@ -119,7 +123,7 @@ impl Job {
 /// Refuses keys that would have no effect beside the other parts of the scene.
 fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
     if scene.grains.is_empty() {
-        scene.refuse([("wind", scene.wind.is_some())], "no such table without [[grains]]")?;
+        scene.reject_without([("wind", scene.wind.is_some())], "[[grains]]")?;
         let time = scene.below("time", &scene.time);
         let idle = [
             ("grain_step", time.grain_step.is_some()),
@@ -130,18 +134,20 @@ fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
             ("mass_factor", time.mass_factor.is_some()),
             ("flow_interval", time.flow_interval.is_some()),
         ];
-        time.refuse(idle, "no such key without [[grains]]")?;
+        time.reject_without(idle, "[[grains]]")?;
     } else if let Some(solid) = scene.optional("solid", &scene.solid) {
-        let expected = "no such key beside [[grains]]: coupling.theta tells how the solid is integrated";
         let idle = [
             ("dynamics", solid.dynamics.is_some()),
             ("quasi_static", solid.quasi_static.is_some()),
             ("strength_reduction", solid.strength_reduction.is_some()),
         ];
-        solid.refuse(idle, expected)?;
+        solid
+            .reject_with(idle, "[[grains]]")
+            .map_err(|e| e.remedy("`coupling.theta` sets the time integration of a coupled solid"))?;
         for support in solid.rows("support", &solid.support) {
-            let expected = "no such key beside [[grains]]: supports of a coupled solid stand still";
-            support.refuse([("history", support.history.is_some())], expected)?;
+            support
+                .reject_with([("history", support.history.is_some())], "[[grains]]")
+                .map_err(|e| e.remedy("Supports of a coupled solid are fixed"))?;
         }
     }
     Ok(())
@@ -165,9 +171,7 @@ fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
         ("track", scene.track.is_some()),
     ];
     match tables.into_iter().find(|(_, there)| *there) {
-        Some((key, _)) => {
-            Err(scene.error(key, "a table for grains", "[[grains]] beside it, or no such table"))
-        }
+        Some((key, _)) => Err(scene.no_effect(key, "[[grains]]")),
         None => Ok(()),
     }
 }

@@ -1,6 +1,6 @@
 //! What a run writes, resolved.
 
-use super::duration::counted_step;
+use super::duration::{TIME_INTEGRATION, counted_step};
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
 use crate::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields};
 use std::collections::BTreeSet;
@@ -95,7 +95,7 @@ fn steps(
     let Some(steps) = steps else { return Ok(None) };
     let key = format!("{what}_steps");
     if other {
-        return Err(o.error(&key, "steps beside the key for times or numbers", "one of the two"));
+        return Err(o.conflict(&key, "the key for times or numbers"));
     }
     let step = counted_step(scene, &format!("output.{key}"))?;
     o.check(&key, steps as f64, |n| n >= 1.0, "1 or more").map(|n| Some(n * step))
@@ -134,7 +134,8 @@ fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, Scene
 fn last(scene: &Scene, o: &Table<Output>, end: f64, frames: u32) -> Result<Option<(f64, u32)>, SceneError> {
     let Some(last) = o.optional("last", &o.last) else { return Ok(None) };
     if scene.track.as_ref().is_some_and(|t| t.jump.is_some()) {
-        return Err(last.here("it beside [track.jump]", "no such key: such a run has no fixed end"));
+        let error = o.conflict("last", "[track.jump]");
+        return Err(error.remedy("A run with cycle jumps has no fixed end"));
     }
     let time = last.time.si;
     last.check("time", time, |t| t > 0.0 && t < end, &format!("above 0, below the end at {end} s"))?;
@@ -190,21 +191,18 @@ fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), Sc
     let of_grains =
         [("packing", o.packing.is_some()), ("state", o.state.is_some()), ("chains", o.chains.is_some())];
     let of_time = [
-        ("frames", o.frames.is_some(), "time: a static solid has one frame"),
-        ("history_interval", o.history_interval.is_some(), "time: a static solid has no history"),
-        ("frame_steps", o.frame_steps.is_some(), "time: a static solid has one frame"),
-        ("history_steps", o.history_steps.is_some(), "time: a static solid has no history"),
-        ("checkpoint", o.checkpoint.is_some(), "time: a static solid is solved in one go"),
+        ("frames", o.frames.is_some()),
+        ("history_interval", o.history_interval.is_some()),
+        ("frame_steps", o.frame_steps.is_some()),
+        ("history_steps", o.history_steps.is_some()),
+        ("checkpoint", o.checkpoint.is_some()),
     ];
     let of_solid = of_solid.into_iter().map(|(key, given)| (key, given && scene.solid.is_none(), "[solid]"));
     let of_grains =
         of_grains.into_iter().map(|(key, given)| (key, given && scene.grains.is_empty(), "[[grains]]"));
-    let of_time = of_time.into_iter().map(|(key, given, needs)| (key, given && end == 0.0, needs));
+    let of_time = of_time.into_iter().map(|(key, given)| (key, given && end == 0.0, TIME_INTEGRATION));
     match of_solid.chain(of_grains).chain(of_time).find(|(_, idle, _)| *idle) {
         None => Ok(()),
-        Some((key, _, needs)) => {
-            let expected = format!("no such key without {needs}");
-            Err(o.error(key, "a value", expected))
-        }
+        Some((key, _, without)) => Err(o.no_effect(key, without)),
     }
 }

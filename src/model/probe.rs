@@ -26,21 +26,20 @@ pub(super) fn probe(
     grains: Option<&GrainsPart>,
 ) -> Result<(String, Observed), SceneError> {
     let given = [
-        table.node.is_some(),
-        table.at.is_some(),
-        table.grain.is_some(),
-        table.group.is_some(),
-        table.region.is_some(),
+        ("node", table.node.is_some()),
+        ("at", table.at.is_some()),
+        ("grain", table.grain.is_some()),
+        ("group", table.group.is_some()),
+        ("region", table.region.is_some()),
     ];
-    if given.iter().filter(|g| **g).count() != 1 {
-        let found = "none or several of `node`, `at`, `grain`, `group`, `region`";
-        return Err(table.here(found, "one of them"));
+    if given.iter().filter(|(_, present)| *present).count() != 1 {
+        return Err(table.one_of(&given));
     }
     let (own, observed) = match (table.node.is_some() || table.at.is_some(), solid, grains) {
         (true, Some(solid), _) => node(table, solid)?,
-        (true, None, _) => return Err(table.here("a probe", "a [solid] whose nodes it can observe")),
+        (true, None, _) => return Err(table.here("a probe of the solid", "a scene with [solid]")),
         (false, _, Some(grains)) => of_grains(table, grains)?,
-        (false, _, None) => return Err(table.here("a probe", "[[grains]] that it can observe")),
+        (false, _, None) => return Err(table.here("a probe of grains", "a scene with [[grains]]")),
     };
     let name = table.name.clone().unwrap_or(own);
     if name.is_empty() || name.contains([',', '"', '\n']) {

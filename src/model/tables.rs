@@ -22,13 +22,7 @@ fn fault(
     found: impl Into<String>,
     expected: impl Into<String>,
 ) -> ReadError {
-    ReadError {
-        file: file.to_path_buf(),
-        line,
-        key: key.into(),
-        found: found.into(),
-        expected: expected.into(),
-    }
+    ReadError { line, ..ReadError::whole(file, key, found, expected) }
 }
 
 fn text(file: &Path, what: &str) -> Result<String, ReadError> {

@@ -103,7 +103,7 @@ fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
         scene.walls.iter().any(|w| carries(w, down)) || scene.grains.iter().any(|g| g.motion.is_some());
     if !carried {
         let found = "no floor: no wall and no solid below the grains";
-        findings.add(true, "walls", found, "something that carries the grains against gravity");
+        findings.add(true, "walls", found, "a floor that supports the grains");
     }
 }
 
@@ -131,7 +131,7 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
         let lid = dot(normal, [0, 1, 2].map(|d| scene.gravity[d].si)) > 0.0;
         if share > SHARE && !lid {
             let found = format!("{:.0} % of the grains behind the plane", 100.0 * share);
-            findings.add(true, format!("walls.{k}"), found, "all in front of it, where its normal points");
+            findings.add(true, format!("walls.{k}"), found, "all grains on the side of its normal");
         }
     }
 }
@@ -163,12 +163,12 @@ fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
         };
         let (all, held) = (present().count(), present().filter(inside).count());
         if held > 0 && held < all {
-            let found = format!("{} of {all} grains beside it, the others in it", all - held);
+            let found = format!("{} of {all} grains outside it, the others inside", all - held);
             findings.add(
                 true,
                 format!("walls.{k}"),
                 found,
-                "all grains in the closed container, or all beside it",
+                "all grains inside or all outside the closed container",
             );
         }
     }
@@ -185,7 +185,7 @@ fn in_the_solid(findings: &mut Findings, scene: &Scene, job: &Job) {
         let Some(bed) = Extent::of(places.iter().copied()) else { continue };
         let key = format!("grains.{k}");
         if (0..2).any(|d| bed.low[d] > whole.high[d] || bed.high[d] < whole.low[d]) {
-            findings.add(true, key, "all grains beside the solid", "grains above its surface");
+            findings.add(true, key, "all grains outside the plan of the solid", "grains above its surface");
             continue;
         }
         // Nodes below the bed, sleepers that lie on it apart.
@@ -224,14 +224,14 @@ fn scales(findings: &mut Findings, scene: &Scene, job: &Job) {
         let ratio = length / size;
         if !(1.0..=5000.0).contains(&ratio) {
             let found = format!("a mesh of {} for grains of {}", shown(length, "m"), shown(size, "m"));
-            findings.add(true, "solid", found, "a mesh of 5 to 1000 grains, in metres as they are");
+            findings.add(true, "solid", found, "a mesh length of 5 to 1000 grains, in metres");
         }
     }
     if let (Some(bed), Some(size)) = (of_grains(job), size(scene)) {
         let ratio = bed.longest() / size;
         if ratio > 20_000.0 {
             let found = format!("a bed of {} for grains of {}", shown(bed.longest(), "m"), shown(size, "m"));
-            findings.add(true, "grains", found, "a bed of at most some thousand grains in length");
+            findings.add(true, "grains", found, "a bed length of at most several thousand grains");
         }
     }
 }
@@ -258,7 +258,7 @@ fn settling(findings: &mut Findings, scene: &Scene, job: &Job) {
     let fall = ((bed.high[2] - bed.low[2]) / weight).sqrt();
     if d.layers <= 1 && d.max_time.si < 0.1 * fall {
         let found = format!("{}, for a fall of about {}", shown(d.max_time.si, "s"), shown(fall, "s"));
-        findings.add(true, "deposition.max_time", found, "some times the time of the fall");
+        findings.add(true, "deposition.max_time", found, "several times the time of fall");
     }
     if let Some(level) = d.level {
         let height = bed.high[2] - bed.low[2];

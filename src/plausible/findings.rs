@@ -23,7 +23,7 @@ pub struct Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let word = if self.serious { "implausible" } else { "unusual" };
-        write!(f, "{word}: {}: found {}, usual is {}", self.key, self.found, self.usual)
+        write!(f, "{}: found {}, expected {} ({word})", self.key, self.found, self.usual)
     }
 }
 

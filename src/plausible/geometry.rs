@@ -44,7 +44,7 @@ fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
         format!("{} with elements of {}", shown(longest, "m"), shown(element, "m"))
     } else if strain > STRAIN {
         let percent = (100.0 * strain).round();
-        format!("a height of {} that its own weight makes {percent} % less", shown(height, "m"))
+        format!("a height of {}, reduced by {percent} % under its own weight", shown(height, "m"))
     } else {
         return;
     };

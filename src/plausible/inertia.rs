@@ -27,10 +27,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let key = "time.mass_factor";
     let Some(number) = number(scene, job, factor) else {
         if factor > UNKNOWN {
-            let found = format!(
-                "{}, in a scene without a cyclic load, from which its rate would follow",
-                shown(factor, "")
-            );
+            let found = format!("{}, in a scene without a cyclic load that sets its rate", shown(factor, ""));
             findings.add(factor > 30.0 * UNKNOWN, key, found, "at most 100");
         }
         return;
@@ -42,9 +39,9 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
         );
         let fitting = factor * (QUASI_STATIC / number).powi(2);
         let usual = if fitting >= 1.0 {
-            format!("below 1e-3, where beds are quasi-static: a factor of {fitting:.1} at most")
+            format!("below 1e-3 (quasi-static): a factor of at most {fitting:.1}")
         } else {
-            "below 1e-3, where beds are quasi-static: none, for the load is too quick".to_string()
+            "below 1e-3 (quasi-static), not reachable for this load rate".to_string()
         };
         findings.add(number > INERTIAL, key, found, usual);
     }

@@ -49,8 +49,8 @@ pub fn refuse(document: &Document, findings: &[Finding]) -> Result<(), Failure> 
     let Some(worst) = findings.first() else { return Ok(()) };
     let others = match findings.len() - 1 {
         0 => String::new(),
-        1 => "; there is another one".into(),
-        n => format!("; there are {n} others"),
+        1 => "; 1 more".into(),
+        n => format!("; {n} more"),
     };
     Err(document.error(&worst.key, &worst.found, format!("{} (--strict){others}", worst.usual)).into())
 }
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(serious, [false, true, true]);
         assert_eq!(
             findings.0[1].to_string(),
-            "implausible: young: found 80 Pa, usual is 1.000e5 to 1.000e12 Pa"
+            "young: found 80 Pa, expected 1.000e5 to 1.000e12 Pa (implausible)"
         );
     }
 }

@@ -37,7 +37,7 @@ impl Resonance {
 
     fn found(&self) -> String {
         format!(
-            "{:.3} Hz, near the vertical mode of the solid at {:.3} Hz ({:.0} % of its mass), which amplifies deflections {:.1} times without damping",
+            "{:.3} Hz, near the vertical mode of the solid at {:.3} Hz ({:.0} % of its mass), undamped amplification {:.1}",
             self.load,
             self.mode,
             100.0 * self.share,

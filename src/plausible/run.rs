@@ -80,7 +80,7 @@ fn duration(findings: &mut Findings, scene: &Scene, job: &Job) {
             days > 2000.0,
             key,
             found,
-            "days at most: fewer or larger grains, softer contacts, cycle jumps",
+            "a few days. Use fewer or larger grains, softer contacts, or cycle jumps",
         );
     }
 }

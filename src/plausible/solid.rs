@@ -19,7 +19,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
                     shown(pressure.si, "Pa"),
                     pressure.si.abs() / softest
                 );
-                findings.add(true, key("pressure"), found, "at most a hundredth of it: strains are small");
+                findings.add(true, key("pressure"), found, "at most 0.01 of it (small strains)");
             }
         }
         if let Some(force) = &load.force {
@@ -33,12 +33,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     for (k, support) in solid.support.iter().enumerate() {
         if let Some(u) = support.displacement.filter(|u| u.si.abs() > 0.5 * longest) {
             let found = format!("{} on a solid of {}", shown(u.si, "m"), shown(longest, "m"));
-            findings.add(
-                true,
-                format!("solid.support.{k}.displacement"),
-                found,
-                "a hundredth of the solid or less",
-            );
+            findings.add(true, format!("solid.support.{k}.displacement"), found, "at most 0.01 of the solid");
         }
     }
     if let Some(r) = &solid.rayleigh {

@@ -55,7 +55,7 @@ fn place(findings: &mut Findings, s: &Sleeper, job: &Job) {
             let axis = ["x", "y"][d];
             let (low, high) = (shown(bed.low[d], ""), shown(bed.high[d], "m"));
             let found = format!("{axis} = {}, off the bed from {low} to {high}", shown(centre, "m"));
-            findings.add(true, "track.sleeper.centre", found, "a place above the grains");
+            findings.add(true, "track.sleeper.centre", found, "a position above the grains");
         }
     }
 }
@@ -114,13 +114,12 @@ fn against_stiffness(findings: &mut Findings, scene: &Scene, l: &SeatLoad, s: &S
     let pressure = most / (sides[0] * sides[1]);
     let overlap = pressure * size / stiffness;
     if overlap > 0.1 {
-        let found =
-            format!("{} on stones that overlap by {:.2} of their size under it", shown(most, "N"), overlap);
+        let found = format!("{} with overlaps of {:.2} of the grain size", shown(most, "N"), overlap);
         findings.add(
             overlap > 1.0,
             "track.load.maximum",
             found,
-            "overlaps of a hundredth: stiffer stones or less load",
+            "overlaps of about 0.01: increase the stiffness or reduce the load",
         );
     }
 }

@@ -161,7 +161,7 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
             one_only(builder, block, "instances", &deck.instances)?;
             for (line, row) in block.rows() {
                 if row.iter().any(|text| !text.is_empty() && number::real(text) != Some(0.0)) {
-                    let expected = "an instance that is neither moved nor turned";
+                    let expected = "an instance without translation or rotation";
                     return Err(builder.fault(line, "*INSTANCE", row.join(", "), expected));
                 }
             }

@@ -156,7 +156,12 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
         renew(builder, deck, block)?;
     } else if deck.renewed {
         let found = "a *BOUNDARY without OP=NEW after one with it";
-        return Err(builder.fault(block.line, "*BOUNDARY", found, "OP=NEW in all of a step, or in none"));
+        return Err(builder.fault(
+            block.line,
+            "*BOUNDARY",
+            found,
+            "OP=NEW for all entries of a step, or for none",
+        ));
     }
     if let Some(kind) = block.option("TYPE").filter(|k| !k.to_uppercase().starts_with("DISP")) {
         return Err(builder.fault(block.line, "*BOUNDARY", format!("TYPE={kind}"), "displacements"));
@@ -207,7 +212,12 @@ fn renew(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), Re
     deck.renewed = true;
     if let Some(row) = deck.boundaries.iter().find(|row| row.step == 1) {
         let found = format!("OP=NEW after a *BOUNDARY without it on line {}", row.line);
-        return Err(builder.fault(block.line, "*BOUNDARY", found, "OP=NEW in all of a step, or in none"));
+        return Err(builder.fault(
+            block.line,
+            "*BOUNDARY",
+            found,
+            "OP=NEW for all entries of a step, or for none",
+        ));
     }
     let count = deck.boundaries.len();
     deck.boundaries.clear();

@@ -9,7 +9,7 @@
 
 use std::path::Path;
 
-use super::error::ReadError;
+use super::error::{Problem, ReadError};
 use super::grid::{Grid, MOST_SAMPLES};
 use super::mesh_file::read_text;
 use super::number;
@@ -82,8 +82,8 @@ impl Head {
                 (Some((corner, _)), None) => corner + 0.5 * step[k],
                 (None, Some((centre, _))) => centre,
                 (Some(_), Some((_, line))) => {
-                    let found = format!("it beside {}", names[0]);
-                    return Err(ReadError::at(file, line, names[1], found, "one of the two"));
+                    let problem = Problem::conflict(names[0]);
+                    return Err(ReadError { problem, ..ReadError::at(file, line, names[1], "", "") });
                 }
                 (None, None) => self.need(file, names[0])?.0,
             };
@@ -140,7 +140,7 @@ fn parse(file: &Path, text: &str) -> Result<Surface, ReadError> {
         }
     }
     if heights.len() != count {
-        let expected = format!("{columns} times {rows}, as ncols and nrows say");
+        let expected = format!("{columns} times {rows}, as in ncols and nrows");
         return Err(ReadError::whole(file, "heights", heights.len().to_string(), expected));
     }
     let corner = [origin[0], origin[1] + (rows - 1) as f64 * step[1]];

@@ -46,7 +46,7 @@ fn other_heads_and_holes() {
 fn every_fault_has_its_sentence() {
     let cases = [
         (String::new(), "a.asc: ncols: found nothing, expected a line with its value"),
-        (HEAD.to_string(), "a.asc: heights: found 0, expected 3 times 2, as ncols and nrows say"),
+        (HEAD.to_string(), "a.asc: heights: found 0, expected 3 times 2, as in ncols and nrows"),
         (
             format!("{HEAD}1 2 3 4 5 6 7"),
             "a.asc:7: height: found \"7\", expected the end after 3 times 2 heights",
@@ -73,7 +73,7 @@ fn every_fault_has_its_sentence() {
         (format!("ncols 3\n{HEAD}"), "a.asc:2: ncols: found it again, expected each name once"),
         (
             format!("xllcenter 3\n{HEAD}"),
-            "a.asc:1: xllcenter: found it beside xllcorner, expected one of the two",
+            "a.asc:1: xllcenter: found together with xllcorner, expected only one of them",
         ),
         (
             "north 3\n".to_string(),

@@ -294,7 +294,7 @@ fn constrain(
         if archive.turned.contains_key(&id) {
             let key = format!("constraint of node {id}");
             let expected = "global directions (NROTAT,ALL with CSYS,0 before CDWRITE)";
-            return Err(builder.fault(line, key, "a node in a turned coordinate system", expected));
+            return Err(builder.fault(line, key, "a node in a rotated coordinate system", expected));
         }
         for direction in &directions {
             builder.constrain(line, node, *direction, value)?;

@@ -1,4 +1,4 @@
-//! What a reader says about a file that it cannot take.
+//! Errors of input files and scenes: one skeleton for all messages.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,88 @@ const LONGEST: usize = 300;
 /// Longest list of what was expected [characters].
 const LONGEST_LIST: usize = 1000;
 
-/// One fault in an input file, printed as one sentence:
-/// `NODECOORD.DAT:17: coordinate y: found "1.2.3", expected a number`.
+/// Problem of a key: the forms that an input error can have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Problem {
+    /// Value that is not allowed: `found X, expected Y`.
+    Value {
+        /// Value in the file.
+        found: String,
+        /// Noun phrase that lists the allowed values.
+        expected: String,
+    },
+    /// Key that excludes another: `found together with Z, expected only one of them`.
+    Conflict {
+        /// The other key or table.
+        with: String,
+    },
+    /// Key that needs another: `found without Z, expected both`.
+    Requirement {
+        /// The missing key or table.
+        without: String,
+    },
+    /// Key without use: `found, but it has no effect without Z`.
+    NoEffect {
+        /// Key, table or value that would give it effect.
+        without: String,
+    },
+    /// Missing key: `found nothing, expected Y`.
+    Missing {
+        /// Noun phrase for the missing value.
+        expected: String,
+    },
+}
+
+impl Problem {
+    /// Value that is not allowed.
+    pub fn value(found: impl Into<String>, expected: impl Into<String>) -> Problem {
+        Problem::Value { found: found.into(), expected: expected.into() }
+    }
+
+    /// Key that excludes another.
+    pub fn conflict(with: impl Into<String>) -> Problem {
+        Problem::Conflict { with: with.into() }
+    }
+
+    /// Key that needs another.
+    pub fn requirement(without: impl Into<String>) -> Problem {
+        Problem::Requirement { without: without.into() }
+    }
+
+    /// Key without use.
+    pub fn no_effect(without: impl Into<String>) -> Problem {
+        Problem::NoEffect { without: without.into() }
+    }
+
+    /// Missing key.
+    pub fn missing(expected: impl Into<String>) -> Problem {
+        Problem::Missing { expected: expected.into() }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Problem::Value { found, expected } => {
+                write!(f, "found {}, expected {}", shown(found, LONGEST), shown(expected, LONGEST_LIST))
+            }
+            Problem::Conflict { with } => {
+                write!(f, "found together with {}, expected only one of them", shown(with, LONGEST))
+            }
+            Problem::Requirement { without } => {
+                write!(f, "found without {}, expected both", shown(without, LONGEST))
+            }
+            Problem::NoEffect { without } => {
+                write!(f, "found, but it has no effect without {}", shown(without, LONGEST_LIST))
+            }
+            Problem::Missing { expected } => {
+                write!(f, "found nothing, expected {}", shown(expected, LONGEST_LIST))
+            }
+        }
+    }
+}
+
+/// Error of an input file, printed as one line: `FILE:LINE: key: found X, expected Y. Remedy.`
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct ReadError {
     /// The file.
@@ -20,13 +100,19 @@ pub struct ReadError {
     pub line: Option<usize>,
     /// The field or item at fault, in the words of the file's documentation.
     pub key: String,
-    /// What stands in the file.
-    pub found: String,
-    /// What belongs there.
-    pub expected: String,
+    /// Problem of the key.
+    pub problem: Problem,
+    /// Sentence on the remedy, without its full stop; `None` if it is obvious.
+    pub remedy: Option<String>,
 }
 
 impl ReadError {
+    /// Error with `remedy`, a sentence without its full stop.
+    #[must_use]
+    pub fn remedy(self, remedy: impl Into<String>) -> Self {
+        ReadError { remedy: Some(remedy.into()), ..self }
+    }
+
     /// A fault at a line of `file`.
     pub(crate) fn at(
         file: &Path,
@@ -35,8 +121,8 @@ impl ReadError {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> Self {
-        let (key, found, expected) = (key.into(), found.into(), expected.into());
-        ReadError { file: file.to_path_buf(), line: Some(line), key, found, expected }
+        let problem = Problem::value(found, expected);
+        ReadError { file: file.to_path_buf(), line: Some(line), key: key.into(), problem, remedy: None }
     }
 
     /// A fault of `file` as a whole.
@@ -46,8 +132,8 @@ impl ReadError {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> Self {
-        let (key, found, expected) = (key.into(), found.into(), expected.into());
-        ReadError { file: file.to_path_buf(), line: None, key, found, expected }
+        let problem = Problem::value(found, expected);
+        ReadError { file: file.to_path_buf(), line: None, key: key.into(), problem, remedy: None }
     }
 }
 
@@ -57,9 +143,11 @@ impl fmt::Display for ReadError {
         if let Some(line) = self.line {
             write!(f, "{line}:")?;
         }
-        let (key, found) = (shown(&self.key, LONGEST), shown(&self.found, LONGEST));
-        let expected = shown(&self.expected, LONGEST_LIST);
-        write!(f, " {key}: found {found}, expected {expected}")
+        write!(f, " {}: {}", shown(&self.key, LONGEST), self.problem)?;
+        match &self.remedy {
+            Some(remedy) => write!(f, ". {}.", shown(remedy, LONGEST)),
+            None => Ok(()),
+        }
     }
 }
 
@@ -74,5 +162,21 @@ mod tests {
         assert_eq!(at.to_string(), "NODECOORD.DAT:17: coordinate y: found \"1.2.3\", expected a number");
         let whole = ReadError::whole(file, "nodes", "none", "at least one");
         assert_eq!(whole.to_string(), "NODECOORD.DAT: nodes: found none, expected at least one");
+        assert_eq!(
+            whole.remedy("Export the nodes").to_string(),
+            "NODECOORD.DAT: nodes: found none, expected at least one. Export the nodes."
+        );
+    }
+
+    #[test]
+    fn forms_of_problems() {
+        for (problem, sentence) in [
+            (Problem::conflict("`at`"), "found together with `at`, expected only one of them"),
+            (Problem::requirement("`young`"), "found without `young`, expected both"),
+            (Problem::no_effect("[solid]"), "found, but it has no effect without [solid]"),
+            (Problem::missing("a mass"), "found nothing, expected a mass"),
+        ] {
+            assert_eq!(problem.to_string(), sentence);
+        }
     }
 }

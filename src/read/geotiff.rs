@@ -78,12 +78,7 @@ fn place(file: &Path, source: &mut Source) -> Result<([f64; 2], [f64; 2]), ReadE
         ([dx, dy, ..], [i, j, _, x, y, ..], _) => ([x - i * dx, y + j * dy], [*dx, *dy]),
         (_, _, [a, b, _, x, d, e, _, y, ..]) => {
             if *b != 0.0 || *d != 0.0 {
-                return Err(ReadError::whole(
-                    file,
-                    "transformation",
-                    "a grid that is turned",
-                    "rows along x",
-                ));
+                return Err(ReadError::whole(file, "transformation", "a rotated grid", "rows along x"));
             }
             ([*x, *y], [*a, -e])
         }

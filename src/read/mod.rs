@@ -44,7 +44,7 @@ use std::path::{Path, PathBuf};
 pub use abaqus::read_inp;
 pub use ansys_lists::{ElementColumns, ListLayout, Lists, read_lists};
 pub use cdb::read_cdb;
-pub use error::ReadError;
+pub use error::{Problem, ReadError};
 pub use gmsh::read_gmsh;
 pub(crate) use mesh_file::FARTHEST;
 pub use mesh_file::{FileMaterial, MeshFile};
@@ -100,9 +100,10 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
         "vtu" => read_vtu(path),
         "vtk" => read_vtk(path),
         _ => {
-            let found = if ending.is_empty() { "no ending".to_string() } else { format!("\".{ending}\"") };
-            let expected = ".cdb, .msh, .inp, .vtu, .vtk, or a folder with the three ANSYS lists";
-            Err(ReadError::whole(path, "ending of the file name", found, expected))
+            let found =
+                if ending.is_empty() { "no file extension".to_string() } else { format!("\".{ending}\"") };
+            let expected = ".cdb, .msh, .inp, .vtu, .vtk, or a directory with the three ANSYS lists";
+            Err(ReadError::whole(path, "file extension", found, expected))
         }
     }
 }

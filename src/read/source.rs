@@ -53,7 +53,7 @@ pub(crate) fn open(file: &Path, most: u64) -> Result<Take<File>, Refusal> {
     // Before it is opened: opening a pipe waits for its other end.
     let found = fs::metadata(file)?;
     if !found.is_file() {
-        let kind = if found.is_dir() { "a folder" } else { "a device or a pipe" };
+        let kind = if found.is_dir() { "a directory" } else { "a device or a pipe" };
         return Err(Refusal::Unfit(kind.into(), "a regular file".into()));
     }
     if found.len() > most {

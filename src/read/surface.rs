@@ -40,10 +40,11 @@ pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
         "tif" | "tiff" => geotiff::read_geotiff(path),
         _ if MESH_ENDINGS.contains(&ending.as_str()) => skin::read_skin(path),
         _ => {
-            let found = if ending.is_empty() { "no ending".to_string() } else { format!("\".{ending}\"") };
+            let found =
+                if ending.is_empty() { "no file extension".to_string() } else { format!("\".{ending}\"") };
             let expected = ".stl, .obj, .asc, .tif, a mesh such as .cdb, or .dat, .txt, .tri or .srf with a list of vertices and \
                             triangles";
-            Err(ReadError::whole(path, "ending of the file name", found, expected))
+            Err(ReadError::whole(path, "file extension", found, expected))
         }
     }
 }
@@ -86,7 +87,7 @@ pub fn read_plain(file: &Path) -> Result<Surface, ReadError> {
     let triangles = table.whole(head, 1, "number of triangles")? as usize;
     let rows = table.rows.len() - 1;
     if rows != vertices + triangles {
-        let expected = format!("{vertices} vertices and {triangles} triangles, as line {} says", head.line);
+        let expected = format!("{vertices} vertices and {triangles} triangles, as in line {}", head.line);
         return Err(ReadError::whole(file, "rows", rows.to_string(), expected));
     }
     let mut surface = Surface::default();

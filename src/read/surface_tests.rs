@@ -45,7 +45,7 @@ fn the_plain_list_counts_from_one_or_zero_and_needs_no_winding() {
 fn damaged_lists_are_named_by_line() {
     for (k, (old, new, error)) in [
         ("4 4\n", "4\n", "d.dat:1: numbers of vertices and triangles: found 1 columns, expected two counts"),
-        ("4 4\n", "4 5\n", "d.dat: rows: found 8, expected 4 vertices and 5 triangles, as line 1 says"),
+        ("4 4\n", "4 5\n", "d.dat: rows: found 8, expected 4 vertices and 5 triangles, as in line 1"),
         ("0 1 0\n", "0 1\n", "d.dat:4: vertex: found 2 columns, expected x y z"),
         ("0 1 0\n", "0 1 1e999\n", "d.dat:4: coordinate z: found \"1e999\", expected a finite number"),
         ("1 2 4\n", "1 2 5\n", "d.dat:7: vertex of a triangle: found 5, expected 1 to 4"),

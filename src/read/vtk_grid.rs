@@ -178,7 +178,7 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
         kept.push(cell);
     }
     if turned > 0 {
-        builder.warn(format!("{turned} wedges whose first triangle is seen from outside were turned"));
+        builder.warn(format!("{turned} wedges reordered (first triangle seen from outside)"));
     }
     Ok(kept)
 }

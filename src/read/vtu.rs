@@ -187,7 +187,7 @@ fn add_piece<'a>(
             grid.points.len() - old_points,
             grid.types.len() - old_cells
         );
-        let expected = format!("those of {points} points and {cells} cells, as Piece says");
+        let expected = format!("values for {points} points and {cells} cells, as in Piece");
         return Err(ReadError::whole(file, "Piece", found, expected));
     }
     Ok(())

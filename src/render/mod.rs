@@ -59,20 +59,20 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     })?;
     if file.is_dir() {
         return Err(Failure::Input(format!(
-            "{}: found a folder, expected the name of a file",
+            "{}: found a directory, expected the name of a file",
             file.display()
         )));
     }
     if file.exists() && !options.force {
         return Err(Failure::Input(format!(
-            "{}: found a file of this name, expected none, or --force to replace it",
+            "{}: found an existing file, expected a new file, or --force to overwrite it",
             file.display()
         )));
     }
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|p| !p.is_dir()) {
         return Err(Failure::Input(format!(
-            "{}: found no folder {}, expected one",
+            "{}: found no directory {}, expected an existing one",
             file.display(),
             folder.display()
         )));
@@ -122,7 +122,7 @@ impl From<Refused> for Failure {
             Refused::Disk(WriteError::Io { file, source })
                 if matches!(source.kind(), NotFound | PermissionDenied | ReadOnlyFilesystem) =>
             {
-                let found = format!("a place that cannot be written to ({source})");
+                let found = format!("a file that cannot be written ({source})");
                 Failure::Input(format!("{}: found {found}, expected one that can", file.display()))
             }
             Refused::Disk(error) => error.into(),

@@ -58,7 +58,7 @@ impl RunData {
     /// Bad input: it is no folder with results, or one of its files is not what its name says.
     pub fn read(dir: &Path) -> Result<RunData, Failure> {
         let refuse = |found: &str| {
-            let expected = "a folder with the results of a run";
+            let expected = "a results directory";
             Err(Failure::Input(format!("{}: found {found}, expected {expected}", dir.display())))
         };
         if !dir.is_dir() {
@@ -75,13 +75,13 @@ impl RunData {
         let lock = lock(dir);
         let none = summary.is_null() && file.is_none() && tables.is_empty();
         if none && dir.join("study.md").exists() {
-            return refuse("a study; its runs are in the folder runs");
+            return refuse("a study, whose runs are in its directory `runs`");
         }
         if none && lock.is_some() {
-            return refuse("a run that has written no results yet");
+            return refuse("a run without results");
         }
         if none {
-            return refuse("none of summary.json, run.json, history.csv and modes.csv");
+            return refuse("no summary.json, run.json, history.csv or modes.csv");
         }
         let document = file.as_ref().and_then(RunFile::document);
         Ok(RunData {

@@ -35,18 +35,18 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         (Some(out), _) => out.clone(),
         (None, [dir]) => dir.join("report.html"),
         (None, _) => {
-            let expected = "a file such as report.html for the report of several folders";
+            let expected = "a file such as report.html for several directories";
             return Err(Failure::Input(format!("--out: found nothing, expected {expected}")));
         }
     };
     let ending = out.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
         let found = out.display();
-        return Err(Failure::Input(format!("--out: found {found}, expected a file ending in .html")));
+        return Err(Failure::Input(format!("--out: found {found}, expected a file .html")));
     }
     if out.is_dir() {
         let found = out.display();
-        return Err(Failure::Input(format!("--out: found the folder {found}, expected a file")));
+        return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
     let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
     data::distinguish(&mut runs);
@@ -79,6 +79,6 @@ fn head(runs: &[RunData]) -> Markup {
     };
     let version = env!("CARGO_PKG_VERSION");
     page::paragraph(&format!(
-        "{whose}; report by trackbed {version}. Values behind the pointer are those of the files, in SI units."
+        "{whose}; report by trackbed {version}. Hover over a value to see it in SI units, as in the files."
     ))
 }

@@ -90,7 +90,7 @@ pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
 /// A name that leads out of `root`, by itself or by a link.
 pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     let out =
-        || Failure::Input(format!("{}: found \"{name}\", expected a file in the folder", root.display()));
+        || Failure::Input(format!("{}: found \"{name}\", expected a file in the directory", root.display()));
     let relative = Path::new(name);
     if name.contains('\\') || !relative.components().all(|c| matches!(c, Component::Normal(_))) {
         return Err(out());

@@ -49,7 +49,7 @@ impl<'a> Bed<'a> {
         }
         // A bed is looked at after every step.
         .and_then(|()| work.download(model, state))
-        .map_err(|e| Failure::Numerical(format!("grains while {}: {e}", self.doing)))?;
+        .map_err(|e| Failure::Numerical(format!("{}: {e}", self.doing)))?;
         self.checkpoints.check(self.doing, self.state.time)
     }
 

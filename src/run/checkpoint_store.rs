@@ -76,9 +76,9 @@ impl Interrupt {
             return;
         }
         if self.keeps.load(Ordering::Relaxed) || self.seen.load(Ordering::Relaxed) {
-            message::say(&format!("stopping after {after}; press again to abort"));
+            message::say(&format!("stopping after {after}; press Ctrl-C again to abort"));
         } else {
-            message::say("interrupted: nothing is under way that could be kept");
+            message::say("interrupted: nothing to save");
             signal_hook::low_level::exit(130);
         }
     }
@@ -189,7 +189,7 @@ impl CheckpointStore {
             let place =
                 format!("stage \"{}\", step {}, t = {:.6e} s", moment.stage, moment.step, moment.time);
             self.save(moment, fill)?;
-            return Err(Failure::Interrupted(format!("interrupted: {place}; go on with: {}", self.command)));
+            return Err(Failure::Interrupted(format!("interrupted: {place}; resume with: {}", self.command)));
         }
         let due = self.due();
         // A run that is traced is thrown away: it needs no checkpoint but the one at its end.
@@ -215,9 +215,9 @@ impl CheckpointStore {
             return Ok(());
         }
         self.interrupt.acknowledged.store(true, Ordering::Relaxed);
-        let again = "the stage starts again from its beginning";
+        let again = "the stage restarts from its beginning";
         Err(Failure::Interrupted(format!(
-            "interrupted: stage \"{stage}\"; {again}; go on with: {}",
+            "interrupted: stage \"{stage}\"; {again}; resume with: {}",
             self.command
         )))
     }

@@ -52,21 +52,20 @@ pub struct Run<'a> {
 impl Run<'_> {
     /// Remarks on values that are not plausible, once: when it is sure that the scene is not refused.
     pub fn remark(&self) {
-        self.findings.take().iter().for_each(|finding| message::note(&finding.to_string()));
+        self.findings.take().iter().for_each(|finding| message::warn(&finding.to_string()));
     }
 
     /// The folder of the results is no longer where it was; `place` is where it is now, if that is known.
     pub fn gone(&self, place: Option<&Path>) -> Failure {
         let dir = self.dir.display();
-        let head =
-            format!("{dir}: the folder of the results was renamed or removed while the run wrote there");
+        let head = format!("{dir}: results directory was renamed or removed during the run");
         // A run that has neither is not gone on with: it is begun again.
         let begun = self.prepared.get() || self.checkpoints.kept().is_some();
         Failure::Other(match place {
-            _ if !begun => format!("{head}; nothing was written until then"),
-            None => format!("{head}; what was written until then is gone with it"),
+            _ if !begun => format!("{head}; nothing had been written"),
+            None => format!("{head}; its output is lost"),
             Some(place) => format!(
-                "{head}; what was written until then, and the last checkpoint if there is one, is in {}: go on with --resume --out {}",
+                "{head}; output up to then, with the last checkpoint, is in {}: resume with --resume --out {}",
                 place.display(),
                 quoted(place)
             ),

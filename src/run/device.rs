@@ -12,10 +12,10 @@ use trackbed_dem::{AppliedForce, BackEnd, StepError};
 /// Where the steps of the run proper are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Place {
-    /// The processor.
+    /// CPU.
     #[default]
     Cpu,
-    /// A CUDA device.
+    /// CUDA device (GPU).
     Gpu,
 }
 
@@ -29,7 +29,7 @@ pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     }
     let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
     let Some(grains) = &job.grains else {
-        return Err(refused("solids alone are not computed on a device, only on the processor".into()));
+        return Err(refused("not supported on a GPU: scenes without grains".into()));
     };
     // A scene whose grains are wrong is refused where they are made, with the keys to blame.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
@@ -62,7 +62,7 @@ impl Steps {
         let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
         let text = device::source(model).map_err(|e| refused(e.to_string()))?;
         let machine = Cuda::new(&text, device::kernels(model)).map_err(refused)?;
-        message::note(&format!("the steps of the run proper are computed on {}", machine.name));
+        message::note(&format!("main stage: DEM steps on {}", machine.name));
         let device = Device::new(machine, model, state).map_err(|e| refused(e.to_string()))?;
         Ok(Steps::Device(Box::new(device)))
     }
@@ -77,7 +77,7 @@ impl Steps {
         state: &dem::State,
         description: &[u8],
     ) -> Result<Steps, Failure> {
-        message::note(&format!("the steps of the run proper are shared among {} ranks", link.size()));
+        message::note(&format!("main stage: DEM steps on {} ranks", link.size()));
         let ranks = Ranks::new(link, model, state, description).map_err(failed)?;
         Ok(Steps::Ranks(Box::new(ranks)))
     }
@@ -95,7 +95,7 @@ impl Steps {
 
 /// Why a step of grains failed, in words.
 pub fn failed(error: StepError) -> Failure {
-    let text = format!("grains: {error}");
+    let text = error.to_string();
     // A rank that is lost says nothing of the numbers.
     if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
 }

@@ -53,9 +53,7 @@ impl EnergyWatch {
         }
         let error = balance.unexplained();
         Err(Failure::Numerical(format!(
-            "the energy account does not close: an error of {error:.3e} J is {:.0} % of the {scale:.3e} J that were turned \
-             over, and above {:.0} % nothing of a run can be relied on; expected shorter steps (time.grain_step, \
-             solid.dynamics, coupling), or a start without large overlaps",
+            "energy error: {error:.3e} J, {:.0} % of the reference energy {scale:.3e} J (limit {:.0} %). Reduce the time steps (time.grain_step, solid.dynamics, coupling), or start without large overlaps.",
             100.0 * share,
             100.0 * ENERGY.1
         )))

@@ -65,12 +65,10 @@ pub struct Previous {
 pub fn carries(bed: bool) -> &'static str {
     match bed {
         true => {
-            "--bed: places and motion of the grains, and the memory of their contacts and bonds with each other are those of the run \
-             before; walls, sleepers, solid, loads and contacts with them begin anew, and nothing settles or is compacted"
+            "--bed: grains with their motion, contact history and bonds are imported from the earlier run; walls, sleepers, solid, loads and their contacts start from scratch, without deposition and compaction"
         }
         false => {
-            "--from: grains, walls, sleepers and solid go on where the run before has left them, with the memory of all contacts; \
-             time, loads, settlement and accounts begin anew"
+            "--from: grains with their contact history, walls, sleepers and solid continue from the final state of the earlier run; time, loads, settlement and energy balance start at zero"
         }
     }
 }
@@ -82,7 +80,7 @@ pub fn carries(bed: bool) -> &'static str {
 pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Result<Previous, Failure> {
     let file = dir.join(FILE);
     if !file.is_file() {
-        let expected = "the folder of a finished run with grains that has kept it (output.state)";
+        let expected = "the results directory of a completed run with grains and `output.state`";
         return Err(Failure::Input(format!(
             "--from: {}: found no {FILE}, expected {expected}",
             dir.display()
@@ -115,12 +113,11 @@ pub fn hash_after(scene: &str, state: &str) -> String {
 /// Bad input.
 pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), Failure> {
     if source.bed && job.grains.is_none() {
-        let expected = "a scene with grains, as --bed puts some into it";
+        let expected = "a scene with grains for --bed";
         return Err(document.error("grains", "nothing", expected).into());
     }
     if !source.bed && job.grains.as_ref().is_some_and(|g| g.track.rail.is_some()) {
-        let expected =
-            "sleepers without rails: --from does not carry the bending of rails (with --bed they begin anew)";
+        let expected = "no rail with --from. Use --bed, or remove [track.rail]";
         return Err(document.error("track.rail", "a rail", expected).into());
     }
     Ok(())
@@ -147,7 +144,7 @@ fn earlier(
     before: &Origin,
 ) -> Result<BTreeMap<String, String>, Difference> {
     if before.version != origin.version {
-        let found = format!("{}, of version {} of the program", dir.display(), before.version);
+        let found = format!("{} of program version {}", dir.display(), before.version);
         return Err(Difference {
             key: "--from".into(),
             found,
@@ -163,7 +160,7 @@ fn earlier(
     });
     old.ok_or_else(|| Difference {
         key: "--from".into(),
-        found: format!("{}, whose scene cannot be read any more", dir.display()),
+        found: format!("{}, whose scene cannot be read", dir.display()),
         expected: "its scene with its includes".into(),
     })
 }
@@ -196,15 +193,15 @@ fn difference(
     let changed = origin.files.iter().find(|(file, hash)| !known.contains(hash) && !free.contains(file));
     changed.map(|(file, _)| Difference {
         key: "--from".into(),
-        found: format!("{}, with another content than in {}", file.display(), dir.display()),
+        found: format!("{}, changed since the run in {}", file.display(), dir.display()),
         expected: "the same mesh, libraries and lists".into(),
     })
 }
 
 /// What a run goes on with.
-const OWN_MODEL: &str = "a run goes on with the same model (--bed puts its grains into another)";
+const OWN_MODEL: &str = "--from requires the same model (--bed imports grains into another)";
 /// What a bed goes on with.
-const OWN_GRAINS: &str = "a bed goes on with the same grains";
+const OWN_GRAINS: &str = "--bed requires the same grains";
 
 /// Whether a key may be what it is where only the bed goes on. Bodies know their materials by number.
 fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {

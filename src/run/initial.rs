@@ -50,7 +50,7 @@ pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]
     };
     solver
         .advance(model, &mut state, 1.0, &mut loading, |_, _| {})
-        .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
+        .map_err(|e| part.failure(&e).in_stage("before time 0, during application of weight and loads"))?;
     state.time = 0.0;
     Ok(state)
 }

@@ -37,7 +37,7 @@ impl Lock {
     /// Bad input: another process has it. It is no folder; what the system refuses.
     pub fn take(dir: &Path) -> Result<Lock, Failure> {
         if dir.exists() && !dir.is_dir() {
-            return Err(Failure::Other(format!("{}: found a file, expected a folder", dir.display())));
+            return Err(Failure::Other(format!("{}: found a file, expected a directory", dir.display())));
         }
         let system = |e: io::Error| Failure::Other(format!("{}: {}", dir.display(), machine::words(&e)));
         let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
@@ -60,7 +60,7 @@ impl Lock {
                     .trim()
                     .parse::<u32>()
                     .map_or(String::new(), |n| format!(" {n}"));
-                let expected = "a folder that no other run writes to (--out)";
+                let expected = "a directory without an active run (--out)";
                 let dir = dir.display();
                 Err(Failure::Input(format!(
                     "{dir}: found it in use by process{process}, expected {expected}"
@@ -126,7 +126,7 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
             Err(TryLockError::WouldBlock) => return Ok(None),
             // Some file systems know no locks.
             Err(TryLockError::Error(e)) => {
-                message::note(&format!("{}: cannot be locked against other runs ({e})", path.display()));
+                message::warn(&format!("{}: cannot be locked against other runs ({e})", path.display()));
             }
         }
         file.set_len(0)?;
@@ -178,7 +178,7 @@ mod tests {
             (
                 2,
                 format!(
-                    "{}: found it in use by process {process}, expected a folder that no other run writes to (--out)",
+                    "{}: found it in use by process {process}, expected a directory without an active run (--out)",
                     inner.display()
                 )
             )
@@ -192,7 +192,7 @@ mod tests {
         fs::write(dir.join("file"), "").unwrap();
         let error = Lock::take(&dir.join("file")).unwrap_err();
         assert!(
-            error.code() == 1 && error.to_string().ends_with("found a file, expected a folder"),
+            error.code() == 1 && error.to_string().ends_with("found a file, expected a directory"),
             "{error}"
         );
         fs::remove_dir_all(&dir).unwrap();

@@ -65,11 +65,11 @@ impl Prediction {
         if let Some(limit) = limit
             && self.total() > limit
         {
-            return Err(refused(self.total(), &format!("at most {}, by --memory", size(limit))));
+            return Err(refused(self.total(), &format!("at most {} (--memory)", size(limit))));
         }
         match available() {
             Some(free) if further > free => {
-                Err(refused(self.total(), &format!("at most {}, which are free", size(free + self.model))))
+                Err(refused(self.total(), &format!("at most {} (free memory)", size(free + self.model))))
             }
             _ => Ok(()),
         }
@@ -117,21 +117,19 @@ fn line(what: &str, method: Method, reason: &str, memory: Memory) -> (String, Va
     let (factor, iteration) = (size(memory.factor), size(memory.iteration));
     let (text, key) = match method {
         Method::Direct => {
-            let other = format!("{factor}; conjugate gradients would take {iteration}");
-            (format!("equations of {what}: by a factor ({reason}), {other}"), "direct")
+            let other = format!("{factor}; conjugate gradients: {iteration}");
+            (format!("equations of {what}: direct solver ({reason}), {other}"), "direct")
         }
         Method::Iterative { tolerance } => {
-            let other = format!("{iteration}; a factor would take {factor}");
-            let by = format!("by conjugate gradients to {tolerance:e}");
+            let other = format!("{iteration}; direct solver: {factor}");
+            let by = format!("conjugate gradients, tolerance {tolerance:e}");
             (format!("equations of {what}: {by} ({reason}), {other}"), "iterative")
         }
         Method::Mumps(method) => {
             let files = if method.out_of_core { " in files" } else { "" };
-            let by = format!("by a factor{files} of MUMPS");
+            let by = format!("MUMPS{files}");
             let own = size(memory.mumps.unwrap_or(0));
-            let other = format!(
-                "{own}; the program's own factor would take {factor}, conjugate gradients {iteration}"
-            );
+            let other = format!("{own}; direct solver: {factor}, conjugate gradients: {iteration}");
             (format!("equations of {what}: {by} ({reason}), {other}"), "mumps")
         }
     };
@@ -150,7 +148,7 @@ fn line(what: &str, method: Method, reason: &str, memory: Memory) -> (String, Va
 
 fn refused(total: u64, expected: &str) -> Failure {
     Failure::Input(format!(
-        "memory: found a solid that needs {}, expected {expected}; use a coarser mesh or `solid.order = \"linear\"`",
+        "memory: found {} for the solid, expected {expected}. Use a coarser mesh or `solid.order = \"linear\"`.",
         size(total)
     ))
 }

@@ -133,8 +133,8 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
         if std::fs::canonicalize(from)
             .is_ok_and(|from| std::fs::canonicalize(&dir).is_ok_and(|dir| dir == from))
         {
-            let found = format!("--from: found {}, where the results go", from.display());
-            return Err(Failure::Input(format!("{found}, expected another folder than --out")));
+            let found = format!("--from: found {}, the results directory of this run", from.display());
+            return Err(Failure::Input(format!("{found}, expected another directory than --out")));
         }
         let before = from::open(from, &document, &origin, options.bed)?;
         origin.scene_hash = from::hash_after(&origin.scene_hash, &before.hash);
@@ -205,14 +205,11 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
 /// Bad input: no run of this scene was begun in the folder; a checkpoint that does not fit.
 fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Result<Option<Loaded>, Failure> {
     if !slots.any() && (own || lock::is_there(dir)) {
-        message::note(&format!(
-            "{}: the run was ended before its first checkpoint, it starts from its beginning",
-            dir.display()
-        ));
+        message::note(&format!("{}: no checkpoint yet; the run starts from the beginning", dir.display()));
         return Ok(None);
     }
     let (checkpoint, remarks) = slots.load(document)?;
-    remarks.iter().for_each(|remark| message::note(remark));
+    remarks.iter().for_each(|remark| message::warn(remark));
     Ok(Some(checkpoint))
 }
 
@@ -294,10 +291,10 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
     let written = cleared.and_then(|()| summary.write(run.dir)).and_then(|()| summary.write_log(run.dir));
     let result = match (result, run.checkpoints.kept()) {
         (Err(Failure::Numerical(text)), Some(kept)) => {
-            Err(Failure::Numerical(format!("{text}; the last checkpoint is kept in {kept}")))
+            Err(Failure::Numerical(format!("{}. Last checkpoint: {kept}", text.trim_end_matches('.'))))
         }
         (Err(Failure::Other(text)), Some(kept)) => {
-            Err(Failure::Other(format!("{text}; the last checkpoint is kept in {kept}")))
+            Err(Failure::Other(format!("{}. Last checkpoint: {kept}", text.trim_end_matches('.'))))
         }
         (result, _) => result,
     };

@@ -82,7 +82,8 @@ pub fn join() -> Result<Option<World>, Failure> {
         // SAFETY: the command has just begun, and no other thread of it reads or writes the environment.
         unsafe { std::env::set_var(COPY, "none") };
     }
-    let failed = || Failure::Other("MPI: it cannot be started for calls by one thread at a time".into());
+    let failed =
+        || Failure::Other("MPI: found no thread support, expected MPI_THREAD_SERIALIZED or more".into());
     let (universe, threading) = initialize_with_threading(Threading::Serialized).ok_or_else(failed)?;
     if threading < Threading::Serialized {
         return Err(failed());
@@ -222,12 +223,12 @@ impl Mpi {
         let others = ended.iter().skip(1).position(|ended| *ended).map(|k| k + 1);
         let Some(rank) = others.or(ended[0].then_some(0)) else { return Ok(()) };
         let Peer { machine, process, .. } = &self.peers[rank];
-        let lost = Lost { rank, problem: format!("its process {process} on {machine} has ended") };
+        let lost = Lost { rank, problem: format!("process {process} on {machine} ended") };
         let speaker = if rank == 0 { ended.iter().position(|ended| !ended) } else { Some(0) };
         if !self.lost.swap(true, Ordering::Relaxed) && speaker == Some(self.rank) {
             let folder = &self.out;
             message::error(&format!(
-                "{lost}; the last checkpoint, if there is one, is kept in {folder}: go on with --resume --out {folder}"
+                "{lost}; last checkpoint, if any: {folder}; resume with --resume --out {folder}"
             ));
         }
         Err(lost)

@@ -22,7 +22,7 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
     }
     if summary["scene_hash"] != scene_hash {
         let dir = dir.display();
-        return Err(Failure::Input(format!("--resume: {dir} holds the finished run of another scene")));
+        return Err(Failure::Input(format!("--resume: {dir} contains the completed run of another scene")));
     }
     Ok(true)
 }

@@ -87,10 +87,10 @@ pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
     let refused = |why: String| Failure::Input(format!("{} ranks: {why}", ranked.size()));
     let grains = match (&job.grains, &job.solid) {
         (Some(grains), None) => grains,
-        _ => return Err(refused("solids are not shared among ranks, only computed on one".into())),
+        _ => return Err(refused("not supported with several ranks: solids".into())),
     };
     if place != Place::Cpu {
-        return Err(refused("found --device gpu, expected steps on the processor".into()));
+        return Err(refused("found --device gpu, expected --device cpu".into()));
     }
     // A scene whose grains are wrong is refused where they are made, with the keys to blame.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
@@ -121,7 +121,7 @@ pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dy
 
 /// The model of the run proper, as the first rank describes it.
 fn made(job: &Job, description: &[u8]) -> Result<dem::Model, Failure> {
-    let other = || Failure::Input("the first rank has another scene".into());
+    let other = || Failure::Input("other scene than on the first rank".into());
     let (bodies, places): (Vec<dem::BodyInput>, Vec<dem::Vec3>) =
         postcard::from_bytes(description).map_err(|_| other())?;
     let mut grains = job.grains.clone().ok_or_else(other)?;

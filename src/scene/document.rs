@@ -1,9 +1,9 @@
 //! The scene file as a tree with the line of every key, so that each message can name its place.
 
-use super::SceneError;
 use super::include::{self, Included};
 use super::value::Value;
 use super::wording::explain;
+use super::{Problem, SceneError};
 use crate::read::source;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -32,7 +32,7 @@ impl Document {
     pub fn open(file: &Path) -> Result<Document, SceneError> {
         let text = source::text(file).map_err(|refusal| {
             let (found, expected) = refusal.words(|e| e.to_string());
-            SceneError { file: file.to_path_buf(), line: None, key: "file".into(), found, expected }
+            SceneError::whole(file, "file", found, expected)
         })?;
         Document::parse(file, text)
     }
@@ -194,6 +194,11 @@ impl Document {
 
     /// An error about the key at `path` (such as `solid.material.0.poisson`), with its line.
     pub fn error(&self, path: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
+        self.problem(path, Problem::value(found, expected))
+    }
+
+    /// Error about the key at `path`, in one of the forms.
+    pub fn problem(&self, path: &str, problem: Problem) -> SceneError {
         // A table given on the command line answers for all its keys, and a key for the table that it makes.
         let below = |long: &str, short: &str| {
             long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -205,13 +210,7 @@ impl Document {
             Some((file, line)) => (file, Some(line)),
             None => (self.file.as_path(), None),
         };
-        SceneError {
-            file: file.to_path_buf(),
-            line,
-            key: path.to_string(),
-            found: found.into(),
-            expected: expected.into(),
-        }
+        SceneError { file: file.to_path_buf(), line, key: path.to_string(), problem, remedy: None }
     }
 
     /// An error about the number of the scene that is farthest from 1, since `quantity` is beyond what a number holds.
@@ -221,11 +220,7 @@ impl Document {
         let (key, value) = extreme.map_or(("scene", "its numbers"), |(key, value)| (key, value));
         // As a power of ten: the digits of 1e-300 fill lines.
         let value = value.parse().map_or(value.to_string(), |x: f64| format!("{x:e}"));
-        self.error(
-            key,
-            value,
-            format!("a number of usual size: with this one {quantity} is beyond what a number holds"),
-        )
+        self.error(key, value, format!("a number of usual size, as {quantity} would not be finite"))
     }
 
     /// Whether the scene has a key.
@@ -338,11 +333,8 @@ pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneE
         let message = e.message().lines().collect::<Vec<_>>().join(", ");
         let (found, expected) = message.split_once(", expected ").unwrap_or((&message, "valid TOML"));
         SceneError {
-            file: file.to_path_buf(),
             line: e.span().map(|s| line_of(&text[start..], s.start.saturating_sub(start))),
-            key: "syntax".into(),
-            found: found.into(),
-            expected: expected.into(),
+            ..SceneError::whole(file, "syntax", found, expected)
         }
     };
     DeTable::parse(text).map_err(wrong).map(drop)
@@ -357,13 +349,7 @@ fn size(value: &str) -> f64 {
 
 /// An error in a `--set` argument.
 fn override_error(key: &str, found: &str, expected: &str) -> SceneError {
-    SceneError {
-        file: PathBuf::from("--set"),
-        line: None,
-        key: key.into(),
-        found: found.into(),
-        expected: expected.into(),
-    }
+    SceneError::whole(Path::new("--set"), key, found, expected)
 }
 
 /// The value at the end of `path`, if it is there.

@@ -1,6 +1,7 @@
 //! How a load varies in time.
 
 use super::units::{Frequency, Quantity, Time};
+use super::{Problem, setting};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::f64::consts::TAU;
@@ -79,9 +80,9 @@ impl std::fmt::Display for Missed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Missed::Period { samples } => {
-                write!(f, "{samples:.2} to a period, of which 8 or more are needed")
+                write!(f, "{samples:.2} points per period (8 or more needed)")
             }
-            Missed::Point { time, factor } => write!(f, "which pass by the factor {factor} at {time} s"),
+            Missed::Point { time, factor } => write!(f, "points that miss the factor {factor} at {time} s"),
         }
     }
 }
@@ -96,7 +97,7 @@ impl TimeFunction {
         points: Vec::new(),
     };
 
-    /// Checks what a scene wrote; the error names the key, what was found and what was expected. `rows` are those of
+    /// Checks the table of a scene; the error names the key and its problem. `rows` are those of
     /// `history.file`, which the caller has read.
     ///
     /// # Errors
@@ -104,14 +105,16 @@ impl TimeFunction {
     pub fn new(
         history: &History,
         rows: Option<Vec<(f64, f64)>>,
-    ) -> Result<TimeFunction, (&'static str, String, &'static str)> {
+    ) -> Result<TimeFunction, (&'static str, Problem)> {
         let periodic = matches!(history.kind, HistoryKind::Sine | HistoryKind::Haversine);
         let start = history.start.map_or(0.0, |s| s.si);
         let mut function = TimeFunction { kind: history.kind, start, ..TimeFunction::CONSTANT };
         let table = history.kind == HistoryKind::Table;
+        let value = |found: String, expected: &str| Problem::value(found, expected);
+        let without = |kinds: &[&str]| Problem::no_effect(setting("kind", kinds));
         for (key, present) in [("points", history.points.is_some()), ("file", history.file.is_some())] {
             if present && !table {
-                return Err((key, "a value".into(), "no such key for this kind of history"));
+                return Err((key, without(&["table"])));
             }
         }
         if table {
@@ -119,46 +122,46 @@ impl TimeFunction {
             function.points = match (points, rows) {
                 (Some(points), None) => points,
                 (None, Some(rows)) => rows,
-                _ => return Err(("points", "both or none of `points` and `file`".into(), "one of them")),
+                (Some(_), Some(_)) => return Err(("points", Problem::conflict("`file`"))),
+                (None, None) => return Err(("points", Problem::missing("`points` or `file`"))),
             };
             let points = &function.points;
             if points.is_empty() || points.windows(2).any(|w| w[1].0 <= w[0].0) {
-                return Err(("points", format!("{} points", points.len()), "points with ascending times"));
+                let found = format!("{} points", points.len());
+                return Err(("points", value(found, "points with ascending times")));
             }
             if points.iter().any(|p| !p.1.is_finite()) {
-                return Err(("points", "a factor that is not finite".into(), "finite factors"));
+                return Err(("points", value("a factor that is not finite".into(), "finite factors")));
             }
         }
         match history.frequency {
-            Some(f) if !periodic => {
-                return Err(("frequency", format!("{}", f.si), "no such key for this kind of history"));
+            Some(_) if !periodic => return Err(("frequency", without(&["sine", "haversine"]))),
+            Some(f) if f.si <= 0.0 => {
+                return Err(("frequency", value(f.si.to_string(), "a positive frequency")));
             }
-            Some(f) if f.si <= 0.0 => return Err(("frequency", format!("{}", f.si), "a positive frequency")),
             None if periodic => {
-                return Err(("frequency", "nothing".into(), "a frequency for this kind of history"));
+                return Err(("frequency", Problem::missing("a frequency for this kind of history")));
             }
             Some(f) => function.frequency = f.si,
             None => {}
         }
         match history.cycles {
-            Some(c) if !periodic => {
-                return Err(("cycles", format!("{c}"), "no such key for this kind of history"));
-            }
+            Some(_) if !periodic => return Err(("cycles", without(&["sine", "haversine"]))),
             Some(c) if !(c > 0.0 && c.is_finite()) => {
-                return Err(("cycles", format!("{c}"), "a positive number of cycles"));
+                return Err(("cycles", value(c.to_string(), "a positive number of cycles")));
             }
             Some(c) => function.end = start + c / function.frequency,
             None => {}
         }
         match (history.duration, history.kind) {
             (Some(d), HistoryKind::Ramp) if d.si > 0.0 => function.frequency = 1.0 / d.si,
-            (Some(d), HistoryKind::Ramp) => return Err(("duration", format!("{}", d.si), "a positive time")),
+            (Some(d), HistoryKind::Ramp) => {
+                return Err(("duration", value(d.si.to_string(), "a positive time")));
+            }
             (None, HistoryKind::Ramp) => {
-                return Err(("duration", "nothing".into(), "the rise time of the ramp"));
+                return Err(("duration", Problem::missing("the rise time of the ramp")));
             }
-            (Some(d), _) => {
-                return Err(("duration", format!("{}", d.si), "no such key for this kind of history"));
-            }
+            (Some(_), _) => return Err(("duration", without(&["ramp"]))),
             (None, _) => {}
         }
         Ok(function)

@@ -32,11 +32,12 @@ pub mod water;
 mod wind;
 mod wording;
 
+pub use crate::read::Problem;
 /// Bad input in a scene: the same kind of sentence as from a mesh reader.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 pub use output::{Chains, Output};
-pub use table::{Number, Table};
+pub use table::{Number, Table, kinds, setting};
 pub use wind::Wind;
 
 use schemars::JsonSchema;

@@ -2,7 +2,8 @@
 //! where in the file the table stands.
 
 use super::units::Quantity;
-use super::{Document, SceneError};
+use super::{Document, Problem, SceneError};
+use std::fmt;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
@@ -78,9 +79,53 @@ impl<'a, T> Table<'a, T> {
         self.document.error(&self.place, found, expected)
     }
 
-    /// An error about a key that is not there.
+    /// Error about a missing key: `key: found nothing, expected Y`.
     pub fn missing(&self, key: &str, expected: impl Into<String>) -> SceneError {
-        self.error(key, "nothing", expected)
+        self.problem(key, Problem::missing(expected))
+    }
+
+    /// Error about a key that excludes `with`: `key: found together with Z, expected only one of them`.
+    pub fn conflict(&self, key: &str, with: impl Into<String>) -> SceneError {
+        self.problem(key, Problem::conflict(with))
+    }
+
+    /// Error about a key that needs `without`: `key: found without Z, expected both`.
+    pub fn requirement(&self, key: &str, without: impl Into<String>) -> SceneError {
+        self.problem(key, Problem::requirement(without))
+    }
+
+    /// Error about a key without use: `key: found, but it has no effect without Z`.
+    pub fn no_effect(&self, key: &str, without: impl Into<String>) -> SceneError {
+        self.problem(key, Problem::no_effect(without))
+    }
+
+    /// Error about two keys of which a scene must have one, where it has both, or neither.
+    pub fn choice(&self, keys: [&str; 2], both: bool) -> SceneError {
+        let [first, second] = keys;
+        if both {
+            self.conflict(first, format!("`{second}`"))
+        } else {
+            self.missing(first, format!("`{first}` or `{second}`"))
+        }
+    }
+
+    /// Error about keys of which a scene must have exactly one; each comes with whether it is present.
+    pub fn one_of(&self, keys: &[(&str, bool)]) -> SceneError {
+        let mut present = keys.iter().filter(|(_, present)| *present);
+        match (present.next(), present.next()) {
+            (Some((first, _)), Some((second, _))) => self.conflict(first, format!("`{second}`")),
+            _ => {
+                let names: Vec<&str> = keys.iter().map(|(name, _)| *name).collect();
+                let (last, others) = names.split_last().expect("at least one key");
+                let expected = format!("`{}` or `{last}`", others.join("`, `"));
+                self.missing(names[0], expected)
+            }
+        }
+    }
+
+    /// Error about `key`, in one of the forms.
+    pub fn problem(&self, key: &str, problem: Problem) -> SceneError {
+        self.document.problem(&self.path(key), problem)
     }
 
     /// The value of `key`.
@@ -108,20 +153,53 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// Refuses the first of the keys that is there; each comes with whether it is.
+    /// Rejects the first present key, as it excludes `with`; each key comes with whether it is present.
     ///
     /// # Errors
-    /// One is there.
-    pub fn refuse<'k>(
+    /// A key is present.
+    pub fn reject_with<'k>(
         &self,
         keys: impl IntoIterator<Item = (&'k str, bool)>,
-        expected: &str,
+        with: &str,
     ) -> Result<(), SceneError> {
-        match keys.into_iter().find(|(_, there)| *there) {
-            Some((key, _)) => Err(self.error(key, "a value", expected)),
+        match keys.into_iter().find(|(_, present)| *present) {
+            Some((key, _)) => Err(self.conflict(key, with)),
             None => Ok(()),
         }
     }
+
+    /// Rejects the first present key, as it has no effect without `without`; each key comes with whether it is present.
+    ///
+    /// # Errors
+    /// A key is present.
+    pub fn reject_without<'k>(
+        &self,
+        keys: impl IntoIterator<Item = (&'k str, bool)>,
+        without: &str,
+    ) -> Result<(), SceneError> {
+        match keys.into_iter().find(|(_, present)| *present) {
+            Some((key, _)) => Err(self.no_effect(key, without)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Values of `key`, as a message lists them: `key = "a"`, `"b"` or `"c"`.
+pub fn setting(key: &str, values: &[impl AsRef<str>]) -> String {
+    let quoted = |value: &dyn AsRef<str>| format!("`\"{}\"`", value.as_ref());
+    let Some((first, others)) = values.split_first() else { return format!("`{key}`") };
+    let mut text = format!("`{key} = \"{}\"`", first.as_ref());
+    for (k, value) in others.iter().enumerate() {
+        text += if k + 1 == others.len() { " or " } else { ", " };
+        text += &quoted(value);
+    }
+    text
+}
+
+/// Values of `kind`, as a message lists them; variants of one word, which scenes write in lower case.
+pub fn kinds(kinds: &[impl fmt::Debug]) -> String {
+    let names: Vec<String> = kinds.iter().map(|kind| format!("{kind:?}").to_lowercase()).collect();
+    setting("kind", &names)
 }
 
 /// A number of a scene, in SI units, or one that may not be there.
@@ -209,8 +287,8 @@ mod tests {
             }
             let missing = walls[0].need("height", None::<f64>, "the height").unwrap_err();
             assert_eq!(
-                (missing.key.as_str(), missing.found.as_str(), missing.expected.as_str()),
-                ("walls.0.height", "nothing", "the height")
+                (missing.key.as_str(), missing.problem),
+                ("walls.0.height", Problem::missing("the height"))
             );
             assert!(scene.optional("periodic", &scene.periodic).is_none());
             assert_eq!(scene.locate(Path::new("mesh.inp")), Path::new("folder/mesh.inp"));
@@ -232,17 +310,54 @@ mod tests {
                 (wall.check("radius", f64::INFINITY, above, "above 0").unwrap_err(), "inf"),
                 (wall.check("radius", Some(f64::NAN), |_| true, "a length").unwrap_err(), "NaN"),
             ] {
-                assert_eq!(error.found, found);
+                let Problem::Value { found: shown, .. } = error.problem else { panic!("{found}") };
+                assert_eq!(shown, found);
             }
         });
     }
 
     #[test]
-    fn the_first_key_that_is_there_is_refused() {
+    fn rejects_first_present_key() {
         with_scene(|scene| {
-            assert!(scene.refuse([("walls", false), ("periodic", false)], "none").is_ok());
-            let error = scene.refuse([("periodic", false), ("walls", true)], "no such key").unwrap_err();
-            assert_eq!((error.key.as_str(), error.found.as_str()), ("walls", "a value"));
+            let (none, one) =
+                ([("walls", false), ("periodic", false)], [("periodic", false), ("walls", true)]);
+            assert!(scene.reject_with(none, "`track`").is_ok());
+            assert!(scene.reject_without(none, "`track`").is_ok());
+            let error = scene.reject_with(one, "`track`").unwrap_err();
+            assert_eq!((error.key.as_str(), error.problem), ("walls", Problem::conflict("`track`")));
+            let error = scene.reject_without(one, "`track`").unwrap_err();
+            assert_eq!((error.key.as_str(), error.problem), ("walls", Problem::no_effect("`track`")));
         });
+    }
+
+    #[test]
+    fn one_of_two_keys() {
+        with_scene(|scene| {
+            let both = scene.choice(["walls", "periodic"], true).to_string();
+            assert!(
+                both.ends_with("walls: found together with `periodic`, expected only one of them"),
+                "{both}"
+            );
+            let neither = scene.choice(["track", "rail"], false).to_string();
+            assert!(neither.ends_with("track: found nothing, expected `track` or `rail`"), "{neither}");
+            let several = scene.one_of(&[("a", false), ("walls", true), ("b", true)]).to_string();
+            assert!(
+                several.ends_with("walls: found together with `b`, expected only one of them"),
+                "{several}"
+            );
+            let none = scene.one_of(&[("a", false), ("b", false), ("c", false)]).to_string();
+            assert!(none.ends_with("a: found nothing, expected `a`, `b` or `c`"), "{none}");
+        });
+    }
+
+    #[test]
+    fn values_are_listed() {
+        #[derive(Debug)]
+        enum Kind {
+            Plane,
+            Mesh,
+        }
+        assert_eq!(kinds(&[Kind::Plane, Kind::Mesh]), "`kind = \"plane\"` or `\"mesh\"`");
+        assert_eq!(setting("model", &["a", "b", "c"]), "`model = \"a\"`, `\"b\"` or `\"c\"`");
     }
 }

@@ -99,15 +99,9 @@ pub const TEMPLATES: &[Template] = &[
     template!("heap", "a column of grains that collapses into a heap", "grains", "column.toml", []),
     template!("hopper", "a hopper that empties onto the ground", "grains", "hopper.toml", []),
     template!("servo", "grains pressed by a plate that holds its pressure", "grains", "servo.toml", []),
-    template!("footing", "bearing capacity of a strip footing (solid alone)", "solid", "footing.toml", []),
-    template!("slope", "factor of safety of a slope (solid alone)", "solid", "slope.toml", []),
-    template!(
-        "triaxial",
-        "drained triaxial test of clay (solid alone)",
-        "solid",
-        "triaxial_drained.toml",
-        []
-    ),
+    template!("footing", "bearing capacity of a strip footing (FEM only)", "solid", "footing.toml", []),
+    template!("slope", "factor of safety of a slope (FEM only)", "solid", "slope.toml", []),
+    template!("triaxial", "drained triaxial test of clay (FEM only)", "solid", "triaxial_drained.toml", []),
     template!(
         "rock",
         "uniaxial compression of a block of bonded grains",
@@ -155,12 +149,12 @@ pub fn make(name: &str, folder: &Path) -> Result<PathBuf, Failure> {
         let there = folder.join(file);
         if there.symlink_metadata().is_ok() {
             let sentence =
-                format!("{}: found a file, expected a folder without files of this name", there.display());
+                format!("{}: found a file, expected a directory without files of this name", there.display());
             return Err(Failure::Input(sentence));
         }
     }
     std::fs::create_dir_all(folder)
-        .map_err(|e| Failure::Input(format!("{}: found {e}, expected a folder", folder.display())))?;
+        .map_err(|e| Failure::Input(format!("{}: found {e}, expected a directory", folder.display())))?;
     // The scene comes last: where it is, everything that it names is there.
     for (file, bytes) in &contents {
         let file = folder.join(file);

@@ -76,7 +76,7 @@ fn labelled(
     place: &str,
     value: &toml::Value,
 ) -> Result<(String, Vec<String>), SceneError> {
-    let expected = "a table with `label` and `set`, or `key` beside `values`";
+    let expected = "a table with `label` and `set`, or `key` with `values`";
     let Some(table) = value.as_table() else {
         return Err(document.error(place, value.to_string(), expected));
     };

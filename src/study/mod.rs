@@ -84,7 +84,7 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
     let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file, &[]));
     let store = Store::new(&dir);
     if options.merge && !dir.join("runs").is_dir() {
-        let expected = "a folder with runs of the study (--out)";
+        let expected = "a directory with runs of the study (--out)";
         return Err(Failure::Input(format!(
             "--merge: {}: found no runs, expected {expected}",
             dir.display()
@@ -100,7 +100,7 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
         carry_out(file, &plan, &store, &hashes, options)?;
         if let Some((k, n)) = options.part {
             return Ok(format!(
-                "{}: runs {k}, {k} + {n}, … are done; `--merge` makes the tables\n",
+                "{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n",
                 dir.display()
             ));
         }
@@ -160,7 +160,7 @@ fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
     if !others.is_empty() {
         texts.push(format!("and {}", others.join(", ")));
     }
-    Failure::Input(format!("{file}: {} runs are refused: {}", refused.len(), texts.join("; ")))
+    Failure::Input(format!("{file}: {} runs rejected: {}", refused.len(), texts.join("; ")))
 }
 
 /// Hash of a scene with overrides and of the files that it names.
@@ -186,7 +186,7 @@ fn carry_out(
         && let Some((run, _)) = own().find(|(run, _)| store.has(run))
     {
         let found = format!("found the run \"{}\"", run.label);
-        let expected = "--resume to go on, --force to begin anew, or another --out";
+        let expected = "--resume, --force to start from scratch, or another --out";
         return Err(Failure::Input(format!("{}: {found}, expected {expected}", store.dir().display())));
     }
     let mut tasks = Vec::new();
@@ -201,7 +201,7 @@ fn carry_out(
     let total = kept + tasks.len();
     let (jobs, threads) = shares(plan, options, tasks.len())?;
     if kept > 0 && !options.quiet {
-        message::say(&format!("{kept} of {total} runs are there already"));
+        message::say(&format!("{kept} of {total} runs exist"));
     }
     store.make()?;
     options.interrupt.end_at_once(false);
@@ -214,7 +214,7 @@ fn carry_out(
             let part = options.part.map_or(String::new(), |(k, n)| format!(" --task {k}/{n}"));
             let (study, dir) = (run::quoted(file), run::quoted(store.dir()));
             Failure::Interrupted(format!(
-                "interrupted; to go on: trackbed study {study} --resume --out {dir}{part}"
+                "interrupted; resume with: trackbed study {study} --resume --out {dir}{part}"
             ))
         }
         other => other,
@@ -249,7 +249,7 @@ fn shares(plan: &Plan, options: &Options, runs: usize) -> Result<(usize, usize),
     let threads = options.threads.unwrap_or_else(|| (cores / jobs).max(1));
     if jobs * threads > cores && !options.quiet {
         message::note(&format!(
-            "{jobs} runs of {threads} threads on {cores} cores: times by the clock mean little"
+            "{jobs} runs of {threads} threads on {cores} cores: wall times are not meaningful"
         ));
     }
     Ok((jobs, threads))
@@ -266,7 +266,7 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure
     plot::pareto(plan, &outcome).write(&dir.join("pareto.svg"))?;
     let mut lines = format!("{}\n{}", plan.title, text::printed(plan, &outcome, PRINTED));
     for remark in text::remarks(plan, &outcome) {
-        lines += &format!("note: {remark}\n");
+        lines += &format!("warning: {remark}\n");
     }
     let missing = outcome::missing(plan, found);
     if !missing.is_empty() {
@@ -274,11 +274,8 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure
         lines +=
             &format!("{} of {} runs are missing: {}\n", labels.len(), plan.runs.len(), labels.join(", "));
     }
-    lines += &format!(
-        "{}\nThe table is in {}\n",
-        text::recommendation(plan, &outcome),
-        dir.join("study.md").display()
-    );
+    lines +=
+        &format!("{}\nTable: {}\n", text::recommendation(plan, &outcome), dir.join("study.md").display());
     let reference = &outcome.rows[outcome.reference];
     let failed = plan
         .runs
@@ -288,7 +285,7 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure
     if failed && reference.done == 0 {
         let (dir, reasons) = (dir.display(), reference.reasons.join("; "));
         return Err(Failure::Numerical(format!(
-            "the reference has failed, so the table in {dir} has no errors: {reasons}"
+            "reference run failed, no errors in the table of {dir}: {reasons}"
         )));
     }
     Ok(lines)

@@ -198,7 +198,7 @@ pub fn why(found: &Found) -> String {
         Found::Unfinished(record, _) | Found::Failed(record) => match record.exit_code {
             None => "not finished".into(),
             Some(130) => "interrupted".into(),
-            Some(0) => "of another state of the scene, which was changed while the study ran".into(),
+            Some(0) => "scene changed during the study".into(),
             Some(code) => format!("failed, exit code {code}: {}", record.message),
         },
     }
@@ -241,7 +241,7 @@ fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered)
         Some(exact) => (Sample::Number(exact), Some(0.0)),
         None => match &reference.means[index] {
             Some(mean) => (mean.clone(), if is_reference { Some(0.0) } else { variance(reference) }),
-            None => return Cell { remark: Some("the reference has none".into()), ..cell },
+            None => return Cell { remark: Some("no value in the reference".into()), ..cell },
         },
     };
     let Some((difference, size)) = curve::difference(mean, &against) else {
@@ -253,7 +253,7 @@ fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered)
         (Norm::Relative, None) => size,
     };
     if unit == 0.0 {
-        let remark = "the reference is 0: a relative error needs `scale`, or norm = \"absolute\"";
+        let remark = "reference value 0: set `scale`, or norm = \"absolute\"";
         return Cell { remark: Some(remark.into()), ..cell };
     }
     let error = difference / unit;

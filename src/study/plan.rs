@@ -5,7 +5,7 @@ use super::file::StudyFile;
 use super::label::folder_name;
 use super::quantity::{self, Quantity};
 use crate::failure::Failure;
-use crate::scene::{Document, Scene, SceneError};
+use crate::scene::{Document, Problem, Scene, SceneError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -106,7 +106,8 @@ fn reference(
             settings.insert(0, Setting { label: REFERENCE.into(), levels: Vec::new(), set });
             Ok(0)
         }
-        _ => Err(document.error("reference", "both or none of `label` and `set`", "one of them")),
+        (Some(_), Some(_)) => Err(document.problem("reference.label", Problem::conflict("`set`"))),
+        (None, None) => Err(document.problem("reference", Problem::missing("`label` or `set`"))),
     }
 }
 

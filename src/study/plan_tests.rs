@@ -55,10 +55,7 @@ fn a_reference_is_a_setting_or_a_run_of_its_own() {
     let one = plan("study_one", "", "[reference]\nlabel = \"end=2.5, law=a\"").unwrap();
     assert_eq!((one.reference, one.runs.len()), (2, 4));
     let both = plan("study_both", "", "[reference]\nlabel = \"a\"\nset = []").unwrap_err().to_string();
-    assert!(
-        both.contains("reference: found both or none of `label` and `set`, expected one of them"),
-        "{both}"
-    );
+    assert!(both.contains("reference.label: found together with `set`, expected only one of them"), "{both}");
 }
 
 #[test]

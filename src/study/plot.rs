@@ -43,7 +43,7 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
     ];
     ScatterPlot {
         title: plan.title.clone(),
-        x_label: "processor time of a run [s]".into(),
+        x_label: "CPU time of a run [s]".into(),
         y_label: if plain { "largest relative error [1]" } else { "largest error over its tolerance [1]" }
             .into(),
         groups: groups.into_iter().filter(|g| !g.points.is_empty()).collect(),

@@ -1,7 +1,7 @@
 //! What is compared: numbers and curves that runs leave.
 
 use super::file::{Norm, QuantityTable, Take};
-use crate::scene::{Document, SceneError};
+use crate::scene::{Document, Problem, SceneError};
 
 /// A quantity, resolved.
 #[derive(Clone, Debug)]
@@ -116,11 +116,11 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
     }
     let relative = table.norm == Norm::Relative;
     if let Some(scale) = table.scale.filter(|s| !(s.is_finite() && *s > 0.0 && relative)) {
-        return fault("scale", scale.to_string(), "a number above 0, beside norm = \"relative\"");
+        return fault("scale", scale.to_string(), "a number above 0, with norm = \"relative\"");
     }
     let curve = matches!(source, Source::Curve { .. });
     if let Some(exact) = table.exact.filter(|e| curve || !e.is_finite()) {
-        return fault("exact", exact.to_string(), "a finite number, beside a quantity that is no curve");
+        return fault("exact", exact.to_string(), "a finite number, not with take = \"curve\"");
     }
     if table.exact == Some(0.0) && relative && table.scale.is_none() {
         return fault("exact", "0".into(), "another value, or norm = \"absolute\", or `scale`");
@@ -129,7 +129,7 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
         Some(t) if t.is_finite() && t > 0.0 => t,
         Some(t) => return fault("tolerance", t.to_string(), "a number above 0"),
         None if relative => study,
-        None => return fault("tolerance", "nothing".into(), "a value, beside norm = \"absolute\""),
+        None => return fault("tolerance", "nothing".into(), "a value with norm = \"absolute\""),
     };
     let (unit, factor, norm) = (table.unit.clone(), table.factor, table.norm);
     Ok(Quantity { name, unit, factor, source, norm, scale: table.scale, exact: table.exact, tolerance })
@@ -137,28 +137,29 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
 
 fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result<Source, SceneError> {
     let place = |key: &str| format!("quantity.{index}.{key}");
-    let fault = |key: &str, found: &str, expected: &str| Err(document.error(&place(key), found, expected));
+    let problem = |key: &str, problem: Problem| Err(document.problem(&place(key), problem));
+    let fault = |key: &str, found: &str, expected: &str| problem(key, Problem::value(found, expected));
     let of_table =
         [("file", table.file.is_some()), ("column", table.column.is_some()), ("take", table.take.is_some())];
     if let Some(path) = &table.summary {
         let other = of_table.iter().find(|(_, given)| *given);
         return match other {
-            Some((key, _)) => fault(key, "a value", "no such key beside `summary`"),
+            Some((key, _)) => problem(key, Problem::conflict("`summary`")),
             None => Ok(Source::Summary(path.clone())),
         };
     }
     let Some(file) = &table.file else {
-        return fault("file", "nothing", "a table such as \"cycles.csv\", or `summary`");
+        return problem("file", Problem::missing("a table such as \"cycles.csv\", or `summary`"));
     };
     if !file.ends_with(".csv") || file.contains(['/', '\\']) {
         return fault(
             "file",
             &format!("{file:?}"),
-            "the name of a table in the folder of a run, such as \"cycles.csv\"",
+            "the name of a CSV table of a run, such as \"cycles.csv\"",
         );
     }
     let Some(column) = table.column.clone() else {
-        return fault("column", "nothing", "a column of the table");
+        return problem("column", Problem::missing("a column of the table"));
     };
     let take = table.take.unwrap_or_default();
     if take == Take::Curve {
@@ -166,10 +167,10 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
         return Ok(Source::Curve { file: file.clone(), column, against, log });
     }
     if table.against.is_some() {
-        return fault("against", "a column", "no such key but beside take = \"curve\"");
+        return problem("against", Problem::no_effect("`take = \"curve\"`"));
     }
     if table.log.is_some() {
-        return fault("log", "a value", "no such key but beside take = \"curve\"");
+        return problem("log", Problem::no_effect("`take = \"curve\"`"));
     }
     Ok(Source::Column(file.clone(), column, take))
 }

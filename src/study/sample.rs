@@ -30,7 +30,7 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
             // The logarithm leaves out the row at 0.
             let points: Vec<[f64; 2]> = points.filter(|p| p[0].is_finite()).collect();
             if points.is_empty() {
-                return Err(format!("{file} has no row to compare"));
+                return Err(format!("{file}: no row to compare"));
             }
             (Sample::curve(points), unit)
         }

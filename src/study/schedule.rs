@@ -162,7 +162,7 @@ impl Schedule<'_> {
             Some(INTERRUPTED) => "interrupted".to_string(),
             code => format!("failed, exit code {}: {}", code.unwrap_or(1), record.message),
         };
-        let cpu = record.cpu_seconds.map_or(String::new(), |s| format!(", {s:.1} s of processor time"));
+        let cpu = record.cpu_seconds.map_or(String::new(), |s| format!(", CPU time {s:.1} s"));
         message::say(&format!("{ended:>5}/{total}  {}: {end}{cpu}", record.label));
     }
 }

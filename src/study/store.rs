@@ -104,9 +104,8 @@ impl Store {
         let record: Option<Record> = serde_json::from_value(json(&self.record_file(run))).ok();
         let of = record.as_ref().map(|r| r.scene_hash.as_str()).or(summary["scene_hash"].as_str());
         if let Some(other) = of.filter(|of| *of != scene_hash) {
-            let found =
-                format!("found the run \"{}\" of another state of the scene (hash {other})", run.label);
-            let expected = format!("expected {scene_hash}, --force to begin anew, or another --out");
+            let found = format!("found the run \"{}\" of a changed scene (hash {other})", run.label);
+            let expected = format!("expected {scene_hash}, --force to start from scratch, or another --out");
             return Err(Failure::Input(format!("{}: {found}, {expected}", results.display())));
         }
         let checkpoint = results.join("checkpoint").exists();

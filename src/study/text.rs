@@ -10,8 +10,7 @@ use super::table::head;
 pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     let mut text = format!("# {}\n\n", plan.title.replace('\n', " "));
     text += &format!(
-        "Scene `{}`, {} settings, {} runs. Errors are against `{}`{}; processor time is user and system time of one run, on all \
-         its threads.\n\n",
+        "Scene `{}`, {} settings, {} runs. Errors are against `{}`{}; CPU time is user and system time of one run, on all its threads.\n\n",
         plan.scene.display(),
         outcome.rows.len(),
         plan.runs.len(),
@@ -28,8 +27,7 @@ pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     rows[1..].iter().for_each(|row| text += &line(row));
     text += &format!("\n{}\n", recommendation(plan, outcome));
     if outcome.rows.iter().any(|row| row.quantities.iter().any(|c| c.scatter.is_some())) {
-        text += "\nBehind ± is the standard error of the error, by the scatter of the seeds. An error below it cannot be distinguished \
-                 from none.\n";
+        text += "\n± is the standard error over the seeds. An error below it is not significant.\n";
     }
     let remarks = remarks(plan, outcome);
     if !remarks.is_empty() {
@@ -99,7 +97,7 @@ fn error_text(cell: &Cell, quantity: &Quantity) -> String {
         (None, _) => "–".into(),
         (Some(error), None) => text(error),
         (Some(error), Some(scatter)) => {
-            let below = if cell.below_scatter { ", below the scatter" } else { "" };
+            let below = if cell.below_scatter { ", not significant" } else { "" };
             format!("{} ± {}{below}", text(error), text(scatter))
         }
     }
@@ -165,7 +163,7 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
         Some(speed) => format!(", {speed:.2} times as fast as the reference"),
         None => String::new(),
     };
-    let cost = cpu(row).map_or(String::new(), |s| format!(": {s:.2} s of processor time{speed}"));
+    let cost = cpu(row).map_or(String::new(), |s| format!(": CPU time {s:.2} s{speed}"));
     format!("Cheapest setting {within}: \"{}\"{cost}{largest}.", row.setting)
 }
 

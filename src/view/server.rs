@@ -158,7 +158,7 @@ impl Site {
             "" => Some(self.root.clone()),
             _ => series::inside(&self.root, run).map_err(|failure| (403, failure.to_string()))?,
         };
-        let dir = dir.ok_or_else(|| (404, "there is no such folder".to_string()))?;
+        let dir = dir.ok_or_else(|| (404, "no such directory".to_string()))?;
         let results = Results::open(&dir, Coding::Exact).map_err(|failure| (422, failure.to_string()))?;
         if runs.len() >= OPEN {
             runs.clear();

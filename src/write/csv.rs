@@ -144,8 +144,7 @@ impl History {
             old.read_exact(&mut last).map_err(WriteError::io(file))?;
         }
         if last != *b"\n" {
-            let message =
-                format!("is not the history that the checkpoint goes on from: {rows} rows in {bytes} bytes");
+            let message = format!("is not the history of the checkpoint: {rows} rows in {bytes} bytes");
             return Err(WriteError::format(file, message));
         }
         old.set_len(bytes).map_err(WriteError::io(file))?;

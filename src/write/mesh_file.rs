@@ -58,10 +58,10 @@ pub fn write_mesh_file(
             (Vec::new(), [true, false, false, false])
         }
         _ => {
-            let expected = ".cdb, .msh, .inp, .vtu, .vtk, or none for a folder of lists";
+            let expected = ".cdb, .msh, .inp, .vtu, .vtk, or no extension for a directory of lists";
             return Err(WriteError::format(
                 path,
-                format!("ending of the file name: found \".{ending}\", expected {expected}"),
+                format!("file extension: found \".{ending}\", expected {expected}"),
             ));
         }
     };
@@ -74,7 +74,7 @@ pub fn write_mesh_file(
     ] {
         if !held && count > 0 {
             let left = if what == "sets of faces" && sets { "become sets of nodes" } else { "are left out" };
-            lost.push(format!("this form holds no {what}: {count} {left}"));
+            lost.push(format!("this format contains no {what}: {count} {left}"));
         }
     }
     Ok(lost)
@@ -85,7 +85,7 @@ pub(super) fn no_zero(path: &Path, file: &MeshFile) -> Result<(), WriteError> {
     if file.mesh.node_ids.contains(&0) {
         return Err(WriteError::format(
             path,
-            "a node has number 0, which this form takes for a missing node",
+            "a node has number 0, which this format reserves for missing nodes",
         ));
     }
     Ok(())

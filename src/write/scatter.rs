@@ -268,7 +268,7 @@ mod tests {
         };
         let plot = |points: &[[f64; 2]]| ScatterPlot {
             title: "Error & cost".into(),
-            x_label: "processor time of a run [s]".into(),
+            x_label: "CPU time of a run [s]".into(),
             y_label: "largest relative error [1]".into(),
             groups: vec![group(points)],
             level: Some(("tolerance".into(), 0.05)),

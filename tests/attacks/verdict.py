@@ -120,7 +120,7 @@ class Bench:
         if code not in codes:
             yield f"exit code {code}: {stderr[-400:]}"
             return
-        if "panicked" in stderr or "the program has failed" in stderr:
+        if "panicked" in stderr or "internal error" in stderr:
             yield f"a panic: {stderr[-400:]}"
         errors = [line for line in stderr.splitlines() if line.startswith("error: ")]
         if code in (2, 3) and not 1 <= len(errors) <= max(1, faults):

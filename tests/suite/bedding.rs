@@ -194,7 +194,7 @@ fn refusals() {
         (scene(&[bedding("0 N")]), "compaction.0.force: found 0, expected above 0"),
         (
             scene(&[bedding("1 kN").replace("cycles = 3", "cycles = 3\nlevel = 1")]),
-            "compaction.0.level: found a value, expected no such key for this kind of compaction",
+            "compaction.0.level: found, but it has no effect without `kind = \"pouring\"`",
         ),
     ];
     for (text, expected) in cases {

@@ -137,7 +137,7 @@ fn a_run_ended_before_its_first_checkpoint_starts_anew() {
         let end = start(&scene, &out, &set, 1, true).wait_with_output().unwrap();
         let said = String::from_utf8_lossy(&end.stderr);
         assert!(end.status.success(), "{said}");
-        assert!(said.contains("before its first checkpoint, it starts from its beginning"), "{said}");
+        assert!(said.contains("no checkpoint yet; the run starts from the beginning"), "{said}");
         same(&whole, &out);
     };
     left();
@@ -194,7 +194,10 @@ fn ctrl_c_and_sigterm() {
         let last = text.lines().last().unwrap();
         let first = text.lines().next().unwrap();
         assert!(last.starts_with("interrupted: stage \"run\", step ") && text.lines().count() <= 2, "{text}");
-        assert!(first == last || first == "stopping after the present step; press again to abort", "{text}");
+        assert!(
+            first == last || first == "stopping after the current step; press Ctrl-C again to abort",
+            "{text}"
+        );
         // What it says is a command that works.
         let command = text.trim().split("go on with: trackbed ").nth(1).unwrap();
         assert!(command.contains("--resume") && command.contains("--set time.end=0.3"), "{command}");

@@ -25,7 +25,7 @@ fn two_laws_meet_in_one_scene() {
     let spent = last("dissipated_dashpot") + last("dissipated_friction");
     assert!(spent > 0.5 && last("energy_error").abs() < 5e-3 * spent, "{} of {spent}", last("energy_error"));
     let text = trackbed(["explain", &scene.display().to_string(), "--rehearse", "0"]).good().stdout;
-    assert!(text.contains("contact loop: Hertz-Mindlin and linear spring-dashpot"), "{text}");
+    assert!(text.contains("contact kernels: Hertz-Mindlin and linear spring-dashpot"), "{text}");
 }
 
 /// A law named where it is the implied one changes nothing, and neither does a pair whose parts are the usual ones.
@@ -202,7 +202,7 @@ fn asperities_out_of_place_are_refused() {
     let scene = repository().join("inputs/verify/asperities/scene.toml");
     for (set, message) in [
         ("material.0.asperity_pressure=", "the pressure at which half of `asperity_friction` is left"),
-        ("material.0.asperity_friction=0", "no such key without `asperity_friction`"),
+        ("material.0.asperity_friction=0", "found, but it has no effect without `asperity_friction`"),
         ("material.0.asperity_friction=-1", "0 or more"),
         ("material.0.asperity_pressure=0", "found 0 Pa, expected above 0"),
     ] {
@@ -221,6 +221,6 @@ fn asperities_out_of_place_are_refused() {
     ];
     let folder = Folder::new("hertz_asperities");
     let outcome = run(&scene, &folder.join("out"), &hertz);
-    let message = "no such key, as no law of its contacts knows asperities";
+    let message = "found, but it has no effect without a contact law with asperities";
     assert!(outcome.code == 2 && outcome.stderr.contains(message), "{outcome:?}");
 }

@@ -204,8 +204,8 @@ fn hostile_files_are_refused() {
         ),
         ("1 2\n".into(), "a.csv", "a:1: columns: found 2, expected x y z r, or these behind a number"),
         ("1 2 3 -1\n".into(), "a.csv", "a:1: radius: found -1, expected above 0"),
-        ("2\n1 2 3 1\n".into(), "a.csv", "a: spheres: found 1, expected 2, as its first row says"),
-        ("3D: 0 2\n0 0 0 1 0 0 0\n".into(), "a.csv", "a:1: rows: found 1, expected 2, as the head says"),
+        ("2\n1 2 3 1\n".into(), "a.csv", "a: spheres: found 1, expected 2, as in the first row"),
+        ("3D: 0 2\n0 0 0 1 0 0 0\n".into(), "a.csv", "a:1: rows: found 1, expected 2, as in the header"),
         ("3D: 0 1\n0 0 0 1 0 0\n".into(), "a.csv", "a:2: columns: found 6, expected 7 or 8"),
         (
             "3D: 0 1\n0 0 0 1 0 0 nan\n".into(),
@@ -226,7 +226,7 @@ fn hostile_files_are_refused() {
         (
             "3DF: 0 1\n1 2 3 4\n".into(),
             "a.toml",
-            "output: found a.toml, expected .csv, .3df, or a folder for frames for a",
+            "output: found a.toml, expected .csv, .3df, or a directory for frames for a",
         ),
         (
             good.replace("15.0   ", "-15.0  "),

@@ -26,9 +26,9 @@ fn a_device_refuses_by_name() {
     let stones = stones.replace("\"polyhedra-", &format!("\"{inputs}/ballast/polyhedra-"));
     let solid = &COUPLED[..COUPLED.find("[[material]]").unwrap()];
     let cases: [(&str, &str, &[&str], &str); 3] = [
-        ("device_solid", solid, &[], "solids alone are not"),
+        ("device_solid", solid, &[], "scenes without grains"),
         ("device_wind", GRAINS, &["wind={ drag = 0.9 }"], "body forces other than gravity are not"),
-        ("device_stones", &stones, &[], "scenes of boxes and polyhedra alone are not"),
+        ("device_stones", &stones, &[], "scenes of boxes and polyhedra only are not"),
     ];
     for (name, text, set, words) in cases {
         let (outcome, written) = on_device(name, text, set);
@@ -43,8 +43,8 @@ fn a_device_refuses_by_name() {
 #[test]
 fn what_a_device_needs_is_named_where_it_is_missing() {
     let (outcome, written) = on_device("device_missing", GRAINS, &[]);
-    let missing = outcome.stderr.contains("(libcuda) is not on this machine")
-        || outcome.stderr.contains("(libnvrtc) is not on this machine");
+    let missing =
+        outcome.stderr.contains("(libcuda) not found") || outcome.stderr.contains("(libnvrtc) not found");
     println!("{outcome:?}");
     match outcome.code {
         0 => assert!(written && !missing),

@@ -192,11 +192,11 @@ fn bad_floes_and_frusta_are_refused() {
             "radii = [0.8, 0.8], radius = 1",
             "frustum.radius: found 1, expected a radius that",
         ),
-        ("seed = 3", "seed = 3\ncount = 4", "grains.0.count: found a value, expected no such key without"),
+        ("seed = 3", "seed = 3\ncount = 4", "grains.0.count: found, but it has no effect without"),
         (
             "material = \"ice\"\nseed",
             "material = \"ice\"\nlattice = { kind = \"loose\", size = 1, low = [0, 0, 0], counts = [1, 1, 1] }\nseed",
-            "found another number of sources",
+            "found together with `floes`, expected only one of them",
         ),
         (
             "shape = \"polyhedron\"\nmaterial = \"ice\"\nseed",
@@ -436,21 +436,25 @@ fn bad_disks_are_refused() {
         (
             "thickness = 0.2",
             "thickness = 0.2, count = 5",
-            "floes.count: found a value, expected no such key for disks",
+            "floes.count: found together with `shape = \"disk\"`",
         ),
         (
             "thickness = 0.2",
             "thickness = 0.2, radius = 0.1",
-            "floes.radius: found a value, expected no such key for disks",
+            "floes.radius: found together with `shape = \"disk\"`",
         ),
         ("concentration = 0.6", "concentration = 0.93", "floes.concentration: found 0.93, at which floes"),
         (
             "size = [0.5, 1]",
             "aspect = 0.2\nsize = [0.5, 1]",
-            "grains.0.aspect: found a value, expected no such key",
+            "grains.0.aspect: found, but it has no effect without",
         ),
-        ("size = [0.5, 1]\n", "", "found none of `gradation`, `size` and `sizes`"),
-        ("shape = \"disk\"", "shape = \"sphere\"", "grains.0.size: found a value"),
+        (
+            "size = [0.5, 1]\n",
+            "",
+            "grains.0.gradation: found nothing, expected `gradation`, `size` or `sizes`",
+        ),
+        ("shape = \"disk\"", "shape = \"sphere\"", "grains.0.size: found, but it has no effect without"),
     ] {
         assert_eq!(PANCAKES.matches(old).count(), 1, "{old}");
         refused(&PANCAKES.replace(old, new), expected);

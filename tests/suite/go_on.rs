@@ -191,13 +191,13 @@ fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
         // Another scene is refused, unless it is only the bed that goes on, and that is said.
         let refused = from(&next, &bed, &first, &["time.end=0.001999"]);
         assert!(
-            refused.code == 2 && refused.stderr.contains("--bed puts its grains into another"),
+            refused.code == 2 && refused.stderr.contains("--bed imports grains into another"),
             "{refused:?}"
         );
         let words = ["run", next.to_str().unwrap(), "--out", bed.to_str().unwrap(), "--bed", "--from"];
         let words = [&words[..], &[first.to_str().unwrap(), "--set", "time.end=0.001999"]].concat();
         let said = trackbed(words).good();
-        assert!(said.stderr.contains("contacts with them begin anew"), "{said:?}");
+        assert!(said.stderr.contains("their contacts start from scratch"), "{said:?}");
         let apart = places(&bed).iter().zip(&end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("{name}: {} numbers, apart by {apart:.1e} in another scene", end.len());
         assert!(apart < 1e-8, "{name}: {apart:.1e}");

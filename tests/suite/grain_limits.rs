@@ -42,7 +42,7 @@ fn head_on_at_two_hundred_metres_per_second() {
     let grains = format!("[[grains]]\nname = \"pair\"\nshape = \"sphere\"\nmaterial = \"stone\"\n{pair}\n");
     assert!(GRAINS.contains(&grains));
     let text = GRAINS.replace(&grains, &(group("left", -0.2, 100.0) + &group("right", 0.2, -100.0)));
-    stops("head_on", &text, "body 0 and body 1 overlap");
+    stops("head_on", &text, "overlap of body 0 and body 1");
 }
 
 /// 1000 m/s at a floor that is far too soft for it.
@@ -53,9 +53,9 @@ fn floor_struck_at_a_thousand_metres_per_second() {
     assert!(GRAINS.contains(spheres));
     let text = GRAINS.replace(spheres, fast);
     // Half the radius is passed within a step: stopped by speed, at once. With short steps, by the overlap.
-    stops("fast_floor", &text, "body 0 moves at 1000");
+    stops("fast_floor", &text, "speed of body 0: 1000");
     let short = text.replace("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"5 us\"");
-    stops("fast_floor_short", &short, "body 0 and plane 0 overlap");
+    stops("fast_floor_short", &short, "overlap of body 0 and plane 0");
 }
 
 /// A light grain in a stream that carries it along within 0.1 µs, on contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m. A

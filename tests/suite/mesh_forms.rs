@@ -257,7 +257,7 @@ fn damaged_archives_are_refused_by_name() {
         (archive(&format!("{good}\r\nD,9,UX,1\r\nD,9,UX,2")), "2 after 1 on line"),
         (archive(&format!("{good}\r\nE,1,2,3")), "CDWRITE without UNBLOCKED"),
         (archive("ET,1,185"), "no volume element"),
-        (turned, "constraint of node 8: found a node in a turned coordinate system"),
+        (turned, "constraint of node 8: found a node in a rotated coordinate system"),
     ] {
         let error = cdb(&folder, &text).expect_err(part);
         assert!(error.contains(part), "{part}: {error}");
@@ -297,7 +297,7 @@ fn abaqus_parts_sets_includes_and_refusals() {
         ("type=C3D8R", "type=C3D27", "C3D27"),
         ("*Elset,", "*Nfill\n*Elset,", "*NFILL"),
         ("*End Part", "*End Part\n*Part, name=B", "several parts: Soil, B"),
-        ("part=Soil\n", "part=Soil\n0., 0., 1.\n", "neither moved nor turned"),
+        ("part=Soil\n", "part=Soil\n0., 0., 1.\n", "without translation or rotation"),
         ("input=sub/nodes.inc", "input=gone.inc", "no such file"),
         ("input=sub/nodes.inc", "input=model.inp", "10 deep"),
         ("5,6,7,8\n", "5,6,7,\n", "element 11"),
@@ -381,7 +381,7 @@ fn the_mesh_commands_take_every_form() {
         [Path::new("mesh"), Path::new("convert"), &from, &msh, Path::new("--format"), Path::new("msh2")];
     trackbed(arguments).good();
     assert!(std::fs::read_to_string(&msh).unwrap().starts_with("$MeshFormat\n2.2 0 8"));
-    for (to, part) in [("x.stl", "expected a file ending in .cdb"), ("x.vtu", "--format")] {
+    for (to, part) in [("x.stl", "expected a file .cdb"), ("x.vtu", "--format")] {
         let to = folder.join(to);
         let outcome = trackbed([
             Path::new("mesh"),

@@ -99,7 +99,7 @@ fn lines_of_a_verbose_run() {
     assert!(!lines.is_empty(), "{verbose:?}");
     for line in lines {
         assert!(line.trim_start().starts_with("running") && line.contains(" of about "), "{line}");
-        assert!(line.contains(" grain steps, ") && line.ends_with(" contacts"), "{line}");
+        assert!(line.contains(" DEM steps, ") && line.ends_with(" contacts"), "{line}");
     }
     assert_eq!(run(&["--quiet"], "quiet").good().stderr, "");
     assert_eq!(run(&["--quiet", "--verbose"], "both").code, 2);

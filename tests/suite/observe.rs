@@ -65,10 +65,7 @@ fn falling_spheres_are_observed() {
     assert_eq!(a, [0.0, 0.0, -10.0, 0.0, 0.0, -10.0]);
     assert!((points(&frame, "displacement")[2] + fall).abs() < 1e-9);
     for (set, sentence) in [
-        (
-            "probe.0.node=1",
-            "probe.0: found none or several of `node`, `at`, `grain`, `group`, `region`, expected one of them",
-        ),
+        ("probe.0.node=1", "probe.0.node: found together with `grain`, expected only one of them"),
         ("probe.0.grain=2", "probe.0.grain: found 2, expected the number of a grain, 0 to 1"),
         ("probe.1.group=\"x\"", "probe.1.group: found \"x\", expected the name of a [[grains]]: pair"),
         ("output.last.time=0.2", "output.last.time: found 0.2, expected above 0, below the end at 0.2 s"),
@@ -181,8 +178,11 @@ fn steps_are_counted() {
         &step[..2],
         "time.grain_step: found nothing, expected a step that stays the same, since time.steps counts steps",
     );
-    refused(&step[1..], "time.steps: found steps beside `end`, expected one of the two");
-    refused(&["output.frame_steps=3"], "output.frame_steps: found steps beside");
+    refused(&step[1..], "time.steps: found together with `end`, expected only one of them");
+    refused(
+        &["output.frame_steps=3"],
+        "output.frame_steps: found together with the key for times or numbers",
+    );
     refused(&["time.steps=0", step[0], step[2]], "time.steps: found 0, expected 1 to");
     let block = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0.0, 1.0], counts = [1] }\ny = { lines = [0.0, 1.0], counts = [1] }\n\
         z = { lines = [0.0, 1.0], counts = [2] }\n[solid.dynamics]\n[[solid.support]]\nside = \"z-\"\ndirections = [\"x\", \"y\", \"z\"]\n\

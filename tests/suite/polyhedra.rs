@@ -371,11 +371,11 @@ fn refusals() {
     for (set, expected) in [
         (
             "coupling.faces=\"curved\"",
-            "coupling.faces: found \"curved\", expected \"flat\", or no such key: polyhedra touch",
+            "coupling.faces: found \"curved\" with polyhedra, expected \"flat\". Polyhedra contact",
         ),
         (
             "coupling.scheme=\"stiffened\"",
-            "coupling.scheme: found \"stiffened\", expected another scheme beside polyhedra",
+            "coupling.scheme: found \"stiffened\" with polyhedra, expected \"predicted\"",
         ),
     ] {
         let outcome = run(&scene, &folder.join("out"), &[set]);

@@ -133,7 +133,7 @@ fn ranks_refuse_by_name() {
     let (scene, out) = (folder.path().join("scene.toml"), folder.path().join("out"));
     let (outcome, others) = shared(&scene, options(&out), 2);
     let failure = outcome.unwrap_err();
-    assert_eq!(failure.to_string(), "2 ranks: solids are not shared among ranks, only computed on one");
+    assert_eq!(failure.to_string(), "2 ranks: not supported with several ranks: solids");
     assert!(failure.code() == 2 && others.iter().all(Result::is_ok), "{others:?}");
     assert!(!out.exists(), "a folder was left");
 

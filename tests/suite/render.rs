@@ -291,7 +291,7 @@ fn bad_input_is_one_clear_error_and_writes_nothing() {
         (&["--opacity", "grains=2"], "--opacity: found 2, expected 0 to 1"),
         (&["--background", "blue"], "--background: found \"blue\", expected white, dark or a colour"),
         (&["--out", "picture.gif"], "found picture.gif, expected a name that ends in one of png, jpg"),
-        (&["--out", "/nowhere/at/all/a.png"], "found no folder /nowhere/at/all, expected one"),
+        (&["--out", "/nowhere/at/all/a.png"], "found no directory /nowhere/at/all, expected an existing one"),
         (&["--projection", "fisheye"], "expected perspective or parallel"),
         (&["--zoom", "0"], "--zoom: found 0, expected 0.01 to 1000"),
         (&["--threads", "0"], "--threads: found 0, expected 1 or more"),
@@ -303,14 +303,14 @@ fn bad_input_is_one_clear_error_and_writes_nothing() {
     let outcome = trackbed(["render", dir.join("results.pvd").to_str().unwrap()]);
     assert_eq!(outcome.code, 2);
     assert!(
-        outcome.stderr.contains("found a file, expected the folder of the results of a run"),
+        outcome.stderr.contains("found a file, expected the results directory of a run"),
         "{}",
         outcome.stderr
     );
     // A file is replaced by force alone; a damaged result leaves it as it was.
     let there = folder.write("there.png", "mine");
     let out = ["--out", there.to_str().unwrap()];
-    refused(dir, &out, "or --force to replace it");
+    refused(dir, &out, "or --force to overwrite it");
     let frame = fs::read_to_string(dir.join("frames/grains_1.vtp")).unwrap();
     fs::write(dir.join("frames/grains_1.vtp"), &frame[..frame.len() / 2]).unwrap();
     refused(dir, &[&out[..], &["--force"]].concat(), "grains_1.vtp");

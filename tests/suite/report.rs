@@ -207,8 +207,8 @@ fn a_solid_alone_and_its_factor_of_safety() {
     page.has(&["overview", "solid", "energy", "reproduce"]);
     page.lacks(&["settlement", "packing", "loops", "sleepers", "gradation"]);
     page.says(summary["reactions"][0]["force"][2].as_f64().unwrap());
-    page.contains("Load and displacement");
-    page.contains("share of all at the end");
+    page.contains("Load–displacement");
+    page.contains("fraction at the end");
     let gauss = Table::read(&folder.join("out/gauss.csv")).column("equivalent_plastic_strain");
     let share = gauss.iter().filter(|k| **k > 0.0).count() as f64 / gauss.len() as f64;
     assert!(share > 0.0 && share < 1.0);
@@ -338,7 +338,7 @@ fn what_is_not_done_is_reported_and_says_so() {
     let history = fs::read_to_string(out.join("history.csv")).unwrap();
     fs::write(out.join("history.csv"), &history[..history.len() - 7]).unwrap();
     let stopped = page(&out);
-    stopped.contains("Stopped without a summary.");
+    stopped.contains("No summary.");
     stopped.contains("pressed block");
     stopped.has(&["solid", "energy", "reproduce"]);
     fs::write(out.join("run.lock"), format!("{}\n", std::process::id())).unwrap();
@@ -348,8 +348,8 @@ fn what_is_not_done_is_reported_and_says_so() {
     fs::write(out.join("history.csv"), history.replacen('\n', "\n1,2\nx\n", 1)).unwrap();
     fs::remove_file(out.join("run.json")).unwrap();
     let damaged = page(&out);
-    damaged.contains("history.csv: 2 rows are damaged and left out");
-    damaged.contains("the folder has no run.json");
+    damaged.contains("history.csv: 2 damaged rows omitted");
+    damaged.contains("run.json is missing");
     damaged.lacks(&["reproduce"]);
 }
 
@@ -365,16 +365,16 @@ fn what_is_no_result_is_refused_with_one_sentence() {
         assert_eq!(said.stderr.lines().count(), 1, "{}", said.stderr);
         assert!(said.stderr.contains(words), "{}", said.stderr);
     };
-    let expected = "expected a folder with the results of a run";
+    let expected = "expected a results directory";
     refused(&[&folder.join("nowhere")], &format!("nowhere: found nothing, {expected}"));
     refused(&[&scene], &format!("scene.toml: found a file, {expected}"));
     refused(
         &[folder.path()],
-        &format!("found none of summary.json, run.json, history.csv and modes.csv, {expected}"),
+        &format!("found no summary.json, run.json, history.csv or modes.csv, {expected}"),
     );
     refused(&[&out, &out], "--out: found nothing, expected a file such as report.html");
     let summary = out.join("summary.json");
-    refused(&[&out, Path::new("--out"), &summary], "expected a file ending in .html");
+    refused(&[&out, Path::new("--out"), &summary], "expected a file .html");
     fs::create_dir(folder.join("x.html")).unwrap();
     refused(&[&out, Path::new("--out"), &folder.join("x.html")], "expected a file");
     for (text, words) in
@@ -387,5 +387,5 @@ fn what_is_no_result_is_refused_with_one_sentence() {
     let waiting = folder.join("waiting");
     fs::create_dir(&waiting).unwrap();
     fs::write(waiting.join("run.lock"), "1\n").unwrap();
-    refused(&[&waiting], "found a run that has written no results yet");
+    refused(&[&waiting], "found a run without results");
 }

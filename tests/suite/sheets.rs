@@ -75,13 +75,9 @@ fn bad_sheets_are_refused() {
         (
             "gap = \"10 mm\"",
             "gap = \"10 mm\", concentration = 0.9",
-            "floes: found both or none of `concentration` and `gap`, expected one of them",
+            "floes.concentration: found together with `gap`, expected only one of them",
         ),
-        (
-            "gap = \"10 mm\", ",
-            "",
-            "floes: found both or none of `concentration` and `gap`, expected one of them",
-        ),
+        ("gap = \"10 mm\", ", "", "floes.concentration: found nothing, expected `concentration` or `gap`"),
         ("relax = 30", "relax = 20000", "floes.relax: found 20000, expected 0 to 10000"),
         (
             "bond = \"level ice\"",
@@ -91,9 +87,13 @@ fn bad_sheets_are_refused() {
         (
             "bond = \"level ice\"\n",
             "",
-            "bond.0.face: found a bond that fills the faces of nothing, expected a [[grains]] of `floes` that names this bond",
+            "bond.0.face: found, but it has no effect without [[grains]] of `floes` with this `bond`",
         ),
-        ("damping = 0.1", "damping = 0.1\ngap = 1", "bond.0.face: found `gap` or `pairs` beside it"),
+        (
+            "damping = 0.1",
+            "damping = 0.1\ngap = 1",
+            "bond.0.face: found together with `gap`, expected only one of them",
+        ),
         ("young = \"1 GPa\"", "young = 0", "bond.0.face.young: found 0, expected above 0"),
         (
             "tensile_strength = \"100 kPa\"",
@@ -103,7 +103,7 @@ fn bad_sheets_are_refused() {
         (
             "face = {",
             "parallel = { young = 1e9 }\nface = {",
-            "expected exactly one of `parallel`, `contact_point`, `direct` and `face`",
+            "bond.0.parallel: found together with `face`, expected only one of them",
         ),
     ] {
         assert_eq!(SHEET.matches(old).count(), 1, "{old}");

@@ -83,7 +83,7 @@ fn slope_has_the_published_factor_of_safety() {
     run(&shipped("solid/slope.toml"), &folder.join("out"), &set).good();
     let safety = &json(&folder.join("out/summary.json"))["safety"];
     let [stands, fails] = ["stands_at", "fails_at"].map(|k| safety[k].as_f64().unwrap());
-    println!("stands at {stands:.4}, fails at {fails:.4}");
+    println!("stable at {stands:.4}, unstable at {fails:.4}");
     assert!(stands < fails && fails - stands <= 0.05);
     near("factor of safety", 0.5 * (stands + fails), 1.380, 0.05);
     let table = Table::read(&folder.join("out/safety.csv"));

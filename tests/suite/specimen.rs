@@ -89,14 +89,20 @@ fn what_is_no_specimen_is_refused() {
         ),
         ("specimen.top=\"rock\"", "specimen.top: found \"rock\", expected the name of a wall"),
         ("specimen.area=", "specimen.area: found nothing, expected the section of the specimen"),
-        ("specimen.thickness=1", "specimen.thickness: found a value, expected no such key for this test"),
-        ("specimen.test=\"brazilian\"", "specimen.area: found a value, expected no such key for this test"),
+        (
+            "specimen.thickness=1",
+            "specimen.thickness: found, but it has no effect without `test = \"brazilian\"`",
+        ),
+        (
+            "specimen.test=\"brazilian\"",
+            "specimen.area: found, but it has no effect without `test = \"compression\"`",
+        ),
         ("specimen.length=0", "specimen.length: found 0, expected a length above 0"),
         (
             "specimen.sides=[\"w\"]",
             "specimen.sides.0: found \"w\", expected the name of a wall with `record`",
         ),
-        ("specimen.side_area=1", "specimen.side_area: found a value, expected no such key without `sides`"),
+        ("specimen.side_area=1", "specimen.side_area: found, but it has no effect without `sides`"),
         (
             "specimen.between=[0.5, 0.2]",
             "specimen.between: found [0.5, 0.2], expected two rising shares from 0 to 1",

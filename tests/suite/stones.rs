@@ -39,7 +39,10 @@ fn a_surface_becomes_a_library_that_a_scene_runs_with() {
     let again = trackbed_in(folder.path(), make);
     assert_eq!(
         (again.code, again.stderr.as_str()),
-        (2, "error: --out: found stones.toml, which exists, expected a new file, or --force to replace it\n")
+        (
+            2,
+            "error: --out: found stones.toml, which exists, expected a new file, or --force to overwrite it\n"
+        )
     );
     assert_eq!(fs::read_to_string(folder.join("stones.toml")).unwrap(), before);
     let forced = ["stone", "make", &stone, "--spheres", "3", "--out", "stones.toml", "--force"];
@@ -92,16 +95,13 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
         ),
         (
             vec!["make", "a.ply", "--spheres", "3"],
-            "a.ply: ending of the file name: found \".ply\", expected .stl, .obj",
+            "a.ply: file extension: found \".ply\", expected .stl, .obj",
         ),
         (
             vec!["make", "cut.stl", "--spheres", "3"],
             "cut.stl:4: vertex: found 2 numbers, expected three numbers",
         ),
-        (
-            vec!["make", "open.obj", "--spheres", "3"],
-            "open.obj: surface: found that the surface is open: 3 edges",
-        ),
+        (vec!["make", "open.obj", "--spheres", "3"], "open.obj: surface: found the surface is open: 3 edges"),
         (vec!["make", &stone, "--spheres", "0"], "--spheres: found 0, expected 1 to 200"),
         (
             vec!["make", &stone, "--spheres", "9999", "--as", "bonded"],
@@ -114,15 +114,15 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
         ),
         (
             vec!["make", &stone, "--spheres", "3", "--gap", "0.1"],
-            "--gap: found it, expected it with --as bonded only",
+            "--gap: found, but it has no effect without `--as bonded`",
         ),
         (
             vec!["make", &stone, "--spheres", "3", "--seed", "1"],
-            "--seed: found it, expected it with --as bonded only",
+            "--seed: found, but it has no effect without `--as bonded`",
         ),
         (
             vec!["make", &stone, "--spheres", "3", "--as", "bonded", "--overhang", "0.1"],
-            "--overhang: found it, expected it with --as clump only",
+            "--overhang: found, but it has no effect without `--as clump`",
         ),
         (
             vec!["make", &stone, "--spheres", "9", "--as", "bonded", "--gap", "0"],

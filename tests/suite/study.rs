@@ -169,9 +169,7 @@ fn errors_are_those_of_the_method() {
     let cheaper = rows.iter().filter(|r| r["within"] == "yes").map(|r| r["cpu [s]"].parse::<f64>().unwrap());
     assert!(cheaper.fold(f64::INFINITY, f64::min) == row["cpu [s]"].parse::<f64>().unwrap());
     let plot = fs::read_to_string(folder.join("out/pareto.svg")).unwrap();
-    for word in
-        ["processor time of a run [s]", "largest relative error [1]", "front", "reference", "tolerance"]
-    {
+    for word in ["CPU time of a run [s]", "largest relative error [1]", "front", "reference", "tolerance"] {
         assert!(plot.contains(word), "{word}");
     }
 }
@@ -199,14 +197,14 @@ fn resume_runs_only_what_is_not_done() {
     let before = snapshot(&runs);
     let again = trackbed(arguments(&folder, "out", &[]));
     let expected =
-        "found the run \"reference\", expected --resume to go on, --force to begin anew, or another --out";
+        "found the run \"reference\", expected --resume, --force to start from scratch, or another --out";
     assert_eq!((again.code, again.stderr.trim_end().ends_with(expected)), (2, true), "{}", again.stderr);
     // A mark in a finished run stays, and times by the clock too.
     fs::write(runs.join("reference/mark"), "").unwrap();
     let added = steps().replace("\"0.025 ms\"]", "\"0.025 ms\", \"0.0125 ms\"]");
     folder.write("study.toml", &added);
     let said = trackbed(arguments(&folder, "out", &["--resume"])).good();
-    assert!(said.stderr.contains("4 of 5 runs are there already"), "{}", said.stderr);
+    assert!(said.stderr.contains("4 of 5 runs exist"), "{}", said.stderr);
     let after = snapshot(&runs);
     assert!(before.iter().all(|(name, bytes)| after[name] == *bytes), "a finished run has changed");
     assert!(after.contains_key("reference/mark"));
@@ -219,7 +217,7 @@ fn resume_runs_only_what_is_not_done() {
     for option in ["--resume", "--merge"] {
         let refused = trackbed(arguments(&folder, "out", &[option]));
         assert_eq!(refused.code, 2);
-        assert!(refused.stderr.contains("of another state of the scene"), "{}", refused.stderr);
+        assert!(refused.stderr.contains("of a changed scene"), "{}", refused.stderr);
     }
     trackbed(arguments(&folder, "out", &["--force"])).good();
     assert!(
@@ -239,10 +237,7 @@ fn a_scene_that_changes_meanwhile_is_named() {
     folder.edit(summary, hash, "another");
     let said = trackbed(arguments(&folder, "out", &["--merge"]));
     let shown = format!("{}{}", said.stdout, said.stderr);
-    assert!(
-        shown.contains("of another state of the scene, which was changed while the study ran"),
-        "{shown}"
-    );
+    assert!(shown.contains("scene changed during the study"), "{shown}");
 }
 
 /// A run that fails is a row with its reason; the others go on, and it is not run again.
@@ -318,5 +313,5 @@ column = "grains_kinetic"
     let scatter =
         (deviations.iter().map(|d| d * d / 3.0).sum::<f64>()).sqrt() / numbers(&rows, "energy [J]")[0];
     assert!(close(numbers(&rows, "energy scatter")[1], scatter));
-    assert!(said.contains("below the scatter"), "{said}");
+    assert!(said.contains("not significant"), "{said}");
 }

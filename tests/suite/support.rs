@@ -151,7 +151,7 @@ pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
         .lines()
         .map(|line| match stages.iter().find(|s| line.starts_with(*s)) {
             Some(stage) => format!("{stage}{}\n", line.split_once(" s, ").unwrap().1),
-            None => format!("{}\n", line.split("; seconds in assembly").next().unwrap()),
+            None => format!("{}\n", line.split("; time: assembly").next().unwrap()),
         })
         .collect();
     files.insert("summary.json".into(), summary.to_string().into_bytes());

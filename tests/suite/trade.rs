@@ -71,7 +71,7 @@ fn refusals() {
         assert!(outcome.code == 2 && outcome.stderr.contains(expected), "{}", outcome.stderr);
     }
     let outcome = run(&scene, &folder.join("out"), &["time.mass_factor=4", "wind={ drag = 0.5 }"]);
-    let expected = "expected no such key beside [wind]: it is for beds that are pressed slowly";
+    let expected = "time.mass_factor: found together with [wind], expected only one of them";
     assert!(outcome.code == 2 && outcome.stderr.contains(expected), "{}", outcome.stderr);
     let coupled = folder.write("coupled.toml", COUPLED);
     write_lists(&small_block(), folder.path());
@@ -88,7 +88,7 @@ fn inertial_number_is_weighed() {
     };
     assert!(!said("4").contains("inertial number"));
     let text = said("1000");
-    assert!(text.contains("unusual: time.mass_factor: found 1000, at which the inertial number"), "{text}");
+    assert!(text.contains("warning: time.mass_factor: found 1000, at which the inertial number"), "{text}");
 }
 
 /// The skin of the search changes how often it searches, never the motion: kinetic energy and that of the springs have the same

@@ -22,7 +22,7 @@ fn a_solid_that_blows_up_has_failed() {
     ];
     let outcome = run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set);
     assert_eq!(outcome.code, 3, "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("the energy account does not close"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("energy error: "), "{}", outcome.stderr);
     assert!(outcome.stderr.contains("at t = "), "{}", outcome.stderr);
     let summary = json(&folder.join("out/summary.json"));
     assert_eq!(summary["verdict"]["outcome"], "failed");

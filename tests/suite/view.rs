@@ -439,7 +439,7 @@ fn nothing_outside_the_folder_is_read() {
         pvd(name);
         let (status, body) = server.get("/data/scene");
         assert_eq!(status, 422, "{name}");
-        assert!(String::from_utf8_lossy(&body).contains("expected a file in the folder"), "{name}");
+        assert!(String::from_utf8_lossy(&body).contains("expected a file in the directory"), "{name}");
     }
 }
 
@@ -452,8 +452,8 @@ fn folders_without_results_are_one_clear_error() {
     let html = folder.join("page.html");
     let cases: [(&Path, &str); 3] = [
         (&empty, "found no such file, expected the list of frames of a run"),
-        (&file, "found a file, expected the folder of the results of a run"),
-        (&folder.join("nowhere"), "found no such folder, expected the folder of the results of a run"),
+        (&file, "found a file, expected the results directory of a run"),
+        (&folder.join("nowhere"), "found no such directory, expected the results directory of a run"),
     ];
     for (dir, expected) in cases {
         for extra in [&["--no-open"][..], &["--export", html.to_str().unwrap()]] {
@@ -486,7 +486,7 @@ fn an_exported_page_has_all_frames_and_hostile_titles_as_text() {
     // It is not replaced unless this is wanted.
     let again = trackbed(arguments);
     assert_eq!(again.code, 2, "{}", again.stderr);
-    assert!(again.stderr.contains("or --force to replace it"), "{}", again.stderr);
+    assert!(again.stderr.contains("or --force to overwrite it"), "{}", again.stderr);
     let thinned = trackbed(arguments.iter().chain(&["--force", "--every", "2"])).good().stdout;
     assert!(thinned.contains("page.html: 3 frames, "), "{thinned}");
     let thin = fs::read_to_string(&html).unwrap();

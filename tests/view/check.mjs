@@ -69,7 +69,7 @@ try {
     await view.select('grains-colour', 'speed');
     const [legend] = (await view.state()).legends;
     // The four groups fly at 17.0 to 19.3 m/s at the start.
-    expect(legend?.title === 'Stones: Speed' && legend.range[0] > 16.9 && legend.range[1] < 19.4, JSON.stringify(legend));
+    expect(legend?.title === 'Grains: Speed' && legend.range[0] > 16.9 && legend.range[1] < 19.4, JSON.stringify(legend));
     const speed = await view.hash();
     await view.select('grains-colour', 'part');
     const groups = await view.hash();
@@ -98,7 +98,7 @@ try {
       return out;
     });
     const seen = found.filter((p) => p);
-    expect(seen.length === 4 && seen.every((p) => p.title === `Stone ${p.id}`), JSON.stringify(found));
+    expect(seen.length === 4 && seen.every((p) => p.title === `Grain ${p.id}`), JSON.stringify(found));
     expect(seen.every((p) => Math.abs(p.way / (0.01 * p.speed) - 1) < 0.02 && p.extent > 1 && p.extent < 3), JSON.stringify(found));
     // They start where the packings put them.
     const rows = [1, 2, 3, 4].flatMap((k) => fs.readFileSync(path.join(path.dirname(plates), `impact${k}.csv`), 'utf8').trim().split('\n'));

@@ -54,7 +54,7 @@ export async function onTrack(view, only) {
     const { picked } = await view.state();
     expect(picked.kind === 'grain' && picked.id === seen.id, `${picked.title} in place of stone ${seen.id}`);
     const text = await page.locator('#picked').innerText();
-    expect(/Speed/.test(text) && /diameter/.test(text) && text.includes(`Stone ${seen.id}`), text);
+    expect(/Speed/.test(text) && /diameter/.test(text) && text.includes(`Grain ${seen.id}`), text);
     const history = Object.values(picked.history)[0];
     expect(history.x.length === frames, `${history.x.length} points in the history`);
     expect(await page.locator('#plot-picked').isVisible(), 'its plot is there');

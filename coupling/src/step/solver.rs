@@ -55,10 +55,10 @@ pub(super) fn not_constant(model: &Model<'_>) -> SolveError {
 #[derive(Debug, thiserror::Error)]
 pub enum StepError {
     /// The grains failed.
-    #[error("grains: {0}")]
+    #[error(transparent)]
     Grains(#[from] dem::StepError),
     /// The solid failed.
-    #[error("solid at t = {time:.6e} s: {source}")]
+    #[error("at t = {time:.6e} s: solid: {source}")]
     Solid {
         /// Time of the failure [s].
         time: f64,
@@ -67,8 +67,7 @@ pub enum StepError {
     },
     /// The surface turned over.
     #[error(
-        "the surface of the solid has folded at element {element} at t = {time:.6e} s: a face there has turned over or \
-         collapsed; the load is beyond what a solid of small strains can bear, or the exchange is unstable"
+        "at t = {time:.6e} s: inverted face of the solid surface at element {element}. Reduce the load (small strains only) or coupling.substeps."
     )]
     Folded {
         /// Number of the element in the mesh's file.

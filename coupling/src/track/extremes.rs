@@ -192,8 +192,7 @@ impl TrackRecord {
         self.sleepers.iter().enumerate().filter_map(|(k, s)| {
             let LiftOff { first, seconds, rise } = s.lifted_off?;
             Some(format!(
-                "sleeper {} was lifted off: from t = {first:.6} s on no contact carried it for {seconds:.6} s in all, up to {:.3} mm \
-                 above its place when the cycles began",
+                "sleeper {}: without contact for {seconds:.6} s in total, first at t = {first:.6} s; largest uplift {:.3} mm since the first cycle",
                 k + 1,
                 1e3 * rise
             ))
@@ -237,6 +236,6 @@ mod tests {
         assert_eq!((record.largest_force, record.smallest_force, record.load_share), (9.0, -2.0, Some(0.5)));
         assert_eq!((record.rail_deflection, record.bend), (None, None));
         let text = TrackRecord { sleepers: vec![record] }.remarks().next().unwrap();
-        assert!(text.contains("sleeper 1 was lifted off: from t = 0.100000 s on"), "{text}");
+        assert!(text.contains("first at t = 0.100000 s"), "{text}");
     }
 }

@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// A quantity of the model is beyond what a number holds, or 0 where it must not be.
-    #[error("the {quantity} of the grains is beyond what a number holds")]
+    #[error("{quantity} of the grains is not a finite number")]
     NotFinite {
         /// Name of the quantity.
         quantity: &'static str,
@@ -98,7 +98,7 @@ pub enum ModelError {
     },
     /// Two rigid partners may touch.
     #[error(
-        "{a} and {b} may touch but both are rigid (infinite stiffness); give one a stiffness, or the pair one"
+        "{a} and {b} can be in contact, but both are rigid (infinite stiffness); give one material, or the pair, a stiffness"
     )]
     RigidPair {
         /// One partner.
@@ -108,7 +108,7 @@ pub enum ModelError {
     },
     /// The time step is above the stability limit.
     #[error(
-        "time step {dt} s is above the limit {limit} s, set by {cause}; take a smaller step, or allow it explicitly"
+        "time step {dt} s is above the critical time step {limit} s, set by {cause}; reduce it, or allow it explicitly"
     )]
     TimeStep {
         /// The step asked for [s].
@@ -196,7 +196,9 @@ impl fmt::Display for Partner {
 pub enum StepError {
     /// Two partners overlap by more than the smaller radius: the time step is too large, the contact too soft,
     /// or the scene starts with bodies inside each other.
-    #[error("at t = {time} s body {body} and {partner} overlap by {overlap} m, more than {bound} m")]
+    #[error(
+        "at t = {time:.6e} s: overlap of body {body} and {partner}: {overlap} m (limit {bound} m). Reduce the time step, or increase the contact stiffness."
+    )]
     Overlap {
         /// Time [s].
         time: f64,
@@ -211,7 +213,7 @@ pub enum StepError {
     },
     /// A body moves so fast that contacts would be missed, or its velocity is not a number.
     #[error(
-        "at t = {time} s body {body} moves at {speed} m/s, above the bound {bound} m/s (half the smallest radius per step)"
+        "at t = {time:.6e} s: speed of body {body}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
     )]
     Speed {
         /// Time [s].
@@ -225,8 +227,7 @@ pub enum StepError {
     },
     /// A rigid triangle body moves so fast that contacts would be missed, or its velocity is not a number.
     #[error(
-        "at t = {time} s a point of wall {wall} moves at {speed} m/s, above the bound {bound} m/s (half \
-         the smallest radius, of a grain or of rounded corners, per step)"
+        "at t = {time:.6e} s: speed of wall {wall}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
     )]
     WallSpeed {
         /// Time [s].
@@ -240,8 +241,7 @@ pub enum StepError {
     },
     /// Two round bodies of walls have come within each other's bounds.
     #[error(
-        "at t = {time} s the rigid bodies of walls {} and {} come within each other's bounds: contact between round bodies of \
-         walls is not modelled",
+        "at t = {time:.6e} s: contact of walls {} and {}: not supported between round rigid bodies. Keep their bounding boxes apart.",
         walls[0],
         walls[1]
     )]
@@ -253,8 +253,7 @@ pub enum StepError {
     },
     /// Two walls overlap by more than contacts are meant for.
     #[error(
-        "at t = {time} s walls {} and {} overlap by {overlap:e} m, more than the {bound:e} m that rounded corners allow: their contact is too \
-         soft, or its `rounding` too small",
+        "at t = {time:.6e} s: overlap of walls {} and {}: {overlap:e} m (limit {bound:e} m). Increase the contact stiffness, or `rounding`.",
         walls[0],
         walls[1]
     )]
@@ -269,7 +268,7 @@ pub enum StepError {
         bound: f64,
     },
     /// The device that computes the steps does not respond, or has no memory left.
-    #[error("at t = {time} s the device failed: {problem}")]
+    #[error("at t = {time:.6e} s: GPU failed: {problem}")]
     Device {
         /// Time [s].
         time: f64,
@@ -277,7 +276,7 @@ pub enum StepError {
         problem: String,
     },
     /// A rank that computes a part of the steps does not respond, or cannot.
-    #[error("at t = {time} s rank {rank} is lost: {problem}")]
+    #[error("at t = {time:.6e} s: rank {rank} lost: {problem}")]
     Rank {
         /// Time [s].
         time: f64,
@@ -287,9 +286,7 @@ pub enum StepError {
         problem: String,
     },
     /// An applied force names no body, or is not finite.
-    #[error(
-        "at t = {time} s applied force {index} (body {body}) names no body that is there, or is not finite"
-    )]
+    #[error("at t = {time:.6e} s: applied force {index} (body {body}): no such body, or not finite")]
     Applied {
         /// Time [s].
         time: f64,
@@ -299,15 +296,13 @@ pub enum StepError {
         body: usize,
     },
     /// A surface is given, but the model has no material for it.
-    #[error("a surface is given, but the model names no material for it (surface_material)")]
+    #[error("surface without a material in the model (surface_material)")]
     SurfaceMaterial,
     /// The surface is not made of the triangles that the model has of it.
-    #[error(
-        "a surface is given that is not made of the triangles that the model names for it (surface_mesh)"
-    )]
+    #[error("surface with other triangles than the model's (surface_mesh)")]
     SurfaceMesh,
     /// State or work belongs to another model.
-    #[error("the state holds {found} bodies, the model {expected}")]
+    #[error("state of {found} bodies for a model of {expected} bodies")]
     Mismatch {
         /// Bodies of the model.
         expected: usize,

@@ -398,7 +398,7 @@ impl<M: Machine> Device<M> {
             let as_before = !beside || self.handed.put_back(state);
             self.by_processor(model, state, surface, applied)?;
             // Else the processor's contacts have been in this step twice: it is not one to go on from.
-            let again = || failed(state, "a step failed there that did not fail when made again".into());
+            let again = || failed(state, "a step failed on the GPU but not when repeated on the CPU".into());
             return if as_before { Ok(()) } else { Err(again()) };
         }
         self.exchange();

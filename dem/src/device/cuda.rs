@@ -37,7 +37,7 @@ struct ByValue(Arguments);
 unsafe impl DeviceRepr for ByValue {}
 
 fn of_driver(e: DriverError) -> String {
-    format!("CUDA's driver: {e}")
+    format!("CUDA driver: {e}")
 }
 
 impl Cuda {
@@ -47,8 +47,8 @@ impl Cuda {
         let (driver, compiler) =
             unsafe { (cudarc::driver::sys::is_culib_present(), cudarc::nvrtc::sys::is_culib_present()) };
         match (driver, compiler) {
-            (false, _) => Some("the library of NVIDIA's driver (libcuda) is not on this machine"),
-            (_, false) => Some("the library of CUDA's run-time compiler (libnvrtc) is not on this machine"),
+            (false, _) => Some("NVIDIA driver library (libcuda) not found"),
+            (_, false) => Some("CUDA run-time compiler (libnvrtc) not found"),
             _ => None,
         }
     }

@@ -6,7 +6,7 @@ use crate::shape::Shape;
 
 /// What a model has and a device does not compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0} are not computed on a device, only on the processor")]
+#[error("not supported on a GPU: {0}")]
 pub struct Unsupported(pub &'static str);
 
 /// Whether a device computes all that a model has.
@@ -23,11 +23,11 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
         matches!(shape(k), Shape::Clump(_)) && fixed != 0 && fixed != 7
     };
     let all = [
-        (bodies().any(about_some), "clumps that are free to turn about some axes only"),
-        (model.solids && bodies().all(solid), "scenes of boxes and polyhedra alone"),
+        (bodies().any(about_some), "clumps that rotate about some axes only"),
+        (model.solids && bodies().all(solid), "scenes of boxes and polyhedra only"),
         (model.solids && !model.bonds.is_empty(), "bonds in scenes with boxes or polyhedra"),
-        (model.solids && model.periodic.is_some(), "boxes and polyhedra across periodic borders"),
-        (model.scarred, "bodies that scar the ground"),
+        (model.solids && model.periodic.is_some(), "boxes and polyhedra across periodic boundaries"),
+        (model.scarred, "scarring of walls"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
     ];
     match all.into_iter().find(|(there, _)| *there) {

@@ -44,7 +44,7 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
             return Err(ModelError::Material { material, parameter: p.key, value, expected: p.expected() });
         }
         if !crushing_takes_energy(m) {
-            let expected = "a strength with which crushing takes energy".to_string();
+            let expected = "a strength for which crushing dissipates energy".to_string();
             let (parameter, value) = ("corner_strength", m.corner_strength);
             return Err(ModelError::Material { material, parameter, value, expected });
         }
@@ -286,8 +286,7 @@ pub(crate) fn shells(walls: &Walls, shells: &Shells, laws: &Laws) -> Result<(), 
         }
         let at = |overlap| laws.stiffness(own, other, overlap, 1.0);
         if at(1.0) != at(2.0) && laws.edges([own, other]).is_none() {
-            let problem = "it is a rigid body of triangles that touches other walls, and the stiffness of such a contact grows with the overlap: only \
-                           linear springs and Hertz's law can be spread along its edges";
+            let problem = "a rigid body of triangles in contact with other walls supports only linear and Hertz contacts";
             return Err(ModelError::Wall { wall: walls.name(a as usize), problem });
         }
     }
@@ -299,10 +298,10 @@ pub(crate) fn scarring(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelE
     let Some(wall) = input.walls.iter().position(|w| w.scarring.is_some()) else { return Ok(()) };
     let error = |problem| Err(ModelError::Wall { wall: format!("wall {wall}"), problem });
     if bodies.iter().any(|b| !matches!(input.shapes[b.shape], Shape::Polyhedron(_))) {
-        return error("only dilated polyhedra and disks scar the ground");
+        return error("scarring supports only dilated polyhedra and disks");
     }
     if input.gravity.norm() == 0.0 {
-        return error("bodies scar the ground downwards, and without gravity there is no down");
+        return error("scarring requires gravity");
     }
     Ok(())
 }

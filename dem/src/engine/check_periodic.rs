@@ -21,7 +21,7 @@ pub(crate) fn check(
     let walls = !(input.triangles.is_empty() && input.walls.is_empty());
     let spheres = walls && bodies.iter().any(|b| b.kind != Kind::Solid);
     for (what, there) in [
-        ("spheres beside walls other than planes", spheres),
+        ("spheres with walls other than planes", spheres),
         ("an external surface", input.surface_material.is_some()),
         ("bonds", !input.bonds.is_empty()),
     ] {
@@ -58,8 +58,7 @@ pub(crate) fn check(
             (0..3).filter_map(room).find(|(extent, length)| extent + 2.0 * (largest + skin) > *length);
         if let Some((extent, length)) = short {
             return error(format!(
-                "{} is {extent:.3e} m long, too long for images {length} m apart of bodies of {largest:.3e} m: it could touch two of one body; \
-                 divide it, or leave it out",
+                "{} is {extent:.3e} m long, too long for a period of {length} m and bodies of {largest:.3e} m: contact with two images of one body; divide it, or remove it",
                 patch.partner
             ));
         }
@@ -79,7 +78,7 @@ pub(crate) fn check(
         let n = plane.normal.normalize();
         if let Some(d) = (0..3).find(|&d| input.periodic[d].is_some() && n[d].abs() > 1e-12) {
             return error(format!(
-                "the normal of plane {k} has a part along {}, which is periodic",
+                "the normal of plane {k} has a component along {}, which is periodic",
                 ["x", "y", "z"][d]
             ));
         }

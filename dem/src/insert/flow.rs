@@ -91,7 +91,7 @@ pub fn exchange(
         check(a.body, "put in", here)?;
         let finite = [&a.position, &a.velocity, &a.spin].iter().all(|v| v.iter().all(|x| x.is_finite()));
         if !finite {
-            let problem = "its place or motion is not finite";
+            let problem = "its position or motion is not finite";
             return Err(FlowError::Body { body: a.body, what: "put in", problem });
         }
         turnover.come.insert(a.body as u32, row(model, a));

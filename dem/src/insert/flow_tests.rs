@@ -284,7 +284,7 @@ fn what_cannot_leave_or_come_is_named() {
         (vec![160], vec![], "body 160 cannot be taken out: it is a box"),
         (vec![], vec![arrival(3)], "body 3 cannot be put in: it is there already"),
         (vec![], vec![arrival(4), arrival(4)], "body 4 cannot be put in: it is there already"),
-        (vec![], vec![astray], "body 4 cannot be put in: its place or motion is not finite"),
+        (vec![], vec![astray], "body 4 cannot be put in: its position or motion is not finite"),
     ] {
         assert_eq!(run.exchange(&leave, &arrive).unwrap_err().to_string(), text);
     }

@@ -70,10 +70,10 @@ pub struct Grown {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GrowError {
     /// The model of a round cannot be built.
-    #[error("growing grains: {0}")]
+    #[error("radius expansion: {0}")]
     Model(#[from] ModelError),
     /// A step failed: too many grains for the container, or too few rounds.
-    #[error("growing grains, round {round}: {source}; more rounds, or a larger porosity, may help")]
+    #[error("radius expansion, round {round}: {source} Increase `rounds` or the porosity.")]
     Step {
         /// Round, from 1.
         round: usize,
@@ -81,7 +81,7 @@ pub enum GrowError {
         source: StepError,
     },
     /// A grain left the container.
-    #[error("grain {0} was pushed out of the container; more rounds, or a larger porosity, may help")]
+    #[error("grain {0} left the container during radius expansion. Increase `rounds` or the porosity.")]
     Escaped(usize),
 }
 

@@ -65,7 +65,7 @@ pub struct Stone {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LibraryError {
     /// It holds no stone.
-    #[error("stone library '{0}' holds no stone")]
+    #[error("stone library '{0}' contains no stone")]
     Empty(String),
     /// A stone is not a clump.
     #[error("stone {index} ('{name}') of library '{library}': {source}")]

@@ -34,7 +34,7 @@ pub struct Placement {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlaceError {
     /// The box is empty or not finite.
-    #[error("the box to place stones in must have positive length along x and y: {lo:?} .. {hi:?} m")]
+    #[error("insertion box must have positive lengths along x and y: {lo:?} .. {hi:?} m")]
     Box {
         /// Lower corner in plan [m].
         lo: [f64; 2],
@@ -50,7 +50,7 @@ pub enum PlaceError {
         radius: f64,
     },
     /// A stone is wider than the box.
-    #[error("stone {index} with bounding radius {radius} m does not fit into a box {width} m wide")]
+    #[error("stone {index} with bounding radius {radius} m does not fit into a box of width {width} m")]
     TooWide {
         /// Index of the stone, from 0.
         index: usize,

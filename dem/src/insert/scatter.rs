@@ -27,7 +27,7 @@ pub enum ScatterError {
     },
     /// No free place was found.
     #[error(
-        "no free place for a grain of radius {radius} m after {placed} of {count} were placed (share {share:.3} of the volume); random places end near 0.38"
+        "no free position for a grain of radius {radius} m after {placed} of {count} grains (solid fraction {share:.3}; random insertion reaches about 0.38)"
     )]
     Full {
         /// Grains placed before.

@@ -74,7 +74,7 @@ pub enum SizeError {
     #[error("sizes from {0} m to {1} m: the first must be the smaller")]
     Order(f64, f64),
     /// A share is out of range.
-    #[error("the share {0} of the large size must lie in 0..1")]
+    #[error("the fraction {0} of the large size must lie in 0..1")]
     Share(f64),
     /// A deviation is not positive.
     #[error("the standard deviation {0} must be positive and finite")]

@@ -24,7 +24,7 @@ pub(crate) fn laws(materials: &[Material], exceptions: &[PairOverride]) -> Resul
             Err(ModelError::Material { material: i, parameter, value, expected: expected.into() })
         };
         if m.stiffness.is_finite() && !uses {
-            return of_material("stiffness", m.stiffness, "none (infinite): no contact law uses it");
+            return of_material("stiffness", m.stiffness, "not set (infinite): no contact law uses it");
         }
         let first = m.normal.and_then(|_| law(i, i).ok().flatten()).map(|c| c.normal_keys[0]);
         if first == Some("stiffness") && m.stiffness.is_infinite() {
@@ -40,11 +40,11 @@ pub(crate) fn laws(materials: &[Material], exceptions: &[PairOverride]) -> Resul
             Err(ModelError::Pair { index, parameter, value, expected: expected.into() })
         };
         if let Some(stiffness) = e.stiffness.filter(|_| !c.uses("stiffness")) {
-            return of_pair("stiffness", stiffness, "none: its contact law does not use it");
+            return of_pair("stiffness", stiffness, "not set: its contact law does not use it");
         }
         if e.damping.is_some() && !c.dashpot {
             let ratio = if let Some(Damping::Ratio(ratio)) = e.damping { ratio } else { 0.0 };
-            return of_pair("damping", ratio, "none: its normal law has no dashpot");
+            return of_pair("damping", ratio, "not set: its normal law has no dashpot");
         }
     }
     Ok(())

@@ -23,7 +23,7 @@ combinations! {
     Rough(Linear, Rough) = "linear spring-dashpot, rough",
     Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
     WaltonBraun(WaltonBraun, Spring) = "Walton-Braun",
-    Conical(ConicalDamage, RoughMindlin) = "Hertz-Mindlin with corners that crush",
+    Conical(ConicalDamage, RoughMindlin) = "Hertz-Mindlin with conical damage",
 }
 
 /// The linear law.
@@ -115,10 +115,10 @@ pub(super) fn once(texts: impl Iterator<Item = &'static str>) -> Vec<&'static st
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoLaw {
     /// The two have unlike normal laws.
-    #[error("unlike normal laws, \"{0}\" and \"{1}\", and none for the pair")]
+    #[error("different normal laws, \"{0}\" and \"{1}\", and none for the pair")]
     Unlike(&'static str, &'static str),
     /// Normal and tangential law do not go together.
-    #[error("normal law \"{0}\" with tangential law \"{1}\", which do not go together")]
+    #[error("normal law \"{0}\" with tangential law \"{1}\", an unsupported combination")]
     NoSuch(&'static str, &'static str),
 }
 

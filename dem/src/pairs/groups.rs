@@ -185,7 +185,7 @@ impl<const N: usize> TryFrom<Flat> for Groups<N> {
     fn try_from(flat: Flat) -> Result<Groups<N>, &'static str> {
         let width = if flat.turning { 8 } else { 4 };
         if !flat.names.len().is_multiple_of(N) || flat.memory.len() != flat.names.len() / N * width {
-            return Err("a list of contacts with names and memory of unlike length");
+            return Err("a list of contacts with names and history of different lengths");
         }
         let mut list = Groups::new(flat.turning);
         for (name, m) in flat.names.chunks_exact(N).zip(flat.memory.chunks_exact(width)) {

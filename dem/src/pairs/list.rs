@@ -76,7 +76,7 @@ impl TryFrom<Flat> for PairList {
     fn try_from(flat: Flat) -> Result<PairList, &'static str> {
         let whole = flat.counts.iter().try_fold(0_usize, |sum, n| sum.checked_add(*n as usize));
         if flat.names.len() != flat.counts.len() || whole != Some(flat.memory.len()) {
-            return Err("a list of pairs with names and memory of unlike length");
+            return Err("a list of pairs with names and history of different lengths");
         }
         let (mut list, mut rest) = (PairList::default(), &flat.memory[..]);
         for (name, count) in flat.names.iter().zip(&flat.counts) {

@@ -44,7 +44,7 @@ fn same(model: Model, bodies: u64, dt: f64) -> Result<Model, String> {
         return Ok(model);
     }
     Err(format!(
-        "it makes another model: {} bodies, step {} s; expected {bodies} bodies, step {dt} s",
+        "other model: found {} bodies, time step {} s, expected {bodies} bodies, time step {dt} s",
         model.body_count(),
         model.dt()
     ))

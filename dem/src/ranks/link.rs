@@ -41,7 +41,7 @@ impl Link for Box<dyn Link> {
 
 /// A rank that does not respond any more.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("rank {rank} is lost: {problem}")]
+#[error("rank {rank} lost: {problem}")]
 pub struct Lost {
     /// Its number.
     pub rank: usize,
@@ -52,6 +52,6 @@ pub struct Lost {
 impl Lost {
     /// A rank that sent what cannot be read.
     pub(super) fn garbled(rank: usize) -> Lost {
-        Lost { rank, problem: "it sent a message without meaning".into() }
+        Lost { rank, problem: "invalid message".into() }
     }
 }

@@ -4,7 +4,7 @@ use crate::engine::model::Model;
 
 /// What a model has and ranks do not share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0} are not shared among ranks, only computed on one")]
+#[error("not supported with several ranks: {0}")]
 pub struct Unsupported(pub &'static str);
 
 /// Whether ranks share all that a model has.

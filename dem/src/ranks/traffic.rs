@@ -55,7 +55,7 @@ impl Traffic {
         let lines = NAMES.iter().zip(self.messages.iter().zip(&self.bytes));
         lines
             .map(|(name, (&messages, &bytes))| {
-                format!("{name}: {:.3} messages and {:.0} bytes a step", each(messages), each(bytes))
+                format!("{name}: {:.3} messages per step, {:.0} bytes per step", each(messages), each(bytes))
             })
             .collect()
     }

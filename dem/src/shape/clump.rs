@@ -27,9 +27,7 @@ pub enum ShapeError {
         radius: f64,
     },
     /// The spheres form more than one piece.
-    #[error(
-        "sphere {0} of the clump does not touch the piece that holds sphere 0; a clump must be connected"
-    )]
+    #[error("sphere {0} of the clump is not connected to sphere 0; a clump must be connected")]
     Disconnected(usize),
 }
 

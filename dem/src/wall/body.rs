@@ -79,7 +79,7 @@ impl Body {
                 let tensor = match input.inertia {
                     Some(given) => of_six(given),
                     None if input.spin != Vec3::zeros() => {
-                        return Err(error("a round body turns only if its inertia is given"));
+                        return Err(error("a round body rotates only if its inertia is given"));
                     }
                     // Any will do: it does not turn.
                     None => {
@@ -93,7 +93,7 @@ impl Body {
         let (inertia, axes) = principal(&tensor);
         let sum = inertia.sum();
         if !(inertia.min() > 0.0 && sum.is_finite() && 2.0 * inertia.max() <= sum * (1.0 + 1e-9)) {
-            return Err(error("its moments of inertia are not those of a body"));
+            return Err(error("its moments of inertia are not those of a rigid body"));
         }
         let half = vertices.iter().fold(Vec3::zeros(), |h, v| h.sup(&(v - centre).abs()));
         Ok(Body {

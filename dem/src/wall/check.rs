@@ -58,25 +58,25 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         && m.angular_velocity.cross(normal).norm() > 1e-12 * m.angular_velocity.norm() * normal.norm()
     {
         return Some(
-            "an infinite plane can only turn about its normal: take triangles for a floor that tilts",
+            "an infinite plane can rotate about its normal only: use triangles for a floor that tilts",
         );
     }
     let moves = m.velocity != Vec3::zeros() || m.angular_velocity != Vec3::zeros() || m.oscillation.is_some();
     if let Some(s) = &wall.servo {
         if !(finite(&s.direction) && s.direction.norm() > 0.0) {
-            return Some("the direction of its drive must have a length above zero");
+            return Some("the direction of its servo must have a length above zero");
         }
         if !(s.max_speed > 0.0 && s.max_speed.is_finite() && s.gain > 0.0 && s.gain <= 1.0) {
-            return Some("its drive needs a speed above zero and a gain above 0, at most 1");
+            return Some("its servo needs a speed above zero and a gain above 0, at most 1");
         }
         if s.force.is_empty()
             || !s.force.iter().flatten().all(|x| x.is_finite())
             || !s.force.is_sorted_by(|a, b| a[0] < b[0])
         {
-            return Some("the force of its drive needs finite points with rising times");
+            return Some("the force of its servo needs finite points with ascending times");
         }
         if moves || wall.body.is_some() {
-            return Some("a driven wall has no other motion");
+            return Some("a servo-controlled wall has no other motion");
         }
     }
     if let Some(b) = &wall.body {
@@ -103,7 +103,7 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
 fn scarring(wall: &WallInput) -> Option<&'static str> {
     let scarring = wall.scarring.as_ref()?;
     if !matches!(wall.shape, WallShape::Triangles { .. }) || wall.moves() {
-        return Some("ground that is scarred is made of triangles that stand still");
+        return Some("a wall with scarring must be of triangles and fixed");
     }
     scarring.fault()
 }
@@ -115,7 +115,7 @@ fn mount(body: &RigidBody) -> Option<&'static str> {
         return Some("stiffness and damping of its mount must be zero or positive, and finite");
     }
     let idle = (0..3).any(|d| body.fixed[d] && (mount.stiffness[d] != 0.0 || mount.damping[d] != 0.0));
-    idle.then_some("its mount acts along a direction that is held")
+    idle.then_some("its mount acts along a fixed direction")
 }
 
 /// Refuses an index that points nowhere.

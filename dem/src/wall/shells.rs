@@ -118,7 +118,7 @@ fn rounded(vertices: &[Vec3], triangles: &[[u32; 3]], given: Option<f64>) -> Res
         None => Some(Shell { radius, ..Shell::sharp(vertices, triangles, &same) }),
     };
     if let Some(radius) = given {
-        return round(radius).ok_or("`rounding` is too large for its surface: a triangle would vanish");
+        return round(radius).ok_or("`rounding` is too large for its surface: a triangle would collapse");
     }
     let used = || triangles.iter().flatten().map(|v| vertices[*v as usize]);
     let high = used().fold(Vec3::repeat(f64::NEG_INFINITY), |h, v| h.sup(&v));
@@ -128,5 +128,5 @@ fn rounded(vertices: &[Vec3], triangles: &[[u32; 3]], given: Option<f64>) -> Res
         .map(|k| ROUNDING * smallest * 0.5_f64.powi(k))
         .filter(|radius| *radius > 0.0)
         .find_map(round)
-        .ok_or("its corners and edges cannot be rounded by a share of its smallest side: give `rounding`")
+        .ok_or("its corners and edges cannot be rounded by a fraction of its smallest side: give `rounding`")
 }

@@ -296,10 +296,7 @@ fn clumps_that_turn_about_some_axes_are_refused() {
     input.bodies[5].fixed[3] = true;
     let model = Model::new(input).expect("a good input");
     let why = source(&model).expect_err("not for a device").to_string();
-    assert_eq!(
-        why,
-        "clumps that are free to turn about some axes only are not computed on a device, only on the processor"
-    );
+    assert_eq!(why, "not supported on a GPU: clumps that rotate about some axes only");
 }
 
 /// A square of triangles, `n` to a side, around a middle; `height` along the normal of each vertex.

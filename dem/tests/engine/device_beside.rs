@@ -276,5 +276,5 @@ fn what_has_no_spheres_is_refused() {
     let mut input = among_blocks(gas([stone(), smooth()], Vec::new()));
     input.bodies.drain(..FIRST);
     let why = source(&Model::new(input).expect("a good input")).expect_err("not for a device").to_string();
-    assert!(why.starts_with("scenes of boxes and polyhedra alone are not computed on a device"), "{why}");
+    assert!(why.starts_with("not supported on a GPU: scenes of boxes and polyhedra only"), "{why}");
 }

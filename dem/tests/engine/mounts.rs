@@ -430,9 +430,9 @@ fn refusals() {
     };
     let ball = || WallShape::Sphere { centre: Vec3::zeros(), radius: 1.0 };
     refused(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, free(1.0), "an infinite plane");
-    refused(ball(), RigidBody { spin: Vec3::z(), ..free(1.0) }, "turns only if its inertia is given");
+    refused(ball(), RigidBody { spin: Vec3::z(), ..free(1.0) }, "rotates only if its inertia is given");
     refused(ball(), on_mount(1.0, 0, -1.0, 0.0), "zero or positive");
-    refused(ball(), RigidBody { fixed: [true; 6], ..on_mount(1.0, 0, 1.0, 0.0) }, "that is held");
+    refused(ball(), RigidBody { fixed: [true; 6], ..on_mount(1.0, 0, 1.0, 0.0) }, "a fixed direction");
 }
 
 /// A round body with an inertia turns: a hit off its centre sets it spinning, and angular momentum is kept without anything held.

@@ -314,6 +314,6 @@ fn what_cannot_be_periodic_is_refused() {
     has(refused(&|i| i.periodic[1] = Some([1.0, 1.0])), "y runs from 1 to 1");
     has(refused(&|i| i.periodic[2] = Some([0.0, f64::INFINITY])), "both must be finite");
     has(refused(&|i| i.planes.push(plane(Vec3::zeros(), Vec3::new(0.1, 0.0, 1.0)))), "normal of plane 0");
-    has(refused(&|i| i.triangles.push(triangle())), "spheres beside walls");
+    has(refused(&|i| i.triangles.push(triangle())), "spheres with walls");
     has(refused(&|i| i.surface_material = Some(0)), "an external surface");
 }

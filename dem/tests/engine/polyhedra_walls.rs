@@ -332,11 +332,11 @@ fn what_cannot_be_periodic_is_named() {
     };
     let mut long = column();
     long.triangles.push(floor(1, 0.4));
-    assert!(problem(long).contains("too long for images"));
+    assert!(problem(long).contains("too long for a period"));
     let mut spheres = column();
     spheres.shapes.push(Shape::Sphere { radius: 0.01 });
     spheres.bodies.push(body(4, Vec3::repeat(0.4)));
-    assert!(problem(spheres).contains("spheres beside walls"));
+    assert!(problem(spheres).contains("spheres with walls"));
     // Across waves that run along the border, and along those of which two lie between the borders; not one and a half.
     let waves = |length: f64, direction: f64| {
         let mut input = column();

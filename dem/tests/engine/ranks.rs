@@ -249,7 +249,7 @@ fn a_lost_rank_ends_all() {
     });
     assert!(matches!(error, StepError::Rank { rank: 2, .. }), "{error}");
     let text = error.to_string();
-    assert!(text.contains("rank 2 is lost: its thread has ended"), "{text}");
+    assert!(text.contains("rank 2 lost: its thread has ended"), "{text}");
 }
 
 #[test]
@@ -262,7 +262,7 @@ fn other_models_and_features_are_refused() {
 
     let block = Model::new(pile(3, true)).expect("a good input");
     let text = check(&block).expect_err("a block").to_string();
-    assert_eq!(text, "boxes and polyhedra are not shared among ranks, only computed on one");
+    assert_eq!(text, "not supported with several ranks: boxes and polyhedra");
     let periodic = ModelInput { periodic: [Some([-1.0, 2.0]), None, None], planes: Vec::new(), ..gas() };
     let text = check(&Model::new(periodic).expect("a good input")).expect_err("a border").to_string();
     assert!(text.starts_with("periodic borders"), "{text}");
@@ -272,5 +272,5 @@ fn other_models_and_features_are_refused() {
 #[test]
 fn traffic_is_counted_by_kind() {
     let lines = Traffic { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);
-    assert_eq!(lines[Kind::Ghosts as usize], "ghosts: 0.500 messages and 10 bytes a step");
+    assert_eq!(lines[Kind::Ghosts as usize], "ghosts: 0.500 messages per step, 10 bytes per step");
 }

@@ -201,7 +201,7 @@ fn refusals() {
     refused(floating, "gravity");
     let mut moving = scene(SOFT);
     moving.walls[0].motion = Motion { velocity: Vec3::x(), ..Motion::default() };
-    refused(moving, "stand still");
+    refused(moving, "must be of triangles and fixed");
     let mut round = scene(SOFT);
     round.walls[0].shape = WallShape::Sphere { centre: Vec3::zeros(), radius: 1.0 };
     refused(round, "triangles");

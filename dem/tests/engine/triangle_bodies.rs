@@ -207,7 +207,7 @@ fn refusals() {
     let mut odd = good();
     (body_of(&mut odd).centre, body_of(&mut odd).inertia) =
         (Some(Vec3::zeros()), Some([1.0, 1.0, 3.0, 0.0, 0.0, 0.0]));
-    fails(odd, "not those of a body");
+    fails(odd, "not those of a rigid body");
     fails(
         WallInput { shape: WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, ..good() },
         "an infinite plane",

@@ -401,7 +401,7 @@ fn refusals_and_failures() {
     let soft = Material { stiffness: 1e4, ..material() };
     let (error, _) = fails(on_floor(soft, thrown(3.0), 0.02));
     assert!(matches!(error, StepError::WallsOverlap { walls: [1, 0], .. }), "{error}");
-    assert!(error.to_string().contains("`rounding` too small"), "{error}");
+    assert!(error.to_string().contains("or `rounding`"), "{error}");
     let (error, _) = fails(on_floor(Material { stiffness: 1e3, ..material() }, thrown(400.0), 0.02));
     assert!(matches!(error, StepError::WallSpeed { wall: 1, .. }), "{error}");
     // Edges that pass through an edge, or through a pile, where no corner touches.

@@ -31,10 +31,10 @@ pub struct Response {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ReturnError {
     /// The trial stress or the return holds a number that is not finite.
-    #[error("the stress at a material point is not finite")]
+    #[error("stress at an integration point is not finite")]
     NotFinite,
     /// The iteration for `kappa` stalled.
-    #[error("the return to the yield surface did not converge (equivalent plastic strain {kappa})")]
+    #[error("return mapping not converged (equivalent plastic strain {kappa})")]
     NotConverged {
         /// Equivalent plastic strain at the last iteration.
         kappa: f64,

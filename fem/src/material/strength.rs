@@ -56,7 +56,7 @@ impl Strength<'_> {
             return Some(("cohesion", c, "0 or above"));
         }
         if c == 0.0 && phi == 0.0 {
-            return Some(("cohesion", c, "a value above 0 where the friction angle is 0"));
+            return Some(("cohesion", c, "a value above 0 if the friction angle is 0"));
         }
         if !(dilation >= 0.0 && dilation <= phi) {
             return Some(("dilation angle", dilation, "between 0 and the smallest friction angle"));
@@ -67,7 +67,7 @@ impl Strength<'_> {
             }
             let (c, phi) = (cohesion.at(0.0).0, friction.at(0.0).0);
             if t * libm::sin(phi) > c * libm::cos(phi) {
-                return Some(("tension cut-off", t, "at most c cot(phi), where the apex lies"));
+                return Some(("tension cut-off", t, "at most c cot(phi), the apex"));
             }
         }
         None

@@ -39,7 +39,7 @@ pub enum ModalError {
     #[error(transparent)]
     Solve(#[from] SolveError),
     /// The iteration did not come to an end.
-    #[error("only {found} of {wanted} modes converged in {restarts} restarts")]
+    #[error("not converged: {found} of {wanted} modes after {restarts} restarts")]
     NotConverged {
         /// Modes that converged.
         found: usize,
@@ -49,7 +49,7 @@ pub enum ModalError {
         restarts: usize,
     },
     /// A mode misses its equation.
-    #[error("mode {mode} misses its equation by {}", size(*residual))]
+    #[error("residual of mode {mode}: {}", size(*residual))]
     Inaccurate {
         /// Number of the mode, from 1.
         mode: usize,

@@ -52,7 +52,7 @@ pub(super) fn check_state(model: &Model, state: &State) -> Result<(), SolveError
     }
     let (found, expected) = (state.points.len(), model.point_count());
     if found != expected && !(found == 0 && model.is_linear()) {
-        return Err(SolveError::Length { what: "list of Gauss points of the state", found, expected });
+        return Err(SolveError::Length { what: "list of integration points of the state", found, expected });
     }
     check_finite(model, "the displacement", &state.u, state.time)
 }

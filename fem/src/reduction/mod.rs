@@ -64,14 +64,14 @@ pub enum ReductionError {
     #[error(transparent)]
     Modal(#[from] ModalError),
     /// The contact surface has no faces, or no free dofs.
-    #[error("the contact surface has no dof that is free to move")]
+    #[error("the contact surface has no free degree of freedom")]
     NoSurface,
     /// No shape was asked for.
     #[error("a reduction to modes needs at least 1 mode")]
     NoModes,
     /// More shapes than pay.
     #[error(
-        "the reduction would have {shapes} shapes of {dofs} free dofs; it pays up to {} shapes, and no more than half of the dofs",
+        "reduction of {shapes} modes for {dofs} free degrees of freedom, expected at most {} modes and half the degrees of freedom",
         MOST_SHAPES
     )]
     TooMany {
@@ -81,6 +81,6 @@ pub enum ReductionError {
         dofs: usize,
     },
     /// The equations of the span cannot be taken apart.
-    #[error("the shapes of the reduction do not give a positive definite stiffness")]
+    #[error("reduced stiffness matrix not positive definite")]
     NotDefinite,
 }

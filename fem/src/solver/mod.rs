@@ -32,13 +32,13 @@ pub trait LinearSolver {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AnalysisError {
     /// The factor cannot be addressed, or there is no memory for its structure.
-    #[error("there is not enough memory to factor {equations} equations")]
+    #[error("not enough memory for the factorization of {equations} equations")]
     Memory {
         /// Number of equations.
         equations: usize,
     },
     /// The pattern or the order of elimination is not as described.
-    #[error("the pattern of the matrix cannot be used: {what}")]
+    #[error("invalid matrix pattern: {what}")]
     Pattern {
         /// What is wrong with it.
         what: &'static str,
@@ -47,7 +47,7 @@ pub enum AnalysisError {
 
 /// A pivot that ended a factorization.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the pivot of equation {equation} is {ratio:.3e} of its scale: the matrix cannot be factored")]
+#[error("singular matrix: pivot of equation {equation} is {ratio:.3e} of its scale")]
 pub struct PivotError {
     /// The equation, numbered as in the pattern.
     pub equation: usize,
@@ -60,33 +60,31 @@ pub struct PivotError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MumpsError {
     /// The program was built without it.
-    #[error("this program was built without MUMPS; `cargo build --release --features mumps` builds it in")]
+    #[error("built without MUMPS; build with `cargo build --release --features mumps`")]
     Missing,
     /// No memory.
-    #[error("MUMPS found no memory for the factor")]
+    #[error("MUMPS: out of memory for the factorization")]
     Memory,
     /// More memory is needed than the analysis expected.
-    #[error("MUMPS needs far more memory for the factor than it expected")]
+    #[error("MUMPS: the factorization needs far more memory than estimated")]
     Room,
     /// Files of a factor out of core.
-    #[error(
-        "MUMPS cannot write or read the files of the factor in the folder for temporary files (variable TMPDIR, at most 255 bytes)"
-    )]
+    #[error("MUMPS: I/O error in the temporary directory (variable TMPDIR, at most 255 bytes)")]
     Files,
     /// A pivot near zero.
-    #[error("MUMPS found no pivot for equation {equation}: the matrix cannot be factored")]
+    #[error("MUMPS: singular matrix, zero pivot in equation {equation}")]
     Pivot {
         /// The equation, from 0.
         equation: usize,
     },
     /// Negative pivots.
-    #[error("MUMPS found {pivots} negative pivots: the matrix is not positive definite")]
+    #[error("MUMPS: matrix not positive definite, {pivots} negative pivots")]
     NotPositive {
         /// How many.
         pivots: u32,
     },
     /// Another error, by the numbers of MUMPS's manual.
-    #[error("MUMPS stopped with INFOG(1) = {code}, INFOG(2) = {detail}")]
+    #[error("MUMPS: error INFOG(1) = {code}, INFOG(2) = {detail}")]
     Code {
         /// INFOG(1).
         code: i32,

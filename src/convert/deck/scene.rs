@@ -165,7 +165,7 @@ impl Maker<'_> {
         self.line("[[grains]]\nname = \"grains\"\nshape = \"sphere\"\nmaterial = \"grains\"");
         if let Some(packing) = &options.packing {
             if !restart {
-                let expected = ".true. beside --packing, or no packing";
+                let expected = ".true. with --packing, or no packing";
                 return Err(d.error("restart", expected).into());
             }
             self.line(&format!("packing = {:?}\n", relative(packing, output)));
@@ -205,7 +205,7 @@ impl Maker<'_> {
     fn scattered(&mut self, options: &Options, low: [f64; 3]) -> Result<(), Failure> {
         let d = self.deck;
         let Some(size) = options.region else {
-            let expected = "--packing FILE, or --box X,Y,Z: the deck does not say how many grains there are";
+            let expected = "--packing FILE, or --box X,Y,Z, as the deck contains no number of grains";
             return Err(d.error("restart", expected).into());
         };
         let share = d.number("cc", |c| c > 0.0 && c < 1.0, "above 0, below 1")?;

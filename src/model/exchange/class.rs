@@ -64,14 +64,14 @@ impl ContactClass {
             self.stones[0],
             self.stones[1],
             if self.stones[0] < 0.3 * self.masses.least() {
-                " (some lighter than 0.3 of the point)"
+                " (some below 0.3 of the nodal mass)"
             } else {
                 ""
             },
             self.w,
             limit(self.w_limit),
             self.d,
-            self.d_limit.map_or(String::new(), |l| format!(" (at most {l})")),
+            self.d_limit.map_or(String::new(), |l| format!(" (limit {l})")),
             self.numbers.stiffness,
             self.numbers.damping,
             self.numbers.phase,
@@ -109,9 +109,7 @@ fn heavy(c: &ContactClass) -> Option<String> {
     let ratio = c.stones[1] / c.masses.least();
     (ratio > HEAVY).then(|| {
         format!(
-            "{} on {}: a stone of {:.3e} kg is {ratio:.0} times as heavy as the lightest point of the surface (at most {HEAVY} \
-             here): where it lands hard, faces bend so that it touches several at once, and the account of energy errs; \
-             take larger elements or a wider transfer.spread",
+            "{} on {}: grain mass {:.3e} kg is {ratio:.0} times the smallest effective nodal mass (limit {HEAVY}). Hard impacts may contact several faces at once; the energy error grows. Use larger elements or a wider transfer.spread.",
             c.grains, c.solid, c.stones[1]
         )
     })
@@ -129,22 +127,21 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
             let fewer = match fitting {
                 _ if lax => {
                     let theta = (20.0 * (0.5 + 0.25 * c.d)).ceil() / 20.0;
-                    format!("coupling.theta = {:.2} would do", theta.max(WITH_SLEEPERS))
+                    format!("Set coupling.theta = {:.2}", theta.max(WITH_SLEEPERS))
                 }
-                0 => "not even coupling.substeps = 1 would do".into(),
-                1.. => format!("coupling.substeps = {fitting} would do (or \"auto\")"),
+                0 => "coupling.substeps = 1 is not sufficient".into(),
+                1.. => format!("Set coupling.substeps = {fitting} (or \"auto\")"),
             };
             let other = match scheme {
-                Scheme::Lagged => ", and so may scheme = \"predicted\"",
-                Scheme::Predicted => ", and so may scheme = \"stiffened\" or \"iterated\", a wider transfer.spread",
-                Scheme::Stiffened => ", and so may scheme = \"iterated\"",
+                Scheme::Lagged => ", scheme = \"predicted\"",
+                Scheme::Predicted => ", scheme = \"stiffened\" or \"iterated\", a wider transfer.spread",
+                Scheme::Stiffened => ", scheme = \"iterated\"",
                 Scheme::Iterated { .. } => "",
             };
-            let damping = c.d_limit.map_or(String::new(), |limit| format!(", D = {:.2} (at most {limit})", c.d));
-            let may = if scheme == Scheme::Lagged { "unstable or err in its energy" } else { "unstable" };
+            let damping = c.d_limit.map_or(String::new(), |limit| format!(", D = {:.2} (limit {limit})", c.d));
+            let may = if scheme == Scheme::Lagged { "unstable or inaccurate in energy" } else { "unstable" };
             format!(
-                "the exchange may be {may} for {} on {}: W = {:.2} (at most {:.2} here){damping}; {fewer}{other}, or \
-                 softer contacts",
+                "{} on {}: coupling may be {may}: W = {:.2} (limit {:.2}){damping}. {fewer}{other}, or softer contacts.",
                 c.grains, c.solid, c.w, c.w_limit
             )
         })

@@ -106,8 +106,8 @@ impl CouplingPart {
     /// The transfer in words.
     pub fn transfer_kind(&self, surface: &SolidSurface) -> String {
         match surface.spread() {
-            None => "point, through the shape functions of the touched face".into(),
-            Some(spread) => format!("spread over discs of {:.4e} m", spread.radius()),
+            None => "point, by the shape functions of the face".into(),
+            Some(spread) => format!("distributed over discs of radius {:.4e} m", spread.radius()),
         }
     }
 
@@ -169,11 +169,11 @@ impl CouplingPart {
             return Ok(());
         };
         let found = format!(
-            "\"auto\" with W = {:.2} (at most {:.2}), D = {:.2}{} for {} on {} in windows of one grain step, {dt:.2e} s",
+            "\"auto\" with W = {:.2} (limit {:.2}), D = {:.2}{} for {} on {} in windows of one DEM step, {dt:.2e} s",
             c.w,
             c.w_limit,
             c.d,
-            c.d_limit.map_or(String::new(), |l| format!(" (at most {l})")),
+            c.d_limit.map_or(String::new(), |l| format!(" (limit {l})")),
             c.grains,
             c.solid
         );

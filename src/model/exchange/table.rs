@@ -56,15 +56,15 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<
 /// Refuses what polyhedra cannot be combined with.
 fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneError> {
     if c.faces == Some(FacesName::Curved) {
-        let expected = "\"flat\", or no such key: polyhedra touch flat triangles between the nodes";
-        return Err(c.error("faces", "\"curved\"", expected));
+        let remedy = "Polyhedra contact flat triangles between the nodes";
+        return Err(c.error("faces", "\"curved\" with polyhedra", "\"flat\"").remedy(remedy));
     }
     if c.scheme == SchemeName::Stiffened {
-        let expected = "another scheme beside polyhedra: this one knows contacts of spheres only";
-        return Err(c.error("scheme", "\"stiffened\"", expected));
+        let expected = "\"predicted\", \"lagged\" or \"iterated\"";
+        return Err(c.error("scheme", "\"stiffened\" with polyhedra", expected));
     }
     if solid.sleepers.is_some() {
-        return Err(c.here("polyhedra beside meshed sleepers", "rigid sleepers, or other shapes of grains"));
+        return Err(c.here("polyhedra with meshed sleepers", "rigid sleepers, or another shape of grains"));
     }
     Ok(())
 }
@@ -72,9 +72,7 @@ fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneE
 /// How long a step of the solid is.
 fn window(c: &Table<Coupling>) -> Result<WindowPlan, SceneError> {
     match (c.substeps.unwrap_or_default(), c.window) {
-        (_, Some(_)) if c.substeps.is_some() => {
-            Err(c.error("window", "a value", "no such key beside `substeps`"))
-        }
+        (_, Some(_)) if c.substeps.is_some() => Err(c.conflict("window", "`substeps`")),
         (_, Some(window)) if window.si > 0.0 && window.si.is_finite() => Ok(WindowPlan::Seconds(window.si)),
         (_, Some(window)) => Err(c.error("window", window.si.to_string(), "a time above 0")),
         (Substeps::Auto, None) => Ok(WindowPlan::Auto),
@@ -86,19 +84,19 @@ fn window(c: &Table<Coupling>) -> Result<WindowPlan, SceneError> {
 fn scheme(c: &Table<Coupling>, solid: &SolidPart) -> Result<Scheme, SceneError> {
     if c.scheme != SchemeName::Iterated {
         let idle = [("tolerance", c.tolerance.is_some()), ("max_passes", c.max_passes.is_some())];
-        c.refuse(idle, "no such key but with scheme = \"iterated\"")?;
+        c.reject_without(idle, "`scheme = \"iterated\"`")?;
     }
+    let others = "\"predicted\", \"lagged\" or \"iterated\"";
     Ok(match c.scheme {
         SchemeName::Predicted => Scheme::Predicted,
         SchemeName::Lagged => Scheme::Lagged,
         SchemeName::Stiffened => {
             if !solid.is_linear() {
-                let expected = "another scheme for a plastic solid or one with initial stress: this one needs a constant matrix";
-                return Err(c.error("scheme", "\"stiffened\"", expected));
+                let found = "\"stiffened\" with a plastic solid or initial stress";
+                return Err(c.error("scheme", found, others));
             }
             if solid.reduction.is_some() {
-                let expected = "another scheme beside [solid.reduction]: this one needs the whole matrix";
-                return Err(c.error("scheme", "\"stiffened\"", expected));
+                return Err(c.error("scheme", "\"stiffened\" with [solid.reduction]", others));
             }
             Scheme::Stiffened
         }
@@ -127,6 +125,6 @@ fn transfer(c: &Table<Coupling>) -> Result<TransferPlan, SceneError> {
         (None, Some(factor)) => {
             Err(transfer.error("spread_factor", factor.to_string(), "above 0, at most 100"))
         }
-        _ => Err(transfer.here("both or none of `spread` and `spread_factor`", "one of them")),
+        (spread, _) => Err(transfer.choice(["spread", "spread_factor"], spread.is_some())),
     }
 }

@@ -8,7 +8,7 @@ use crate::scene::compaction::{Compaction, CompactionKind};
 use crate::scene::grains::GrainShape;
 use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
-use crate::scene::{Scene, SceneError, Table};
+use crate::scene::{Scene, SceneError, Table, kinds};
 use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
@@ -159,8 +159,10 @@ fn refuse_idle_keys(c: &Table<Compaction>) -> Result<(), SceneError> {
         ("layers", c.layers.is_some(), &[Pouring]),
         ("level", c.level.is_some(), &[Pouring]),
     ];
-    let idle = keys.map(|(key, present, kinds)| (key, present && !kinds.contains(&c.kind)));
-    c.refuse(idle, "no such key for this kind of compaction")
+    match keys.into_iter().find(|(_, present, of)| *present && !of.contains(&c.kind)) {
+        Some((key, _, of)) => Err(c.no_effect(key, kinds(of))),
+        None => Ok(()),
+    }
 }
 
 fn swing(c: &Table<Compaction>) -> Result<(f64, u32), SceneError> {
@@ -204,7 +206,7 @@ fn tamping(
     c.check("force", force, |f| f > 0.0, "above 0")?;
     let at = c.need("at", c.at.as_ref(), "places of the plate")?;
     if at.is_empty() {
-        return Err(c.error("at", "none", "at least one place"));
+        return Err(c.error("at", "none", "at least one position"));
     }
     let plate = BodyInput {
         shape: groups.add_shape(Shape::Box { half }),
@@ -284,7 +286,7 @@ fn plane(scene: &Table<Scene>, c: &Table<Compaction>, key: &str, wall: usize) ->
         Some(it) if is_plain(it) => Ok(scene.walls[..wall].iter().filter(|w| is_plain(w)).count()),
         Some(it) if it.kind == WallKind::Plane => {
             let expected = "a plane without `servo`, `body`, `oscillation`, `angular_velocity` and `record`";
-            Err(c.error(key, format!("{wall}, a plane that is more"), expected))
+            Err(c.error(key, format!("{wall}, a plane with other keys"), expected))
         }
         _ => Err(c.error(key, wall.to_string(), "the number of a plane in [[walls]], counted from 0")),
     }

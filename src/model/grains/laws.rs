@@ -47,12 +47,11 @@ pub(super) fn check_laws(
     for (pair, c) in contacts.iter().zip(scene.rows("contact", &scene.contact)) {
         let Ok(Some(own)) = law(pair.a, pair.b) else { continue };
         if c.stiffness.is_some() && !own.uses("stiffness") {
-            let expected = "no stiffness where materials have a Young's modulus";
-            return Err(c.error("stiffness", "a stiffness", expected));
+            return Err(c.conflict("stiffness", "`young` of the materials"));
         }
         if c.damping.is_some() && !own.dashpot {
-            let expected = format!("no such key, as normal law \"{}\" has no dashpot", own.normal);
-            return Err(c.error("damping", "a value", expected));
+            let remedy = format!("The normal law \"{}\" has no dashpot", own.normal);
+            return Err(c.no_effect("damping", "a dashpot").remedy(remedy));
         }
     }
     Ok(())
@@ -64,33 +63,27 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
     let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
     if m.stiffness.is_some() && unused("stiffness") {
         let young = scene.material.iter().find(|other| other.young.is_some());
-        let expected = match young {
-            Some(other) => format!("no stiffness, as \"{}\" has a Young's modulus", other.name),
-            None => "no stiffness, as no law of its contacts uses one".to_string(),
-        };
-        return Err(m.error("stiffness", "a stiffness", expected));
+        return Err(match young {
+            Some(other) => m.conflict("stiffness", format!("`young` of \"{}\"", other.name)),
+            None => m.no_effect("stiffness", "a contact law that uses it"),
+        });
     }
     if m.young.is_some() && unused("young") {
-        let expected = "no modulus, as no law of its contacts uses one";
-        return Err(m.error("young", "a modulus", expected));
+        return Err(m.no_effect("young", "a contact law that uses it"));
     }
     if m.tangential_damping_ratio > 0.0 && !laws.is_empty() && !laws.iter().any(|law| law.dashpot) {
-        let expected = "no such key, as no law of its contacts has a dashpot";
-        return Err(m.error("tangential_damping_ratio", "a value", expected));
+        return Err(m.no_effect("tangential_damping_ratio", "a contact law with a dashpot"));
     }
     if m.corner_strength.is_some() && unused("corner_strength") {
-        let expected = "no such key, as no law of its contacts has corners that crush";
-        return Err(m.error("corner_strength", "a value", expected));
+        return Err(m.no_effect("corner_strength", "a contact law with conical damage"));
     }
     // The linear law gets a tangential law of its own where there are asperities.
     let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
     if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {
-        let expected = "no such key, as no law of its contacts knows asperities";
-        return Err(m.error("asperity_friction", "a value", expected));
+        return Err(m.no_effect("asperity_friction", "a contact law with asperities"));
     }
     if m.tangential_ratio.is_some() && unused("tangential_ratio") {
-        let expected = "no such key beside `young`: Poisson's ratio sets it";
-        return Err(m.error("tangential_ratio", "a value", expected));
+        return Err(m.conflict("tangential_ratio", "`young`").remedy("Poisson's ratio sets it"));
     }
     Ok(())
 }

@@ -133,9 +133,7 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         (true, None) => {
             Err(m.missing("asperity_pressure", "the pressure at which half of `asperity_friction` is left"))
         }
-        (false, Some(_)) => {
-            Err(m.error("asperity_pressure", "a value", "no such key without `asperity_friction`"))
-        }
+        (false, Some(_)) => Err(m.no_effect("asperity_pressure", "`asperity_friction`")),
         _ => Ok(()),
     }
 }
@@ -144,11 +142,9 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
 fn corner_keys(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (m.corner_strength, m.corner_angle) {
         (None, None) => Ok(()),
-        (None, Some(_)) => Err(m.error("corner_angle", "a value", "no such key without `corner_strength`")),
+        (None, Some(_)) => Err(m.no_effect("corner_angle", "`corner_strength`")),
         (Some(_), None) => Err(m.missing("corner_angle", "half the angle of the cones that crush")),
-        (Some(_), Some(_)) if m.young.is_none() => {
-            Err(m.error("corner_strength", "a value", "no such key without `young`"))
-        }
+        (Some(_), Some(_)) if m.young.is_none() => Err(m.requirement("corner_strength", "`young`")),
         (Some(_), Some(_)) => Ok(()),
     }
 }
@@ -164,18 +160,16 @@ fn crushing(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
         "corner_strength",
         Some(strength.si),
         |s| s < most,
-        &format!("below {most:.3e} Pa with this modulus and angle, so that crushing takes energy"),
+        &format!("below {most:.3e} Pa with this modulus and angle, so that crushing dissipates energy"),
     )?;
     Ok(())
 }
 
 fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (&m.young, m.poisson) {
-        (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio beside `young`")),
-        (None, Some(_)) => Err(m.error("poisson", "a value", "no such key without `young`")),
-        (None, None) if m.edge_factor.is_some() => {
-            Err(m.error("edge_factor", "a value", "no such key without `young`"))
-        }
+        (Some(_), None) => Err(m.missing("poisson", "Poisson's ratio with `young`")),
+        (None, Some(_)) => Err(m.requirement("poisson", "`young`")),
+        (None, None) if m.edge_factor.is_some() => Err(m.no_effect("edge_factor", "`young`")),
         _ => Ok(()),
     }
 }
@@ -202,8 +196,8 @@ fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
     for c in scene.rows("contact", &scene.contact) {
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| match (kind, value) {
             (Some(Resistance::None), Some(_)) => {
-                let expected = "no such key without the resistance";
-                Err(c.error(k, "a value", expected))
+                let resistance = k.trim_end_matches("_friction");
+                Err(c.conflict(k, format!("`{resistance} = \"none\"`")))
             }
             (Some(Resistance::None), None) => Ok(Some(0.0)),
             (Some(Resistance::Spring) | None, value) => Ok(value),
@@ -231,13 +225,9 @@ fn damping(c: &Table<PairContact>) -> Result<Option<Damping>, SceneError> {
     match (c.damping, c.damping_ratio) {
         (Some(DampingKind::Ratio), Some(zeta)) => Ok(Some(Damping::Ratio(zeta))),
         (Some(DampingKind::Ratio), None) => Err(c.missing("damping_ratio", "the damping ratio")),
-        (_, Some(_)) => {
-            let expected = "no such key without `damping = \"ratio\"`";
-            Err(c.error("damping_ratio", "a value", expected))
-        }
+        (_, Some(_)) => Err(c.no_effect("damping_ratio", "`damping = \"ratio\"`")),
         (Some(_), None) if c.restitution.is_some() && c.damping == Some(DampingKind::None) => {
-            let expected = "no such key beside `damping = \"none\"`";
-            Err(c.error("restitution", "a value", expected))
+            Err(c.conflict("restitution", "`damping = \"none\"`"))
         }
         (Some(DampingKind::None), None) => Ok(Some(Damping::None)),
         (Some(DampingKind::Restitution), None) => Ok(Some(Damping::Restitution)),

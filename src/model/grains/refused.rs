@@ -1,6 +1,6 @@
 //! What the model of the grains refuses, in words of the scene.
 
-use crate::scene::{Document, SceneError};
+use crate::scene::{Document, Problem, SceneError};
 use trackbed_dem::ModelError;
 
 /// What is wrong with the grains as a whole, which shows only when their model is made.
@@ -13,23 +13,21 @@ pub fn refused(document: &Document, error: &ModelError) -> SceneError {
         }
         ModelError::NotFinite { quantity } => document.beyond_range(&format!("the {quantity} of the grains")),
         ModelError::RigidPair { a, b } => {
-            let found = format!("no stiffness for {a} against {b}, which may touch");
+            let found = format!("no stiffness for {a} against {b}, which can be in contact");
             document.error("material", found, "`stiffness` for one of their materials, or for the pair")
         }
         ModelError::Wall { wall, problem } => {
-            document.error("walls", format!("{wall}: {problem}"), "walls that can be built")
+            document.error("walls", format!("{wall}: {problem}"), "valid walls")
         }
-        ModelError::Adhesion { index, with } => document.error(
-            &format!("contact.{index}.adhesion"),
-            format!("adhesion beside {with}"),
-            "no adhesion in such a scene",
-        ),
+        ModelError::Adhesion { index, with } => {
+            document.problem(&format!("contact.{index}.adhesion"), Problem::conflict(*with))
+        }
         ModelError::Periodic { problem } => {
-            document.error("periodic", problem, "axes that the rest of the scene can be periodic along")
+            document.error("periodic", problem, "axes along which the scene can be periodic")
         }
         ModelError::Bond { .. } | ModelError::BondKind { .. } => {
-            document.error("bond", error.to_string(), "bonds that can be made")
+            document.error("bond", error.to_string(), "valid bonds")
         }
-        other => document.error("grains", other.to_string(), "grains and walls that make a model"),
+        other => document.error("grains", other.to_string(), "valid grains and walls"),
     }
 }

@@ -26,10 +26,9 @@ pub struct RunoutPlan {
 /// The plan of a scene.
 pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Option<RunoutPlan>, SceneError> {
     let Some(table) = scene.optional("runout", &scene.runout) else { return Ok(None) };
-    let beside = [("coupling", scene.coupling.is_some()), ("periodic", scene.periodic.is_some())];
-    if let Some((key, _)) = beside.iter().find(|(_, there)| *there) {
-        let found = format!("it beside [{key}]");
-        return Err(table.here(found, "a slide on walls: the ground is taken from planes and triangles"));
+    let excluded = [("coupling", scene.coupling.is_some()), ("periodic", scene.periodic.is_some())];
+    if let Some((key, _)) = excluded.iter().find(|(_, present)| *present) {
+        return Err(scene.conflict("runout", format!("[{key}]")));
     }
     let [x, y] = table.direction;
     let length = libm::hypot(x, y);

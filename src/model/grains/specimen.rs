@@ -52,7 +52,7 @@ pub struct EventPlan {
 pub(super) fn events(scene: &Table<Scene>) -> Result<Option<EventPlan>, SceneError> {
     let Some(table) = scene.optional("events", &scene.events) else { return Ok(None) };
     if scene.bond.is_empty() {
-        return Err(table.here("it without [[bond]]", "bonds that can break"));
+        return Err(scene.no_effect("events", "[[bond]]"));
     }
     let distance = table.check("distance", table.distance, |l| l >= 0.0, "0 or more")?.si;
     let time = table.check("time", table.time, |t| t >= 0.0, "0 or more")?.si;
@@ -88,7 +88,7 @@ pub(super) fn build(
     }
     let side_area = match (sides.is_empty(), table.side_area) {
         (true, None) => 1.0,
-        (true, Some(_)) => return Err(table.error("side_area", "a value", "no such key without `sides`")),
+        (true, Some(_)) => return Err(table.no_effect("side_area", "`sides`")),
         (false, _) => {
             let a = table.need("side_area", table.side_area, "the area of each side")?;
             table.check("side_area", a, |a| a > 0.0, "above 0")?
@@ -131,12 +131,12 @@ fn area(table: &Table<Specimen>, length: f64) -> Result<f64, SceneError> {
     match table.test {
         SpecimenTest::Compression => {
             let idle = [("thickness", table.thickness.is_some())];
-            table.refuse(idle, "no such key for this test")?;
+            table.reject_without(idle, "`test = \"brazilian\"`")?;
             let area = table.need("area", table.area, "the section of the specimen")?;
             table.check("area", area, |a| a > 0.0, "above 0")
         }
         SpecimenTest::Brazilian => {
-            table.refuse([("area", table.area.is_some())], "no such key for this test")?;
+            table.reject_without([("area", table.area.is_some())], "`test = \"compression\"`")?;
             let t = table.need("thickness", table.thickness, "the thickness of the disc")?;
             let t = table.check("thickness", t, |t| t > 0.0, "a length above 0")?.si;
             Ok(0.5 * PI * length * t)

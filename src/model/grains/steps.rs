@@ -59,9 +59,9 @@ pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
         (scene.walls.iter().filter_map(|w| w.body.as_ref()).any(|b| b.mount.is_some()), "a `mount`"),
     ];
     match dynamic.into_iter().find(|(there, _)| *there) {
-        Some((_, what)) => {
-            let expected = format!("no such key beside {what}: it is for beds that are pressed slowly");
-            Err(time.error("mass_factor", factor.to_string(), expected))
+        Some((_, other)) => {
+            let remedy = "Mass scaling is valid for quasi-static loading only";
+            Err(time.conflict("mass_factor", other).remedy(remedy))
         }
         None => Ok(factor),
     }
@@ -75,16 +75,14 @@ pub(super) fn impact_speed(
     let time = scene.below("time", &scene.time);
     let speed = time.check("impact_speed", time.impact_speed, |v| v >= 0.0, "0 or more")?;
     let idle = speed.is_some() && !laws::stiffens(&materials.all, &materials.pairs);
-    time.refuse([("impact_speed", idle)], "no such key without a material with `young`")?;
+    time.reject_without([("impact_speed", idle)], "a material with `young`")?;
     Ok(speed.map(|v| v.si))
 }
 
 /// The step, or how it is found.
 pub(super) fn time_step(time: &Table<TimeControl>) -> Result<TimeStep, SceneError> {
     match (time.grain_step, time.grain_step_fraction) {
-        (Some(_), Some(f)) => {
-            Err(time.error("grain_step_fraction", f.to_string(), "no such key beside `grain_step`"))
-        }
+        (Some(_), Some(_)) => Err(time.conflict("grain_step_fraction", "`grain_step`")),
         (Some(step), None) if step.si <= 0.0 => {
             Err(time.error("grain_step", step.si.to_string(), "a time above 0"))
         }
@@ -92,8 +90,7 @@ pub(super) fn time_step(time: &Table<TimeControl>) -> Result<TimeStep, SceneErro
         (Some(step), None) => Ok(TimeStep::Fixed(step.si)),
         (None, fraction) => {
             if time.accept_step_above_limit {
-                let key = "accept_step_above_limit";
-                return Err(time.error(key, "true", "a `grain_step` that it accepts"));
+                return Err(time.no_effect("accept_step_above_limit", "`grain_step`"));
             }
             let share = fraction.unwrap_or(TimeStep::SHARE);
             let good = |f| (1e-6..=1.0).contains(&f);

@@ -9,7 +9,7 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
     let Some(water) = scene.optional("water", &scene.water) else { return Ok(None) };
     if !(gravity.z < 0.0 && gravity.x == 0.0 && gravity.y == 0.0) {
         let found = format!("[{}, {}, {}] m/s2", gravity.x, gravity.y, gravity.z);
-        return Err(scene.error("gravity", found, "gravity along -z beside `[water]`"));
+        return Err(scene.error("gravity", found, "gravity along -z with [water]"));
     }
     let current = water.current.map(|v| v.si);
     let speed = libm::hypot(current[0], current[1]);
@@ -44,7 +44,7 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
 fn wave(water: &Table<Written>, current: [f64; 2], gravity: f64) -> Result<Option<Wave>, SceneError> {
     let depth = water.check("depth", water.depth, |d| d > 0.0, "above 0")?.map_or(f64::INFINITY, |d| d.si);
     let Some(wave) = water.optional("wave", &water.wave) else {
-        water.refuse([("depth", water.depth.is_some())], "no such key without `wave`, which feels it")?;
+        water.reject_without([("depth", water.depth.is_some())], "[water.wave]")?;
         return Ok(None);
     };
     wave.check("height", wave.height, |h| h > 0.0, "above 0")?;
@@ -53,17 +53,14 @@ fn wave(water: &Table<Written>, current: [f64; 2], gravity: f64) -> Result<Optio
     let measured = match (&wave.period, &wave.length) {
         (Some(period), None) => Measured::Period(period.si),
         (None, Some(length)) => Measured::Length(length.si),
-        (found, _) => {
-            let found = if found.is_some() { "both" } else { "neither" };
-            return Err(wave.here(found, "either `period` or `length`"));
-        }
+        (period, _) => return Err(wave.choice(["period", "length"], period.is_some())),
     };
     let (height, direction, phase) = (wave.height.si, wave.direction.si, wave.phase.si);
     let made = Wave::new(height, measured, direction, phase, depth, current, gravity);
     made.map(Some).map_err(|e| match e {
         WaveError::Breaks { length, limit } => {
             let expected = format!(
-                "at most {limit:.4} m, where a wave of {length:.4} m breaks (0.142 L tanh(k h), Miche 1944)"
+                "at most {limit:.4} m, the breaking height of a wave of {length:.4} m (0.142 L tanh(k h), Miche 1944)"
             );
             wave.error("height", format!("{height} m"), expected)
         }

@@ -77,7 +77,7 @@ pub fn plans(
     ];
     let mut present = chosen.iter().filter(|(_, present)| *present).map(|(name, _)| *name);
     if let (Some(first), Some(second)) = (present.next(), present.next()) {
-        return Err(solid.error(second, format!("it beside `{first}`"), "one way to solve the solid"));
+        return Err(solid.conflict(second, format!("`{first}`")));
     }
     let analysis = match (&solid.dynamics, &solid.quasi_static, &solid.strength_reduction) {
         (Some(d), _, _) => Analysis::Dynamic(time_method(&solid.below("dynamics", d))?),
@@ -102,21 +102,20 @@ pub fn plans(
         }
     }
     if solid.newton.is_some() && linear && solid.initial_stress.is_none() {
-        let expected = "no such table for an elastic solid without initial stress";
-        return Err(solid.error("newton", "a table", expected));
+        return Err(solid.no_effect("newton", "a plastic material or [solid.initial_stress]"));
     }
     let initial = solid.optional("initial_stress", &solid.initial_stress);
     let initial_stress = initial.map(|i| initial_stress(&i, materials)).transpose()?;
     if coupled && solid.initial_stress.as_ref().is_some_and(|i| i.loads) {
-        let expected = "no such key for a solid under grains, whose loads come after the initial stress";
-        return Err(solid.error("initial_stress.loads", "true", expected));
+        let remedy = "Loads of a coupled solid act after the initial stress";
+        return Err(solid.conflict("initial_stress.loads", "[[grains]]").remedy(remedy));
     }
     if let Some(&first) = materials.k0.keys().next()
         && !matches!(initial_stress, Some(InitialStressPlan { kind: InitialStressKind::K0 { .. }, .. }))
     {
         let position = solid.material.iter().position(|m| m.id == first).unwrap_or(0);
-        let expected = "no such key without `method = \"k0\"` in [solid.initial_stress]";
-        return Err(solid.row("material", &solid.material, position).error("k0", "a value", expected));
+        let without = "`method = \"k0\"` in [solid.initial_stress]";
+        return Err(solid.row("material", &solid.material, position).no_effect("k0", without));
     }
     let mut newton = newton(solid)?.unwrap_or_default();
     let given = solid.newton.as_ref().is_some_and(|n| n.tolerance.is_some());
@@ -133,7 +132,7 @@ fn time_method(d: &Table<Dynamics>) -> Result<TimeMethod, SceneError> {
             ("delta", d.delta.is_some()),
             ("accept_conditional_stability", d.accept_conditional_stability),
         ];
-        d.refuse(idle, "no such key beside `hht_alpha`")?;
+        d.reject_with(idle, "`hht_alpha`")?;
         d.check("hht_alpha", alpha, |a| (-1.0 / 3.0..=0.0).contains(&a), "-1/3 to 0")?;
         return Ok(TimeMethod::Hht(alpha));
     }

@@ -37,8 +37,7 @@ pub fn supports(solid: &Table<Solid>, geometry: &Geometry) -> Result<Supports, S
         let value = s.displacement.map_or(0.0, |d| d.si);
         let function = time_function(s.optional("history", &s.history))?;
         if s.history.is_some() && value == 0.0 {
-            let expected = "a displacement beside it that is not 0";
-            return Err(s.error("history", "a course of nothing", expected));
+            return Err(s.no_effect("history", "a `displacement` other than 0"));
         }
         let mut dofs = Vec::new();
         for &node in &nodes {

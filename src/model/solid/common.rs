@@ -8,5 +8,5 @@ use crate::scene::{SceneError, Table};
 pub fn time_function(history: Option<Table<History>>) -> Result<TimeFunction, SceneError> {
     let Some(h) = history else { return Ok(TimeFunction::CONSTANT) };
     let rows = h.file.as_ref().map(|f| tables::history(&h.locate(f), tables::FACTOR)).transpose()?;
-    TimeFunction::new(&h, rows).map_err(|(key, found, expected)| h.error(key, found, expected))
+    TimeFunction::new(&h, rows).map_err(|(key, problem)| h.problem(key, problem))
 }

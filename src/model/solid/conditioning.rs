@@ -39,9 +39,7 @@ pub fn is_poor(model: &Model) -> bool {
 pub fn message(model: &Model, node: u32, pivot: f64) -> String {
     let (flatness, element) = flattest(model);
     format!(
-        "mesh: found stiffnesses too unlike to be solved together: at node {node} {pivot:.1e} of the diagonal is left, below \
-         1e-11; Young's moduli differ by a factor of {:.1e}, the edges of element {element} by one of {flatness:.1e}; expected \
-         moduli and edges less unlike, and a body that is held everywhere",
+        "mesh: found an ill-conditioned stiffness matrix: pivot {pivot:.1e} of the diagonal at node {node} (limit 1e-11), ratio of Young's moduli {:.1e}, aspect ratio of element {element} {flatness:.1e}, expected smaller ratios and sufficient supports",
         contrast(model)
     )
 }

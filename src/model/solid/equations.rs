@@ -73,7 +73,7 @@ pub(super) fn plan(
             EquationMethod::Auto | EquationMethod::Direct => None,
         };
         if let (Some(name), Some(hindrance)) = (name, hindrance) {
-            let found = format!("\"{name}\" beside {hindrance}");
+            let found = format!("\"{name}\" with {hindrance}");
             return Err(t.error("method", found, "\"auto\" or \"direct\""));
         }
     }
@@ -81,9 +81,9 @@ pub(super) fn plan(
     let mumps = MumpsMethod { out_of_core: chosen.out_of_core.unwrap_or(false) };
     let choose = |used: bool, wins: bool, why: String| match method {
         _ if !used => (Method::Direct, String::new()),
-        EquationMethod::Direct => (Method::Direct, "as the scene says".into()),
-        EquationMethod::Iterative => (Method::Iterative { tolerance }, "as the scene says".into()),
-        EquationMethod::Mumps => (Method::Mumps(mumps), "as the scene says".into()),
+        EquationMethod::Direct => (Method::Direct, "set in the scene".into()),
+        EquationMethod::Iterative => (Method::Iterative { tolerance }, "set in the scene".into()),
+        EquationMethod::Mumps => (Method::Mumps(mumps), "set in the scene".into()),
         EquationMethod::Auto if wins => (Method::Iterative { tolerance }, why),
         EquationMethod::Auto => (Method::Direct, why),
     };
@@ -110,9 +110,9 @@ fn check(t: &Table<Equations>) -> Result<(), SceneError> {
     t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
     let (direct, mumps) = (t.method == EquationMethod::Direct, t.method == EquationMethod::Mumps);
     let idle = t.out_of_core.is_some() && !mumps;
-    t.refuse([("out_of_core", idle)], "no such key but with method = \"mumps\"")?;
-    t.refuse([("tolerance", direct && t.tolerance.is_some())], "no such key beside method = \"direct\"")?;
-    t.refuse([("tolerance", mumps && t.tolerance.is_some())], "no such key beside method = \"mumps\"")?;
+    t.reject_without([("out_of_core", idle)], "`method = \"mumps\"`")?;
+    t.reject_with([("tolerance", direct && t.tolerance.is_some())], "`method = \"direct\"`")?;
+    t.reject_with([("tolerance", mumps && t.tolerance.is_some())], "`method = \"mumps\"`")?;
     if mumps && !cfg!(feature = "mumps") {
         let found = "\"mumps\", which this program was built without";
         let expected = "\"auto\", \"direct\" or \"iterative\"; `cargo build --release --features mumps` builds a program that has it";

@@ -36,10 +36,10 @@ pub struct Geometry {
 /// No source or several, or a file is missing, unreadable or contradictory.
 pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
     let of_lists = [("layout", solid.layout.is_some()), ("constraints", solid.constraints.is_some())];
-    let alone = "no such key: it goes with lists alone";
+    let lists = "`nodes` and `elements`";
     let mut geometry = match (&solid.mesh, &solid.nodes, &solid.elements, &solid.block) {
         (Some(file), None, None, None) => {
-            solid.refuse(of_lists, alone)?;
+            solid.reject_without(of_lists, lists)?;
             let path = solid.locate(file);
             let read = read::read_mesh_file(&path)?;
             from_file(read, path.clone(), path)
@@ -54,11 +54,8 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
             from_file(MeshFile::from(lists), element_file, constraint_file)
         }
         (None, None, None, Some(b)) => {
-            solid.refuse(of_lists, alone)?;
-            solid.refuse(
-                [("scale", solid.scale.is_some())],
-                "no such key: lengths of a block are in metres",
-            )?;
+            solid.reject_without(of_lists, lists)?;
+            solid.reject_with([("scale", solid.scale.is_some())], "[solid.block]")?;
             let file = solid.scene_file().to_path_buf();
             Geometry {
                 mesh: block(&solid.below("block", b), solid.order)?,
@@ -68,14 +65,15 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
             }
         }
         (None, Some(_), None, None) => {
-            return Err(solid.missing("elements", "the element list beside `nodes`").into());
+            return Err(solid.requirement("nodes", "`elements`").into());
         }
         (None, None, Some(_), None) => {
-            return Err(solid.missing("nodes", "the node list beside `elements`").into());
+            return Err(solid.requirement("elements", "`nodes`").into());
         }
-        _ => {
-            let found = "none or several of `mesh`, `nodes` with `elements`, and `block`";
-            return Err(solid.here(found, "one source of the mesh").into());
+        (mesh, nodes, elements, block) => {
+            let lists = nodes.is_some() || elements.is_some();
+            let sources = [("mesh", mesh.is_some()), ("nodes", lists), ("block", block.is_some())];
+            return Err(solid.one_of(&sources).into());
         }
     };
     if let Some(factor) = solid.scale {

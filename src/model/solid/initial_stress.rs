@@ -2,7 +2,7 @@
 
 use super::material::Materials;
 use crate::scene::solid::{InitialStress, InitialStressMethod, Solid};
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, setting};
 use std::collections::BTreeMap;
 use trackbed_fem::Mesh;
 use trackbed_fem::nonlinear::initial_stress::Overburden;
@@ -50,8 +50,7 @@ pub(super) fn initial_stress(
         ("layers", i.layers.is_some(), "k0"),
         ("stress", i.stress.is_some(), "uniform"),
     ] {
-        let expected = format!("no such key for the method \"{method}\"");
-        i.refuse([(name, present && of != method)], &expected)?;
+        i.reject_without([(name, present && of != method)], &setting("method", &[of]))?;
     }
     let kind = match i.method {
         InitialStressMethod::Gravity => InitialStressKind::Gravity,
@@ -88,10 +87,7 @@ fn overburden(i: &Table<InitialStress>) -> Result<Option<Overburden>, SceneError
             }
             Ok(Some(Overburden::Layers(layers)))
         }
-        _ => {
-            let expected = "either `surface` or `layers`";
-            Err(i.error("layers", "a list beside `surface`", expected))
-        }
+        _ => Err(i.conflict("layers", "`surface`")),
     }
 }
 
@@ -116,7 +112,7 @@ pub fn check_overburden(
     let (least, most) = densities.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), d| (a.min(*d), b.max(*d)));
     if most > least * (1.0 + 1e-9) {
         let found = format!("nothing, and materials of {least} to {most} kg/m3");
-        let expected = "the layers as [[height of the top, density], …]: the density of a point does not tell what lies above it";
+        let expected = "the layers as [[height of the top, density], …]";
         return Err(solid.error("initial_stress.layers", found, expected));
     }
     Ok(())

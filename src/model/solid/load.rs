@@ -6,7 +6,7 @@ use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{SolidLoad, SolidLoadKind};
 use crate::scene::units::vector;
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, kinds};
 use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Mesh;
@@ -36,21 +36,18 @@ impl NodalLoad {
 /// # Errors
 /// A key is missing or not one of this kind of load, or it covers no face.
 pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalLoad, SceneError> {
+    use SolidLoadKind::{Point, Pressure, Traction};
     let mesh = &geometry.mesh;
-    let foreign = "no such key for this kind of load";
     let function = time_function(load.optional("history", &load.history))?;
     let mut pattern = vec![0.0; 3 * mesh.node_count()];
     match load.kind {
         SolidLoadKind::Pressure | SolidLoadKind::Traction => {
             let pressure = load.kind == SolidLoadKind::Pressure;
-            let idle = [
-                ("traction", pressure && load.traction.is_some()),
-                ("pressure", !pressure && load.pressure.is_some()),
-                ("node", load.node.is_some()),
-                ("at", load.at.is_some()),
-                ("force", load.force.is_some()),
-            ];
-            load.refuse(idle, foreign)?;
+            load.reject_without([("traction", pressure && load.traction.is_some())], &kinds(&[Traction]))?;
+            load.reject_without([("pressure", !pressure && load.pressure.is_some())], &kinds(&[Pressure]))?;
+            let of_points =
+                [("node", load.node.is_some()), ("at", load.at.is_some()), ("force", load.force.is_some())];
+            load.reject_without(of_points, &kinds(&[Point]))?;
             let (list, set) = (load.faces.as_deref(), load.set.as_deref());
             let faces = selection::faces(load, geometry, list, load.faces_in, load.side, set)?;
             for face in &faces {
@@ -64,15 +61,15 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
             }
         }
         SolidLoadKind::Point => {
-            let idle = [
+            let of_faces = [
                 ("faces", load.faces.is_some()),
                 ("faces_in", load.faces_in.is_some()),
                 ("side", load.side.is_some()),
                 ("set", load.set.is_some()),
-                ("pressure", load.pressure.is_some()),
-                ("traction", load.traction.is_some()),
             ];
-            load.refuse(idle, foreign)?;
+            load.reject_without(of_faces, &kinds(&[Pressure, Traction]))?;
+            load.reject_without([("pressure", load.pressure.is_some())], &kinds(&[Pressure]))?;
+            load.reject_without([("traction", load.traction.is_some())], &kinds(&[Traction]))?;
             let force = vector(&load.need("force", load.force, "a value for a point load")?);
             match (load.node, load.at) {
                 (Some(id), None) => {
@@ -82,9 +79,7 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
                     }
                 }
                 (None, Some(at)) => point_load(load, mesh, vector(&at), force, &mut pattern)?,
-                _ => {
-                    return Err(load.error("node", "both or none of `node` and `at`", "one of them"));
-                }
+                (node, _) => return Err(load.choice(["node", "at"], node.is_some())),
             }
         }
     }

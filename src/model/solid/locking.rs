@@ -15,10 +15,12 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
     let kinds = mesh.connectivity.kinds();
     let idle = solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear());
-    let expected = "no such key for linear elements, whose dilatation is always the mean";
-    solid.refuse([("dilatation", idle)], expected)?;
+    if idle {
+        let remedy = "Linear elements always use the mean dilatation";
+        return Err(solid.no_effect("dilatation", "quadratic elements").remedy(remedy));
+    }
     let idle = solid.incompatible_modes.is_some() && !kinds.contains(&ElementKind::Hex8);
-    solid.refuse([("incompatible_modes", idle)], "no such key for a mesh without 8-node hexahedra")?;
+    solid.reject_without([("incompatible_modes", idle)], "8-node hexahedra")?;
     Ok(AssumedStrain {
         dilatation: match solid.dilatation.unwrap_or_default() {
             Dilatation::Pointwise => fem::Dilatation::Pointwise,

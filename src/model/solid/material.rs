@@ -22,8 +22,7 @@ pub struct Materials {
 pub fn materials(solid: &Table<Solid>) -> Result<Materials, SceneError> {
     let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
     for m in solid.rows("material", &solid.material) {
-        let constants =
-            m.resolve().map_err(|MaterialFault { key, found, expected }| m.error(key, found, expected))?;
+        let constants = m.resolve().map_err(|MaterialFault { key, problem }| m.problem(key, problem))?;
         if materials.constants.insert(m.id, constants).is_some() {
             return Err(m.error("id", format!("material {} again", m.id), "each number once"));
         }

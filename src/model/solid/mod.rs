@@ -82,7 +82,7 @@ impl SolidPart {
                 Failure::Input(format!("{file}: {}", conditioning::message(&self.model, *node, *pivot)))
             }
             SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
-                "{file}: constraints: found too few ({error}), expected a body that is held"
+                "{file}: constraints: found too few ({error}), expected supports that prevent rigid-body motion"
             )),
             SolveError::Stopped => Failure::Interrupted("interrupted".into()),
             SolveError::Newmark(_) | SolveError::TimeStep { .. } | SolveError::Theta { .. } => {
@@ -283,5 +283,5 @@ fn refused(elements: &Path, error: &fem::ModelError, inside_out: Option<String>)
         ),
         other => ("mesh".into(), other.to_string(), "a mesh that makes a model"),
     };
-    SceneError { file: elements.to_path_buf(), line: None, key, found, expected: expected.into() }
+    SceneError::whole(elements, key, found, expected)
 }

@@ -11,15 +11,14 @@ pub(super) fn reduction(
     coupled: bool,
 ) -> Result<Option<fem::reduction::Reduction>, SceneError> {
     let Some(r) = solid.reduction else { return Ok(None) };
-    let refuse = |found: &str, expected: &str| Err(solid.error("reduction", found, expected));
     if !linear {
-        return refuse("a material with plasticity", "no such key unless every material is linear elastic");
+        return Err(solid.conflict("reduction", "a plastic material"));
     }
     if solid.initial_stress.is_some() {
-        return refuse("initial stress", "no such key beside solid.initial_stress");
+        return Err(solid.conflict("reduction", "[solid.initial_stress]"));
     }
     if !coupled {
-        return refuse("a value", "no such key without [[grains]]");
+        return Err(solid.no_effect("reduction", "[[grains]]"));
     }
     match (r.kind, r.modes) {
         (ReductionKind::Surface, modes) => {

@@ -47,10 +47,12 @@ pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, 
         }
         (None, None, Some(name), None) => node_set(support, geometry, name).cloned(),
         (None, None, None, Some(id)) => Ok(vec![find_node(support, mesh, id)? as u32]),
-        _ => {
-            let found = "none or several of `side`, `nodes_in`, `set` and `node`";
-            Err(support.here(found, "one of them"))
-        }
+        _ => Err(support.one_of(&[
+            ("side", support.side.is_some()),
+            ("nodes_in", support.nodes_in.is_some()),
+            ("set", support.set.is_some()),
+            ("node", support.node.is_some()),
+        ])),
     }
 }
 
@@ -97,10 +99,12 @@ pub fn faces<T>(
                 f.nodes().iter().all(|n| member[*n as usize])
             })
         }
-        _ => {
-            let found = "none or several of `faces`, `faces_in`, `side` and `set`";
-            Err(table.here(found, "one of them"))
-        }
+        _ => Err(table.one_of(&[
+            ("faces", list.is_some()),
+            ("faces_in", within.is_some()),
+            ("side", side.is_some()),
+            ("set", set.is_some()),
+        ])),
     }
 }
 
@@ -108,7 +112,7 @@ fn node_set<'g, T>(table: &Table<T>, geometry: &'g Geometry, name: &str) -> Resu
     geometry.node_sets.get(name).ok_or_else(|| {
         let known: Vec<&str> = geometry.node_sets.keys().map(String::as_str).collect();
         let expected = if known.is_empty() {
-            "a node set of the mesh file, which has none".into()
+            "the name of a node set (the mesh file contains no sets)".into()
         } else {
             format!("a node set of the mesh file: {}", known.join(", "))
         };

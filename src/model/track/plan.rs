@@ -4,7 +4,7 @@ use super::trains;
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable};
-use crate::scene::{Number, SceneError, Table};
+use crate::scene::{Number, SceneError, Table, kinds};
 use trackbed_coupling::track::influence::Winkler;
 use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
 use trackbed_coupling::track::rail::RailInput;
@@ -159,7 +159,8 @@ fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
         let mut allowed = KEYS.iter().filter(|(n, kinds, _)| *n == name && kinds.contains(&l.kind));
         match (allowed.next(), present(name)) {
             (None, true) => {
-                return Err(l.error(name, "a value", "no such key for this kind of load"));
+                let of = KEYS.iter().filter(|(n, ..)| *n == name).flat_map(|(_, of, _)| *of);
+                return Err(l.no_effect(name, kinds(&of.collect::<Vec<_>>())));
             }
             (Some((_, _, true)), false) => {
                 return Err(l.missing(name, "a value for this kind of load"));
@@ -249,7 +250,7 @@ pub fn rail(track: &Table<TrackTable>, r: &Table<RailTable>) -> Result<RailPlan,
         if beam && needed && !present {
             return Err(r.missing(name, "a value for a beam"));
         }
-        r.refuse([(name, present && !beam)], "no such key for this kind of rail")?;
+        r.reject_without([(name, present && !beam)], &kinds(&[RailKind::Beam]))?;
     }
     if !beam {
         return Ok(RailPlan::Winkler(Winkler::new(bending, foundation, spacing)));

@@ -136,8 +136,7 @@ pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSl
         }
         (None, Some(density)) => mesh.check("density", density.si, |d| d > 0.0, "a density above 0")?,
         (Some(_), Some(_)) => {
-            let expected = "no such key beside track.sleeper.mass";
-            return Err(mesh.error("density", "a value", expected));
+            return Err(mesh.conflict("density", "track.sleeper.mass"));
         }
         (None, None) => {
             let expected = "it, or the density of a meshed sleeper";
@@ -161,22 +160,21 @@ pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSl
 /// Refuses what meshed sleepers cannot be combined with.
 fn refuse_company(scene: &Table<Scene>, track: &Table<TrackTable>) -> Result<(), SceneError> {
     let Some(solid) = &scene.solid else {
-        let expected = "[solid] beside it, whose equations it joins";
-        return Err(track.error("sleeper.mesh", "a meshed sleeper", expected));
+        return Err(track.requirement("sleeper.mesh", "[solid]"));
     };
     if track.rail.as_ref().is_some_and(|r| r.kind == RailKind::Beam) {
         let expected = "\"winkler\": a rail with mass needs rigid sleepers";
         return Err(track.error("rail.kind", "\"beam\" on meshed sleepers", expected));
     }
     if track.push.is_some() {
-        return Err(track.error("push", "a push", "no such table beside meshed sleepers"));
+        return Err(track.conflict("push", "[track.sleeper.mesh]"));
     }
     if track.jump.as_ref().is_some_and(|j| j.method == JumpMethod::Grains) {
-        let expected = "\"account\": sleepers of elements are not moved";
+        let expected = "\"account\". Meshed sleepers cannot be displaced";
         return Err(track.error("jump.method", "\"grains\"", expected));
     }
     if solid.reduction.is_some() {
-        return Err(scene.error("solid.reduction", "a reduction", "no such table beside meshed sleepers"));
+        return Err(scene.conflict("solid.reduction", "[track.sleeper.mesh]"));
     }
     Ok(())
 }
@@ -191,7 +189,7 @@ fn symmetric(s: &Table<Sleeper>) -> Result<[bool; 2], SceneError> {
     }
     let names = ["x", "y", "z", "rx", "ry", "rz"];
     let found: Vec<&str> = names.iter().zip(held).filter(|(_, h)| *h).map(|(n, _)| *n).collect();
-    let expected = "for a meshed sleeper none, or a plane of symmetry: [\"y\", \"rx\", \"rz\"] or [\"x\", \"ry\", \"rz\"], or both";
+    let expected = "no key for a meshed sleeper, or a plane of symmetry: [\"y\", \"rx\", \"rz\"] or [\"x\", \"ry\", \"rz\"], or both";
     Err(s.error("hold", format!("{found:?}"), expected))
 }
 

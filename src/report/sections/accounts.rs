@@ -9,14 +9,14 @@ use serde_json::Value;
 
 /// Columns of the history that store energy, with their names.
 const STORED: [(&str, &str); 9] = [
-    ("grains_kinetic", "motion of the grains"),
-    ("contact_springs", "springs of contacts"),
+    ("grains_kinetic", "kinetic energy of grains"),
+    ("contact_springs", "contact springs"),
     ("bond_energy", "bonds"),
     ("mount_energy", "mounts"),
-    ("grains_gravity", "gravity on the grains"),
-    ("solid_kinetic", "motion of the solid"),
-    ("solid_strain", "strain of the solid"),
-    ("solid_gravity", "gravity on the solid"),
+    ("grains_gravity", "potential energy of grains"),
+    ("solid_kinetic", "kinetic energy of solid"),
+    ("solid_strain", "strain energy of solid"),
+    ("solid_gravity", "potential energy of solid"),
     ("rail_energy", "rails"),
 ];
 
@@ -25,10 +25,10 @@ const SPENT: [(&str, &str); 7] = [
     ("work", "work"),
     ("dissipated_dashpot", "dashpots of contacts"),
     ("dissipated_friction", "friction"),
-    ("dissipated_solid", "in the solid"),
+    ("dissipated_solid", "dissipation in solid"),
     ("dissipated_bonds", "dashpots of bonds"),
     ("dissipated_mounts", "dashpots of mounts"),
-    ("dissipated_track", "pads and track beyond"),
+    ("dissipated_track", "rail pads and track outside the model"),
 ];
 
 /// Energy, momentum, interface.
@@ -51,7 +51,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
     let single = runs.len() == 1;
     let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };
     let figures = plots([
-        part(Plot::new("Work and losses", time(), Side::new("energy", "J"), curves(&SPENT, false))),
+        part(Plot::new("Work and dissipation", time(), Side::new("energy", "J"), curves(&SPENT, false))),
         part(Plot::new(
             "Stored energy since the start",
             time(),
@@ -63,26 +63,26 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
         } else {
             Plot::new("Work", time(), Side::new("work", "J"), curves(&SPENT[..1], false)).figure()
         },
-        Plot::new("Error of the energy account", time(), Side::new("error", "J"), error).figure(),
+        Plot::new("Energy error", time(), Side::new("error", "J"), error).figure(),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
         runs,
         &[
-            ("work of the load", &path("energy.work", "J")),
-            ("energy turned over", &path("energy.turned_over", "J")),
-            ("error at the end", &path("energy.error", "J")),
-            ("the same over what was turned over", &path("energy.relative_error", "")),
-            ("largest error at any row", &path("energy.largest_error", "J")),
-            ("the same over what was turned over until then", &path("energy.largest_relative_error", "")),
+            ("external work", &path("energy.work", "J")),
+            ("reference energy", &path("energy.turned_over", "J")),
+            ("energy error at the end", &path("energy.error", "J")),
+            ("energy error over reference energy", &path("energy.relative_error", "")),
+            ("largest energy error", &path("energy.largest_error", "J")),
+            ("largest energy error over reference energy", &path("energy.largest_relative_error", "")),
             ("momentum error over impulses", &path("momentum.linear", "")),
             ("angular momentum error over impulses", &path("momentum.angular", "")),
             ("interface: largest force error", &path("coupling.transfer.force", "")),
             ("interface: largest moment error", &path("coupling.transfer.moment", "")),
-            ("interface: work as both sides see it, difference", &path("coupling.interface_work_error", "J")),
+            ("interface: difference of work on both sides", &path("coupling.interface_work_error", "J")),
         ],
     );
-    Section::new("energy", "Energy and other accounts", joined([figures, sums, parts(runs)]))
+    Section::new("energy", "Energy and momentum balances", joined([figures, sums, parts(runs)]))
 }
 
 /// What was stored at both ends, and what was spent, part by part.
@@ -111,9 +111,9 @@ fn parts(runs: &[RunData]) -> Markup {
         html! {
             @if !names.is_empty() || !spent_names.is_empty() {
                 details {
-                    "\n" summary { "Part by part" (whose) } "\n"
+                    "\n" summary { "Terms of the energy balance" (whose) } "\n"
                     (columns("stored", &names, &both))
-                    (columns("work and losses", &spent_names, &spent_values))
+                    (columns("work and dissipation", &spent_names, &spent_values))
                 }
                 "\n"
             }

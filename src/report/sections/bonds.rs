@@ -20,8 +20,13 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
     let figures = plots([
         Plot::new("Broken bonds", time(), Side::new("bonds", "").with_zero(), broken).figure(),
-        Plot::new("Pieces", time(), Side::new("fragments, single grains among them", "").with_zero(), pieces)
-            .figure(),
+        Plot::new(
+            "Fragments",
+            time(),
+            Side::new("fragments, including single grains", "").with_zero(),
+            pieces,
+        )
+        .figure(),
         Plot::new("Elastic energy of the bonds", time(), Side::new("energy", "J").with_zero(), energy)
             .figure(),
     ]);
@@ -30,12 +35,12 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
         runs,
         &[
             ("bonds at the start", &path("bonds.made", "")),
-            ("broken by tension and bending", &path("bonds.broken_by_tension", "")),
-            ("broken by shear and twisting", &path("bonds.broken_by_shear", "")),
-            ("energy set free by breaks", &path("bonds.energy_of_breaks", "J")),
-            ("pieces at the end", &path("bonds.fragments", "")),
-            ("bodies of the largest piece", &path("bonds.largest_fragment", "")),
-            ("breakage by Marsal, share of the mass", &path("bonds.breakage.marsal", "")),
+            ("broken in tension and bending", &path("bonds.broken_by_tension", "")),
+            ("broken in shear and twisting", &path("bonds.broken_by_shear", "")),
+            ("energy released by breakage", &path("bonds.energy_of_breaks", "J")),
+            ("fragments at the end", &path("bonds.fragments", "")),
+            ("bodies of the largest fragment", &path("bonds.largest_fragment", "")),
+            ("Marsal breakage, mass fraction", &path("bonds.breakage.marsal", "")),
             ("ballast breakage index", &path("bonds.breakage.ballast_index", "")),
         ],
     );

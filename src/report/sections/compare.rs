@@ -32,15 +32,11 @@ fn different_keys(runs: &[RunData]) -> Markup {
         })
         .collect();
     if rows.is_empty() {
-        let text = if known {
-            "The scenes are alike, key by key."
-        } else {
-            "Not all runs have their scene with them."
-        };
+        let text = if known { "The scenes are identical." } else { "Not all runs have their scene file." };
         return paragraph(text);
     }
     let heads: Vec<&str> =
-        std::iter::once("key of the scene").chain(runs.iter().map(|r| r.label.as_str())).collect();
+        std::iter::once("scene key").chain(runs.iter().map(|r| r.label.as_str())).collect();
     table(&heads, &rows)
 }
 
@@ -95,18 +91,18 @@ fn results(runs: &[RunData]) -> Markup {
             ("largest pressure on the formation", &|r| {
                 Cell::of(largest_of(r, "peak_formation_pressure"), "Pa")
             }),
-            ("peak of the lateral push", &path("push.peak", "N")),
-            ("coordination at the end", &path("packing.coordination", "")),
-            ("porosity of the first measured box", &porosity),
+            ("peak lateral resistance", &path("push.peak", "N")),
+            ("coordination number at the end", &path("packing.coordination", "")),
+            ("porosity of the first measuring box", &porosity),
             ("mean mass flow out", &path("flow.mean_rate_out", "kg/s")),
-            ("bonds broken by tension", &path("bonds.broken_by_tension", "")),
-            ("factor of safety: stands at", &path("safety.stands_at", "")),
-            ("factor of safety: fails at", &path("safety.fails_at", "")),
+            ("bonds broken in tension", &path("bonds.broken_by_tension", "")),
+            ("factor of safety: stable at", &path("safety.stands_at", "")),
+            ("factor of safety: unstable at", &path("safety.fails_at", "")),
             ("largest displacement", &|r| Cell::of(r.value("statics.largest_displacement.0").as_f64(), "m")),
-            ("work of the load", &path("energy.work", "J")),
-            ("largest energy error over energy turned over", &path("energy.largest_relative_error", "")),
-            ("time by the clock", &wall),
-            ("processor time", &path("cpu_seconds", "s")),
+            ("external work", &path("energy.work", "J")),
+            ("largest energy error over reference energy", &path("energy.largest_relative_error", "")),
+            ("wall time", &wall),
+            ("CPU time", &path("cpu_seconds", "s")),
         ],
     )
 }

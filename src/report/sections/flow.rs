@@ -13,7 +13,7 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
     let mass = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
         let of = |(name, column): (&str, &str)| Some((name.to_string(), table.points("time", column)?));
-        [("present", "mass_present"), ("come in", "mass_in"), ("gone out", "mass_out")]
+        [("present", "mass_present"), ("inserted", "mass_in"), ("removed", "mass_out")]
             .into_iter()
             .filter_map(of)
             .collect()
@@ -30,10 +30,10 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
         &[
             ("grains at the start", &path("flow.at_start.grains", "")),
             ("grains at the end", &path("flow.at_end.grains", "")),
-            ("grains that came in", &path("flow.came_in.grains", "")),
-            ("grains that went out", &path("flow.went_out.grains", "")),
-            ("mass that came in", &path("flow.came_in.mass", "kg")),
-            ("mass that went out", &path("flow.went_out.mass", "kg")),
+            ("grains inserted", &path("flow.came_in.grains", "")),
+            ("grains removed", &path("flow.went_out.grains", "")),
+            ("mass inserted", &path("flow.came_in.mass", "kg")),
+            ("mass removed", &path("flow.went_out.mass", "kg")),
             ("mean mass flow in", &path("flow.mean_rate_in", "kg/s")),
             ("mean mass flow out", &path("flow.mean_rate_out", "kg/s")),
             ("mass flow in, second half of the run", &path("flow.later_rate_in", "kg/s")),

@@ -22,11 +22,11 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
             let shown: &[(&str, &str)] = match runs.len() {
                 1 => &[
                     ("achieved", "stones"),
-                    ("target", "asked for"),
+                    ("target", "target"),
                     ("lower_limit", "lower limit"),
                     ("upper_limit", "upper limit"),
                 ],
-                _ => &[("achieved", "stones"), ("target", "asked for")],
+                _ => &[("achieved", "stones"), ("target", "target")],
             };
             for (column, name) in shown {
                 let Some(values) = table.column(column) else { continue };
@@ -48,10 +48,8 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
         }
     }
     let of = |key: &str| found.iter().map(|g| g[key].as_f64()).collect();
-    let figures = [
-        ("stones", "", of("stones")),
-        ("largest deviation of the mass passing", "", of("largest_deviation")),
-    ];
+    let figures =
+        [("stones", "", of("stones")), ("largest deviation of mass passing", "", of("largest_deviation"))];
     let html = plots([figure]);
     if html.0.is_empty() {
         return None;

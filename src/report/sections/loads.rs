@@ -37,7 +37,7 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
     };
     let (ways, accelerations) = (motion("motion"), motion("acceleration"));
     let html = plots([
-        Plot::new("Level load on structures", Side::new("time", "s"), side("load"), time).figure(),
+        Plot::new("Horizontal load on structures", Side::new("time", "s"), side("load"), time).figure(),
         Plot::new("Displacement of structures", Side::new("time", "s"), Side::new("displacement", "m"), ways)
             .figure(),
         Plot::new(
@@ -49,8 +49,13 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
         .figure(),
         Plot::new("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors)
             .figure(),
-        Plot::new("Largest level load of each layer", side("load"), Side::count("layer, from below"), layers)
-            .figure(),
+        Plot::new(
+            "Largest horizontal load of each layer",
+            side("load"),
+            Side::count("layer, from below"),
+            layers,
+        )
+        .figure(),
     ]);
     let note = paragraph(
         "The closed curve has for each sector a point in the direction that the sector looks to, as far from the origin as its largest load \

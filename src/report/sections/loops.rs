@@ -35,9 +35,9 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         false => vec![
             plot("Resilient deflection", "resilient deflection", "m", of("resilient_deflection")),
             plot("Secant stiffness", "load range / resilient deflection", "N/m", of("secant_stiffness")),
-            plot("Stiffness of the bed", "slope between two loads", "N/m", of("bed_stiffness")),
+            plot("Bed stiffness", "slope between two loads", "N/m", of("bed_stiffness")),
             plot("Resilient modulus", "pressure range / resilient strain", "Pa", of("resilient_modulus")),
-            plot("Area of the loop", "energy dissipated in a cycle", "J", of("dissipated_energy")),
+            plot("Hysteresis loop area", "energy dissipated in a cycle", "J", of("dissipated_energy")),
             plot("Damping ratio", "damping ratio D", "", one(runs, damping)),
         ],
     };
@@ -47,11 +47,10 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         return None;
     }
     let formulas = paragraph(
-        "Secant stiffness K: range of the load over the resilient deflection u, the rise of the sleeper from its lowest place to \
-         the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
+        "Secant stiffness K: load range over the resilient deflection u, the rebound of the sleeper from its lowest position to the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
          ratio D = 2 E/(π K u²): E over 4π times the energy of a spring K at half the range of u.",
     );
-    Section::new("loops", "Load and deflection", joined([html, note, formulas]))
+    Section::new("loops", "Load–deflection", joined([html, note, formulas]))
 }
 
 /// Damping ratio of each cycle: E/(4π ½ K (u/2)²).
@@ -87,15 +86,10 @@ fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
     let text = "Loops are drawn from the rows of the history; a cycle with fewer than 12 of them is left out \
                 (output.history_interval sets the time between rows).";
     let note = if coarse { paragraph(text) } else { Markup::default() };
-    let x = Side::new("lowering since the start", "m");
+    let x = Side::new("settlement since the start", "m");
     (
-        Plot::new(
-            "Loops of load and deflection",
-            x,
-            Side::new("load on the sleeper", "N").with_zero(),
-            curves,
-        )
-        .figure(),
+        Plot::new("Load–deflection loops", x, Side::new("load on the sleeper", "N").with_zero(), curves)
+            .figure(),
         note,
     )
 }

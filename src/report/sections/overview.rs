@@ -25,14 +25,14 @@ pub fn overview(runs: &[RunData]) -> Option<Section> {
             String::new()
         };
         for (kind, what) in [
-            ("material", "Materials of stones, walls and sleepers"),
+            ("material", "Materials of grains, walls and sleepers"),
             ("solid.material", "Materials of the solid"),
         ] {
             parts.push(headed(&format!("{what}{whose}"), materials(run, kind)));
         }
         parts.push(options(run, &whose));
     }
-    Section::new("overview", "What was run", joined(parts))
+    Section::new("overview", "Scene and model", joined(parts))
 }
 
 fn counts(runs: &[RunData]) -> Markup {
@@ -51,22 +51,20 @@ fn counts(runs: &[RunData]) -> Markup {
             ("scene file", &|r| text(r.file.as_ref().map(|f| f.scene.as_str()))),
             ("folder", &|r| Cell::Text(r.dir.display().to_string())),
             ("status", &|r| text(r.text("status"))),
-            ("version of the program", &|r| {
-                text(r.text("version").or(r.file.as_ref().map(|f| f.version.as_str())))
-            }),
-            ("nodes of the solid", &path("model.nodes", "")),
-            ("elements of the solid", &path("model.elements", "")),
-            ("unknowns of the solid", &path("model.unknowns", "")),
-            ("bodies (stones and sleepers)", &path("model.bodies", "")),
-            ("spheres that carry contacts", &path("model.spheres", "")),
+            ("program version", &|r| text(r.text("version").or(r.file.as_ref().map(|f| f.version.as_str())))),
+            ("nodes", &path("model.nodes", "")),
+            ("elements", &path("model.elements", "")),
+            ("degrees of freedom", &path("model.unknowns", "")),
+            ("bodies (grains and sleepers)", &path("model.bodies", "")),
+            ("spheres", &path("model.spheres", "")),
             ("simulated time", &|r| {
                 Cell::of(r.table("history").and_then(|t| t.column("time")?.last().copied()), "s")
             }),
             ("load cycles", &|r| Cell::of(super::compare::last_of(r, "cycle"), "")),
             ("threads", &path("threads", "")),
-            ("time by the clock", &wall),
-            ("processor time", &path("cpu_seconds", "s")),
-            ("largest resident memory", &path("peak_memory", "B")),
+            ("wall time", &wall),
+            ("CPU time", &path("cpu_seconds", "s")),
+            ("peak memory", &path("peak_memory", "B")),
         ],
     )
 }
@@ -118,8 +116,8 @@ fn options(run: &RunData, whose: &str) -> Markup {
         shown.map(|(name, keys)| (name.to_string(), vec![Cell::Text(keys.join(", "))])).collect();
     let rest = match tables.len().saturating_sub(OPTIONS) {
         0 => Markup::default(),
-        rest => paragraph(&format!("{rest} further tables stand in the scene below.")),
+        rest => paragraph(&format!("{rest} more tables in the scene below.")),
     };
     let table = table(&["table", "keys"], &rows);
-    headed(&format!("Options of the scene{whose}, as written there"), joined([table, rest]))
+    headed(&format!("Options of the scene{whose}"), joined([table, rest]))
 }

@@ -13,13 +13,13 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
     let figures = facts(
         runs,
         &[
-            ("neighbours of a grain at the start of the run", &path("model.coordination", "")),
-            ("neighbours of a grain at the end", &path("packing.coordination", "")),
-            ("the same without rattlers", &path("packing.mechanical_coordination", "")),
-            ("rattlers: share of the grains with no or one neighbour", &path("packing.rattlers", "")),
-            ("mean normal force of a contact", &path("packing.mean_contact_force", "N")),
-            ("strong contacts: share that carries more than the mean", &path("packing.strong_contacts", "")),
-            ("share of the normal forces that they carry", &path("packing.strong_load", "")),
+            ("coordination number at the start of the run", &path("model.coordination", "")),
+            ("coordination number at the end", &path("packing.coordination", "")),
+            ("coordination number without rattlers", &path("packing.mechanical_coordination", "")),
+            ("rattlers: fraction of grains with at most one neighbour", &path("packing.rattlers", "")),
+            ("mean normal contact force", &path("packing.mean_contact_force", "N")),
+            ("strong contacts: fraction above the mean force", &path("packing.strong_contacts", "")),
+            ("strong contacts: fraction of the normal forces", &path("packing.strong_load", "")),
             ("unbalanced force over mean contact force", &path("packing.unbalanced_ratio", "")),
             ("fouling index: fines by mass", &path("packing.fouling.fouling_index", "")),
             (
@@ -45,9 +45,9 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
         measures(runs),
         plots([
             Plot::new(
-                "How many neighbours grains have",
+                "Distribution of coordination numbers",
                 Side::count("neighbours").with_zero(),
-                Side::new("share of the grains", "").with_zero(),
+                Side::new("fraction of grains", "").with_zero(),
                 neighbours,
             )
             .figure(),
@@ -101,8 +101,8 @@ fn measures(runs: &[RunData]) -> Markup {
         ("σzx", "Pa", stress(5)),
     ];
     joined([
-        headed("Measured boxes", columns("box", &names, &packing)),
-        headed("Stress in them, tension positive", columns("box", &names, &stresses)),
+        headed("Measuring boxes", columns("box", &names, &packing)),
+        headed("Stress in the boxes, tension positive", columns("box", &names, &stresses)),
     ])
 }
 

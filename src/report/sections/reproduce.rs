@@ -22,7 +22,7 @@ pub fn reproduce(runs: &[RunData]) -> Option<Section> {
             ul { "\n" @for source in &sources { li { (source) } "\n" } } "\n"
         }
     };
-    Section::new("reproduce", "How to reproduce", html)
+    Section::new("reproduce", "Reproduction", html)
 }
 
 fn one(run: &RunData) -> Markup {
@@ -36,11 +36,11 @@ fn one(run: &RunData) -> Markup {
              on any number of threads; paths are as they were given when the run began.",
             file.version
         ),
-        None => format!("Version {} of the program.", file.version),
+        None => format!("Program version {}.", file.version),
     };
     html! {
         pre { (command) } "\n"
         (paragraph(&hash))
-        details { "\n" summary { "Text of the scene, without overrides" } "\n" pre { (file.text) } "\n" } "\n"
+        details { "\n" summary { "Scene file, without overrides" } "\n" pre { (file.text) } "\n" } "\n"
     }
 }

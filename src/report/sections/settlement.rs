@@ -50,7 +50,7 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
         match several {
             true => {
                 let x = Side::count("load cycle N").logarithmic();
-                Plot::new("The same over the logarithm of N", x, y(), curves).figure()
+                Plot::new("Settlement over log N", x, y(), curves).figure()
             }
             false => Markup::default(),
         },
@@ -81,8 +81,8 @@ fn lowering(runs: &[RunData]) -> Markup {
             })
             .collect()
     });
-    let y = Side::new("lowering since the start", "m").downwards();
-    Plot::new("Lowering of the sleeper in time", Side::new("time", "s"), y, curves).figure()
+    let y = Side::new("settlement since the start", "m").downwards();
+    Plot::new("Settlement of the sleeper in time", Side::new("time", "s"), y, curves).figure()
 }
 
 fn figures_of(runs: &[RunData]) -> Markup {
@@ -91,11 +91,11 @@ fn figures_of(runs: &[RunData]) -> Markup {
         runs,
         &[
             ("settlement after the last cycle", &|r| Cell::of(super::compare::last_of(r, "settlement"), "m")),
-            ("settlement while the sleeper was seated, not counted", &path("settlement.seating", "m")),
-            ("increments of the later half over those of the first", &path("settlement.slowing", "")),
+            ("settlement during seating, not counted", &path("settlement.seating", "m")),
+            ("increments of the second half over the first half", &path("settlement.slowing", "")),
             ("cycles simulated, with jumps", &path("settlement.jump.simulated", "")),
-            ("cycles jumped over", &path("settlement.jump.skipped", "")),
-            ("estimated error of the settlement by jumps", &path("settlement.jump.error_estimate", "m")),
+            ("cycles skipped", &path("settlement.jump.skipped", "")),
+            ("estimated settlement error of cycle jumps", &path("settlement.jump.error_estimate", "m")),
         ],
     )
 }
@@ -125,9 +125,7 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
         }
     }
     let note = match rows.is_empty() {
-        true => {
-            "No law was fitted: the run ended before, or there are fewer than ten cycles from the tenth on."
-        }
+        true => "No law fitted: fewer than ten cycles after the tenth.",
         false => {
             "Least squares in the settlement itself, cycles from the tenth on; settlements in metres. Of several runs the plot \
              has the law with the largest R². Hettler's curve is that of Alva-Hurtado & Selig."

@@ -10,8 +10,13 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
     let of = |column: &'static str| one(runs, move |r| r.table("history")?.points("time", column));
     let time = || Side::new("time", "s");
     let figures = plots([
-        Plot::new("Front of the slide", time(), Side::new("place along the slide", "m"), of("runout_front"))
-            .figure(),
+        Plot::new(
+            "Front of the slide",
+            time(),
+            Side::new("position along the slide", "m"),
+            of("runout_front"),
+        )
+        .figure(),
         Plot::new(
             "Motion of the slide",
             time(),
@@ -24,18 +29,18 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
     let sums = facts(
         runs,
         &[
-            ("way of the front", &path("runout.advance", "m")),
+            ("travel of the front", &path("runout.advance", "m")),
             ("height from head to toe", &path("runout.drop", "m")),
             ("distance from head to toe", &path("runout.length", "m")),
             ("reach angle", &path("runout.reach_angle", "°")),
             ("area of the deposit", &path("runout.deposit_area", "m²")),
-            ("its length along the slide", &path("runout.deposit_length", "m")),
-            ("its width", &path("runout.deposit_width", "m")),
-            ("its largest depth", &path("runout.deepest", "m")),
-            ("its volume with pores", &path("runout.deposit_volume", "m³")),
+            ("length of the deposit", &path("runout.deposit_length", "m")),
+            ("width of the deposit", &path("runout.deposit_width", "m")),
+            ("largest depth of the deposit", &path("runout.deepest", "m")),
+            ("bulk volume of the deposit", &path("runout.deposit_volume", "m³")),
             ("volume of the grains", &path("runout.solid_volume", "m³")),
             ("fragments", &path("runout.fragments", "")),
-            ("share of the largest", &path("runout.largest_share", "")),
+            ("mass fraction of the largest", &path("runout.largest_share", "")),
             ("grains below the ground", &path("runout.below_ground", "")),
         ],
     );
@@ -68,14 +73,14 @@ pub fn specimen(runs: &[RunData]) -> Option<Section> {
         &[
             ("strength", &path("specimen.strength", "Pa")),
             ("strain at the peak", &path("specimen.peak_strain", "")),
-            ("pressure on the sides then", &path("specimen.confinement", "Pa")),
+            ("confining pressure at the peak", &path("specimen.confinement", "Pa")),
             ("modulus", &path("specimen.modulus", "Pa")),
             ("Poisson's ratio", &path("specimen.poisson", "")),
             ("cracks in tension at the peak", &path("specimen.tension_cracks_at_peak", "")),
             ("cracks in shear at the peak", &path("specimen.shear_cracks_at_peak", "")),
             ("tension cracks within 30° of the axis", &path("specimen.axial_cracks", "")),
             ("b-value of the acoustic events", &path("bonds.events.b_value", "")),
-            ("its error", &path("bonds.events.b_error", "")),
+            ("error of the b-value", &path("bonds.events.b_error", "")),
         ],
     );
     Section::new("specimen", "Specimen", joined([figures, sums]))

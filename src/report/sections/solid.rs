@@ -40,7 +40,7 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
     };
     let figures = plots([
         Plot::new(
-            "Load and displacement",
+            "Load–displacement",
             Side::new("displacement of the support", "m"),
             Side::new("force", "N"),
             driven,
@@ -86,20 +86,20 @@ fn equilibrium(runs: &[RunData]) -> Markup {
             ("sum of the reactions, x", &index("statics.reaction", 0, "N")),
             ("sum of the reactions, y", &index("statics.reaction", 1, "N")),
             ("sum of the reactions, z", &index("statics.reaction", 2, "N")),
-            ("loads and reactions over their sizes", &path("statics.equilibrium_error", "")),
+            ("equilibrium error", &path("statics.equilibrium_error", "")),
             ("largest displacement", &index("statics.largest_displacement", 0, "m")),
             ("at node", &index("statics.largest_displacement", 1, "")),
             ("strain energy", &path("statics.strain_energy", "J")),
-            ("Gauss points that have yielded: share of all at the end", &|r| Cell::of(plastic_share(r), "")),
+            ("yielded integration points, fraction at the end", &|r| Cell::of(plastic_share(r), "")),
             ("largest equivalent plastic strain at the end", &|r| {
                 Cell::of(plastic(r).map(|k| k.iter().copied().fold(0.0, f64::max)), "")
             }),
-            ("steps of Newton's method", &path("newton.steps", "")),
-            ("steps that were halved", &path("newton.halvings", "")),
+            ("Newton steps", &path("newton.steps", "")),
+            ("halved steps", &path("newton.halvings", "")),
             ("iterations", &path("newton.iterations", "")),
             ("symmetric factorizations", &path("newton.factorizations_symmetric", "")),
             ("unsymmetric factorizations", &path("newton.factorizations_unsymmetric", "")),
-            ("shapes of the reduced solid", &path("model.reduction.shapes", "")),
+            ("modes of the reduced solid", &path("model.reduction.shapes", "")),
         ],
     )
 }
@@ -140,8 +140,8 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
         table.points("factor", "largest_displacement")
     });
     let figure = Plot::new(
-        "Largest displacement against the factor",
-        Side::new("factor by which the strength is divided", ""),
+        "Largest displacement over strength reduction factor",
+        Side::new("strength reduction factor", ""),
         Side::new("largest displacement", "m").with_zero(),
         curve,
     )
@@ -150,15 +150,16 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
     let sums = facts(
         runs,
         &[
-            ("largest factor that stands", &path("safety.stands_at")),
-            ("smallest factor that fails", &path("safety.fails_at")),
+            ("largest stable factor", &path("safety.stands_at")),
+            ("smallest unstable factor", &path("safety.fails_at")),
         ],
     );
     let mut rows = Vec::new();
     for run in runs {
         for t in run.list("safety.trials") {
             let number = |key: &str, unit| Cell::of(t[key].as_f64(), unit);
-            let stands = Cell::text(if t["stands"].as_bool().unwrap_or(false) { "stands" } else { "fails" });
+            let stands =
+                Cell::text(if t["stands"].as_bool().unwrap_or(false) { "stable" } else { "unstable" });
             let name = crate::report::quantity::number(t["factor"].as_f64().unwrap_or(0.0));
             let name = if runs.len() > 1 { format!("{}: {name}", run.label) } else { name };
             let cells = vec![
@@ -170,7 +171,7 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
             rows.push((name, cells));
         }
     }
-    let heads = ["factor", "", "share of the load carried", "iterations", "largest displacement"];
+    let heads = ["factor", "", "fraction of the load applied", "iterations", "largest displacement"];
     Section::new("safety", "Factor of safety", joined([sums, plots([figure]), table(&heads, &rows)]))
 }
 

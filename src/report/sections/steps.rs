@@ -27,23 +27,23 @@ pub fn steps(runs: &[RunData]) -> Option<Section> {
     let html = facts(
         runs,
         &[
-            ("step of the grains at the end", &path("model.grain_step", "s")),
-            ("limit of that step", &path("model.grain_step_limit", "s")),
+            ("DEM time step at the end", &path("model.grain_step", "s")),
+            ("critical DEM time step", &path("model.grain_step_limit", "s")),
             ("set by", &text("model.grain_step_set_by")),
-            ("step of the solid", &path("model.solid_step", "s")),
-            ("steps of the grains in all stages", &sum("grain_steps")),
-            ("steps of the solid in all stages", &sum("solid_steps")),
-            ("order of the exchange", &scheme),
-            ("steps of the grains in a window", &path("coupling.substeps", "")),
+            ("FEM time step", &path("model.solid_step", "s")),
+            ("DEM time steps, all stages", &sum("grain_steps")),
+            ("FEM time steps, all stages", &sum("solid_steps")),
+            ("coupling scheme", &scheme),
+            ("DEM sub-steps per coupling window", &path("coupling.substeps", "")),
             ("windows", &path("coupling.passes.windows", "")),
-            ("passes of windows", &path("coupling.passes.passes", "")),
-            ("windows without convergence", &path("coupling.passes.unconverged", "")),
-            ("stability of the exchange: stiffness W", &path("coupling.stability.stiffness", "")),
-            ("stability of the exchange: damping D", &path("coupling.stability.damping", "")),
+            ("coupling iterations", &path("coupling.passes.passes", "")),
+            ("windows not converged", &path("coupling.passes.unconverged", "")),
+            ("coupling stability: stiffness W", &path("coupling.stability.stiffness", "")),
+            ("coupling stability: damping D", &path("coupling.stability.damping", "")),
             ("transfer of contact forces", &text("coupling.transfer_kind")),
         ],
     );
-    Section::new("steps", "Steps and windows", html)
+    Section::new("steps", "Time steps and coupling windows", html)
 }
 
 /// A bar of a width [px] with its share [%].
@@ -76,6 +76,6 @@ pub fn timings(runs: &[RunData]) -> Option<Section> {
             ));
         }
     }
-    let heads = ["stage", "time by the clock", "share", "grain steps", "solid steps", "windows"];
-    Section::new("timings", "Time of the stages", table(&heads, &rows))
+    let heads = ["stage", "wall time", "fraction", "DEM steps", "FEM steps", "windows"];
+    Section::new("timings", "Time of stages", table(&heads, &rows))
 }

@@ -20,17 +20,16 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
     });
     let y = |name: &str| Side::new(name, "Pa").with_zero();
     let html = plots([
-        Plot::new("Largest pressure on a face of the formation", time(), y("peak pressure"), in_time)
-            .figure(),
+        Plot::new("Peak pressure on the formation", time(), y("peak pressure"), in_time).figure(),
         Plot::new(
-            "Largest pressure on the formation in a cycle",
+            "Peak pressure on the formation per cycle",
             Side::count("load cycle N").logarithmic(),
             y("peak pressure"),
             by_cycle,
         )
         .figure(),
         Plot::new(
-            "Force of the bed on the solid, downwards",
+            "Vertical force of the bed on the solid",
             time(),
             Side::new("force", "N").with_zero(),
             force,
@@ -83,19 +82,14 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
         "largest force",
         "smallest force",
         "lowering",
-        "share of an axle",
-        "over the static force",
-        "lifted off for",
+        "axle load share",
+        "dynamic factor",
+        "time without contact",
     ];
     let figures = plots([
-        Plot::new("Load on the seats", time(), Side::new("load", "N"), load).figure(),
-        Plot::new(
-            "Deflection of the rail over the sleepers",
-            time(),
-            Side::new("deflection, upwards", "m"),
-            rail,
-        )
-        .figure(),
+        Plot::new("Vertical load on rail seats", time(), Side::new("load", "N"), load).figure(),
+        Plot::new("Rail deflection at the sleepers", time(), Side::new("deflection, upwards", "m"), rail)
+            .figure(),
     ]);
     Section::new("sleepers", "Sleepers", joined([figures, table(&heads, &rows)]))
 }
@@ -103,23 +97,23 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
 /// Lateral push of a sleeper.
 pub fn push(runs: &[RunData]) -> Option<Section> {
     let curve = |column: &'static str| one(runs, move |r| r.table("push")?.points("displacement", column));
-    let x = || Side::new("way of the sleeper", "m");
+    let x = || Side::new("lateral displacement of the sleeper", "m");
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let html = plots([
-        Plot::new("Lateral resistance", x(), Side::new("force of the ram", "N").with_zero(), curve("force"))
+        Plot::new("Lateral resistance", x(), Side::new("actuator force", "N").with_zero(), curve("force"))
             .figure(),
-        Plot::new("Rise of the sleeper", x(), Side::new("rise", "m"), curve("uplift")).figure(),
+        Plot::new("Uplift of the sleeper", x(), Side::new("uplift", "m"), curve("uplift")).figure(),
     ]);
     let figures = facts(
         runs,
         &[
-            ("force at a way of 2 mm", &path("push.resistance_at_2_mm", "N")),
+            ("actuator force at 2 mm", &path("push.resistance_at_2_mm", "N")),
             ("largest force", &path("push.peak", "N")),
-            ("way at the largest force", &path("push.displacement_at_peak", "m")),
+            ("displacement at the largest force", &path("push.displacement_at_peak", "m")),
             ("force over the last quarter", &path("push.residual", "N")),
             ("vertical force", &path("push.vertical_force", "N")),
-            ("rise of the sleeper at the end", &path("push.uplift", "m")),
+            ("uplift of the sleeper at the end", &path("push.uplift", "m")),
         ],
     );
-    Section::new("push", "Lateral push", joined([html, figures]))
+    Section::new("push", "Lateral resistance test", joined([html, figures]))
 }

@@ -9,7 +9,7 @@ use serde_json::Value;
 /// Verdict and warnings.
 pub fn verdict(runs: &[RunData]) -> Option<Section> {
     let cards = joined(runs.iter().map(card));
-    Section::new("verdict", "Verdict and warnings", joined([cards, judged(runs)]))
+    Section::new("verdict", "Checks and warnings", joined([cards, judged(runs)]))
 }
 
 /// A run with its state and remarks.
@@ -42,7 +42,7 @@ fn word(run: &RunData) -> &'static str {
         State::Failed => "Failed.",
         State::Interrupted => "Interrupted.",
         State::Running => "Still running.",
-        State::Stopped => "Stopped without a summary.",
+        State::Stopped => "No summary.",
         State::Modes => "Modes.",
     }
 }
@@ -51,21 +51,21 @@ fn word(run: &RunData) -> &'static str {
 fn sentence(run: &RunData) -> String {
     let judged = run.list("verdict.judged").len();
     let reached = match run.table("history").and_then(|t| t.column("time")?.last().copied()) {
-        Some(time) => format!(" The last row of the history is at t = {}.", with_unit(time, "s")),
-        None => " There is no history.".into(),
+        Some(time) => format!(" Last row of the history: t = {}.", with_unit(time, "s")),
+        None => " No history.".into(),
     };
     let checkpoint = run.dir.join("checkpoint").is_dir();
-    let on = if checkpoint { " A checkpoint is there: --resume goes on from it." } else { "" };
+    let on = if checkpoint { " A checkpoint exists: resume with --resume." } else { "" };
     match run.state() {
-        State::Passed if judged == 0 => "The run is done; it has no account to judge.".into(),
-        State::Passed => format!("The run is done, and its accounts close: {judged} judged, none remarked."),
+        State::Passed if judged == 0 => "Run completed; no balances to check.".into(),
+        State::Passed => format!("Run completed; {judged} balances checked, no warnings."),
         State::Warned => {
             let remarked = |list: &str, key: &str| {
                 let list = run.list(list);
                 list.iter().filter(|j| j[key] != "passed").count()
             };
             format!(
-                "The run is done; warned about: {} of {judged} accounts and {} of {} checks of validity. Look at the results with care.",
+                "Run completed with warnings: {} of {judged} balances and {} of {} validity checks exceed their warning limit.",
                 remarked("verdict.judged", "outcome"),
                 remarked("validity", "status"),
                 run.list("validity").len()
@@ -74,26 +74,22 @@ fn sentence(run: &RunData) -> String {
         State::Failed => {
             let status = run.text("status").unwrap_or_default();
             let status = if status == "done" {
-                "an account or a check of validity says that there is no result"
+                "a balance or validity check exceeds its failure limit"
             } else {
                 status
             };
             let status = status.strip_prefix("failed: ").unwrap_or(status);
-            format!("{status}. What is below is what was written until then.{reached}{on}")
+            format!("{status}. Results up to the last output.{reached}{on}")
         }
-        State::Interrupted => format!("What is below is what was written until then.{reached}{on}"),
+        State::Interrupted => format!("Results up to the last output.{reached}{on}"),
         State::Running => {
             let process = run.process().map_or(String::new(), |p| format!(" (process {p})"));
-            format!(
-                "A run writes to this folder{process}: what is below is what it has written so far.{reached}"
-            )
+            format!("Run in progress{process}. Results up to the last output.{reached}")
         }
         State::Stopped => {
-            format!(
-                "The run was killed, or the machine went down: what is below was written until then.{reached}{on}"
-            )
+            format!("The run was killed. Results up to the last output.{reached}{on}")
         }
-        State::Modes => "Natural modes of the solid; they have no account to judge.".into(),
+        State::Modes => "Natural modes of the solid; no balances to check.".into(),
     }
 }
 
@@ -104,28 +100,21 @@ fn remarks(run: &RunData) -> Vec<String> {
         let outcome = j["outcome"].as_str().unwrap_or("warned");
         let number = |key: &str| j[key].as_f64().map_or("?".into(), |v| format!("{v:.3e}"));
         let what = j["what"].as_str().unwrap_or_default();
-        out.push(format!(
-            "{outcome}: {what} is {}, expected at most {}",
-            number("value"),
-            number("warn_above")
-        ));
+        out.push(format!("{outcome}: {what}: {} (limit {})", number("value"), number("warn_above")));
     }
     out.extend(run.list("warnings").iter().filter_map(Value::as_str).map(String::from));
     for (name, rows) in run.damaged() {
-        out.push(format!("{name}.csv: {rows} rows are damaged and left out"));
+        out.push(format!("{name}.csv: {rows} damaged rows omitted"));
     }
     if run.file.is_none() && run.state() != State::Modes {
-        out.push(
-            "the folder has no run.json, so the scene is not known: materials and options are left out"
-                .into(),
-        );
+        out.push("run.json is missing: materials and options of the scene are omitted".into());
     } else if run.file.is_some() && run.scene.is_none() {
-        out.push("this version does not understand the scene of the run: materials and options are as its text has them".into());
+        out.push("scene of another program version: materials and options as in its text".into());
     }
     let version = run.text("version").or(run.file.as_ref().map(|f| f.version.as_str()));
     if let Some(version) = version.filter(|v| *v != env!("CARGO_PKG_VERSION")) {
         out.push(format!(
-            "the results are of version {version}, this report is of version {}",
+            "results of program version {version}, report of version {}",
             env!("CARGO_PKG_VERSION")
         ));
     }
@@ -152,5 +141,5 @@ fn judged(runs: &[RunData]) -> Markup {
             rows.push((name, vec![number("value"), number("limit"), number("fail_above"), status]));
         }
     }
-    table(&["judged", "found", "remarked above", "no result above", "outcome"], &rows)
+    table(&["check", "computed", "warning limit", "failure limit", "outcome"], &rows)
 }

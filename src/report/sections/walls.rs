@@ -41,7 +41,7 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
         Plot::new("Force of the grains on walls", Side::new("time", "s"), Side::new("force", "N"), forces)
             .figure(),
         Plot::new(
-            "Force against the way of walls that move",
+            "Force–displacement of moving walls",
             Side::new("displacement", "m"),
             Side::new("force", "N"),
             ways,
@@ -50,10 +50,10 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
     ]);
     let note = match strained {
         true => paragraph(
-            "Of each wall the component that varies most. Stress of a servo wall: force of the grains along its normal over its \
+            "Component with the largest variation for each wall. Stress of a servo wall: force of the grains along its normal over its \
              area; strain: its way towards the plane that faces it since the stress first passed 1 % of its largest, over their distance then.",
         ),
-        false => paragraph("Of each wall the component that varies most."),
+        false => paragraph("Component with the largest variation for each wall."),
     };
     if html.0.is_empty() { None } else { Section::new("walls", "Walls", joined([html, note])) }
 }

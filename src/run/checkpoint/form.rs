@@ -68,20 +68,20 @@ fn is_whole(bytes: &[u8]) -> bool {
 pub(super) fn read(bytes: Vec<u8>) -> Result<(Header, Loaded), Unfit> {
     let damaged = |text: &str| Unfit::Damaged(text.to_string());
     let line = |from: usize| bytes[from..].iter().position(|b| *b == b'\n').map(|n| from + n);
-    let first = line(0).ok_or_else(|| damaged("it has no first line"))?;
+    let first = line(0).ok_or_else(|| damaged("no first line"))?;
     let form = std::str::from_utf8(&bytes[..first]).ok().and_then(|l| l.strip_prefix(MAGIC));
     match form.and_then(|f| f.parse::<u32>().ok()) {
         Some(other) if other != FORM && is_whole(&bytes) => {
-            return Err(Unfit::Form(format!("found form {other} of a checkpoint, expected {FORM}")));
+            return Err(Unfit::Form(format!("found checkpoint format version {other}, expected {FORM}")));
         }
         Some(_) => {}
-        None => return Err(damaged("it does not begin as a checkpoint")),
+        None => return Err(damaged("no checkpoint header")),
     }
     if !is_whole(&bytes) {
-        return Err(damaged("its checksum is not that of its content"));
+        return Err(damaged("wrong checksum"));
     }
     let end = bytes.len().saturating_sub(CHECKSUM);
-    let second = line(first + 1).ok_or_else(|| damaged("it has no header"))?;
+    let second = line(first + 1).ok_or_else(|| damaged("no header"))?;
     let header: Header =
         serde_json::from_slice(&bytes[first + 1..second]).map_err(|e| Unfit::Damaged(e.to_string()))?;
     let moment = header.moment.clone();
@@ -160,9 +160,8 @@ impl Loaded {
     /// # Errors
     /// The part is not of this type: the program that wrote it was another one of the same version.
     pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
-        let (part, rest) = postcard::take_from_bytes(&self.bytes[self.at..self.end]).map_err(|e| {
-            Failure::Input(format!("--resume: the checkpoint was not written by this program: {e}"))
-        })?;
+        let (part, rest) = postcard::take_from_bytes(&self.bytes[self.at..self.end])
+            .map_err(|e| Failure::Input(format!("--resume: found a checkpoint of another program: {e}")))?;
         self.at = self.end - rest.len();
         Ok(part)
     }

@@ -181,7 +181,9 @@ impl Slots {
             let folder = self.dir.display();
             return Err(refuse(match (forms.is_empty(), damaged.is_empty()) {
                 (false, _) => forms.join("; "),
-                (_, true) => format!("no checkpoint in {folder}, expected one of an interrupted run"),
+                (_, true) => {
+                    format!("no checkpoint in {folder}, expected the checkpoint of an interrupted run")
+                }
                 (_, false) => damaged.join("; "),
             }));
         };
@@ -191,7 +193,7 @@ impl Slots {
         damaged.extend(forms);
         let mut remarks: Vec<String> = self.origin.other_processor(&header.origin).into_iter().collect();
         remarks
-            .extend(damaged.first().map(|text| format!("{text}; the run goes on from {}", file.display())));
+            .extend(damaged.first().map(|text| format!("{text}; the run resumes from {}", file.display())));
         (self.own, self.next) = (true, header.number + 1);
         Ok((loaded, remarks))
     }

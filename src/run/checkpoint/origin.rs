@@ -43,8 +43,7 @@ impl Origin {
     pub fn other_processor(&self, old: &Origin) -> Option<String> {
         (self.processor != old.processor).then(|| {
             format!(
-                "the checkpoint is from a processor with {}, this one has {}: the grains go on bit for bit, the last digits of a \
-                 solid may not",
+                "checkpoint of a CPU with {}, this CPU has {}: grains continue bitwise identically, the last digits of a solid may differ",
                 old.processor, self.processor
             )
         })
@@ -53,12 +52,12 @@ impl Origin {
     /// One sentence on what makes this scene another than the one that `old` is of; none when it is the same.
     pub fn difference(&self, old: &Origin, document: &Document) -> Option<String> {
         if old.version != self.version {
-            return Some(format!("is of version {} of the program, this is {}", old.version, self.version));
+            return Some(format!("found program version {}, expected {}", old.version, self.version));
         }
         if old.scene_hash == self.scene_hash {
             return None;
         }
-        let wrong = "the scene is not the one of the checkpoint";
+        let wrong = "the scene has changed since the checkpoint";
         let before = Document::parse(document.file(), old.scene.clone()).ok().and_then(|mut d| {
             old.overrides.iter().try_for_each(|o| d.set(o)).ok()?;
             Some(d.keys())
@@ -75,7 +74,7 @@ impl Origin {
         let changed = self.files.iter().find(|f| !old.files.contains(f));
         Some(match changed {
             Some((file, _)) => format!("{wrong}: {} has changed", file.display()),
-            None => format!("{wrong}: its text, its overrides or --from have changed, though no key has"),
+            None => format!("{wrong}: its text, overrides or --from have changed, but no key"),
         })
     }
 }

@@ -135,7 +135,7 @@ fn another_program_or_scene_is_named() {
     assert_eq!(difference_of(old.clone(), SCENE, &[]), "");
     assert_eq!(
         difference_of(Origin { version: "1.2.4".into(), ..old.clone() }, SCENE, &[]),
-        "is of version 1.2.3 of the program, this is 1.2.4"
+        "found program version 1.2.3, expected 1.2.4"
     );
     let changed = SCENE.replace("1.0", "2.0");
     assert!(difference_of(origin(&changed, "6"), &changed, &[]).ends_with("time.end was 1.0, now 2.0"));
@@ -146,7 +146,7 @@ fn another_program_or_scene_is_named() {
     let mesh = Origin { files: vec![("mesh.cdb".into(), "78".into())], ..origin(SCENE, "6") };
     assert!(difference_of(mesh, SCENE, &[]).ends_with("mesh.cdb has changed"));
     let comment = format!("# more\n{SCENE}");
-    assert!(difference_of(origin(&comment, "6"), &comment, &[]).ends_with("though no key has"));
+    assert!(difference_of(origin(&comment, "6"), &comment, &[]).ends_with("but no key"));
 }
 
 /// A checkpoint from another processor is taken, with a remark.
@@ -182,7 +182,7 @@ fn another_form_is_refused() {
     bytes.splice(end.., hash.value().to_le_bytes());
     fs::write(&file, bytes).unwrap();
     let error = Slots::new(&dir, origin(SCENE, "5")).load(&document(SCENE)).err().unwrap();
-    let message = format!("found form 9876 of a checkpoint, expected {FORM}");
+    let message = format!("found checkpoint format version 9876, expected {FORM}");
     assert!(error.to_string().ends_with(&message), "{error}");
     fs::remove_dir_all(&dir).unwrap();
 }

@@ -70,7 +70,7 @@ impl Column {
         let numbers = unbroken(numbers, &input.bonds, input.bodies.len());
         let bodies: Vec<BodyInput> = numbers.iter().map(|&b| input.bodies[b].clone()).collect();
         if bodies.is_empty() {
-            return Err("what bonds join is all of the bed, and no column of it".into());
+            return Err("the bonded bed cannot be divided into columns".into());
         }
         let bonded = !input.bonds.is_empty();
         let share = all as f64 / spheres(&bodies).max(1) as f64;

@@ -101,7 +101,7 @@ impl Estimate {
         let stages: Vec<String> = self.stages.iter().map(stage).collect();
         let threads = if self.threads == 1 { "1 thread".into() } else { format!("{} threads", self.threads) };
         format!(
-            "time on {threads}, by a rehearsal: {about} {} ({})",
+            "run time on {threads}, from a trial run: {about} {} ({})",
             duration(self.seconds()),
             stages.join(", ")
         )

@@ -61,7 +61,7 @@ pub fn rehearse(
     threads: Option<usize>,
     budget: Duration,
 ) -> Result<Rehearsal, Failure> {
-    let folder = Folder::new().map_err(|e| Failure::Other(format!("folder for temporary files: {e}")))?;
+    let folder = Folder::new().map_err(|e| Failure::Other(format!("temporary directory: {e}")))?;
     let (interrupt, trace) = Interrupt::traced();
     let (ended, over) = mpsc::channel::<()>();
     let (watched, followed) = (interrupt.clone(), trace.clone());

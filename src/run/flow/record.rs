@@ -87,8 +87,7 @@ impl InletRecord {
     pub(super) fn remark(&self) -> Option<String> {
         (self.without_room + self.without_grains > 0).then(|| {
             format!(
-                "the inlet of \"{}\" let in {:.4} {unit} less than the {:.4} {unit} asked for: a grain that was due found no room at {} \
-                 looks, and none waited at {}",
+                "inlet of \"{}\": inserted {:.4} {unit} less than the requested {:.4} {unit}. No free position at {} checks, empty queue at {}.",
                 self.group,
                 self.owed,
                 self.requested,
@@ -105,8 +104,7 @@ impl OutletRecord {
     pub(super) fn remark(&self, interval: f64) -> Option<String> {
         (self.missed > 0).then(|| {
             format!(
-                "{} grains seem to have flown through the outlet \"{}\" between two looks, {interval:.3e} s apart: take a smaller \
-                 time.flow_interval, or a larger box",
+                "outlet \"{1}\": {0} grains may have passed between two checks, {interval:.3e} s apart. Reduce time.flow_interval, or enlarge the box.",
                 self.missed, self.name
             )
         })
@@ -118,8 +116,7 @@ impl FlowRecord {
     pub fn report(&self) -> Vec<String> {
         let (a, b) = (&self.came_in, &self.went_out);
         let mut lines = vec![format!(
-            "flow: {} grains ({:.4} kg) came in, {} ({:.4} kg) went out, {} at the start, {} at the end; {:.4} kg/s in and {:.4} \
-             kg/s out in the second half",
+            "flow: {} grains ({:.4} kg) inserted, {} ({:.4} kg) removed, {} at the start, {} at the end; {:.4} kg/s in and {:.4} kg/s out in the second half",
             a.grains,
             a.mass,
             b.grains,
@@ -131,7 +128,7 @@ impl FlowRecord {
         )];
         for i in &self.inlets {
             lines.push(format!(
-                "  inlet of {}: {:.4} of {:.4} {}, {} grains wait",
+                "  inlet of {}: {:.4} of {:.4} {}, {} grains queued",
                 i.group,
                 i.requested - i.owed,
                 i.requested,

@@ -11,7 +11,7 @@ pub fn report(
     let mut lines = Vec::new();
     for g in growth {
         lines.push(format!(
-            "growth of {}: porosity {:.4}, largest overlap {:.2e} of the radius, unbalanced force {:.1e}",
+            "radius expansion of {}: porosity {:.4}, largest overlap {:.2e} of the radius, unbalanced force {:.1e}",
             g.group, g.porosity, g.largest_overlap, g.unbalanced_ratio
         ));
     }
@@ -52,7 +52,7 @@ pub fn report(
     }
     for g in &p.gradations {
         lines.push(format!(
-            "sieve curve of {}: {} stones, within {:.2} % passing of the curve asked for",
+            "sieve curve of {}: {} stones, within {:.2} % passing of the target curve",
             g.group,
             g.stones,
             100.0 * g.largest_deviation

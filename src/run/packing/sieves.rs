@@ -80,7 +80,7 @@ pub(super) fn write(
         };
         let points = curve_sizes(group);
         let curve = &group.grading.curve;
-        add("asked for", points.iter().map(|&d| [d, curve.passing_at(d)]).collect());
+        add("target", points.iter().map(|&d| [d, curve.passing_at(d)]).collect());
         let achieved = achieved_passing(&points, &stones);
         add("stones", points.iter().zip(achieved).map(|(&d, a)| [d, a]).collect());
         add("upper limit", limits.iter().map(|l| [l[0], l[2]]).collect());

@@ -86,18 +86,17 @@ impl StageEnergy {
     pub fn checks(stages: &[StageEnergy]) -> Vec<Check> {
         let worst = |of: fn(&StageEnergy) -> f64| stages.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let gain = worst(|stage| stage.gain).map(|worst| {
-            Check::new("energy gained in a stage of packing over its reference energy", worst.gain, GAIN, || {
+            Check::new("energy gained in a packing stage over its reference energy", worst.gain, GAIN, || {
                 format!(
-                    "{}: the grains have more energy at its end than at its start with the work of walls and forces; take a smaller \
-                     time.grain_step_fraction",
+                    "{}: energy increased by more than the work of walls and forces. Reduce time.grain_step_fraction.",
                     worst.stage
                 )
             })
         });
         let error = worst(|stage| stage.relative_error).map(|worst| {
-            Check::new("error of the energy balance of a stage of packing", worst.relative_error, ERROR, || {
+            Check::new("energy error of a packing stage over its reference energy", worst.relative_error, ERROR, || {
                 let StageEnergy { stage, error, turned_over, .. } = worst;
-                format!("{stage}: energy error {error:.3e} J of the reference energy {turned_over:.3e} J; reduce time.grain_step_fraction")
+                format!("{stage}: energy error {error:.3e} J, reference energy {turned_over:.3e} J. Reduce time.grain_step_fraction.")
             })
         });
         gain.into_iter().chain(error).collect()
@@ -119,13 +118,12 @@ impl StageEnergy {
         };
         let (share, energy, stage) = stages.iter().zip(next).map(made).max_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Check::new(
-            "energy gained between stages of packing over the reference energy",
+            "energy gained between packing stages over the reference energy",
             share,
             CHANGE,
             || {
                 format!(
-                    "{stage}: contact springs hold {energy:.3e} J more at its start than at the end of the stage before, as soft contacts do when they \
-                 become stiff; raise stiffness_factor of the stage before"
+                    "{stage}: energy of contact springs increased by {energy:.3e} J since the end of the previous stage (stiffening contacts). Increase stiffness_factor of the previous stage."
                 )
             },
         ))
@@ -149,8 +147,7 @@ impl StageEnergy {
         let shot = removed.iter().copied().filter(|&b| rises(b) > 1e-3 * top.abs().max(1e-3));
         let worst = shot.max_by(|&a, &b| rises(a).total_cmp(&rises(b)))?;
         Some(format!(
-            "grain {worst} at z = {:.3} m and {:.2e} m/s was removed above the level after {}: it rises {:.2e} m above every place at \
-             which a grain began to fall. Look for grains that overlap at the start of the stage",
+            "grain {worst} removed above the level at z = {:.3} m with {:.2e} m/s after {}: rises {:.2e} m above all start positions. Check for overlaps at the start of the stage.",
             state.position(worst).z,
             state.velocity(worst).norm(),
             self.stage,
@@ -202,12 +199,14 @@ mod tests {
         assert_eq!(status(0.0, 0.5).0, Outcome::Passed);
         let (outcome, message) = status(3.0, 0.5);
         assert!(
-            outcome == Outcome::Warned && message.starts_with("pour: contact springs hold 2.000e0 J more"),
+            outcome == Outcome::Warned
+                && message.starts_with("pour: energy of contact springs increased by 2.000e0 J"),
             "{message}"
         );
         let (outcome, message) = status(1.0, 7.0);
         assert!(
-            outcome == Outcome::Failed && message.starts_with("run: contact springs hold 6.500e0 J more"),
+            outcome == Outcome::Failed
+                && message.starts_with("run: energy of contact springs increased by 6.500e0 J"),
             "{message}"
         );
         assert!(StageEnergy::check_changes(&[], [1.0, 1.0]).is_none());

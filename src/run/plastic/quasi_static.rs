@@ -58,9 +58,9 @@ impl<'a> QuasiStaticSystem<'a> {
         let mut begin = QuasiStatic::new(model, part.newton, control).map_err(|e| part.failure(&e))?;
         state.time = -1.0;
         let mut course = Course { part, gravity: &gravity, carried, interrupt };
-        begin
-            .advance(model, &mut state, 0.0, &mut course, |_, _| {})
-            .map_err(|e| part.failure(&e).in_stage("before time 0, while weight and loads are brought on"))?;
+        begin.advance(model, &mut state, 0.0, &mut course, |_, _| {}).map_err(|e| {
+            part.failure(&e).in_stage("before time 0, during application of weight and loads")
+        })?;
         state.time = 0.0;
         let solver = quasi_static(part, plan, step)?;
         let reactions = begin.reactions().to_vec();

@@ -50,9 +50,9 @@ impl Results<'_> {
         let name = |k: usize| if several { format!("sleeper {}", k + 1) } else { "sleeper".into() };
         let series = lowering.iter().enumerate();
         let plot = LinePlot {
-            title: format!("{}: lowering of the {whose}", self.job.title),
+            title: format!("{}: settlement of the {whose}", self.job.title),
             x_label: "time [s]".into(),
-            y_label: "lowering [mm]".into(),
+            y_label: "settlement [mm]".into(),
             series: series.map(|(k, points)| Series { name: name(k), points: points.clone() }).collect(),
         };
         Ok(plot.write(&self.dir.join("sleeper.svg"))?)

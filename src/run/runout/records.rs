@@ -97,8 +97,7 @@ impl RunoutRecord {
                 self.solid_volume
             ),
             format!(
-                "slide: {} fragments, the largest {:.2} % of the volume; {:.1} % of the mass has moved, {:.3e} J of \
-                 {:.3e} J set free are left as motion{lost}",
+                "slide: {} fragments, largest {:.2} % of the volume; {:.1} % of the mass has moved, kinetic energy {:.3e} J of {:.3e} J released{lost}",
                 self.fragments,
                 100.0 * self.largest_share,
                 100.0 * self.moved_share,

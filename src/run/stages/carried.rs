@@ -58,7 +58,7 @@ impl Carried {
     pub fn put(&self, model: &dem::Model, state: &mut dem::State) -> Result<(), Failure> {
         state.carry(model, &self.state, self.count).map_err(|body| {
             Failure::Input(format!(
-                "--from: grain {body} is not that of the bed, expected the same [[grains]]"
+                "--from: found grain {body} different from the imported bed, expected the same [[grains]]"
             ))
         })
     }

@@ -83,7 +83,7 @@ fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, index: usize) {
     settled.warnings.extend(region_not_filled(&key, view, &done.region, |b| b < settled.bodies.len()));
     if !done.rested {
         settled.warnings.push(format!(
-            "the grains were still moving at {:.2e} m/s (root mean square) after stage {} of the compaction",
+            "grains not at rest: root mean square speed {:.2e} m/s after compaction {}",
             rms_speed(&done.bed.model, &done.bed.state),
             index + 1
         ));
@@ -116,7 +116,7 @@ fn compact(
             let rested = bed.rest(&plan.rest)?;
             if !reached {
                 settled.warnings.push(format!(
-                    "squeezing stopped after {max_travel} m at the porosity {:.4}, above {target}",
+                    "squeeze stopped at `max_travel` = {max_travel} m: porosity {:.4}, above the target {target}",
                     porosity(&bed, settled.bodies.len(), &region)
                 ));
             }

@@ -11,8 +11,7 @@ use trackbed_coupling::stability::{INTERFACE, interface_excess, largest_phase, t
 pub fn unconverged(passes: &Passes) -> Option<String> {
     (passes.unconverged > 0).then(|| {
         format!(
-            "{} of {} windows had not converged after the last pass allowed (the best pass was used): raise coupling.max_passes, or take fewer \
-             coupling.substeps",
+            "coupling: {} of {} windows not converged within coupling.max_passes. The best pass was used. Increase coupling.max_passes, or reduce coupling.substeps.",
             passes.unconverged, passes.windows
         )
     })
@@ -28,8 +27,7 @@ pub fn late(spent: &Spent) -> Option<String> {
     let part = -spent.dashpot_lag / spent.work().abs().max(law);
     (part > LATE).then(|| {
         format!(
-            "the dashpots at the solid's surface took {:.3e} J less than their law has, {:.1} % of what was turned over: they act on \
-             the surface's velocity at the start of a window; take fewer coupling.substeps, or coupling.theta above 0.5",
+            "coupling: interface dashpot error {:.3e} J, {:.1} % of the reference energy. Dashpots at the solid surface act on its velocity at the start of a window. Reduce coupling.substeps, or set coupling.theta above 0.5.",
             -spent.dashpot_lag,
             100.0 * part
         )
@@ -53,15 +51,13 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
             "\"auto\"".into()
         };
         return Some(format!(
-            "unstable coupling windows: all contacts on the solid together had W = {stiffness:.2}, D = {damping:.2} (at most {}): the contacts \
-             may shake the ground. Set {fewer}.",
+            "coupling: unstable windows: W = {stiffness:.2}, D = {damping:.2} for all contacts on the solid (limit {}). Contacts may excite the ground. Set {fewer}.",
             INTERFACE[0]
         ));
     }
     (check.growth > GROWTH).then(|| {
         format!(
-            "undamped contacts at rest: phase {phase:.2} per window, theta = {:.4} damps up to {:.2}: amplitudes may have grown by a factor of \
-             {:.1e}. Remove coupling.theta, set it to {:.3}, or set tangential_damping_ratio.",
+            "coupling.theta: undamped contacts at rest: phase {phase:.2} per window (limit {1:.2} for theta = {0:.4}). Amplitudes may have grown by a factor of {2:.1e}. Remove coupling.theta, set it to {3:.3}, or set tangential_damping_ratio.",
             model.theta,
             largest_phase(model.theta),
             libm::exp(check.growth.min(700.0)),

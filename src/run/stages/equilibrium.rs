@@ -63,7 +63,7 @@ impl Stage for Equilibrium {
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
         if run.verbosity > Verbosity::Quiet {
             // Before anything can blow up.
-            remarks.iter().for_each(|r| message::note(r));
+            remarks.iter().for_each(|r| message::warn(r));
         }
         summary.warnings.extend(remarks);
         let lowest = system.work.surface.lowest();
@@ -138,7 +138,7 @@ fn couple<'b>(
         .map_err(|e| solid.failure(&e))?;
     reduce(run, solid, &model, &mut work, summary)?;
     summary.model.solid_step = Some(model.window());
-    progress.finish("solid in equilibrium with its weight and the bed, window matrix factored");
+    progress.finish("solid in equilibrium with its weight and the bed, matrix factorized");
     let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
         bodies,
         bases,
@@ -171,8 +171,7 @@ fn reduce(
     let cost = fem::reduction::Reduced::cost(model.solid, work.surface.faces(), reduction);
     let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
         format!(
-            "solid.reduction: {} shapes make a step of the solid about {:.1} times as dear as without ({:.1} million numbers \
-             read for {:.1}): the run is faster without it, or with kind = \"modes\"",
+            "solid.reduction: {} modes make an FEM step about {:.1}× slower ({:.1} instead of {:.1} million numbers read). Remove it, or set kind = \"modes\".",
             c.shapes,
             c.reduced / c.full,
             1e-6 * c.reduced,
@@ -180,7 +179,7 @@ fn reduce(
         )
     });
     if run.verbosity > Verbosity::Quiet {
-        slower.iter().for_each(|r| message::note(r));
+        slower.iter().for_each(|r| message::warn(r));
     }
     summary.warnings.extend(slower);
     let reduced = fem::reduction::Reduced::new(model.solid, work.surface.faces(), reduction)
@@ -229,7 +228,7 @@ fn equilibrium(
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
     let (contacts, resting) = coupling::step::resting_load(grains, start, surface, model.mesh())
-        .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+        .map_err(|e| Failure::Numerical(e.to_string()))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;
     }

@@ -52,7 +52,7 @@ pub fn drop_layers(
         if !falling.rest(plan)? {
             let speed = rms_speed(&falling.model, &falling.state);
             bed.warnings.push(format!(
-                "layer {} of the grains was still moving at {speed:.2e} m/s (root mean square) after {} s",
+                "layer {} not at rest: root mean square speed {speed:.2e} m/s after {} s",
                 k + 1,
                 plan.max_time
             ));

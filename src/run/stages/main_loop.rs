@@ -47,7 +47,8 @@ impl Stage for MainLoop {
             Some(Analysis::QuasiStatic(_)) => "quasi-static",
             _ => "dynamics",
         };
-        let line = |step: f64| format!("{kind}: {} s in {:.0} steps of {step} s", job.end, job.end / step);
+        let line =
+            |step: f64| format!("{kind}: {} s in {:.0} time steps of {step} s", job.end, job.end / step);
         job.solid_step.map(line).into_iter().collect()
     }
 

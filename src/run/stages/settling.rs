@@ -85,11 +85,10 @@ fn settle(
             Some(s) => work.step(&model, &mut state, s, &[]),
             None => work.step(&model, &mut state, &dem::surface::NoSurface, &[]),
         }
-        .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+        .map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
         // Look at the speed every millisecond.
         if bed::passed(&state, LOOK) {
-            work.download(&model, &mut state)
-                .map_err(|e| Failure::Numerical(format!("grains while settling: {e}")))?;
+            work.download(&model, &mut state).map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
             let speed = bed::rms_speed(&model, &state);
             // Everything starts at rest: free fall has to be under way before slowness means anything.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
@@ -111,7 +110,7 @@ fn settle(
     if !settled {
         let speed = bed::rms_speed(&model, &state);
         bed.warnings.push(format!(
-            "the grains were still moving at {speed:.2e} m/s (root mean square) after {} s of settling",
+            "grains not at rest: root mean square speed {speed:.2e} m/s after {} s of settling",
             plan.max_time
         ));
     }
@@ -121,7 +120,7 @@ fn settle(
     bed.energy.push(energy);
     let removed = removed.len();
     let seconds = progress.finish(&format!(
-        "{} grains at rest after {:.2} s, {removed} above the level taken away",
+        "{} grains at rest after {:.2} s, {removed} above the level removed",
         bodies.iter().filter(|b| !b.absent).count(),
         state.time
     ));

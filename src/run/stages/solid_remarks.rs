@@ -12,11 +12,11 @@ pub fn missed(job: &Job) -> Vec<String> {
     for (name, function) in loads.chain(moving) {
         if let Some(missed) = function.missed(step, job.end) {
             remarks.push(format!(
-                "{name}: time.solid_step = {step} s gives its history steps {missed}: the result lacks that load"
+                "{name}: time.solid_step = {step} s resolves its history with {missed}. The load is not resolved. Reduce time.solid_step."
             ));
         } else if let Some(missed) = function.missed(interval, job.end) {
             remarks.push(format!(
-                "{name}: output.history_interval = {interval} s gives its history rows {missed}: history.csv does not show it"
+                "{name}: output.history_interval = {interval} s samples its history with {missed}. history.csv does not show it. Reduce output.history_interval."
             ));
         }
     }

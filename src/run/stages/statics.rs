@@ -61,8 +61,8 @@ fn solve(
 
     let energy = fem::energy::strain(model, &state);
     if !energy.is_finite() {
-        let found = format!("its strain energy comes out as {energy} J under these loads");
-        return Err(Failure::Numerical(format!("solid: {found}, beyond what a number holds")));
+        let found = format!("strain energy not finite: {energy} J");
+        return Err(Failure::Numerical(format!("solid: {found}. Check units of loads and stiffness.")));
     }
     summary.validity.extend(small_strain(model, &state.u));
     prepare()?;

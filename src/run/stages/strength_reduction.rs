@@ -45,7 +45,7 @@ impl Stage for StrengthReduction {
 
     fn report(&self, job: &Job, _: Steps<'_>) -> Vec<String> {
         let line = |(_, plan): (&SolidPart, &StrengthReductionPlan)| {
-            format!("strength reduction: from the factor {} on, to within {}", plan.start, plan.tolerance)
+            format!("strength reduction: from factor {}, bracket width {}", plan.start, plan.tolerance)
         };
         plan_of(job).map(line).into_iter().collect()
     }
@@ -75,7 +75,7 @@ fn bracket(
     let progress = Progress::start("strength reduction", 1.0, stage.verbosity);
     let found =
         strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
-    progress.finish(&format!("factor of safety between {:.4} and {:.4}", found.converged, found.failed));
+    progress.finish(&format!("factor of safety {:.4} to {:.4}", found.converged, found.failed));
 
     // The state at the edge: the mechanism shows in its displacements.
     let (weaker, standing) = strength_reduction::at_factor(model, &state, &load, plan, found.converged)

@@ -420,11 +420,11 @@ fn details<S: System>(system: &S, time: f64, k: u64) -> String {
     let (grain_steps, solid_steps) = system.steps_done(k);
     let mut parts = vec![format!("{time:.4e} s")];
     if let Some(grains) = system.grains() {
-        parts.push(format!("{grain_steps} grain steps"));
+        parts.push(format!("{grain_steps} DEM steps"));
         parts.push(format!("{} contacts", dem::measure::contacts(grains.model, grains.state).len()));
     }
     if system.solid().is_some() {
-        parts.push(format!("{solid_steps} solid steps"));
+        parts.push(format!("{solid_steps} FEM steps"));
     }
     parts.join(", ")
 }

@@ -171,7 +171,7 @@ impl Summary {
         let file = dir.join("log.txt");
         crate::write::atomic::write(&file, |out| {
             let sources: String = self.sources.iter().map(|s| format!("source: {s}\n")).collect();
-            write!(out, "{}\nstatus: {}\n{}{sources}", self.run.title, self.run.status, self.report())
+            write!(out, "{}\nstatus: {}\n{}{sources}", self.run.title, self.run.status, self.report(true))
                 .map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;
         Ok(())

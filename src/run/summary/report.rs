@@ -1,6 +1,6 @@
 //! What a run prints when it has ended, also in `log.txt`.
 
-use super::Summary;
+use super::{CouplingRecord, Summary};
 use crate::run::events::EventRecord;
 use crate::run::flow::FlowRecord;
 use crate::run::packing;
@@ -10,13 +10,13 @@ use crate::run::validity;
 use trackbed_coupling::scheme::Scheme;
 
 impl Summary {
-    /// What a user wants to see when a run has ended.
-    pub fn report(&self) -> String {
+    /// Results of a run as text; `details`: with stability numbers and factorizations.
+    pub fn report(&self, details: bool) -> String {
         let mut lines = Vec::new();
         self.report_stages(&mut lines);
-        self.report_solid(&mut lines);
+        self.report_solid(&mut lines, details);
         self.report_accounts(&mut lines);
-        self.report_coupling(&mut lines);
+        self.report_coupling(&mut lines, details);
         self.report_settlement(&mut lines);
         self.report_track(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
@@ -25,7 +25,7 @@ impl Summary {
         lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
         lines.extend(self.verdict.report());
         lines.extend(validity::report(&self.validity));
-        lines.extend(self.warnings.iter().map(|warning| format!("note: {warning}")));
+        lines.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
         lines.join("\n") + "\n"
     }
 
@@ -36,37 +36,42 @@ impl Summary {
         }
         for stage in &self.stages {
             lines.push(format!(
-                "{}: {:.1} s, {} grain steps, {} solid steps",
+                "{}: {:.1} s, {} DEM steps, {} FEM steps",
                 stage.name, stage.seconds, stage.grain_steps, stage.solid_steps
             ));
         }
     }
 
     /// Static equilibrium, Newton's method, supports, factor of safety.
-    fn report_solid(&self, lines: &mut Vec<String>) {
+    fn report_solid(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(s) = &self.solid.statics {
             let (u, node) = s.largest_displacement;
             lines.push(format!("largest displacement {u:.6e} m at node {node}"));
-            lines.push(format!("equilibrium of loads and reactions: {:.1e} relative", s.equilibrium_error));
+            lines.push(format!(
+                "equilibrium error of loads and reactions: {:.1e} (relative)",
+                s.equilibrium_error
+            ));
         }
         if let Some(n) = &self.solid.newton {
             lines.push(format!(
-                "Newton: {} steps ({} halved), {} iterations, {} symmetric and {} unsymmetric factorizations; seconds in \
-                 assembly {:.1}, factorization {:.1}, solves {:.1}",
-                n.steps,
-                n.halvings,
-                n.iterations,
-                n.factorizations_symmetric,
-                n.factorizations_unsymmetric,
-                n.assembly_seconds,
-                n.factor_seconds,
-                n.solve_seconds
+                "Newton: {} steps ({} halved), {} iterations",
+                n.steps, n.halvings, n.iterations
             ));
+            if details {
+                lines.push(format!(
+                    "  factorizations: {} symmetric, {} unsymmetric; time: assembly {:.1} s, factorization {:.1} s, solves {:.1} s",
+                    n.factorizations_symmetric,
+                    n.factorizations_unsymmetric,
+                    n.assembly_seconds,
+                    n.factor_seconds,
+                    n.solve_seconds
+                ));
+            }
         }
         if let Some(p) = &self.solid.plastic {
             let [x, y, z] = p.place;
             lines.push(format!(
-                "solid: {:.2} % of the Gauss points have yielded, largest plastic strain {:.3e} in element {} at ({x:.3}, \
+                "solid: {:.2} % of the integration points have yielded, largest plastic strain {:.3e} in element {} at ({x:.3}, \
                  {y:.3}, {z:.3}) m",
                 100.0 * p.yielded_share,
                 p.largest_plastic_strain,
@@ -79,7 +84,7 @@ impl Summary {
         }
         if let Some(s) = &self.solid.safety {
             lines.push(format!(
-                "factor of safety: stands at {:.4}, fails at {:.4} ({} trials)",
+                "factor of safety: stable at {:.4}, unstable at {:.4} ({} trials)",
                 s.stands_at,
                 s.fails_at,
                 s.trials.len()
@@ -91,7 +96,7 @@ impl Summary {
     fn report_accounts(&self, lines: &mut Vec<String>) {
         if let Some(e) = &self.energy {
             lines.push(format!(
-                "work {:.6} J, energy error {:.2e} J ({:.4} % of what was turned over)",
+                "external work {:.6} J, energy error {:.2e} J ({:.4} % of the reference energy)",
                 e.work,
                 e.error,
                 100.0 * e.relative_error
@@ -105,12 +110,12 @@ impl Summary {
         }
         for s in &self.structures {
             lines.push(format!(
-                "load on {}: at most {:.3e} N at {:.3} s, mean {:.3e} N along x, {:.3e} N along y",
+                "load on {}: maximum {:.3e} N at {:.3} s, mean {:.3e} N along x, {:.3e} N along y",
                 s.name, s.largest, s.time, s.mean[0], s.mean[1]
             ));
             if let Some(m) = &s.motion {
                 lines.push(format!(
-                    "motion of {}: at most {:.3e} m, mean {:.3e} m along x, {:.3e} m along y; acceleration at most {:.3e} m/s2, r.m.s. {:.3e} m/s2",
+                    "motion of {}: maximum {:.3e} m, mean {:.3e} m along x, {:.3e} m along y; acceleration: maximum {:.3e} m/s2, r.m.s. {:.3e} m/s2",
                     s.name,
                     m.largest_displacement,
                     m.mean_displacement[0],
@@ -122,7 +127,7 @@ impl Summary {
         }
         if let Some(b) = &self.bonds {
             lines.push(format!(
-                "bonds: {} of {} broken ({} by tension, {} by shear), {:.3e} J set free; {} fragments, the largest of {} bodies",
+                "bonds: {} of {} broken ({} in tension, {} in shear), {:.3e} J released; {} fragments, largest of {} bodies",
                 b.broken_by_tension + b.broken_by_shear,
                 b.made,
                 b.broken_by_tension,
@@ -135,37 +140,21 @@ impl Summary {
             if let Some(b) = &b.breakage {
                 let index =
                     b.ballast_index.map_or(String::new(), |i| format!(", ballast breakage index {i:.3}"));
-                lines.push(format!(
-                    "breakage of what bonds held together: {:.1} % by Marsal{index}",
-                    100.0 * b.marsal
-                ));
+                lines.push(format!("breakage of bonded stones: Marsal {:.1} %{index}", 100.0 * b.marsal));
             }
         }
     }
 
     /// Exchange between grains and solid.
-    fn report_coupling(&self, lines: &mut Vec<String>) {
+    fn report_coupling(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative), W = {:.2}, D = {:.2}; scheme {}, {} sub-steps, \
-                 transfer {}",
-                c.transfer.force,
-                c.transfer.moment,
-                c.stability.stiffness,
-                c.stability.damping,
-                c.scheme,
-                c.substeps,
-                c.transfer_kind
+                "interface: force error {:.1e}, moment error {:.1e} (relative); scheme {}, {} DEM sub-steps, transfer {}",
+                c.transfer.force, c.transfer.moment, c.scheme, c.substeps, c.transfer_kind
             ));
-            for class in &c.classes {
-                lines.push(format!("  {}", class.line()));
+            if details {
+                lines.extend(c.stability_lines());
             }
-            let n = &c.interface;
-            lines.push(format!(
-                "  all contacts together, largest of the run: W = {:.3}, D = {:.3}, phase of undamped contacts {:.3}; theta = {:.4}, \
-                 windows divided by {}",
-                n.stiffness, n.damping, n.phase, c.theta, c.division
-            ));
             if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
                 lines.push(format!(
                     "  {:.2} passes per window, {} windows not converged",
@@ -180,10 +169,7 @@ impl Summary {
     fn report_settlement(&self, lines: &mut Vec<String>) {
         if let Some(s) = &self.track.settlement {
             if let Some(seating) = s.seating {
-                lines.push(format!(
-                    "settlement while the sleeper was seated, not counted [mm]: {:.3}",
-                    1e3 * seating
-                ));
+                lines.push(format!("settlement during seating, not counted [mm]: {:.3}", 1e3 * seating));
             }
             let list: Vec<String> = s.per_cycle.iter().map(|s| format!("{:.3}", 1e3 * s)).collect();
             if list.len() <= 20 {
@@ -208,7 +194,7 @@ impl Summary {
             }
             if let Some(j) = &s.jump {
                 lines.push(format!(
-                    "cycle jumps ({}): {} cycles simulated, {} jumped over; error of the settlement estimated {:.3} mm ({:.1} %)",
+                    "cycle jumps ({}): {} cycles simulated, {} skipped; estimated settlement error {:.3} mm ({:.1} %)",
                     j.method,
                     j.simulated,
                     j.skipped,
@@ -225,26 +211,41 @@ impl Summary {
             let at_two =
                 p.resistance_at_2_mm.map_or(String::new(), |f| format!("{:.3} kN at 2 mm, ", 1e-3 * f));
             lines.push(format!(
-                "lateral push: {at_two}peak {:.3} kN at {:.2} mm, under {:.3} kN",
+                "lateral resistance: {at_two}peak {:.3} kN at {:.2} mm, vertical force {:.3} kN",
                 1e-3 * p.peak,
                 1e3 * p.displacement_at_peak,
                 1e-3 * p.vertical_force
             ));
         }
         for (k, s) in self.track.sleepers.iter().flat_map(|t| t.sleepers.iter().enumerate()) {
-            let share = s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of an axle)", 100.0 * p));
+            let share =
+                s.load_share.map_or(String::new(), |p| format!(" ({:.1} % of the axle load)", 100.0 * p));
             let factor =
-                s.dynamic_amplification.map_or(String::new(), |f| format!(", {f:.3} times the static force"));
+                s.dynamic_amplification.map_or(String::new(), |f| format!(", dynamic factor {f:.3}"));
             let bend = s.bend.map_or(String::new(), |[low, high]| {
-                format!(", ends {:.4} to {:.4} mm over the middle", 1e3 * low, 1e3 * high)
+                format!(", ends {:.4} to {:.4} mm above the middle", 1e3 * low, 1e3 * high)
             });
             lines.push(format!(
-                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, lowered by {:.3} mm{bend}",
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, settlement {:.3} mm{bend}",
                 k + 1,
                 1e-3 * s.smallest_force,
                 1e-3 * s.largest_force,
                 1e3 * s.lowering
             ));
         }
+    }
+}
+
+impl CouplingRecord {
+    /// Lines with the stability numbers of the coupling windows.
+    fn stability_lines(&self) -> Vec<String> {
+        let (s, n) = (&self.stability, &self.interface);
+        let mut lines = vec![format!("  stability: W = {:.2}, D = {:.2}", s.stiffness, s.damping)];
+        lines.extend(self.classes.iter().map(|class| format!("  {}", class.line())));
+        lines.push(format!(
+            "  all contacts, maximum of the run: W = {:.3}, D = {:.3}, phase of undamped contacts {:.3}; theta = {:.4}, windows divided by {}",
+            n.stiffness, n.damping, n.phase, self.theta, self.division
+        ));
+        lines
     }
 }

@@ -63,12 +63,12 @@ impl Verdict {
         let mut judged = Vec::new();
         if let Some(e) = &summary.energy {
             // What stops a run does so at the row where it is seen.
-            let what = "largest energy error over energy turned over";
+            let what = "largest energy error over reference energy";
             judged.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
             for (name, loss) in e.spent.losses() {
                 let below = (-loss).max(0.0) / e.turned_over.max(f64::MIN_POSITIVE);
                 if below > NEGATIVE {
-                    let what = format!("energy gained from {name} over energy turned over");
+                    let what = format!("energy gained from {name} over reference energy");
                     judged.push(Judged::new(what, below, NEGATIVE, None));
                 }
             }
@@ -79,13 +79,13 @@ impl Verdict {
         }
         if let Some(s) = &summary.solid.statics {
             let (warn, stop) = EQUILIBRIUM;
-            let what = "sum of loads and reactions over their sizes";
+            let what = "equilibrium error of loads and reactions";
             judged.push(Judged::new(what, s.equilibrium_error, warn, Some(stop)));
         }
         if let Some(c) = &summary.coupling {
             let transfer = c.transfer.force.max(c.transfer.moment);
             judged.push(Judged::new("force and moment error across the interface", transfer, TRANSFER, None));
-            judged.push(Judged::new("windows without convergence", c.passes.unconverged as f64, 0.0, None));
+            judged.push(Judged::new("windows not converged", c.passes.unconverged as f64, 0.0, None));
         }
         let accounts = judged.iter().map(|j| j.outcome).max().unwrap_or_default();
         let outcome = accounts.max(validity::worst(&summary.validity));
@@ -100,11 +100,11 @@ impl Verdict {
     /// Lines for the end of a run.
     pub fn report(&self) -> Vec<String> {
         let count = self.judged.len();
-        let accounts = if count == 1 { "account" } else { "accounts" };
-        let mut lines = vec![format!("verdict: {}, {count} {accounts} judged", self.outcome.word())];
+        let noun = if count == 1 { "balance" } else { "balances" };
+        let mut lines = vec![format!("checks: {}, {count} {noun}", self.outcome.word())];
         for j in self.judged.iter().filter(|j| j.outcome != Outcome::Passed) {
             lines.push(format!(
-                "  {}: {} is {:.3e}, expected at most {:.0e}",
+                "  {}: {}: {:.3e} (limit {:.0e})",
                 j.outcome.word(),
                 j.what,
                 j.value,
@@ -122,7 +122,7 @@ impl Verdict {
         match self.judged.iter().find(|j| j.outcome == Outcome::Failed) {
             None => Ok(()),
             Some(j) => Err(Failure::Numerical(format!(
-                "{} is {:.3e}, and above {:.0e} there is no result",
+                "{}: {:.3e} (limit {:.0e})",
                 j.what,
                 j.value,
                 j.stop_above.unwrap_or(j.warn_above)
@@ -180,6 +180,6 @@ mod tests {
         assert!(remarked(&coupled(0.0, 0.0, 0)).is_empty());
         assert_eq!(remarked(&coupled(1e-6, 0.0, 0)), across);
         assert_eq!(remarked(&coupled(0.0, 1e-6, 0)), across);
-        assert_eq!(remarked(&coupled(0.0, 0.0, 1)), ["windows without convergence"]);
+        assert_eq!(remarked(&coupled(0.0, 0.0, 1)), ["windows not converged"]);
     }
 }

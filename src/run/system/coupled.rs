@@ -143,7 +143,7 @@ impl System for CoupledSystem<'_> {
             self.part_of_window(applied)?;
         }
         coupling::step::check_interface(&mut self.model, &mut self.state, &mut self.work, self.automatic)
-            .map_err(|e| Failure::Numerical(format!("solid, in shorter coupling windows: {e}")))
+            .map_err(|e| Failure::Numerical(format!("solid in subdivided coupling windows: {e}")))
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
@@ -157,7 +157,7 @@ impl System for CoupledSystem<'_> {
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
         coupling::step::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
-            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+            .map_err(|e| Failure::Numerical(e.to_string()))
     }
 
     fn surface(&self) -> &dyn dem::surface::Surface {

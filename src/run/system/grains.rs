@@ -41,7 +41,7 @@ impl GrainsSystem {
     ) -> Result<GrainsSystem, Failure> {
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
-            .map_err(|e| Failure::Numerical(format!("grains: {e}")))?;
+            .map_err(|e| Failure::Numerical(e.to_string()))?;
         GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
@@ -176,7 +176,7 @@ impl System for GrainsSystem {
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
         dem::flow::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
-            .map_err(|e| Failure::Numerical(format!("grains: {e}")))
+            .map_err(|e| Failure::Numerical(e.to_string()))
     }
 
     fn stored(&self) -> Stored {

@@ -88,7 +88,7 @@ impl System for SolidSystem<'_> {
         let audit = self
             .solver
             .advance(&part.model, &mut self.state, drive)
-            .map_err(|e| Failure::Numerical(format!("solid at t = {time:.6e} s: {e}")))?;
+            .map_err(|e| Failure::Numerical(format!("at t = {time:.6e} s: solid: {e}")))?;
         std::mem::swap(&mut self.load, &mut self.next_load);
         let gravity_work: f64 =
             self.gravity.iter().zip(self.state.u.iter().zip(&before)).map(|(f, (u, b))| f * (u - b)).sum();

@@ -52,8 +52,7 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
     Some(Check::new("grains below all walls over all grains", value, LOST, || {
         let x = state.position(lost[0]);
         format!(
-            "grains lost below all walls: {}, the first is body {} at ({:.4}, {:.4}, {:.4}) m: close the walls, or take grains away with an \
-             [[outlet]]",
+            "grains lost below all walls: {}, first body {} at ({:.4}, {:.4}, {:.4}) m. Close the walls, or remove grains with an [[outlet]].",
             lost.len(),
             lost[0],
             x.x,

@@ -12,8 +12,7 @@ pub fn bond_rotation(view: GrainsView<'_>) -> Option<Check> {
     let found = largest_rotation(view.model, view.state)?;
     Some(Check::new("largest rotation of a bond [rad]", found.angle, ROTATION, || {
         format!(
-            "bond {} is turned by {:.0} degrees: its springs are linear, good to some {:.0} degrees; use stiffer bonds, smaller loads, or a \
-             strength at which they break",
+            "bond {}: rotation {:.0} degrees, linear springs are valid to about {:.0} degrees. Use stiffer bonds, smaller loads, or a finite strength.",
             found.bond,
             found.angle.to_degrees(),
             ROTATION.warn.to_degrees()

@@ -14,8 +14,7 @@ pub fn free_sleeper(track: &TrackRecord, duration: f64) -> Option<Check> {
     let value = if duration > 0.0 { seconds / duration } else { 0.0 };
     Some(Check::new("time of a sleeper without contact over the run", value, FREE, || {
         format!(
-            "sleeper {number} had no contact for {seconds:.4} s of {duration:.4} s: bed it first ([[compaction]] with kind = \"bedding\"), place \
-             it lower, or reduce the uplift"
+            "sleeper {number}: no contact for {seconds:.4} s of {duration:.4} s. Seat it first ([[compaction]] with kind = \"bedding\"), place it lower, or reduce the uplift."
         )
     }))
 }

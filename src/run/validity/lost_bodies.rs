@@ -17,8 +17,7 @@ pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>)
     let message = first.map(|first| {
         let x = state.position(first);
         format!(
-            "bodies lost below the surface of the solid: {count}, the first is body {first} at ({:.4}, {:.4}, {:.4}) m: enlarge the mesh, \
-             or put walls at its borders",
+            "bodies lost below the surface of the solid: {count}, first body {first} at ({:.4}, {:.4}, {:.4}) m. Enlarge the mesh, or place walls at its borders.",
             x.x, x.y, x.z
         )
     });

@@ -29,8 +29,7 @@ fn surface(view: GrainsView<'_>, region: &BoxRegion, is_grain: &impl Fn(usize) -
 
 fn text(name: &str, region: &BoxRegion, height: f64) -> String {
     format!(
-        "{name}: its top is at z = {:.4} m, above the bed, whose surface is at z = {height:.4} m on average: its porosity counts the air above the \
-         bed; lower the top, or fill in more grains",
+        "{name}: top at z = {:.4} m, above the mean bed surface at z = {height:.4} m. Its porosity includes air above the bed. Lower the top, or add grains.",
         region.high.z
     )
 }
@@ -45,7 +44,7 @@ pub fn measure_box(
     let height = surface(view, region, &is_grain)?;
     let value = (region.high.z - height) / (region.high.z - region.low.z);
     let name = format!("measure {name}");
-    Some(Check::new(format!("part of {name} above the bed"), value.clamp(0.0, 1.0), EMPTY, || {
+    Some(Check::new(format!("fraction of {name} above the bed"), value.clamp(0.0, 1.0), EMPTY, || {
         text(&name, region, height)
     }))
 }

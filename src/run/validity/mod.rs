@@ -116,7 +116,7 @@ pub fn report(checks: &[Check]) -> Vec<String> {
             Some(limit) if c.status == Outcome::Failed => ("failed", limit),
             _ => ("warned", c.limit),
         };
-        lines.push(format!("  {status}: {} is {:.3e}, expected at most {limit}", c.name, c.value));
+        lines.push(format!("  {status}: {}: {:.3e} (limit {limit})", c.name, c.value));
     }
     lines
 }
@@ -143,8 +143,8 @@ mod tests {
         let checks = [check("a", 0.5), check("b", 1.5), check("c", 3.0)];
         let lines = report(&checks);
         assert_eq!(lines[0], "validity: failed, 3 checks");
-        assert_eq!(lines[1], "  warned: b is 1.500e0, expected at most 1");
-        assert_eq!(lines[2], "  failed: c is 3.000e0, expected at most 2");
+        assert_eq!(lines[1], "  warned: b: 1.500e0 (limit 1)");
+        assert_eq!(lines[2], "  failed: c: 3.000e0 (limit 2)");
         assert_eq!(messages(&checks).collect::<Vec<_>>(), ["b is far", "c is far"]);
     }
 }

@@ -39,8 +39,7 @@ pub fn scaled_inertia(factor: f64, kinetic: f64, reference: f64, fall: Fall) -> 
     let value = by_energy.min(by_fall);
     Check::new("kinetic energy of grains with scaled masses", value, INERTIA, || {
         format!(
-            "time.mass_factor: found {factor} where grains accelerate: their kinetic energy reaches {kinetic:.3e} J, {:.0} % of the reference \
-             energy, and scaled masses are for beds pressed slowly; remove time.mass_factor",
+            "time.mass_factor: {factor} with a kinetic energy of {kinetic:.3e} J, {:.0} % of the reference energy. Mass scaling is valid for quasi-static loading only. Remove time.mass_factor.",
             100.0 * by_energy.min(1.0)
         )
     })

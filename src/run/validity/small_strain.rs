@@ -33,8 +33,7 @@ pub fn quasi_static_strain(model: &Model, u: &[f64]) -> [Check; 3] {
 fn rotation(found: &Extent, limits: Limits) -> Check {
     Check::new("largest rotation of the solid [rad]", found.rotation, limits, || {
         format!(
-            "element {} of the solid is turned by {:.1} degrees: its equations are those of small rotations, good to some {:.0} degrees; reduce \
-             the load, or make the solid stiffer",
+            "solid: rotation {1:.1} degrees in element {0}, small rotations are valid to about {2:.0} degrees. Reduce the load, or stiffen the solid.",
             found.rotated,
             found.rotation.to_degrees(),
             ROTATION.warn.to_degrees()
@@ -46,8 +45,7 @@ fn rotation(found: &Extent, limits: Limits) -> Check {
 fn strain(found: &Extent, limits: Limits) -> Check {
     Check::new("largest strain of the solid", found.strain, limits, || {
         format!(
-            "the solid is strained by {:.3} % in element {}: its equations are those of small strains, good to some {} %; reduce the load, or \
-             find the load it bears by strength reduction",
+            "solid: strain {:.3} % in element {}, small strains are valid to about {} %. Reduce the load, or use strength reduction.",
             100.0 * found.strain,
             found.strained,
             100.0 * STRAIN.warn
@@ -60,8 +58,7 @@ fn displacement(found: &Extent) -> Check {
     let value = if found.size > 0.0 { found.displacement / found.size } else { 0.0 };
     Check::new("largest displacement of the solid over its element's size", value, DISPLACEMENT, || {
         format!(
-            "element {} of the solid is displaced by {:.4} m, more than its own size of {:.4} m: its equations are those of \
-             small displacements",
+            "solid: displacement of element {}: {:.4} m, more than its size of {:.4} m. Small displacements are assumed.",
             found.moved, found.displacement, found.size
         )
     })

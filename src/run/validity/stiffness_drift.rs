@@ -15,8 +15,7 @@ pub fn stiffness_drift(secants: &[f64]) -> Option<Check> {
     let value = 1.0 - last / second;
     Some(Check::new("loss of secant stiffness since the second cycle", value.max(0.0), LOSS, || {
         format!(
-            "the secant stiffness falls from {:.4} MN/m in cycle 2 to {:.4} MN/m in the last: the load may be near a natural frequency of the \
-             solid on its supports (`trackbed modal`), or the bed fails; load slower, deepen the mesh, use [[solid.absorbing]], or reduce the load",
+            "secant stiffness: {:.4} MN/m in cycle 2, {:.4} MN/m in the last cycle. The load may be near a natural frequency of the solid (`trackbed modal`), or the bed fails. Load slower, deepen the mesh, use [[solid.absorbing]], or reduce the load.",
             1e-6 * second,
             1e-6 * last
         )

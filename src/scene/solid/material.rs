@@ -1,6 +1,7 @@
 //! Materials of the solid as written in a scene, and the constitutive law that each key set stands for.
 
 use crate::scene::units::{Angle, Density, Quantity, Stress};
+use crate::scene::{Problem, setting};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use trackbed_fem::material::{
@@ -100,10 +101,8 @@ pub enum Cone {
 pub struct MaterialFault {
     /// The key within the material.
     pub key: &'static str,
-    /// What it holds.
-    pub found: String,
-    /// What it should hold.
-    pub expected: String,
+    /// Problem of the key.
+    pub problem: Problem,
 }
 
 fn fault<T>(
@@ -111,7 +110,15 @@ fn fault<T>(
     found: impl ToString,
     expected: impl Into<String>,
 ) -> Result<T, MaterialFault> {
-    Err(MaterialFault { key, found: found.to_string(), expected: expected.into() })
+    faulty(key, Problem::value(found.to_string(), expected))
+}
+
+fn faulty<T>(key: &'static str, problem: Problem) -> Result<T, MaterialFault> {
+    Err(MaterialFault { key, problem })
+}
+
+fn conflicting<T>(key: &'static str, with: &str) -> Result<T, MaterialFault> {
+    faulty(key, Problem::conflict(format!("`{with}`")))
 }
 
 fn check(key: &'static str, value: f64, good: bool, expected: &str) -> Result<(), MaterialFault> {
@@ -175,15 +182,14 @@ impl SolidMaterial {
     fn cam_clay(&self) -> Result<Material, MaterialFault> {
         let shear = match (self.poisson, self.shear_modulus) {
             (Some(_), Some(_)) => {
-                return fault("shear_modulus", "a value", "either `poisson` or `shear_modulus`");
+                return conflicting("shear_modulus", "poisson");
             }
             (None, Some(modulus)) => Shear::Modulus(modulus.si),
             (poisson, None) => Shear::Poisson(self.need("poisson", poisson)?),
         };
         let consolidation = match (self.preconsolidation, self.overconsolidation) {
             (Some(_), Some(_)) => {
-                let expected = "either `preconsolidation` or `overconsolidation`";
-                return fault("overconsolidation", "a value", expected);
+                return conflicting("overconsolidation", "preconsolidation");
             }
             (None, Some(ratio)) => Consolidation::Ratio(ratio),
             (pressure, None) => {
@@ -206,7 +212,7 @@ impl SolidMaterial {
     fn need(&self, key: &'static str, value: Option<f64>) -> Result<f64, MaterialFault> {
         match value {
             Some(value) => Ok(value),
-            None => fault(key, "nothing", format!("a value for the model `{}`", self.name())),
+            None => faulty(key, Problem::missing(format!("a value for the model `{}`", self.name()))),
         }
     }
 
@@ -216,11 +222,8 @@ impl SolidMaterial {
             (None, None, Some(table)) => {
                 Ok(Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect()))
             }
-            (Some(_), _, Some(_)) => {
-                let expected = format!("either `{key}` (and `hardening`) or `hardening_table`");
-                fault("hardening_table", "a table", expected)
-            }
-            (_, Some(_), Some(_)) => fault("hardening", "a value", "no such key beside `hardening_table`"),
+            (Some(_), _, Some(_)) => conflicting("hardening_table", key),
+            (_, Some(_), Some(_)) => conflicting("hardening", "hardening_table"),
             (_, modulus, None) => {
                 let initial = self.need(key, value)?;
                 Ok(match modulus {
@@ -247,7 +250,7 @@ impl SolidMaterial {
         let friction = match (&self.friction, &self.friction_table) {
             (None, Some(table)) => Hardening::Table(table.iter().map(|(x, y)| (*x, y.si)).collect()),
             (Some(_), Some(_)) => {
-                return fault("friction_table", "a table", "either `friction` or `friction_table`");
+                return conflicting("friction_table", "friction");
             }
             (friction, None) => Hardening::Constant(self.need("friction", friction.map(|f| f.si))?),
         };
@@ -270,7 +273,8 @@ impl SolidMaterial {
             Some(Cone::Extension) => material::Cone::Extension,
             Some(Cone::PlaneStrain) => material::Cone::PlaneStrain,
             None => {
-                return fault("cone", "nothing", "\"compression\", \"extension\" or \"plane_strain\"");
+                let expected = "\"compression\", \"extension\" or \"plane_strain\"";
+                return faulty("cone", Problem::missing(expected));
             }
         };
         Ok(Material::plastic(elastic, DruckerPrager { cohesion, friction, dilation, cone, tension }))
@@ -303,12 +307,12 @@ impl SolidMaterial {
 
     /// Keys that the model has no use for.
     fn refuse_idle_keys(&self) -> Result<(), MaterialFault> {
-        let model = self.model;
-        let frictional = matches!(model, MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager);
-        let metal = matches!(model, MaterialModel::VonMises | MaterialModel::Tresca);
-        let clay = model == MaterialModel::ModifiedCamClay;
+        let clay: &[&str] = &["modified_cam_clay"];
+        let others: &[&str] = &["elastic", "mohr_coulomb", "drucker_prager", "von_mises", "tresca"];
+        let frictional: &[&str] = &["mohr_coulomb", "drucker_prager"];
+        let (metal, plastic) = (&others[3..], &others[1..]);
         let keys = [
-            ("young", self.young.is_some(), !clay),
+            ("young", self.young.is_some(), others),
             ("lambda", self.lambda.is_some(), clay),
             ("kappa", self.kappa.is_some(), clay),
             ("critical_ratio", self.critical_ratio.is_some(), clay),
@@ -322,13 +326,13 @@ impl SolidMaterial {
             ("dilation", self.dilation.is_some(), frictional),
             ("tension", self.tension.is_some(), frictional),
             ("friction_table", self.friction_table.is_some(), frictional),
-            ("cone", self.cone.is_some(), model == MaterialModel::DruckerPrager),
+            ("cone", self.cone.is_some(), &frictional[1..]),
             ("yield_stress", self.yield_stress.is_some(), metal),
-            ("hardening", self.hardening.is_some(), frictional || metal),
-            ("hardening_table", self.hardening_table.is_some(), frictional || metal),
+            ("hardening", self.hardening.is_some(), plastic),
+            ("hardening_table", self.hardening_table.is_some(), plastic),
         ];
-        match keys.iter().find(|(_, present, used)| *present && !used) {
-            Some((key, ..)) => fault(key, "a value", format!("no such key for the model `{}`", self.name())),
+        match keys.iter().find(|(_, present, models)| *present && !models.contains(&self.name())) {
+            Some((key, _, models)) => faulty(key, Problem::no_effect(setting("model", models))),
             None => Ok(()),
         }
     }

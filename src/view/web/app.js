@@ -364,7 +364,7 @@ export class App {
     const out = [['constant', 'constant'], ['diameter', 'Diameter [m]'], ...named];
     if (this.state.frames > 1) out.push(['displacement', 'Displacement since ref. [m]']);
     if (fields.includes('part')) out.push(['part', 'Group']);
-    if (fields.includes('fragment')) out.push(['piece', 'Piece (largest red)']);
+    if (fields.includes('fragment')) out.push(['piece', 'Fragment (largest red)']);
     return out;
   }
 

@@ -123,14 +123,14 @@ export class Histories {
     const body = grains.bodyOf(sphere);
     const id = grains.bodies.id[body];
     const place = [0, 1, 2].map((k) => grains.position[3 * body + k] + meta.origin[k]);
-    const data = [['place', place, 'm'], ['diameter', grains.bodies.diameter[body], 'm']];
+    const data = [['position', place, 'm'], ['diameter', grains.bodies.diameter[body], 'm']];
     const spheres = grains.bodies.start[body + 1] - grains.bodies.start[body];
     if (spheres > 1) data.push(['spheres', spheres, '']);
     for (const field of meta.grainFields) {
       const values = await app.grainValues(field, state.frame);
       data.push([grainLabel(field), values[body], grainUnit(field)]);
     }
-    return { kind: 'grain', id, title: `Stone ${id}`, data, place };
+    return { kind: 'grain', id, title: `Grain ${id}`, data, place };
   }
 
   /** A grain with faces, by one of its triangles. */
@@ -138,12 +138,12 @@ export class Histories {
     const { source, walls, meta, state } = this.app;
     const stone = walls.stoneAt(triangle);
     const place = stone.place.map((x, k) => x + meta.origin[k]);
-    const data = [['place', place, 'm'], ['longest extent', stone.extent, 'm']];
+    const data = [['position', place, 'm'], ['longest extent', stone.extent, 'm']];
     for (const field of meta.grainFields) {
       const block = await source.block(`walls/${state.frame}/${field}`);
       if (block) data.push([grainLabel(field), block.arrays.value[stone.triangle], grainUnit(field)]);
     }
-    return { kind: 'faced', id: stone.id, title: `Stone ${stone.id}`, data, place };
+    return { kind: 'faced', id: stone.id, title: `Grain ${stone.id}`, data, place };
   }
 
   async node(triangle, x, y) {
@@ -158,7 +158,7 @@ export class Histories {
     const id = solid.skin.node_ids[node];
     const u = [0, 1, 2].map((k) => solid.displacement[3 * node + k]);
     const place = [0, 1, 2].map((k) => solid.skin.points[3 * node + k] + meta.origin[k]);
-    const data = [['place', place, 'm'], ['displacement x', u[0], 'm'], ['displacement y', u[1], 'm'], ['displacement z', u[2], 'm']];
+    const data = [['position', place, 'm'], ['displacement x', u[0], 'm'], ['displacement y', u[1], 'm'], ['displacement z', u[2], 'm']];
     const { field } = state.solid;
     if (solid.values && !field.startsWith('displacement')) {
       data.push([solidLabel(field), solid.values[solid.ofElements ? triangle : node], solidUnit(field)]);

@@ -13,14 +13,14 @@ export function legendsOf(app) {
     if (field === 'piece' && app.pieces?.length) {
       const [largest, ...others] = app.pieces;
       const swatches = [['#db1a1a', `largest: ${largest.bodies} of ${grains.count}`]];
-      if (others.length) swatches.push(['#1a9933', `${others.length} other piece${others.length > 1 ? 's' : ''}`]);
-      list.push({ part: 'grains', title: 'Pieces', unit: '', swatches });
+      if (others.length) swatches.push(['#1a9933', `${others.length} other fragment${others.length > 1 ? 's' : ''}`]);
+      list.push({ part: 'grains', title: 'Fragments', unit: '', swatches });
     } else if (field === 'part') {
       const groups = [...new Set([...(grains.values ?? []), ...(stones ?? [])])].sort((a, b) => a - b).slice(0, 8);
       list.push({ part: 'grains', title: 'Groups', unit: '', swatches: groups.map((g) => [GROUP_COLOURS[g % 8], `group ${g}`]) });
     } else {
       const title = field === 'displacement' ? 'Displacement' : grainLabel(field);
-      list.push({ part: 'grains', title: `Stones: ${title}`, unit: grainUnit(field), range: grains.range, map: state.grains.map });
+      list.push({ part: 'grains', title: `Grains: ${title}`, unit: grainUnit(field), range: grains.range, map: state.grains.map });
     }
   }
   if (chains.group.visible && chains.count && state.chains.colour !== 'constant') {

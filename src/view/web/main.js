@@ -10,7 +10,7 @@ import { EmbeddedSource, embeddedTexts } from 'source';
 const $ = (id) => document.getElementById(id);
 const { served } = JSON.parse($('settings').textContent);
 if (!document.createElement('canvas').getContext('webgl2')) {
-  $('message').textContent = 'This browser draws no WebGL 2: found none, expected a browser of 2021 or later with graphics switched on';
+  $('message').textContent = 'WebGL 2 is not available. Use a browser from 2021 or later with hardware acceleration enabled.';
   $('message').className = 'shown error';
   throw new Error('no WebGL 2');
 }

@@ -92,10 +92,8 @@ impl File {
         let out = OpenOptions::new().write(true).open(path).map_err(WriteError::io(path))?;
         let length = out.metadata().map_err(WriteError::io(path))?.len();
         if length < state.end {
-            let message = format!(
-                "is not the file that the checkpoint goes on from: {length} bytes, expected {} or more",
-                state.end
-            );
+            let message =
+                format!("is not the file of the checkpoint: {length} bytes, expected {} or more", state.end);
             return Err(WriteError::format(path, message));
         }
         let mut file = File { path: path.to_path_buf(), out, state };

@@ -62,6 +62,6 @@ fn a_file_resumed_at_any_mark_grows_to_the_same_bytes() {
     }
     fs::write(&path, &whole[..whole.len() - 1]).unwrap();
     let error = File::resume(&path, marks.last().unwrap()).unwrap_err();
-    assert!(error.to_string().contains("is not the file that the checkpoint goes on from"), "{error}");
+    assert!(error.to_string().contains("is not the file of the checkpoint"), "{error}");
     fs::remove_dir_all(&dir).unwrap();
 }

@@ -33,7 +33,7 @@ fn box_of_an_inlet_that_holds_no_grain() {
 #[test]
 fn two_rates() {
     flow().scene("rate = \"2 kg/s\"", "rate = 2, grains_per_second = 3").refused(
-        "scene.toml:15: grains.0.inlet.rate: found both or none of `rate` and `grains_per_second`, expected one of them",
+        "scene.toml:15: grains.0.inlet.rate: found together with `grains_per_second`, expected only one of them",
     );
 }
 
@@ -74,7 +74,7 @@ fn inlet_that_stops_before_it_starts() {
 #[test]
 fn inlet_that_nothing_comes_to() {
     flow().scene("again = true", "again = false").refused(
-        "scene.toml:15: grains.0.inlet: found an inlet that nothing comes to, expected an [[outlet]] with `again = true` for \
+        "scene.toml:15: grains.0.inlet: found an inlet without grains to insert, expected an [[outlet]] with `again = true` for \
          this group, or no grains at the start",
     );
 }
@@ -95,16 +95,15 @@ fn inlet_of_bonded_stones() {
 
 #[test]
 fn grains_that_wait_without_a_number() {
-    waiting().scene("count = 5\n", "").refused(
-        "scene.toml:10: grains.0.count: found nothing, expected the number of grains that may come in",
-    );
+    waiting()
+        .scene("count = 5\n", "")
+        .refused("scene.toml:10: grains.0.count: found nothing, expected the number of grains to insert");
 }
 
 #[test]
 fn grains_that_wait_with_a_velocity() {
     waiting().scene("count = 5", "count = 5\nvelocity = [0, 0, 1]").refused(
-        "scene.toml:15: grains.0.velocity: found a value, expected no such key for grains that wait for their inlet: see \
-         `inlet.velocity`",
+        "scene.toml:15: grains.0.velocity: found together with `inlet`, expected only one of them. Use `inlet.velocity`.",
     );
 }
 
@@ -163,37 +162,35 @@ fn outlets_of_one_name() {
 #[test]
 fn flow_beside_bonds() {
     let bond = "[[bond]]\nname = \"cement\"\ngap = \"5 mm\"\n[bond.parallel]\nyoung = \"1 MPa\"\n\n[[walls]]";
-    flow().scene("[[walls]]", bond).refused(
-        "scene.toml:15: grains.0.inlet: found grains that come or go, expected no inlet or outlet beside [[bond]]: bonded grains \
-         neither come nor go",
-    );
+    flow()
+        .scene("[[walls]]", bond)
+        .refused("scene.toml:15: grains.0.inlet: found together with [[bond]], expected only one of them");
 }
 
 #[test]
 fn outlet_beside_cycle_jumps() {
     let jump = "[[outlet]]\npoint = [9, 0, 0]\nnormal = [1, 0, 0]\n\n[track.jump]\n\n[coupling]";
-    coupled().scene("[coupling]", jump).refused(
-        "scene.toml:45: outlet.0: found grains that come or go, expected no inlet or outlet beside [track.jump]: a jump knows no \
-         grains that come and go",
-    );
+    coupled()
+        .scene("[coupling]", jump)
+        .refused("scene.toml:45: outlet.0: found together with [track.jump], expected only one of them");
 }
 
 #[test]
 fn interval_without_flow() {
     grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\nflow_interval = 0.001").refused(
-        "scene.toml:24: time.flow_interval: found a value, expected no such key without an `inlet` or an [[outlet]]",
+        "scene.toml:24: time.flow_interval: found, but it has no effect without an `inlet` or an [[outlet]]",
     );
     flow()
         .scene("end = \"20 ms\"", "end = \"20 ms\"\nflow_interval = 0")
         .refused("scene.toml:30: time.flow_interval: found 0, expected a time above 0");
     solid()
         .scene("[output]", "[time]\nflow_interval = 1\n\n[output]")
-        .refused("scene.toml:24: time.flow_interval: found a value, expected no such key without [[grains]]");
+        .refused("scene.toml:24: time.flow_interval: found, but it has no effect without [[grains]]");
 }
 
 #[test]
 fn outlet_without_grains() {
-    solid().scene("[output]", "[[outlet]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n\n[output]").refused(
-        "scene.toml:23: outlet: found a table for grains, expected [[grains]] beside it, or no such table",
-    );
+    solid()
+        .scene("[output]", "[[outlet]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n\n[output]")
+        .refused("scene.toml:23: outlet: found, but it has no effect without [[grains]]");
 }

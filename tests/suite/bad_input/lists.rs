@@ -158,23 +158,20 @@ fn constraint_of_an_absent_node() {
 #[test]
 fn unsupported_body() {
     solid().scene("constraints = \"DOF.DAT\"\n", "").refused(
-        "ELEMENTNUM.DAT: constraints: found too few (the body is not held: node 1 is free to move in x; add supports), \
-         expected a body that is held",
+        "ELEMENTNUM.DAT: constraints: found too few (insufficiently constrained: rigid-body motion of node 1 in x; add supports), expected supports that prevent rigid-body motion",
     );
 }
 
 #[test]
 fn unsupported_body_under_grains() {
     coupled().scene("constraints = \"DOF.DAT\"\n", "").refused(
-        "ELEMENTNUM.DAT: constraints: found too few (the body is not held: node 1 is free to move in x; add supports), \
-         expected a body that is held",
+        "ELEMENTNUM.DAT: constraints: found too few (insufficiently constrained: rigid-body motion of node 1 in x; add supports), expected supports that prevent rigid-body motion",
     );
 }
 
 #[test]
 fn body_held_at_one_node() {
     solid().file(DOF, "1 1 0\n1 2 0\n1 3 0\n").refused(
-        "DOF.DAT: constraints: found too few (the body is not held: node 77 is free to move in x; add supports), \
-         expected a body that is held",
+        "DOF.DAT: constraints: found too few (insufficiently constrained: rigid-body motion of node 77 in x; add supports), expected supports that prevent rigid-body motion",
     );
 }

@@ -37,7 +37,7 @@ fn a_sleeper_without_stiffness() {
 #[test]
 fn a_sleeper_of_no_mass_or_of_two() {
     meshed().scene("poisson = 0.2", "poisson = 0.2\ndensity = 2400").refused(
-        "scene.toml:40: track.sleeper.mesh.density: found a value, expected no such key beside track.sleeper.mass",
+        "scene.toml:40: track.sleeper.mesh.density: found together with track.sleeper.mass, expected only one of them",
     );
     meshed().scene("mass = 400\n", "").refused(
         "scene.toml:30: track.sleeper.mass: found nothing, expected it, or the density of a meshed sleeper",
@@ -54,7 +54,7 @@ fn a_sleeper_of_no_mass_or_of_two() {
 #[test]
 fn a_sleeper_held_in_one_motion() {
     meshed().scene("centre = [1.0, 1.0]", "centre = [1.0, 1.0]\nhold = [\"y\", \"rx\"]").refused(
-        "scene.toml:35: track.sleeper.hold: found [\"y\", \"rx\"], expected for a meshed sleeper none, or a plane of symmetry: \
+        "scene.toml:35: track.sleeper.hold: found [\"y\", \"rx\"], expected no key for a meshed sleeper, or a plane of symmetry: \
          [\"y\", \"rx\", \"rz\"] or [\"x\", \"ry\", \"rz\"], or both",
     );
 }
@@ -69,20 +69,18 @@ fn a_foot_beyond_the_edge() {
 
 #[test]
 fn a_meshed_sleeper_without_a_solid() {
-    meshed().set("solid=").refused(
-        "scene.toml:36: track.sleeper.mesh: found a meshed sleeper, expected [solid] beside it, whose equations it joins",
-    );
+    meshed().set("solid=").refused("scene.toml:36: track.sleeper.mesh: found without [solid], expected both");
 }
 
 #[test]
 fn what_a_meshed_sleeper_has_no_use_for() {
-    meshed()
-        .append(SCENE, "[track.push]\ndirection = [1, 0]\nspeed = 0.01\ndisplacement = 0.01")
-        .refused("scene.toml:61: track.push: found a push, expected no such table beside meshed sleepers");
+    meshed().append(SCENE, "[track.push]\ndirection = [1, 0]\nspeed = 0.01\ndisplacement = 0.01").refused(
+        "scene.toml:61: track.push: found together with [track.sleeper.mesh], expected only one of them",
+    );
     meshed()
         .append(SCENE, "[track.jump]\nmethod = \"grains\"")
         .refused(
-            "scene.toml:62: track.jump.method: found \"grains\", expected \"account\": sleepers of elements are not moved",
+            "scene.toml:62: track.jump.method: found \"grains\", expected \"account\". Meshed sleepers cannot be displaced",
         );
     meshed()
         .append(SCENE, "[track.rail]\nkind = \"beam\"\nbending_stiffness = 6e6\nfoundation = 2e7")
@@ -91,6 +89,6 @@ fn what_a_meshed_sleeper_has_no_use_for() {
              sleepers",
         );
     meshed().append(SCENE, "[solid.reduction]\nkind = \"surface\"").refused(
-        "scene.toml:61: solid.reduction: found a reduction, expected no such table beside meshed sleepers",
+        "scene.toml:61: solid.reduction: found together with [track.sleeper.mesh], expected only one of them",
     );
 }

@@ -92,7 +92,7 @@ fn values_of_a_wrong_type_are_refused_in_plain_words() {
                 let set = changed.set(&format!("{key}={value}"));
                 let Err(error) = set.and_then(|()| changed.read::<Scene>()) else { continue };
                 refused += 1;
-                let sentence = format!("{key}={value}: found {}, expected {}", error.found, error.expected);
+                let sentence = format!("{key}={value}: {}", error.problem);
                 if TERMS.iter().any(|term| sentence.contains(term)) {
                     bad.insert(sentence);
                 }

@@ -31,7 +31,7 @@ impl Case {
         let outcome = run(&scene, &folder.join("out"), set);
         let case = Case { folder, outcome };
         let Outcome { code, stderr, .. } = &case.outcome;
-        assert!([0, 2, 3].contains(code) && !stderr.contains("the program has failed"), "{code}: {stderr}");
+        assert!([0, 2, 3].contains(code) && !stderr.contains("internal error"), "{code}: {stderr}");
         match code {
             2 => assert!(!case.file("").exists() && stderr.trim_end().lines().count() == 1, "{stderr}"),
             _ => case.only_finite(),

@@ -70,8 +70,7 @@ fn beam() -> Row {
     assert!(errors[..3].iter().chain(&errors[4..6]).all(|e| *e < 5e-3), "{errors:?}");
     // A single element over the whole length bends with one curvature.
     assert!([errors[3], errors[6]].iter().all(|e| (e - 0.25).abs() < 1e-2), "{errors:?}");
-    Case::run(&scene("", [10, 1, 1]), &[])
-        .refused("use the full rule where a row of elements is one element wide");
+    Case::run(&scene("", [10, 1, 1]), &[]).refused("use full integration in rows one element wide");
     Row::new(
         "cantilever 1 m × 10 mm: 20 nodes reduced, elements 10:1 and 100:1; full 10:1; 8 nodes 4:1, 10:1; one element full, 8 nodes",
         format!(
@@ -132,14 +131,14 @@ fn skew() -> Row {
     for (share, inside_out) in [(0.4, false), (0.49, false), (0.4999, false), (0.5, true), (0.51, true)] {
         let case = skewed(share).good();
         errors.push(off(case.value("/statics/largest_displacement/0"), 1e3 / 24e6));
-        assert_eq!(case.warned("element 4 is turned inside out at corner I"), inside_out, "{share}");
+        assert_eq!(case.warned("element 4 is inverted at corner I"), inside_out, "{share}");
     }
     assert!(errors.iter().all(|e| *e < 1e-12), "{errors:?}");
     skewed(0.6).refused("element 4: found a Jacobian determinant of -");
     Row::new(
         "corner of an element moved to 0.8, 0.98, 0.9998, 1, 1.02, 1.2 of where its Jacobian is zero",
         format!(
-            "right: settlement off by {}; from the zero on warned: `element 4 is turned inside out at corner I`; refused where \
+            "right: settlement off by {}; from the zero on warned: `element 4 is inverted at corner I`; refused where \
              it is below zero at a point of integration: element and determinant",
             figures(&errors)
         ),

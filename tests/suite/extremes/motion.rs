@@ -49,7 +49,7 @@ fn gravities() -> Row {
     let errors = [1e-6, 1.0, 1e3]
         .map(|gravity| off(-fallen(gravity).good().last("floor_force_z"), mass(0.01) * gravity));
     assert!(errors.iter().all(|e| *e < 1e-6), "{errors:?}");
-    fallen(1e6).stopped("body 0 and wall 0 overlap by 0.01");
+    fallen(1e6).stopped("overlap of body 0 and wall 0: 0.01");
     Row::new(
         "ball dropped by its radius at 1e-6, 1, 1e3, 1e6 m/s²",
         format!(
@@ -90,11 +90,11 @@ fn moving_walls() -> Row {
 
 fn skipping_walls() -> Row {
     for speed in [300.0, 1e3, 3e3, 1e4] {
-        struck(speed, 1e5).stopped("a point of wall 0 moves at");
+        struck(speed, 1e5).stopped("speed of wall 0");
     }
     Row::new(
         "the plate at 300, 1e3, 3e3, 1e4 m/s, K = 1e5: 1.2, 4, 12, 40 radii in a step",
-        "stopped: `a point of wall 0 moves at` more than half the smallest radius a step",
+        "stopped: `speed of wall 0` more than half the smallest radius a step",
         "v' = (1 + e) v",
     )
 }

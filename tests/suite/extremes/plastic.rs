@@ -49,8 +49,8 @@ fn burst(keys: &str, load: f64, step: f64) -> Case {
 
 /// Share of the final pressure at which the run stops, as it says.
 fn reached(case: &Case) -> f64 {
-    case.stopped("solid: no equilibrium after time ");
-    let text = case.outcome.stderr.split_once("after time ").unwrap().1;
+    case.stopped("solid: not converged at time ");
+    let text = case.outcome.stderr.split_once("at time ").unwrap().1;
     text.split_once(':').unwrap().0.parse().unwrap()
 }
 
@@ -175,11 +175,11 @@ fn steep() -> Row {
         slope(friction).good();
     }
     for friction in [43.0, 20.0] {
-        slope(friction).stopped("no equilibrium after time ");
+        slope(friction).stopped("not converged at time ");
     }
     Row::new(
         "slope of 45° without cohesion, friction 60°, 46°, 43°, 20°",
-        "right: stands from 46° on; below 45° stopped: `initial stress: … no equilibrium` with element and point",
+        "right: stands from 46° on; below 45° stopped: `initial stress: … not converged` with element and point",
         "stable where φ ≥ β (dry sand)",
     )
 }
@@ -277,7 +277,7 @@ fn collapse() -> Row {
     Row::new(
         "bursting pressure times 0.97; 1.03, 10, 100, 1e6, each in one step",
         format!(
-            "0.97 right; beyond stopped: `no equilibrium after time …` with element and point, having carried {} and 0 of the \
+            "0.97 right; beyond stopped: `not converged at time …` with element and point, having carried {} and 0 of the \
              bursting pressure",
             figures(&found)
         ),

@@ -125,14 +125,14 @@ fn slap() -> Row {
         if case.outcome.code == 0 {
             assert!(case.value("/energy/largest_relative_error") < 0.01, "not right, and nothing said");
         } else {
-            case.stopped("the energy account does not close");
+            case.stopped("energy error: ");
             stopped += 1;
         }
     }
     let outcome = match stopped {
         0 => "right".to_string(),
         _ => format!(
-            "limit: {stopped} of 3 stopped, `the energy account does not close`, with advice on `time.grain_step`, which helps"
+            "limit: {stopped} of 3 stopped, `energy error`, with advice on `time.grain_step`, which helps"
         ),
     };
     Row::new("needle of 50 spheres at three orientations", outcome, "energy account")

@@ -34,7 +34,7 @@ fn only_regular_files_are_read() {
             "--set",
             "solid.mesh=/dev/zero",
         ],
-        "ending of the file name",
+        "file extension",
     );
     for ending in ["inp", "cdb", "msh", "vtu", "vtk", "stl", "obj", "dat"] {
         let link = folder.join(&format!("zero.{ending}"));
@@ -93,7 +93,7 @@ fn absurd_sizes_are_rejected_at_once() {
     check("grains.0.count=10000000", heap);
     check("grains.0.count=10000000", "expected a heap of at most 200 m");
     check("grains.0.count=1000000", "expected a heap of at most 200 m");
-    let beyond = "expected a number of usual size: with this one ";
+    let beyond = "expected a number of usual size, as ";
     for value in ["material.0.stiffness=1e-320", "material.0.density=1e-300"] {
         check(value, &value.replace('=', ": found "));
         check(value, beyond);

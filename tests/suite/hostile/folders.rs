@@ -31,7 +31,7 @@ fn one_run_at_a_time_in_a_folder() {
         sleep(Duration::from_millis(1));
     }
     let words =
-        format!("found it in use by process {}, expected a folder that no other run writes to", first.id());
+        format!("found it in use by process {}, expected a directory without an active run", first.id());
     for more in [&[][..], &["--force"]] {
         refused(arguments(&scene, &out, more), &words);
     }
@@ -39,7 +39,7 @@ fn one_run_at_a_time_in_a_folder() {
     first.wait().unwrap();
     assert!(out.join("run.lock").exists());
     // What it has written is a result: it is not replaced in silence either.
-    refused(arguments(&scene, &out, &[]), "expected another --out, or --force to replace them");
+    refused(arguments(&scene, &out, &[]), "expected another --out, or --force to overwrite them");
     let short = ["--set", "grains.0.count=20", "--set", "time.end=0.01", "--force"];
     trackbed(arguments(&scene, &out, &short)).good();
     assert!(json(&out.join("summary.json"))["status"] == "done" && !out.join("run.lock").exists());
@@ -78,9 +78,8 @@ fn results_are_not_replaced_in_silence() {
     };
     run("a/scene.toml", &[]).good();
     let before = snapshot(&folder.join("out"));
-    let own = "out: found the finished results of this scene, expected another --out, or --force to replace them; --resume has \
-               nothing to go on with";
-    let other = "out: found the results of another scene (\"two spheres\"), expected another --out, or --force to replace them";
+    let own = "out: found the completed results of this scene, expected another --out, or --force to overwrite them; nothing to resume";
+    let other = "out: found the results of another scene (\"two spheres\"), expected another --out, or --force to overwrite them";
     for (outcome, words) in [
         (run("a/scene.toml", &[]), own),
         (run("a/scene.toml", &["--set", "time.end=0.01"]), other),
@@ -91,7 +90,7 @@ fn results_are_not_replaced_in_silence() {
     }
     assert!(snapshot(&folder.join("out")) == before, "a refusal leaves everything");
     let resumed = run("a/scene.toml", &["--resume"]).good();
-    assert!(resumed.stdout.contains("there is nothing to go on with"), "{resumed:?}");
+    assert!(resumed.stdout.contains("nothing to resume"), "{resumed:?}");
     run("b/a.toml", &["--force"]).good();
     let log = fs::read_to_string(folder.join("out/log.txt")).unwrap();
     assert!(log.starts_with("two\\u{7}others\n"), "{log}");
@@ -127,7 +126,7 @@ fn default_folders_are_distinct() {
     // Each is known again by --resume.
     for more in runs {
         let said = trackbed_in(folder.path(), [&["run", "--resume"], more].concat()).good();
-        assert!(said.stdout.contains("there is nothing to go on with"), "{said:?}");
+        assert!(said.stdout.contains("nothing to resume"), "{said:?}");
     }
 }
 
@@ -166,7 +165,7 @@ fn a_folder_that_is_renamed_takes_its_run_along() {
     let said = child.wait_with_output().unwrap();
     let text = String::from_utf8(said.stderr).unwrap();
     assert_eq!((said.status.code(), text.lines().count()), (Some(1), 1), "{text}");
-    let words = "out: the folder of the results was renamed or removed while the run wrote there";
+    let words = "out: results directory was renamed or removed during the run";
     assert!(text.contains(words) && text.contains(&format!("--resume --out {}", moved.display())), "{text}");
     assert!(!out.exists(), "nothing is made under the old name");
     assert!(!moved.join("run.lock").exists());
@@ -186,7 +185,7 @@ fn files_of_others_stay() {
     {
         let own = Folder::new("foreign_files");
         own.write(name, "mine");
-        let words = format!("found {name}, which no run has left there, expected another --out, or --force");
+        let words = format!("found {name}, an unrelated file, expected another --out, or --force");
         refused(arguments(&scene, own.path(), &[]), &words);
         assert_eq!(fs::read_to_string(own.join(name)).unwrap(), "mine");
         assert_eq!(snapshot(own.path()).len(), 1);
@@ -278,8 +277,8 @@ fn a_flipped_digit_in_one_slot_leaves_the_other() {
     bytes[digit] ^= 1;
     fs::write(&slot, bytes).unwrap();
     let outcome = trackbed(arguments(&scene, &out, &["--resume"])).good();
-    let remark = "b.checkpoint is damaged: its checksum is not that of its content; the run goes on from";
-    assert!(outcome.stderr.starts_with("note: ") && outcome.stderr.contains(remark), "{outcome:?}");
+    let remark = "b.checkpoint is damaged: wrong checksum; the run resumes from";
+    assert!(outcome.stderr.starts_with("warning: ") && outcome.stderr.contains(remark), "{outcome:?}");
 }
 
 /// G5: what a run would refuse after its bed has settled is refused at once, by `check` too.

@@ -51,8 +51,8 @@ fn names_missing_file_handles() {
         for handles in [4, 5, 8, 10] {
             let said = limited(&format!("-n {handles}"), &words);
             assert_eq!((said.code, said.stdout.as_str()), (1, ""), "{handles}: {words:?}: {said:?}");
-            let end = ", expected room for 16; raise the limit of the system (ulimit -n)\n";
-            let found = said.stderr.strip_prefix("error: open files: found room for ");
+            let end = ", expected 16 or more. Raise the system limit (ulimit -n)\n";
+            let found = said.stderr.strip_prefix("error: open files: found a limit of ");
             let found = found.and_then(|t| t.strip_suffix(end)?.parse::<u32>().ok());
             // Three are the standard streams; others may be inherited.
             assert!(found.is_some_and(|n| n <= handles - 3), "{handles}: {words:?}: {said:?}");

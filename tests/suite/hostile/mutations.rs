@@ -159,10 +159,10 @@ fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String>
                 && lines.iter().all(|l| l.starts_with("error: ") && l[7..].contains(": "))
         }
         // What no look at a matrix shows, but its factorization.
-        ("run", 2) => ["too unlike to be solved", "expected a body that is held"]
+        ("run", 2) => ["an ill-conditioned stiffness matrix", "expected supports that prevent"]
             .iter()
             .any(|w| outcome.stderr.contains(w)),
-        ("run", 3) => !outcome.stderr.contains("the program has failed"),
+        ("run", 3) => !outcome.stderr.contains("internal error"),
         _ => false,
     };
     (!good).then(|| format!("{} of {shown}: {}", outcome.code, outcome.stderr))

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 
 /// Functions of the program that take the name of a key beside the methods of `Table`, and in which place.
-const FUNCTIONS: [(&str, usize); 10] = [
+const FUNCTIONS: [(&str, usize); 12] = [
     ("find", 2),
     ("region", 1),
     ("box_region", 1),
@@ -15,11 +15,26 @@ const FUNCTIONS: [(&str, usize); 10] = [
     ("few", 1),
     ("fault", 0),
     ("check", 0),
+    ("conflicting", 0),
+    ("faulty", 0),
 ];
 
 /// Methods that take the name of a key first.
-const METHODS: [&str; 9] =
-    ["error", "missing", "need", "check", "below", "optional", "row", "rows", "strength"];
+const METHODS: [&str; 13] = [
+    "error",
+    "missing",
+    "conflict",
+    "requirement",
+    "no_effect",
+    "problem",
+    "need",
+    "check",
+    "below",
+    "optional",
+    "row",
+    "rows",
+    "strength",
+];
 
 /// Adds the keys of the tables that a file declares: fields of structs and of variants, as `serde` reads them.
 pub fn declared(text: &str, keys: &mut BTreeSet<String>) {

@@ -60,7 +60,7 @@ fn an_interrupted_study_goes_on() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let mut said = String::new();
     std::io::Read::read_to_string(&mut child.stderr.take().unwrap(), &mut said).unwrap();
-    assert!(said.contains("interrupted; to go on: trackbed study"), "{said}");
+    assert!(said.contains("interrupted; resume with: trackbed study"), "{said}");
     assert!(folder.join("out/runs/reference/checkpoint").exists(), "{said}");
     assert!(!folder.join("out/study.csv").exists());
     trackbed(arguments(&folder, "out", &["--resume"])).good();

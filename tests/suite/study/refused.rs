@@ -32,7 +32,7 @@ fn keys_and_values_of_a_study() {
     );
     let line = "study.toml:3: combine: found \"all\", expected one of \"grid\", \"list\", \"one_at_a_time\"";
     refused("tolerance = 0.0005", "combine = \"all\"", line);
-    let line = "study.toml:8: axis.0.values.0: found \"0.1 ms\", expected a table with `label` and `set`, or `key` beside `values`";
+    let line = "study.toml:8: axis.0.values.0: found \"0.1 ms\", expected a table with `label` and `set`, or `key` with `values`";
     refused("key = \"time.grain_step\"\n", "\n", line);
     let line = "study.toml:8: axis.0.values: found no value, expected at least one";
     refused("[\"0.1 ms\", \"0.05 ms\", \"0.025 ms\"]", "[]", line);
@@ -42,7 +42,7 @@ fn keys_and_values_of_a_study() {
     let line = "study.toml:13: quantity.0.colum: found the unknown key `colum`, expected `column`";
     refused("column = \"ball_z\"\nscale", "colum = \"ball_z\"\nscale", line);
     let line =
-        "study.toml:14: quantity.0.scale: found 0, expected a number above 0, beside norm = \"relative\"";
+        "study.toml:14: quantity.0.scale: found 0, expected a number above 0, with norm = \"relative\"";
     refused("scale = 0.001\nexact", "scale = 0\nexact", line);
     let line = "study.toml:15: quantity.0.exact: found 0, expected another value, or norm = \"absolute\", or `scale`";
     refused(&format!("scale = 0.001\nexact = {:?}", super::height()), "\nexact = 0", line);
@@ -61,7 +61,7 @@ fn settings_that_a_run_would_refuse() {
     folder.edit("study.toml", "\"0.025 ms\"", "\"1 m\"");
     let outcome = trackbed(arguments(&folder, "out", &[]));
     let words =
-        ["study.toml: 2 runs are refused: \"step=0.5 s\": --set", "; \"step=1 m\": --set: time.grain_step"];
+        ["study.toml: 2 runs rejected: \"step=0.5 s\": --set", "; \"step=1 m\": --set: time.grain_step"];
     assert!(outcome.code == 2 && words.iter().all(|w| outcome.stderr.contains(w)), "{}", outcome.stderr);
 }
 

@@ -17,7 +17,7 @@ pub enum WaveError {
     #[error("{0} out of range")]
     Range(&'static str),
     /// The current carries the wave away.
-    #[error("no wave of this period can stand against the current")]
+    #[error("no wave of this period exists against the current")]
     Blocked,
     /// It would break.
     #[error("a wave of {length} m breaks at a height of {limit} m (Miche 1944)")]

@@ -41,7 +41,7 @@ pub struct ConjugateGradients {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Stopped {
     /// A direction without energy, or a number that is not finite.
-    #[error("breakdown in iteration {iteration}, with {residual:.3e} of the load left")]
+    #[error("breakdown in iteration {iteration}, residual {residual:.3e}")]
     Breakdown {
         /// Iteration, from 1; 0 for the right-hand side itself.
         iteration: u32,
@@ -49,7 +49,7 @@ pub enum Stopped {
         residual: f64,
     },
     /// Too many iterations.
-    #[error("{residual:.3e} of the load left after {iterations} iterations")]
+    #[error("residual {residual:.3e} after {iterations} iterations")]
     Limit {
         /// Iterations made.
         iterations: u32,

@@ -23,8 +23,7 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
         }
         (None, None) => BondDamping::None,
         _ => {
-            let expected = "`damping` or `damping_coefficients`, not both";
-            return Err(table.error("damping", "two kinds of damping", expected));
+            return Err(table.conflict("damping", "`damping_coefficients`"));
         }
     };
     let contact = table.contact;
@@ -73,10 +72,12 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
             let bond = face(&table.below("face", f))?;
             Ok(Bond::Face(FaceBond { criterion: criterion(f.criterion), damping, ..bond }))
         }
-        _ => {
-            let expected = "exactly one of `parallel`, `contact_point`, `direct` and `face`";
-            Err(table.here("another number of kinds", expected))
-        }
+        _ => Err(table.one_of(&[
+            ("parallel", table.parallel.is_some()),
+            ("contact_point", table.contact_point.is_some()),
+            ("direct", table.direct.is_some()),
+            ("face", table.face.is_some()),
+        ])),
     }
 }
 
@@ -152,7 +153,7 @@ fn shear_strength<T>(
         Some(a) if given.is_some() => {
             Ok(ShearStrength::MohrCoulomb { cohesion: shear, friction: libm::tan(a) })
         }
-        Some(_) => Err(table.error("friction_angle", "a value", "a `shear_strength` beside it")),
+        Some(_) => Err(table.requirement("friction_angle", "`shear_strength`")),
         None => Ok(ShearStrength::Constant(shear)),
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn rules(
             ("deposition.level", settling.is_some_and(|d| d.level.is_some())),
             ("deposition.layers", settling.is_some_and(|d| d.layers > 1)),
         ];
-        scene.refuse(idle, "no such key beside bonded stones and sheets")?;
+        scene.reject_with(idle, "[[grains]] with `bond`")?;
     }
     let levelled = settling.is_some_and(|d| d.level.is_some());
     for (kind, table) in scene.rows("bond", &scene.bond).enumerate() {

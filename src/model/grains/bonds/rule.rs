@@ -54,37 +54,34 @@ fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Res
         }
         (None, Some(file)) => {
             if bodies.levelled {
-                let expected = "no such key beside deposition.level, which takes grains away";
-                return Err(table.error("pairs", "a file", expected).into());
+                return Err(table.conflict("pairs", "deposition.level").into());
             }
             if between {
-                return Err(table.error("between", "two groups", "no such key beside `pairs`").into());
+                return Err(table.conflict("between", "`pairs`").into());
             }
             PairSource::Pairs(tables::pairs(&table.locate(file), bodies.count)?)
         }
         (None, None) if named => {
             if between {
-                let expected = "a `gap` beside it, or no such key for the bonds of stones and sheets";
-                return Err(table.error("between", "two groups", expected).into());
+                return Err(table.no_effect("between", "`gap`").into());
             }
             PairSource::Made
         }
         (None, None) if bodies.bonds.fills_faces(bodies.kind) => {
-            let expected = "a [[grains]] of `floes` that names this bond";
-            return Err(table.error("face", "a bond that fills the faces of nothing", expected).into());
+            return Err(table.no_effect("face", "[[grains]] of `floes` with this `bond`").into());
         }
-        _ => {
-            let expected = "one of `gap` and `pairs`, or a [[grains]] that names this bond";
-            return Err(table.error("gap", "both or none of `gap` and `pairs`", expected).into());
+        (Some(_), Some(_)) => return Err(table.conflict("gap", "`pairs`").into()),
+        (None, None) => {
+            let expected = "`gap` or `pairs`, or [[grains]] with this `bond`";
+            return Err(table.missing("gap", expected).into());
         }
     };
     if bodies.bonds.fills_faces(bodies.kind) && !matches!(source, PairSource::Made) {
-        let expected = "no such key for a bond that fills faces, which floes of a sheet have";
-        return Err(table.error("face", "`gap` or `pairs` beside it", expected).into());
+        return Err(table.conflict("face", if table.gap.is_some() { "`gap`" } else { "`pairs`" }).into());
     }
     if named && !matches!(source, PairSource::Made) {
-        let expected = "no such key for a bond that stones or sheets are made with";
-        return Err(table.error("gap", "a rule", expected).into());
+        let key = if table.gap.is_some() { "gap" } else { "pairs" };
+        return Err(table.conflict(key, "[[grains]] with this `bond`").into());
     }
     Ok(source)
 }

@@ -33,8 +33,7 @@ pub(super) fn build(
     let time = scene.below("time", &scene.time);
     let interval = time.flow_interval.map(|t| t.si);
     if inlets.is_empty() && outlets.is_empty() {
-        let expected = "no such key without an `inlet` or an [[outlet]]";
-        time.refuse([("flow_interval", interval.is_some())], expected)?;
+        time.reject_without([("flow_interval", interval.is_some())], "an `inlet` or an [[outlet]]")?;
         return Ok(None);
     }
     time.check("flow_interval", interval, |t| t > 0.0, "a time above 0")?;
@@ -43,24 +42,18 @@ pub(super) fn build(
         let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
         if !waits(&group) && !fed {
             let expected = "an [[outlet]] with `again = true` for this group, or no grains at the start";
-            return Err(group.error("inlet", "an inlet that nothing comes to", expected));
+            return Err(group.error("inlet", "an inlet without grains to insert", expected));
         }
     }
-    for (other, present) in [
-        ("[[bond]]: bonded grains neither come nor go", !scene.bond.is_empty()),
-        (
-            "[track.jump]: a jump knows no grains that come and go",
-            scene.track.as_ref().is_some_and(|t| t.jump.is_some()),
-        ),
+    for (present, with) in [
+        (!scene.bond.is_empty(), "[[bond]]"),
+        (scene.track.as_ref().is_some_and(|t| t.jump.is_some()), "[track.jump]"),
     ] {
         if present {
-            let (with, why) = other.split_once(": ").unwrap_or((other, ""));
-            let expected = format!("no inlet or outlet beside {with}: {why}");
-            let (first, found) =
-                (scene.rows("grains", &scene.grains).find(|g| g.inlet.is_some()), "grains that come or go");
+            let first = scene.rows("grains", &scene.grains).find(|g| g.inlet.is_some());
             return Err(match first {
-                Some(group) => group.error("inlet", found, expected),
-                None => scene.row("outlet", &scene.outlet, 0).here(found, expected),
+                Some(group) => group.conflict("inlet", with),
+                None => scene.conflict("outlet.0", with),
             });
         }
     }
@@ -105,10 +98,7 @@ fn inlet(
             inlet.check("grains_per_second", rate, |r| r > 0.0, "above 0")?;
             InletRate::Number(rate.si)
         }
-        _ => {
-            let found = "both or none of `rate` and `grains_per_second`";
-            return Err(inlet.error("rate", found, "one of them"));
-        }
+        (rate, _) => return Err(inlet.choice(["rate", "grains_per_second"], rate.is_some())),
     };
     let (start, stop) = (inlet.start.map_or(0.0, |t| t.si), inlet.stop.map(|t| t.si));
     inlet.check("start", start, |t| t >= 0.0, "0 or more")?;

@@ -105,7 +105,7 @@ impl FlowPlan {
             let per = if i.rate.unit() == "kg" { "kg/s" } else { "grains/s" };
             let stop = if i.stop.is_finite() { format!("to {} s", i.stop) } else { "on".into() };
             lines.push(format!(
-                "inlet of {}: {} {per} from {} s {stop}, {} grains wait for it at the start",
+                "inlet of {}: {} {per} from {} s {stop}, {} grains queued at the start",
                 i.group,
                 i.rate.value(),
                 i.start,
@@ -115,7 +115,7 @@ impl FlowPlan {
         for o in &self.outlets {
             let what = if o.again { "come again" } else { "are gone" };
             let names: Vec<&str> = o.parts.iter().map(|p| groups[*p as usize].as_str()).collect();
-            lines.push(format!("{}: takes out {}, which then {what}", o.name, names.join(", ")));
+            lines.push(format!("{}: removes {}, which then {what}", o.name, names.join(", ")));
         }
         lines
     }

@@ -11,14 +11,17 @@ use trackbed_dem::measure::BoxRegion;
 
 /// The container of a group.
 pub(super) fn container(region: &Table<Region>) -> Result<Container, SceneError> {
-    let sources = [region.cuboid.is_some(), region.cone.is_some(), region.surface.is_some()];
-    if sources.iter().filter(|s| **s).count() != 1 {
-        let expected = "exactly one of `box`, `cone` and `surface`";
-        return Err(region.here("another number of containers", expected));
+    let sources = [
+        ("box", region.cuboid.is_some()),
+        ("cone", region.cone.is_some()),
+        ("surface", region.surface.is_some()),
+    ];
+    if sources.iter().filter(|(_, present)| *present).count() != 1 {
+        return Err(region.one_of(&sources));
     }
     if region.surface.is_none() {
         let idle = [("scale", region.scale.is_some()), ("shift", region.shift.is_some())];
-        region.refuse(idle, "no such key without `surface`")?;
+        region.reject_without(idle, "`surface`")?;
     }
     if let Some(corners) = &region.cuboid {
         let BoxRegion { low, high } = box_region(region, "box", corners)?;

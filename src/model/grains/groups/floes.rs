@@ -92,8 +92,8 @@ pub(super) fn check(field: &Table<Floes>) -> Result<(), SceneError> {
     field.check("gap", field.gap, |g| g > 0.0, "above 0")?;
     field.check("elevation", field.elevation, |_| true, "a length")?;
     for [x, y, r] in &field.clear {
-        field.check("clear", *x, |_| true, "a place")?;
-        field.check("clear", *y, |_| true, "a place")?;
+        field.check("clear", *x, |_| true, "a position")?;
+        field.check("clear", *y, |_| true, "a position")?;
         field.check("clear", *r, |r| r >= 0.0, "a radius of 0 or more")?;
     }
     Ok(())
@@ -119,7 +119,7 @@ fn apart(field: &Table<Floes>) -> Result<Apart, SceneError> {
     match (field.concentration, field.gap) {
         (Some(share), None) => Ok(Apart::Share(share)),
         (None, Some(gap)) => Ok(Apart::Gap(gap.si)),
-        _ => Err(field.here("both or none of `concentration` and `gap`", "one of them")),
+        (share, _) => Err(field.choice(["concentration", "gap"], share.is_some())),
     }
 }
 

@@ -42,10 +42,7 @@ pub(super) fn lattice(
             few(sites.len() as f64, "high")?;
             sites
         }
-        _ => {
-            let found = "both or none of `counts` and `high`";
-            return Err(fill.here(found, "one of them"));
-        }
+        (counts, _) => return Err(fill.choice(["counts", "high"], counts.is_some())),
     };
     let shape = part.shapes.len();
     part.shapes.push(Shape::Sphere { radius: 1.0 });

@@ -58,7 +58,7 @@ pub(super) fn build(
         add(&group, (material, density), &mut part, bonds)?;
     }
     if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
-        let expected = "a group of grains beside it that is fouled";
+        let expected = "a second group without `fouling`";
         return Err(scene.error("grains.0.fouling", "true for all groups", expected).into());
     }
     Ok(part)
@@ -75,10 +75,9 @@ fn add(
         return Err(group.error("shape", "\"bonded\"", "no inlet for bonded stones").into());
     }
     let waits = waits(group);
-    if sources(group).into_iter().filter(|s| *s).count() != 1 && !waits {
-        let expected =
-            "exactly one of `spheres`, `packing`, `fill`, `lattice`, `region`, `floes` and `frustum`";
-        return Err(group.here("another number of sources", expected).into());
+    let sources = sources(group);
+    if sources.iter().filter(|(_, present)| *present).count() != 1 && !waits {
+        return Err(group.one_of(&sources).into());
     }
     let model = BodyInput {
         material,
@@ -140,7 +139,7 @@ fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneE
     let number = part.names.len() as u32 - 1;
     if let Some(motion) = &group.motion {
         let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
-        group.refuse(idle, "no such key beside `motion`")?;
+        group.reject_with(idle, "`motion`")?;
         part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
     }
     if group.record.unwrap_or(group.motion.is_some()) {
@@ -164,7 +163,7 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
             "aspect",
             group.aspect.is_some(),
             disks && shapes,
-            "`shape = \"disk\"` and `fill`, `region`, `packing` or an `inlet` alone",
+            "`shape = \"disk\"` and `fill`, `region`, `packing` or only an `inlet`",
         ),
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
         ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
@@ -176,7 +175,7 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
             "`shape = \"bonded\"`, or `floes` that are polyhedra",
         ),
     ] {
-        group.refuse([(k, present && !used)], &format!("no such key without {needs}"))?;
+        group.reject_without([(k, present && !used)], needs)?;
     }
     Ok(())
 }

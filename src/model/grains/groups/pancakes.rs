@@ -43,7 +43,9 @@ pub(super) fn pancakes(
         ("gap", field.gap.is_some()),
         ("relax", field.relax.is_some()),
     ];
-    field.refuse(idle, "no such key for disks: sizes, `concentration` and `thickness` give it")?;
+    field
+        .reject_with(idle, "`shape = \"disk\"`")
+        .map_err(|e| e.remedy("`size`, `concentration` and `thickness` define disks"))?;
     let thickness = field.check("thickness", field.thickness, |t| t > 0.0, "above 0")?.si;
     let sizes = SizeSource::of(group)?;
     let [low, high] = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));

@@ -82,14 +82,14 @@ fn count(group: &Table<Grains>, porosity: Option<f64>, volumes: [f64; 2]) -> Res
     group.check("concentration", group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
     let share = match (porosity, group.concentration) {
         (Some(_), Some(_)) => {
-            return Err(group.error("concentration", "a value", "no such key beside `growth`"));
+            return Err(group.conflict("concentration", "`growth`"));
         }
         (Some(porosity), None) => Some(1.0 - porosity),
         (None, share) => share,
     };
     let count = match (group.count, share) {
         (Some(_), Some(_)) if porosity.is_none() => {
-            return Err(group.error("count", "a value", "no such key beside `concentration`"));
+            return Err(group.conflict("count", "`concentration`"));
         }
         (Some(count), _) => count as f64,
         (None, Some(share)) => (share * volumes[0] / volumes[1]).round(),

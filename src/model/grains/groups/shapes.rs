@@ -6,7 +6,7 @@ use super::sizes::SizeSource;
 use crate::failure::Failure;
 use crate::model::tables;
 use crate::scene::grains::{GrainShape, Grains};
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, setting};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::dilated::Dilated;
 
@@ -73,9 +73,11 @@ pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec
             part.shapes.push(Shape::Polyhedron(Box::new(disk)));
             Ok(vec![1.0])
         }
-        (GrainShape::Disk, Some(_)) => Err(group.error("library", "a file", "no such key for disks")),
+        (GrainShape::Disk, Some(_)) => Err(group.conflict("library", setting("shape", &["disk"]))),
         (GrainShape::Bonded, _) => bonded::stand_ins(group, part),
-        (GrainShape::Sphere, Some(_)) => Err(group.error("library", "a file", "no such key for spheres")),
+        (GrainShape::Sphere, Some(_)) => {
+            Err(group.no_effect("library", setting("shape", &["clump", "polyhedron", "bonded"])))
+        }
         (GrainShape::Sphere, None) => {
             part.shapes.push(Shape::Sphere { radius: 0.5 });
             Ok(vec![1.0])

@@ -28,7 +28,7 @@ impl SizeSource {
                 let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade);
                 let grading = grading.map_err(|e| match e.line {
                     // Of the grade as a whole: the key of the scene is at fault.
-                    None if e.key == "gradation" => group.error("gradation", e.found, e.expected),
+                    None if e.key == "gradation" => group.problem("gradation", e.problem),
                     _ => e,
                 })?;
                 Ok(SizeSource::Graded(grading.scaled(g.scale)))
@@ -44,14 +44,11 @@ impl SizeSource {
                 law.check().map_err(|e| group.error("sizes", e.to_string(), expected))?;
                 Ok(SizeSource::Law(law))
             }
-            (None, None, None) => {
-                Err(group.error("gradation", "none of `gradation`, `size` and `sizes`", "one of them"))
-            }
-            _ => Err(group.error(
-                "gradation",
-                "more than one of `gradation`, `size` and `sizes`",
-                "one of them",
-            )),
+            (gradation, size, sizes) => Err(group.one_of(&[
+                ("gradation", gradation.is_some()),
+                ("size", size.is_some()),
+                ("sizes", sizes.is_some()),
+            ])),
         }
     }
 

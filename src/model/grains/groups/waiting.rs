@@ -18,8 +18,8 @@ pub(super) fn waiting(
     part: &mut GroupsPart,
 ) -> Result<(), Failure> {
     let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
-    group.refuse(idle, "no such key for grains that wait for their inlet: see `inlet.velocity`")?;
-    let grains = sampled(group, part, "the number of grains that may come in")?;
+    group.reject_with(idle, "`inlet`").map_err(|e| e.remedy("Use `inlet.velocity`"))?;
+    let grains = sampled(group, part, "the number of grains to insert")?;
     // A range gives sizes in rising order: without this the small ones would come first.
     let order = Random::new(group.seed, ORDER).permutation(grains.len());
     part.bodies.extend(order.into_iter().map(|i| {

@@ -18,13 +18,12 @@ pub(super) fn build(
     part: &TrackPart,
     fixed: Option<&str>,
 ) -> Result<AfterPlan, SceneError> {
-    let jump = track.optional("jump", &track.jump).map(|j| jump(&j, part, fixed)).transpose()?;
-    let push = track.optional("push", &track.push).map(|p| push(&p, part)).transpose()?;
+    let jump = track.optional("jump", &track.jump).map(|j| jump(track, &j, part, fixed)).transpose()?;
+    let push = track.optional("push", &track.push).map(|p| push(track, &p, part)).transpose()?;
     let range = part.load.as_ref().map(CyclicLoad::range);
     let between = match (track.bed_stiffness, range) {
         (Some(_), None) => {
-            let expected = "a [track.load] with cycles, or no such key";
-            return Err(track.error("bed_stiffness", "two loads", expected));
+            return Err(track.no_effect("bed_stiffness", "a [track.load] with cycles"));
         }
         (Some(loads), Some([least, most])) => {
             let [low, high] = loads.map(|f| f.si);
@@ -39,17 +38,22 @@ pub(super) fn build(
     Ok(AfterPlan { jump, push, between })
 }
 
-fn jump(j: &Table<CycleJump>, part: &TrackPart, fixed: Option<&str>) -> Result<JumpPlan, SceneError> {
+fn jump(
+    track: &Table<TrackTable>,
+    j: &Table<CycleJump>,
+    part: &TrackPart,
+    fixed: Option<&str>,
+) -> Result<JumpPlan, SceneError> {
     let Some(load) = &part.load else {
-        return Err(j.here("a jump", "a [track.load] with cycles beside it"));
+        return Err(track.requirement("jump", "[track.load] with cycles"));
     };
     let grains = j.method == JumpMethod::Grains;
     if !grains {
         let idle = [("settle", j.settle.is_some()), ("overlap", j.overlap.is_some())];
-        j.refuse(idle, "no such key without method = \"grains\"")?;
+        j.reject_without(idle, "`method = \"grains\"`")?;
     }
     if let Some(why) = fixed.filter(|_| grains) {
-        let expected = format!("\"account\": grains that {why} are not moved");
+        let expected = format!("\"account\". Grains that {why} cannot be displaced");
         return Err(j.error("method", "\"grains\"", expected));
     }
     j.check("measure", j.measure, |n| n >= 2.0, "2 or more")?;
@@ -73,17 +77,17 @@ fn jump(j: &Table<CycleJump>, part: &TrackPart, fixed: Option<&str>) -> Result<J
     })
 }
 
-fn push(p: &Table<Push>, part: &TrackPart) -> Result<PushPlan, SceneError> {
+fn push(track: &Table<TrackTable>, p: &Table<Push>, part: &TrackPart) -> Result<PushPlan, SceneError> {
     let direction = Vec3::new(p.direction[0], p.direction[1], 0.0);
     let found = format!("({}, {})", p.direction[0], p.direction[1]);
     let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
         return Err(p.error("direction", found, "a direction"));
     };
     if part.rail.is_some() {
-        return Err(p.here("a push", "no such table beside a rail with mass"));
+        return Err(track.conflict("push", "a rail with `mass`"));
     }
     if part.sleeper.as_ref().is_some_and(|s| s.row.centres.len() > 1) {
-        return Err(p.here("a push", "no such table beside several sleepers"));
+        return Err(track.conflict("push", "several sleepers"));
     }
     let held = part.sleeper.as_ref().map_or([false; 6], |s| s.row.held);
     if let Some(d) = (0..2).find(|&d| held[d] && direction[d] != 0.0) {

@@ -76,7 +76,7 @@ impl TrackPart {
             ("pad_damping", pad[1], 0.5 / (dt * lightness)),
         ] {
             if value > most {
-                let expected = format!("at most {most:.4e} with grain steps of {dt:.4e} s");
+                let expected = format!("at most {most:.4e} with DEM time steps of {dt:.4e} s");
                 return Err(document.error(&format!("track.rail.{key}"), value.to_string(), expected));
             }
         }
@@ -91,7 +91,7 @@ impl TrackPart {
         let (Some(push), Some(sleeper)) = (&self.after.push, &self.sleeper) else { return Ok(()) };
         let most = PushPlan::largest_stiffness(sleeper.row.mass, dt);
         if push.stiffness > most {
-            let expected = format!("at most {most:.3e} N/m, which the step of {dt:.3e} s can follow");
+            let expected = format!("at most {most:.3e} N/m, the limit of the time step of {dt:.3e} s");
             let found = format!("{:.3e} N/m", push.stiffness);
             return Err(document.error("track.push.stiffness", found, expected));
         }

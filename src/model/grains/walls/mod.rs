@@ -7,7 +7,7 @@ mod shape;
 use super::check::find;
 use crate::failure::Failure;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{Scene, Table};
+use crate::scene::{Scene, Table, kinds};
 use motion::{body, motion, servo};
 use scarring::scarring;
 use shape::shape;
@@ -61,9 +61,8 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
         add(&wall, i, material, &mut part)?;
         let new = part.others.get(before).map(|w| &w.shape);
         if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
-            let expected =
-                "a plane without `record` and motions other than `velocity`: a sleeper touches no other";
-            return Err(wall.here("a plane that is more", expected).into());
+            let expected = "a plane with no key but `velocity`: sleepers contact only such planes";
+            return Err(wall.here("a plane with other keys", expected).into());
         }
     }
     Ok(part)
@@ -98,8 +97,9 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
         "radii" => wall.radii.is_some(),
         _ => wall.caps.is_some(),
     };
-    let foreign = SPECIAL.map(|(k, kinds)| (k, present(k) && !kinds.contains(&wall.kind)));
-    wall.refuse(foreign, "no such key for this kind of wall")?;
+    if let Some((k, of)) = SPECIAL.iter().find(|(k, of)| present(k) && !of.contains(&wall.kind)) {
+        return Err(wall.no_effect(k, kinds(of)).into());
+    }
     let shape = shape(wall)?;
     let motion = motion(wall)?;
     let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));

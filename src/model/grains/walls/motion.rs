@@ -4,7 +4,7 @@ use super::shape::direction;
 use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
 use crate::scene::walls::{Body, Pulses, Wall, WallKind};
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, kinds};
 use trackbed_dem::{Motion, Mount, Oscillation, RigidBody, Servo, Vec3};
 
 /// The prescribed motion of a wall.
@@ -16,7 +16,7 @@ pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
         oscillation: None,
     };
     if motion.centre.is_some() && wall.angular_velocity.is_none() {
-        return Err(wall.error("centre", "a value", "no such key without `angular_velocity`"));
+        return Err(wall.no_effect("centre", "`angular_velocity`"));
     }
     if let (WallKind::Plane, Some(normal)) = (wall.kind, wall.normal) {
         let (spin, normal) = (motion.angular_velocity, Vec3::from(normal));
@@ -44,10 +44,10 @@ pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
     ];
     for (owner, there) in [("servo", wall.servo.is_some()), ("body", wall.body.is_some())] {
         let idle = moves.map(|(k, given)| (k, there && given));
-        wall.refuse(idle, &format!("no such key beside `{owner}`"))?;
+        wall.reject_with(idle, &format!("`{owner}`"))?;
     }
     if wall.servo.is_some() && wall.body.is_some() {
-        return Err(wall.error("servo", "a value", "no such key beside `body`"));
+        return Err(wall.conflict("servo", "`body`"));
     }
     Ok(motion)
 }
@@ -59,7 +59,7 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
         (Some(d), _) => direction(&s, "direction", d)?,
         (None, Some(n)) => direction(&s, "direction", n)?,
         _ => {
-            return Err(s.error("direction", "nothing", "the direction in which the wall presses"));
+            return Err(s.missing("direction", "the direction in which the wall presses"));
         }
     };
     let force = match (s.force, s.pressure, s.area) {
@@ -72,17 +72,15 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
             return Err(s.missing("area", "the area that the pressure acts on"));
         }
         (Some(_), None, Some(_)) => {
-            return Err(s.error("area", "a value", "no such key beside `force`"));
+            return Err(s.no_effect("area", "`pressure`"));
         }
-        _ => {
-            return Err(s.error("force", "both or none of `force` and `pressure`", "one of them"));
-        }
+        (force, ..) => return Err(s.choice(["force", "pressure"], force.is_some())),
     };
     s.check("max_speed", s.max_speed, |v| v > 0.0, "a speed above 0")?;
     let gain = s.gain.unwrap_or(0.5);
     s.check("gain", gain, |g| g > 0.0 && g <= 1.0, "above 0, at most 1")?;
     let points = match (&s.history, s.optional("pulses", &s.pulses)) {
-        (Some(_), Some(_)) => return Err(s.error("pulses", "a value", "no such key beside `history`")),
+        (Some(_), Some(_)) => return Err(s.conflict("pulses", "`history`")),
         (None, None) => vec![[0.0, force]],
         (Some(points), None) => points.iter().map(|(t, f)| [t.si, f * force]).collect(),
         (None, Some(pulses)) => haversines(&pulses, force)?,
@@ -126,16 +124,14 @@ fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, Scene
 pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> {
     let Some(b) = wall.optional("body", &wall.body) else { return Ok(None) };
     if wall.kind == WallKind::Plane {
-        return Err(b.here("a value", "no such key for this kind of wall: a plane makes no body"));
+        return Err(wall.conflict("body", kinds(&[WallKind::Plane])));
     }
     let round = !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh);
     let idle = round && b.inertia.is_none() && b.spin.is_some();
-    b.refuse(
-        [("rounding", round && b.rounding.is_some())],
-        "no such key for this kind of wall: its surface is round",
-    )?;
+    let idle_rounding = [("rounding", round && b.rounding.is_some())];
+    b.reject_without(idle_rounding, &kinds(&[WallKind::Triangles, WallKind::Mesh]))?;
     b.check("rounding", b.rounding, |r| r > 0.0, "a radius above 0")?;
-    b.refuse([("spin", idle)], "no such key without `inertia`: a round shape does not turn then")?;
+    b.reject_without([("spin", idle)], "`inertia`")?;
     b.check("mass", b.mass, |m| m > 0.0, "a mass above 0")?;
     let mut fixed = [false; 6];
     for motion in &b.hold {
@@ -185,14 +181,14 @@ fn mount(body: &Table<Body>, fixed: [bool; 6]) -> Result<Option<Mount>, SceneErr
         (None, None) => {
             return Err(m.missing("stiffness", "three stiffnesses, or three frequencies by `frequency`"));
         }
-        _ => return Err(m.error("frequency", "a value", "no such key beside `stiffness`")),
+        _ => return Err(m.conflict("frequency", "`stiffness`")),
     };
     let damping =
         match (three("damping", m.damping.map(|c| vector(&c)))?, three("damping_ratio", m.damping_ratio)?) {
             (Some(c), None) => c,
             (None, Some(share)) => share.component_mul(&stiffness.map(|k| 2.0 * (k * mass).sqrt())),
             (None, None) => Vec3::zeros(),
-            _ => return Err(m.error("damping_ratio", "a value", "no such key beside `damping`")),
+            _ => return Err(m.conflict("damping_ratio", "`damping`")),
         };
     Ok(Some(Mount { stiffness, damping }))
 }

@@ -1,7 +1,7 @@
 //! Ground that rocks scar.
 
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, kinds};
 use trackbed_dem::Scarring;
 
 /// Values of Lu and others (Landslides 16, 2019) for a slope of soil and scree, but for the strength, which they choose by the depth of scars.
@@ -15,10 +15,7 @@ const DECAY: f64 = 185.0;
 pub(super) fn scarring(wall: &Table<Wall>) -> Result<Option<Scarring>, SceneError> {
     let Some(s) = wall.optional("scarring", &wall.scarring) else { return Ok(None) };
     if !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh) {
-        return Err(s.here(
-            "a value",
-            "no such key for this kind of wall: ground that is scarred is `triangles` or a `mesh`",
-        ));
+        return Err(wall.no_effect("scarring", kinds(&[WallKind::Triangles, WallKind::Mesh])));
     }
     let moves = [
         ("velocity", wall.velocity.is_some()),
@@ -27,7 +24,7 @@ pub(super) fn scarring(wall: &Table<Wall>) -> Result<Option<Scarring>, SceneErro
         ("servo", wall.servo.is_some()),
         ("body", wall.body.is_some()),
     ];
-    wall.refuse(moves, "no such key beside `scarring`: the ground stands still")?;
+    wall.reject_with(moves, "`scarring`").map_err(|e| e.remedy("A wall with scarring is fixed"))?;
     let not_negative = |x: f64| x >= 0.0;
     s.check("strength", s.strength, |x| x > 0.0, "a strength above 0")?;
     s.check("drag", s.drag, not_negative, "0 or more")?;
