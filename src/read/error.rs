@@ -16,56 +16,56 @@ pub enum Problem {
     /// Value that is not allowed: `found X, expected Y`.
     Value {
         /// Value in the file.
-        found: String,
+        found: Box<str>,
         /// Noun phrase that lists the allowed values.
-        expected: String,
+        expected: Box<str>,
     },
     /// Key that excludes another: `found together with Z, expected only one of them`.
     Conflict {
         /// The other key or table.
-        with: String,
+        with: Box<str>,
     },
     /// Key that needs another: `found without Z, expected both`.
     Requirement {
         /// The missing key or table.
-        without: String,
+        without: Box<str>,
     },
     /// Key without use: `found, but it has no effect without Z`.
     NoEffect {
         /// Key, table or value that would give it effect.
-        without: String,
+        without: Box<str>,
     },
     /// Missing key: `found nothing, expected Y`.
     Missing {
         /// Noun phrase for the missing value.
-        expected: String,
+        expected: Box<str>,
     },
 }
 
 impl Problem {
     /// Value that is not allowed.
     pub fn value(found: impl Into<String>, expected: impl Into<String>) -> Problem {
-        Problem::Value { found: found.into(), expected: expected.into() }
+        Problem::Value { found: found.into().into(), expected: expected.into().into() }
     }
 
     /// Key that excludes another.
     pub fn conflict(with: impl Into<String>) -> Problem {
-        Problem::Conflict { with: with.into() }
+        Problem::Conflict { with: with.into().into() }
     }
 
     /// Key that needs another.
     pub fn requirement(without: impl Into<String>) -> Problem {
-        Problem::Requirement { without: without.into() }
+        Problem::Requirement { without: without.into().into() }
     }
 
     /// Key without use.
     pub fn no_effect(without: impl Into<String>) -> Problem {
-        Problem::NoEffect { without: without.into() }
+        Problem::NoEffect { without: without.into().into() }
     }
 
     /// Missing key.
     pub fn missing(expected: impl Into<String>) -> Problem {
-        Problem::Missing { expected: expected.into() }
+        Problem::Missing { expected: expected.into().into() }
     }
 }
 
@@ -103,14 +103,14 @@ pub struct ReadError {
     /// Problem of the key.
     pub problem: Problem,
     /// Sentence on the remedy, without its full stop; `None` if it is obvious.
-    pub remedy: Option<String>,
+    pub remedy: Option<Box<str>>,
 }
 
 impl ReadError {
     /// Error with `remedy`, a sentence without its full stop.
     #[must_use]
     pub fn remedy(self, remedy: impl Into<String>) -> Self {
-        ReadError { remedy: Some(remedy.into()), ..self }
+        ReadError { remedy: Some(remedy.into().into()), ..self }
     }
 
     /// A fault at a line of `file`.

@@ -311,7 +311,7 @@ mod tests {
                 (wall.check("radius", Some(f64::NAN), |_| true, "a length").unwrap_err(), "NaN"),
             ] {
                 let Problem::Value { found: shown, .. } = error.problem else { panic!("{found}") };
-                assert_eq!(shown, found);
+                assert_eq!(&*shown, found);
             }
         });
     }
