@@ -1,25 +1,24 @@
 //! Newmark's implicit time integration, acceleration form, and its extension HHT-α.
 //!
 //! ```text
-//! u1 = u0 + dt v0 + dt² ((1/2 - alpha) a0 + alpha a1)
-//! v1 = v0 + dt ((1 - delta) a0 + delta a1)
+//! u1 = u0 + dt v0 + dt² ((1/2 - beta) a0 + beta a1)
+//! v1 = v0 + dt ((1 - gamma) a0 + gamma a1)
 //! M a1 + C vw + K uw = Fw,  C = alpha_m M + beta_k K + D,  xw = (1 + a) x1 - a x0 for x = u, v, F
 //! ```
 //!
-//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with alpha = (1 - a)²/4, delta = 1/2 - a: it damps what the step
+//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with beta = (1 - a)²/4, gamma = 1/2 - a: it damps what the step
 //! cannot follow and stays of second order. D are the boundary dashpots. One solve per step with
-//! `(1 + w delta dt alpha_m) M + w (alpha dt² + delta dt beta_k) K + w delta dt D`, w = 1 + a, factored once per step size.
+//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a, factored once per step size.
 //!
 //! Prescribed motion: a constrained dof whose displacement at the end of the step is given has the acceleration
 //! that the first line asks for, and the velocity of the second.
 //!
-//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1, whose
-//! beta is alpha here and whose gamma is delta. Unconditionally stable for delta >= 1/2 and
-//! alpha >= (delta + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
-//! by the fraction (w dt)²/12; larger delta damps the modes that the step cannot follow, and loses one order. HHT-α:
+//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1.
+//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
+//! by the fraction (w dt)²/12; larger gamma damps the modes that the step cannot follow, and loses one order. HHT-α:
 //! Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292; the load at the weighted time as in Hughes
 //! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
-//! when delta = 1/2; smooth histories are the remedy.
+//! when gamma = 1/2; smooth histories are the remedy.
 
 mod method;
 mod start;
@@ -106,9 +105,9 @@ impl NewmarkSolver {
         check_dynamics(model, dt)?;
         let (c, w) = (model.rayleigh(), 1.0 + hht);
         let combination = Combination {
-            stiffness: w * (method.alpha * dt * dt + method.delta * dt * c.beta_k),
-            mass: 1.0 + w * method.delta * dt * c.alpha_m,
-            dashpots: w * method.delta * dt,
+            stiffness: w * (method.beta * dt * dt + method.gamma * dt * c.beta_k),
+            mass: 1.0 + w * method.gamma * dt * c.alpha_m,
+            dashpots: w * method.gamma * dt,
         };
         let n = model.dof_count();
         Ok(NewmarkSolver {
@@ -167,7 +166,7 @@ impl NewmarkSolver {
     ///
     /// # Errors
     /// A load, a displacement or a result that is not finite; no load at the start for HHT-α; prescribed motion for
-    /// alpha = 0. The state is untouched then.
+    /// beta = 0. The state is untouched then.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -175,14 +174,14 @@ impl NewmarkSolver {
         drive: Drive<'_>,
     ) -> Result<StepAudit, SolveError> {
         self.check(model, state, &drive)?;
-        let (Newmark { alpha, delta }, dt, c) = (self.method, self.dt, model.rayleigh());
+        let (Newmark { beta, gamma }, dt, c) = (self.method, self.dt, model.rayleigh());
         let (new, old) = (1.0 + self.hht, -self.hht);
         let (supports, free) = (model.supports(), model.supports().free());
         let next = &mut self.next;
         // 1. Predict: the part of u1 and v1 that does not depend on a1.
         for d in 0..state.u.len() {
-            next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d];
-            next.v[d] = state.v[d] + dt * (1.0 - delta) * state.a[d];
+            next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - beta) * state.a[d];
+            next.v[d] = state.v[d] + dt * (1.0 - gamma) * state.a[d];
         }
         // 2. Supports: their a1 follows from where they are at the end.
         next.a.fill(0.0);
@@ -191,10 +190,10 @@ impl NewmarkSolver {
             let d = dof as usize;
             let end = drive.prescribed.map_or(state.u[d], |p| p[i]);
             let gap = end - next.u[d];
-            if gap != 0.0 && alpha > 0.0 {
-                next.a[d] = gap / (dt * dt * alpha);
+            if gap != 0.0 && beta > 0.0 {
+                next.a[d] = gap / (dt * dt * beta);
                 next.u[d] = end;
-                next.v[d] += dt * delta * next.a[d];
+                next.v[d] += dt * gamma * next.a[d];
                 accelerated = true;
             }
         }
@@ -229,8 +228,8 @@ impl NewmarkSolver {
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;
             next.a[d] = a;
-            next.u[d] += dt * dt * alpha * a;
-            next.v[d] += dt * delta * a;
+            next.u[d] += dt * dt * beta * a;
+            next.v[d] += dt * gamma * a;
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
@@ -248,7 +247,7 @@ impl NewmarkSolver {
             return Err(NewmarkError::LoadAtStart.into());
         }
         check_prescribed(model, drive.prescribed, end)?;
-        if drive.prescribed.is_some() && self.method.alpha == 0.0 {
+        if drive.prescribed.is_some() && self.method.beta == 0.0 {
             return Err(NewmarkError::Prescribed.into());
         }
         Ok(())
