@@ -1,8 +1,8 @@
 //! What can go wrong: the checks of a model, the choice of a method, the solution of the equations.
 
 use crate::material::Region;
+use crate::solver::AnalysisError;
 use crate::solver::conjugate::Stopped;
-use crate::solver::{AnalysisError, MumpsError};
 use thiserror::Error;
 
 /// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
@@ -152,6 +152,6 @@ pub enum SolveError {
     Singular,
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
-    #[error(transparent)]
-    Mumps(#[from] MumpsError),
+    #[error("{0}")]
+    Library(String),
 }

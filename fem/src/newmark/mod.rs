@@ -25,10 +25,7 @@ mod start;
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
-use crate::equations::cholesky::Cholesky;
-use crate::equations::iteration::{Counts, Iteration};
-use crate::equations::method::Method;
-use crate::equations::system::Equations;
+use crate::equations::system::{Counts, SystemSolver};
 pub use crate::error::NewmarkError;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
@@ -59,7 +56,7 @@ pub struct NewmarkSolver {
     /// HHT's α; 0 for Newmark's method.
     hht: f64,
     dt: f64,
-    system: Equations,
+    system: Box<dyn SystemSolver>,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
@@ -114,7 +111,7 @@ impl NewmarkSolver {
             method,
             hht,
             dt,
-            system: equations(model, combination)?,
+            system: model.step_solver(combination)?,
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
@@ -224,7 +221,7 @@ impl NewmarkSolver {
             subtract(&mut self.equations, &self.product, free);
         }
         // 4. Solve for a1 and correct.
-        self.system.solve(supports, &mut self.equations, |d| state.a[d])?;
+        self.system.solve(supports, &mut self.equations, &|d| state.a[d])?;
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;
             next.a[d] = a;
@@ -345,27 +342,6 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
     for (slot, &d) in equations.iter_mut().zip(free) {
         *slot -= nodal[d as usize];
     }
-}
-
-pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
-    Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), combination)
-}
-
-/// The equations of a step in time, by the method of the model.
-pub(crate) fn equations(model: &Model, combination: Combination) -> Result<Equations, SolveError> {
-    let (mesh, supports) = (model.mesh(), model.supports());
-    Ok(match model.methods().dynamics {
-        Method::Direct => Equations::Direct(Box::new(factor(model, combination)?)),
-        Method::Iterative { tolerance } => {
-            let matrices = model.shared_matrices();
-            let iteration = Iteration::block_jacobi(mesh, matrices, supports, combination, tolerance)?;
-            Equations::BlockJacobi(Box::new(iteration))
-        }
-        Method::Mumps(method) => {
-            let matrices = model.matrices();
-            Equations::by_mumps(mesh, matrices, supports, combination, method, f64::EPSILON)?
-        }
-    })
 }
 
 /// Refuses a weight of the end of a window that is not from 1/2 to 1.

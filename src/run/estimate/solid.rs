@@ -65,7 +65,8 @@ pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     let seconds = match part.equations.methods.statics {
         Method::Iterative { .. } => PRODUCTS * product(&part.model) / super::cores(threads),
         Method::Direct => Prediction::of(part).ok()?.flops / (rate() * super::cores(threads)),
-        Method::Mumps(_) => part.model.solver_demand(true).ok()?.flops / rate(),
+        // A library, on one thread.
+        _ => part.model.solver_demand(true).ok()?.flops / rate(),
     };
     let stage = StageTime { name: "static".into(), seconds, known: Known::Expected };
     (seconds > LONG).then(|| vec![stage])
