@@ -15,7 +15,7 @@ fn main() {
 
 #[cfg(feature = "mumps")]
 fn mumps() {
-    const SOURCE: &str = "src/solver/mumps.c";
+    const SOURCE: &str = "src/solver/mumps/mumps.c";
     println!("cargo:rerun-if-changed={SOURCE}");
     let variable = |name: &str| {
         println!("cargo:rerun-if-env-changed={name}");

@@ -59,6 +59,11 @@ pub struct Combination {
     pub dashpots: f64,
 }
 
+impl Combination {
+    /// The stiffness alone.
+    pub const STIFFNESS: Combination = Combination { stiffness: 1.0, mass: 0.0, dashpots: 0.0 };
+}
+
 /// What the elements have in common: how stiffness and mass are formed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Formulation {

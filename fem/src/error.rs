@@ -1,8 +1,8 @@
 //! What can go wrong: the checks of a model, the choice of a method, the solution of the equations.
 
 use crate::material::Region;
+use crate::solver::AnalysisError;
 use crate::solver::conjugate::Stopped;
-use crate::solver::{AnalysisError, MumpsError};
 use thiserror::Error;
 
 /// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
@@ -45,29 +45,29 @@ pub enum ModelError {
     BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
 }
 
-/// Parameters that are refused.
+/// Parameters that are not allowed. Messages name beta and gamma as scenes do: `alpha` and `delta`.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NewmarkError {
     /// Not unconditionally stable.
     #[error(
-        "Newmark with alpha = {alpha}, delta = {delta} is not unconditionally stable: it needs delta >= 0.5 and \
-         alpha >= 0.25 (0.5 + delta)^2 = {least_alpha}"
+        "Newmark with alpha = {beta}, delta = {gamma} is not unconditionally stable: it needs delta >= 0.5 and \
+         alpha >= 0.25 (0.5 + delta)^2 = {least_beta}"
     )]
     Unstable {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
-        /// The least alpha for this delta.
-        least_alpha: f64,
+        /// The beta given.
+        beta: f64,
+        /// The gamma given.
+        gamma: f64,
+        /// The least beta for this gamma.
+        least_beta: f64,
     },
     /// Negative, or not a finite number.
-    #[error("Newmark's alpha = {alpha} and delta = {delta} must be finite numbers, 0 or above")]
+    #[error("Newmark's alpha = {beta} and delta = {gamma} must be finite numbers, 0 or above")]
     Range {
-        /// The alpha given.
-        alpha: f64,
-        /// The delta given.
-        delta: f64,
+        /// The beta given.
+        beta: f64,
+        /// The gamma given.
+        gamma: f64,
     },
     /// HHT's α out of range.
     #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
@@ -144,6 +144,6 @@ pub enum SolveError {
     Singular,
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
-    #[error(transparent)]
-    Mumps(#[from] MumpsError),
+    #[error("{0}")]
+    Library(String),
 }

@@ -70,7 +70,7 @@ pub use connectivity::Connectivity;
 pub use damping::Rayleigh;
 pub use element::quadrature::Quadrature;
 pub use element::{ElementKind, FaceShape};
-pub use equations::method::{Method, Methods, MumpsMethod};
+pub use equations::method::{Method, Methods, MumpsMethod, Regime};
 pub use error::{ModelError, SolveError};
 pub use integrator::{Loading, StepReport, TimeIntegrator};
 pub use mass::Mass;

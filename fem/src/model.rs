@@ -2,15 +2,14 @@
 
 mod checks;
 
-use crate::assembly::{Formulation, Matrices};
+use crate::assembly::{Combination, Formulation, Matrices};
 use crate::assumed::{AssumedStrain, ElementStrains};
 use crate::boundary::{self, BoundaryLayer};
 use crate::damping::Rayleigh;
 use crate::element::quadrature::Quadrature;
 use crate::element::stiffness_points;
-use crate::equations;
-use crate::equations::iteration::block_jacobi_memory;
-use crate::equations::method::{Methods, MumpsMethod};
+use crate::equations::method::{Method, Methods, Regime};
+use crate::equations::system::{Equations, SystemSolver};
 pub use crate::error::ModelError;
 use crate::error::SolveError;
 use crate::mass::Mass;
@@ -335,11 +334,6 @@ impl Model {
         &self.matrices
     }
 
-    /// The assembled matrices, to be shared.
-    pub(crate) fn shared_matrices(&self) -> Arc<Matrices> {
-        self.matrices.clone()
-    }
-
     /// `y = K x` over all dofs, boundary springs included. Shapes `[3 * nodes]`.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         self.matrices.stiffness_times(x, y);
@@ -389,32 +383,31 @@ impl Model {
         })
     }
 
-    /// Memory of conjugate gradients for steps in time, known before they are set up [bytes].
-    pub fn window_iteration_memory(&self) -> usize {
-        block_jacobi_memory(self.matrices.clone(), &self.supports)
-    }
-
-    /// Memory of conjugate gradients for statics, known before they are set up, by what embankments took (2.5 to 2.75 kB a node at 7,500
-    /// to 100,000 nodes) [bytes].
-    pub fn static_iteration_memory(&self) -> usize {
-        2750 * self.mesh.node_count()
-    }
-
-    /// Memory that MUMPS expects to take for a factor, known before it is made [bytes].
+    /// Memory that a method takes for the model's equations, known before it is used [bytes].
     ///
     /// # Errors
-    /// [`crate::solver::MumpsError::Missing`] in a program that was built without it; else what the library lacks.
-    pub fn mumps_memory(&self, method: MumpsMethod) -> Result<usize, SolveError> {
-        equations::system::mumps_memory(&self.mesh, &self.matrices, &self.supports, method)
+    /// The equations cannot be analysed; [`SolveError::Library`], also where the program was built without the library.
+    pub fn solver_memory(&self, method: Method, regime: Regime) -> Result<usize, SolveError> {
+        method.memory(&self.equations(Combination::STIFFNESS), regime)
+    }
+
+    /// The equations of a combination of the matrices.
+    pub(crate) fn equations(&self, combination: Combination) -> Equations<'_> {
+        let Model { mesh, matrices, supports, analysis, .. } = self;
+        Equations { mesh, matrices, supports, combination, analysis }
+    }
+
+    /// A solver of the equations of a step in time, by the method of the model.
+    ///
+    /// # Errors
+    /// [`SolveError::NoStiffness`], [`SolveError::Library`], or no memory.
+    pub(crate) fn step_solver(&self, combination: Combination) -> Result<Box<dyn SystemSolver>, SolveError> {
+        self.methods.dynamics.solver(&self.equations(combination), Regime::Dynamics)
     }
 
     /// The ordering and symbolic factorization, made once and shared by all solvers of this model.
     pub(crate) fn analysis(&self) -> Result<Arc<Analysis>, SolveError> {
-        if let Some(analysis) = self.analysis.get() {
-            return Ok(analysis.clone());
-        }
-        let analysis = Arc::new(equations::analyse(&self.mesh, &self.matrices, &self.supports)?);
-        Ok(self.analysis.get_or_init(|| analysis).clone())
+        self.equations(Combination::STIFFNESS).analysis()
     }
 }
 

@@ -8,23 +8,14 @@
 
 use crate::assembly::Combination;
 use crate::boundary::spring_points;
-use crate::equations::cholesky::Cholesky;
-use crate::equations::iteration::{Counts, Iteration};
-use crate::equations::method::Method;
-use crate::equations::system::Equations;
+use crate::equations::method::Regime;
+use crate::equations::system::{Counts, SystemSolver};
 use crate::error::SolveError;
 use crate::model::Model;
 use crate::supports::name;
 
-/// Pivot over diagonal below which a dof counts as having no stiffness.
-///
-/// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as its elements
-/// has 4e-9.
-pub(crate) const NO_STIFFNESS: f64 = 1e-11;
 /// Residual over the largest force above which the solution is corrected by one more solve.
 const IMPROVE: f64 = 1e-13;
-/// The matrix of statics.
-const OF_STIFFNESS: Combination = Combination { stiffness: 1.0, mass: 0.0, dashpots: 0.0 };
 /// Solves at most.
 const CORRECTIONS: usize = 3;
 /// Residual over the largest force above which the solution is refused, unless the tolerance of an iteration is larger.
@@ -41,7 +32,7 @@ pub struct Static {
 
 /// Holds the factor of the stiffness matrix, or what an iteration needs, for any number of loads.
 pub struct StaticSolver {
-    system: Equations,
+    system: Box<dyn SystemSolver>,
     /// Residual over the largest force at which no correction follows.
     enough: f64,
     nodal: Vec<f64>,
@@ -69,22 +60,13 @@ impl StaticSolver {
     ///
     /// # Errors
     /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely;
-    /// [`SolveError::Plastic`] refuses a plastic material; [`SolveError::Mumps`] where MUMPS is asked for and lacks something.
+    /// [`SolveError::Plastic`] refuses a plastic material; [`SolveError::Library`] names the failure of a library.
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
         check_linear(model)?;
         check_held(model)?;
-        let (mesh, supports) = (model.mesh(), model.supports());
-        let (system, enough) = match model.methods().statics {
-            Method::Direct => (Equations::Direct(Box::new(factor(model)?)), IMPROVE),
-            Method::Iterative { tolerance } => {
-                let iteration = Iteration::aggregation(mesh, &model.shared_matrices(), supports, tolerance)?;
-                (Equations::Aggregation(Box::new(iteration)), IMPROVE.max(100.0 * tolerance))
-            }
-            Method::Mumps(method) => {
-                let matrices = model.matrices();
-                (Equations::by_mumps(mesh, matrices, supports, OF_STIFFNESS, method, NO_STIFFNESS)?, IMPROVE)
-            }
-        };
+        let method = model.methods().statics;
+        let system = method.solver(&model.equations(Combination::STIFFNESS), Regime::Statics)?;
+        let enough = IMPROVE.max(100.0 * method.tolerance());
         let equations = vec![0.0; model.free_dof_count()];
         Ok(StaticSolver { system, enough, nodal: vec![0.0; model.dof_count()], equations })
     }
@@ -151,7 +133,7 @@ impl StaticSolver {
         for (slot, &dof) in self.equations.iter_mut().zip(free) {
             *slot = load[dof as usize] - self.nodal[dof as usize];
         }
-        self.system.solve(model.supports(), &mut self.equations, |_| 0.0)?;
+        self.system.solve(model.supports(), &mut self.equations, &|_| 0.0)?;
         for (du, &dof) in self.equations.iter().zip(free) {
             u[dof as usize] += du;
         }
@@ -166,18 +148,6 @@ impl StaticSolver {
         }
         Ok(worst)
     }
-}
-
-/// The factor of a stiffness that is left everywhere.
-fn factor(model: &Model) -> Result<Cholesky, SolveError> {
-    let (mesh, supports) = (model.mesh(), model.supports());
-    let factor = Cholesky::factor(model.analysis()?, mesh, model.matrices(), supports, OF_STIFFNESS)?;
-    let weakest = factor.weakest_pivot();
-    if weakest.ratio.is_nan() || weakest.ratio < NO_STIFFNESS {
-        let (node, direction) = name(mesh, weakest.dof);
-        return Err(SolveError::NoStiffness { node, direction, pivot: weakest.ratio });
-    }
-    Ok(factor)
 }
 
 /// One static solution: builds a [`StaticSolver`], uses it once.

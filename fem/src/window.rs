@@ -24,12 +24,11 @@ mod predict;
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
-use crate::equations::iteration::Counts;
-use crate::equations::system::Equations;
+use crate::equations::system::{Counts, SystemSolver};
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
-use crate::newmark::{check_dynamics, check_theta, equations};
+use crate::newmark::{check_dynamics, check_theta};
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
@@ -37,7 +36,7 @@ use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 pub struct WindowSolver {
     theta: f64,
     dt: f64,
-    system: Equations,
+    system: Box<dyn SystemSolver>,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
@@ -62,7 +61,7 @@ impl WindowSolver {
             mass: 1.0 + theta * dt * c.alpha_m,
             dashpots: theta * dt,
         };
-        let system = equations(model, combination)?;
+        let system = model.step_solver(combination)?;
         let n = model.dof_count();
         Ok(WindowSolver {
             theta,
@@ -163,7 +162,7 @@ impl WindowSolver {
             }
         }
         // 2. Solve for w = vt - v0 = theta (v1 - v0), which the last window's is a guess of, and advance.
-        self.system.solve(supports, &mut self.equations, |d| theta * dt * state.a[d])?;
+        self.system.solve(supports, &mut self.equations, &|d| theta * dt * state.a[d])?;
         supports.scatter(&self.equations, &mut next.a);
         for d in 0..n {
             let change = next.a[d] / theta;

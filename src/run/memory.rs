@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::machine::{available, resident};
 use crate::model::solid::{Analysis, SolidPart};
 use serde_json::{Value, json};
-use trackbed_fem::Method;
+use trackbed_fem::{Method, Regime};
 
 /// Bytes of a nodal vector's worth of results for each node: state, stresses, and the text of a frame.
 const RESULT_BYTES_PER_NODE: u64 = 1200;
@@ -39,14 +39,9 @@ impl Prediction {
             (solver, flops) = (demand.bytes as u64, demand.flops);
         }
         // What the static solve takes is gone when the steps begin.
-        let [statics, steps] = plan.iterates();
-        if statics {
-            solver = solver.max(part.model.static_iteration_memory() as u64);
+        for (regime, method) in plan.used().filter(|(_, method)| *method != Method::Direct) {
+            solver = solver.max(bytes(part, method, regime)?);
         }
-        if steps {
-            solver = solver.max(part.model.window_iteration_memory() as u64);
-        }
-        solver = solver.max(mumps(part)?.unwrap_or(0));
         let results = RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64;
         Ok(Prediction { model, solver, results, flops })
     }
@@ -76,74 +71,46 @@ impl Prediction {
     }
 }
 
-/// How the equations of an elastic solid are solved, why, and with how much memory, beside that of the method not taken.
+/// How the equations of an elastic solid are solved, why, and with how much memory, beside that of the other methods.
 ///
 /// # Errors
 /// As [`Prediction::of`].
 pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
-    let (plan, model) = (&part.equations, &part.model);
-    let factor = || model.solver_demand(true).map(|d| d.bytes as u64).map_err(|e| part.failure(&e));
-    let mumps = mumps(part)?;
-    let mut lines = Vec::new();
-    if plan.statics {
-        let (factor, iteration) = (factor()?, model.static_iteration_memory() as u64);
-        let memory = Memory { factor, iteration, mumps };
-        lines.push(line("statics", plan.methods.statics, &plan.statics_reason, memory));
-    }
-    if plan.dynamics {
-        let (factor, iteration) = (factor()?, model.window_iteration_memory() as u64);
-        let memory = Memory { factor, iteration, mumps };
-        lines.push(line("steps", plan.methods.dynamics, &plan.dynamics_reason, memory));
-    }
-    Ok(lines)
+    part.equations.used().map(|(regime, method)| line(part, regime, method)).collect()
 }
 
-/// What MUMPS expects to take [bytes]; none where it is not used.
-fn mumps(part: &SolidPart) -> Result<Option<u64>, Failure> {
-    let Some(method) = part.equations.mumps() else { return Ok(None) };
-    let memory = part.model.mumps_memory(method).map_err(|e| part.failure(&e))?;
-    Ok(Some(memory as u64))
+/// Memory that a method takes, known before it is used [bytes].
+fn bytes(part: &SolidPart, method: Method, regime: Regime) -> Result<u64, Failure> {
+    part.model.solver_memory(method, regime).map(|bytes| bytes as u64).map_err(|e| part.failure(&e))
 }
 
-/// What each method takes [bytes].
-struct Memory {
-    factor: u64,
-    iteration: u64,
-    /// Where it is used.
-    mumps: Option<u64>,
-}
-
-fn line(what: &str, method: Method, reason: &str, memory: Memory) -> (String, Value) {
-    let (factor, iteration) = (size(memory.factor), size(memory.iteration));
-    let (text, key) = match method {
-        Method::Direct => {
-            let other = format!("{factor}; conjugate gradients: {iteration}");
-            (format!("equations of {what}: direct solver ({reason}), {other}"), "direct")
-        }
-        Method::Iterative { tolerance } => {
-            let other = format!("{iteration}; direct solver: {factor}");
-            let by = format!("conjugate gradients, tolerance {tolerance:e}");
-            (format!("equations of {what}: {by} ({reason}), {other}"), "iterative")
-        }
-        Method::Mumps(method) => {
-            let files = if method.out_of_core { " in files" } else { "" };
-            let by = format!("MUMPS{files}");
-            let own = size(memory.mumps.unwrap_or(0));
-            let other = format!("{own}; direct solver: {factor}, conjugate gradients: {iteration}");
-            (format!("equations of {what}: {by} ({reason}), {other}"), "mumps")
-        }
+fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Value), Failure> {
+    let (what, reason) = match regime {
+        Regime::Statics => ("statics", &part.equations.statics_reason),
+        Regime::Dynamics => ("steps", &part.equations.dynamics_reason),
     };
+    let factor = bytes(part, Method::Direct, regime)?;
+    let iteration = bytes(part, Method::Iterative { tolerance: Method::WINDOW_TOLERANCE }, regime)?;
     let mut value = json!({
         "of": what,
-        "method": key,
+        "method": method.name(),
         "reason": reason,
-        "factor_bytes": memory.factor,
-        "iteration_bytes": memory.iteration,
+        "factor_bytes": factor,
+        "iteration_bytes": iteration,
     });
-    if let (Method::Mumps(_), Some(bytes)) = (method, memory.mumps) {
-        value["mumps_bytes"] = bytes.into();
-    }
-    (text, value)
+    let (own, other) = match method {
+        Method::Direct => (factor, format!("conjugate gradients: {}", size(iteration))),
+        Method::Iterative { .. } => (iteration, format!("direct solver: {}", size(factor))),
+        // A library.
+        _ => {
+            let own = bytes(part, method, regime)?;
+            value[format!("{}_bytes", method.name())] = own.into();
+            let (factor, iteration) = (size(factor), size(iteration));
+            let other = format!("direct solver: {factor}, conjugate gradients: {iteration}");
+            (own, other)
+        }
+    };
+    Ok((format!("equations of {what}: {method} ({reason}), {}; {other}", size(own)), value))
 }
 
 fn refused(total: u64, expected: &str) -> Failure {

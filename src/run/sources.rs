@@ -1,6 +1,7 @@
 //! Sources of the methods that a run uses, for its summary.
 
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
+use trackbed_fem::{Method, Regime};
 
 /// Sources of the methods that a solid uses.
 pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
@@ -9,25 +10,12 @@ pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
          1980",
     ];
     if part.equations.takes_factor() {
-        sources.push(
-            "sparse factorization: multifrontal (Duff & Reid 1983) over dense kernels of the crate faer, nested dissection by \
-             coordinates (George 1973)",
-        );
+        sources.push(Method::Direct.source(Regime::Statics));
     }
-    if part.equations.mumps().is_some() {
-        sources.push(
-            "sparse factorization: the library MUMPS, Amestoy, Duff, L'Excellent & Koster, SIAM J. Matrix Anal. Appl. 23, 2001; \
-             nested dissection by coordinates (George 1973)",
-        );
-    }
-    let [statics, steps] = part.equations.iterates();
-    if statics {
-        sources.push(
-            "static equations: conjugate gradients with smoothed aggregation, Vaněk, Mandel & Brezina 1996",
-        );
-    }
-    if steps {
-        sources.push("equations of steps: conjugate gradients with inverse nodal blocks, Saad 2003");
+    for source in part.equations.used().map(|(regime, method)| method.source(regime)) {
+        if !sources.contains(&source) {
+            sources.push(source);
+        }
     }
     match &part.analysis {
         _ if coupled => {

@@ -122,8 +122,8 @@ fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
     };
     let mut c = Coupled::new(&solid, heap(), 5);
     let window = c.model.window();
-    let newmark = |alpha: f64, delta: f64| {
-        let mut solver = NewmarkSolver::new(&solid, Newmark { alpha, delta }, window).unwrap();
+    let newmark = |beta: f64, gamma: f64| {
+        let mut solver = NewmarkSolver::new(&solid, Newmark { beta, gamma }, window).unwrap();
         let mut state = fem::State::new(&solid);
         let at = |t: f64| {
             let mut f = vec![0.0; n];

@@ -1,6 +1,6 @@
 //! Cholesky factorization `P A P^T = L L^T` of `A = k K + m M + d D` on the free dofs.
 //!
-//! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Analysis`], made once per model); numbers are
+//! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Equations::analysis`], made once per model); numbers are
 //! factored when k, m, d change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
 //! threads. See [`crate::solver::multifrontal`] for the method.
 //!
@@ -9,22 +9,18 @@
 //! for the caller to judge.
 
 use super::pattern::values;
-use crate::assembly::{Combination, Matrices};
+use super::system::{Equations, NO_STIFFNESS, SystemSolver};
 use crate::error::SolveError;
-use crate::mesh::Mesh;
-use crate::solver::LinearSolver;
-use crate::solver::analysis::Analysis;
 use crate::solver::multifrontal::DirectSolver;
-use crate::supports::{Supports, name};
-use std::sync::Arc;
+use crate::supports::Supports;
 
 /// The smallest pivot of a factor against the diagonal entry of its dof.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeakestPivot {
     /// Pivot over diagonal [-]; 1 for a diagonal matrix, rounding (1e-16 to 1e-13) for a singular one.
     pub ratio: f64,
-    /// The dof, `3 * node + direction`.
-    pub dof: usize,
+    /// The equation; 0 where there is none.
+    pub equation: usize,
 }
 
 /// A factor, ready to solve.
@@ -34,61 +30,77 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factors `A = stiffness K + mass M + dashpots D` on the free dofs.
+    /// Factors a combination of matrices on the free dofs.
     ///
     /// # Errors
     /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is not positive.
-    pub fn factor(
-        analysis: Arc<Analysis>,
-        mesh: &Mesh,
-        matrices: &Matrices,
-        supports: &Supports,
-        combination: Combination,
-    ) -> Result<Cholesky, SolveError> {
-        let a = values(&analysis, matrices, supports, combination);
-        let free = supports.free();
+    pub fn factor(equations: &Equations<'_>) -> Result<Cholesky, SolveError> {
+        let analysis = equations.analysis()?;
+        let a = values(&analysis, equations.matrices, equations.supports, equations.combination);
         let mut solver = DirectSolver::new(analysis);
-        solver.factor_symmetric(&a).map_err(|pivot| {
-            let (node, direction) = name(mesh, free[pivot.equation] as usize);
-            SolveError::NoStiffness { node, direction, pivot: pivot.ratio }
-        })?;
+        solver.factor_symmetric(&a).map_err(|pivot| equations.no_stiffness(pivot.equation, pivot.ratio))?;
         let (ratio, equation) = solver.weakest_pivot();
-        let weakest = WeakestPivot { ratio, dof: free.get(equation).map_or(0, |&d| d as usize) };
-        Ok(Cholesky { solver, weakest })
+        Ok(Cholesky { solver, weakest: WeakestPivot { ratio, equation } })
+    }
+
+    /// As [`Cholesky::factor`], for a stiffness that must be left everywhere.
+    ///
+    /// # Errors
+    /// [`SolveError::NoStiffness`] names the node and direction of a pivot below 1e-11 of its diagonal.
+    pub fn of_stiffness(equations: &Equations<'_>) -> Result<Cholesky, SolveError> {
+        let factor = Cholesky::factor(equations)?;
+        let WeakestPivot { ratio, equation } = factor.weakest;
+        if ratio.is_nan() || ratio < NO_STIFFNESS {
+            return Err(equations.no_stiffness(equation, ratio));
+        }
+        Ok(factor)
     }
 
     /// The smallest pivot against its diagonal entry; the last dof with ratio 1 when there are no equations.
     pub fn weakest_pivot(&self) -> WeakestPivot {
         self.weakest
     }
+
+    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    pub fn solve_in_place(&mut self, x: &mut [f64]) {
+        self.solver.solve_in_place(x);
+    }
 }
 
-impl LinearSolver for Cholesky {
-    fn size(&self) -> usize {
-        self.solver.size()
-    }
-
-    fn solve_in_place(&mut self, x: &mut [f64]) {
-        self.solver.solve_in_place(x);
+impl SystemSolver for Cholesky {
+    fn solve(&mut self, _: &Supports, x: &mut [f64], _: &dyn Fn(usize) -> f64) -> Result<(), SolveError> {
+        self.solve_in_place(x);
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::{Combination, Matrices};
     use crate::element::quadrature::Quadrature;
     use crate::material::elastic::Elastic;
-    use crate::mesh::Constraint;
+    use crate::mesh::{Constraint, Mesh};
+    use crate::solver::analysis::Analysis;
+    use crate::supports::name;
+    use std::sync::{Arc, OnceLock};
 
-    fn of(stiffness: f64, mass: f64) -> Combination {
-        Combination { stiffness, mass, dashpots: 0.0 }
+    fn factor(
+        (mesh, matrices): (&Mesh, &Arc<Matrices>),
+        supports: &Supports,
+        [stiffness, mass]: [f64; 2],
+    ) -> (Result<Cholesky, SolveError>, Arc<Analysis>) {
+        let combination = Combination { stiffness, mass, dashpots: 0.0 };
+        let analysis = &OnceLock::new();
+        let equations = Equations { mesh, matrices, supports, combination, analysis };
+        (Cholesky::factor(&equations), equations.analysis().unwrap())
     }
 
-    fn block() -> (Mesh, Matrices) {
+    fn block() -> (Mesh, Arc<Matrices>) {
         let mesh = Mesh::block([4, 3, 3], [4.0, 3.0, 3.0]);
         let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
         let matrices = Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil);
-        (mesh, matrices)
+        (mesh, Arc::new(matrices))
     }
 
     #[test]
@@ -96,8 +108,7 @@ mod tests {
         let (mesh, matrices) = block();
         let constraint = |node| Constraint { node, direction: 1, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint(7), constraint(50)]).unwrap();
-        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
-        let mut solver = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(1e-4, 1.0)).unwrap();
+        let mut solver = factor((&mesh, &matrices), &supports, [1e-4, 1.0]).0.unwrap();
         let n = 3 * mesh.node_count();
         let exact: Vec<f64> =
             (0..n).map(|i| if i == 22 || i == 151 { 0.0 } else { (i as f64).cos() }).collect();
@@ -105,7 +116,7 @@ mod tests {
         matrices.stiffness_times(&exact, &mut kx);
         matrices.mass_times(&exact, &mut mx);
         let b: Vec<f64> = kx.iter().zip(&mx).map(|(k, m)| 1e-4 * k + m).collect();
-        let mut x = vec![0.0; solver.size()];
+        let mut x = vec![0.0; supports.free().len()];
         supports.gather(&b, &mut x);
         solver.solve_in_place(&mut x);
         let mut found = vec![0.0; n];
@@ -118,9 +129,9 @@ mod tests {
     fn a_pivot_that_is_not_positive_is_named() {
         let (mesh, matrices) = block();
         let supports = Supports::new(&mesh, &[]).unwrap();
-        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
+        let (factor, analysis) = factor((&mesh, &matrices), &supports, [-1.0, 0.0]);
         let first = supports.free()[analysis.order()[0]] as usize;
-        let error = Cholesky::factor(analysis, &mesh, &matrices, &supports, of(-1.0, 0.0)).err().unwrap();
+        let error = factor.err().unwrap();
         let (node, direction) = name(&mesh, first);
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
     }
@@ -130,10 +141,10 @@ mod tests {
     fn the_weakest_pivot_is_found_and_named() {
         let mesh = Mesh::block([1, 1, 2], [1.0, 1.0, 2.0]);
         let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
-        let matrices = Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil);
+        let matrices = Arc::new(Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil));
         let constraint = Constraint { node: 9, direction: 2, value: 0.0 };
         let supports = Supports::new(&mesh, &[constraint]).unwrap();
-        let analysis = Arc::new(super::super::analyse(&mesh, &matrices, &supports).unwrap());
+        let (solver, analysis) = factor((&mesh, &matrices), &supports, [1.0, 1e3]);
         let n = analysis.size();
         let mut position = vec![0; n];
         analysis.order().iter().enumerate().for_each(|(i, &e)| position[e] = i);
@@ -156,10 +167,9 @@ mod tests {
                 }
             }
         }
-        let solver = Cholesky::factor(analysis.clone(), &mesh, &matrices, &supports, of(1.0, 1e3)).unwrap();
-        let found = solver.weakest_pivot();
+        let found = solver.unwrap().weakest_pivot();
         assert!((found.ratio / least.0 - 1.0).abs() < 1e-9, "{found:?} {least:?}");
-        assert_eq!(found.dof, supports.free()[analysis.order()[least.1]] as usize);
+        assert_eq!(found.equation, analysis.order()[least.1]);
     }
 
     #[test]

@@ -8,12 +8,11 @@
 
 use super::method::MumpsMethod;
 use super::pattern::order;
-use crate::assembly::{Combination, Matrices};
+use super::system::{Equations, SystemSolver};
+use crate::assembly::Combination;
 use crate::error::SolveError;
-use crate::mesh::Mesh;
-use crate::solver::MumpsError;
-use crate::solver::mumps::{self, Coordinates, Settings};
-use crate::supports::{Supports, name};
+use crate::solver::mumps::{self, Coordinates, MumpsError, Settings};
+use crate::supports::Supports;
 
 /// A factor of MUMPS, ready to solve.
 pub struct Factor {
@@ -23,57 +22,52 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// Factors the combination; pivots below `null_pivot` of their diagonal count as zero.
+    /// Factors a combination; pivots below `null_pivot` of their diagonal count as zero.
     ///
     /// # Errors
     /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is zero, [`SolveError::Singular`] says that one is
-    /// negative, [`SolveError::Mumps`] what the library lacks.
+    /// negative, [`SolveError::Library`] any other failure of the library, or that the program was built without it.
     pub fn new(
-        mesh: &Mesh,
-        matrices: &Matrices,
-        supports: &Supports,
-        combination: Combination,
+        equations: &Equations<'_>,
         method: MumpsMethod,
         null_pivot: f64,
     ) -> Result<Factor, SolveError> {
-        let (matrix, scale) = scaled(mesh, matrices, supports, combination)?;
+        let (matrix, scale) = scaled(equations)?;
         let factor = mumps::Factor::new(matrix, settings(method, null_pivot)).map_err(|e| match e {
-            MumpsError::Pivot { equation } => no_stiffness(mesh, supports, equation),
+            MumpsError::Pivot { equation } => equations.no_stiffness(equation, 0.0),
             MumpsError::NotPositive { .. } => SolveError::Singular,
             other => other.into(),
         })?;
         Ok(Factor { factor, scale })
     }
+}
 
-    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included [bytes].
-    pub fn memory(&self) -> usize {
-        self.factor.memory()
-    }
-
-    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
-    ///
-    /// # Errors
-    /// What the library lacks.
-    pub fn solve_in_place(&mut self, x: &mut [f64]) -> Result<(), MumpsError> {
+impl SystemSolver for Factor {
+    fn solve(&mut self, _: &Supports, x: &mut [f64], _: &dyn Fn(usize) -> f64) -> Result<(), SolveError> {
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
         self.factor.solve_in_place(x)?;
         x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
         Ok(())
     }
+
+    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included.
+    fn memory(&self) -> Option<usize> {
+        Some(self.factor.memory())
+    }
 }
 
-/// Memory that MUMPS expects to take for equations with the pattern of the stiffness, their entries included [bytes].
+impl From<MumpsError> for SolveError {
+    fn from(error: MumpsError) -> SolveError {
+        SolveError::Library(error.to_string())
+    }
+}
+
+/// Memory that MUMPS expects to take for the equations, their entries included [bytes].
 ///
 /// # Errors
-/// No memory, or no stiffness at a dof.
-pub fn demand(
-    mesh: &Mesh,
-    matrices: &Matrices,
-    supports: &Supports,
-    method: MumpsMethod,
-) -> Result<usize, SolveError> {
-    let stiffness = Combination { stiffness: 1.0, ..Combination::default() };
-    let (matrix, _) = scaled(mesh, matrices, supports, stiffness)?;
+/// No memory, no stiffness at a dof, or a program that was built without the library.
+pub fn demand(equations: &Equations<'_>, method: MumpsMethod) -> Result<usize, SolveError> {
+    let (matrix, _) = scaled(equations)?;
     Ok(mumps::demand(matrix, settings(method, 0.0))?)
 }
 
@@ -81,18 +75,9 @@ fn settings(method: MumpsMethod, null_pivot: f64) -> Settings {
     Settings { out_of_core: method.out_of_core, null_pivot }
 }
 
-fn no_stiffness(mesh: &Mesh, supports: &Supports, equation: usize) -> SolveError {
-    let (node, direction) = name(mesh, supports.free()[equation] as usize);
-    SolveError::NoStiffness { node, direction, pivot: 0.0 }
-}
-
 /// The scaled matrix and its scale.
-fn scaled(
-    mesh: &Mesh,
-    matrices: &Matrices,
-    supports: &Supports,
-    combination: Combination,
-) -> Result<(Coordinates, Vec<f64>), SolveError> {
+fn scaled(equations: &Equations<'_>) -> Result<(Coordinates, Vec<f64>), SolveError> {
+    let Equations { mesh, matrices, supports, combination, .. } = *equations;
     let order = order(mesh, supports);
     let mut matrix = Coordinates { place: vec![0; order.len()], ..Coordinates::default() };
     order.iter().enumerate().for_each(|(i, &e)| matrix.place[e] = i as i32 + 1);
@@ -112,7 +97,7 @@ fn scaled(
         }
     });
     if let Some(equation) = scale.iter().position(|d| !(*d > 0.0 && d.is_finite())) {
-        return Err(no_stiffness(mesh, supports, equation));
+        return Err(equations.no_stiffness(equation, 0.0));
     }
     scale.iter_mut().for_each(|d| *d = d.sqrt().recip());
     let Coordinates { row, column, value, .. } = &mut matrix;

@@ -159,18 +159,11 @@ impl ConstitutiveLaw for MohrCoulomb {
     /// Softening of the cohesion must stay above [`MohrCoulomb::softening_limit`]; softening of the friction angle can only
     /// be judged at a stress and fails in [`ConstitutiveLaw::update`] with [`ReturnError::Softening`].
     fn fault(&self, elastic: &Elastic) -> Option<Fault> {
-        self.shared().fault().or_else(|| {
-            let fall = self.cohesion.steepest_fall();
-            (fall < 0.0 && fall <= self.softening_limit(elastic)).then_some((
-                "cohesion",
-                fall,
-                "softening less steep than the limit at which a point snaps back",
-            ))
-        })
+        self.shared().fault(|| self.softening_limit(elastic))
     }
 
     fn is_associated(&self) -> bool {
-        self.friction == Hardening::Constant(self.dilation)
+        self.shared().is_associated()
     }
 
     /// Hardening by the norm of the plastic strain makes the tangent unsymmetric on edges and at the apex also where the

@@ -36,8 +36,13 @@ impl Strength<'_> {
         }
     }
 
-    /// What makes the constants unusable, if anything.
-    pub fn fault(&self) -> Option<Fault> {
+    /// Whether the plastic flow is normal to the yield surface.
+    pub fn is_associated(&self) -> bool {
+        *self.friction == Hardening::Constant(self.dilation)
+    }
+
+    /// The constant that cannot be used, if any. Softening of the cohesion must stay above `softening_limit` [Pa].
+    pub fn fault(&self, softening_limit: impl FnOnce() -> f64) -> Option<Fault> {
         let Strength { cohesion, friction, dilation, tension } = *self;
         if let Some(fault) =
             friction.fault("friction angle", true).or_else(|| cohesion.fault("cohesion", false))
@@ -70,6 +75,8 @@ impl Strength<'_> {
                 return Some(("tension cut-off", t, "at most c cot(phi), the apex"));
             }
         }
-        None
+        let fall = cohesion.steepest_fall();
+        let expected = "softening less steep than the limit at which a point snaps back";
+        (fall < 0.0 && fall <= softening_limit()).then_some(("cohesion", fall, expected))
     }
 }

@@ -11,7 +11,6 @@
 use super::ModalError;
 use crate::equations::cholesky::Cholesky;
 use crate::model::Model;
-use crate::solver::LinearSolver;
 use nalgebra::{DMatrix, DVector};
 
 /// Residual over the eigenvalue at which a Ritz pair counts as converged. The error of the eigenvalue is its square.

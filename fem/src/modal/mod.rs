@@ -17,8 +17,8 @@ use crate::assembly::Combination;
 use crate::equations::cholesky::Cholesky;
 use crate::error::{SolveError, size};
 use crate::model::Model;
-use crate::newmark::{check_density, factor};
-use crate::statics::{NO_STIFFNESS, check_held};
+use crate::newmark::check_density;
+use crate::statics::check_held;
 use krylov::{Operator, Ritz};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -118,16 +118,16 @@ pub fn solve(model: &Model, count: usize) -> Result<Modes, ModalError> {
 /// Factor of K when the body is held, else of K + s M; and s.
 fn shifted_factor(model: &Model, scale: f64) -> Result<(Cholesky, f64), SolveError> {
     if check_held(model).is_ok() {
-        let factor = factor(model, Combination { stiffness: 1.0, ..Combination::default() });
-        match factor {
-            Ok(factor) if factor.weakest_pivot().ratio > NO_STIFFNESS => return Ok((factor, 0.0)),
+        match Cholesky::of_stiffness(&model.equations(Combination::STIFFNESS)) {
+            Ok(factor) => return Ok((factor, 0.0)),
             // A mechanism that the geometry does not show.
-            Ok(_) | Err(SolveError::NoStiffness { .. }) => {}
+            Err(SolveError::NoStiffness { .. }) => {}
             Err(error) => return Err(error),
         }
     }
     let shift = SHIFT * scale;
-    factor(model, Combination { stiffness: 1.0, mass: shift, dashpots: 0.0 }).map(|factor| (factor, shift))
+    let combination = Combination { mass: shift, ..Combination::STIFFNESS };
+    Cholesky::factor(&model.equations(combination)).map(|factor| (factor, shift))
 }
 
 /// A measure of the lowest squares of frequencies [1/s²]: the least Rayleigh quotient of nine linear displacement fields.

@@ -2,22 +2,22 @@
 
 use crate::error::NewmarkError;
 
-/// The two parameters of Newmark's method.
+/// The two parameters of Newmark's method, in the notation of Hughes (1987); scenes call them `alpha` and `delta`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newmark {
-    /// Weight of the new acceleration in the displacement (beta of Hughes) [-].
-    pub alpha: f64,
-    /// Weight of the new acceleration in the velocity (gamma of Hughes) [-].
-    pub delta: f64,
+    /// Weight of the new acceleration in the displacement [-].
+    pub beta: f64,
+    /// Weight of the new acceleration in the velocity [-].
+    pub gamma: f64,
 }
 
 impl Newmark {
-    /// alpha = 1/4, delta = 1/2: second order, conserves energy.
-    pub const AVERAGE_ACCELERATION: Newmark = Newmark { alpha: 0.25, delta: 0.5 };
+    /// beta = 1/4, gamma = 1/2: second order, conserves energy.
+    pub const AVERAGE_ACCELERATION: Newmark = Newmark { beta: 0.25, gamma: 0.5 };
 
-    /// The pair that HHT-α goes with: `alpha = (1 - a)²/4`, `delta = 1/2 - a` for its parameter a in [-1/3, 0].
+    /// The pair that HHT-α goes with: `beta = (1 - a)²/4`, `gamma = 1/2 - a` for its parameter a in [-1/3, 0].
     pub fn of_hht(a: f64) -> Newmark {
-        Newmark { alpha: 0.25 * (1.0 - a) * (1.0 - a), delta: 0.5 - a }
+        Newmark { beta: 0.25 * (1.0 - a) * (1.0 - a), gamma: 0.5 - a }
     }
 
     /// [`Newmark::of_hht`], for a parameter that is checked.
@@ -32,16 +32,16 @@ impl Newmark {
     /// Checks that the method is stable for every step size.
     ///
     /// # Errors
-    /// [`NewmarkError`], with the alpha that would be enough.
+    /// [`NewmarkError`], with the beta that would be enough.
     pub fn check(self) -> Result<(), NewmarkError> {
-        let Newmark { alpha, delta } = self;
+        let Newmark { beta, gamma } = self;
         self.check_range()?;
-        let least_alpha = 0.25 * (0.5 + delta) * (0.5 + delta);
+        let least_beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
         // A last digit lost in a scene file must not refuse 0.3025 for 0.6.
-        if delta >= 0.5 && alpha >= least_alpha * (1.0 - 1e-12) {
+        if gamma >= 0.5 && beta >= least_beta * (1.0 - 1e-12) {
             Ok(())
         } else {
-            Err(NewmarkError::Unstable { alpha, delta, least_alpha })
+            Err(NewmarkError::Unstable { beta, gamma, least_beta })
         }
     }
 
@@ -50,8 +50,8 @@ impl Newmark {
     /// # Errors
     /// [`NewmarkError::Range`].
     pub fn check_range(self) -> Result<(), NewmarkError> {
-        let Newmark { alpha, delta } = self;
+        let Newmark { beta, gamma } = self;
         let usable = |x: f64| x >= 0.0 && x.is_finite();
-        if usable(alpha) && usable(delta) { Ok(()) } else { Err(NewmarkError::Range { alpha, delta }) }
+        if usable(beta) && usable(gamma) { Ok(()) } else { Err(NewmarkError::Range { beta, gamma }) }
     }
 }

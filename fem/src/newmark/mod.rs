@@ -1,35 +1,31 @@
 //! Newmark's implicit time integration, acceleration form, and its extension HHT-α.
 //!
 //! ```text
-//! u1 = u0 + dt v0 + dt² ((1/2 - alpha) a0 + alpha a1)
-//! v1 = v0 + dt ((1 - delta) a0 + delta a1)
+//! u1 = u0 + dt v0 + dt² ((1/2 - beta) a0 + beta a1)
+//! v1 = v0 + dt ((1 - gamma) a0 + gamma a1)
 //! M a1 + C vw + K uw = Fw,  C = alpha_m M + beta_k K + D,  xw = (1 + a) x1 - a x0 for x = u, v, F
 //! ```
 //!
-//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with alpha = (1 - a)²/4, delta = 1/2 - a: it damps what the step
+//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with beta = (1 - a)²/4, gamma = 1/2 - a: it damps what the step
 //! cannot follow and stays of second order. D are the boundary dashpots. One solve per step with
-//! `(1 + w delta dt alpha_m) M + w (alpha dt² + delta dt beta_k) K + w delta dt D`, w = 1 + a, factored once per step size.
+//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a, factored once per step size.
 //!
 //! Prescribed motion: a constrained dof whose displacement at the end of the step is given has the acceleration
 //! that the first line asks for, and the velocity of the second.
 //!
-//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1, whose
-//! beta is alpha here and whose gamma is delta. Unconditionally stable for delta >= 1/2 and
-//! alpha >= (delta + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
-//! by the fraction (w dt)²/12; larger delta damps the modes that the step cannot follow, and loses one order. HHT-α:
+//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1.
+//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
+//! by the fraction (w dt)²/12; larger gamma damps the modes that the step cannot follow, and loses one order. HHT-α:
 //! Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292; the load at the weighted time as in Hughes
 //! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
-//! when delta = 1/2; smooth histories are the remedy.
+//! when gamma = 1/2; smooth histories are the remedy.
 
 mod method;
 mod start;
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
-use crate::equations::cholesky::Cholesky;
-use crate::equations::iteration::{Counts, Iteration};
-use crate::equations::method::Method;
-use crate::equations::system::Equations;
+use crate::equations::system::{Counts, SystemSolver};
 pub use crate::error::NewmarkError;
 use crate::error::SolveError;
 use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
@@ -60,7 +56,7 @@ pub struct NewmarkSolver {
     /// HHT's α; 0 for Newmark's method.
     hht: f64,
     dt: f64,
-    system: Equations,
+    system: Box<dyn SystemSolver>,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
@@ -106,16 +102,16 @@ impl NewmarkSolver {
         check_dynamics(model, dt)?;
         let (c, w) = (model.rayleigh(), 1.0 + hht);
         let combination = Combination {
-            stiffness: w * (method.alpha * dt * dt + method.delta * dt * c.beta_k),
-            mass: 1.0 + w * method.delta * dt * c.alpha_m,
-            dashpots: w * method.delta * dt,
+            stiffness: w * (method.beta * dt * dt + method.gamma * dt * c.beta_k),
+            mass: 1.0 + w * method.gamma * dt * c.alpha_m,
+            dashpots: w * method.gamma * dt,
         };
         let n = model.dof_count();
         Ok(NewmarkSolver {
             method,
             hht,
             dt,
-            system: equations(model, combination)?,
+            system: model.step_solver(combination)?,
             next: State::new(model),
             work: vec![0.0; n],
             product: vec![0.0; n],
@@ -167,7 +163,7 @@ impl NewmarkSolver {
     ///
     /// # Errors
     /// A load, a displacement or a result that is not finite; no load at the start for HHT-α; prescribed motion for
-    /// alpha = 0. The state is untouched then.
+    /// beta = 0. The state is untouched then.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -175,14 +171,14 @@ impl NewmarkSolver {
         drive: Drive<'_>,
     ) -> Result<StepAudit, SolveError> {
         self.check(model, state, &drive)?;
-        let (Newmark { alpha, delta }, dt, c) = (self.method, self.dt, model.rayleigh());
+        let (Newmark { beta, gamma }, dt, c) = (self.method, self.dt, model.rayleigh());
         let (new, old) = (1.0 + self.hht, -self.hht);
         let (supports, free) = (model.supports(), model.supports().free());
         let next = &mut self.next;
         // 1. Predict: the part of u1 and v1 that does not depend on a1.
         for d in 0..state.u.len() {
-            next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d];
-            next.v[d] = state.v[d] + dt * (1.0 - delta) * state.a[d];
+            next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - beta) * state.a[d];
+            next.v[d] = state.v[d] + dt * (1.0 - gamma) * state.a[d];
         }
         // 2. Supports: their a1 follows from where they are at the end.
         next.a.fill(0.0);
@@ -191,10 +187,10 @@ impl NewmarkSolver {
             let d = dof as usize;
             let end = drive.prescribed.map_or(state.u[d], |p| p[i]);
             let gap = end - next.u[d];
-            if gap != 0.0 && alpha > 0.0 {
-                next.a[d] = gap / (dt * dt * alpha);
+            if gap != 0.0 && beta > 0.0 {
+                next.a[d] = gap / (dt * dt * beta);
                 next.u[d] = end;
-                next.v[d] += dt * delta * next.a[d];
+                next.v[d] += dt * gamma * next.a[d];
                 accelerated = true;
             }
         }
@@ -225,12 +221,12 @@ impl NewmarkSolver {
             subtract(&mut self.equations, &self.product, free);
         }
         // 4. Solve for a1 and correct.
-        self.system.solve(supports, &mut self.equations, |d| state.a[d])?;
+        self.system.solve(supports, &mut self.equations, &|d| state.a[d])?;
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;
             next.a[d] = a;
-            next.u[d] += dt * dt * alpha * a;
-            next.v[d] += dt * delta * a;
+            next.u[d] += dt * dt * beta * a;
+            next.v[d] += dt * gamma * a;
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
@@ -248,7 +244,7 @@ impl NewmarkSolver {
             return Err(NewmarkError::LoadAtStart.into());
         }
         check_prescribed(model, drive.prescribed, end)?;
-        if drive.prescribed.is_some() && self.method.alpha == 0.0 {
+        if drive.prescribed.is_some() && self.method.beta == 0.0 {
             return Err(NewmarkError::Prescribed.into());
         }
         Ok(())
@@ -346,27 +342,6 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
     for (slot, &d) in equations.iter_mut().zip(free) {
         *slot -= nodal[d as usize];
     }
-}
-
-pub(crate) fn factor(model: &Model, combination: Combination) -> Result<Cholesky, SolveError> {
-    Cholesky::factor(model.analysis()?, model.mesh(), model.matrices(), model.supports(), combination)
-}
-
-/// The equations of a step in time, by the method of the model.
-pub(crate) fn equations(model: &Model, combination: Combination) -> Result<Equations, SolveError> {
-    let (mesh, supports) = (model.mesh(), model.supports());
-    Ok(match model.methods().dynamics {
-        Method::Direct => Equations::Direct(Box::new(factor(model, combination)?)),
-        Method::Iterative { tolerance } => {
-            let matrices = model.shared_matrices();
-            let iteration = Iteration::block_jacobi(mesh, matrices, supports, combination, tolerance)?;
-            Equations::BlockJacobi(Box::new(iteration))
-        }
-        Method::Mumps(method) => {
-            let matrices = model.matrices();
-            Equations::by_mumps(mesh, matrices, supports, combination, method, f64::EPSILON)?
-        }
-    })
 }
 
 /// Refuses a weight of the end of a window that is not from 1/2 to 1.

@@ -168,9 +168,9 @@ impl Dynamics {
             check_load(model, load, at).map_err(Failure::Fatal)?;
         }
         prescribe(model, state, time, loading, &mut self.fixed).map_err(Failure::Fatal)?;
-        let (Newmark { alpha, delta }, c) = (self.method, model.rayleigh());
-        let by_square = 1.0 / (alpha * dt * dt);
-        let velocity = delta / (alpha * dt);
+        let (Newmark { beta, gamma }, c) = (self.method, model.rayleigh());
+        let by_square = 1.0 / (beta * dt * dt);
+        let velocity = gamma / (beta * dt);
         self.predict(model, state, dt);
         self.right_hand_side(model, state);
         let linear = Combination {
@@ -204,13 +204,13 @@ impl Dynamics {
 
     /// The part of a1 and v1 that does not depend on the increment, left in `next`.
     fn predict(&mut self, model: &Model, state: &State, dt: f64) {
-        let Newmark { alpha, delta } = self.method;
+        let Newmark { beta, gamma } = self.method;
         inner_force(model, &mut self.newton.force, state, &mut self.inner[0], &mut self.scratch);
-        let by_square = 1.0 / (alpha * dt * dt);
+        let by_square = 1.0 / (beta * dt * dt);
         for d in 0..state.u.len() {
-            let a = -by_square * (dt * state.v[d] + dt * dt * (0.5 - alpha) * state.a[d]);
+            let a = -by_square * (dt * state.v[d] + dt * dt * (0.5 - beta) * state.a[d]);
             self.next.a[d] = a;
-            self.next.v[d] = state.v[d] + dt * ((1.0 - delta) * state.a[d] + delta * a);
+            self.next.v[d] = state.v[d] + dt * ((1.0 - gamma) * state.a[d] + gamma * a);
         }
     }
 

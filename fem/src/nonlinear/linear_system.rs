@@ -7,13 +7,12 @@
 use super::options::{LinearMethod, Statistics};
 use super::tangent::Tangent;
 use crate::assembly::Combination;
+use crate::equations::system::NO_STIFFNESS;
 use crate::error::SolveError;
 use crate::model::Model;
-use crate::solver::LinearSolver;
 use crate::solver::analysis::Analysis;
 use crate::solver::gmres::Gmres;
 use crate::solver::multifrontal::DirectSolver;
-use crate::supports::name;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -27,8 +26,6 @@ const LIMIT: usize = 180;
 const TOLERANCE: f64 = 1e-3;
 /// Residual that a Newton iteration can still use.
 const ACCEPTED: f64 = 1e-1;
-/// Pivot over diagonal below which a dof counts as having no stiffness, as in statics.
-const NO_STIFFNESS: f64 = 1e-11;
 
 /// The matrix of the next solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,14 +97,13 @@ impl LinearSystem {
         tangent.write(model, &mut self.lower, &mut self.upper);
         statistics.assembly_seconds += start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let refuse = |equation: usize, pivot: f64| {
-            let (node, direction) = name(model.mesh(), model.supports().free()[equation] as usize);
-            SolveError::NoStiffness { node, direction, pivot }
-        };
-        self.elastic.factor_symmetric(&self.lower).map_err(|e| refuse(e.equation, e.ratio))?;
+        let equations = model.equations(linear);
+        self.elastic
+            .factor_symmetric(&self.lower)
+            .map_err(|e| equations.no_stiffness(e.equation, e.ratio))?;
         let (ratio, equation) = self.elastic.weakest_pivot();
         if ratio.is_nan() || ratio < NO_STIFFNESS {
-            return Err(refuse(equation, ratio));
+            return Err(equations.no_stiffness(equation, ratio));
         }
         statistics.factorizations_symmetric += 1;
         statistics.factor_seconds += start.elapsed().as_secs_f64();
@@ -208,7 +204,7 @@ impl LinearSystem {
                 tangent.times(model, from, to);
                 supports.gather(to, y);
             },
-            &mut self.elastic,
+            |z| self.elastic.solve_in_place(z),
             x,
             &mut krylov.solution,
             TOLERANCE,

@@ -9,8 +9,6 @@
 //! Linear Systems, 2nd ed. (2003), algorithm 9.5; second orthogonalization: Daniel, Gragg, Kaufman and Stewart, Math.
 //! Comp. 30 (1976) 772-795. Limits: a restart may stagnate for matrices far from the factored one; this is reported.
 
-use super::LinearSolver;
-
 /// Work space for systems of one size; solves allocate nothing.
 pub struct Gmres {
     size: usize,
@@ -56,21 +54,21 @@ impl Gmres {
     /// Solves `A x = b` from the initial guess in `x`, until `|b - A x| <= tolerance |b|` or after `limit` iterations, or when a
     /// whole cycle brings no progress.
     ///
-    /// `times(v, y)` sets `y = A v`. All vectors have shape `[size]`.
+    /// `times(v, y)` sets `y = A v`, `precondition(z)` solves `M z = z` in place. All vectors have shape `[size]`.
     ///
     /// # Panics
     /// When the sizes differ.
     pub fn solve(
         &mut self,
         mut times: impl FnMut(&[f64], &mut [f64]),
-        preconditioner: &mut impl LinearSolver,
+        mut precondition: impl FnMut(&mut [f64]),
         b: &[f64],
         x: &mut [f64],
         tolerance: f64,
         limit: usize,
     ) -> Outcome {
         let n = self.size;
-        assert!(b.len() == n && x.len() == n && preconditioner.size() == n, "all sizes are alike");
+        assert!(b.len() == n && x.len() == n, "all sizes are alike");
         let scale = norm(b);
         if scale == 0.0 {
             x.fill(0.0);
@@ -96,14 +94,14 @@ impl Gmres {
             self.rotated[0] = length;
             let mut steps = 0;
             while steps < self.restart && iterations < limit {
-                let more = self.step(steps, &mut times, preconditioner);
+                let more = self.step(steps, &mut times, &mut precondition);
                 steps += 1;
                 iterations += 1;
                 if !more || self.rotated[steps].abs() <= tolerance * scale {
                     break;
                 }
             }
-            self.correct(steps, preconditioner, x);
+            self.correct(steps, &mut precondition, x);
         }
     }
 
@@ -112,13 +110,13 @@ impl Gmres {
         &mut self,
         j: usize,
         times: &mut impl FnMut(&[f64], &mut [f64]),
-        preconditioner: &mut impl LinearSolver,
+        precondition: &mut impl FnMut(&mut [f64]),
     ) -> bool {
         let (n, rows) = (self.size, self.restart + 1);
         let (known, new) = self.basis.split_at_mut((j + 1) * n);
         let new = &mut new[..n];
         self.direction.copy_from_slice(&known[j * n..]);
-        preconditioner.solve_in_place(&mut self.direction);
+        precondition(&mut self.direction);
         times(&self.direction, new);
         let column = &mut self.hessenberg[j * rows..(j + 1) * rows];
         column.fill(0.0);
@@ -154,7 +152,7 @@ impl Gmres {
     }
 
     /// `x += M^-1 V y` with the minimising y.
-    fn correct(&mut self, steps: usize, preconditioner: &mut impl LinearSolver, x: &mut [f64]) {
+    fn correct(&mut self, steps: usize, precondition: &mut impl FnMut(&mut [f64]), x: &mut [f64]) {
         let (n, rows) = (self.size, self.restart + 1);
         for i in (0..steps).rev() {
             let known: f64 = (i + 1..steps).map(|k| self.hessenberg[k * rows + i] * self.rotated[k]).sum();
@@ -165,7 +163,7 @@ impl Gmres {
         for (v, &y) in self.basis.chunks_exact(n.max(1)).zip(&self.rotated[..steps]) {
             self.direction.iter_mut().zip(v).for_each(|(d, v)| *d += y * v);
         }
-        preconditioner.solve_in_place(&mut self.direction);
+        precondition(&mut self.direction);
         x.iter_mut().zip(&self.direction).for_each(|(x, d)| *x += d);
     }
 }
@@ -234,21 +232,12 @@ mod tests {
             self.times(&exact, &mut b);
             let mut gmres = Gmres::new(n, restart);
             let times = |v: &[f64], y: &mut [f64]| self.times(v, y);
-            let outcome = gmres.solve(times, &mut self.diffusion(), &b, &mut x, tolerance, limit);
+            let mut solver = self.diffusion();
+            let precondition = |z: &mut [f64]| solver.solve_in_place(z);
+            let outcome = gmres.solve(times, precondition, &b, &mut x, tolerance, limit);
             let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             (outcome, error)
         }
-    }
-
-    /// The preconditioner that does nothing.
-    struct Identity(usize);
-
-    impl LinearSolver for Identity {
-        fn size(&self) -> usize {
-            self.0
-        }
-
-        fn solve_in_place(&mut self, _: &mut [f64]) {}
     }
 
     #[test]
@@ -277,7 +266,7 @@ mod tests {
         let b = vec![1.0; n];
         let mut x = vec![0.0; n];
         let times = |v: &[f64], y: &mut [f64]| (0..n).for_each(|i| y[i] = (1 + i % 3) as f64 * v[i]);
-        let outcome = Gmres::new(n, 20).solve(times, &mut Identity(n), &b, &mut x, 1e-13, 20);
+        let outcome = Gmres::new(n, 20).solve(times, |_| (), &b, &mut x, 1e-13, 20);
         assert_eq!((outcome.iterations, outcome.converged), (3, true));
         assert!(x.iter().enumerate().all(|(i, x)| (x - 1.0 / (1 + i % 3) as f64).abs() < 1e-14));
     }
@@ -290,12 +279,12 @@ mod tests {
         let mut b = vec![0.0; n];
         b[0] = 1.0;
         let mut x = vec![0.0; n];
-        let outcome = Gmres::new(n, 5).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 1000);
+        let outcome = Gmres::new(n, 5).solve(times, |_| (), &b, &mut x, 1e-10, 1000);
         assert_eq!(outcome, Outcome { iterations: 5, residual: 1.0, converged: false });
-        let outcome = Gmres::new(n, n).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 1000);
+        let outcome = Gmres::new(n, n).solve(times, |_| (), &b, &mut x, 1e-10, 1000);
         assert_eq!((outcome.iterations, outcome.converged), (n, true));
         x.fill(0.0);
-        let outcome = Gmres::new(n, n).solve(times, &mut Identity(n), &b, &mut x, 1e-10, 3);
+        let outcome = Gmres::new(n, n).solve(times, |_| (), &b, &mut x, 1e-10, 3);
         assert_eq!((outcome.iterations, outcome.converged), (3, false));
     }
 
@@ -305,13 +294,13 @@ mod tests {
         let (mut solver, mut gmres) = (line.diffusion(), Gmres::new(50, 10));
         let mut x = vec![1.0; 50];
         let times = |v: &[f64], y: &mut [f64]| line.times(v, y);
-        let outcome = gmres.solve(times, &mut solver, &[0.0; 50], &mut x, 1e-8, 10);
+        let outcome = gmres.solve(times, |z| solver.solve_in_place(z), &[0.0; 50], &mut x, 1e-8, 10);
         assert_eq!(outcome, Outcome { iterations: 0, residual: 0.0, converged: true });
         assert!(x.iter().all(|&x| x == 0.0));
         x.fill(1.0);
         let mut b = vec![0.0; 50];
         line.times(&x, &mut b);
-        let outcome = gmres.solve(times, &mut solver, &b, &mut x, 1e-8, 10);
+        let outcome = gmres.solve(times, |z| solver.solve_in_place(z), &b, &mut x, 1e-8, 10);
         assert_eq!((outcome.iterations, outcome.converged), (0, true));
     }
 }

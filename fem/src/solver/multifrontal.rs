@@ -8,11 +8,11 @@
 //! exchanged within a pivot block only, so a nonsingular unsymmetric matrix whose pivot block is singular fails with
 //! [`PivotError`]; [`DirectSolver::weakest_pivot`] tells how near that was.
 
+use super::PivotError;
 use super::analysis::Analysis;
 use super::front::{self, Panels, Scratch, Updates};
 use super::solution::{Solution, Vectors};
 use super::structure::{Structure, Task};
-use super::{LinearSolver, PivotError};
 use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 
 /// A numeric factor with its buffers; factored anew in place.
@@ -148,6 +148,19 @@ impl DirectSolver {
         8 * (values + self.solution.capacity()) + 4 * self.rows.capacity() + slots + scratch
     }
 
+    /// Number of equations.
+    pub fn size(&self) -> usize {
+        self.analysis.size()
+    }
+
+    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    ///
+    /// # Panics
+    /// When there is no factor, or when `x` has another length.
+    pub fn solve_in_place(&mut self, x: &mut [f64]) {
+        self.solve_many(x, 1);
+    }
+
     /// Solves for `count` right-hand sides, column-major `[equations x count]`, in place. Eight at a time share the
     /// reading of the factor. A solution may differ from [`DirectSolver::solve_in_place`] by rounding, but not with the number of threads.
     ///
@@ -243,18 +256,6 @@ impl DirectSolver {
                 }
             }
         }
-    }
-}
-
-impl LinearSolver for DirectSolver {
-    fn size(&self) -> usize {
-        self.analysis.size()
-    }
-
-    /// # Panics
-    /// When there is no factor, or when `x` has another length.
-    fn solve_in_place(&mut self, x: &mut [f64]) {
-        self.solve_many(x, 1);
     }
 }
 

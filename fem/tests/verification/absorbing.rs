@@ -202,10 +202,10 @@ fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
         let model = shaken_block(mass);
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
         let (n, fixed) = (model.dof_count(), model.supports().fixed().len());
-        for method in ["1/4, 1/2", "delta 0.6", "HHT -0.2", "window 0.5", "window 0.8"] {
+        for method in ["1/4, 1/2", "gamma 0.6", "HHT -0.2", "window 0.5", "window 0.8"] {
             let mut newmark = match method {
                 "1/4, 1/2" => NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt).ok(),
-                "delta 0.6" => NewmarkSolver::new(&model, Newmark { alpha: 0.3025, delta: 0.6 }, dt).ok(),
+                "gamma 0.6" => NewmarkSolver::new(&model, Newmark { beta: 0.3025, gamma: 0.6 }, dt).ok(),
                 "HHT -0.2" => NewmarkSolver::hht(&model, -0.2, dt).ok(),
                 _ => None,
             };

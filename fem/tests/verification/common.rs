@@ -1,7 +1,7 @@
 //! Readers of the tables, random numbers, and small models.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 use trackbed_fem::ElementKind;
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::material::{Elastic, Material};
@@ -22,14 +22,17 @@ impl Random {
     }
 }
 
+/// Folders with tables, of elastic and of elastoplastic cases.
+const FOLDERS: [&str; 2] = ["../tests/data/fem", "tests/data/plasticity_fe"];
+
 /// Numbers of a table, split at commas and blanks; lines that do not start with a number are left out.
 pub fn table(case: &str, file: &str) -> Vec<Vec<f64>> {
-    let path: PathBuf =
-        [env!("CARGO_MANIFEST_DIR"), "..", "tests", "data", "fem", case, file].iter().collect();
+    let folders = FOLDERS.map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f).join(case));
+    let folder = folders.iter().find(|f| f.is_dir()).unwrap_or_else(|| panic!("no folder of {case}"));
+    let path = folder.join(file);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    let number = |field: &str| field.parse::<f64>().ok();
     text.lines()
-        .filter_map(|line| line.split([',', ' ']).filter(|f| !f.is_empty()).map(number).collect())
+        .filter_map(|line| line.split([',', ' ']).filter(|f| !f.is_empty()).map(|f| f.parse().ok()).collect())
         .filter(|row: &Vec<f64>| !row.is_empty())
         .collect()
 }

@@ -120,7 +120,7 @@ fn average_acceleration_is_of_second_order_in_time() {
 fn energy_of_every_step_is_accounted_for() {
     let model = column(Rayleigh { alpha_m: 2.0, beta_k: 2e-4 });
     for (method, conserves) in
-        [(Newmark::AVERAGE_ACCELERATION, true), (Newmark { alpha: 0.3025, delta: 0.6 }, false)]
+        [(Newmark::AVERAGE_ACCELERATION, true), (Newmark { beta: 0.3025, gamma: 0.6 }, false)]
     {
         let load = push(&model);
         let mut state = State::new(&model);
@@ -182,12 +182,12 @@ fn a_body_at_rest_under_gravity_stays_at_rest() {
 #[test]
 fn unstable_parameters_and_bad_steps_are_refused() {
     let (model, ..) = oscillator();
-    for (alpha, delta) in [(0.25, 0.6), (0.2, 0.5), (0.25, 0.4)] {
-        let error = NewmarkSolver::new(&model, Newmark { alpha, delta }, 1e-3).err().unwrap();
+    for (beta, gamma) in [(0.25, 0.6), (0.2, 0.5), (0.25, 0.4)] {
+        let error = NewmarkSolver::new(&model, Newmark { beta, gamma }, 1e-3).err().unwrap();
         assert!(matches!(error, SolveError::Newmark(NewmarkError::Unstable { .. })), "{error}");
-        assert!(NewmarkSolver::conditionally_stable(&model, Newmark { alpha, delta }, 1e-6).is_ok());
+        assert!(NewmarkSolver::conditionally_stable(&model, Newmark { beta, gamma }, 1e-6).is_ok());
     }
-    assert!(Newmark { alpha: 0.3025, delta: 0.6 }.check().is_ok());
+    assert!(Newmark { beta: 0.3025, gamma: 0.6 }.check().is_ok());
     for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt).err().unwrap();
         assert!(matches!(error, SolveError::TimeStep { .. }), "{error}");

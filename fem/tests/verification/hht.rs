@@ -31,7 +31,7 @@ fn oscillator() -> (Model, usize, f64) {
 /// Amplification matrix of (u, dt v, dt² a) for an undamped oscillator with `step` = w dt, from the three equations of the
 /// method (Hughes 1987, section 9.3). `hht` = 0 is Newmark's method.
 fn amplification(method: Newmark, hht: f64, step: f64) -> Matrix3<f64> {
-    let (beta, gamma, s) = (method.alpha, method.delta, step * step);
+    let (beta, gamma, s) = (method.beta, method.gamma, step * step);
     let left = Matrix3::new(1.0, 0.0, -beta, 0.0, 1.0, -gamma, s * (1.0 + hht), 0.0, 1.0);
     let right = Matrix3::new(1.0, 1.0, 0.5 - beta, 0.0, 1.0, 1.0 - gamma, s * hht, 0.0, 0.0);
     left.try_inverse().unwrap() * right
@@ -69,17 +69,17 @@ fn decay_and_period_of_one_mode_are_those_of_the_amplification_matrix() {
     let (model, dof, frequency) = oscillator();
     for step in [0.1, 0.5, 1.5] {
         let dt = step / frequency;
-        for (alpha, delta) in [(0.25, 0.5), (0.3025, 0.6), (0.36, 0.7)] {
-            let method = Newmark { alpha, delta };
+        for (beta, gamma) in [(0.25, 0.5), (0.3025, 0.6), (0.36, 0.7)] {
+            let method = Newmark { beta, gamma };
             let mut solver = NewmarkSolver::new(&model, method, dt).unwrap();
             let (modulus, angle) = shown(&mut solver, &model, dof);
             // Closed form (Hughes 1987, section 9.1): half trace and determinant.
-            let bottom = 1.0 + alpha * step * step;
-            let half_trace = 1.0 - 0.5 * step * step * (delta + 0.5) / bottom;
-            let determinant: f64 = 1.0 - step * step * (delta - 0.5) / bottom;
+            let bottom = 1.0 + beta * step * step;
+            let half_trace = 1.0 - 0.5 * step * step * (gamma + 0.5) / bottom;
+            let determinant: f64 = 1.0 - step * step * (gamma - 0.5) / bottom;
             let exact = (determinant.sqrt(), (half_trace / determinant.sqrt()).acos());
             println!(
-                "Newmark {alpha} {delta}, w dt {step}: decay per step {:.3e}, period error {:+.4e}; off by {:.0e}, {:.0e}",
+                "Newmark {beta} {gamma}, w dt {step}: decay per step {:.3e}, period error {:+.4e}; off by {:.0e}, {:.0e}",
                 1.0 - modulus,
                 step / angle - 1.0,
                 (modulus - exact.0).abs(),
@@ -150,9 +150,9 @@ fn hht_is_of_second_order_in_time() {
         println!("HHT {hht:.3}: order {:.3}", (a / b).log2());
         assert!(((a / b).log2() - 2.0).abs() < 0.1, "{hht}: {}", (a / b).log2());
     }
-    let damped = Newmark { alpha: 0.3025, delta: 0.6 };
+    let damped = Newmark { beta: 0.3025, gamma: 0.6 };
     let [a, b] = [320, 640].map(|n| error(NewmarkSolver::new(&column, damped, dt(n)).unwrap(), n));
-    println!("Newmark with delta 0.6: order {:.3}", (a / b).log2());
+    println!("Newmark with gamma 0.6: order {:.3}", (a / b).log2());
     assert!(((a / b).log2() - 1.0).abs() < 0.1);
 }
 
@@ -164,12 +164,12 @@ fn parameters_out_of_range_and_missing_loads_are_refused() {
         assert!(matches!(error, SolveError::Newmark(NewmarkError::Hht { .. })), "{error}");
     }
     let mut solver = NewmarkSolver::hht(&model, -0.1, 1e-3).unwrap();
-    assert!((solver.method().alpha - 0.3025).abs() < 1e-15 && solver.hht_alpha() == -0.1);
-    assert_eq!((solver.method().delta, solver.dt()), (0.6, 1e-3));
+    assert!((solver.method().beta - 0.3025).abs() < 1e-15 && solver.hht_alpha() == -0.1);
+    assert_eq!((solver.method().gamma, solver.dt()), (0.6, 1e-3));
     let (mut state, load) = (State::new(&model), vec![0.0; 60]);
     let error = solver.step(&model, &mut state, &load).unwrap_err();
     assert_eq!(error, SolveError::Newmark(NewmarkError::LoadAtStart));
-    let explicit = Newmark { alpha: 0.0, delta: 0.5 };
+    let explicit = Newmark { beta: 0.0, gamma: 0.5 };
     let mut solver = NewmarkSolver::conditionally_stable(&model, explicit, 1e-6).unwrap();
     assert!(solver.step(&model, &mut state, &load).is_ok());
     let motion = vec![0.0; 59];

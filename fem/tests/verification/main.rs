@@ -1,6 +1,7 @@
 //! Verification of the finite elements against exact answers and against tables of other programs.
 //!
-//! The tables are in `tests/data/fem` of the workspace; each folder's `case.json` tells how they were made.
+//! The tables are in `tests/data/fem` of the workspace and in `tests/data/plasticity_fe`; each folder's `case.json` says how they
+//! were made.
 
 mod absorbing;
 mod aggregation;

@@ -5,7 +5,8 @@
 //! closed form (error of an independent program on this mesh: 0.006 to 0.14 %).
 
 use crate::common::difference;
-use crate::plastic_common::{model, mohr_coulomb, read_mesh, table, tight};
+use crate::common::{model, read_mesh, table};
+use crate::plastic_common::{mohr_coulomb, tight};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Elastic, Model, Quadrature, SolveError, State, loads, stress};
 

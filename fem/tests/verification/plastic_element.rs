@@ -5,7 +5,8 @@
 //! The lateral stresses are held by loads. With equal ones Mohr–Coulomb returns to an edge, where the consistent tangent is
 //! singular: an iteration that does not treat that fails here. Tolerance: 1e-6 of the largest stress; 1e-8 of strain.
 
-use crate::plastic_common::{drucker_prager, model, mohr_coulomb, read_mesh, table, tight};
+use crate::common::{model, read_mesh, table};
+use crate::plastic_common::{drucker_prager, mohr_coulomb, tight};
 use trackbed_fem::nonlinear::{Driven, QuasiStatic, StepControl};
 use trackbed_fem::{Cone, Constraint, Elastic, Material, Quadrature, State, loads};
 

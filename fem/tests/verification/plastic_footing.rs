@@ -3,7 +3,8 @@
 //! And what the variants of the iteration cost on it.
 
 use crate::common::difference;
-use crate::plastic_common::{cpu_seconds, footing, model, mohr_coulomb};
+use crate::common::model;
+use crate::plastic_common::{cpu_seconds, footing, mohr_coulomb};
 use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl, Variant};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, State};
 

@@ -6,7 +6,8 @@
 //! `be eps_r^p + 2 eps_t^p = 0` by quadrature. al = (1 + sin phi)/(1 - sin phi), be the same of psi, Y = 2 c sqrt(al). The two
 //! hoop stresses are equal: every point returns to an edge. Tolerance 1 %.
 
-use crate::plastic_common::{model, mohr_coulomb, tight};
+use crate::common::model;
+use crate::plastic_common::{mohr_coulomb, tight};
 use std::collections::BTreeMap;
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Constraint, Elastic, ElementKind, Mesh, Quadrature, State, loads};

@@ -93,7 +93,7 @@ fn base_motion_is_the_relative_motion_under_inertia_loads() {
     let mut inertia = vec![0.0; n];
     model.mass_times(&unit, &mut inertia);
     let base = |t: f64| 1e-3 * (1.0 - (25.0 * t).cos());
-    for method in [Newmark::AVERAGE_ACCELERATION, Newmark { alpha: 0.3025, delta: 0.6 }] {
+    for method in [Newmark::AVERAGE_ACCELERATION, Newmark { beta: 0.3025, gamma: 0.6 }] {
         let (mut moved, mut relative) = (State::new(&model), State::new(&model));
         let start = along_x(&model, 1e-3 * 25.0 * 25.0);
         initial_acceleration_prescribed(&model, &mut moved, &zero, Some(&start)).unwrap();
@@ -117,7 +117,7 @@ fn base_motion_is_the_relative_motion_under_inertia_loads() {
             let seen: Vec<f64> = moved.u.iter().zip(&unit).map(|(u, r)| u - r * x).collect();
             worst = worst.max(difference(&seen, &relative.u));
         }
-        println!("relative motion, delta {}: {worst:.1e}", method.delta);
+        println!("relative motion, gamma {}: {worst:.1e}", method.gamma);
         assert!(worst < 1e-9, "{worst:e}");
     }
 }
@@ -171,7 +171,7 @@ fn supports_stay_where_the_last_step_left_them() {
     let model = shear_column(Rayleigh { alpha_m: 0.0, beta_k: 5e-2 });
     let load = vec![0.0; model.dof_count()];
     let mut state = State::new(&model);
-    let mut solver = NewmarkSolver::new(&model, Newmark { alpha: 0.36, delta: 0.7 }, 5e-3).unwrap();
+    let mut solver = NewmarkSolver::new(&model, Newmark { beta: 0.36, gamma: 0.7 }, 5e-3).unwrap();
     for step in 1..=20 {
         let motion = along_x(&model, 1e-4 * f64::from(step));
         let drive = Drive { load_start: None, load_end: &load, prescribed: Some(&motion) };
@@ -213,7 +213,7 @@ fn momentum_balances_with_the_reactions() {
     let model = block();
     let (n, dt) = (model.dof_count(), 1e-3);
     let fixed = model.supports().fixed().len();
-    let method = Newmark { alpha: 0.3025, delta: 0.6 };
+    let method = Newmark { beta: 0.3025, gamma: 0.6 };
     let mut newmark = NewmarkSolver::new(&model, method, dt).unwrap();
     let mut window = WindowSolver::new(&model, 0.6, dt).unwrap();
     // Forces that act on the body as a whole, [force, moment] in one line.

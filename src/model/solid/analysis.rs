@@ -136,7 +136,7 @@ fn time_method(d: &Table<Dynamics>) -> Result<TimeMethod, SceneError> {
         d.check("hht_alpha", alpha, |a| (-1.0 / 3.0..=0.0).contains(&a), "-1/3 to 0")?;
         return Ok(TimeMethod::Hht(alpha));
     }
-    let method = Newmark { alpha: d.alpha.unwrap_or(0.25), delta: d.delta.unwrap_or(0.5) };
+    let method = Newmark { beta: d.alpha.unwrap_or(0.25), gamma: d.delta.unwrap_or(0.5) };
     let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
     checked.map_err(|e| d.here(e.to_string(), "stable constants"))?;
     Ok(TimeMethod::Newmark(method))

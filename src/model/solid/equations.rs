@@ -3,7 +3,8 @@
 use super::analysis::Analysis;
 use crate::scene::solid::{EquationMethod, Equations, Mass, Solid};
 use crate::scene::{SceneError, Table};
-use trackbed_fem::{Method, Methods, MumpsMethod};
+use trackbed_fem::solver::mumps;
+use trackbed_fem::{Method, Methods, MumpsMethod, Regime};
 
 /// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a hundredth of its
 /// memory, and none of its set-up (`benches/README.md`, section "Large solids").
@@ -28,25 +29,18 @@ pub struct EquationPlan {
 }
 
 impl EquationPlan {
+    /// The methods that are used, by regime.
+    pub fn used(&self) -> impl Iterator<Item = (Regime, Method)> + use<> {
+        let statics = self.statics.then_some((Regime::Statics, self.methods.statics));
+        let dynamics = self.dynamics.then_some((Regime::Dynamics, self.methods.dynamics));
+        statics.into_iter().chain(dynamics)
+    }
+
     /// Whether any equations of the solid are factored by the program itself.
     pub fn takes_factor(&self) -> bool {
-        let direct = |used: bool, method: Method| used && method == Method::Direct;
         // Neither a linear static solve nor linear steps: plastic ones, which always are.
         let neither = !self.statics && !self.dynamics;
-        neither || direct(self.statics, self.methods.statics) || direct(self.dynamics, self.methods.dynamics)
-    }
-
-    /// Whether any are solved by conjugate gradients: in statics, in steps.
-    pub fn iterates(&self) -> [bool; 2] {
-        [self.methods.statics, self.methods.dynamics].map(|m| matches!(m, Method::Iterative { .. }))
-    }
-
-    /// How MUMPS factors, where any equations are given to it; static solves and steps have it alike.
-    pub fn mumps(&self) -> Option<MumpsMethod> {
-        [self.methods.statics, self.methods.dynamics].into_iter().find_map(|m| match m {
-            Method::Mumps(method) => Some(method),
-            Method::Direct | Method::Iterative { .. } => None,
-        })
+        neither || self.used().any(|(_, method)| method == Method::Direct)
     }
 }
 
@@ -108,12 +102,12 @@ pub(super) fn plan(
 /// Checks `[solid.equations]` by itself.
 fn check(t: &Table<Equations>) -> Result<(), SceneError> {
     t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
-    let (direct, mumps) = (t.method == EquationMethod::Direct, t.method == EquationMethod::Mumps);
-    let idle = t.out_of_core.is_some() && !mumps;
+    let (direct, by_mumps) = (t.method == EquationMethod::Direct, t.method == EquationMethod::Mumps);
+    let idle = t.out_of_core.is_some() && !by_mumps;
     t.reject_without([("out_of_core", idle)], "`method = \"mumps\"`")?;
     t.reject_with([("tolerance", direct && t.tolerance.is_some())], "`method = \"direct\"`")?;
-    t.reject_with([("tolerance", mumps && t.tolerance.is_some())], "`method = \"mumps\"`")?;
-    if mumps && !cfg!(feature = "mumps") {
+    t.reject_with([("tolerance", by_mumps && t.tolerance.is_some())], "`method = \"mumps\"`")?;
+    if by_mumps && !mumps::BUILT_IN {
         let found = "\"mumps\", which this program was built without";
         let expected = "\"auto\", \"direct\" or \"iterative\"; `cargo build --release --features mumps` builds a program that has it";
         return Err(t.error("method", found, expected));

@@ -26,7 +26,7 @@ const RESTLESS: f64 = 0.01;
 /// A matrix cannot be factored; no equilibrium.
 pub fn step(part: &SolidPart, theta: f64, dt: f64) -> Result<f64, Failure> {
     if part.is_linear() {
-        let method = TimeMethod::Newmark(Newmark { alpha: 0.25, delta: 0.5 });
+        let method = TimeMethod::Newmark(Newmark { beta: 0.25, gamma: 0.5 });
         let mut system = SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?;
         return time(|| system.advance(&mut |_, _, _, _| ()));
     }
@@ -65,7 +65,8 @@ pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     let seconds = match part.equations.methods.statics {
         Method::Iterative { .. } => PRODUCTS * product(&part.model) / super::cores(threads),
         Method::Direct => Prediction::of(part).ok()?.flops / (rate() * super::cores(threads)),
-        Method::Mumps(_) => part.model.solver_demand(true).ok()?.flops / rate(),
+        // A library, on one thread.
+        _ => part.model.solver_demand(true).ok()?.flops / rate(),
     };
     let stage = StageTime { name: "static".into(), seconds, known: Known::Expected };
     (seconds > LONG).then(|| vec![stage])

@@ -1,15 +1,6 @@
-//! A symmetric matrix factored by MUMPS (`L D Lᵀ`), a library of its own, in the order that is given; out of core where that
-//! is asked for.
-//!
-//! Only with the feature `mumps`. MUMPS keeps a state that all its instances share, so that calls from several threads wait for each
-//! other; it uses as many threads as it was built for. It has no say in the order of sums of the BLAS that it is linked with, so that
-//! bits are those of one machine, one library and one number of its threads.
-//!
-//! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41. Limits: matrices that are not positive definite are refused; fewer than
-//! 2^31 equations. Compression of blocks (ICNTL(35)) is left out: MUMPS 5.5.1 with SCOTCH 7.0.3, as Debian 12 has them, reads memory
-//! that was never set while it groups the equations for it, and ends the program.
+//! The binding to the library.
 
-use super::MumpsError;
+use super::{Coordinates, MumpsError, Settings};
 use std::ffi::{CString, c_char, c_int, c_longlong};
 use std::ptr::{NonNull, null_mut};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -61,33 +52,11 @@ const MOST_ROOM: c_int = 320;
 /// Share of the largest entry of its row below which a pivot would change places: never in a matrix that is positive definite.
 const PIVOTING: f64 = 1e-14;
 
-/// A symmetric matrix by coordinates.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Coordinates {
-    /// Rows of the entries, from 1, of one triangle. Shape `[entries]`.
-    pub row: Vec<i32>,
-    /// Their columns, from 1. Shape `[entries]`.
-    pub column: Vec<i32>,
-    /// Their values; entries at the same place are added. Shape `[entries]`.
-    pub value: Vec<f64>,
-    /// When each equation is to be eliminated, from 1. Shape `[equations]`.
-    pub place: Vec<i32>,
-}
-
 impl Coordinates {
     /// Memory of the entries [bytes].
     fn memory(&self) -> usize {
         (2 * size_of::<i32>() + size_of::<f64>()) * self.row.len()
     }
-}
-
-/// How a matrix is factored.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Settings {
-    /// Whether the factor goes to files, in the folder for temporary files of the process.
-    pub out_of_core: bool,
-    /// Size at which a pivot counts as zero.
-    pub null_pivot: f64,
 }
 
 /// Memory that MUMPS expects to take for a matrix, its entries as given included [bytes].
