@@ -204,7 +204,7 @@ fn asperities_out_of_place_are_refused() {
         ("material.0.asperity_pressure=", "the pressure at which half of `asperity_friction` is left"),
         ("material.0.asperity_friction=0", "found, but it has no effect without `asperity_friction`"),
         ("material.0.asperity_friction=-1", "0 or more"),
-        ("material.0.asperity_pressure=0", "a pressure above 0"),
+        ("material.0.asperity_pressure=0", "above 0 Pa"),
     ] {
         let folder = Folder::new("no_asperities");
         let outcome = run(&scene, &folder.join("out"), &[set]);
