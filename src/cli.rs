@@ -130,7 +130,7 @@ pub struct RunArgs {
     /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
-    /// Print a line of progress each second instead of the progress bar.
+    /// Print progress as a line each second, and stability numbers and factorizations.
     #[arg(long, conflicts_with = "quiet")]
     pub verbose: bool,
 }

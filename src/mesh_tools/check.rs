@@ -281,7 +281,7 @@ mod tests {
         let problems = check(&mesh, &held(&mesh));
         let found = super::sentences(&mesh, &problems);
         assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].starts_with("all 24 elements inside out: bottom and top faces"), "{found:?}");
+        assert!(found[0].starts_with("all 24 elements inverted: bottom and top faces"), "{found:?}");
 
         let mut mesh = sample::straight_block([4, 3, 2]);
         for element in 0..12 {

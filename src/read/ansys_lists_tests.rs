@@ -393,7 +393,7 @@ fn a_missing_file_is_named() {
     let expected = format!("{}: node list: found no such file, expected a readable file", file.display());
     assert_eq!(error.to_string(), expected);
     let error = read_lists(&dir, &file, None, &ListLayout::default()).unwrap_err();
-    assert!(error.to_string().contains("found a folder, expected a regular file"), "{error}");
+    assert!(error.to_string().contains("found a directory, expected a regular file"), "{error}");
     std::fs::remove_dir_all(&dir).unwrap();
 }
 

@@ -114,7 +114,7 @@ mod tests {
         fs::write(&file, "12345").unwrap();
         assert_eq!(bytes(&file, 5).unwrap(), b"12345");
         assert_eq!(refused(&file, 4), "found 5 bytes, expected at most 4 bytes");
-        assert_eq!(refused(&std::env::temp_dir(), 4), "found a folder, expected a regular file");
+        assert_eq!(refused(&std::env::temp_dir(), 4), "found a directory, expected a regular file");
         fs::remove_file(&file).unwrap();
         assert!(refused(&file, 4).ends_with(", expected a readable file"));
         if cfg!(target_os = "linux") {

@@ -308,7 +308,7 @@ fn nothing_to_go_on_from() {
     // A history that is not the one that the checkpoint knows.
     let history = fs::read(out.join("history.csv")).unwrap();
     fs::write(out.join("history.csv"), &history[..history.len() / 2]).unwrap();
-    refused(&scene, &out, &[], &["history.csv: is not the history that the checkpoint goes on from"]);
+    refused(&scene, &out, &[], &["history.csv: is not the history of the checkpoint"]);
     fs::write(out.join("history.csv"), &history).unwrap();
     run(&scene, &folder.join("whole"), &[]).good();
     trackbed([

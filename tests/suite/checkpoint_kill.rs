@@ -199,7 +199,7 @@ fn ctrl_c_and_sigterm() {
             "{text}"
         );
         // What it says is a command that works.
-        let command = text.trim().split("go on with: trackbed ").nth(1).unwrap();
+        let command = text.trim().split("resume with: trackbed ").nth(1).unwrap();
         assert!(command.contains("--resume") && command.contains("--set time.end=0.3"), "{command}");
     }
     let command = start(&scene, &out, &set, 2, true).wait_with_output().unwrap();

@@ -318,7 +318,7 @@ fn mesh_check_of_sound_and_broken_meshes() {
             m.push_element(9 + e as u32, 1, trackbed_fem::ElementKind::Hex20, &nodes);
         }
     };
-    broken("apart", &apart, &["2 parts that share no node", "element 1 (8 in all)", "element 9 (8 in all)"]);
+    broken("apart", &apart, &["2 unconnected parts", "element 1 (8 in all)", "element 9 (8 in all)"]);
 
     let folder = Folder::new("loose");
     write_lists(&small_block(), folder.path());

@@ -123,7 +123,7 @@ fn animations_and_chains_come_back() {
     assert_eq!(fs::read_to_string(folder.join("animation.csv")).unwrap().lines().count(), 5);
 
     let said = convert(&folder, &["a.3df", "frames", "--grains", "ANIMATION_3D.DAT"]).good().stdout;
-    assert!(said.starts_with("2 frames\n1 chains to walls left out"), "{said}");
+    assert!(said.starts_with("2 frames\n1 chains to walls omitted"), "{said}");
     convert(&folder, &["frames", "back.dat"]).good();
     assert_eq!(fs::read_to_string(folder.join("back.dat")).unwrap(), ANIMATION);
     convert(&folder, &["frames", "back.3df"]).good();

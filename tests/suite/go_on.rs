@@ -48,7 +48,7 @@ fn two_halves_are_a_whole() {
     let refused = from(&scene, &folder.join("none"), &short, &with("time.end=0.1"));
     assert_eq!((refused.code, refused.stderr.lines().count()), (2, 1), "{refused:?}");
     assert!(
-        refused.stderr.contains("found no end.state, expected the folder of a finished run"),
+        refused.stderr.contains("found no end.state, expected the results directory of a completed run"),
         "{refused:?}"
     );
 }

@@ -142,7 +142,7 @@ fn ranks_refuse_by_name() {
     let blocks = blocks.replace("\"../", &format!("\"{}/", repository().join("inputs").display()));
     let (outcome, _) = shared(&folder.write("scene.toml", &blocks), options(&out), 2);
     let text = outcome.unwrap_err().to_string();
-    assert!(text.starts_with("2 ranks: boxes and polyhedra are not shared"), "{text}");
+    assert!(text.starts_with("2 ranks: not supported with several ranks: boxes and polyhedra"), "{text}");
 }
 
 /// A scene that is wrong is refused once, in the words of any run, and all end.

@@ -158,7 +158,7 @@ fn a_file_that_cannot_be_written_or_read_is_refused() {
     for (arguments, error) in [
         (
             ["make", stone.as_str(), "--spheres", "3", "--out", "no/x.toml"],
-            "--out: found no/x.toml, expected a file in a folder",
+            "--out: found no/x.toml, expected a file in an existing directory",
         ),
         (
             ["make", stone.as_str(), "--spheres", "3", "--out", "stones"],

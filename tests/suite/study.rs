@@ -264,7 +264,7 @@ fn a_failed_run_is_a_row() {
     folder.edit("study.toml", "set = [\"time.grain_step=3.125e-6\"]", "label = \"step=unstable\"");
     let said = trackbed(arguments(&folder, "out", &["--resume"]));
     assert_eq!(said.code, 3);
-    assert!(said.stderr.contains("error: the reference has failed"), "{}", said.stderr);
+    assert!(said.stderr.contains("error: reference run failed"), "{}", said.stderr);
     assert!(table(&folder.join("out/study.csv")).iter().all(|r| r["path error"].is_empty()));
 }
 

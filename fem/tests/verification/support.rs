@@ -18,7 +18,10 @@ fn a_body_that_can_slide_is_refused_with_a_node_and_a_direction() {
     let model = model(mesh, constraints, SOIL, Gauss3);
     let error = statics::solve(&model, &vec![0.0; model.dof_count()]).unwrap_err();
     assert!(matches!(error, SolveError::NotHeld { direction: "y", .. }), "{error}");
-    assert!(error.to_string().starts_with("insufficiently constrained: node "), "{error}");
+    assert!(
+        error.to_string().starts_with("insufficiently constrained: rigid-body motion of node "),
+        "{error}"
+    );
 }
 
 /// Two blocks, one above the other, that share one edge, on a fixed base.

@@ -259,7 +259,7 @@ fn impact() -> Row {
         let case = Case::run(&scene(1.1e10, offset), &[]).good();
         errors.push(off(case.velocity("ball", 0.1)[2], 500.0));
         for stiffness in [1e5, 1e7] {
-            Case::run(&scene(stiffness, offset), &[]).stopped("body 0 ");
+            Case::run(&scene(stiffness, offset), &[]).stopped("of body 0");
         }
     }
     assert!(errors.iter().all(|e| *e < 0.01), "{errors:?}");

@@ -77,11 +77,11 @@ fn moving_walls() -> Row {
         errors.push(off(struck(speed, stiffness).good().velocity("ball", 0.1)[2], 1.5 * speed));
     }
     assert!(errors.iter().all(|e| *e < 0.01), "{errors:?}");
-    struck(100.0, 1e5).stopped("body 0 and triangle 0 overlap");
+    struck(100.0, 1e5).stopped("overlap of body 0 and triangle 0");
     Row::new(
         "plate of triangles that meets a ball at rest at 0.1, 1, 30 m/s, 1000 m/s (K = 1.1e10); 100 m/s (K = 1e5)",
         format!(
-            "right: speed of the ball off by {}; too soft for it stopped: `body 0 and triangle 0 overlap`",
+            "right: speed of the ball off by {}; too soft for it stopped: `overlap of body 0 and triangle 0`",
             figures(&errors)
         ),
         "v' = (1 + e) v",

@@ -135,12 +135,12 @@ fn unsupported() -> Row {
     };
     let all = "\"x\", \"y\", \"z\"";
     for supports in [String::new(), held("z-", "z", ""), node(1, all), node(1, all) + &node(2, all)] {
-        Case::run(&text(&supports), &[]).refused("insufficiently constrained: node ");
+        Case::run(&text(&supports), &[]).refused("insufficiently constrained: rigid-body motion of node ");
     }
     Case::run(&text(&rollers()), &[]).good();
     Row::new(
         "no support, a smooth base, one node, two nodes (turns about their line)",
-        "refused: `insufficiently constrained: node …`",
+        "refused: `insufficiently constrained: rigid-body motion of node …`",
         "rigid motions",
     )
 }

@@ -16,7 +16,7 @@ fn only_regular_files_are_read() {
     let device = "found a device or a pipe, expected a regular file";
     refused([Path::new("check"), Path::new("/dev/zero")], &format!("/dev/zero: file: {device}"));
     refused([Path::new("check"), &pipe], device);
-    refused([Path::new("check"), folder.path()], "found a folder, expected a regular file");
+    refused([Path::new("check"), folder.path()], "found a directory, expected a regular file");
     let scene = folder.join("scene.toml").display().to_string();
     let out = folder.join("out").display().to_string();
     let zero = "solid.nodes=/dev/zero";

@@ -59,7 +59,8 @@ fn a_checkpoint_is_not_replaced_in_silence() {
     };
     trackbed::run::run(&scene, &options).unwrap_err();
     let before = snapshot(&out);
-    let words = "found the checkpoint of an interrupted run, expected --resume to go on with it, --force to begin anew";
+    let words =
+        "found the checkpoint of an interrupted run, expected --resume, --force to start from scratch";
     refused(arguments(&scene, &out, &[]), words);
     assert!(snapshot(&out) == before, "a refusal leaves everything");
     trackbed(arguments(&scene, &out, &["--resume"])).good();
@@ -219,7 +220,7 @@ fn a_mesh_is_not_converted_onto_itself() {
     ] {
         let outcome = convert(input, output);
         assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{input} {output}: {outcome:?}");
-        assert!(outcome.stderr.contains("which the mesh is read from, expected another file"), "{outcome:?}");
+        assert!(outcome.stderr.contains("the input file, expected another file"), "{outcome:?}");
     }
     assert!(snapshot(folder.path()) == before);
     convert("mesh.inp", "lists").good();
