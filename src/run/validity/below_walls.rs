@@ -2,9 +2,8 @@
 
 use super::{Check, Limits};
 use crate::model::grains::GrainsPart;
-use crate::run::runout;
 use trackbed_coupling::track::GrainsView;
-use trackbed_dem::{Vec3, WallShape};
+use trackbed_dem::{State, Vec3, WallShape};
 
 /// Grains lost over all grains. A run that only watches grains leave is a study of its own, hence no failure.
 const LOST: Limits = Limits { warn: 0.01, fail: None };
@@ -37,7 +36,7 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
         lowest = lowest.min(low);
     }
     // Grains that hold their place, such as a floor of fixed grains, support others.
-    let start = runout::origins(model);
+    let start = State::new(model);
     let prescribed = |b: &usize| grains.groups.moving.iter().any(|m| m.part == model.part(*b));
     let supports = (0..model.body_count()).filter(prescribed);
     let lowest = supports.map(|b| state.position(b).dot(&up) - model.radius(b)).fold(lowest, f64::min);
@@ -46,8 +45,11 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
     }
     let present: Vec<usize> = (0..model.body_count()).filter(|&b| state.present(b)).collect();
     let below = |x: &Vec3, b: usize| x.dot(&up) < lowest - model.radius(b);
-    let lost: Vec<usize> =
-        present.iter().copied().filter(|&b| below(&state.position(b), b) && !below(&start[b], b)).collect();
+    let lost: Vec<usize> = present
+        .iter()
+        .copied()
+        .filter(|&b| below(&state.position(b), b) && !(start.present(b) && below(&start.position(b), b)))
+        .collect();
     let value = lost.len() as f64 / present.len().max(1) as f64;
     Some(Check::new("grains below all walls over all grains", value, LOST, || {
         let x = state.position(lost[0]);
