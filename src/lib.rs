@@ -8,6 +8,7 @@
 
 pub mod allocator;
 pub mod cli;
+pub mod columns;
 pub mod commands;
 pub mod convert;
 pub mod failure;

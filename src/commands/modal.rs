@@ -1,6 +1,7 @@
 //! `trackbed modal`: natural frequencies and modes of the solid part of a scene.
 
 use crate::cli::ModalArgs;
+use crate::columns::modes;
 use crate::failure::Failure;
 use crate::model::{read_scene, solid};
 use crate::run;
@@ -75,12 +76,12 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
 
 /// Columns of `modes.csv`.
 const MODES: [Field<[f64; 6]>; 6] = [
-    ("mode", "", |r| r[0]),
-    ("frequency", "Hz", |r| r[1]),
-    ("residual", "", |r| r[2]),
-    ("effective_mass_x", "kg", |r| r[3]),
-    ("effective_mass_y", "kg", |r| r[4]),
-    ("effective_mass_z", "kg", |r| r[5]),
+    (modes::MODE, |r| r[0]),
+    (modes::FREQUENCY, |r| r[1]),
+    (modes::RESIDUAL, |r| r[2]),
+    (modes::EFFECTIVE_MASS_X, |r| r[3]),
+    (modes::EFFECTIVE_MASS_Y, |r| r[4]),
+    (modes::EFFECTIVE_MASS_Z, |r| r[5]),
 ];
 
 fn write_modes(model: &fem::Model, modes: &Modes, dir: &Path) -> Result<(), Failure> {

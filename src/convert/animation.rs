@@ -5,6 +5,7 @@
 //! `x y z r vx vy vz`, with an eighth column where there is one: the number of the part or fragment.
 
 use super::rows;
+use crate::columns::converted;
 use crate::failure::Failure;
 use crate::read::ReadError;
 use crate::write::csv::{Field, write_table};
@@ -119,16 +120,16 @@ type Row<'a> = (&'a Moment, usize);
 /// The disk refuses.
 pub fn to_csv(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
     let columns: [Field<Row<'_>>; 10] = [
-        ("time", "s", |(m, _)| m.time),
-        ("id", "", |(_, k)| *k as f64),
-        ("x", "m", |(m, k)| m.position[*k][0]),
-        ("y", "m", |(m, k)| m.position[*k][1]),
-        ("z", "m", |(m, k)| m.position[*k][2]),
-        ("r", "m", |(m, k)| m.radius[*k]),
-        ("vx", "m/s", |(m, k)| m.velocity[*k][0]),
-        ("vy", "m/s", |(m, k)| m.velocity[*k][1]),
-        ("vz", "m/s", |(m, k)| m.velocity[*k][2]),
-        ("part", "", |(m, k)| m.part.as_ref().map_or(0.0, |p| p[*k])),
+        (converted::TIME, |(m, _)| m.time),
+        (converted::ID, |(_, k)| *k as f64),
+        (converted::X, |(m, k)| m.position[*k][0]),
+        (converted::Y, |(m, k)| m.position[*k][1]),
+        (converted::Z, |(m, k)| m.position[*k][2]),
+        (converted::R, |(m, k)| m.radius[*k]),
+        (converted::VX, |(m, k)| m.velocity[*k][0]),
+        (converted::VY, |(m, k)| m.velocity[*k][1]),
+        (converted::VZ, |(m, k)| m.velocity[*k][2]),
+        (converted::PART, |(m, k)| m.part.as_ref().map_or(0.0, |p| p[*k])),
     ];
     let rows = moments.iter().flat_map(|m| (0..m.position.len()).map(move |k| (m, k)));
     write_table(output, &columns, rows)?;

@@ -6,6 +6,7 @@
 
 use super::animation;
 use super::rows;
+use crate::columns::converted;
 use crate::failure::Failure;
 use crate::read::ReadError;
 use crate::write::csv::{Field, write_table};
@@ -111,11 +112,11 @@ pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> 
 }
 
 const COLUMNS: [Field<(f64, Chain)>; 5] = [
-    ("time", "s", |(t, _)| *t),
-    ("i", "", |(_, c)| f64::from(c.first)),
-    ("j", "", |(_, c)| f64::from(c.second)),
-    ("normal_force", "N", |(_, c)| c.normal),
-    ("tangential_force", "N", |(_, c)| c.tangential),
+    (converted::TIME, |(t, _)| *t),
+    (converted::I, |(_, c)| f64::from(c.first)),
+    (converted::J, |(_, c)| f64::from(c.second)),
+    (converted::NORMAL_FORCE, |(_, c)| c.normal),
+    (converted::TANGENTIAL_FORCE, |(_, c)| c.tangential),
 ];
 
 /// Writes moments as one table.

@@ -4,13 +4,14 @@
 //! of one number is their count. Written is what `packing` of `[[grains]]` reads.
 
 use super::rows;
+use crate::columns::converted;
 use crate::failure::Failure;
 use crate::read::{ReadError, number};
 use crate::write::csv::{Field, write_table};
 use std::path::Path;
 
 const COLUMNS: [Field<[f64; 4]>; 4] =
-    [("x", "m", |s| s[0]), ("y", "m", |s| s[1]), ("z", "m", |s| s[2]), ("r", "m", |s| s[3])];
+    [(converted::X, |s| s[0]), (converted::Y, |s| s[1]), (converted::Z, |s| s[2]), (converted::R, |s| s[3])];
 
 /// Reads the spheres of a packing.
 ///

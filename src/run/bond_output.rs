@@ -3,6 +3,7 @@
 use super::recorder::{Now, Recorder};
 use super::summary::{BondSummary, BreakageRecord};
 use super::system::{GrainsView, System};
+use crate::columns::{breaks, history};
 use crate::failure::Failure;
 use crate::write::csv::{Field, Row, write_table};
 use std::path::Path;
@@ -19,13 +20,13 @@ impl<S: System> Recorder<S> for Bonds {
             return;
         };
         let (tension, shear) = state.broken_bonds();
-        row.put("bonds", "", state.bond_count() as f64);
-        row.put("broken_by_tension", "", tension as f64);
-        row.put("broken_by_shear", "", shear as f64);
-        row.put("fragments", "", dem::measure::fragments(model, state).sizes.len() as f64);
-        row.put("bond_energy", "J", now.balance.now.bonds);
-        row.put("dissipated_bonds", "J", now.balance.spent.bonds);
-        row.put("released_by_breaks", "J", now.balance.spent.breaks);
+        row.put(history::BONDS, state.bond_count() as f64);
+        row.put(history::BROKEN_BY_TENSION, tension as f64);
+        row.put(history::BROKEN_BY_SHEAR, shear as f64);
+        row.put(history::FRAGMENTS, dem::measure::fragments(model, state).sizes.len() as f64);
+        row.put(history::BOND_ENERGY, now.balance.now.bonds);
+        row.put(history::DISSIPATED_BONDS, now.balance.spent.bonds);
+        row.put(history::RELEASED_BY_BREAKS, now.balance.spent.breaks);
     }
 }
 
@@ -44,23 +45,23 @@ impl<S: System> Recorder<S> for Groups {
                 count += 1.0;
             }
             let name = &part.groups.names[group as usize];
-            row.vector(name, "m", sum / count.max(1.0));
-            row.vector(format_args!("{name}_force"), "N", dem::measure::force_on(model, state, of));
+            row.vector(history::GROUP.of(name), sum / count.max(1.0));
+            row.vector(history::GROUP_FORCE.of(name), dem::measure::force_on(model, state, of));
         }
     }
 }
 
 /// Columns of `breaks.csv`.
 const BREAKS: [Field<Break>; 9] = [
-    ("time", "s", |b| b.time),
-    ("bond", "", |b| f64::from(b.bond)),
-    ("a", "", |b| f64::from(b.bodies[0])),
-    ("b", "", |b| f64::from(b.bodies[1])),
-    ("x", "m", |b| b.place.x),
-    ("y", "m", |b| b.place.y),
-    ("z", "m", |b| b.place.z),
-    ("shear", "", |b| f64::from(u8::from(b.mode == BreakMode::Shear))),
-    ("energy", "J", |b| b.energy),
+    (breaks::TIME, |b| b.time),
+    (breaks::BOND, |b| f64::from(b.bond)),
+    (breaks::A, |b| f64::from(b.bodies[0])),
+    (breaks::B, |b| f64::from(b.bodies[1])),
+    (breaks::X, |b| b.place.x),
+    (breaks::Y, |b| b.place.y),
+    (breaks::Z, |b| b.place.z),
+    (breaks::SHEAR, |b| f64::from(u8::from(b.mode == BreakMode::Shear))),
+    (breaks::ENERGY, |b| b.energy),
 ];
 
 /// Writes every break to `breaks.csv`.

@@ -6,6 +6,7 @@
 //! with the error 2.3 b² s/√n of Shi and Bolt (Bull. Seism. Soc. Am. 72, 1982); M_c is the bin that most events are in
 //! (Wiemer and Wyss 2000). Joining breaks: Hazzard and Young, Int. J. Rock Mech. 37, 2000.
 
+use crate::columns::events;
 use crate::failure::Failure;
 use crate::model::grains::EventPlan;
 use crate::write::csv::{Field, write_table};
@@ -66,15 +67,15 @@ pub struct EventRecord {
 }
 
 const EVENTS: [Field<Event>; 9] = [
-    ("time", "s", |e| e.time),
-    ("duration", "s", |e| e.duration),
-    ("x", "m", |e| e.place.x),
-    ("y", "m", |e| e.place.y),
-    ("z", "m", |e| e.place.z),
-    ("breaks", "", |e| e.breaks as f64),
-    ("shear", "", |e| e.shear as f64),
-    ("energy", "J", |e| e.energy),
-    ("magnitude", "", Event::magnitude),
+    (events::TIME, |e| e.time),
+    (events::DURATION, |e| e.duration),
+    (events::X, |e| e.place.x),
+    (events::Y, |e| e.place.y),
+    (events::Z, |e| e.place.z),
+    (events::BREAKS, |e| e.breaks as f64),
+    (events::SHEAR, |e| e.shear as f64),
+    (events::ENERGY, |e| e.energy),
+    (events::MAGNITUDE, Event::magnitude),
 ];
 
 /// Joins the breaks of a run, writes `events.csv`, and finds the b-value; none without breaks.

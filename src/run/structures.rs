@@ -3,6 +3,7 @@
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
 use super::system::{GrainsView, System};
+use crate::columns::history;
 use crate::model::grains::StructurePlan;
 use crate::write::csv::{Column, Row};
 use trackbed_dem as dem;
@@ -39,23 +40,24 @@ fn load(plan: &StructurePlan, GrainsView { model, state }: GrainsView<'_>, row: 
     });
     let name = &plan.name;
     if let Some(wall) = plan.body {
-        row.vector(format_args!("{name}_motion"), "m", state.wall_offset(wall));
-        row.vector(format_args!("{name}_acceleration"), "m/s2", state.wall_acceleration(wall));
+        row.vector(history::STRUCTURE_MOTION.of(name), state.wall_offset(wall));
+        row.vector(history::STRUCTURE_ACCELERATION.of(name), state.wall_acceleration(wall));
     }
-    row.vector(format_args!("{name}_load"), "N", force);
-    row.put(format_args!("{name}_load_level"), "N", libm::hypot(force.x, force.y));
-    row.vector(format_args!("{name}_load_moment"), "N m", moment);
+    row.vector(history::STRUCTURE_LOAD.of(name), force);
+    row.put(history::STRUCTURE_LOAD_LEVEL.of(name), libm::hypot(force.x, force.y));
+    row.vector(history::STRUCTURE_LOAD_MOMENT.of(name), moment);
     for (k, sum) in sectors.iter().enumerate() {
-        row.put(format_args!("{name}_sector{k}"), "N", *sum);
+        row.put(history::STRUCTURE_SECTOR.of(name).at(k), *sum);
     }
     for (k, sum) in layers.iter().enumerate() {
-        row.put(format_args!("{name}_layer{k}"), "N", libm::hypot(sum.x, sum.y));
+        row.put(history::STRUCTURE_LAYER.of(name).at(k), libm::hypot(sum.x, sum.y));
     }
 }
 
 /// Takes a row of the history into the records.
 pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>) {
-    let heads = columns.iter().enumerate().filter_map(|(k, c)| Some((k, c.name.strip_suffix("_load_x")?)));
+    let [load, motion] = [history::STRUCTURE_LOAD.at(0), history::STRUCTURE_MOTION.at(0)];
+    let heads = columns.iter().enumerate().filter_map(|(k, c)| Some((k, load.item_in(&c.name)?)));
     for (number, (k, name)) in heads.enumerate() {
         if records.len() == number {
             records.push(LoadRecord { name: name.into(), ..LoadRecord::default() });
@@ -71,7 +73,7 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
         record.rows += 1;
         // Displacement and acceleration stand before the load.
         if let Some(first) = k.checked_sub(6)
-            && columns[first].name.strip_suffix("_motion_x") == Some(name)
+            && motion.item_in(&columns[first].name) == Some(name)
         {
             let level = |at: usize| libm::hypot(values[at], values[at + 1]);
             let (way, acceleration) = (level(first), level(first + 3));
@@ -83,7 +85,7 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
             let square = motion.rms_acceleration * motion.rms_acceleration;
             motion.rms_acceleration = (square + (acceleration * acceleration - square) * share).sqrt();
         }
-        let head = format!("{name}_sector");
+        let head = history::STRUCTURE_SECTOR.of(name).to_string();
         let of = columns.iter().zip(values).filter(|(c, _)| c.name.starts_with(&head));
         for (sector, (_, value)) in of.enumerate() {
             if record.sectors.len() == sector {

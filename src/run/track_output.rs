@@ -1,5 +1,6 @@
 //! What is written of a track: its rails in the frames, the curve of a push.
 
+use crate::columns::push;
 use crate::failure::Failure;
 use crate::write::csv::{Field, write_table};
 use crate::write::{WallFrame, WallKind};
@@ -46,7 +47,7 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
 pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushSummary>, Failure> {
     let Some((rows, summary)) = track.push_curve() else { return Ok(None) };
     let columns: [Field<[f64; 3]>; 3] =
-        [("displacement", "m", |r| r[0]), ("force", "N", |r| r[1]), ("uplift", "m", |r| r[2])];
+        [(push::DISPLACEMENT, |r| r[0]), (push::FORCE, |r| r[1]), (push::UPLIFT, |r| r[2])];
     write_table(&dir.join("push.csv"), &columns, rows)?;
     Ok(Some(summary))
 }

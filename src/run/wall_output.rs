@@ -2,6 +2,7 @@
 
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
+use crate::columns::history;
 use crate::model::grains::GrainsPart;
 use crate::write::csv::Row;
 use crate::write::{WallFrame, WallKind};
@@ -17,15 +18,15 @@ impl<S: System> Recorder<S> for Walls {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
         if part.walls.others.iter().filter_map(|w| w.body.as_ref()).any(|b| b.mount.is_some()) {
-            row.put("mount_energy", "J", now.balance.now.mounts);
-            row.put("dissipated_mounts", "J", now.balance.spent.mounts);
+            row.put(history::MOUNT_ENERGY, now.balance.now.mounts);
+            row.put(history::DISSIPATED_MOUNTS, now.balance.spent.mounts);
         }
         for wall in &part.walls.recorded {
             let (name, wall) = (&wall.name, wall.wall);
             let (force, moment) = view.state.wall_force(wall);
-            row.vector(format_args!("{name}_force"), "N", force);
-            row.vector(format_args!("{name}_moment"), "N m", moment);
-            row.vector(format_args!("{name}_displacement"), "m", view.state.wall_offset(wall));
+            row.vector(history::WALL_FORCE.of(name), force);
+            row.vector(history::WALL_MOMENT.of(name), moment);
+            row.vector(history::WALL_DISPLACEMENT.of(name), view.state.wall_offset(wall));
         }
     }
 }

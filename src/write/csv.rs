@@ -5,13 +5,13 @@
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
-use std::fmt::Display;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::atomic;
 use super::error::WriteError;
+use crate::columns::{Definition, Name};
 
 /// A column of a history.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,9 +27,15 @@ impl Column {
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Column { name: name.into(), unit: unit.into() }
     }
+
+    /// A column that is defined.
+    pub fn of<'n>(name: impl Into<Name<'n>>) -> Self {
+        let name = name.into();
+        Column::new(name.to_string(), name.unit())
+    }
 }
 
-/// A row under way. Each column is stated once, with its name, its unit and its value.
+/// A row under way. Each column is stated once, with its value.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     /// The columns, in a row that gathers them.
@@ -52,24 +58,25 @@ impl Row {
         row.values
     }
 
-    /// Adds a column; `unit` is empty for a count or a ratio without one.
-    pub fn put(&mut self, name: impl Display, unit: &str, value: f64) {
+    /// Adds a column.
+    pub fn put<'n>(&mut self, name: impl Into<Name<'n>>, value: f64) {
         if let Some(columns) = &mut self.columns {
-            columns.push(Column::new(name.to_string(), unit));
+            columns.push(Column::of(name));
         }
         self.values.push(value);
     }
 
-    /// Adds the three columns of a vector, `name_x`, `name_y` and `name_z`.
-    pub fn vector(&mut self, name: impl Display, unit: &str, value: impl Into<[f64; 3]>) {
-        for (axis, value) in ["x", "y", "z"].into_iter().zip(value.into()) {
-            self.put(format_args!("{name}_{axis}"), unit, value);
+    /// Adds the three columns of a vector.
+    pub fn vector<'n>(&mut self, name: impl Into<Name<'n>>, value: impl Into<[f64; 3]>) {
+        let name = name.into();
+        for (axis, value) in value.into().into_iter().enumerate() {
+            self.put(name.at(axis), value);
         }
     }
 }
 
-/// A column of a table of items: name, unit, value of an item.
-pub type Field<T> = (&'static str, &'static str, fn(&T) -> f64);
+/// A column of a table of items, and its value of an item.
+pub type Field<T> = (&'static Definition, fn(&T) -> f64);
 
 /// Writes a row for each of `items`.
 ///
@@ -80,12 +87,12 @@ pub fn write_table<T>(
     fields: &[Field<T>],
     items: impl IntoIterator<Item: Borrow<T>>,
 ) -> Result<(), WriteError> {
-    let columns = fields.iter().map(|(name, unit, _)| Column::new(*name, *unit)).collect();
+    let columns = fields.iter().map(|(column, _)| Column::of(*column)).collect();
     let mut table = History::create(file, columns)?;
     let mut row = Vec::with_capacity(fields.len());
     for item in items {
         row.clear();
-        row.extend(fields.iter().map(|(_, _, value)| value(item.borrow())));
+        row.extend(fields.iter().map(|(_, value)| value(item.borrow())));
         table.row(&row)?;
     }
     Ok(())

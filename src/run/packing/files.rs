@@ -1,5 +1,6 @@
 //! Files about the grains at the end of a run: `radial.csv`, `packing.csv`.
 
+use crate::columns::radial;
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, MeasurePlan, RadialPlan};
 use crate::run::system::GrainsView;
@@ -18,7 +19,7 @@ pub(super) fn write_radial(
     is_grain: impl Fn(usize) -> bool,
 ) -> Result<(), Failure> {
     let columns: [Field<[f64; 3]>; 3] =
-        [("measure", "", |r| r[0]), ("distance", "m", |r| r[1]), ("g", "", |r| r[2])];
+        [(radial::MEASURE, |r| r[0]), (radial::DISTANCE, |r| r[1]), (radial::G, |r| r[2])];
     let rows = measures.iter().enumerate().flat_map(|(i, m)| {
         let g = m.radial.and_then(|RadialPlan { reach, bins }| {
             let g = measure::radial_distribution(view.model, view.state, &m.region, &is_grain, reach, bins)?;

@@ -1,6 +1,7 @@
 //! Sieve curves of the groups that were filled by one: how well they are met, `gradation.csv` and `gradation.svg`.
 
 use super::records::GradationRecord;
+use crate::columns::gradation;
 use crate::failure::Failure;
 use crate::model::grains::GradedGroup;
 use crate::run::system::GrainsView;
@@ -47,12 +48,12 @@ type Sieve = [f64; 6];
 
 /// Its columns.
 const SIEVES: [Field<Sieve>; 6] = [
-    ("group", "", |r| r[0]),
-    ("sieve", "m", |r| r[1]),
-    ("lower_limit", "", |r| r[2]),
-    ("upper_limit", "", |r| r[3]),
-    ("target", "", |r| r[4]),
-    ("achieved", "", |r| r[5]),
+    (gradation::GROUP, |r| r[0]),
+    (gradation::SIEVE, |r| r[1]),
+    (gradation::LOWER_LIMIT, |r| r[2]),
+    (gradation::UPPER_LIMIT, |r| r[3]),
+    (gradation::TARGET, |r| r[4]),
+    (gradation::ACHIEVED, |r| r[5]),
 ];
 
 /// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the

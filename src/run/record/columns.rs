@@ -1,6 +1,7 @@
 //! The columns of `history.csv`: a list of recorders.
 
 use super::histories::{Energies, Interface, Inventory, Probes, Rails, Sleepers, Supports};
+use crate::columns::history;
 use crate::run::bond_output::{Bonds, Groups};
 use crate::run::recorder::{Now, Recorder};
 use crate::run::runout::Slides;
@@ -30,7 +31,7 @@ fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 13] {
 }
 
 fn record<S: System>(now: &Now<'_, S>, row: &mut Row) {
-    row.put("time", "s", now.time);
+    row.put(history::TIME, now.time);
     recorders().iter().for_each(|recorder| recorder.record(now, row));
 }
 

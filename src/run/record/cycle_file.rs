@@ -1,5 +1,6 @@
 //! Columns of `cycles.csv`.
 
+use crate::columns::cycles;
 use crate::model::Job;
 use crate::run::system::System;
 use crate::write::csv::{Column, Row};
@@ -33,27 +34,27 @@ fn load_of(job: &Job) -> Option<&CyclicLoad> {
 
 /// The row of a cycle; `broken` are the bonds broken so far by tension and by shear.
 pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
-    row.put("cycle", "", f64::from(c.number));
-    row.put("settlement", "m", c.settlement);
-    row.put("resilient_deflection", "m", c.resilient_deflection);
-    row.put("secant_stiffness", "N/m", c.secant_stiffness);
-    row.put("dissipated_energy", "J", c.dissipated_energy);
-    row.put("peak_formation_pressure", "Pa", c.peak_formation_pressure);
-    row.put("rate", "m", c.rate);
-    row.put("bed_stiffness", "N/m", c.bed_stiffness);
+    row.put(cycles::CYCLE, f64::from(c.number));
+    row.put(cycles::SETTLEMENT, c.settlement);
+    row.put(cycles::RESILIENT_DEFLECTION, c.resilient_deflection);
+    row.put(cycles::SECANT_STIFFNESS, c.secant_stiffness);
+    row.put(cycles::DISSIPATED_ENERGY, c.dissipated_energy);
+    row.put(cycles::PEAK_FORMATION_PRESSURE, c.peak_formation_pressure);
+    row.put(cycles::RATE, c.rate);
+    row.put(cycles::BED_STIFFNESS, c.bed_stiffness);
     if load_of(job).is_some_and(|l| l.seating.is_some()) {
-        row.put("total_settlement", "m", c.total_settlement);
+        row.put(cycles::TOTAL_SETTLEMENT, c.total_settlement);
     }
     if job.solid.is_none() {
-        row.put("resilient_modulus", "Pa", c.resilient_modulus);
+        row.put(cycles::RESILIENT_MODULUS, c.resilient_modulus);
     }
     if job.grains.as_ref().is_some_and(|g| g.track.after.jump.is_some()) {
-        row.put("simulated", "", f64::from(c.simulated));
-        row.put("jump_error", "m", c.jump_error);
+        row.put(cycles::SIMULATED, f64::from(c.simulated));
+        row.put(cycles::JUMP_ERROR, c.jump_error);
     }
     if job.grains.as_ref().is_some_and(|g| !g.bonds.is_empty()) {
-        row.put("broken_by_tension", "", broken.0 as f64);
-        row.put("broken_by_shear", "", broken.1 as f64);
+        row.put(cycles::BROKEN_BY_TENSION, broken.0 as f64);
+        row.put(cycles::BROKEN_BY_SHEAR, broken.1 as f64);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Columns of the sleepers, the interface, the energies, the rails, the supports, the probes, inlets and outlets.
 
+use crate::columns::history;
 use crate::model::Observed;
 use crate::run::recorder::{Now, Recorder};
 use crate::run::system::{GrainsView, System};
@@ -14,13 +15,13 @@ impl<S: System> Recorder<S> for Sleepers {
         for k in 0..now.track.count() {
             let Some(sleeper) = now.track.sleeper(k, now.time, now.system) else { continue };
             let number = number(now, k);
-            row.put(format_args!("load{number}"), "N", sleeper.load);
-            row.vector(format_args!("sleeper{number}"), "m", sleeper.place);
-            row.put(format_args!("sleeper{number}_tilt"), "rad", sleeper.tilt);
+            row.put(history::LOAD.of(&number), sleeper.load);
+            row.vector(history::SLEEPER.of(&number), sleeper.place);
+            row.put(history::SLEEPER_TILT.of(&number), sleeper.tilt);
             if let Some(meshed) = sleeper.meshed {
-                row.put(format_args!("sleeper{number}_seats"), "m", meshed.moved.seats);
-                row.put(format_args!("sleeper{number}_bend"), "m", meshed.moved.bend);
-                row.vector(format_args!("sleeper{number}_contact"), "N", meshed.contact);
+                row.put(history::SLEEPER_SEATS.of(&number), meshed.moved.seats);
+                row.put(history::SLEEPER_BEND.of(&number), meshed.moved.bend);
+                row.vector(history::SLEEPER_CONTACT.of(&number), meshed.contact);
             }
         }
     }
@@ -37,8 +38,8 @@ pub struct Interface;
 impl<S: System> Recorder<S> for Interface {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         if now.system.grains().is_some() && now.system.solid().is_some() {
-            row.vector("contact_force_on_solid", "N", now.system.contact_force());
-            row.put("peak_formation_pressure", "Pa", now.system.peak_pressure());
+            row.vector(history::CONTACT_FORCE_ON_SOLID, now.system.contact_force());
+            row.put(history::PEAK_FORMATION_PRESSURE, now.system.peak_pressure());
         }
     }
 }
@@ -50,18 +51,18 @@ impl<S> Recorder<S> for Energies {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (stored, spent) = (&now.balance.now, &now.balance.spent);
         let in_solid = spent.rayleigh + spent.absorbed + spent.plastic + spent.numerical;
-        row.put("grains_kinetic", "J", stored.grains_kinetic);
-        row.put("contact_springs", "J", stored.contact_springs);
-        row.put("grains_gravity", "J", stored.grains_gravity);
-        row.put("solid_kinetic", "J", stored.solid_kinetic);
-        row.put("solid_strain", "J", stored.solid_strain);
-        row.put("solid_gravity", "J", stored.solid_gravity);
-        row.put("work", "J", spent.work());
-        row.put("dissipated_dashpot", "J", spent.dashpot);
-        row.put("dissipated_friction", "J", spent.friction);
-        row.put("dissipated_solid", "J", in_solid);
-        row.put("interface_error", "J", spent.interface());
-        row.put("energy_error", "J", now.balance.error());
+        row.put(history::GRAINS_KINETIC, stored.grains_kinetic);
+        row.put(history::CONTACT_SPRINGS, stored.contact_springs);
+        row.put(history::GRAINS_GRAVITY, stored.grains_gravity);
+        row.put(history::SOLID_KINETIC, stored.solid_kinetic);
+        row.put(history::SOLID_STRAIN, stored.solid_strain);
+        row.put(history::SOLID_GRAVITY, stored.solid_gravity);
+        row.put(history::WORK, spent.work());
+        row.put(history::DISSIPATED_DASHPOT, spent.dashpot);
+        row.put(history::DISSIPATED_FRICTION, spent.friction);
+        row.put(history::DISSIPATED_SOLID, in_solid);
+        row.put(history::INTERFACE_ERROR, spent.interface());
+        row.put(history::ENERGY_ERROR, now.balance.error());
     }
 }
 
@@ -74,12 +75,12 @@ impl<S> Recorder<S> for Rails {
             return;
         }
         for k in 0..now.track.count() {
-            row.put(format_args!("rail{}", number(now, k)), "m", now.track.rail_deflection(k));
+            row.put(history::RAIL.of(&number(now, k)), now.track.rail_deflection(k));
         }
         let (stored, spent) = (&now.balance.now, &now.balance.spent);
-        row.put("rail_energy", "J", stored.rail);
-        row.put("wheels_work", "J", spent.wheels);
-        row.put("dissipated_track", "J", spent.pads + spent.track_beyond);
+        row.put(history::RAIL_ENERGY, stored.rail);
+        row.put(history::WHEELS_WORK, spent.wheels);
+        row.put(history::DISSIPATED_TRACK, spent.pads + spent.track_beyond);
     }
 }
 
@@ -92,7 +93,7 @@ impl<S: System> Recorder<S> for Supports {
             && let Some(reactions) = now.system.reactions()
         {
             for (name, force) in part.named_sums(&reactions) {
-                row.vector(format_args!("{name}_reaction"), "N", force);
+                row.vector(history::SUPPORT_REACTION.of(name), force);
             }
         }
     }
@@ -107,8 +108,8 @@ impl<S: System> Recorder<S> for Probes {
             match (observed, now.system.solid(), now.system.grains()) {
                 (Observed::Node(node), Some(solid), _) => {
                     let of_node = |field: &[f64]| [field[3 * node], field[3 * node + 1], field[3 * node + 2]];
-                    row.vector(format_args!("{name}_u"), "m", of_node(&solid.state.u));
-                    row.vector(format_args!("{name}_v"), "m/s", of_node(&solid.state.v));
+                    row.vector(history::PROBE_U.of(name), of_node(&solid.state.u));
+                    row.vector(history::PROBE_V.of(name), of_node(&solid.state.v));
                 }
                 (observed, _, Some(view)) => of_grains(name, *observed, view, row),
                 _ => {}
@@ -134,16 +135,16 @@ fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row
         sum / mass.max(f64::MIN_POSITIVE)
     };
     if !matches!(observed, Observed::Grain(_)) {
-        row.put(format_args!("{name}_grains"), "", bodies.len() as f64);
+        row.put(history::PROBE_GRAINS.of(name), bodies.len() as f64);
     }
-    row.vector(format_args!("{name}_x"), "m", mean(&|b| state.position(b)));
-    row.vector(format_args!("{name}_v"), "m/s", mean(&|b| state.velocity(b)));
-    row.vector(format_args!("{name}_spin"), "rad/s", mean(&|b| state.spin(b)));
+    row.vector(history::PROBE_X.of(name), mean(&|b| state.position(b)));
+    row.vector(history::PROBE_V.of(name), mean(&|b| state.velocity(b)));
+    row.vector(history::PROBE_SPIN.of(name), mean(&|b| state.spin(b)));
     let stress = dem::measure::mean_stress(model, state);
     let volume: f64 = bodies.iter().map(|&b| model.volume(b)).sum();
     let trace = |b: usize| stress[b][0] + stress[b][1] + stress[b][2];
     let sum: f64 = bodies.iter().map(|&b| model.volume(b) * trace(b) / 3.0).sum();
-    row.put(format_args!("{name}_mean_stress"), "Pa", sum / volume.max(f64::MIN_POSITIVE));
+    row.put(history::PROBE_MEAN_STRESS.of(name), sum / volume.max(f64::MIN_POSITIVE));
 }
 
 /// Grains that are there, that came in and that went out.
@@ -153,9 +154,13 @@ impl<S: System> Recorder<S> for Inventory {
     fn record(&self, now: &Now<'_, S>, row: &mut Row) {
         let (Some(flow), Some(view)) = (now.flow, now.system.grains()) else { return };
         let [come, gone] = flow.sums();
-        for (name, amount) in [("present", flow.present(view)), ("in", come), ("out", gone)] {
-            row.put(format_args!("grains_{name}"), "", amount.grains as f64);
-            row.put(format_args!("mass_{name}"), "kg", amount.mass);
+        for (grains, mass, amount) in [
+            (history::GRAINS_PRESENT, history::MASS_PRESENT, flow.present(view)),
+            (history::GRAINS_IN, history::MASS_IN, come),
+            (history::GRAINS_OUT, history::MASS_OUT, gone),
+        ] {
+            row.put(grains, amount.grains as f64);
+            row.put(mass, amount.mass);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::deposit::Deposit;
 use super::records::FragmentRecord;
+use crate::columns::{fragments, origins, outline};
 use crate::failure::Failure;
 use crate::run::system::GrainsView;
 use crate::write::csv::{Field, write_table};
@@ -13,16 +14,16 @@ use trackbed_dem::{self as dem, Vec3};
 type Corner = (usize, [f64; 2]);
 
 const OUTLINE: [Field<Corner>; 3] =
-    [("line", "", |(line, _)| *line as f64), ("x", "m", |(_, x)| x[0]), ("y", "m", |(_, x)| x[1])];
+    [(outline::LINE, |(line, _)| *line as f64), (outline::X, |(_, x)| x[0]), (outline::Y, |(_, x)| x[1])];
 
 const FRAGMENTS: [Field<FragmentRecord>; 7] = [
-    ("bodies", "", |f| f.bodies as f64),
-    ("volume", "m3", |f| f.volume),
-    ("mass", "kg", |f| f.mass),
-    ("diameter", "m", |f| libm::cbrt(6.0 * f.volume / std::f64::consts::PI)),
-    ("x", "m", |f| f.centre[0]),
-    ("y", "m", |f| f.centre[1]),
-    ("z", "m", |f| f.centre[2]),
+    (fragments::BODIES, |f| f.bodies as f64),
+    (fragments::VOLUME, |f| f.volume),
+    (fragments::MASS, |f| f.mass),
+    (fragments::DIAMETER, |f| libm::cbrt(6.0 * f.volume / std::f64::consts::PI)),
+    (fragments::X, |f| f.centre[0]),
+    (fragments::Y, |f| f.centre[1]),
+    (fragments::Z, |f| f.centre[2]),
 ];
 
 /// A grain: number, place at the start, at the end, fragment.
@@ -34,14 +35,14 @@ struct Origin {
 }
 
 const ORIGINS: [Field<Origin>; 8] = [
-    ("id", "", |o| o.body as f64),
-    ("x0", "m", |o| o.from.x),
-    ("y0", "m", |o| o.from.y),
-    ("z0", "m", |o| o.from.z),
-    ("x", "m", |o| o.to.x),
-    ("y", "m", |o| o.to.y),
-    ("z", "m", |o| o.to.z),
-    ("fragment", "", |o| f64::from(o.fragment)),
+    (origins::ID, |o| o.body as f64),
+    (origins::X0, |o| o.from.x),
+    (origins::Y0, |o| o.from.y),
+    (origins::Z0, |o| o.from.z),
+    (origins::X, |o| o.to.x),
+    (origins::Y, |o| o.to.y),
+    (origins::Z, |o| o.to.z),
+    (origins::FRAGMENT, |o| f64::from(o.fragment)),
 ];
 
 /// Writes all of them.

@@ -16,6 +16,7 @@ pub use records::RunoutRecord;
 
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
+use crate::columns::history;
 use crate::failure::Failure;
 use crate::model::grains::{GrainsPart, RunoutPlan};
 use crate::write::csv::Row;
@@ -88,11 +89,11 @@ impl<S: System> Recorder<S> for Slides {
         let bodies = slide(view, plan);
         let place = |b: usize| view.state.position(b);
         let at = front(view, plan, &bodies, plan.share, place).map_or(0.0, |b| along(plan, &place(b)));
-        row.put("runout_front", "m", at);
-        row.vector("runout_centre", "m", centre(view, &bodies, place));
-        row.put("runout_kinetic", "J", kinetic(view, &bodies));
+        row.put(history::RUNOUT_FRONT, at);
+        row.vector(history::RUNOUT_CENTRE, centre(view, &bodies, place));
+        row.put(history::RUNOUT_KINETIC, kinetic(view, &bodies));
         let speed = |b: &usize| view.state.velocity(*b).norm();
-        row.put("runout_fastest", "m/s", bodies.iter().map(speed).fold(0.0, f64::max));
+        row.put(history::RUNOUT_FASTEST, bodies.iter().map(speed).fold(0.0, f64::max));
     }
 }
 

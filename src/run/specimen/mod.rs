@@ -13,6 +13,7 @@ pub use record::{SpecimenRecord, record};
 use super::recorder::{Now, Recorder};
 use super::runout;
 use super::system::{GrainsView, System};
+use crate::columns::history;
 use crate::model::grains::{Platen, SpecimenPlan};
 use crate::write::csv::Row;
 use serde::{Deserialize, Serialize};
@@ -85,10 +86,10 @@ impl<S: System> Recorder<S> for Specimens {
         let Some(plan) = now.job.grains.as_ref().and_then(|g| g.specimen.as_ref()) else { return };
         let Some(view) = now.system.grains() else { return };
         let p = point(plan, view, now.time);
-        row.put("specimen_strain", "", p.strain);
-        row.put("specimen_stress", "Pa", p.stress);
-        row.put("specimen_axial_strain", "", p.axial);
-        row.put("specimen_lateral_strain", "", p.lateral);
-        row.put("specimen_confinement", "Pa", p.confinement);
+        row.put(history::SPECIMEN_STRAIN, p.strain);
+        row.put(history::SPECIMEN_STRESS, p.stress);
+        row.put(history::SPECIMEN_AXIAL_STRAIN, p.axial);
+        row.put(history::SPECIMEN_LATERAL_STRAIN, p.lateral);
+        row.put(history::SPECIMEN_CONFINEMENT, p.confinement);
     }
 }

@@ -1,6 +1,7 @@
 //! A static solid: one solve, its reactions, its tables.
 
 use super::stage::{RunState, Stage, Steps};
+use crate::columns::{gauss, nodes};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::{Analysis, SolidPart};
@@ -104,13 +105,13 @@ type Node = (u32, [f64; 3], [f64; 3]);
 
 /// Columns of `nodes.csv`.
 const NODES: [Field<Node>; 7] = [
-    ("node", "", |n| f64::from(n.0)),
-    ("ux", "m", |n| n.1[0]),
-    ("uy", "m", |n| n.1[1]),
-    ("uz", "m", |n| n.1[2]),
-    ("rx", "N", |n| n.2[0]),
-    ("ry", "N", |n| n.2[1]),
-    ("rz", "N", |n| n.2[2]),
+    (nodes::NODE, |n| f64::from(n.0)),
+    (nodes::UX, |n| n.1[0]),
+    (nodes::UY, |n| n.1[1]),
+    (nodes::UZ, |n| n.1[2]),
+    (nodes::RX, |n| n.2[0]),
+    (nodes::RY, |n| n.2[1]),
+    (nodes::RZ, |n| n.2[2]),
 ];
 
 /// A Gauss point of an element.
@@ -123,17 +124,17 @@ struct GaussPoint {
 
 /// Columns of `gauss.csv`; the last for a plastic solid only.
 const GAUSS: [Field<GaussPoint>; 11] = [
-    ("element", "", |p| f64::from(p.element)),
-    ("xi", "", |p| p.xi[0]),
-    ("eta", "", |p| p.xi[1]),
-    ("zeta", "", |p| p.xi[2]),
-    ("sxx", "Pa", |p| p.stress[0]),
-    ("syy", "Pa", |p| p.stress[1]),
-    ("szz", "Pa", |p| p.stress[2]),
-    ("sxy", "Pa", |p| p.stress[3]),
-    ("syz", "Pa", |p| p.stress[4]),
-    ("szx", "Pa", |p| p.stress[5]),
-    ("equivalent_plastic_strain", "", |p| p.kappa),
+    (gauss::ELEMENT, |p| f64::from(p.element)),
+    (gauss::XI, |p| p.xi[0]),
+    (gauss::ETA, |p| p.xi[1]),
+    (gauss::ZETA, |p| p.xi[2]),
+    (gauss::SXX, |p| p.stress[0]),
+    (gauss::SYY, |p| p.stress[1]),
+    (gauss::SZZ, |p| p.stress[2]),
+    (gauss::SXY, |p| p.stress[3]),
+    (gauss::SYZ, |p| p.stress[4]),
+    (gauss::SZX, |p| p.stress[5]),
+    (gauss::EQUIVALENT_PLASTIC_STRAIN, |p| p.kappa),
 ];
 
 /// Writes `nodes.csv` (displacement and reaction of every node) and `gauss.csv` (stress at every Gauss point; of a plastic
@@ -151,7 +152,7 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
     let plastic = !state.points.is_empty();
     let fields = if plastic { &GAUSS[..] } else { &GAUSS[..GAUSS.len() - 1] };
     let own = if plastic { own_values(model) } else { Vec::new() };
-    let columns = fields.iter().map(|(name, unit, _)| Column::new(*name, *unit));
+    let columns = fields.iter().map(|(column, _)| Column::of(*column));
     let columns = columns.chain(own.iter().map(|value| Column::new(value.name, value.unit)));
     let mut table = History::create(&dir.join("gauss.csv"), columns.collect())?;
     for (e, &id) in mesh.element_ids.iter().enumerate() {
@@ -163,7 +164,7 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
             let stress = at.map_or_else(|| elastic[i], |p| p.state.stress);
             let kappa = at.map_or(0.0, |p| p.state.kappa);
             let point = GaussPoint { element: id, xi: point.xi, stress, kappa };
-            let mut row: Vec<f64> = fields.iter().map(|(_, _, value)| value(&point)).collect();
+            let mut row: Vec<f64> = fields.iter().map(|(_, value)| value(&point)).collect();
             // 0 where the law of the element keeps no such value.
             let value = |own: &fem::StateValue| Some(at?.values[of_law.iter().position(|v| v == own)?]);
             row.extend(own.iter().map(|own| value(own).unwrap_or(0.0)));

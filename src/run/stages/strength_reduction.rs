@@ -1,6 +1,7 @@
 //! Factor of safety of a solid by strength reduction.
 
 use super::stage::{RunState, Stage, Steps};
+use crate::columns::safety;
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::solid::{Analysis, SolidPart, StrengthReductionPlan};
@@ -15,11 +16,11 @@ use trackbed_fem::nonlinear::strength_reduction::{self, Trial};
 
 /// Columns of `safety.csv`.
 const TRIALS: [Field<Trial>; 5] = [
-    ("factor", "", |t| t.factor),
-    ("stands", "", |t| f64::from(u8::from(t.converged))),
-    ("share_of_load", "", |t| t.share),
-    ("iterations", "", |t| t.iterations as f64),
-    ("largest_displacement", "m", |t| t.largest_displacement),
+    (safety::FACTOR, |t| t.factor),
+    (safety::STANDS, |t| f64::from(u8::from(t.converged))),
+    (safety::SHARE_OF_LOAD, |t| t.share),
+    (safety::ITERATIONS, |t| t.iterations as f64),
+    (safety::LARGEST_DISPLACEMENT, |t| t.largest_displacement),
 ];
 
 /// Search for the factor of safety.
