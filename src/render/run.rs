@@ -4,6 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::options::{Frames, Options, Part, joined, refuse};
+use crate::columns::{
+    cycles::CYCLE,
+    history::{LOAD, TIME},
+};
 use crate::failure::Failure;
 use crate::results::grains::GrainFile;
 use crate::results::lines::{Chains, Walls};
@@ -196,7 +200,7 @@ impl Run {
 
     /// Row of the history at a time.
     fn row(&self, time: f64) -> Option<usize> {
-        let times = self.history.as_ref()?.column("time")?;
+        let times = self.history.as_ref()?.column(TIME)?;
         let after = times.partition_point(|t| *t <= time + 1e-6 * time.abs());
         (!times.is_empty()).then(|| after.saturating_sub(1))
     }
@@ -204,7 +208,7 @@ impl Run {
     /// Loads by rows of the history [N].
     fn loads(&self) -> Option<&[f64]> {
         let history = self.history.as_ref()?;
-        history.column("load").or_else(|| history.column("load_1"))
+        ["", "_1"].into_iter().find_map(|n| history.column(LOAD.of(n)))
     }
 
     /// Load at a frame [N].
@@ -224,7 +228,7 @@ impl Run {
 
     /// Number of the load cycle at a frame: the load has come down through its middle so often before, as the table of cycles counts.
     pub fn cycle(&self, frame: usize) -> Option<u64> {
-        let numbers = self.cycles.as_ref()?.column("cycle")?;
+        let numbers = self.cycles.as_ref()?.column(CYCLE)?;
         let loads = self.loads()?;
         let row = self.row(self.frames[frame].time)?;
         let (low, high) =

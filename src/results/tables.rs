@@ -1,5 +1,6 @@
 //! Tables of a run, such as `history.csv` and `cycles.csv`: a head with units, rows that may still be growing.
 
+use crate::columns::Name;
 use crate::failure::Failure;
 use crate::read::source;
 use std::path::Path;
@@ -60,19 +61,21 @@ impl Table {
     }
 
     /// Values of a column.
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let index = self.heads.iter().position(|h| h == name)?;
+    pub fn column<'n>(&self, name: impl Into<Name<'n>>) -> Option<&[f64]> {
+        let name = name.into().to_string();
+        let index = self.heads.iter().position(|h| *h == name)?;
         Some(&self.columns[index])
     }
 
     /// Points (x, y) of two columns, where both are there.
-    pub fn points(&self, x: &str, y: &str) -> Option<Vec<[f64; 2]>> {
+    pub fn points<'n>(&self, x: impl Into<Name<'n>>, y: impl Into<Name<'n>>) -> Option<Vec<[f64; 2]>> {
         Some(self.column(x)?.iter().zip(self.column(y)?).map(|(x, y)| [*x, *y]).collect())
     }
 
-    /// What stands before `end` in the names of columns that end so: `plate` of `plate_force_x` for `_force_x`.
-    pub fn before(&self, end: &str) -> Vec<&str> {
-        self.heads.iter().filter_map(|h| h.strip_suffix(end)).collect()
+    /// Items that have a column, such as `plate` of `plate_force_x` for `<wall>_force`, axis x.
+    pub fn items<'n>(&self, name: impl Into<Name<'n>>) -> Vec<&str> {
+        let name = name.into();
+        self.heads.iter().filter_map(|h| name.item_in(h)).collect()
     }
 }
 
@@ -84,6 +87,7 @@ fn head(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::history::{TIME, WALL_FORCE};
     use crate::write::sample::folder;
     use std::fs;
 
@@ -95,10 +99,10 @@ mod tests {
         fs::write(&file, "time [s],plate_force_x [N],n\n0,1e3,2\n1,NaN,3\n2,5\n3,-4,5\n4,12").unwrap();
         let table = Table::read(&file).unwrap().unwrap();
         assert_eq!((table.rows(), table.skipped), (2, 2));
-        assert_eq!(table.points("time", "plate_force_x").unwrap(), [[0.0, 1e3], [3.0, -4.0]]);
+        assert_eq!(table.points(TIME, WALL_FORCE.of("plate").at(0)).unwrap(), [[0.0, 1e3], [3.0, -4.0]]);
         assert_eq!(table.heads[1], "plate_force_x", "without its unit");
         assert_eq!(table.names[1], "plate_force_x [N]");
-        assert_eq!(table.before("_force_x"), ["plate"]);
+        assert_eq!(table.items(WALL_FORCE.at(0)), ["plate"]);
         fs::write(&file, "time [s],n\n").unwrap();
         assert_eq!(Table::read(&file).unwrap().unwrap().rows(), 0);
         fs::write(&file, "time [s]").unwrap();

@@ -1,6 +1,7 @@
 //! What is compared: numbers and curves that runs leave.
 
 use super::file::{Norm, QuantityTable, Take};
+use crate::columns::{Definition, cycles};
 use crate::scene::{Document, Problem, SceneError};
 
 /// A quantity, resolved.
@@ -89,13 +90,18 @@ fn of_cycles(tolerance: f64) -> Vec<Quantity> {
         exact: None,
         tolerance,
     };
-    let column = |name: &str, take| Source::Column(file.clone(), name.into(), take);
-    let curve = Source::Curve { file: file.clone(), column: "settlement".into(), against: None, log: true };
+    let column = |column: &Definition, take| Source::Column(file.clone(), column.name.into(), take);
+    let curve = Source::Curve {
+        file: file.clone(),
+        column: cycles::SETTLEMENT.name.into(),
+        against: None,
+        log: true,
+    };
     vec![
-        of("settlement", "mm", 1e3, column("settlement", Take::Last)),
+        of("settlement", "mm", 1e3, column(cycles::SETTLEMENT, Take::Last)),
         of("settlement over log N", "mm", 1e3, curve),
-        of("secant stiffness", "kN/mm", 1e-6, column("secant_stiffness", Take::Mean)),
-        of("dissipated energy", "J", 1.0, column("dissipated_energy", Take::Mean)),
+        of("secant stiffness", "kN/mm", 1e-6, column(cycles::SECANT_STIFFNESS, Take::Mean)),
+        of("dissipated energy", "J", 1.0, column(cycles::DISSIPATED_ENERGY, Take::Mean)),
     ]
 }
 

@@ -1,6 +1,7 @@
 //! The accounts of energy, momentum and of the interface.
 
 use super::overlay::{facts, one, overlay};
+use crate::columns::{Definition, history};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, columns, joined, plots};
 use crate::report::plot::{Plot, Side};
@@ -8,37 +9,37 @@ use maud::{Markup, html};
 use serde_json::Value;
 
 /// Columns of the history that store energy, with their names.
-const STORED: [(&str, &str); 9] = [
-    ("grains_kinetic", "kinetic energy of grains"),
-    ("contact_springs", "contact springs"),
-    ("bond_energy", "bonds"),
-    ("mount_energy", "mounts"),
-    ("grains_gravity", "potential energy of grains"),
-    ("solid_kinetic", "kinetic energy of solid"),
-    ("solid_strain", "strain energy of solid"),
-    ("solid_gravity", "potential energy of solid"),
-    ("rail_energy", "rails"),
+const STORED: [(&Definition, &str); 9] = [
+    (history::GRAINS_KINETIC, "kinetic energy of grains"),
+    (history::CONTACT_SPRINGS, "contact springs"),
+    (history::BOND_ENERGY, "bonds"),
+    (history::MOUNT_ENERGY, "mounts"),
+    (history::GRAINS_GRAVITY, "potential energy of grains"),
+    (history::SOLID_KINETIC, "kinetic energy of solid"),
+    (history::SOLID_STRAIN, "strain energy of solid"),
+    (history::SOLID_GRAVITY, "potential energy of solid"),
+    (history::RAIL_ENERGY, "rails"),
 ];
 
 /// Columns of work and losses.
-const SPENT: [(&str, &str); 7] = [
-    ("work", "work"),
-    ("dissipated_dashpot", "dashpots of contacts"),
-    ("dissipated_friction", "friction"),
-    ("dissipated_solid", "dissipation in solid"),
-    ("dissipated_bonds", "dashpots of bonds"),
-    ("dissipated_mounts", "dashpots of mounts"),
-    ("dissipated_track", "rail pads and track outside the model"),
+const SPENT: [(&Definition, &str); 7] = [
+    (history::WORK, "work"),
+    (history::DISSIPATED_DASHPOT, "dashpots of contacts"),
+    (history::DISSIPATED_FRICTION, "friction"),
+    (history::DISSIPATED_SOLID, "dissipation in solid"),
+    (history::DISSIPATED_BONDS, "dashpots of bonds"),
+    (history::DISSIPATED_MOUNTS, "dashpots of mounts"),
+    (history::DISSIPATED_TRACK, "rail pads and track outside the model"),
 ];
 
 /// Energy, momentum, interface.
 pub fn energy(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
-    let curves = |columns: &'static [(&'static str, &'static str)], change: bool| {
+    let curves = |columns: &'static [(&'static Definition, &'static str)], change: bool| {
         overlay(runs, move |run| {
             let Some(table) = run.table("history") else { return Vec::new() };
-            let of = |(column, name): &(&str, &str)| {
-                let mut points = table.points("time", column)?;
+            let of = |&(column, name): &(&'static Definition, &str)| {
+                let mut points = table.points(history::TIME, column)?;
                 let first = if change { points.first()?[1] } else { 0.0 };
                 points.iter_mut().for_each(|p| p[1] -= first);
                 points.iter().any(|p| p[1] != 0.0).then(|| (name.to_string(), points))
@@ -46,7 +47,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
             columns.iter().filter_map(of).collect()
         })
     };
-    let error = one(runs, |r| r.table("history")?.points("time", "energy_error"));
+    let error = one(runs, |r| r.table("history")?.points(history::TIME, history::ENERGY_ERROR));
     // Of several runs the parts would be too many lines.
     let single = runs.len() == 1;
     let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };

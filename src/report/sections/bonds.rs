@@ -1,6 +1,7 @@
 //! Bonds that break, and the pieces that they leave.
 
 use super::overlay::{facts, one, overlay};
+use crate::columns::history;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
@@ -9,14 +10,14 @@ use crate::report::plot::{Plot, Side};
 pub fn bonds(runs: &[RunData]) -> Option<Section> {
     let broken = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
-        let of = |(name, column): (&str, &str)| Some((name.to_string(), table.points("time", column)?));
-        [("by tension", "broken_by_tension"), ("by shear", "broken_by_shear")]
+        let of = |(name, column): (&str, _)| Some((name.to_string(), table.points(history::TIME, column)?));
+        [("by tension", history::BROKEN_BY_TENSION), ("by shear", history::BROKEN_BY_SHEAR)]
             .into_iter()
             .filter_map(of)
             .collect()
     });
-    let pieces = one(runs, |r| r.table("history")?.points("time", "fragments"));
-    let energy = one(runs, |r| r.table("history")?.points("time", "bond_energy"));
+    let pieces = one(runs, |r| r.table("history")?.points(history::TIME, history::FRAGMENTS));
+    let energy = one(runs, |r| r.table("history")?.points(history::TIME, history::BOND_ENERGY));
     let time = || Side::new("time", "s");
     let figures = plots([
         Plot::new("Broken bonds", time(), Side::new("bonds", "").with_zero(), broken).figure(),

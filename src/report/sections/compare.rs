@@ -1,6 +1,7 @@
 //! Several runs beside each other: what sets them apart, and what came of it.
 
 use super::overlay::facts;
+use crate::columns::{Definition, cycles, history};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, paragraph, table};
 use maud::Markup;
@@ -51,27 +52,28 @@ pub fn shown(value: &str) -> String {
 
 /// Settlement after a cycle [m].
 fn settlement_at(run: &RunData, cycle: f64) -> Option<f64> {
-    let points = run.table("cycles")?.points("cycle", "settlement")?;
+    let points = run.table("cycles")?.points(cycles::CYCLE, cycles::SETTLEMENT)?;
     points.iter().find(|p| p[0] == cycle).map(|p| p[1])
 }
 
 /// Last value of a column of `cycles.csv`.
-pub fn last_of(run: &RunData, column: &str) -> Option<f64> {
+pub fn last_of(run: &RunData, column: &'static Definition) -> Option<f64> {
     run.table("cycles")?.column(column)?.last().copied()
 }
 
 /// Largest value of a column of `history.csv`.
-fn largest_of(run: &RunData, column: &str) -> Option<f64> {
+fn largest_of(run: &RunData, column: &'static Definition) -> Option<f64> {
     run.table("history")?.column(column)?.iter().copied().reduce(f64::max)
 }
 
 fn results(runs: &[RunData]) -> Markup {
-    let last = runs.iter().filter_map(|r| last_of(r, "cycle"));
+    let last = runs.iter().filter_map(|r| last_of(r, cycles::CYCLE));
     let common = last.fold(f64::INFINITY, f64::min);
     let at_common = format!("settlement after cycle {common}");
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
-    let cycle =
-        |column: &'static str, unit: &'static str| move |r: &RunData| Cell::of(last_of(r, column), unit);
+    let cycle = |column: &'static Definition, unit: &'static str| {
+        move |r: &RunData| Cell::of(last_of(r, column), unit)
+    };
     let porosity = |r: &RunData| Cell::of(r.value("packing.measures.0.porosity").as_f64(), "");
     let wall = |r: &RunData| {
         let seconds = r.list("stages").iter().filter_map(|s| s["seconds"].as_f64());
@@ -81,15 +83,15 @@ fn results(runs: &[RunData]) -> Markup {
         runs,
         &[
             ("outcome", &|r: &RunData| r.text("verdict.outcome").map_or(Cell::Nothing, Cell::text)),
-            ("cycles", &cycle("cycle", "")),
+            ("cycles", &cycle(cycles::CYCLE, "")),
             (&at_common, &|r| Cell::of(settlement_at(r, common), "m")),
-            ("settlement after the last cycle", &cycle("settlement", "m")),
-            ("resilient deflection in the last cycle", &cycle("resilient_deflection", "m")),
-            ("secant stiffness in the last cycle", &cycle("secant_stiffness", "N/m")),
-            ("resilient modulus in the last cycle", &cycle("resilient_modulus", "Pa")),
-            ("energy dissipated in the last cycle", &cycle("dissipated_energy", "J")),
+            ("settlement after the last cycle", &cycle(cycles::SETTLEMENT, "m")),
+            ("resilient deflection in the last cycle", &cycle(cycles::RESILIENT_DEFLECTION, "m")),
+            ("secant stiffness in the last cycle", &cycle(cycles::SECANT_STIFFNESS, "N/m")),
+            ("resilient modulus in the last cycle", &cycle(cycles::RESILIENT_MODULUS, "Pa")),
+            ("energy dissipated in the last cycle", &cycle(cycles::DISSIPATED_ENERGY, "J")),
             ("largest pressure on the formation", &|r| {
-                Cell::of(largest_of(r, "peak_formation_pressure"), "Pa")
+                Cell::of(largest_of(r, history::PEAK_FORMATION_PRESSURE), "Pa")
             }),
             ("peak lateral resistance", &path("push.peak", "N")),
             ("coordination number at the end", &path("packing.coordination", "")),

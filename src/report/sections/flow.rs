@@ -1,6 +1,7 @@
 //! Grains that come and go: inventory and mass flow.
 
 use super::overlay::{facts, one, overlay};
+use crate::columns::history;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
@@ -12,8 +13,8 @@ const STRETCHES: usize = 40;
 pub fn flow(runs: &[RunData]) -> Option<Section> {
     let mass = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
-        let of = |(name, column): (&str, &str)| Some((name.to_string(), table.points("time", column)?));
-        [("present", "mass_present"), ("inserted", "mass_in"), ("removed", "mass_out")]
+        let of = |(name, column): (&str, _)| Some((name.to_string(), table.points(history::TIME, column)?));
+        [("present", history::MASS_PRESENT), ("inserted", history::MASS_IN), ("removed", history::MASS_OUT)]
             .into_iter()
             .filter_map(of)
             .collect()
@@ -62,7 +63,7 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
 
 /// Mean mass flow out over stretches of equal length.
 fn rate(run: &RunData) -> Option<Vec<[f64; 2]>> {
-    let points = run.table("history")?.points("time", "mass_out")?;
+    let points = run.table("history")?.points(history::TIME, history::MASS_OUT)?;
     let every = points.len().div_ceil(STRETCHES).max(1);
     let ends: Vec<&[f64; 2]> = points.iter().step_by(every).collect();
     let mean = |w: &[&[f64; 2]]| [0.5 * (w[0][0] + w[1][0]), (w[1][1] - w[0][1]) / (w[1][0] - w[0][0])];

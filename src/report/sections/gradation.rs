@@ -1,6 +1,7 @@
 //! Sieve curves, over the logarithm of the size.
 
 use super::overlay::overlay;
+use crate::columns::{Definition, gradation};
 use crate::report::data::RunData;
 use crate::report::page::{Section, columns, joined, plots};
 use crate::report::plot::{Plot, Side};
@@ -10,7 +11,8 @@ use serde_json::Value;
 pub fn gradation(runs: &[RunData]) -> Option<Section> {
     let curves = overlay(runs, |run| {
         let Some(table) = run.table("gradation") else { return Vec::new() };
-        let (Some(groups), Some(sizes)) = (table.column("group"), table.column("sieve")) else {
+        let (Some(groups), Some(sizes)) = (table.column(gradation::GROUP), table.column(gradation::SIEVE))
+        else {
             return Vec::new();
         };
         let mut numbers = groups.to_vec();
@@ -19,16 +21,16 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
         for (g, number) in numbers.iter().enumerate() {
             let group = run.value(&format!("packing.gradations.{g}.group")).as_str();
             let head = group.filter(|_| numbers.len() > 1).map_or(String::new(), |g| format!("{g}: "));
-            let shown: &[(&str, &str)] = match runs.len() {
+            let shown: &[(&'static Definition, &str)] = match runs.len() {
                 1 => &[
-                    ("achieved", "stones"),
-                    ("target", "target"),
-                    ("lower_limit", "lower limit"),
-                    ("upper_limit", "upper limit"),
+                    (gradation::ACHIEVED, "stones"),
+                    (gradation::TARGET, "target"),
+                    (gradation::LOWER_LIMIT, "lower limit"),
+                    (gradation::UPPER_LIMIT, "upper limit"),
                 ],
-                _ => &[("achieved", "stones"), ("target", "target")],
+                _ => &[(gradation::ACHIEVED, "stones"), (gradation::TARGET, "target")],
             };
-            for (column, name) in shown {
+            for &(column, name) in shown {
                 let Some(values) = table.column(column) else { continue };
                 let own = (0..sizes.len()).filter(|&k| groups[k] == *number);
                 out.push((format!("{head}{name}"), own.map(|k| [sizes[k], 100.0 * values[k]]).collect()));

@@ -1,6 +1,7 @@
 //! Loads on structures: against time, by sectors around their axis, by height; motion of those that move.
 
 use super::overlay::overlay;
+use crate::columns::{Definition, Name, history};
 use crate::report::data::RunData;
 use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Plot, Side};
@@ -17,25 +18,24 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
     let curves = |f: Curve<'_>| {
         overlay(runs, |run| names(run).into_iter().filter_map(|name| of(name, f, run)).collect())
     };
-    let time = curves(&|table, name| table.points("time", &format!("{name}_load_level")));
+    let time = curves(&|table, name| table.points(history::TIME, history::STRUCTURE_LOAD_LEVEL.of(name)));
     let sectors = curves(&|table, name| rose(table, name));
     let layers = curves(&|table, name| {
-        let largest = largest(table, &format!("{name}_layer"));
+        let largest = largest(table, history::STRUCTURE_LAYER.of(name));
         (!largest.is_empty()).then(|| largest.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
     });
     let side = |name: &str| Side::new(name, "N");
-    let motion = |what: &str| {
-        let axes = ["x", "y"].map(|axis| format!("{what}_{axis}"));
+    let motion = |column: &'static Definition| {
         overlay(runs, |run| {
             let Some(table) = run.table("history") else { return Vec::new() };
             let of = |name: &str, k: usize| {
-                let points = table.points("time", &format!("{name}_{}", axes[k]))?;
+                let points = table.points(history::TIME, column.of(name).at(k))?;
                 Some((format!("{name} along {}", ["x", "y"][k]), points))
             };
             names(run).into_iter().flat_map(|name| (0..2).filter_map(move |k| of(name, k))).collect()
         })
     };
-    let (ways, accelerations) = (motion("motion"), motion("acceleration"));
+    let (ways, accelerations) = (motion(history::STRUCTURE_MOTION), motion(history::STRUCTURE_ACCELERATION));
     let html = plots([
         Plot::new("Horizontal load on structures", Side::new("time", "s"), side("load"), time).figure(),
         Plot::new("Displacement of structures", Side::new("time", "s"), Side::new("displacement", "m"), ways)
@@ -66,18 +66,18 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
 
 /// Names of structures.
 fn names(run: &RunData) -> Vec<&str> {
-    run.table("history").map(|t| t.before("_load_level")).unwrap_or_default()
+    run.table("history").map(|t| t.items(history::STRUCTURE_LOAD_LEVEL)).unwrap_or_default()
 }
 
-/// Largest values of the columns that a head is numbered behind.
-fn largest(table: &Table, head: &str) -> Vec<f64> {
-    let of = |k: usize| table.column(&format!("{head}{k}"));
+/// Largest value of each column of a list.
+fn largest(table: &Table, list: Name<'_>) -> Vec<f64> {
+    let of = |k: usize| table.column(list.at(k));
     (0..).map_while(of).map(|column| column.iter().fold(0.0, |m: f64, x| m.max(*x))).collect()
 }
 
 /// The largest load of each sector as a closed curve.
 fn rose(table: &Table, name: &str) -> Option<Vec<[f64; 2]>> {
-    let loads = largest(table, &format!("{name}_sector"));
+    let loads = largest(table, history::STRUCTURE_SECTOR.of(name));
     let count = loads.len();
     (count > 1).then(|| {
         let at = |k: usize| {

@@ -1,6 +1,7 @@
 //! Load against deflection in single cycles; stiffness, modulus and damping over the cycles.
 
 use super::overlay::one;
+use crate::columns::{Definition, cycles, history};
 use crate::report::data::RunData;
 use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Curve, Look, Plot, Side};
@@ -19,10 +20,10 @@ struct Loop {
 /// Loops, stiffness, damping.
 pub fn loops(runs: &[RunData]) -> Option<Section> {
     let x = || Side::count("load cycle N").logarithmic();
-    let of = |column: &'static str| {
+    let of = |column: &'static Definition| {
         one(runs, move |r| {
             // Zero: the cycle does not tell it.
-            let points = r.table("cycles")?.points("cycle", column)?;
+            let points = r.table("cycles")?.points(cycles::CYCLE, column)?;
             Some(points.into_iter().filter(|p| p[1] != 0.0).collect())
         })
     };
@@ -33,11 +34,21 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
     let over_cycles = match single {
         true => Vec::new(),
         false => vec![
-            plot("Resilient deflection", "resilient deflection", "m", of("resilient_deflection")),
-            plot("Secant stiffness", "load range / resilient deflection", "N/m", of("secant_stiffness")),
-            plot("Bed stiffness", "slope between two loads", "N/m", of("bed_stiffness")),
-            plot("Resilient modulus", "pressure range / resilient strain", "Pa", of("resilient_modulus")),
-            plot("Hysteresis loop area", "energy dissipated in a cycle", "J", of("dissipated_energy")),
+            plot("Resilient deflection", "resilient deflection", "m", of(cycles::RESILIENT_DEFLECTION)),
+            plot(
+                "Secant stiffness",
+                "load range / resilient deflection",
+                "N/m",
+                of(cycles::SECANT_STIFFNESS),
+            ),
+            plot("Bed stiffness", "slope between two loads", "N/m", of(cycles::BED_STIFFNESS)),
+            plot(
+                "Resilient modulus",
+                "pressure range / resilient strain",
+                "Pa",
+                of(cycles::RESILIENT_MODULUS),
+            ),
+            plot("Hysteresis loop area", "energy dissipated in a cycle", "J", of(cycles::DISSIPATED_ENERGY)),
             plot("Damping ratio", "damping ratio D", "", one(runs, damping)),
         ],
     };
@@ -57,7 +68,8 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
 fn damping(run: &RunData) -> Option<Vec<[f64; 2]>> {
     let table = run.table("cycles")?;
     let [n, u, k, e] =
-        ["cycle", "resilient_deflection", "secant_stiffness", "dissipated_energy"].map(|c| table.column(c));
+        [cycles::CYCLE, cycles::RESILIENT_DEFLECTION, cycles::SECANT_STIFFNESS, cycles::DISSIPATED_ENERGY]
+            .map(|c| table.column(c));
     let (n, u, k, e) = (n?, u?, k?, e?);
     let ratio = |i: usize| 2.0 * e[i] / (PI * k[i] * u[i] * u[i]);
     let known = (0..n.len()).filter(|&i| u[i] > 0.0 && k[i] > 0.0 && ratio(i).is_finite());
@@ -110,9 +122,9 @@ fn selected<'a>(all: &[&'a Loop], most: usize) -> Vec<&'a Loop> {
 /// The loops of the first sleeper with a load: from one least load to the next. None without a load that goes up and down.
 fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     let table = run.table("history")?;
-    let (load, z) = [("load", "sleeper_z"), ("load_1", "sleeper_1_z")]
-        .into_iter()
-        .find_map(|(load, z)| Some((table.column(load)?, table.column(z)?)))?;
+    let (load, z) = ["", "_1"].into_iter().find_map(|n| {
+        Some((table.column(history::LOAD.of(n))?, table.column(history::SLEEPER.of(n).at(2))?))
+    })?;
     let least = load.iter().copied().fold(f64::INFINITY, f64::min);
     let most = load.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // The load goes through the middle of its range, not just past it: a ramp from zero is no cycle of its own.

@@ -1,5 +1,6 @@
 //! What sections share: curves and tables of one or several runs.
 
+use crate::columns::Name;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, facts_table};
 use crate::report::plot::{Curve, Look};
@@ -51,14 +52,14 @@ pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> Markup {
     facts_table(&heads, &rows)
 }
 
-/// The columns of a vector of a history among `_x`, `_y`, `_z` that vary most, as (axis, values).
-pub fn dominant<'a>(run: &'a RunData, stem: &str) -> Option<(&'static str, &'a [f64])> {
+/// The component of a vector of a history that varies most, as (axis, values).
+pub fn dominant<'a>(run: &'a RunData, vector: Name<'_>) -> Option<(&'static str, &'a [f64])> {
     let table = run.table("history")?;
     let spread = |values: &[f64]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
     };
-    let axes = ["x", "y", "z"].into_iter();
-    let all = axes.filter_map(|axis| Some((axis, table.column(&format!("{stem}_{axis}"))?)));
+    let axes = ["x", "y", "z"].into_iter().enumerate();
+    let all = axes.filter_map(|(k, axis)| Some((axis, table.column(vector.at(k))?)));
     all.max_by(|a, b| spread(a.1).total_cmp(&spread(b.1))).filter(|a| spread(a.1) > 0.0)
 }

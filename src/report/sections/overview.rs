@@ -2,6 +2,7 @@
 
 use super::compare::shown;
 use super::overlay::facts;
+use crate::columns::{cycles, history};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, headed, joined, paragraph, table};
 use maud::Markup;
@@ -58,9 +59,9 @@ fn counts(runs: &[RunData]) -> Markup {
             ("bodies (grains and sleepers)", &path("model.bodies", "")),
             ("spheres", &path("model.spheres", "")),
             ("simulated time", &|r| {
-                Cell::of(r.table("history").and_then(|t| t.column("time")?.last().copied()), "s")
+                Cell::of(r.table("history").and_then(|t| t.column(history::TIME)?.last().copied()), "s")
             }),
-            ("load cycles", &|r| Cell::of(super::compare::last_of(r, "cycle"), "")),
+            ("load cycles", &|r| Cell::of(super::compare::last_of(r, cycles::CYCLE), "")),
             ("threads", &path("threads", "")),
             ("wall time", &wall),
             ("CPU time", &path("cpu_seconds", "s")),

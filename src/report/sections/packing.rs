@@ -1,6 +1,7 @@
 //! The grains at the end: coordination, porosity, stress; how the bed was made.
 
 use super::overlay::{facts, one};
+use crate::columns::radial;
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, columns, headed, joined, plots, table};
 use crate::report::plot::{Plot, Side};
@@ -35,9 +36,9 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
     });
     let radial = one(runs, |r| {
         let table = r.table("radial")?;
-        let first = *table.column("measure")?.first()?;
-        let of_first = table.column("measure")?.iter().map(|m| *m == first);
-        let points = table.points("distance", "g")?;
+        let first = *table.column(radial::MEASURE)?.first()?;
+        let of_first = table.column(radial::MEASURE)?.iter().map(|m| *m == first);
+        let points = table.points(radial::DISTANCE, radial::G)?;
         Some(points.into_iter().zip(of_first).filter(|(_, own)| *own).map(|(p, _)| p).collect())
     });
     let html = joined([

@@ -2,6 +2,7 @@
 
 use super::laws::Law;
 use super::overlay::{facts, one};
+use crate::columns::{Definition, cycles, history};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
 use crate::report::plot::{Curve, Look, Plot, Side};
@@ -17,7 +18,7 @@ fn chosen(n: f64, last: f64) -> bool {
 
 /// Settlement against load cycles.
 pub fn settlement(runs: &[RunData]) -> Option<Section> {
-    let data = one(runs, |r| r.table("cycles")?.points("cycle", "settlement"));
+    let data = one(runs, |r| r.table("cycles")?.points(cycles::CYCLE, cycles::SETTLEMENT));
     if data.is_empty() {
         return None;
     }
@@ -69,14 +70,15 @@ fn fitted(law: &Law, name: String, k: usize) -> Curve {
 fn lowering(runs: &[RunData]) -> Markup {
     let curves = super::overlay::overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
-        let stems = table.before("_tilt");
-        let several = stems.len() > 1;
-        let stems = stems.into_iter().filter(|s| s.starts_with("sleeper"));
-        stems
-            .filter_map(|stem| {
-                let points = table.points("time", &format!("{stem}_z"))?;
+        let numbers = table.items(history::SLEEPER_TILT);
+        let several = numbers.len() > 1;
+        numbers
+            .into_iter()
+            .filter_map(|number| {
+                let points = table.points(history::TIME, history::SLEEPER.of(number).at(2))?;
                 let first = points.first()?[1];
-                let name = if several { stem.replace('_', " ") } else { String::new() };
+                let name =
+                    if several { format!("sleeper{}", number.replace('_', " ")) } else { String::new() };
                 Some((name, points.into_iter().map(|[t, z]| [t, first - z]).collect()))
             })
             .collect()
@@ -90,7 +92,9 @@ fn figures_of(runs: &[RunData]) -> Markup {
     facts(
         runs,
         &[
-            ("settlement after the last cycle", &|r| Cell::of(super::compare::last_of(r, "settlement"), "m")),
+            ("settlement after the last cycle", &|r| {
+                Cell::of(super::compare::last_of(r, cycles::SETTLEMENT), "m")
+            }),
             ("settlement during seating, not counted", &path("settlement.seating", "m")),
             ("increments of the second half over the first half", &path("settlement.slowing", "")),
             ("cycles simulated, with jumps", &path("settlement.jump.simulated", "")),
@@ -142,27 +146,27 @@ fn by_cycle(runs: &[RunData]) -> Markup {
     let mut parts = Vec::new();
     for run in runs {
         let Some(table) = run.table("cycles") else { continue };
-        let Some(cycles) = table.column("cycle") else { continue };
+        let Some(cycles) = table.column(cycles::CYCLE) else { continue };
         let last = cycles.last().copied().unwrap_or(0.0);
         let rows: Vec<usize> = (0..cycles.len()).filter(|&k| chosen(cycles[k], last)).collect();
         let names: Vec<String> = rows.iter().map(|&k| number(cycles[k])).collect();
-        let of = |name: &str| -> Vec<Option<f64>> {
-            let column = table.column(name);
+        let of = |column: &'static Definition| -> Vec<Option<f64>> {
+            let column = table.column(column);
             rows.iter().map(|&k| column.map(|c| c[k])).collect()
         };
         // Zero: the cycle does not tell it.
-        let known = |name: &str| -> Vec<Option<f64>> {
-            of(name).into_iter().map(|v| v.filter(|v| *v != 0.0)).collect()
+        let known = |column: &'static Definition| -> Vec<Option<f64>> {
+            of(column).into_iter().map(|v| v.filter(|v| *v != 0.0)).collect()
         };
         let all = [
-            ("settlement", "m", of("settlement")),
-            ("rate per cycle", "m", of("rate")),
-            ("resilient deflection", "m", of("resilient_deflection")),
-            ("secant stiffness", "N/m", known("secant_stiffness")),
-            ("bed stiffness", "N/m", known("bed_stiffness")),
-            ("resilient modulus", "Pa", known("resilient_modulus")),
-            ("dissipated", "J", of("dissipated_energy")),
-            ("peak formation pressure", "Pa", known("peak_formation_pressure")),
+            ("settlement", "m", of(cycles::SETTLEMENT)),
+            ("rate per cycle", "m", of(cycles::RATE)),
+            ("resilient deflection", "m", of(cycles::RESILIENT_DEFLECTION)),
+            ("secant stiffness", "N/m", known(cycles::SECANT_STIFFNESS)),
+            ("bed stiffness", "N/m", known(cycles::BED_STIFFNESS)),
+            ("resilient modulus", "Pa", known(cycles::RESILIENT_MODULUS)),
+            ("dissipated", "J", of(cycles::DISSIPATED_ENERGY)),
+            ("peak formation pressure", "Pa", known(cycles::PEAK_FORMATION_PRESSURE)),
         ];
         let some: Vec<_> = all.into_iter().filter(|c| c.2.iter().flatten().any(|v| *v != 0.0)).collect();
         let whose = if runs.len() > 1 { format!(" of {}", run.label) } else { String::new() };

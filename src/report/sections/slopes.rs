@@ -1,27 +1,29 @@
 //! Slides and specimens of rock.
 
 use super::overlay::{facts, one, overlay};
+use crate::columns::{Definition, history};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
 
 /// Run-out of a slide.
 pub fn runout(runs: &[RunData]) -> Option<Section> {
-    let of = |column: &'static str| one(runs, move |r| r.table("history")?.points("time", column));
+    let of =
+        |column: &'static Definition| one(runs, move |r| r.table("history")?.points(history::TIME, column));
     let time = || Side::new("time", "s");
     let figures = plots([
         Plot::new(
             "Front of the slide",
             time(),
             Side::new("position along the slide", "m"),
-            of("runout_front"),
+            of(history::RUNOUT_FRONT),
         )
         .figure(),
         Plot::new(
             "Motion of the slide",
             time(),
             Side::new("kinetic energy", "J").with_zero(),
-            of("runout_kinetic"),
+            of(history::RUNOUT_KINETIC),
         )
         .figure(),
     ]);
@@ -52,12 +54,12 @@ pub fn specimen(runs: &[RunData]) -> Option<Section> {
     let curve = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
         [
-            ("platens", "specimen_strain"),
-            ("grains, axial", "specimen_axial_strain"),
-            ("lateral", "specimen_lateral_strain"),
+            ("platens", history::SPECIMEN_STRAIN),
+            ("grains, axial", history::SPECIMEN_AXIAL_STRAIN),
+            ("lateral", history::SPECIMEN_LATERAL_STRAIN),
         ]
         .into_iter()
-        .filter_map(|(name, x)| Some((name.to_string(), table.points(x, "specimen_stress")?)))
+        .filter_map(|(name, x)| Some((name.to_string(), table.points(x, history::SPECIMEN_STRESS)?)))
         .collect()
     });
     let figures = plots([Plot::new(

@@ -1,6 +1,7 @@
 //! The solid: load against displacement, equilibrium, plastic share, factor of safety, modes.
 
 use super::overlay::{dominant, facts, one, overlay};
+use crate::columns::{Definition, gauss, history, modes, safety};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
 use crate::report::plot::{Plot, Side};
@@ -12,20 +13,21 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
     let driven = overlay(runs, load_displacement);
     let reactions = overlay(runs, |run| {
-        let stems = run.table("history").map(|t| t.before("_reaction_x")).unwrap_or_default();
+        let stems =
+            run.table("history").map(|t| t.items(history::SUPPORT_REACTION.at(0))).unwrap_or_default();
         let of = |stem: &&str| {
-            let (axis, values) = dominant(run, &format!("{stem}_reaction"))?;
-            let time = run.table("history")?.column("time")?;
+            let (axis, values) = dominant(run, history::SUPPORT_REACTION.of(stem))?;
+            let time = run.table("history")?.column(history::TIME)?;
             Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, f)| [*t, *f]).collect()))
         };
         stems.iter().filter_map(of).collect()
     });
-    let probes = |motion: &'static str| {
+    let probes = |motion: &'static Definition| {
         overlay(runs, move |run| {
-            let stems = run.table("history").map(|t| t.before("_v_x")).unwrap_or_default();
+            let stems = run.table("history").map(|t| t.items(history::PROBE_V.at(0))).unwrap_or_default();
             let of = |stem: &&str| {
-                let (axis, values) = dominant(run, &format!("{stem}_{motion}"))?;
-                let time = run.table("history")?.column("time")?;
+                let (axis, values) = dominant(run, motion.of(stem))?;
+                let time = run.table("history")?.column(history::TIME)?;
                 Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, u)| [*t, *u]).collect()))
             };
             stems.iter().filter_map(of).collect()
@@ -48,8 +50,10 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
         .figure(),
         Plot::new("Reactions of named supports", time(), Side::new("force on the solid", "N"), reactions)
             .figure(),
-        Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes("u")).figure(),
-        Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes("v")).figure(),
+        Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes(history::PROBE_U))
+            .figure(),
+        Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes(history::PROBE_V))
+            .figure(),
     ]);
     Section::new("solid", "Solid", joined([figures, note, equilibrium(runs), supports(runs)]))
 }
@@ -64,7 +68,7 @@ fn load_displacement(run: &RunData) -> Vec<(String, Vec<[f64; 2]>)> {
         // A history from a file stays with the scene; the results do not have it.
         let history = s.history.as_ref().filter(|h| h.file.is_none())?;
         let history = TimeFunction::new(history, None).ok().filter(|_| size != 0.0)?;
-        let points = table.points("time", &format!("{name}_reaction_{direction}"))?;
+        let points = table.points(history::TIME, history::SUPPORT_REACTION.of(name).along(direction)?)?;
         let curve =
             points.into_iter().map(|[t, f]| [size.abs() * history.factor(t), f * size.signum()]).collect();
         Some((name.clone(), curve))
@@ -106,7 +110,7 @@ fn equilibrium(runs: &[RunData]) -> Markup {
 
 /// Equivalent plastic strain at the Gauss points.
 fn plastic(run: &RunData) -> Option<&[f64]> {
-    run.table("gauss")?.column("equivalent_plastic_strain")
+    run.table("gauss")?.column(gauss::EQUIVALENT_PLASTIC_STRAIN)
 }
 
 fn plastic_share(run: &RunData) -> Option<f64> {
@@ -137,7 +141,7 @@ fn supports(runs: &[RunData]) -> Markup {
 pub fn safety(runs: &[RunData]) -> Option<Section> {
     let curve = one(runs, |r| {
         let table = r.table("safety")?;
-        table.points("factor", "largest_displacement")
+        table.points(safety::FACTOR, safety::LARGEST_DISPLACEMENT)
     });
     let figure = Plot::new(
         "Largest displacement over strength reduction factor",
@@ -181,16 +185,16 @@ pub fn modes(runs: &[RunData]) -> Option<Section> {
     for run in runs {
         let Some(table) = run.table("modes") else { continue };
         let names: Vec<String> =
-            table.column("mode").unwrap_or_default().iter().map(|m| format!("{m}")).collect();
-        let of = |name: &str| -> Vec<Option<f64>> {
-            table.column(name).unwrap_or_default().iter().map(|v| Some(*v)).collect()
+            table.column(modes::MODE).unwrap_or_default().iter().map(|m| format!("{m}")).collect();
+        let of = |column: &'static Definition| -> Vec<Option<f64>> {
+            table.column(column).unwrap_or_default().iter().map(|v| Some(*v)).collect()
         };
         let all = [
-            ("frequency", "Hz", of("frequency")),
-            ("effective mass x", "kg", of("effective_mass_x")),
-            ("effective mass y", "kg", of("effective_mass_y")),
-            ("effective mass z", "kg", of("effective_mass_z")),
-            ("residual", "", of("residual")),
+            ("frequency", "Hz", of(modes::FREQUENCY)),
+            ("effective mass x", "kg", of(modes::EFFECTIVE_MASS_X)),
+            ("effective mass y", "kg", of(modes::EFFECTIVE_MASS_Y)),
+            ("effective mass z", "kg", of(modes::EFFECTIVE_MASS_Z)),
+            ("residual", "", of(modes::RESIDUAL)),
         ];
         let columns = columns("mode", &names, &all);
         parts.push(if runs.len() > 1 { headed(&run.label, columns) } else { columns });

@@ -1,6 +1,7 @@
 //! Pressure on the formation, sleepers, lateral push.
 
 use super::overlay::{facts, one, overlay};
+use crate::columns::{Definition, cycles, history, push};
 use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
@@ -8,14 +9,14 @@ use crate::report::plot::{Plot, Side};
 /// Pressure on the formation and force on the solid.
 pub fn pressure(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
-    let in_time = one(runs, |r| r.table("history")?.points("time", "peak_formation_pressure"));
+    let in_time = one(runs, |r| r.table("history")?.points(history::TIME, history::PEAK_FORMATION_PRESSURE));
     let force = one(runs, |r| {
-        let points = r.table("history")?.points("time", "contact_force_on_solid_z")?;
+        let points = r.table("history")?.points(history::TIME, history::CONTACT_FORCE_ON_SOLID.at(2))?;
         Some(points.into_iter().map(|[t, f]| [t, -f]).collect())
     });
     let by_cycle = one(runs, |r| {
         let table = r.table("cycles").filter(|t| t.rows() > 1)?;
-        let points = table.points("cycle", "peak_formation_pressure")?;
+        let points = table.points(cycles::CYCLE, cycles::PEAK_FORMATION_PRESSURE)?;
         Some(points.into_iter().filter(|p| p[1] > 0.0).collect())
     });
     let y = |name: &str| Side::new(name, "Pa").with_zero();
@@ -41,23 +42,17 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
 
 /// Loads on the sleepers, and what became of each.
 pub fn sleepers(runs: &[RunData]) -> Option<Section> {
-    let named = |run: &RunData, stem: &str| -> Vec<(String, Vec<[f64; 2]>)> {
+    let numbered = |run: &RunData, column: &'static Definition| -> Vec<(String, Vec<[f64; 2]>)> {
         let Some(table) = run.table("history") else { return Vec::new() };
-        let number =
-            |name: &str| name.strip_prefix(stem).and_then(|n| n.strip_prefix('_')?.parse::<u32>().ok());
-        let all = table.heads.iter().filter_map(|name| {
-            let label = match number(name) {
-                Some(n) => format!("sleeper {n}"),
-                None if name == stem => String::new(),
-                None => return None,
-            };
-            Some((label, table.points("time", name)?))
+        let all = table.items(column).into_iter().filter_map(|number| {
+            let label = number.strip_prefix('_').map_or(String::new(), |n| format!("sleeper {n}"));
+            Some((label, table.points(history::TIME, column.of(number))?))
         });
         all.collect()
     };
     let time = || Side::new("time", "s");
-    let load = overlay(runs, |r| named(r, "load"));
-    let rail = overlay(runs, |r| named(r, "rail"));
+    let load = overlay(runs, |r| numbered(r, history::LOAD));
+    let rail = overlay(runs, |r| numbered(r, history::RAIL));
     let mut rows = Vec::new();
     for run in runs {
         for (k, s) in run.list("track.sleepers").iter().enumerate() {
@@ -96,13 +91,19 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
 
 /// Lateral push of a sleeper.
 pub fn push(runs: &[RunData]) -> Option<Section> {
-    let curve = |column: &'static str| one(runs, move |r| r.table("push")?.points("displacement", column));
+    let curve =
+        |column: &'static Definition| one(runs, move |r| r.table("push")?.points(push::DISPLACEMENT, column));
     let x = || Side::new("lateral displacement of the sleeper", "m");
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let html = plots([
-        Plot::new("Lateral resistance", x(), Side::new("actuator force", "N").with_zero(), curve("force"))
-            .figure(),
-        Plot::new("Uplift of the sleeper", x(), Side::new("uplift", "m"), curve("uplift")).figure(),
+        Plot::new(
+            "Lateral resistance",
+            x(),
+            Side::new("actuator force", "N").with_zero(),
+            curve(push::FORCE),
+        )
+        .figure(),
+        Plot::new("Uplift of the sleeper", x(), Side::new("uplift", "m"), curve(push::UPLIFT)).figure(),
     ]);
     let figures = facts(
         runs,

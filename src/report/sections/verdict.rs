@@ -1,5 +1,6 @@
 //! How the runs ended, what they were judged by and what they remark: first of all.
 
+use crate::columns::history;
 use crate::report::data::{RunData, State};
 use crate::report::page::{Cell, Section, joined, table};
 use crate::report::quantity::with_unit;
@@ -50,7 +51,7 @@ fn word(run: &RunData) -> &'static str {
 /// What it means for the figures below.
 fn sentence(run: &RunData) -> String {
     let judged = run.list("verdict.judged").len();
-    let reached = match run.table("history").and_then(|t| t.column("time")?.last().copied()) {
+    let reached = match run.table("history").and_then(|t| t.column(history::TIME)?.last().copied()) {
         Some(time) => format!(" Last row of the history: t = {}.", with_unit(time, "s")),
         None => " No history.".into(),
     };

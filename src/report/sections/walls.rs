@@ -1,6 +1,7 @@
 //! Recorded walls: forces against time and displacement; stress against strain of servo tests.
 
 use super::overlay::{dominant, overlay};
+use crate::columns::{Definition, history};
 use crate::report::data::RunData;
 use crate::report::page::{Section, joined, paragraph, plots};
 use crate::report::plot::{Plot, Side};
@@ -14,16 +15,16 @@ const TOUCH: f64 = 0.01;
 pub fn walls(runs: &[RunData]) -> Option<Section> {
     let forces = overlay(runs, |run| {
         let of = |stem: &str| {
-            let (axis, values) = dominant(run, &format!("{stem}_force"))?;
-            let time = run.table("history")?.column("time")?;
+            let (axis, values) = dominant(run, history::WALL_FORCE.of(stem))?;
+            let time = run.table("history")?.column(history::TIME)?;
             Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, f)| [*t, *f]).collect()))
         };
         stems(run).iter().filter_map(|s| of(s)).collect()
     });
     let ways = overlay(runs, |run| {
         let of = |stem: &str| {
-            let (axis, way) = dominant(run, &format!("{stem}_displacement"))?;
-            let force = run.table("history")?.column(&format!("{stem}_force_{axis}"))?;
+            let (axis, way) = dominant(run, history::WALL_DISPLACEMENT.of(stem))?;
+            let force = run.table("history")?.column(history::WALL_FORCE.of(stem).along(axis)?)?;
             Some((format!("{stem}, {axis}"), way.iter().zip(force).map(|(u, f)| [*u, *f]).collect()))
         };
         stems(run).iter().filter_map(|s| of(s)).collect()
@@ -60,7 +61,7 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
 
 /// Names of recorded walls.
 fn stems(run: &RunData) -> Vec<&str> {
-    run.table("history").map(|t| t.before("_moment_x")).unwrap_or_default()
+    run.table("history").map(|t| t.items(history::WALL_MOMENT.at(0))).unwrap_or_default()
 }
 
 /// Stress against strain of a wall.
@@ -79,12 +80,12 @@ fn servo(wall: &Wall, all: &[Wall], table: &Table) -> Option<Servo> {
     let area = wall.servo.as_ref()?.area?;
     let name = wall.name.as_ref()?;
     let (point, normal) = plane(wall)?;
-    let along = |stem: &str| -> Option<Vec<f64>> {
-        let [x, y, z] = ["x", "y", "z"].map(|axis| table.column(&format!("{name}_{stem}_{axis}")));
+    let along = |vector: &'static Definition| -> Option<Vec<f64>> {
+        let [x, y, z] = [0, 1, 2].map(|axis| table.column(vector.of(name).at(axis)));
         let (x, y, z) = (x?, y?, z?);
         Some((0..x.len()).map(|k| dot([x[k], y[k], z[k]], normal)).collect())
     };
-    let (force, way) = (along("force")?, along("displacement")?);
+    let (force, way) = (along(history::WALL_FORCE)?, along(history::WALL_DISPLACEMENT)?);
     // A plate may come a long way before it touches.
     let most = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let start = force.iter().position(|f| f.abs() > TOUCH * most)?;
