@@ -61,6 +61,9 @@ pub enum Command {
         /// Print the tables of keys in Markdown instead; with PAGE, renew the tables of this file.
         #[arg(long, value_name = "PAGE", num_args = 0..=1)]
         markdown: Option<Option<PathBuf>>,
+        /// List the columns of the result tables with unit and meaning instead.
+        #[arg(long, conflicts_with = "markdown")]
+        columns: bool,
     },
     /// Print a completion script for a shell.
     Completions {

@@ -14,6 +14,7 @@ mod study;
 mod view;
 
 use crate::cli::{Cli, Command, MeshCommand, NewArgs, RunArgs};
+use crate::columns;
 use crate::failure::Failure;
 use crate::message;
 use crate::run;
@@ -39,7 +40,8 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             print(&if json { report.json() } else { report.text() })
         }
         Command::New(args) => new(&args),
-        Command::Schema { markdown } => schema::schema(markdown),
+        Command::Schema { columns: true, .. } => print(&columns::list()),
+        Command::Schema { markdown, .. } => schema::schema(markdown),
         Command::Completions { shell } => completions(shell),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),
