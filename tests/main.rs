@@ -10,6 +10,7 @@ mod suite {
     mod checkpoint;
     mod checkpoint_kill;
     mod cli;
+    mod columns;
     mod contact_laws;
     mod convert;
     mod determinism;

@@ -183,8 +183,10 @@ impl Table {
     pub fn read(file: &Path) -> Table {
         let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         let mut lines = text.lines();
+        let header = lines.next().unwrap();
+        super::columns::expect_defined(file, header);
         let heads: Vec<String> =
-            lines.next().unwrap().split(',').map(|h| h.split(" [").next().unwrap().to_string()).collect();
+            header.split(',').map(|h| h.split(" [").next().unwrap().to_string()).collect();
         let rows: Vec<Vec<f64>> = lines
             .map(|line| {
                 let row: Vec<f64> =
