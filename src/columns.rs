@@ -1,29 +1,29 @@
-//! Columns of the tables of results: each is defined once, and what writes or reads it refers to the definition.
+//! Columns of the result tables: name, unit and meaning, defined once for recorders and readers.
 
 use std::fmt::{self, Display, Formatter};
 
 /// Axes of the columns of a vector.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// How many columns a definition stands for.
+/// Number of columns of a definition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// One.
+    /// One column.
     Scalar,
-    /// Three, whose names end in `_x`, `_y` and `_z`.
+    /// Three columns with `_x`, `_y` and `_z` behind the name.
     Vector,
-    /// Any number, numbered from 0 at the end of the name.
+    /// Any number of columns with 0, 1, … behind the name.
     List,
 }
 
 /// Columns of one quantity: a scalar, a vector or a list.
 #[derive(Debug)]
 pub struct Definition {
-    /// Name, with the kind of item in angle brackets, such as `<wall>_force`; `<_n>` is the number of a sleeper, if there are several.
+    /// Name with the kind of item in angle brackets, such as `<wall>_force`. `<_n>` is `_1`, `_2`, … of several sleepers, else empty.
     pub name: &'static str,
     /// SI unit; empty for a count or a ratio without one.
     pub unit: &'static str,
-    /// Meaning.
+    /// Meaning, at most 12 words.
     pub meaning: &'static str,
     /// Number of columns.
     pub kind: Kind,
@@ -40,7 +40,7 @@ impl Definition {
         self.of("").at(part)
     }
 
-    /// Name before, in and behind the angle brackets; the item is empty in a name without them.
+    /// Text before, in and behind the angle brackets.
     fn parts(&self) -> [&'static str; 3] {
         let (before, rest) = self.name.split_once('<').unwrap_or((self.name, ">"));
         let (item, after) = rest.split_once('>').unwrap_or((rest, ""));
@@ -48,7 +48,7 @@ impl Definition {
     }
 }
 
-/// Name of a column in a file.
+/// Name of a column in a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Name<'a> {
     definition: &'static Definition,
@@ -68,7 +68,7 @@ impl Name<'_> {
         Name { part: Some(part), ..self }
     }
 
-    /// Name of the component of a vector along `x`, `y` or `z`; none for another text.
+    /// Name of the component of a vector along `x`, `y` or `z`.
     pub fn along(self, axis: &str) -> Option<Self> {
         AXES.iter().position(|known| *known == axis).map(|k| self.at(k))
     }
@@ -78,11 +78,12 @@ impl Name<'_> {
         self.definition.unit
     }
 
-    /// Item whose column has the name `head`; none if it is another column.
+    /// Item of the column `head`, empty without one; `None` if the column is of another definition.
     pub fn item_in<'h>(&self, head: &'h str) -> Option<&'h str> {
         let [before, kind, after] = self.definition.parts();
         let head = match (self.definition.kind, self.part) {
             (Kind::Vector, Some(axis)) => head.strip_suffix(AXES[axis])?.strip_suffix('_')?,
+            (Kind::List, Some(number)) => head.strip_suffix(&number.to_string())?,
             _ => head,
         };
         let item = head.strip_prefix(before)?.strip_suffix(after)?;
@@ -108,15 +109,15 @@ impl Display for Name<'_> {
     }
 }
 
-/// A table of results.
+/// Result table.
 pub struct Table {
-    /// Name of its file.
+    /// File name.
     pub file: &'static str,
-    /// Its columns in their order.
+    /// Columns in their order.
     pub columns: &'static [&'static Definition],
 }
 
-/// The tables that runs write.
+/// Tables that runs write.
 pub const TABLES: [&Table; 14] = [
     history::TABLE,
     cycles::TABLE,
@@ -145,7 +146,7 @@ pub fn list() -> String {
     lines.map(|(file, c)| format!("{file:<14} {:<38} {:<6} {}\n", name(c), c.unit, c.meaning)).collect()
 }
 
-/// Defines the columns of a file, one a line: constant, number of columns, name, unit, meaning.
+/// Defines the columns of a file: constant, kind, name, unit, meaning.
 macro_rules! columns {
     ($file:literal; $($constant:ident: $kind:ident $name:literal $unit:literal $meaning:literal;)*) => {
         use super::{Definition, Kind, Table};
@@ -364,7 +365,7 @@ pub mod nodes {
     }
 }
 
-/// Columns of `gauss.csv`; state values come last, as the constitutive laws name them.
+/// Columns of `gauss.csv`, state values of constitutive laws last.
 pub mod gauss {
     columns! { "gauss.csv";
         ELEMENT: Scalar "element" "" "number of the element";
@@ -405,7 +406,7 @@ pub mod modes {
     }
 }
 
-/// Columns of converted packings, chains and animations.
+/// Columns of `trackbed convert`: packings, force chains and animations.
 pub mod converted {
     columns! { "converted tables";
         TIME: Scalar "time" "s" "time of the moment";

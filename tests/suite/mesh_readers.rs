@@ -486,7 +486,7 @@ fn meshes_inside_out_are_said_to_be() {
     let sentence = "the only element inverted: bottom and top faces are exchanged (order of the nodes, or a mirrored mesh)";
     assert!(outcome.code == 2 && outcome.stderr.contains(sentence), "{outcome:?}");
     let info = trackbed([Path::new("mesh"), Path::new("info"), &path]).good().stdout;
-    assert!(info.contains("inside out") && info.contains("negative volume"), "{info}");
+    assert!(info.contains("inverted") && info.contains("negative volume"), "{info}");
     let material = "[[solid.material]]\nid = 1\nyoung = \"50 MPa\"\npoisson = 0.3\ndensity = 1900\n";
     let scene = folder.write("scene.toml", &format!("[solid]\nmesh = \"b.inp\"\n{material}"));
     let outcome = trackbed([Path::new("check"), &scene]);
