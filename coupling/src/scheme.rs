@@ -12,8 +12,7 @@
 //! there for comparison.
 //!
 //! Source: Felippa, Park & Farhat, Comput. Methods Appl. Mech. Eng. 190 (2001) 3247 (staggered orders and their errors);
-//! guide, "order of the exchange", for the stable sizes of the window. Limits: the stiffened scheme needs a solid with a
-//! constant matrix.
+//! `docs/theory/coupling.md`, section 5.5, for the stable windows. Limits: the stiffened scheme needs a solid with a constant matrix.
 
 use serde::{Deserialize, Serialize};
 

@@ -8,8 +8,8 @@
 //! mass M_s and the dashpot C = 2 ζ √(M_s Kₙ) damps the pair of masses with
 //! ζ' = C/(2 √(m' Kₙ)) = ζ √((m + M_s)/m), m' = m M_s/(m + M_s), which is the damping that the limits refer to.
 //!
-//! Limits of W by scheme, from the two-mass study and the runs of it with this program's own windows (guide, "order of the
-//! exchange"): lagged 1.2 ζ'; predicted 1 with ζ' of 0.1 or more, else 0.5; stiffened 2 with ζ' of 0.05 or more and M_s of m
+//! Limits of W by scheme, from the two-mass study and the runs of it with this program's own windows
+//! (`docs/theory/coupling.md`, section 5.5): lagged 1.2 ζ'; predicted 1 with ζ' of 0.1 or more, else 0.5; stiffened 2 with ζ' of 0.05 or more and M_s of m
 //! or more, else 1; both 0.2 with ζ' below 0.02, since without any damping predicted grows slowly, by 0.021 W⁴ per window;
 //! iterated 5. D is at most 1 where the grains go on a motion that does not know their dashpot (predicted). The lagged scheme
 //! errs in its energy long before it is unstable: W is at most 0.1 there and D 0.2.
@@ -121,14 +121,14 @@ pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
 }
 
 /// Largest W that windows of the program's own choice have: with contacts that stick, several on a face, the predicted scheme brings energy in
-/// long before it is unstable. A bay of track gains 2.2 % of what it dissipates in a cycle at W = 1, and 0.13 % at 0.5 (guide, "how long a
-/// window").
+/// long before it is unstable. A bay of track gains 2.2 % of what it dissipates in a cycle at W = 1, and 0.13 % at 0.5
+/// (`docs/theory/coupling.md`, section 5.5).
 pub fn quiet_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Predicted { 0.5 } else { f64::INFINITY }
 }
 
 /// Largest W of a scheme for its energy: a force that does its work a window late errs by more than 5 % of an impact's
-/// energy beyond it, long before the exchange is unstable (guide, "how long a window").
+/// energy beyond it, long before the exchange is unstable (`docs/theory/coupling.md`, section 5.5).
 pub fn accurate_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Lagged { 0.1 } else { f64::INFINITY }
 }

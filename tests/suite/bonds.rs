@@ -212,7 +212,7 @@ fn a_stone_is_crushed() {
     assert!(frame.windows(8).any(|w| w == b"fragment"));
 }
 
-/// The first tenth of the rock test: all bonds made, both grips pressed alike, stiffness as in the guide.
+/// The first tenth of the rock test: all bonds made, both grips pressed alike, modulus as in `docs/guide/slopes.md`.
 #[test]
 fn rock_is_compressed() {
     let folder = Folder::new("rock");

@@ -447,7 +447,7 @@ fn ground_without_weight() {
     assert!((contact / (MASS * 9.81) - 1.0).abs() < 1e-5, "{contact}");
 }
 
-/// The scene of the guide, with few stones and one cycle.
+/// The shipped scene, with few stones and one cycle.
 #[test]
 fn the_scene_of_the_guide() {
     let folder = Folder::new("meshed_scene");

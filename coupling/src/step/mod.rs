@@ -17,7 +17,7 @@
 //! Why the middle: the leapfrog's velocities are those of half a step before its places, and the window begins where they are. A
 //! surface taken at the start of each grain step would answer half a step late, and gain ½ dt ∫ K v² dt at a contact K.
 //!
-//! The two-mass study behind the choice (guide, "order of the exchange") finds this order stable up to
+//! The two-mass study behind the choice (`docs/theory/coupling.md`, section 5.5) finds this order stable up to
 //! W = Δt √(Kₙ/m) of about 1 with damping and nearly neutral without (0.02 W⁴ per window), where the reverse order (solid first, with
 //! the last window's force) gains energy at every step size.
 

@@ -285,7 +285,7 @@ fn resting_balls_within_the_border_decay() {
     }
 }
 
-/// The whole figure of the guide (docs/interface_border.py).
+/// The whole figure of `docs/theory/coupling.md` (`docs/interface_border.py`).
 #[test]
 #[ignore = "minutes"]
 fn border_from_both_sides_in_full() {

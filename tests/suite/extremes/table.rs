@@ -78,7 +78,7 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-/// Runs every row, those of long runs too, and prints the table as it stands in `docs/extremes.md`.
+/// Runs every row, those of long runs too, and prints the full table; `docs/extremes.md` has its rows with the worst results only.
 #[test]
 #[ignore = "runs every row again, the long ones too: some minutes"]
 fn printed() {
