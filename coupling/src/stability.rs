@@ -24,7 +24,7 @@ use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 /// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -249,7 +249,7 @@ pub fn window_masses(
     theta: f64,
     window: f64,
 ) -> Result<PointMasses, SolveError> {
-    let mut solver = WindowSolver::new(body, theta, window)?;
+    let mut solver = ThetaSolver::new(body, theta, window)?;
     let mut masses = NONE;
     for &patch in patches {
         for (place, natural) in places(surface, patch) {
