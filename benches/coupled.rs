@@ -38,8 +38,8 @@ use trackbed_coupling::step::{self, Model, State, Work};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_coupling::transfer::{Transfer, TransferAudit};
 use trackbed_dem::{Material, ModelInput, Shape, TimeStep};
-use trackbed_fem::reduction::{Reduced, ReducedWindowSolver, Reduction};
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::reduction::{Reduced, Reduction};
+use trackbed_fem::theta::{ReducedTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, Rayleigh};
 use watch::Watch;
 
@@ -86,7 +86,7 @@ fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
         }
     }
     let reduction = CHOICES.iter().find(|c| c.0 == name).and_then(|c| c.1);
-    let mut full = WindowSolver::new(&solid, 0.5, 2e-4).expect("a solid that can be factored");
+    let mut full = ThetaSolver::new(&solid, 0.5, 2e-4).expect("a solid that can be factored");
     let start = Instant::now();
     let mut reduced = reduction.map(|r| {
         let reduced = Reduced::new(&solid, &faces, r).expect("a reduction");
@@ -95,7 +95,7 @@ fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
             reduced.estimate(),
             start.elapsed().as_secs_f64()
         ));
-        ReducedWindowSolver::new(&solid, Arc::new(reduced), 0.5, 2e-4).expect("the same solid")
+        ReducedTheta::new(&solid, Arc::new(reduced), 0.5, 2e-4).expect("the same solid")
     });
     const STEPS: u32 = 50;
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {

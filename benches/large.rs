@@ -15,7 +15,7 @@ mod watch;
 
 use std::error::Error;
 use trackbed_fem::statics::StaticSolver;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{
     Constraint, Elastic, Mass, Mesh, Method, Methods, Model, ModelInput, MumpsMethod, Quadrature, Rayleigh,
     State,
@@ -140,7 +140,7 @@ type Run = (Watch, Watch, State, f64, usize);
 /// Windows under noise on the crest.
 fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
     let mut set_up = Watch::default();
-    let mut solver = set_up.time(|| WindowSolver::new(model, THETA, WINDOW))?;
+    let mut solver = set_up.time(|| ThetaSolver::new(model, THETA, WINDOW))?;
     let top = model.mesh().coordinates.iter().map(|x| x[2]).fold(0.0, f64::max);
     let crest: Vec<usize> =
         (0..model.mesh().node_count()).filter(|&n| model.mesh().coordinates[n][2] > top - 1e-9).collect();

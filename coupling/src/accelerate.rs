@@ -5,6 +5,8 @@
 //!
 //! Source: Degroote, Bathe & Vierendeels, Comput. Struct. 87 (2009) 793 (IQN-ILS); Anderson, J. ACM 12 (1965) 547. Limits:
 //! columns that depend on newer ones are left out, so near the end it falls back to plain iteration.
+//!
+//! Theory manual: equation (5.9) of `docs/theory/coupling.md`.
 
 /// Differences kept at most.
 const DEPTH: usize = 8;

@@ -18,6 +18,8 @@
 //!
 //! λmax by the locally optimal gradient method (Knyazev, SIAM J. Sci. Comput. 23 (2001) 517) with the diagonal of M, on the elements at
 //! the surface. Limits: sliding contacts count as sticking; of the neighbours of a body only its own inertia counts in Ω.
+//!
+//! Theory manual: equation (5.11) of `docs/theory/coupling.md`.
 
 use crate::face::dot;
 use crate::surface::SolidSurface;

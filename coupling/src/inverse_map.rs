@@ -4,6 +4,8 @@
 //! Solves Σ Nᵢ(ξ) xᵢ = p from a given start. The stop is on the residual, 10⁻¹³ of the largest
 //! coordinate difference of the element. A point of a *face* is found by [`crate::face::closest_point`]
 //! instead: the three-dimensional map has no solution worth the name for a point off the element.
+//!
+//! Theory manual: equation (5.1) of `docs/theory/coupling.md`.
 
 use nalgebra::{Matrix3, Vector3};
 use trackbed_fem::ElementKind;

@@ -8,6 +8,8 @@
 //! What remains is the error of the run. One part of it is known by itself: the two sides of the interface compute
 //! its work separately (grains with the predicted motion of the surface, solid with its own displacement), and their
 //! sum should vanish.
+//!
+//! Theory manual: equations (5.13), (5.14), (5.15) of `docs/theory/coupling.md`.
 
 use serde::{Deserialize, Serialize};
 

@@ -22,6 +22,8 @@
 //! Source: mean motion of a set of points as the interpolation element of structural codes has it (RBE3; MSC/NASTRAN
 //! Quick Reference Guide); a load and its conjugate motion in point-to-patch coupling. Limits: one radius for all stones;
 //! small rotations, as in the solid; where a side's two faces meet at a sharp angle the disc wraps around.
+//!
+//! Theory manual: equations (5.4), (5.5) of `docs/theory/coupling.md`.
 
 use crate::face::{cross, dot};
 

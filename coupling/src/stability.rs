@@ -16,6 +16,8 @@
 //!
 //! Limits: one contact on one point. Several stones on one face add their stiffness; a solid that carries energy away is
 //! safer than the study's single node.
+//!
+//! Theory manual: equations (5.10), (5.12) of `docs/theory/coupling.md`.
 
 use crate::face::landmarks;
 use crate::interface::InterfaceNumbers;
@@ -24,7 +26,7 @@ use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 /// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -249,7 +251,7 @@ pub fn window_masses(
     theta: f64,
     window: f64,
 ) -> Result<PointMasses, SolveError> {
-    let mut solver = WindowSolver::new(body, theta, window)?;
+    let mut solver = ThetaSolver::new(body, theta, window)?;
     let mut masses = NONE;
     for &patch in patches {
         for (place, natural) in places(surface, patch) {

@@ -5,6 +5,8 @@
 //! Σ Nᵢ = 1 keeps the force exactly; Σ Nᵢ xᵢ = x(ξ, η) keeps the moment exactly about the mapped point, which is
 //! where the contact force acts on both partners (seed correction F5). Both sums are formed from the nodal
 //! loads and compared with the contact forces at every exchange.
+//!
+//! Theory manual: equation (5.2) of `docs/theory/coupling.md`.
 
 use crate::face::{self, cross};
 use crate::surface::SolidSurface;

@@ -3,7 +3,7 @@
 //! `cargo run --release -p trackbed-fem --example free_vibration`
 
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::ThetaSolver;
 use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, State, TimeIntegrator, energy};
 
 /// Runs the example.
@@ -28,7 +28,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let methods: [(&str, Box<dyn TimeIntegrator>); 3] = [
         ("Newmark", Box::new(NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt)?)),
         ("HHT-alpha", Box::new(NewmarkSolver::hht(&model, -0.05, dt)?)),
-        ("mid-point", Box::new(WindowSolver::new(&model, 0.5, dt)?)),
+        ("mid-point", Box::new(ThetaSolver::new(&model, 0.5, dt)?)),
     ];
     for (name, mut method) in methods {
         let mut state = start.clone();

@@ -10,6 +10,8 @@
 //! acts like dashpots with springs beside them. Source: Deeks and Randolph, J. Eng. Mech. 120 (1994) 25-42
 //! (axisymmetric); Liu, Du, Du, Wang and Wu, Earthq. Eng. Eng. Vib. 5 (2006) 93-102 (three dimensions). Limits:
 //! oblique waves and surface waves are absorbed in part only; the normals are those of the undeformed body.
+//!
+//! Theory manual: equation (4.17) of `docs/theory/solid.md`.
 
 use crate::error::ModelError;
 use crate::material::elastic::Elastic;

@@ -3,6 +3,8 @@
 //! The damping ratio at the circular frequency w is `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien, Dynamics of
 //! Structures (1993), section 12-5). Two frequencies with their ratios fix the two constants. Limits: the part
 //! `alpha_m M` also brakes rigid motion, so it drags a body that settles or falls.
+//!
+//! Theory manual: equation (4.9) of `docs/theory/solid.md`.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

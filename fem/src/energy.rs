@@ -4,6 +4,8 @@
 //! `M v`; angular momentum is `sum x_a × (M v)_a`, exact for the isoparametric element with its consistent mass. It is
 //! taken with the undeformed positions: the linear theory conserves that one, because its stiffness resists no
 //! infinitesimal rotation of the undeformed body. Limits: small displacement, for moments too.
+//!
+//! Theory manual: equation (4.2) of `docs/theory/solid.md`.
 
 use crate::assumed::modes::condense;
 use crate::element::stiffness_points;
@@ -93,7 +95,7 @@ pub fn momentum(model: &Model, state: &State) -> ([f64; 3], [f64; 3]) {
 /// forces of the stresses in place of `K u` where the state has them. Shape `[3 * nodes]`.
 ///
 /// Exact for states that [`crate::newmark`] left with its own methods; a window step has
-/// [`crate::window::WindowSolver::mean_reactions`].
+/// [`crate::theta::ThetaSolver::mean_reactions`].
 pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     let n = model.dof_count();
     let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
@@ -105,9 +107,14 @@ pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
         model.boundary_spring_times(&state.u, &mut stresses);
         (0..n).for_each(|d| inner[d] += stresses[d] - scratch[d]);
     }
-    let mut reactions = vec![0.0; n];
+    at_supports(model, &inner, load)
+}
+
+/// `force - load` at constrained dofs, 0 elsewhere [N]. Shapes `[3 * nodes]`.
+pub(crate) fn at_supports(model: &Model, force: &[f64], load: &[f64]) -> Vec<f64> {
+    let mut reactions = vec![0.0; force.len()];
     for &(dof, _) in model.supports().fixed() {
-        reactions[dof as usize] = inner[dof as usize] - load[dof as usize];
+        reactions[dof as usize] = force[dof as usize] - load[dof as usize];
     }
     reactions
 }

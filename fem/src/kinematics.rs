@@ -7,6 +7,8 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapters 4 and 9. For an isotropic material
 //! lambda and mu stand outside the integral, so the 400 products of gradients are summed over the points first and
 //! combined once: an order of magnitude less work than B^T D B. Limits: small strain and rotation.
+//!
+//! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 
 use crate::element::{IntegrationPoint, MAX_NODES};
 

@@ -2,7 +2,7 @@
 //! elastoplastic ([`nonlinear`]).
 //!
 //! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
-//! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`window::WindowSolver`]) hold a
+//! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`theta::ThetaSolver`]) hold a
 //! factor and scratch; [`modal::solve`] finds natural frequencies and mode shapes. Units are SI throughout. Nodal vectors
 //! are flat, index `3 * node + direction`.
 //!
@@ -62,7 +62,7 @@ pub mod statics;
 pub mod stress;
 pub mod supports;
 pub mod surface_mass;
-pub mod window;
+pub mod theta;
 
 pub use assumed::{AssumedStrain, Dilatation};
 pub use boundary::BoundaryLayer;

@@ -8,6 +8,8 @@
 //! each element exactly, its moments of inertia not; frequencies of quadratic elements become of second order in
 //! the element's size, in every direction, where the consistent mass has fourth. The load of gravity stays
 //! consistent, `∫ rho N_a g dV`, so that a lumped body carries the same static load.
+//!
+//! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 
 use serde::{Deserialize, Serialize};
 

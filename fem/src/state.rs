@@ -3,6 +3,7 @@
 use crate::material::Points;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
 
 /// Motion of all nodes at one time, shapes `[3 * nodes]`, and history of the material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +35,15 @@ impl State {
         }
         state
     }
+
+    /// Becomes a copy of another state of the same model, without new memory but for the Gauss points.
+    pub fn copy_from(&mut self, other: &State) {
+        self.time = other.time;
+        self.u.clone_from(&other.u);
+        self.v.clone_from(&other.v);
+        self.a.clone_from(&other.a);
+        self.points.clone_from(&other.points);
+    }
 }
 
 /// What entered and left the body in one step; for the ledger of energy.
@@ -55,4 +65,15 @@ pub struct StepAudit {
     pub plastic_dissipation: f64,
     /// Energy taken by the time integration itself [J]; negative when it feeds energy in.
     pub numerical_dissipation: f64,
+}
+
+impl AddAssign for StepAudit {
+    fn add_assign(&mut self, other: StepAudit) {
+        self.external_work += other.external_work;
+        self.support_work += other.support_work;
+        self.damping_dissipation += other.damping_dissipation;
+        self.boundary_dissipation += other.boundary_dissipation;
+        self.plastic_dissipation += other.plastic_dissipation;
+        self.numerical_dissipation += other.numerical_dissipation;
+    }
 }

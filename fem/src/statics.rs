@@ -76,7 +76,7 @@ impl StaticSolver {
         self.system.counts()
     }
 
-    /// Memory of conjugate gradients or of MUMPS beside that of the model [bytes].
+    /// Memory of conjugate gradients or of a library beside that of the model [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }

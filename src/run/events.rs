@@ -5,6 +5,8 @@
 //! is the estimate of the greatest likelihood for bins of width Δ, lg e/(mean M − (M_c − Δ/2)), over the events from M_c on,
 //! with the error 2.3 b² s/√n of Shi and Bolt (Bull. Seism. Soc. Am. 72, 1982); M_c is the bin that most events are in
 //! (Wiemer and Wyss 2000). Joining breaks: Hazzard and Young, Int. J. Rock Mech. 37, 2000.
+//!
+//! Theory manual: equation (6.41) of `docs/theory/track.md`.
 
 use crate::columns::events;
 use crate::failure::Failure;

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::model::solid::{InitialStressKind, InitialStressPlan, SolidPart};
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
-use trackbed_fem::{Model, State};
+use trackbed_fem::{Model, State, TimeIntegrator};
 
 /// The state of `model`, a solid or its ground alone, with its initial stress, and the share of the weight that this stress
 /// carries already.
@@ -49,7 +49,7 @@ pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]
         }
     };
     solver
-        .advance(model, &mut state, 1.0, &mut loading, |_, _| {})
+        .integrate(model, &mut state, 1.0, &mut loading, &mut |_, _, _| {})
         .map_err(|e| part.failure(&e).in_stage("before time 0, during application of weight and loads"))?;
     state.time = 0.0;
     Ok(state)

@@ -23,7 +23,6 @@ pub mod mpi;
 mod occupied;
 mod origin;
 mod packing;
-mod plastic;
 mod ranks;
 mod record;
 mod recorder;

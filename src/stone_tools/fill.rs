@@ -21,6 +21,8 @@
 //! Source: own, after the variational sphere sets of R. Wang et al., The Visual Computer 22, 2006 (assignment and fit in
 //! turn), with distance for volume as measure.
 //! Limits: features smaller than the lattice (a 26th of the longest side) are not seen by step 1.
+//!
+//! Theory manual: equation (2.3) of `docs/theory/shapes.md`.
 
 use nalgebra::{Matrix4, Vector3, Vector4};
 use trackbed_dem::distance::SurfaceDistance;

@@ -11,6 +11,8 @@
 //!
 //! Source: growth with relaxation after B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 1990, without
 //! their dynamics: overlaps are removed by projection.
+//!
+//! Theory manual: equation (2.5) of `docs/theory/shapes.md`.
 
 use nalgebra::Vector3;
 use trackbed_dem::distance::SurfaceDistance;

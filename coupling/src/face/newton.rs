@@ -8,6 +8,8 @@
 //!
 //! Limit: a face folded so strongly that several local minima lie within reach yields the one nearest to the
 //! start.
+//!
+//! Theory manual: equation (5.1) of `docs/theory/coupling.md`.
 
 use super::domain::{Domain, Location};
 use super::form::{Form, cross, dot};

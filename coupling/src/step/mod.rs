@@ -8,7 +8,7 @@
 //! 2. m steps of the grains, each with contact on the curved faces where they are in the middle of the step; each contact
 //!    force becomes nodal forces at its mapped point, and their sums are audited;
 //! 3. the nodal impulses, divided by Δt, load the solid for one implicit step with the window's mean force (see
-//!    [`trackbed_fem::window`]), so that the momentum given by the grains is the momentum received by the solid.
+//!    [`trackbed_fem::theta`]), so that the momentum given by the grains is the momentum received by the solid.
 //!
 //! A window begins where the solid is, not where the window before left the surface. Normal springs follow from positions;
 //! tangential springs, sums of velocities, are displaced by this correction in the first step of the grains. Without it they follow

@@ -1,54 +1,25 @@
-//! The solid's step over a window: elastic, plastic or reduced.
+//! The solver of the solid's step over a window, and why a coupled step fails.
 
 use super::model::Model;
 use crate::scheme::Scheme;
 use trackbed_dem as dem;
-use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::nonlinear::PlasticWindowSolver;
-use trackbed_fem::reduction::ReducedWindowSolver;
-use trackbed_fem::state::StepAudit;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 
-/// The solid's step over a window.
-pub(super) enum SolidSolver {
-    /// One solve with a factor that is kept.
-    Elastic(Box<WindowSolver>),
-    /// Newton's iteration on the stresses of the Gauss points.
-    Plastic(Box<PlasticWindowSolver>),
-    /// The equations of a few shapes.
-    Reduced(Box<ReducedWindowSolver>),
-}
-
-impl SolidSolver {
-    pub fn new(model: &Model<'_>, without_stresses: bool) -> Result<SolidSolver, SolveError> {
-        let (solid, theta, window) = (model.solid, model.theta, model.window());
-        if solid.is_linear() && without_stresses {
-            return Ok(SolidSolver::Elastic(Box::new(WindowSolver::new(solid, theta, window)?)));
-        }
-        if model.scheme == Scheme::Stiffened {
-            return Err(not_constant(model));
-        }
-        Ok(SolidSolver::Plastic(Box::new(PlasticWindowSolver::new(solid, theta, window, model.newton)?)))
+/// The solver for a solid with stresses at its Gauss points or without: one factor that is kept for a linear solid without, else
+/// Newton's iteration.
+///
+/// # Errors
+/// The matrix cannot be factored, or the stiffened scheme, which needs a constant one, has a plastic solid.
+pub(super) fn solver(model: &Model<'_>, without_stresses: bool) -> Result<Box<dyn ThetaMethod>, SolveError> {
+    let (solid, theta, window) = (model.solid, model.theta, model.window());
+    if solid.is_linear() && without_stresses {
+        return Ok(Box::new(ThetaSolver::new(solid, theta, window)?));
     }
-
-    pub fn step(
-        &mut self,
-        solid: &fem::model::Model,
-        state: &mut fem::state::State,
-        mean_load: &[f64],
-    ) -> Result<StepAudit, SolveError> {
-        match self {
-            SolidSolver::Elastic(solver) => solver.step(solid, state, mean_load),
-            SolidSolver::Plastic(solver) => solver.step(solid, state, mean_load),
-            SolidSolver::Reduced(solver) => solver.step(solid, state, mean_load),
-        }
+    if model.scheme == Scheme::Stiffened {
+        return Err(SolveError::Plastic { material: solid.plastic_material().unwrap_or_default() });
     }
-}
-
-/// The stiffened scheme needs a solid with a constant matrix.
-pub(super) fn not_constant(model: &Model<'_>) -> SolveError {
-    SolveError::Plastic { material: model.solid.plastic_material().unwrap_or_default() }
+    Ok(Box::new(NonlinearTheta::new(solid, theta, window, model.newton)?))
 }
 
 /// Why a coupled step failed.

@@ -2,7 +2,7 @@
 
 use super::interface_check::InterfaceCheck;
 use super::model::Model;
-use super::solver::SolidSolver;
+use super::solver::solver;
 use super::stiffened::{Held, Stiffened};
 use crate::accelerate::Accelerator;
 use crate::interface::Interface;
@@ -17,7 +17,8 @@ use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
 use trackbed_fem::nonlinear::{Memory, Statistics};
-use trackbed_fem::reduction::{Estimate, Reduced, ReducedWindowSolver};
+use trackbed_fem::reduction::{Estimate, Reduced};
+use trackbed_fem::theta::{ReducedTheta, ThetaMethod};
 
 /// All that a continuation of the run needs.
 #[derive(Clone, Serialize, Deserialize)]
@@ -51,7 +52,9 @@ pub struct Work<B = dem::Work> {
     /// The surface that grains touch.
     pub surface: SolidSurface,
     pub(super) transfer: Transfer,
-    pub(super) solver: SolidSolver,
+    pub(super) solver: Box<dyn ThetaMethod>,
+    /// Shapes that the steps of the solid are reduced to, if any.
+    reduced: Option<Arc<Reduced>>,
     pub(super) load: Vec<f64>,
     pub(super) contact_load: Vec<f64>,
     pub(super) other_load: Vec<f64>,
@@ -126,7 +129,8 @@ impl<B: dem::BackEnd> Work<B> {
             transfer: Transfer::new(&surface),
             interface: Interface::new(model.solid, &surface),
             surface,
-            solver: SolidSolver::new(model, state.solid.points.is_empty())?,
+            solver: solver(model, state.solid.points.is_empty())?,
+            reduced: None,
             load: vec![0.0; n],
             contact_load: vec![0.0; n],
             other_load: vec![0.0; n],
@@ -144,17 +148,17 @@ impl<B: dem::BackEnd> Work<B> {
     /// # Errors
     /// A solid with plasticity or stresses at its Gauss points, or another one than was reduced.
     pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<Reduced>) -> Result<(), SolveError> {
-        let solver = ReducedWindowSolver::new(model.solid, reduced, model.theta, model.window())?;
-        self.solver = SolidSolver::Reduced(Box::new(solver));
+        self.solver = Box::new(ReducedTheta::new(model.solid, reduced.clone(), model.theta, model.window())?);
+        self.reduced = Some(reduced);
         Ok(())
     }
 
     /// Makes the solver of the solid anew, for windows of another length.
     pub(super) fn refactor(&mut self, model: &Model<'_>, without_stresses: bool) -> Result<(), SolveError> {
-        match &self.solver {
-            SolidSolver::Reduced(solver) => self.reduce(model, solver.reduced().clone()),
-            SolidSolver::Elastic(_) | SolidSolver::Plastic(_) => {
-                self.solver = SolidSolver::new(model, without_stresses)?;
+        match self.reduced.clone() {
+            Some(reduced) => self.reduce(model, reduced),
+            None => {
+                self.solver = solver(model, without_stresses)?;
                 Ok(())
             }
         }
@@ -162,26 +166,17 @@ impl<B: dem::BackEnd> Work<B> {
 
     /// What the reduction of the solid costs in accuracy; none without one.
     pub fn reduction(&self) -> Option<Estimate> {
-        match &self.solver {
-            SolidSolver::Reduced(solver) => Some(*solver.reduced().estimate()),
-            SolidSolver::Elastic(_) | SolidSolver::Plastic(_) => None,
-        }
+        self.reduced.as_ref().map(|reduced| *reduced.estimate())
     }
 
     /// Counts of the iteration of a plastic solid.
     pub fn newton(&self) -> Option<Statistics> {
-        match &self.solver {
-            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
-            SolidSolver::Plastic(solver) => Some(solver.statistics()),
-        }
+        self.memory().map(|memory| memory.statistics())
     }
 
     /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
     pub fn memory(&self) -> Option<Memory> {
-        match &self.solver {
-            SolidSolver::Elastic(_) | SolidSolver::Reduced(_) => None,
-            SolidSolver::Plastic(solver) => Some(solver.memory()),
-        }
+        self.solver.memory()
     }
 
     /// Goes on with the memory of scratch that was made for the same model.
@@ -189,10 +184,7 @@ impl<B: dem::BackEnd> Work<B> {
     /// # Errors
     /// A matrix cannot be factored.
     pub fn recall(&mut self, model: &Model<'_>, memory: Option<&Memory>) -> Result<(), SolveError> {
-        match (&mut self.solver, memory) {
-            (SolidSolver::Plastic(solver), Some(memory)) => solver.recall(model.solid, memory),
-            _ => Ok(()),
-        }
+        memory.map_or(Ok(()), |memory| self.solver.recall(model.solid, memory))
     }
 
     /// Largest pressure on one face in the last window: normal force over area, mean over the window [Pa].

@@ -9,6 +9,8 @@
 //! v̄ being the surface's mean velocity in the window: the last term goes into the solid's matrix. Stones are taken to keep
 //! their velocity. Contacts that would pull are left out; those that slide count as sticking, which only makes the
 //! prediction a little stiffer. The forces that act in the end are those of the grains' own steps.
+//!
+//! Theory manual: equation (5.8) of `docs/theory/coupling.md`.
 
 use super::model::Model;
 use crate::face::dot;
@@ -19,7 +21,7 @@ use trackbed_dem as dem;
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::ThetaMethod;
 
 /// A contact of the last grain step of a window.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -106,7 +108,7 @@ impl Stiffened {
         grains: &dem::State,
         held: &[Held],
         surface: &SolidSurface,
-        solver: &mut WindowSolver,
+        solver: &mut dyn ThetaMethod,
         solid: &fem::state::State,
         load: &mut [f64],
         rate: &mut [f64],
@@ -126,12 +128,12 @@ impl Stiffened {
         distribute(surface, field, |n, f| {
             (0..3).for_each(|d| load[3 * nodes[n as usize] as usize + d] += f[d]);
         });
-        let product = |w: &[f64], out: &mut [f64]| {
+        let mut product = |w: &[f64], out: &mut [f64]| {
             let velocity = |k: usize| [0, 1, 2].map(|d| w[3 * nodes[k] as usize + d]);
             contacts.times(surface, velocity, |n, f| {
                 (0..3).for_each(|d| out[3 * nodes[n as usize] as usize + d] += f[d]);
             });
         };
-        solver.predict(model.solid, solid, load, product, rate)
+        solver.predict(model.solid, solid, load, &mut product, rate)
     }
 }

@@ -1,8 +1,10 @@
 //! One window of the coupled step, in the order of its scheme.
+//!
+//! Theory manual: equations (5.6), (5.7) of `docs/theory/coupling.md`.
 
 use super::account::book;
 use super::model::Model;
-use super::solver::{SolidSolver, StepError, not_constant};
+use super::solver::StepError;
 use super::state::{State, Work};
 use super::stiffened::Held;
 use crate::scheme::Scheme;
@@ -248,9 +250,6 @@ fn solid<B>(model: &Model<'_>, state: &mut State, work: &mut Work<B>) -> Result<
 /// The velocity that the surface goes on with in the stiffened scheme.
 fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u32, StepError> {
     let time = state.solid.time;
-    let SolidSolver::Elastic(solver) = &mut work.solver else {
-        return Err(StepError::Solid { time, source: not_constant(model) });
-    };
     for ((load, other), dead) in work.load.iter_mut().zip(&work.other_load).zip(&model.dead_load) {
         *load = other + dead;
     }
@@ -260,7 +259,7 @@ fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u3
             &state.grains,
             &state.held,
             &work.surface,
-            solver,
+            &mut *work.solver,
             &state.solid,
             &mut work.load,
             &mut work.rate,

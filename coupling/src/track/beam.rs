@@ -2,6 +2,8 @@
 //!
 //! Source: Przemieniecki, Theory of Matrix Structural Analysis, 1968, equations 5.116 and 11.24 (without shear).
 //! Limits: small deflections, no shear deformation, no rotatory inertia.
+//!
+//! Theory manual: equation (6.7) of `docs/theory/track.md`.
 
 use super::band::Band;
 

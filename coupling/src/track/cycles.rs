@@ -2,6 +2,8 @@
 //!
 //! A cycle that was simulated has a row. Its number counts the cycles that were jumped over too; where only the account
 //! jumps, the bed is younger than that number, and the settlement of the row is the measured one plus slope × ln(number/age).
+//!
+//! Theory manual: equations (6.14), (6.15), (6.16) of `docs/theory/track.md`.
 
 use super::load::CyclicLoad;
 use serde::{Deserialize, Serialize};

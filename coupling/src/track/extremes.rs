@@ -1,4 +1,6 @@
 //! Extremes of sleepers while the load cycles last: forces, lowering, loss of contact, bending.
+//!
+//! Theory manual: equation (6.5) of `docs/theory/track.md`.
 
 use serde::{Deserialize, Serialize};
 

@@ -3,6 +3,8 @@
 //! Sources: Winkler, Die Lehre von der Elasticität und Festigkeit, 1867; Zimmermann, Die Berechnung des
 //! Eisenbahnoberbaues, 1888 (beam on a continuous elastic foundation); Hetényi, Beams on Elastic Foundation, 1946,
 //! section 3. Limits: quasi-static, the foundation pulls as well as it pushes.
+//!
+//! Theory manual: equations (6.3), (6.6) of `docs/theory/track.md`.
 
 /// A beam on a continuous elastic foundation.
 #[derive(Clone, Copy, Debug, PartialEq)]

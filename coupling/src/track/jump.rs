@@ -15,6 +15,8 @@
 //!   in has a term of its own in the account.
 //!
 //! Limits: a bed that breaks, or whose load changes, has no such logarithm. Driven walls are not moved.
+//!
+//! Theory manual: equations (6.24), (6.25), (6.26), (6.27) of `docs/theory/track.md`.
 
 use super::cycles::CycleRecorder;
 use super::settlement;

@@ -8,6 +8,8 @@
 //! mass](super::rail). A wheel that follows a rail of the shape a sin wt without losing contact needs the inertia force
 //! M a w² of its unsprung mass (Newton's law), so that its force is F = P + Σ M a w² sin wt; the vehicle's own suspension is left
 //! out.
+//!
+//! Theory manual: equations (6.1), (6.2), (6.4) of `docs/theory/track.md`.
 
 use super::influence::{GAUSS_REACH, Winkler, gauss};
 use super::rail::Wheel;

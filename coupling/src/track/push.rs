@@ -5,6 +5,8 @@
 //! ram, mean over one row: less the inertia of the sleeper, which at a steady speed is none.
 //!
 //! Limits: a single sleeper, without a rail.
+//!
+//! Theory manual: equation (6.28) of `docs/theory/track.md`.
 
 use super::row::SleeperRow;
 use super::system::GrainsView;

@@ -14,6 +14,8 @@
 //! [`RailState::energy_at_half_step`] gives the account at the same instant.
 //!
 //! Limits: vertical motion only; pads pull as well as they push, as clips do; no shear deformation.
+//!
+//! Theory manual: equations (6.8), (6.9), (6.10), (6.11) of `docs/theory/track.md`.
 
 use super::band::{Band, BandFactor};
 use super::beam::Element;

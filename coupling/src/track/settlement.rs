@@ -8,6 +8,8 @@
 //! Limits: the laws are of whole tests; cycles before [`FIRST`], in which the sleeper finds its seat, are left out.
 //! Alva-Hurtado & Selig and Hettler are one curve written in two ways. Errors of neighbouring cycles are alike, so no
 //! confidence interval of a parameter is given.
+//!
+//! Theory manual: equations (6.17) to (6.23) of `docs/theory/track.md`.
 
 use serde::Serialize;
 

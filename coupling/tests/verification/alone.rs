@@ -8,7 +8,7 @@ use trackbed_dem::Vec3;
 use trackbed_dem::surface::NoSurface;
 use trackbed_fem as fem;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 /// Spheres that tumble in a box above the block.
 fn heap() -> dem::ModelInput {
@@ -67,7 +67,7 @@ fn sides_that_do_not_touch_have_the_bits_of_each_alone() {
     push(&mut f);
     let grains = dem::Model::new(heap()).unwrap();
     let window = 5.0 * grains.dt();
-    let mut solver = WindowSolver::new(&solid, 0.5, window).unwrap();
+    let mut solver = ThetaSolver::new(&solid, 0.5, window).unwrap();
     let mut bed = dem::State::new(&grains);
     let mut scratch = dem::Work::new(&grains, &bed);
     for _ in 0..WINDOWS {

@@ -6,7 +6,8 @@ use trackbed_coupling::step;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_fem as fem;
-use trackbed_fem::nonlinear::{NewtonOptions, PlasticWindowSolver, Variant};
+use trackbed_fem::nonlinear::{NewtonOptions, Variant};
+use trackbed_fem::theta::{NonlinearTheta, ThetaMethod};
 
 const RADIUS: f64 = 0.05;
 
@@ -67,7 +68,7 @@ fn iterated_windows_on_plastic_ground_begin_from_the_same_stresses() {
     c.model.newton = newton;
     c.work = step::Work::new(&c.model, &c.state, top(&solid)).unwrap();
     let window = c.model.window();
-    let mut alone = PlasticWindowSolver::new(&solid, c.model.theta, window, newton).unwrap();
+    let mut alone = NonlinearTheta::new(&solid, c.model.theta, window, newton).unwrap();
     for k in 0..60 {
         let mut again = c.state.solid.clone();
         c.step(&[(0, [0.0, 0.0, -50.0 * f64::from(k)])]);

@@ -4,6 +4,8 @@
 //! volume. C_d belongs to that radius and does not change with the speed: crushed stone of sphericity 0.8 has about 1.4, of 0.9
 //! 0.9, and a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵ (Haider & Levenspiel, Powder Technology 58, 1989,
 //! eq. 11). No lift, no shelter behind other bodies, no torque.
+//!
+//! Theory manual: equation (6.34) of `docs/theory/track.md`.
 
 use super::four::{self, ActOnFour, Bodies4};
 use super::work::{Act, ForceWork, Seen};

@@ -8,6 +8,8 @@
 //!
 //! Once the contact has ended and the spheres have no overlap, the pair goes to the ordinary contacts; this is looked
 //! at after fixed numbers of steps, so that it depends neither on the search nor on a restart.
+//!
+//! Theory manual: equation (2.14) of `docs/theory/shapes.md`.
 
 use super::slot::BondSlot;
 use crate::base::error::Partner;

@@ -13,6 +13,8 @@
 //!
 //! The bond breaks at max(S₁, S₂) = 1 or, by sum, at S₁ + S₂ = 1, with the shares of strength
 //! S₁ = s₀T + s₁|θ⊥|, S₂ = s₂|u| + s₃|θ·n| + s₄T. Dashpots do not count.
+//!
+//! Theory manual: equations (2.11), (2.12) of `docs/theory/shapes.md`.
 
 use crate::lanes::{Real, V3};
 

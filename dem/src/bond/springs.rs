@@ -1,4 +1,6 @@
 //! What every kind of bond makes: springs with their limits, damping, and the check of its numbers; the springs of those that are beams.
+//!
+//! Theory manual: equations (2.11), (2.12) of `docs/theory/shapes.md`.
 
 use super::face::Face;
 use super::parallel::ShearStrength;

@@ -5,6 +5,8 @@
 //!   it); the mean is Γ(1 + 1/m).
 //!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
+//!
+//! Theory manual: equation (2.13) of `docs/theory/shapes.md`.
 
 use crate::base::random::Random;
 use std::f64::consts::TAU;

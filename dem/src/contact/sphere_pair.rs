@@ -1,6 +1,8 @@
 //! Contacts between spheres over the lanes of one group or two: detection, the law, forces and torques. Generic in the
 //! law, in whether bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps, and in whether
 //! rolling is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
+//!
+//! Theory manual: equation (1.1) of `docs/theory/contacts.md`.
 
 use super::ends::End;
 use super::group_memory::{Mix, Spent, recall, remember};

@@ -4,6 +4,8 @@
 //! fall in a step: restitution e = 0.5 comes out 0.4993 to 0.5027 at x = 0.2 and up to 0.51 at x = 0.3; without a dashpot the
 //! kinetic energy grows by about 0.0063 x³ per collision, which nothing takes away again. So x ≤ 0.2 where the restitution is
 //! well below 1, and less where the growth would be more than a hundredth of what the collision takes, 1 − e²; 0.08 at least.
+//!
+//! Theory manual: equation (3.8) of `docs/theory/motion.md`.
 
 use super::input::ModelInput;
 use super::timestep::contact_radius;

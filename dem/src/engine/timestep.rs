@@ -32,6 +32,8 @@
 //!
 //! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
 //! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
+//!
+//! Theory manual: equation (3.6) of `docs/theory/motion.md`.
 
 use super::input::ModelInput;
 use crate::base::Vec3;

@@ -13,6 +13,8 @@
 //!
 //! Limits: the size of a stone is its sieve size; the mass per size³ must not depend on the size, so shapes are to
 //! be dealt out independently of the sizes.
+//!
+//! Theory manual: equation (2.2) of `docs/theory/shapes.md`.
 
 use crate::base::random::Random;
 use serde::{Deserialize, Serialize};

@@ -11,6 +11,8 @@
 //!
 //! Limits: without friction equal spheres jam near n = 0.36, two sizes lower; below that overlaps grow and the porosity
 //! found stays above the one asked for. The sides of cones are 96 flat strips around the circle (volume + 0.04 %).
+//!
+//! Theory manual: equation (3.13) of `docs/theory/motion.md`.
 
 use super::container::Container;
 use crate::base::error::{ModelError, StepError};

@@ -1,4 +1,6 @@
 //! Kicks: what forces make of velocities in a step, without the arrays that these lie in (`leapfrog.rs`).
+//!
+//! Theory manual: equation (3.9) of `docs/theory/motion.md`.
 
 use crate::lanes::{Real, V3};
 

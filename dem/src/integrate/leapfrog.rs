@@ -10,6 +10,8 @@
 //! where it drives the motion, and adds it where it brakes; it is booked with the mean of the velocities too.
 //!
 //! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
+//!
+//! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 
 use super::kick::{Push, Single, kick_free, kick_single, resist, turn_of_sphere};
 use super::pace::Pace;

@@ -10,6 +10,8 @@
 //! to rounding, for any step (Simo & Wong, Int. J. Numer. Meth. Engng 31, 1991; Austin, Krishnaprasad & Wang,
 //! J. Comput. Phys. 107, 1993). Second order, no trigonometric function. The implicit equation is solved by fixed
 //! points, each gaining a factor of about ω dt.
+//!
+//! Theory manual: equation (3.4) of `docs/theory/motion.md`.
 
 use crate::base::Vec3;
 use crate::lanes::turn::Turn;

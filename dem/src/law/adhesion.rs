@@ -14,6 +14,8 @@
 //! below 0.1), for large and soft ones the pull-off force is 3/4 of it (Johnson, Kendall & Roberts 1971). At parting the last
 //! force counts for a whole step, which books up to F v dt/2 too much or too little. No boxes, no bonds, no rigid bodies
 //! of triangles.
+//!
+//! Theory manual: equation (1.15) of `docs/theory/contacts.md`.
 
 use crate::law::material::Pair;
 use std::f64::consts::TAU;

@@ -12,6 +12,8 @@
 //!
 //! The parts: `linear.rs`, `hertz.rs` (normal), `spring.rs`, `mindlin.rs` (tangential), `damping.rs`, `turning.rs` (rolling
 //! and twisting), `adhesion.rs`. Friction, rolling and twisting coefficients of a pair are the smaller of the two.
+//!
+//! Theory manual: equation (3.3) of `docs/theory/motion.md`.
 
 use super::adhesion;
 use super::constants::{Constants, constants};

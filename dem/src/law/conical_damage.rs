@@ -18,6 +18,8 @@
 //! 19:64, 2017 (also in YADE, by the latter). Mixing: the smaller σ and the smaller α; a partner without a strength of its own does not lower them. Against a partner so soft that h ≥ 5k nothing crushes.
 //!
 //! Limits: rubble takes no room; contact circle small against the radii.
+//!
+//! Theory manual: equations (1.10), (1.11), (1.12) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::contact::FRESH;

@@ -13,6 +13,8 @@
 //!
 //! Limits: one point of an edge does not sink where another one presses. Edges side by side, which press from both, are twice as
 //! stiff as one of them on a face; those that cross at an angle θ follow 1/sin θ, where elastic cylinders follow its root nearly.
+//!
+//! Theory manual: equation (2.8) of `docs/theory/shapes.md`.
 
 use super::hertz::Hertz;
 use super::material::{LawName, Material, Pair, PairOverride};

@@ -16,6 +16,8 @@
 //! * Rest below all others: a column of height H presses with F = 4 R² ρ g H on a sphere, d/R = (3 ρ g H/E*)^(2/3).
 //!
 //! Limits: smooth elastic spheres, contact circle small against the radii.
+//!
+//! Theory manual: equations (1.2), (1.7), (3.7) of `docs/theory/contacts.md` and `docs/theory/motion.md`.
 
 use super::constants::constants;
 use super::lag;

@@ -5,6 +5,8 @@
 //! it is what it should be, and so is the restitution. In place of the root stands (4 + x)/(4 + 3x), which differs from it by
 //! x³/32 (4e-5 of C at x = 0.1, more than a collision resolved as usual has) and whose division joins that of the
 //! coefficient itself: no contact pays for a second root.
+//!
+//! Theory manual: equation (3.2) of `docs/theory/motion.md`.
 
 use crate::lanes::Real;
 

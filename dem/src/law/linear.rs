@@ -5,6 +5,8 @@
 //! give the wanted restitution (`restitution.rs`). Source: Cundall & Strack, Géotechnique 29 (1979).
 //!
 //! The dashpot's force jumps from zero at first touch, see `composed.rs`. Limits: overlaps small against the radii.
+//!
+//! Theory manual: equation (1.3) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::lag;

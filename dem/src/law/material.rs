@@ -1,4 +1,6 @@
 //! Contact materials and exceptions for pairs of them.
+//!
+//! Theory manual: equation (1.2) of `docs/theory/contacts.md`.
 
 use super::damping::Damping;
 

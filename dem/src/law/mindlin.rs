@@ -11,6 +11,8 @@
 //!
 //! Limits: the partial slip near the rim under oscillating tangential force (Mindlin & Deresiewicz 1953) only as the rule
 //! above has it.
+//!
+//! Theory manual: equations (1.2), (1.8) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::hertz::Hertz;

@@ -9,6 +9,8 @@
 //!
 //! e falls steadily with ζ, so bisection inverts it. The usual ζ = −ln e/√(π² + ln²e) ignores the clip and gives
 //! 0.325 where 0.2 is wanted.
+//!
+//! Theory manual: equation (1.4) of `docs/theory/contacts.md`.
 
 /// Where it is published.
 pub(super) const SOURCE: &str =

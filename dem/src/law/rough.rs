@@ -14,6 +14,8 @@
 //! Mixing: the smaller μₐ, the smaller p. A pair with a friction of its own (`PairOverride::friction`) has that one alone.
 //!
 //! Limits: asperities do not wear, so what a contact has borne before does not count. The product μ(F) F grows with F throughout.
+//!
+//! Theory manual: equation (1.13) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::material::{LawName, Pair};

@@ -6,6 +6,8 @@
 //! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π a²) the mean pressure,
 //!
 //! so that crushed corners, where p̄ is 2/3 of their strength, keep μ + μₐ/(1 + 2σ/3p). Mixing as in `rough.rs`.
+//!
+//! Theory manual: equation (1.13) of `docs/theory/contacts.md`.
 
 use super::conical_damage::ConicalDamage;
 use super::constants::constants;

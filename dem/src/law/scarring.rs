@@ -10,6 +10,8 @@
 //! Leine, Schweizer, Christen, Glover, Bartelt & Gerber, Multibody Syst. Dyn. 32, 2014, 241–271 (eqs 46, 47).
 //!
 //! Limits: the drag gives no torque. Soil below the surface is as deep as a rock sinks, and the scar is forgotten when the rock has left.
+//!
+//! Theory manual: equations (6.37), (6.38) of `docs/theory/track.md`.
 
 use crate::base::Vec3;
 use serde::{Deserialize, Serialize};

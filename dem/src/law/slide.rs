@@ -8,6 +8,8 @@
 //! both follows from −Ks (ξ + u t) − Cs u = the limited force, so that the dashpot takes Cs u² and the spring never holds more than
 //! was put into it. (With the dashpot at the full velocity, as in LAMMPS' `gran/hooke/history`, a
 //! fast graze leaves the spring stretched by −Cs v/Ks, far beyond what the contact has done.)
+//!
+//! Theory manual: equations (1.5), (1.6) of `docs/theory/contacts.md`.
 
 use super::tangential::Grip;
 use crate::lanes::{Real, V3};

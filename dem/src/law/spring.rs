@@ -2,6 +2,8 @@
 //!
 //! Ks = α K with K of the normal law on first loading, and Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slide.rs`).
 //! Mixing: α harmonic like the stiffness, 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
+//!
+//! Theory manual: equation (1.6) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::material::{LawName, Pair, harmonic};

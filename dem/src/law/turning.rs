@@ -1,4 +1,6 @@
 //! Rolling and twisting resistance: springs that yield, with the stiffness of the tangential one.
+//!
+//! Theory manual: equation (1.14) of `docs/theory/contacts.md`.
 
 use super::slide::{Slid, line, plane};
 use super::tangential::Grip;

@@ -10,6 +10,8 @@
 //! 30, 949 (1986), with their constant ratio of stiffnesses; beside it the spring of `spring.rs` with Ks = α k₁.
 //!
 //! Limits: overlaps small against the radii; no dashpot, also none beside the tangential spring.
+//!
+//! Theory manual: equation (1.9) of `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::contact::FRESH;

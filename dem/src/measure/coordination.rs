@@ -1,4 +1,6 @@
 //! How many partners bodies have, and which way their contacts look.
+//!
+//! Theory manual: equation (3.14) of `docs/theory/motion.md`.
 
 use super::contacts::ContactRecord;
 use crate::base::error::Partner;

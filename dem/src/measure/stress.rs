@@ -6,6 +6,8 @@
 //! The mean stress in a region of volume V is Σ V_p σ_p / V over the bodies with their centre in it. For a region that
 //! ends at walls which hold all bodies, in equilibrium without weight, this is the force on a wall over its area.
 //! Limits: a region with sides amid the bodies should be many of them wide: those on its border count whole or not.
+//!
+//! Theory manual: equation (3.14) of `docs/theory/motion.md`.
 
 use super::BoxRegion;
 use super::contacts::{ContactRecord, contacts};

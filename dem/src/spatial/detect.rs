@@ -1,4 +1,6 @@
 //! Geometry of a touch, per pair of shapes. Nothing here knows stiffness or storage.
+//!
+//! Theory manual: equation (1.1) of `docs/theory/contacts.md`.
 
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};

@@ -8,6 +8,8 @@
 //!
 //! What presses into the bodies in return are edges where the surface bends (in full from half a degree on), its borders, and corners around
 //! which an angle is missing: not what lies flat.
+//!
+//! Theory manual: equation (2.9) of `docs/theory/shapes.md`.
 
 use super::bvh::Aabb;
 use crate::base::Vec3;

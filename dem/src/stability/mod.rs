@@ -12,6 +12,8 @@
 //! * steps are the first one times a power of 2^⅛, so that small changes leave it as it is.
 //!
 //! All of it depends on the state alone, so that a run has the same steps with any number of threads and across a restart.
+//!
+//! Theory manual: equation (3.5) of `docs/theory/motion.md`.
 
 mod lanczos;
 mod operator;

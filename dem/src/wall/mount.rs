@@ -10,6 +10,8 @@
 //! free vibration tend to ω √(1 − ζ²) and ζ ω with h².
 //!
 //! Limits: linear; axes of the world; turning is held by `fixed` or not at all.
+//!
+//! Theory manual: equation (3.12) of `docs/theory/motion.md`.
 
 use super::input::Mount;
 use crate::base::Vec3;

@@ -10,6 +10,8 @@
 //!
 //! Source: the idea of a gain from the sum of contact stiffnesses is that of the servo walls of Cundall's programs
 //! (P. A. Cundall and O. D. L. Strack, Géotechnique 29, 1979, and later manuals); the dashpot's share is added here.
+//!
+//! Theory manual: equation (3.11) of `docs/theory/motion.md`.
 
 use crate::base::Vec3;
 

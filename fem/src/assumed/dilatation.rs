@@ -9,6 +9,8 @@
 //! 51 (1985) 177-208 (its variational form); de Souza Neto, Perić and Owen, Computational Methods for Plasticity (2008),
 //! section 15.1. A projection on terms that hold the constant keeps the mean of every gradient, so constant stress has
 //! the nodal forces of the plain element and the patch test is passed where that passes it.
+//!
+//! Theory manual: equation (4.3) of `docs/theory/solid.md`.
 
 use crate::element::ElementKind;
 use crate::kinematics::ElementCoordinates;

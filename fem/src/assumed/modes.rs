@@ -9,6 +9,8 @@
 //! Source: Taylor, Beresford and Wilson, Int. J. Numer. Methods Eng. 10 (1976) 1211-1219; Simo and Rifai, Int. J. Numer. Methods
 //! Eng. 29 (1990) 1595-1638. Limits: trapezoidal elements stay stiff in bending (MacNeal, Finite Elements in Analysis and Design 3
 //! (1987) 175-181); an elastic part of a body whose material yields bends as one of Poisson's ratio 1/2 within each element.
+//!
+//! Theory manual: equation (4.4) of `docs/theory/solid.md`.
 
 use crate::kinematics::ElementCoordinates;
 use nalgebra::SMatrix;

@@ -17,6 +17,8 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 8.9 (serendipity family).
 //! The functions hold complete quadratic polynomials, so the error of a smooth field falls as h³ (in the mean of
 //! squares) while mid-side nodes stay near the middle of straight sides.
+//!
+//! Theory manual: equation (4.1) of `docs/theory/solid.md`.
 
 /// Number of nodes of the serendipity hexahedron.
 pub const HEX20_NODES: usize = 20;

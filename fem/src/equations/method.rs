@@ -113,8 +113,8 @@ impl Method {
         })
     }
 
-    /// Memory that a solver of the equations takes, known before it is made [bytes]. That of conjugate gradients for statics is known by
-    /// what embankments took (2.5 to 2.75 kB a node at 7,500 to 100,000 nodes).
+    /// Memory that a solver of the equations takes, known before it is made [bytes]. That of conjugate gradients for statics is known from
+    /// embankments (2.5 to 2.75 kB a node at 7,500 to 100,000 nodes).
     ///
     /// # Errors
     /// The equations cannot be analysed; [`SolveError::Library`].

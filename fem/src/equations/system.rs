@@ -73,7 +73,7 @@ pub struct Added<'a> {
     pub scratch: [&'a mut [f64]; 2],
 }
 
-/// A solver of the equations of a model, with its factor or with what its iteration needs.
+/// A solver of the equations of a model, with its factor or its iteration.
 pub trait SystemSolver: Send + Sync {
     /// Solves in place: the right-hand side comes in, the solution goes out. `guess` gives a value near the solution by
     /// dofs; only an iteration looks at it. Shape `[equations]`.

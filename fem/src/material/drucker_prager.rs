@@ -5,6 +5,8 @@
 //! psi by the formula of `eta`. Source: de Souza Neto, Peric and Owen (2008), section 8.3 and equations 6.122 to 6.126
 //! for `eta` and `xi`. Limits: `0 <= psi <= phi < 90°`. A cap that comes to lie beyond the apex as `c cot(phi)` falls is
 //! not active; the apex holds there.
+//!
+//! Theory manual: equation (4.12) of `docs/theory/solid.md`.
 
 use super::elastic::{Elastic, Fault};
 use super::hardening::Hardening;

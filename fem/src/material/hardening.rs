@@ -2,6 +2,8 @@
 //!
 //! The hardening variable is `kappa`, `d kappa = sqrt(2/3 d eps_p : d eps_p)` (strain hardening; de Souza Neto, Peric
 //! and Owen 2008, section 6.3.4). In uniaxial flow without volume change it is the plastic part of the axial strain.
+//!
+//! Theory manual: equation (4.11) of `docs/theory/solid.md`.
 
 use super::elastic::Fault;
 use serde::{Deserialize, Serialize};

@@ -16,6 +16,8 @@
 //! 535-609; Borja and Lee, Comput. Methods Appl. Mech. Eng. 78 (1990) 49-72 for the integration and its tangent. Limits: below the
 //! `minimum_pressure` the bulk modulus is that of this pressure and `pc` falls no further, so that ground without
 //! stress can be computed; the circle of the deviatoric plane gives too much strength in extension.
+//!
+//! Theory manual: equation (4.14) of `docs/theory/solid.md`.
 
 pub use super::cam_clay_return::Shear;
 use super::cam_clay_return::{Clay, Step, contract, split, tangent};

@@ -5,6 +5,8 @@
 //! of phi in the first. Source: de Souza Neto, Peric and Owen (2008), section 8.2; see also the sibling module with the
 //! return at fixed strength. Limits: `0 <= psi <= phi < 90°`. A cut-off that comes to lie beyond the apex as `c cot(phi)`
 //! falls is not active; the apex holds there.
+//!
+//! Theory manual: equation (4.13) of `docs/theory/solid.md`.
 
 use super::elastic::{Elastic, Fault};
 use super::hardening::Hardening;

@@ -1,4 +1,6 @@
 //! Cohesion, friction, dilation and tension cut-off, as the criteria of Coulomb's kind share them.
+//!
+//! Theory manual: equation (4.16) of `docs/theory/solid.md`.
 
 use super::elastic::Fault;
 use super::hardening::Hardening;

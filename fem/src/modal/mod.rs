@@ -10,6 +10,8 @@
 //! (2001) 601-614, and Wu and Simon, ibid. 22 (2000) 602-616 (restarts); Clough and Penzien, Dynamics of Structures
 //! (1993), chapter 13 (participation, effective mass). Limits: no damping: Rayleigh damping and dashpots are left out;
 //! frequencies below a thousandth of that of the lowest smooth strain count as rigid, when the body is not held.
+//!
+//! Theory manual: equation (4.18) of `docs/theory/solid.md`.
 
 mod krylov;
 

@@ -19,6 +19,8 @@
 //! Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292; the load at the weighted time as in Hughes
 //! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
 //! when gamma = 1/2; smooth histories are the remedy.
+//!
+//! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
 mod method;
 mod start;
@@ -28,7 +30,7 @@ use crate::energy::inner_force;
 use crate::equations::system::{Counts, SystemSolver};
 pub use crate::error::NewmarkError;
 use crate::error::SolveError;
-use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
+use crate::integrator::{Conditions, Loading, OnStep, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
 use crate::state::State;
 pub use crate::state::StepAudit;
@@ -63,6 +65,8 @@ pub struct NewmarkSolver {
     /// Inner forces at both ends and their scratch; for moved supports only, so empty until then.
     inner: Vec<f64>,
     equations: Vec<f64>,
+    /// Loads of the steps of [`TimeIntegrator::integrate`], empty until then.
+    conditions: Conditions,
 }
 
 impl NewmarkSolver {
@@ -117,6 +121,7 @@ impl NewmarkSolver {
             product: vec![0.0; n],
             inner: Vec::new(),
             equations: vec![0.0; model.free_dof_count()],
+            conditions: Conditions::default(),
         })
     }
 
@@ -321,16 +326,18 @@ impl TimeIntegrator for NewmarkSolver {
         state: &mut State,
         to: f64,
         loading: &mut dyn Loading,
-        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+        on_step: OnStep<'_>,
     ) -> Result<(), SolveError> {
-        for step in steps_of(model, state.time, to, self.dt)? {
-            let ([start, end], prescribed) = step.loads(loading);
-            let moved = model.supports().fixed().iter().zip(&prescribed);
-            let moved = moved.into_iter().any(|((dof, _), value)| state.u[*dof as usize] != *value);
-            let prescribed = moved.then_some(&prescribed[..]);
-            let audit =
-                self.advance(model, state, Drive { load_start: Some(&start), load_end: &end, prescribed })?;
-            state.time = step.ends[1];
+        for ends in steps_of(state.time, to, self.dt)? {
+            let mut conditions = std::mem::take(&mut self.conditions);
+            conditions.evaluate(model, state, ends, loading);
+            let [start, end] = &conditions.loads;
+            let prescribed = conditions.prescribed();
+            let drive = Drive { load_start: Some(start), load_end: end, prescribed };
+            let audit = self.advance(model, state, drive);
+            self.conditions = conditions;
+            let audit = audit?;
+            state.time = ends[1];
             on_step(state, &StepReport::linear(state.time, self.dt), Some(&audit));
         }
         Ok(())
@@ -342,11 +349,6 @@ fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
     for (slot, &d) in equations.iter_mut().zip(free) {
         *slot -= nodal[d as usize];
     }
-}
-
-/// Refuses a weight of the end of a window that is not from 1/2 to 1.
-pub(crate) fn check_theta(theta: f64) -> Result<(), SolveError> {
-    if (0.5..=1.0).contains(&theta) { Ok(()) } else { Err(SolveError::Theta { theta }) }
 }
 
 pub(crate) fn check_dynamics(model: &Model, dt: f64) -> Result<(), SolveError> {

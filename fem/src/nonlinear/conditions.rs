@@ -8,7 +8,7 @@ use crate::statics::check_finite;
 use crate::supports::name;
 
 /// Takes the forces of the boundary springs at the displacement `u` from the right-hand side.
-pub(super) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
+pub(crate) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
     if !model.matrices().springs().is_empty() {
         rhs.iter_mut().for_each(|r| *r = -*r);
         model.boundary_spring_times(u, rhs);
@@ -17,11 +17,11 @@ pub(super) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
 }
 
 /// Prescribed increments from `state` to `time`, in the order of the constrained dofs.
-pub(super) fn prescribe<L: Loading + ?Sized>(
+pub(crate) fn prescribe(
     model: &Model,
     state: &State,
     time: f64,
-    loading: &mut L,
+    loading: &mut dyn Loading,
     increments: &mut [f64],
 ) -> Result<(), SolveError> {
     let fixed = model.supports().fixed();
@@ -39,7 +39,7 @@ pub(super) fn prescribe<L: Loading + ?Sized>(
 }
 
 /// Refuses a state of another model or with numbers that are not finite.
-pub(super) fn check_state(model: &Model, state: &State) -> Result<(), SolveError> {
+pub(crate) fn check_state(model: &Model, state: &State) -> Result<(), SolveError> {
     let n = model.dof_count();
     for (what, found) in [
         ("displacement of the state", state.u.len()),
@@ -58,7 +58,7 @@ pub(super) fn check_state(model: &Model, state: &State) -> Result<(), SolveError
 }
 
 /// Gives a linear model without point states those of its displacement.
-pub(super) fn ensure_points(model: &Model, state: &mut State) {
+pub(crate) fn ensure_points(model: &Model, state: &mut State) {
     if state.points.is_empty() {
         let mut points = model.new_points();
         for e in 0..model.mesh().element_count() {

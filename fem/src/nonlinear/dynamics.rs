@@ -10,27 +10,27 @@
 //! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292;
 //! Simo and Hughes, Computational Inelasticity (1998), section 1.6 for the plastic case. Limits: those of Newmark's
 //! method; a step that is halved takes its loads at the time that it reaches.
+//!
+//! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
 use super::conditions::{check_state, ensure_points, prescribe, subtract_springs};
+use super::halving::Halving;
 use super::internal_force::InternalForce;
-use super::memory::Memory;
 use super::motion::{close, inner_force};
-use super::newton::{Failure, Newton, Problem};
-use super::options::{NewtonOptions, Statistics};
-use super::step_control::{StepControl, StepLength};
+use super::newton::{Failure, INERTIA, Newton, Problem};
+use super::options::NewtonOptions;
 use crate::assembly::Combination;
 use crate::error::SolveError;
-use crate::integrator::{Loading, StepReport, TimeIntegrator};
+use crate::integrator::{Loading, Statistics, StepControl, StepLength};
 use crate::model::Model;
 use crate::newmark::{Newmark, accelerate, check_dynamics};
 use crate::state::{State, StepAudit};
 use crate::statics::check_load;
 
-/// Share of the inertia of the predicted motion that counts as a force in the criterion of convergence: rounding of the velocity
-/// in a step then stays below 1e-8 at a tolerance of 1e-6 where no other force is left.
-const INERTIA: f64 = 1e-3;
-
 /// Moves an elastoplastic body in time.
+///
+/// The acceleration of the state that it starts from must be that of its equations of motion: [`initial_acceleration`]. The work of
+/// its audits is that of the mean of the loads, and of the reactions, at both ends of a step.
 pub struct Dynamics {
     method: Newmark,
     hht: f64,
@@ -100,68 +100,25 @@ impl Dynamics {
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }
+}
 
-    /// What the solver remembers beside the state, for a checkpoint.
-    pub fn memory(&self) -> Memory {
-        self.newton.memory(Some(self.length))
+impl Halving for Dynamics {
+    fn parts(&self) -> (&Newton, &StepLength) {
+        (&self.newton, &self.length)
     }
 
-    /// Goes on with the memory of a solver of the same model and options.
-    ///
-    /// # Errors
-    /// The elastic matrix cannot be factored.
-    pub fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
-        self.newton.recall(model, memory, Some(&mut self.length))
+    fn parts_mut(&mut self) -> (&mut Newton, &mut StepLength) {
+        (&mut self.newton, &mut self.length)
     }
 
-    /// Steps `state` to the time `to`. After every accepted step `on_step` sees the state, how the step converged, and its energies.
-    /// The work is that of the mean of the loads, and of the reactions, at both ends of a step.
-    ///
-    /// The acceleration of the state must be that of its equations of motion: [`initial_acceleration`].
-    ///
-    /// # Errors
-    /// [`SolveError::Diverged`] when a step of the smallest length fails; `state` is then that of the last accepted step, bit for
-    /// bit. A load or displacement that is not finite; a state of another model.
-    pub fn advance<L: Loading + ?Sized>(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        to: f64,
-        loading: &mut L,
-        mut on_step: impl FnMut(&State, &StepReport, &StepAudit),
-    ) -> Result<(), SolveError> {
-        check_state(model, state)?;
-        if !to.is_finite() {
-            return Err(SolveError::Option { what: "the end time", value: to, expected: "a finite number" });
-        }
-        ensure_points(model, state);
-        while state.time < to {
-            let (dt, time) = self.length.next(state.time, to);
-            match self.step(model, state, time, dt, loading) {
-                Ok(audit) => {
-                    self.length.accept(dt, self.newton.report.iterations);
-                    on_step(state, &self.newton.report, &audit);
-                }
-                Err(Failure::Stuck(stuck)) => {
-                    if !self.length.halve(dt) {
-                        return Err(stuck.error(model, state.time));
-                    }
-                    self.newton.statistics.halvings += 1;
-                }
-                Err(Failure::Fatal(error)) => return Err(error),
-            }
-        }
-        Ok(())
-    }
-
-    fn step<L: Loading + ?Sized>(
+    fn step(
         &mut self,
         model: &Model,
         state: &mut State,
         time: f64,
         dt: f64,
-        loading: &mut L,
-    ) -> Result<StepAudit, Failure> {
+        loading: &mut dyn Loading,
+    ) -> Result<Option<StepAudit>, Failure> {
         for (load, at) in self.load.iter_mut().zip([state.time, time]) {
             load.fill(0.0);
             loading.load(at, load);
@@ -199,9 +156,11 @@ impl Dynamics {
         std::mem::swap(state, &mut self.next);
         self.newton.statistics.steps += 1;
         (self.newton.report.time, self.newton.report.dt) = (time, dt);
-        Ok(audit)
+        Ok(Some(audit))
     }
+}
 
+impl Dynamics {
     /// The part of a1 and v1 that does not depend on the increment, left in `next`.
     fn predict(&mut self, model: &Model, state: &State, dt: f64) {
         let Newmark { beta, gamma } = self.method;
@@ -265,19 +224,6 @@ impl Dynamics {
             self.rhs[d] = 0.5 * (state.v[d] + next.v[d]);
         }
         close(model, &self.newton.force.table, [state, next], audit, &self.rhs, &mut self.scratch)
-    }
-}
-
-impl TimeIntegrator for Dynamics {
-    fn integrate(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        to: f64,
-        loading: &mut dyn Loading,
-        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
-    ) -> Result<(), SolveError> {
-        self.advance(model, state, to, loading, |state, report, audit| on_step(state, report, Some(audit)))
     }
 }
 

@@ -6,14 +6,15 @@
 //!
 //! Source: Potts and Zdravković, Finite Element Analysis in Geotechnical Engineering: Theory (1999), section 10.3. Limits: K0 is
 //! exact for level ground alone; under a slope the equilibrium changes it.
+//!
+//! Theory manual: equation (4.15) of `docs/theory/solid.md`.
 
 use super::conditions::ensure_points;
-use super::options::{NewtonOptions, Statistics};
+use super::options::NewtonOptions;
 use super::quasi_static::QuasiStatic;
-use super::step_control::StepControl;
 use crate::element::stiffness_points;
 use crate::error::SolveError;
-use crate::integrator::Driven;
+use crate::integrator::{Driven, Statistics, StepControl, TimeIntegrator};
 use crate::material::{Point, PointState, Region};
 use crate::model::Model;
 use crate::state::State;
@@ -187,7 +188,7 @@ pub fn equilibrate(
         prescribed: |_: f64, values: &mut [f64]| values.copy_from_slice(&fixed),
     };
     let start = next.u.clone();
-    solver.advance(model, &mut next, 1.0, &mut loading, |_, _| ())?;
+    solver.integrate(model, &mut next, 1.0, &mut loading, &mut |_, _, _| ())?;
     let largest_displacement = next.u.iter().zip(&start).fold(0.0, |m: f64, (u, s)| m.max((u - s).abs()));
     let mut rest = State::new(model);
     if !model.matrices().springs().is_empty() {

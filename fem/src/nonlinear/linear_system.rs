@@ -4,11 +4,12 @@
 //! unsymmetric one takes L U, or, for large systems, GMRES with the elastic factor as preconditioner, as far as an inexact
 //! Newton iteration needs (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19 (1982) 400-408). Should that fail too, the iteration falls back on the elastic matrix, which is counted as well.
 
-use super::options::{LinearMethod, Statistics};
+use super::options::LinearMethod;
 use super::tangent::Tangent;
 use crate::assembly::Combination;
 use crate::equations::system::NO_STIFFNESS;
 use crate::error::SolveError;
+use crate::integrator::Statistics;
 use crate::model::Model;
 use crate::solver::analysis::Analysis;
 use crate::solver::gmres::Gmres;

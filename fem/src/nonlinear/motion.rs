@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::state::{State, StepAudit};
 
 /// Change of the elastic energy of the points, and their plastic dissipation, in one step [J].
-pub(super) fn point_energies(model: &Model, table: &PointTable, old: &Points, new: &Points) -> (f64, f64) {
+pub(crate) fn point_energies(model: &Model, table: &PointTable, old: &Points, new: &Points) -> (f64, f64) {
     let (mut elastic, mut plastic) = (0.0, 0.0);
     for e in 0..model.mesh().element_count() {
         let material = model.material(e);
@@ -29,7 +29,7 @@ pub(super) fn point_energies(model: &Model, table: &PointTable, old: &Points, ne
 }
 
 /// `f + S u + M a + C v` of a state [N], f from its stresses. Shapes `[3 * nodes]`; `scratch` has the length of two.
-pub(super) fn inner_force(
+pub(crate) fn inner_force(
     model: &Model,
     internal: &mut InternalForce,
     state: &State,
@@ -59,7 +59,7 @@ pub(super) fn inner_force(
 /// Completes the ledger of a step: what is left when everything else is accounted for is the time integration's.
 ///
 /// `velocity` [m/s] is the one that the damping acts on; shape `[3 * nodes]`. `scratch` has the length of two nodal vectors.
-pub(super) fn close(
+pub(crate) fn close(
     model: &Model,
     table: &PointTable,
     [old, new]: [&State; 2],

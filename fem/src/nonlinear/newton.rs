@@ -20,16 +20,18 @@
 //! half of that before it (Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section 9.2), within bounds.
 //! Where an unsymmetric tangent gives a correction along which the residual does no positive work, the size of the
 //! residual decides instead.
+//!
+//! Theory manual: equation (4.10) of `docs/theory/solid.md`.
 
 use super::conditions::subtract_springs;
 use super::internal_force::{InternalForce, PointFailure};
 use super::linear_system::{LinearSystem, Matrix};
-use super::options::{NewtonOptions, Statistics, Variant};
+use super::options::{NewtonOptions, Variant};
 use super::tangent::Tangent;
 use crate::assembly::Combination;
 use crate::element::stiffness_points;
 use crate::error::SolveError;
-use crate::integrator::StepReport;
+use crate::integrator::{Memory, Statistics, StepLength, StepReport};
 use crate::material::{Points, Region};
 use crate::model::Model;
 use crate::state::State;
@@ -103,6 +105,10 @@ const ENOUGH: f64 = 0.5;
 const SEARCHES: u32 = 5;
 /// Residual over the forces at which an iteration is given up.
 const HOPELESS: f64 = 1e6;
+
+/// Share of the inertia of the predicted motion that counts as a force in the criterion of convergence: rounding of the velocity
+/// in a step then stays below 1e-8 at a tolerance of 1e-6 where no other force is left.
+pub(crate) const INERTIA: f64 = 1e-3;
 
 /// The iteration with its matrices and buffers.
 pub(crate) struct Newton {
@@ -394,12 +400,37 @@ impl Newton {
 
 impl Newton {
     /// Takes the solved step over into the state.
-    pub(super) fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
+    pub fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
         state.u.iter_mut().zip(&self.w).for_each(|(u, w)| *u += w);
         std::mem::swap(&mut state.points, &mut self.force.points);
         state.time = time;
         self.statistics.steps += 1;
         self.report.time = time;
         self.report.dt = dt;
+    }
+
+    /// The memory of a solver with this iteration.
+    pub fn memory(&self, length: Option<StepLength>) -> Memory {
+        Memory { statistics: self.statistics, length, factored: self.system.elastic_of() }
+    }
+
+    /// Takes a memory over; factors the elastic matrix that was at hand, so that no later count differs.
+    ///
+    /// # Errors
+    /// The matrix cannot be factored.
+    pub fn recall(
+        &mut self,
+        model: &Model,
+        memory: &Memory,
+        length: Option<&mut StepLength>,
+    ) -> Result<(), SolveError> {
+        if let Some(combination) = memory.factored {
+            self.system.factor_elastic(model, &mut self.tangent, combination, &mut self.statistics)?;
+        }
+        self.statistics = memory.statistics;
+        if let (Some(length), Some(remembered)) = (length, memory.length) {
+            *length = remembered;
+        }
+        Ok(())
     }
 }

@@ -92,36 +92,3 @@ impl Default for NewtonOptions {
         NewtonOptions::new(Variant::Full)
     }
 }
-
-/// Counts and times of a run. Seconds are those of the clock.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Statistics {
-    /// Steps accepted.
-    pub steps: u64,
-    /// Steps given up and repeated with half the length.
-    pub halvings: u64,
-    /// Iterations, those of steps given up included.
-    pub iterations: u64,
-    /// Evaluations of the stresses.
-    pub evaluations: u64,
-    /// Factorizations L L^T.
-    pub factorizations_symmetric: u64,
-    /// Factorizations L U.
-    pub factorizations_unsymmetric: u64,
-    /// Symmetric tangents that were not positive definite, and taken by L U.
-    pub not_positive: u64,
-    /// Tangents that L U failed on, and the elastic matrix replaced.
-    pub singular: u64,
-    /// Solves with a factor, those within GMRES not counted.
-    pub solves: u64,
-    /// Iterations of GMRES.
-    pub krylov_iterations: u64,
-    /// Systems that GMRES did not solve well enough, and L U took over.
-    pub krylov_failures: u64,
-    /// Seconds of stresses, internal forces and tangents.
-    pub assembly_seconds: f64,
-    /// Seconds of factorizations.
-    pub factor_seconds: f64,
-    /// Seconds of solves.
-    pub solve_seconds: f64,
-}

@@ -6,10 +6,10 @@
 //! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
 //! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
 
-use super::options::{NewtonOptions, Statistics};
+use super::options::NewtonOptions;
 use super::quasi_static::QuasiStatic;
-use super::step_control::StepControl;
 use crate::error::SolveError;
+use crate::integrator::{Statistics, StepControl, TimeIntegrator};
 use crate::model::Model;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
@@ -174,7 +174,7 @@ fn carry(
     trial.time = 0.0;
     let mut solver = QuasiStatic::new(reduced, options.newton, options.control)?;
     let mut loading = |time: f64, f: &mut [f64]| f.iter_mut().zip(load).for_each(|(f, l)| *f = time * l);
-    let outcome = solver.advance(reduced, &mut trial, 1.0, &mut loading, |_, _| ());
+    let outcome = solver.integrate(reduced, &mut trial, 1.0, &mut loading, &mut |_, _, _| ());
     Ok((trial, solver.statistics(), outcome))
 }
 

@@ -1,4 +1,6 @@
 //! The shapes and the matrices of a reduction.
+//!
+//! Theory manual: equation (4.19) of `docs/theory/solid.md`.
 
 use super::{Estimate, MOST_SHAPES, Reduction, ReductionError};
 use crate::loads;
@@ -31,15 +33,15 @@ pub struct Cost {
 pub struct Reduced {
     count: usize,
     /// V. Shape `[3 * nodes][shapes]`.
-    pub(super) shape: Vec<f64>,
+    pub(crate) shape: Vec<f64>,
     /// K V. Shape `[3 * nodes][shapes]`.
-    pub(super) force: Vec<f64>,
+    pub(crate) force: Vec<f64>,
     /// M V. Shape `[3 * nodes][shapes]`.
-    pub(super) momentum: Vec<f64>,
+    pub(crate) momentum: Vec<f64>,
     /// Squares of the circular frequencies, the diagonal of VᵀK V [1/s²], rising. Shape `[shapes]`.
-    pub(super) square: Vec<f64>,
+    pub(crate) square: Vec<f64>,
     /// VᵀD V of the boundary dashpots; none without dashpots.
-    pub(super) dashpots: Option<DMatrix<f64>>,
+    pub(crate) dashpots: Option<DMatrix<f64>>,
     estimate: Estimate,
 }
 

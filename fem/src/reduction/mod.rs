@@ -26,11 +26,9 @@ mod basis;
 mod estimate;
 #[cfg(test)]
 mod tests;
-mod window;
 
 pub use basis::{Cost, Reduced};
 pub use estimate::Estimate;
-pub use window::ReducedWindowSolver;
 
 use crate::error::SolveError;
 use crate::modal::ModalError;

@@ -5,7 +5,7 @@ use crate::mesh::{Constraint, Face, Mesh};
 use crate::model::{Model, ModelInput};
 use crate::state::State;
 use crate::statics::StaticSolver;
-use crate::window::WindowSolver;
+use crate::theta::{ReducedTheta, ThetaMethod, ThetaSolver};
 use crate::{Elastic, Quadrature, Rayleigh};
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ fn condensation_to_the_surface_is_exact_in_statics() {
     assert_eq!((e.dofs, e.shapes), (model.free_dof_count(), 3 * 40));
     let load = load_on(&model, &faces, 0.0);
     let rest = StaticSolver::new(&model).unwrap().solve(&model, &load).unwrap().u;
-    let mut solver = ReducedWindowSolver::new(&model, Arc::new(reduced), 1.0, 1.0).unwrap();
+    let mut solver = ReducedTheta::new(&model, Arc::new(reduced), 1.0, 1.0).unwrap();
     let mut state = State::new(&model);
     for _ in 0..400 {
         solver.step(&model, &mut state, &load).unwrap();
@@ -88,8 +88,8 @@ fn a_motion_in_the_span_is_that_of_the_full_solid() {
     dead[3 * inner] = 5.0;
     let start = StaticSolver::new(&model).unwrap().solve(&model, &dead).unwrap().u;
     for theta in [0.5, 0.8] {
-        let mut full = WindowSolver::new(&model, theta, 1e-3).unwrap();
-        let mut few = ReducedWindowSolver::new(&model, reduced.clone(), theta, 1e-3).unwrap();
+        let mut full = ThetaSolver::new(&model, theta, 1e-3).unwrap();
+        let mut few = ReducedTheta::new(&model, reduced.clone(), theta, 1e-3).unwrap();
         let (mut a, mut b) = (State::new(&model), State::new(&model));
         a.u.copy_from_slice(&start);
         b.u.copy_from_slice(&start);
@@ -132,7 +132,7 @@ fn energy_balances_in_the_span() {
         (Reduction::Modes { modes: 20 }, 0.7),
     ] {
         let reduced = Arc::new(Reduced::new(&model, &faces, reduction).unwrap());
-        let mut solver = ReducedWindowSolver::new(&model, reduced, theta, 1e-3).unwrap();
+        let mut solver = ReducedTheta::new(&model, reduced, theta, 1e-3).unwrap();
         let mut state = State::new(&model);
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
         let (mut balance, mut work, mut absorbed) = (0.0, 0.0, 0.0);
@@ -173,7 +173,7 @@ fn the_estimate_is_what_a_run_shows() {
         let mut load = vec![0.0; model.dof_count()];
         crate::loads::face_point_load(&faces[middle], [0.0, 0.0], [0.0, 0.0, -1.0], &mut load);
         let rest = StaticSolver::new(&model).unwrap().solve(&model, &load).unwrap().u;
-        let mut solver = ReducedWindowSolver::new(&model, reduced, 1.0, 1.0).unwrap();
+        let mut solver = ReducedTheta::new(&model, reduced, 1.0, 1.0).unwrap();
         let mut state = State::new(&model);
         for _ in 0..400 {
             solver.step(&model, &mut state, &load).unwrap();

@@ -9,7 +9,7 @@ use trackbed_fem::mesh::{Face, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::newmark::{Drive, Newmark, NewmarkSolver, initial_acceleration};
 use trackbed_fem::state::State;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{Mass, energy, loads, statics};
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
@@ -210,7 +210,7 @@ fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
                 _ => None,
             };
             let theta = if method == "window 0.5" { 0.5 } else { 0.8 };
-            let mut window = WindowSolver::new(&model, theta, dt).unwrap();
+            let mut window = ThetaSolver::new(&model, theta, dt).unwrap();
             let (mut random, mut state) = (Random(5), State::new(&model));
             let (mut worst, mut size, mut entered) = (0.0_f64, 0.0_f64, [0.0; 4]);
             let mut start = vec![0.0; n];

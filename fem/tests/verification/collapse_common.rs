@@ -1,6 +1,7 @@
 //! Meshes of the collapse cases and the footing that is pushed into the ground.
 
 use std::collections::{BTreeMap, HashMap};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::{Loading, NewtonOptions, QuasiStatic, Statistics, StepControl, Variant};
 use trackbed_fem::{
     Constraint, Elastic, ElementKind, Material, Mesh, Model, ModelInput, MohrCoulomb, Quadrature, State,
@@ -218,7 +219,8 @@ pub fn push(footing: &Footing, options: NewtonOptions, settlement: f64, stations
     for station in 1..=stations {
         let to = if station == stations { settlement } else { length * f64::from(station) };
         let mut loading = footing;
-        if let Err(error) = solver.advance(&footing.model, &mut state, to, &mut loading, |_, _| ()) {
+        if let Err(error) = solver.integrate(&footing.model, &mut state, to, &mut loading, &mut |_, _, _| ())
+        {
             stopped = Some(error.to_string());
             break;
         }

@@ -8,6 +8,7 @@
 
 use crate::collapse_common::{Builder, loose, mohr_coulomb};
 use std::collections::BTreeMap;
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::strength_reduction::{ReductionOptions, factor_of_safety};
 use trackbed_fem::nonlinear::{NewtonOptions, QuasiStatic, StepControl};
 use trackbed_fem::{Constraint, Elastic, ElementKind, Model, ModelInput, Quadrature, State};
@@ -58,7 +59,7 @@ fn stands(counts: [usize; 2], factor: f64) -> Result<f64, f64> {
     let control = StepControl { initial: 1.0, min: 1.0 / 16.0, max: 1.0, target_iterations: 60 };
     let options = NewtonOptions { max_iterations: 60, ..loose() };
     let mut solver = QuasiStatic::new(&model, options, control).unwrap();
-    let outcome = solver.advance(&model, &mut state, 1.0, &mut loading, |_, _| ());
+    let outcome = solver.integrate(&model, &mut state, 1.0, &mut loading, &mut |_, _, _| ());
     let u =
         state.u.chunks_exact(3).map(|u| (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt()).fold(0.0, f64::max);
     let number = SOIL.young * u / (WEIGHT * HEIGHT * HEIGHT);

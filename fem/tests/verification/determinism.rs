@@ -6,7 +6,7 @@ use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::Mesh;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver};
 use trackbed_fem::state::State;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{statics, stress};
 
 /// Bits of a static solution, its nodal stresses and five dynamic steps, computed on `threads` threads.
@@ -26,7 +26,7 @@ fn bits(threads: usize) -> Vec<u64> {
         let solution = statics::solve(&model, &load).unwrap();
         let mut state = State::new(&model);
         let mut newmark = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, 1e-3).unwrap();
-        let mut window = WindowSolver::new(&model, 0.55, 1e-3).unwrap();
+        let mut window = ThetaSolver::new(&model, 0.55, 1e-3).unwrap();
         for _ in 0..5 {
             newmark.step(&model, &mut state, &load).unwrap();
             window.step(&model, &mut state, &load).unwrap();
@@ -61,10 +61,10 @@ fn a_new_solver_continues_bit_for_bit() {
         (0..10).map(|_| (0..model.dof_count()).map(|_| random.next()).collect()).collect();
     let run = |restart: bool| {
         let mut state = State::new(&model);
-        let mut solver = WindowSolver::new(&model, 0.6, 1e-3).unwrap();
+        let mut solver = ThetaSolver::new(&model, 0.6, 1e-3).unwrap();
         for (n, load) in loads.iter().enumerate() {
             if restart && n == 5 {
-                solver = WindowSolver::new(&model, 0.6, 1e-3).unwrap();
+                solver = ThetaSolver::new(&model, 0.6, 1e-3).unwrap();
             }
             solver.step(&model, &mut state, load).unwrap();
         }

@@ -6,7 +6,7 @@ use trackbed_fem::boundary::BoundaryLayer;
 use trackbed_fem::energy;
 use trackbed_fem::newmark::{Drive, NewmarkSolver};
 use trackbed_fem::solver::conjugate::Stopped;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{
     Elastic, ElementKind, Mass, Mesh, Method, Methods, Model, ModelInput, Quadrature, Rayleigh, SolveError,
     State,
@@ -64,7 +64,7 @@ fn shake(model: &Model, step: usize) -> Vec<f64> {
 
 /// The states after ten windows of random loads on a moving base, and the most iterations of one.
 pub fn windows(model: &Model, theta: f64) -> (State, u32) {
-    let mut solver = WindowSolver::new(model, theta, WINDOW).unwrap();
+    let mut solver = ThetaSolver::new(model, theta, WINDOW).unwrap();
     let mut state = State::new(model);
     for (k, load) in loads(model, 10).iter().enumerate() {
         solver.step_prescribed(model, &mut state, load, Some(&shake(model, k))).unwrap();
@@ -131,7 +131,7 @@ fn the_account_of_energy_closes_as_the_tolerance_allows() {
     for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
         let model = soils(ElementKind::Hex20, [4, 4, 4], Mass::Lumped, iterative(tolerance));
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
-        let mut solver = WindowSolver::new(&model, 0.55, WINDOW).unwrap();
+        let mut solver = ThetaSolver::new(&model, 0.55, WINDOW).unwrap();
         let (mut state, mut miss, mut work) = (State::new(&model), 0.0, 0.0);
         for load in loads(&model, 40) {
             let before = total(&state);
@@ -169,10 +169,10 @@ fn a_new_solver_continues_bit_for_bit() {
     let model = soils(ElementKind::Tet10, [4, 3, 3], Mass::Lumped, iterative(1e-8));
     let run = |restart: bool| {
         let mut state = State::new(&model);
-        let mut solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
+        let mut solver = ThetaSolver::new(&model, 0.6, WINDOW).unwrap();
         for (n, load) in loads(&model, 10).iter().enumerate() {
             if restart && n == 5 {
-                solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
+                solver = ThetaSolver::new(&model, 0.6, WINDOW).unwrap();
             }
             solver.step(&model, &mut state, load).unwrap();
         }
@@ -186,7 +186,7 @@ fn a_new_solver_continues_bit_for_bit() {
 fn a_steady_load_takes_fewer_iterations() {
     let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, iterative(1e-8));
     let load = model.gravity_load();
-    let mut solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
+    let mut solver = ThetaSolver::new(&model, 0.6, WINDOW).unwrap();
     let mut state = State::new(&model);
     let steps: Vec<u64> = (0..60)
         .map(|_| {
@@ -203,14 +203,15 @@ fn a_steady_load_takes_fewer_iterations() {
 pub fn predict(methods: Methods) -> (Vec<f64>, u32) {
     let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, methods);
     let load = &loads(&model, 1)[0];
-    let mut solver = WindowSolver::new(&model, 0.6, WINDOW).unwrap();
+    let mut solver = ThetaSolver::new(&model, 0.6, WINDOW).unwrap();
     let mut state = State::new(&model);
     solver.step(&model, &mut state, load).unwrap();
     let top: Vec<usize> =
         (0..model.mesh().node_count()).filter(|&n| model.mesh().coordinates[n][2] > 0.99).collect();
-    let contacts = |w: &[f64], f: &mut [f64]| top.iter().for_each(|&n| f[3 * n + 2] += 1e6 * w[3 * n + 2]);
+    let mut contacts =
+        |w: &[f64], f: &mut [f64]| top.iter().for_each(|&n| f[3 * n + 2] += 1e6 * w[3 * n + 2]);
     let mut rate = vec![0.0; model.dof_count()];
-    let iterations = solver.predict(&model, &state, load, contacts, &mut rate).unwrap();
+    let iterations = solver.predict(&model, &state, load, &mut contacts, &mut rate).unwrap();
     (rate, iterations)
 }
 
@@ -225,7 +226,7 @@ fn predictions_with_contacts_are_those_of_the_factor() {
 fn a_solve_that_does_not_converge_names_iterations_and_residual_and_leaves_the_state() {
     // A slender column in a window so long that its mass does not count.
     let model = soils(ElementKind::Hex20, [1, 1, 120], Mass::Lumped, iterative(1e-13));
-    let mut solver = WindowSolver::new(&model, 0.6, 1e4).unwrap();
+    let mut solver = ThetaSolver::new(&model, 0.6, 1e4).unwrap();
     let mut state = State::new(&model);
     let error = solver.step(&model, &mut state, &loads(&model, 1)[0]).unwrap_err();
     println!("{error}");

@@ -4,6 +4,7 @@ use crate::common::{difference, fix};
 use crate::mixed::{block, distort, on_surface};
 use crate::plastic_common::footing;
 use std::f64::consts::FRAC_PI_2;
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl};
 use trackbed_fem::{
@@ -250,7 +251,7 @@ fn patches_pass_with_assumed_strains() {
         state.u.fill(0.0);
         let mut solver = QuasiStatic::new(&model, NewtonOptions::default(), StepControl::fixed(1.0)).unwrap();
         let mut driven = Driven { load: |_: f64, _: &mut [f64]| {}, prescribed: |_: f64, _: &mut [f64]| {} };
-        solver.advance(&model, &mut state, 1.0, &mut driven, |_, _| {}).unwrap();
+        solver.integrate(&model, &mut state, 1.0, &mut driven, &mut |_, _, _| {}).unwrap();
         let miss = difference(&state.u, &exact);
         assert!(miss < 1e-10, "{} plastic: {miss:e}", kind.name());
     }
@@ -286,7 +287,7 @@ fn push(linear: bool, rule: Quadrature, assumed: AssumedStrain) -> (f64, Vec<Vec
     let mut solver = QuasiStatic::new(&model, options, StepControl::fixed(0.01)).unwrap();
     let (mut state, mut residuals) = (State::new(&model), Vec::new());
     solver
-        .advance(&model, &mut state, 0.3, &mut driven, |_, report| {
+        .integrate(&model, &mut state, 0.3, &mut driven, &mut |_, report, _| {
             if report.plastic_points > 20 {
                 residuals.push(report.residuals.clone());
             }

@@ -28,7 +28,7 @@ mod library {
     use crate::iterative::{loads, predict, soils, windows};
     use trackbed_fem::solver::mumps::MumpsError;
     use trackbed_fem::statics::StaticSolver;
-    use trackbed_fem::window::WindowSolver;
+    use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
     use trackbed_fem::{ElementKind, Mass, Method, Methods, MumpsMethod, Regime, SolveError, State, statics};
 
     const OUT_OF_CORE: MumpsMethod = MumpsMethod { out_of_core: true };
@@ -138,7 +138,7 @@ mod library {
     fn a_solver_made_anew_goes_on_with_the_same_bits() {
         let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, by(MumpsMethod::default()));
         let loads = loads(&model, 6);
-        let new = || WindowSolver::new(&model, 0.6, 1e-4).unwrap();
+        let new = || ThetaSolver::new(&model, 0.6, 1e-4).unwrap();
         let (mut whole, mut parts, mut solver) = (State::new(&model), State::new(&model), new());
         for load in &loads {
             solver.step(&model, &mut whole, load).unwrap();

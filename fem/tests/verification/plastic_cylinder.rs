@@ -7,6 +7,7 @@
 use crate::common::difference;
 use crate::common::{model, read_mesh, table};
 use crate::plastic_common::{mohr_coulomb, tight};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Elastic, Model, Quadrature, SolveError, State, loads, stress};
 
@@ -34,7 +35,7 @@ fn check(case: &str, psi: f64, wall: [f64; 3], rule: Quadrature) {
     let mut solver = QuasiStatic::new(&model, tight(), StepControl::fixed(0.1)).unwrap();
     let profile = table(case, "closed_form_profile.csv");
     for (level, (p, exact)) in LEVELS.into_iter().zip(wall).enumerate() {
-        solver.advance(&model, &mut state, p / LEVELS[2], &mut pressure, |_, _| ()).unwrap();
+        solver.integrate(&model, &mut state, p / LEVELS[2], &mut pressure, &mut |_, _, _| ()).unwrap();
         // Displacement at every node, stress at the points, both over the closed form.
         let radius = [0.6, 0.8, 1.0][level];
         let rows: Vec<&Vec<f64>> = profile.iter().filter(|r| r[0] == radius).collect();
@@ -99,8 +100,9 @@ fn no_equilibrium_above_the_limit_pressure() {
     let control = StepControl { initial: 0.2, min: 0.002, max: 0.2, target_iterations: 8 };
     let mut solver = QuasiStatic::new(&model, Default::default(), control).unwrap();
     let mut accepted = state.clone();
-    let error =
-        solver.advance(&model, &mut state, 2.0, &mut pressure, |s, _| accepted.clone_from(s)).unwrap_err();
+    let error = solver
+        .integrate(&model, &mut state, 2.0, &mut pressure, &mut |s, _, _| accepted.clone_from(s))
+        .unwrap_err();
     println!("limit pressure reached: {:.4} of the closed form; {error}", state.time);
     assert!((state.time - 1.0).abs() < 0.01, "{}", state.time);
     let SolveError::Diverged { time, element, point, .. } = error else { panic!("{error}") };

@@ -3,12 +3,13 @@
 
 use crate::common::difference;
 use crate::plastic_common::{mohr_coulomb, tight};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::boundary::BoundaryLayer;
 use trackbed_fem::mass::Mass;
 use trackbed_fem::newmark::{Drive, Newmark, NewmarkSolver};
 use trackbed_fem::nonlinear::dynamics::{Dynamics, initial_acceleration};
-use trackbed_fem::nonlinear::{Loading, NewtonOptions, PlasticWindowSolver, StepControl};
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::nonlinear::{Loading, NewtonOptions, StepControl};
+use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{
     Constraint, DruckerPrager, Elastic, ElementKind, Material, Mesh, Model, ModelInput, Rayleigh, State,
     StepAudit, energy, loads,
@@ -114,8 +115,8 @@ fn elastic_bodies_move_as_under_the_linear_newmark_and_hht() {
             (0..4).for_each(|k| sum_a[k] += parts(&audit)[k]);
             let end = b.time + dt;
             driver
-                .advance(model, &mut b, end, &mut shaken, |_, _, x| {
-                    (0..4).for_each(|k| sum_b[k] += parts(x)[k])
+                .integrate(model, &mut b, end, &mut shaken, &mut |_, _, x| {
+                    (0..4).for_each(|k| sum_b[k] += parts(x.unwrap())[k])
                 })
                 .unwrap();
         }
@@ -141,8 +142,8 @@ fn elastic_bodies_move_as_under_the_linear_window() {
     let (model, dt) = (&shaken.model, 1e-3);
     for theta in [0.5, 0.7] {
         let (mut a, mut b) = (State::new(model), State::new(model));
-        let mut linear = WindowSolver::new(model, theta, dt).unwrap();
-        let mut driver = PlasticWindowSolver::new(model, theta, dt, tight()).unwrap();
+        let mut linear = ThetaSolver::new(model, theta, dt).unwrap();
+        let mut driver = NonlinearTheta::new(model, theta, dt, tight()).unwrap();
         let (mut sum_a, mut sum_b) = ([0.0; 5], [0.0; 5]);
         let parts = |x: &StepAudit| {
             [
@@ -232,8 +233,8 @@ fn an_oscillator_with_friction() {
     let (mut found, mut when, mut plastic) = (0.0, 0.0, 0.0);
     let mut rest = |_: f64, _: &mut [f64]| ();
     driver
-        .advance(&model, &mut state, end, &mut rest, |s, _, audit| {
-            plastic += audit.plastic_dissipation;
+        .integrate(&model, &mut state, end, &mut rest, &mut |s, _, audit| {
+            plastic += audit.unwrap().plastic_dissipation;
             if s.u[moving[0]] > found {
                 (found, when) = (s.u[moving[0]], s.time);
             }
@@ -288,8 +289,7 @@ fn the_ledger_of_a_yielding_body_closes() {
             let mut counts = Default::default();
             if let Some(theta) = scheme.strip_prefix("window ") {
                 let theta: f64 = theta.parse().unwrap();
-                let mut driver =
-                    PlasticWindowSolver::new(&model, theta, dt, NewtonOptions::default()).unwrap();
+                let mut driver = NonlinearTheta::new(&model, theta, dt, NewtonOptions::default()).unwrap();
                 for step in 0..60 {
                     // The impulse of the window by the mid-point rule.
                     at(dt * (f64::from(step) + 0.5), &mut load);
@@ -302,7 +302,9 @@ fn the_ledger_of_a_yielding_body_closes() {
                 let alpha = if scheme == "hht" { -0.1 } else { 0.0 };
                 let mut driver = Dynamics::hht(&model, alpha, NewtonOptions::default(), control).unwrap();
                 let mut loading = at;
-                driver.advance(&model, &mut state, 60.0 * dt, &mut loading, |s, _, x| add(x, s)).unwrap();
+                driver
+                    .integrate(&model, &mut state, 60.0 * dt, &mut loading, &mut |s, _, x| add(x.unwrap(), s))
+                    .unwrap();
                 counts = driver.statistics();
             }
             let end = stored(&model, &state);
@@ -348,7 +350,7 @@ fn bits_and_restart() {
                     driver = new();
                 }
                 driver
-                    .advance(&model, &mut state, 1e-3 * f64::from(step), &mut loading, |_, _, _| ())
+                    .integrate(&model, &mut state, 1e-3 * f64::from(step), &mut loading, &mut |_, _, _| ())
                     .unwrap();
             }
             state

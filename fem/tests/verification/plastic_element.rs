@@ -7,6 +7,7 @@
 
 use crate::common::{model, read_mesh, table};
 use crate::plastic_common::{drucker_prager, mohr_coulomb, tight};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::{Driven, QuasiStatic, StepControl};
 use trackbed_fem::{Cone, Constraint, Elastic, Material, Quadrature, State, loads};
 
@@ -41,7 +42,7 @@ fn follow(file: &str, material: &Material, ratio: f64, rule: Quadrature) -> (f64
     let (mut stress, mut volume) = (0.0_f64, 0.0_f64);
     let largest = rows.iter().fold(0.0, |m: f64, r| m.max(r[1].abs()));
     for (step, row) in rows.iter().enumerate().skip(1) {
-        solver.advance(&model, &mut state, step as f64, &mut loading, |_, _| ()).unwrap();
+        solver.integrate(&model, &mut state, step as f64, &mut loading, &mut |_, _, _| ()).unwrap();
         for point in &state.points {
             let miss = |found: f64, expected: f64| (found - expected).abs() / largest;
             stress = stress.max(miss(point.stress[2], row[1])).max(miss(point.stress[0], row[2]));

@@ -5,6 +5,7 @@
 use crate::common::difference;
 use crate::common::model;
 use crate::plastic_common::{cpu_seconds, footing, mohr_coulomb};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl, Variant};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, State};
 
@@ -48,7 +49,8 @@ fn table_of_costs() {
             };
             let mut solver = QuasiStatic::new(&footing.model, options, control).unwrap();
             let start = cpu_seconds();
-            let outcome = solver.advance(&footing.model, &mut state, end, &mut footing.loading(), |_, _| ());
+            let outcome =
+                solver.integrate(&footing.model, &mut state, end, &mut footing.loading(), &mut |_, _, _| ());
             let cpu = cpu_seconds() - start;
             let s = solver.statistics();
             let factor = footing.pressure(solver.reactions()) / COHESION;
@@ -79,7 +81,9 @@ fn footing_on_clay_reaches_its_plateau() {
     let mut solver = QuasiStatic::new(&footing.model, NewtonOptions::default(), control).unwrap();
     let mut factors = Vec::new();
     for depth in [0.05, 0.1, 0.15] {
-        solver.advance(&footing.model, &mut state, depth, &mut footing.loading(), |_, _| ()).unwrap();
+        solver
+            .integrate(&footing.model, &mut state, depth, &mut footing.loading(), &mut |_, _, _| ())
+            .unwrap();
         factors.push(footing.pressure(solver.reactions()) / COHESION);
     }
     let exact = 2.0 + std::f64::consts::PI;
@@ -131,7 +135,7 @@ fn cost_of_unsymmetric_systems() {
                 let mut state = State::new(&model);
                 let mut solver = QuasiStatic::new(&model, options, StepControl::fixed(0.02)).unwrap();
                 let start = cpu_seconds();
-                let outcome = solver.advance(&model, &mut state, 0.1, &mut loading, |_, _| ());
+                let outcome = solver.integrate(&model, &mut state, 0.1, &mut loading, &mut |_, _, _| ());
                 let s = solver.statistics();
                 println!(
                     "{} free dofs, psi {psi} {linear:?}: {} steps{}, {} iterations, {} halvings, {} L L^T, {} L U, {} of GMRES ({} failed); CPU {:.1} s of which assembly {:.1} factor {:.1} solve {:.1} (clock)",

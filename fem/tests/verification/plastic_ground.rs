@@ -2,6 +2,7 @@
 
 use crate::plastic_common::{mohr_coulomb, slab};
 use std::collections::BTreeMap;
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::strength_reduction::{ReductionOptions, factor_of_safety};
 use trackbed_fem::nonlinear::{NewtonOptions, QuasiStatic, StepControl};
@@ -121,7 +122,7 @@ fn gravity_turned_on_leaves_stress_without_displacement() {
     let weight = model.gravity_load();
     let mut on = |_: f64, load: &mut [f64]| load.copy_from_slice(&weight);
     let mut solver = QuasiStatic::new(&model, NewtonOptions::default(), StepControl::fixed(1.0)).unwrap();
-    solver.advance(&model, &mut state, 1.0, &mut on, |_, _| ()).unwrap();
+    solver.integrate(&model, &mut state, 1.0, &mut on, &mut |_, _, _| ()).unwrap();
     assert!(state.u.iter().all(|u| u.abs() < 1e-12));
     // A uniform stress outside the surface is returned as well.
     let mut other = State::new(&model);

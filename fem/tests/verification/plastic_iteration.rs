@@ -2,9 +2,10 @@
 
 use crate::common::difference;
 use crate::plastic_common::{Footing, footing, mohr_coulomb, tight};
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver};
 use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, QuasiStatic, StepControl, StepReport, Variant};
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::ThetaSolver;
 use trackbed_fem::{Elastic, SolveError, State, statics};
 
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
@@ -24,7 +25,7 @@ fn push(
     let mut solver = QuasiStatic::new(&footing.model, options, control).unwrap();
     let mut reports = Vec::new();
     solver
-        .advance(&footing.model, &mut state, depth, &mut footing.loading(), |_, report| {
+        .integrate(&footing.model, &mut state, depth, &mut footing.loading(), &mut |_, report, _| {
             reports.push(report.clone())
         })
         .unwrap();
@@ -129,18 +130,19 @@ fn a_failed_step_leaves_the_state_untouched() {
     let few = NewtonOptions { max_iterations: 2, ..tight() };
     let mut state = State::new(&footing.model);
     let mut solver = QuasiStatic::new(&footing.model, tight(), control).unwrap();
-    solver.advance(&footing.model, &mut state, 0.008, &mut footing.loading(), |_, _| ()).unwrap();
+    solver.integrate(&footing.model, &mut state, 0.008, &mut footing.loading(), &mut |_, _, _| ()).unwrap();
     let before = state.clone();
     let mut failing = QuasiStatic::new(&footing.model, few, control).unwrap();
-    let error =
-        failing.advance(&footing.model, &mut state, 0.016, &mut footing.loading(), |_, _| ()).unwrap_err();
+    let error = failing
+        .integrate(&footing.model, &mut state, 0.016, &mut footing.loading(), &mut |_, _, _| ())
+        .unwrap_err();
     println!("{error}");
     assert!(matches!(error, SolveError::Diverged { iterations: 2, time, .. } if time == 0.008), "{error}");
     assert_eq!(state, before);
     let mut other = before.clone();
-    solver.advance(&footing.model, &mut state, 0.012, &mut footing.loading(), |_, _| ()).unwrap();
+    solver.integrate(&footing.model, &mut state, 0.012, &mut footing.loading(), &mut |_, _, _| ()).unwrap();
     let mut fresh = QuasiStatic::new(&footing.model, tight(), control).unwrap();
-    fresh.advance(&footing.model, &mut other, 0.012, &mut footing.loading(), |_, _| ()).unwrap();
+    fresh.integrate(&footing.model, &mut other, 0.012, &mut footing.loading(), &mut |_, _, _| ()).unwrap();
     // The state holds all there is.
     assert_eq!(state, other);
 }
@@ -153,7 +155,7 @@ fn linear_solvers_refuse_plastic_materials() {
     assert!(plastic(statics::solve(model, &vec![0.0; model.dof_count()]).err()));
     assert!(plastic(NewmarkSolver::new(model, Newmark::AVERAGE_ACCELERATION, 1e-3).err()));
     assert!(plastic(NewmarkSolver::hht(model, -0.1, 1e-3).err()));
-    assert!(plastic(WindowSolver::new(model, 0.5, 1e-3).err()));
+    assert!(plastic(ThetaSolver::new(model, 0.5, 1e-3).err()));
 }
 
 #[test]
@@ -172,11 +174,12 @@ fn unusable_options_and_states_are_refused() {
     let mut solver = QuasiStatic::new(model, tight(), control).unwrap();
     let mut state = State::new(model);
     state.points.resize(model.point_count() - 1, 0);
-    let error = solver.advance(model, &mut state, 1.0, &mut footing.loading(), |_, _| ()).unwrap_err();
+    let error =
+        solver.integrate(model, &mut state, 1.0, &mut footing.loading(), &mut |_, _, _| ()).unwrap_err();
     assert!(matches!(error, SolveError::Length { .. }), "{error}");
     let mut state = State::new(model);
     let mut nan = |_: f64, load: &mut [f64]| load[5] = f64::NAN;
-    let error = solver.advance(model, &mut state, 1.0, &mut nan, |_, _| ()).unwrap_err();
+    let error = solver.integrate(model, &mut state, 1.0, &mut nan, &mut |_, _, _| ()).unwrap_err();
     assert!(matches!(error, SolveError::NotFinite { .. }), "{error}");
 }
 

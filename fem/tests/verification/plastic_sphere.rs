@@ -9,6 +9,7 @@
 use crate::common::model;
 use crate::plastic_common::{mohr_coulomb, tight};
 use std::collections::BTreeMap;
+use trackbed_fem::TimeIntegrator;
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Constraint, Elastic, ElementKind, Mesh, Quadrature, State, loads};
 
@@ -153,7 +154,9 @@ fn spherical_cavity_expands_as_the_closed_form_says() {
         let mut state = State::new(&model);
         let mut solver = QuasiStatic::new(&model, tight(), StepControl::fixed(0.2)).unwrap();
         for c in levels {
-            solver.advance(&model, &mut state, exact.pressure(c) / last, &mut pressure, |_, _| ()).unwrap();
+            solver
+                .integrate(&model, &mut state, exact.pressure(c) / last, &mut pressure, &mut |_, _, _| ())
+                .unwrap();
             let wall = exact.wall(c);
             let mut worst = 0.0_f64;
             for (n, x) in mesh.coordinates.iter().enumerate() {

@@ -13,7 +13,7 @@ use trackbed_fem::newmark::{
 };
 use trackbed_fem::state::State;
 use trackbed_fem::statics::StaticSolver;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
@@ -56,7 +56,7 @@ fn harmonic_base_motion_makes_the_closed_standing_wave() {
         }
         initial_acceleration(&model, &mut state, &load).unwrap();
         let mut newmark = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt).unwrap();
-        let mut windows = WindowSolver::new(&model, 0.5, dt).unwrap();
+        let mut windows = ThetaSolver::new(&model, 0.5, dt).unwrap();
         for n in 1..=steps {
             let motion = along_x(&model, amplitude * (frequency * n as f64 * dt).sin());
             if window {
@@ -136,7 +136,7 @@ fn constant_speed_strains_nothing() {
             0 => NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt).unwrap(),
             _ => NewmarkSolver::hht(&model, -0.3, dt).unwrap(),
         };
-        let mut window = WindowSolver::new(&model, 0.7, dt).unwrap();
+        let mut window = ThetaSolver::new(&model, 0.7, dt).unwrap();
         let kinetic = energy::kinetic(&model, &state);
         let mut work = 0.0_f64;
         for step in 1..=200 {
@@ -215,7 +215,7 @@ fn momentum_balances_with_the_reactions() {
     let fixed = model.supports().fixed().len();
     let method = Newmark { beta: 0.3025, gamma: 0.6 };
     let mut newmark = NewmarkSolver::new(&model, method, dt).unwrap();
-    let mut window = WindowSolver::new(&model, 0.6, dt).unwrap();
+    let mut window = ThetaSolver::new(&model, 0.6, dt).unwrap();
     // Forces that act on the body as a whole, [force, moment] in one line.
     let outer = |state: &State, forces: &[f64]| -> Vec<f64> {
         let mut inertia = vec![0.0; n];

@@ -10,7 +10,7 @@ use trackbed_fem::mesh::Mesh;
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
 use trackbed_fem::state::State;
-use trackbed_fem::window::WindowSolver;
+use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
@@ -41,7 +41,7 @@ fn theta_one_half_is_newmark_with_average_acceleration_for_a_constant_load() {
     let (mut a, mut b) = (State::new(&model), State::new(&model));
     initial_acceleration(&model, &mut a, &load).unwrap();
     let mut newmark = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, dt).unwrap();
-    let mut window = WindowSolver::new(&model, 0.5, dt).unwrap();
+    let mut window = ThetaSolver::new(&model, 0.5, dt).unwrap();
     for _ in 0..50 {
         newmark.step(&model, &mut a, &load).unwrap();
         window.step(&model, &mut b, &load).unwrap();
@@ -57,7 +57,7 @@ fn energy_balances_to_rounding_for_every_theta() {
     for theta in [0.5, 0.55, 0.7, 1.0] {
         let mut random = Random(11);
         let mut state = State::new(&model);
-        let mut solver = WindowSolver::new(&model, theta, 2e-3).unwrap();
+        let mut solver = ThetaSolver::new(&model, theta, 2e-3).unwrap();
         for _ in 0..30 {
             let load = random_load(&mut random, &model);
             let before = total(&state);
@@ -79,7 +79,7 @@ fn free_vibration_without_damping_conserves_energy() {
     let mut state = State::new(&model);
     state.u = trackbed_fem::statics::solve(&model, &load).unwrap().u;
     let rest = vec![0.0; model.dof_count()];
-    let mut solver = WindowSolver::new(&model, 0.5, 1e-3).unwrap();
+    let mut solver = ThetaSolver::new(&model, 0.5, 1e-3).unwrap();
     let start = energy::strain(&model, &state);
     for _ in 0..2000 {
         solver.step(&model, &mut state, &rest).unwrap();
@@ -94,7 +94,7 @@ fn impulse_and_moment_of_a_free_body_are_exact() {
     let model = model(Mesh::block([3, 2, 1], [1.5, 1.0, 0.4]), Vec::new(), SOIL, Gauss2);
     let (mut state, mut random) = (State::new(&model), Random(9));
     let dt = 5e-4;
-    let mut solver = WindowSolver::new(&model, 0.6, dt).unwrap();
+    let mut solver = ThetaSolver::new(&model, 0.6, dt).unwrap();
     let (mut linear, mut angular, mut size) = ([0.0; 3], [0.0; 3], 0.0);
     for _ in 0..200 {
         let load = random_load(&mut random, &model);
@@ -122,7 +122,7 @@ fn theta_one_half_is_of_second_order_and_theta_one_of_first() {
     let duration = 0.05;
     let run = |theta: f64, steps: usize| {
         let dt = duration / steps as f64;
-        let mut solver = WindowSolver::new(&model, theta, dt).unwrap();
+        let mut solver = ThetaSolver::new(&model, theta, dt).unwrap();
         let mut state = State::new(&model);
         for n in 0..steps {
             // Mean of sin² over the window, exact.
@@ -149,6 +149,6 @@ fn theta_one_half_is_of_second_order_and_theta_one_of_first() {
 fn theta_out_of_range_is_refused() {
     let model = block(Rayleigh::default());
     for theta in [0.49, 1.01, f64::NAN] {
-        assert!(matches!(WindowSolver::new(&model, theta, 1e-3), Err(SolveError::Theta { .. })));
+        assert!(matches!(ThetaSolver::new(&model, theta, 1e-3), Err(SolveError::Theta { .. })));
     }
 }

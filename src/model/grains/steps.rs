@@ -1,4 +1,6 @@
 //! Steps of the grains in time: keys of `[time]` resolved.
+//!
+//! Theory manual: equation (3.10) of `docs/theory/motion.md`.
 
 use super::laws;
 use super::materials::MaterialsPart;

@@ -4,19 +4,17 @@ use super::clock::Clock;
 use super::{Known, StageTime};
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::solid::{Analysis, SolidPart, TimeMethod};
-use crate::run::system::{SolidSystem, System};
+use crate::model::solid::{Analysis, SolidPart};
 use crate::run::{Prediction, initial};
 use nalgebra::DMatrix;
 use std::time::{Duration, Instant};
-use trackbed_fem::newmark::Newmark;
-use trackbed_fem::nonlinear::PlasticWindowSolver;
-use trackbed_fem::{Method, Model, SolveError};
+use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
+use trackbed_fem::{Method, Model, SolveError, State};
 
 /// Time by the clock for steps.
 const ENOUGH: Duration = Duration::from_millis(500);
 
-/// Share of its weight by which the load of a plastic solid changes from window to window, so that each takes an iteration.
+/// Share of its weight by which the load of a solid changes from window to window, so that a plastic one takes an iteration in each.
 const RESTLESS: f64 = 0.01;
 
 /// Seconds of one step of `dt` [s] of a solid that moves under its weight, its factorization apart where one serves all
@@ -25,16 +23,15 @@ const RESTLESS: f64 = 0.01;
 /// # Errors
 /// A matrix cannot be factored; no equilibrium.
 pub fn step(part: &SolidPart, theta: f64, dt: f64) -> Result<f64, Failure> {
-    if part.is_linear() {
-        let method = TimeMethod::Newmark(Newmark { beta: 0.25, gamma: 0.5 });
-        let mut system = SolidSystem::new(part, method, dt).map_err(|e| part.failure(&e))?;
-        return time(|| system.advance(&mut |_, _, _, _| ()));
-    }
-    // Let go without stress, a soil would yield everywhere, and the more so the less it is confined.
     let (model, gravity) = (&part.model, part.model.gravity_load());
-    let mut state = initial::under_load(part, model, &gravity, &gravity)?;
     let failure = |e: SolveError| part.failure(&e);
-    let mut solver = PlasticWindowSolver::new(model, theta, dt, part.newton).map_err(failure)?;
+    let (mut state, mut solver): (State, Box<dyn ThetaMethod>) = if part.is_linear() {
+        (State::new(model), Box::new(ThetaSolver::new(model, theta, dt).map_err(failure)?))
+    } else {
+        // Let go without stress, a soil would yield everywhere, and the more so the less it is confined.
+        let state = initial::under_load(part, model, &gravity, &gravity)?;
+        (state, Box::new(NonlinearTheta::new(model, theta, dt, part.newton).map_err(failure)?))
+    };
     let (mut load, mut heavier) = (gravity.clone(), false);
     time(|| {
         heavier = !heavier;

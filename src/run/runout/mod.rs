@@ -6,6 +6,8 @@
 //! 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle is that between the centres of mass at start and end.
 //!
 //! Places at the start are those of the run proper.
+//!
+//! Theory manual: equation (6.39) of `docs/theory/track.md`.
 
 mod deposit;
 mod files;

@@ -5,6 +5,8 @@
 //! specimen itself are slopes of the displacement of its grains over their places at the start, by least squares, so that
 //! gaps and overlaps at the platens do not enter Poisson's ratio. Compression is positive, but for the lateral strain, which
 //! is positive where the specimen bulges.
+//!
+//! Theory manual: equation (6.40) of `docs/theory/track.md`.
 
 mod record;
 

@@ -6,9 +6,8 @@ use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
 use crate::run::checkpoint::Loaded;
 use crate::run::context::Run;
-use crate::run::plastic::{PlasticDynamics, QuasiStaticSystem};
 use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
-use crate::run::system::{SolidSystem, System};
+use crate::run::system::{SolidKind, SolidSystem, System};
 use crate::run::validity::{quasi_static_strain, small_strain};
 
 /// Runs a solid without grains.
@@ -18,45 +17,23 @@ use crate::run::validity::{quasi_static_strain, small_strain};
 pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -> Result<(), Failure> {
     let (mut resumed, summary) = (state.loaded.take(), &mut state.summary);
     let interrupt = run.checkpoints.interrupt();
-    match &solid.analysis {
-        Analysis::Dynamic(method) if solid.is_linear() => {
-            let dt = run.job.solid_step.expect("a dynamic solid has a step");
-            let mut system = match &mut resumed {
-                Some(loaded) => SolidSystem::resume(solid, *method, dt, loaded)?,
-                None => SolidSystem::new(solid, *method, dt).map_err(|e| solid.failure(&e))?,
-            };
-            march(run, solid, &mut system, resumed, summary)
-        }
-        Analysis::QuasiStatic(plan) => {
-            let step = run.job.solid_step.expect("a quasi-static solid has a step");
-            let mut system = match &mut resumed {
-                Some(loaded) => QuasiStaticSystem::resume(solid, plan, step, interrupt, loaded)?,
-                None => QuasiStaticSystem::new(solid, plan, step, interrupt)?,
-            };
-            let outcome = march(run, solid, &mut system, resumed, summary);
-            summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));
-            outcome
-        }
-        // Stages of their own.
-        Analysis::Static | Analysis::StrengthReduction(_) => Ok(()),
-        Analysis::Dynamic(method) => {
-            let dt = run.job.solid_step.expect("a dynamic solid has a step");
-            let mut system = match &mut resumed {
-                Some(loaded) => PlasticDynamics::resume(solid, *method, dt, interrupt, loaded)?,
-                None => PlasticDynamics::new(solid, *method, dt, interrupt)?,
-            };
-            let outcome = march(run, solid, &mut system, resumed, summary);
-            summary.solid.newton = Some(NewtonRecord::of(&system.statistics()));
-            outcome
-        }
-    }
+    // Other solids have stages of their own.
+    let Some(kind) = SolidKind::of(solid) else { return Ok(()) };
+    let step = run.job.solid_step.expect("a solid with steps in time has their length");
+    let mut system = match &mut resumed {
+        Some(loaded) => SolidSystem::resume(solid, kind, step, interrupt, loaded)?,
+        None => SolidSystem::new(solid, kind, step, interrupt)?,
+    };
+    let outcome = march(run, solid, &mut system, resumed, summary);
+    summary.solid.newton = system.statistics().map(|s| NewtonRecord::of(&s));
+    outcome
 }
 
 /// Advances a system to the end of the run and writes its last state.
-fn march<S: System>(
+fn march(
     run: &Run<'_>,
     solid: &SolidPart,
-    system: &mut S,
+    system: &mut SolidSystem<'_>,
     resumed: Option<Loaded>,
     summary: &mut Summary,
 ) -> Result<(), Failure> {

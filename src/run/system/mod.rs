@@ -6,7 +6,7 @@ mod solid;
 
 pub use coupled::{CoupledSystem, Meshed};
 pub use grains::GrainsSystem;
-pub use solid::SolidSystem;
+pub use solid::{SolidKind, SolidSystem};
 pub use trackbed_coupling::track::GrainsView;
 
 use super::checkpoint::Body;

@@ -8,6 +8,8 @@
 //!
 //! Areas of drag: `Projected` is what the wet part shows to the flow; `Wetted` all of its surface, as in the source, which
 //! overstates the drag of a flat floe tenfold.
+//!
+//! Theory manual: equations (6.29), (6.30), (6.31) of `docs/theory/track.md`.
 
 mod wave;
 

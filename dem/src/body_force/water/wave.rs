@@ -3,6 +3,8 @@
 //! η = H/2 cos θ, θ = k (x·d) − ω t + φ; (ω − k U)² = g k tanh(k h), U the current along the wave. Velocities and accelerations of
 //! the water are those of the linear field, which goes on above still water up to the crests: a small floe then drifts along as fast
 //! as the water does at the surface (Stokes).
+//!
+//! Theory manual: equations (6.32), (6.33) of `docs/theory/track.md`.
 
 use crate::base::Vec3;
 use std::f64::consts::TAU;

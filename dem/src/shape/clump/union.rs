@@ -16,6 +16,8 @@
 //!
 //! Source: own derivation, checked against the closed form of two spheres (lens) and against voxels.
 //! Limits: the cost grows as n³ in the number of spheres (events of triples); meant for up to about 50 per clump.
+//!
+//! Theory manual: equation (2.1) of `docs/theory/shapes.md`.
 
 use nalgebra::Vector3;
 use std::f64::consts::TAU;

@@ -1,4 +1,6 @@
 //! Dilated disks: a flat circular disk, rolled over by a sphere. The core is the disk, across the third axis; its rim is the only edge.
+//!
+//! Theory manual: equation (2.10) of `docs/theory/shapes.md`.
 
 use crate::base::Vec3;
 use std::f64::consts::{PI, TAU};

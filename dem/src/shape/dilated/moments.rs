@@ -4,6 +4,8 @@
 //! Volume and surface are Steiner's (J. Steiner, 1840). For a corner with the cone of normals of solid angle W, whose sides belong
 //! to the edges k with unit vectors ν away from the corner and angles t between their faces' normals n₁ and n₂:
 //! ∫n dW = −½ Σ t ν and ∫n nᵀ dW = ⅓ (W 1 − Σ ν (n₁ + n₂)ᵀ tan(t/2)).
+//!
+//! Theory manual: equation (2.6) of `docs/theory/shapes.md`.
 
 use super::{Core, DilatedMoments};
 use crate::base::Vec3;

@@ -5,6 +5,8 @@
 //! same; each piece ends where planes say so, exactly. The distance of a fixed point from a convex body has one gradient everywhere
 //! outside of it, so the sums are smooth whatever turns into what, corners on edges into faces on faces, and forces that grow with
 //! them have a potential.
+//!
+//! Theory manual: equation (2.7) of `docs/theory/shapes.md`.
 
 use super::circle::{self, Circle, Turns};
 use super::part::Bounds;

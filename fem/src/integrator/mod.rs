@@ -1,14 +1,19 @@
 //! Methods that carry a body through time, behind one trait: linear and elastoplastic, dynamic and quasi-static.
 //!
-//! [`NewmarkSolver`](crate::newmark::NewmarkSolver) (Newmark and HHT-α with one factor), [`WindowSolver`](crate::window::WindowSolver)
-//! (mid-point form), and the elastoplastic [`Dynamics`](crate::nonlinear::Dynamics), [`QuasiStatic`](crate::nonlinear::QuasiStatic)
-//! and [`PlasticWindowSolver`](crate::nonlinear::PlasticWindowSolver). A new method is one that implements
-//! [`TimeIntegrator`].
+//! [`NewmarkSolver`](crate::newmark::NewmarkSolver) (Newmark and HHT-α with one factor), the elastoplastic
+//! [`Dynamics`](crate::nonlinear::Dynamics) and [`QuasiStatic`](crate::nonlinear::QuasiStatic), and the methods of
+//! [`theta`](crate::theta). A new method is one that implements [`TimeIntegrator`].
+
+mod memory;
+mod step_control;
 
 use crate::error::SolveError;
 use crate::model::Model;
 use crate::state::{State, StepAudit};
+pub use memory::{Memory, Statistics};
 use serde::{Deserialize, Serialize};
+pub use step_control::StepControl;
+pub(crate) use step_control::StepLength;
 
 /// Loads and prescribed displacements as functions of time.
 ///
@@ -74,10 +79,12 @@ impl StepReport {
     }
 }
 
+/// Called after every accepted step with the state, how the step converged, and its energies where the method balances them.
+pub type OnStep<'a> = &'a mut dyn FnMut(&State, &StepReport, Option<&StepAudit>);
+
 /// A method of time integration.
-pub trait TimeIntegrator {
-    /// Carries `state` to the time `to`, which it reaches exactly. After every accepted step `on_step` is given the state,
-    /// how the step converged, and its energies where the method keeps a ledger.
+pub trait TimeIntegrator: Send + Sync {
+    /// Carries `state` to the time `to`, which it reaches exactly.
     ///
     /// A dynamic method starts from the acceleration of the state, which must be that of its equations of motion.
     ///
@@ -90,57 +97,71 @@ pub trait TimeIntegrator {
         state: &mut State,
         to: f64,
         loading: &mut dyn Loading,
-        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+        on_step: OnStep<'_>,
     ) -> Result<(), SolveError>;
-}
 
-/// A step of a method with one length of step.
-pub(crate) struct Step<'m> {
-    model: &'m Model,
-    /// Times at both ends [s].
-    pub ends: [f64; 2],
-}
-
-impl Step<'_> {
-    /// Loads at both ends, shape `[3 * nodes]`, and the displacements of the constrained dofs at the end.
-    pub fn loads(&self, loading: &mut dyn Loading) -> ([Vec<f64>; 2], Vec<f64>) {
-        let loads = self.ends.map(|time| {
-            let mut load = vec![0.0; self.model.dof_count()];
-            loading.load(time, &mut load);
-            load
-        });
-        let mut prescribed: Vec<f64> =
-            self.model.supports().fixed().iter().map(|(_, value)| *value).collect();
-        loading.prescribed(self.ends[1], &mut prescribed);
-        (loads, prescribed)
+    /// Memory of a method with Newton's iteration beside the state, for a checkpoint; none of the others.
+    fn memory(&self) -> Option<Memory> {
+        None
     }
 
-    /// The mean of the loads at both ends, and the displacements of the constrained dofs at the end.
-    pub fn mean(&self, loading: &mut dyn Loading) -> (Vec<f64>, Vec<f64>) {
-        let ([mut mean, end], prescribed) = self.loads(loading);
-        mean.iter_mut().zip(&end).for_each(|(m, e)| *m = 0.5 * (*m + e));
-        (mean, prescribed)
+    /// Goes on with the memory of a method of the same model and options.
+    ///
+    /// # Errors
+    /// A matrix cannot be factored.
+    fn recall(&mut self, _model: &Model, _memory: &Memory) -> Result<(), SolveError> {
+        Ok(())
+    }
+
+    /// Forces of the supports on the body [N] after the last accepted step, where the method keeps them; 0 at free dofs. Shape
+    /// `[3 * nodes]`.
+    fn reactions(&self) -> Option<&[f64]> {
+        None
     }
 }
 
-/// The steps of length `dt` from `from` to `to`.
+/// Loads at both ends of a step and the displacements of the supports at its end; the memory serves all steps.
+#[derive(Default)]
+pub(crate) struct Conditions {
+    /// Loads [N] at the start and the end. Shape `[3 * nodes]`.
+    pub loads: [Vec<f64>; 2],
+    prescribed: Vec<f64>,
+    moved: bool,
+}
+
+impl Conditions {
+    /// Evaluates a loading for the step of `state` that has these `ends` [s].
+    pub fn evaluate(&mut self, model: &Model, state: &State, ends: [f64; 2], loading: &mut dyn Loading) {
+        for (load, time) in self.loads.iter_mut().zip(ends) {
+            load.clear();
+            load.resize(model.dof_count(), 0.0);
+            loading.load(time, load);
+        }
+        let fixed = model.supports().fixed();
+        self.prescribed.clear();
+        self.prescribed.extend(fixed.iter().map(|(_, value)| *value));
+        loading.prescribed(ends[1], &mut self.prescribed);
+        let mut values = fixed.iter().zip(&self.prescribed);
+        self.moved = values.any(|((dof, _), value)| state.u[*dof as usize] != *value);
+    }
+
+    /// The displacements [m] of the constrained dofs at the end; none where all stay where they are.
+    pub fn prescribed(&self) -> Option<&[f64]> {
+        self.moved.then_some(&self.prescribed)
+    }
+}
+
+/// Both ends [s] of each step of length `dt` from `from` to `to`.
 ///
 /// # Errors
 /// The end is not a whole number of steps ahead.
-pub(crate) fn steps_of(
-    model: &Model,
-    from: f64,
-    to: f64,
-    dt: f64,
-) -> Result<impl Iterator<Item = Step<'_>>, SolveError> {
+pub(crate) fn steps_of(from: f64, to: f64, dt: f64) -> Result<impl Iterator<Item = [f64; 2]>, SolveError> {
     let count = ((to - from) / dt).round();
     let whole = (from + count * dt - to).abs() <= 1e-9 * dt.max(to.abs());
     if !(whole && count >= 0.0) {
         let expected = "a whole number of steps ahead of the state";
         return Err(SolveError::Option { what: "the end time", value: to, expected });
     }
-    Ok((0..count as u64).map(move |i| {
-        let at = |i: u64| if i as f64 == count { to } else { from + i as f64 * dt };
-        Step { model, ends: [at(i), at(i + 1)] }
-    }))
+    let at = move |i: u64| if i as f64 == count { to } else { from + i as f64 * dt };
+    Ok((0..count as u64).map(move |i| [at(i), at(i + 1)]))
 }

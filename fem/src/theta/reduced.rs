@@ -1,22 +1,25 @@
-//! One implicit step of a reduced solid under the mean load of a window: [`crate::window`] in the span of the shapes.
+//! The θ-method in the span of the shapes of a reduced body.
 //!
 //! `w = V q'` with `(1 + θ dt α + θ dt (θ dt + β) s_k) q'_k + θ dt (D q')_k = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)`,
 //! s_k the squares of the frequencies, p = Vᵀ M v0 the velocity in the span, α and β Rayleigh's coefficients, D the
 //! dashpots. What is stored is the state of all nodes: a run that goes on from it has the same bits.
 
-use super::Reduced;
+use super::{ThetaMethod, check_theta};
 use crate::error::SolveError;
+use crate::integrator::{Loading, OnStep, StepReport, TimeIntegrator};
 use crate::model::Model;
 use crate::newmark::check_dynamics;
+use crate::reduction::Reduced;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load};
 use nalgebra::{DMatrix, DVector, Dyn, linalg};
 use std::sync::Arc;
 
 /// Holds the reduced equations for one window length, and scratch.
-pub struct ReducedWindowSolver {
+pub struct ReducedTheta {
     theta: f64,
     dt: f64,
+    report: StepReport,
     reduced: Arc<Reduced>,
     /// Diagonal of the equations, or their factor where dashpots join them.
     diagonal: Vec<f64>,
@@ -27,7 +30,7 @@ pub struct ReducedWindowSolver {
     right: DVector<f64>,
 }
 
-impl ReducedWindowSolver {
+impl ReducedTheta {
     /// Windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
     ///
     /// # Errors
@@ -37,10 +40,8 @@ impl ReducedWindowSolver {
         reduced: Arc<Reduced>,
         theta: f64,
         dt: f64,
-    ) -> Result<ReducedWindowSolver, SolveError> {
-        if !(0.5..=1.0).contains(&theta) {
-            return Err(SolveError::Theta { theta });
-        }
+    ) -> Result<ReducedTheta, SolveError> {
+        check_theta(theta)?;
         check_linear(model)?;
         check_dynamics(model, dt)?;
         let (n, c, h) = (model.dof_count(), model.rayleigh(), theta * dt);
@@ -56,9 +57,10 @@ impl ReducedWindowSolver {
             linalg::Cholesky::new(matrix).expect("a damped body at rest")
         });
         let count = reduced.count();
-        Ok(ReducedWindowSolver {
+        Ok(ReducedTheta {
             theta,
             dt,
+            report: StepReport::linear(0.0, dt),
             reduced,
             diagonal,
             factor,
@@ -68,28 +70,29 @@ impl ReducedWindowSolver {
             right: DVector::zeros(count),
         })
     }
+}
 
-    /// The length of the window [s].
-    pub fn dt(&self) -> f64 {
+impl ThetaMethod for ReducedTheta {
+    fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// The shapes and their error.
-    pub fn reduced(&self) -> &Arc<Reduced> {
-        &self.reduced
+    fn report(&mut self) -> &mut StepReport {
+        &mut self.report
     }
 
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, on supports that stay where they are.
-    /// `state.a` becomes the mean acceleration. A part of the velocity outside the span is lost.
-    ///
-    /// # Errors
-    /// A load or a result that is not finite; the state is untouched then.
-    pub fn step(
+    /// A part of the velocity outside the span is lost; supports stay where they are.
+    fn step_prescribed(
         &mut self,
         model: &Model,
         state: &mut State,
         mean_load: &[f64],
+        prescribed: Option<&[f64]>,
     ) -> Result<StepAudit, SolveError> {
+        if let Some(values) = prescribed {
+            let (what, expected) = ("the number of moved supports of a reduced body", "0");
+            return Err(SolveError::Option { what, value: values.len() as f64, expected });
+        }
         check_load(model, mean_load, state.time + self.dt)?;
         let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
         let h = theta * dt;
@@ -151,5 +154,18 @@ impl ReducedWindowSolver {
         }
         std::mem::swap(state, &mut self.next);
         Ok(audit)
+    }
+}
+
+impl TimeIntegrator for ReducedTheta {
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        to: f64,
+        loading: &mut dyn Loading,
+        on_step: OnStep<'_>,
+    ) -> Result<(), SolveError> {
+        super::integrate(self, model, state, to, loading, on_step)
     }
 }

@@ -1,35 +1,35 @@
-//! One implicit step of an elastoplastic body under the mean load of a time window: the solid's part of a coupled step.
+//! The θ-method of an elastoplastic body.
 //!
 //! ```text
 //! M (v1 - v0)/dt + C vt + (1 - theta) (f(s0) + S u0) + theta (f(s1) + S u1) = F_mean,   vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
 //! ```
 //!
-//! For an elastic body this is [`crate::window::WindowSolver`] exactly. The impulse of the window is handed over whole. When the
+//! For an elastic body this is [`super::ThetaSolver`] exactly. The impulse of the window is handed over whole. When the
 //! iteration of a window fails it is taken in 2, 4, … equal parts under the same mean load, which keeps the impulse.
 //!
 //! Source: as the elastic one; the stresses are returned at the end of the step (backward Euler) and weighted as forces, so the
 //! ledger closes without approximation with the mean of the stresses at both ends. Limits: second order for theta = 1/2 only.
 
-use super::conditions::{check_state, ensure_points, subtract_springs};
-use super::memory::Memory;
-use super::motion::{close, inner_force};
-use super::newton::{Failure, Newton, Problem};
-use super::options::{NewtonOptions, Statistics};
+use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
+use crate::energy::at_supports;
 use crate::error::SolveError;
-use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
+use crate::integrator::{Loading, Memory, OnStep, Statistics, StepReport, TimeIntegrator};
 use crate::model::Model;
-use crate::newmark::{check_dynamics, check_theta};
+use crate::newmark::check_dynamics;
+use crate::nonlinear::NewtonOptions;
+use crate::nonlinear::conditions::{check_state, ensure_points, subtract_springs};
+use crate::nonlinear::motion::{close, inner_force};
+use crate::nonlinear::newton::{Failure, INERTIA, Newton, Problem};
 use crate::state::{State, StepAudit};
 use crate::statics::{check_load, check_prescribed};
 
 /// Parts that a window is split in at most.
 const PARTS: u32 = 64;
-/// As in the dynamics.
-const INERTIA: f64 = 1e-3;
 
-/// Steps an elastoplastic body through windows of one length.
-pub struct PlasticWindowSolver {
+/// Steps an elastoplastic body through windows of one length; where a sixty-fourth of a window fails, a step returns
+/// [`SolveError::Diverged`].
+pub struct NonlinearTheta {
     theta: f64,
     dt: f64,
     newton: Newton,
@@ -40,7 +40,7 @@ pub struct PlasticWindowSolver {
     scratch: Vec<f64>,
 }
 
-impl PlasticWindowSolver {
+impl NonlinearTheta {
     /// Windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
     ///
     /// # Errors
@@ -50,11 +50,11 @@ impl PlasticWindowSolver {
         theta: f64,
         dt: f64,
         options: NewtonOptions,
-    ) -> Result<PlasticWindowSolver, SolveError> {
+    ) -> Result<NonlinearTheta, SolveError> {
         check_theta(theta)?;
         check_dynamics(model, dt)?;
         let zeros = || vec![0.0; model.dof_count()];
-        Ok(PlasticWindowSolver {
+        Ok(NonlinearTheta {
             theta,
             dt,
             newton: Newton::new(model, options)?,
@@ -66,11 +66,6 @@ impl PlasticWindowSolver {
         })
     }
 
-    /// The length of the window [s].
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
     /// The parameter theta [-].
     pub fn theta(&self) -> f64 {
         self.theta
@@ -79,74 +74,6 @@ impl PlasticWindowSolver {
     /// Counts and times since the solver was made.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
-    }
-
-    /// What the solver remembers beside the state, for a checkpoint.
-    pub fn memory(&self) -> Memory {
-        self.newton.memory(None)
-    }
-
-    /// Goes on with the memory of a solver of the same model and options.
-    ///
-    /// # Errors
-    /// The elastic matrix cannot be factored.
-    pub fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
-        self.newton.recall(model, memory, None)
-    }
-
-    /// How the last step, or the last part of it, converged.
-    pub fn report(&self) -> &StepReport {
-        &self.newton.report
-    }
-
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, on supports that stay where they are.
-    /// `state.a` becomes the mean acceleration of the window, or of its last part.
-    ///
-    /// # Errors
-    /// A load or a result that is not finite, a state of another model, or [`SolveError::Diverged`] when a sixty-fourth of the
-    /// window fails; the state is untouched then.
-    pub fn step(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        mean_load: &[f64],
-    ) -> Result<StepAudit, SolveError> {
-        self.step_prescribed(model, state, mean_load, None)
-    }
-
-    /// As [`PlasticWindowSolver::step`], with the displacement [m] of each constrained dof at the end of the window, in the
-    /// order of [`crate::supports::Supports::fixed`].
-    ///
-    /// # Errors
-    /// As [`PlasticWindowSolver::step`].
-    pub fn step_prescribed(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        mean_load: &[f64],
-        prescribed: Option<&[f64]>,
-    ) -> Result<StepAudit, SolveError> {
-        check_load(model, mean_load, state.time + self.dt)?;
-        check_prescribed(model, prescribed, state.time + self.dt)?;
-        check_state(model, state)?;
-        let mut parts = 1;
-        loop {
-            let mut trial = None;
-            match self.parts(model, state, &mut trial, mean_load, prescribed, parts) {
-                Ok(audit) => {
-                    if let Some(trial) = trial {
-                        *state = trial;
-                    }
-                    return Ok(audit);
-                }
-                Err(Failure::Stuck(stuck)) if parts >= PARTS => return Err(stuck.error(model, state.time)),
-                Err(Failure::Stuck(_)) => {
-                    parts *= 2;
-                    self.newton.statistics.halvings += 1;
-                }
-                Err(Failure::Fatal(error)) => return Err(error),
-            }
-        }
     }
 
     /// The window in equal parts. One part goes straight into the state; several go into a copy.
@@ -170,13 +97,7 @@ impl PlasticWindowSolver {
             }
             let share = f64::from(part) / f64::from(parts);
             let time = if part == parts { end } else { start + share * self.dt };
-            let audit = self.part(model, state, mean_load, self.dt / f64::from(parts), time)?;
-            sum.external_work += audit.external_work;
-            sum.support_work += audit.support_work;
-            sum.damping_dissipation += audit.damping_dissipation;
-            sum.boundary_dissipation += audit.boundary_dissipation;
-            sum.plastic_dissipation += audit.plastic_dissipation;
-            sum.numerical_dissipation += audit.numerical_dissipation;
+            sum += self.part(model, state, mean_load, self.dt / f64::from(parts), time)?;
         }
         Ok(sum)
     }
@@ -267,32 +188,67 @@ impl PlasticWindowSolver {
         }
         let mut force = vec![0.0; n];
         inner_force(model, &mut self.newton.force, &middle, &mut force, &mut self.scratch);
-        let mut reactions = vec![0.0; n];
-        for &(dof, _) in model.supports().fixed() {
-            reactions[dof as usize] = force[dof as usize] - mean_load[dof as usize];
-        }
-        reactions
+        at_supports(model, &force, mean_load)
     }
 }
 
-impl TimeIntegrator for PlasticWindowSolver {
-    /// Windows under the mean of the loads at both ends; `to` must lie a whole number of windows ahead.
+impl ThetaMethod for NonlinearTheta {
+    fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    fn report(&mut self) -> &mut StepReport {
+        &mut self.newton.report
+    }
+
+    fn step_prescribed(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        mean_load: &[f64],
+        prescribed: Option<&[f64]>,
+    ) -> Result<StepAudit, SolveError> {
+        check_load(model, mean_load, state.time + self.dt)?;
+        check_prescribed(model, prescribed, state.time + self.dt)?;
+        check_state(model, state)?;
+        let mut parts = 1;
+        loop {
+            let mut trial = None;
+            match self.parts(model, state, &mut trial, mean_load, prescribed, parts) {
+                Ok(audit) => {
+                    if let Some(trial) = trial {
+                        *state = trial;
+                    }
+                    return Ok(audit);
+                }
+                Err(Failure::Stuck(stuck)) if parts >= PARTS => return Err(stuck.error(model, state.time)),
+                Err(Failure::Stuck(_)) => {
+                    parts *= 2;
+                    self.newton.statistics.halvings += 1;
+                }
+                Err(Failure::Fatal(error)) => return Err(error),
+            }
+        }
+    }
+}
+
+impl TimeIntegrator for NonlinearTheta {
     fn integrate(
         &mut self,
         model: &Model,
         state: &mut State,
         to: f64,
         loading: &mut dyn Loading,
-        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+        on_step: OnStep<'_>,
     ) -> Result<(), SolveError> {
-        for step in steps_of(model, state.time, to, self.dt)? {
-            let (load, prescribed) = step.mean(loading);
-            let audit = self.step_prescribed(model, state, &load, Some(&prescribed))?;
-            // The end itself, where the sum of the steps would miss it by rounding.
-            state.time = step.ends[1];
-            self.newton.report.time = state.time;
-            on_step(state, &self.newton.report, Some(&audit));
-        }
-        Ok(())
+        super::integrate(self, model, state, to, loading, on_step)
+    }
+
+    fn memory(&self) -> Option<Memory> {
+        Some(self.newton.memory(None))
+    }
+
+    fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
+        self.newton.recall(model, memory, None)
     }
 }

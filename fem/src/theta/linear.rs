@@ -1,4 +1,4 @@
-//! One implicit step under the mean load of a time window: the solid's part of a coupled step.
+//! The θ-method of a linear body.
 //!
 //! ```text
 //! M (v1 - v0)/dt + C vt + K ut = F_mean
@@ -20,22 +20,25 @@
 //! Limits: second order for theta = 1/2 only; a moved support has the velocity `vt = du/dt` inside the window and
 //! `v1 = v0 + (vt - v0)/theta` at its end.
 
-mod predict;
-
+use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
-use crate::energy::inner_force;
-use crate::equations::system::{Counts, SystemSolver};
+use crate::energy::{at_supports, inner_force};
+use crate::equations::system::{Added, Counts, SystemSolver};
 use crate::error::SolveError;
-use crate::integrator::{Loading, StepReport, TimeIntegrator, steps_of};
+use crate::integrator::{Loading, OnStep, StepReport, TimeIntegrator};
 use crate::model::Model;
-use crate::newmark::{check_dynamics, check_theta};
+use crate::newmark::check_dynamics;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
+/// Residual at which a prediction is good enough [-].
+const TOLERANCE: f64 = 1e-8;
+
 /// Holds the factor for one window length, or what an iteration needs, and scratch.
-pub struct WindowSolver {
+pub struct ThetaSolver {
     theta: f64,
     dt: f64,
+    report: StepReport,
     system: Box<dyn SystemSolver>,
     next: State,
     work: Vec<f64>,
@@ -45,12 +48,12 @@ pub struct WindowSolver {
     equations: Vec<f64>,
 }
 
-impl WindowSolver {
+impl ThetaSolver {
     /// Factors the matrix of windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
     ///
     /// # Errors
     /// theta out of range, a length that is not above 0, a material without density or with plasticity.
-    pub fn new(model: &Model, theta: f64, dt: f64) -> Result<WindowSolver, SolveError> {
+    pub fn new(model: &Model, theta: f64, dt: f64) -> Result<ThetaSolver, SolveError> {
         check_theta(theta)?;
         check_linear(model)?;
         check_dynamics(model, dt)?;
@@ -63,9 +66,10 @@ impl WindowSolver {
         };
         let system = model.step_solver(combination)?;
         let n = model.dof_count();
-        Ok(WindowSolver {
+        Ok(ThetaSolver {
             theta,
             dt,
+            report: StepReport::linear(0.0, dt),
             system,
             next: State::new(model),
             work: vec![0.0; n],
@@ -75,17 +79,12 @@ impl WindowSolver {
         })
     }
 
-    /// The length of the window [s].
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
     /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// Memory of conjugate gradients or of MUMPS beside that of the model [bytes].
+    /// Memory of conjugate gradients or of a library beside that of the model [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }
@@ -95,26 +94,92 @@ impl WindowSolver {
         self.theta
     }
 
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, on supports that stay where they are.
-    /// `state.a` becomes the mean acceleration.
-    ///
-    /// # Errors
-    /// A load or a result that is not finite; the state is untouched then.
-    pub fn step(
-        &mut self,
+    /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,
+    /// 0 at free dofs. Shape `[3 * nodes]`. With the mean load they are the change of momentum exactly.
+    pub fn mean_reactions(
+        &self,
         model: &Model,
-        state: &mut State,
+        before: &State,
+        after: &State,
         mean_load: &[f64],
-    ) -> Result<StepAudit, SolveError> {
-        self.step_prescribed(model, state, mean_load, None)
+    ) -> Vec<f64> {
+        let n = model.dof_count();
+        let du: Vec<f64> = after.u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
+        let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 5 * n]);
+        self.mean_inner_force(model, before, after, &du, &mut inner, &mut scratch);
+        at_supports(model, &inner, mean_load)
     }
 
-    /// As [`WindowSolver::step`], with the displacement [m] of each constrained dof at the end of the window, in the order
-    /// of [`crate::supports::Supports::fixed`].
-    ///
-    /// # Errors
-    /// A load, a displacement or a result that is not finite; the state is untouched then.
-    pub fn step_prescribed(
+    /// `M dv/dt + C vt + K ut` of a window. Scratch has the length of five nodal vectors.
+    fn mean_inner_force(
+        &self,
+        model: &Model,
+        old: &State,
+        new: &State,
+        du: &[f64],
+        force: &mut [f64],
+        scratch: &mut [f64],
+    ) {
+        let n = du.len();
+        let (u, rest) = scratch.split_at_mut(n);
+        let (v, rest) = rest.split_at_mut(n);
+        let (a, rest) = rest.split_at_mut(n);
+        for d in 0..n {
+            u[d] = old.u[d] + self.theta * du[d];
+            v[d] = du[d] / self.dt;
+            a[d] = (new.v[d] - old.v[d]) / self.dt;
+        }
+        inner_force(model, [u, v, a], force, rest);
+    }
+
+    /// Work, damping and numerical dissipation; expects du in `work`. Forms that a term does not need are left out.
+    fn audit(&mut self, model: &Model, old: &State, mean_load: &[f64]) -> StepAudit {
+        let (dt, c, matrices) = (self.dt, model.rayleigh(), model.matrices());
+        let excess = self.theta - 0.5;
+        let external_work = mean_load.iter().zip(&self.work).map(|(f, du)| f * du).sum();
+        let mut audit = StepAudit { external_work, ..StepAudit::default() };
+        let fixed = model.supports().fixed();
+        if fixed.iter().any(|&(dof, _)| self.work[dof as usize] != 0.0) {
+            let mut inner = std::mem::take(&mut self.inner);
+            inner.resize(5 * old.u.len(), 0.0);
+            let mut force = std::mem::take(&mut self.product);
+            self.mean_inner_force(model, old, &self.next, &self.work, &mut force, &mut inner);
+            for d in fixed.iter().map(|&(dof, _)| dof as usize) {
+                audit.support_work += (force[d] - mean_load[d]) * self.work[d];
+            }
+            (self.inner, self.product) = (inner, force);
+        }
+        if c.beta_k > 0.0 || excess > 0.0 {
+            let strain = matrices.stiffness_form(&self.work);
+            audit.damping_dissipation += c.beta_k * strain / dt;
+            audit.numerical_dissipation += excess * strain;
+        }
+        if c.alpha_m > 0.0 {
+            audit.damping_dissipation += c.alpha_m * matrices.mass_form(&self.work) / dt;
+        }
+        if !matrices.dashpots().is_empty() {
+            audit.boundary_dissipation = matrices.dashpots().form(&self.work) / dt;
+        }
+        if excess > 0.0 {
+            for d in 0..old.v.len() {
+                self.work[d] = self.next.v[d] - old.v[d];
+            }
+            audit.numerical_dissipation += excess * matrices.mass_form(&self.work);
+        }
+        audit
+    }
+}
+
+impl ThetaMethod for ThetaSolver {
+    fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    fn report(&mut self) -> &mut StepReport {
+        &mut self.report
+    }
+
+    fn step_prescribed(
         &mut self,
         model: &Model,
         state: &mut State,
@@ -184,102 +249,56 @@ impl WindowSolver {
         Ok(audit)
     }
 
-    /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,
-    /// 0 at free dofs. Shape `[3 * nodes]`. With the mean load they are the change of momentum exactly.
-    pub fn mean_reactions(
-        &self,
+    /// Solved by [`SystemSolver::solve_with`] to a residual of 1e-8.
+    fn predict(
+        &mut self,
         model: &Model,
-        before: &State,
-        after: &State,
+        state: &State,
         mean_load: &[f64],
-    ) -> Vec<f64> {
-        let n = model.dof_count();
-        let du: Vec<f64> = after.u.iter().zip(&before.u).map(|(a, b)| a - b).collect();
-        let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 5 * n]);
-        self.mean_inner_force(model, before, after, &du, &mut inner, &mut scratch);
-        let mut reactions = vec![0.0; n];
-        for &(dof, _) in model.supports().fixed() {
-            reactions[dof as usize] = inner[dof as usize] - mean_load[dof as usize];
-        }
-        reactions
-    }
-
-    /// `M dv/dt + C vt + K ut` of a window. Scratch has the length of five nodal vectors.
-    fn mean_inner_force(
-        &self,
-        model: &Model,
-        old: &State,
-        new: &State,
-        du: &[f64],
-        force: &mut [f64],
-        scratch: &mut [f64],
-    ) {
-        let n = du.len();
-        let (u, rest) = scratch.split_at_mut(n);
-        let (v, rest) = rest.split_at_mut(n);
-        let (a, rest) = rest.split_at_mut(n);
+        contacts: &mut dyn FnMut(&[f64], &mut [f64]),
+        rate: &mut [f64],
+    ) -> Result<u32, SolveError> {
+        check_load(model, mean_load, state.time + self.dt)?;
+        let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
+        let (n, supports) = (state.u.len(), model.supports());
         for d in 0..n {
-            u[d] = old.u[d] + self.theta * du[d];
-            v[d] = du[d] / self.dt;
-            a[d] = (new.v[d] - old.v[d]) / self.dt;
+            self.work[d] = state.u[d] + (theta * dt + c.beta_k) * state.v[d];
         }
-        inner_force(model, [u, v, a], force, rest);
-    }
-
-    /// Work, damping and numerical dissipation; expects du in `work`. Forms that a term does not need are left out.
-    fn audit(&mut self, model: &Model, old: &State, mean_load: &[f64]) -> StepAudit {
-        let (dt, c, matrices) = (self.dt, model.rayleigh(), model.matrices());
-        let excess = self.theta - 0.5;
-        let external_work = mean_load.iter().zip(&self.work).map(|(f, du)| f * du).sum();
-        let mut audit = StepAudit { external_work, ..StepAudit::default() };
-        let fixed = model.supports().fixed();
-        if fixed.iter().any(|&(dof, _)| self.work[dof as usize] != 0.0) {
-            let mut inner = std::mem::take(&mut self.inner);
-            inner.resize(5 * old.u.len(), 0.0);
-            let mut force = std::mem::take(&mut self.product);
-            self.mean_inner_force(model, old, &self.next, &self.work, &mut force, &mut inner);
-            for d in fixed.iter().map(|&(dof, _)| dof as usize) {
-                audit.support_work += (force[d] - mean_load[d]) * self.work[d];
-            }
-            (self.inner, self.product) = (inner, force);
-        }
-        if c.beta_k > 0.0 || excess > 0.0 {
-            let strain = matrices.stiffness_form(&self.work);
-            audit.damping_dissipation += c.beta_k * strain / dt;
-            audit.numerical_dissipation += excess * strain;
-        }
+        model.stiffness_times(&self.work, &mut self.product);
+        let mut force: Vec<f64> = (0..n).map(|d| mean_load[d] - self.product[d]).collect();
         if c.alpha_m > 0.0 {
-            audit.damping_dissipation += c.alpha_m * matrices.mass_form(&self.work) / dt;
+            model.mass_times(&state.v, &mut self.product);
+            (0..n).for_each(|d| force[d] -= c.alpha_m * self.product[d]);
         }
-        if !matrices.dashpots().is_empty() {
-            audit.boundary_dissipation = matrices.dashpots().form(&self.work) / dt;
+        if !model.matrices().dashpots().is_empty() {
+            self.product.fill(0.0);
+            model.dashpot_times(&state.v, &mut self.product);
+            (0..n).for_each(|d| force[d] -= self.product[d]);
         }
-        if excess > 0.0 {
-            for d in 0..old.v.len() {
-                self.work[d] = self.next.v[d] - old.v[d];
-            }
-            audit.numerical_dissipation += excess * matrices.mass_form(&self.work);
+        for (slot, &d) in self.equations.iter_mut().zip(supports.free()) {
+            *slot = theta * dt * force[d as usize];
         }
-        audit
+        let scratch = [&mut self.work[..], &mut self.product];
+        let added = Added { factor: theta * dt, times: contacts, scratch };
+        let iterations = self.system.solve_with(supports, &mut self.equations, added, TOLERANCE)?;
+        rate.copy_from_slice(&state.v);
+        for (x, &d) in self.equations.iter().zip(supports.free()) {
+            rate[d as usize] += x;
+        }
+        check_finite(model, "the velocity", rate, state.time + dt)?;
+        Ok(iterations)
     }
 }
 
-impl TimeIntegrator for WindowSolver {
-    /// Windows under the mean of the loads at both ends; `to` must lie a whole number of windows ahead.
+impl TimeIntegrator for ThetaSolver {
     fn integrate(
         &mut self,
         model: &Model,
         state: &mut State,
         to: f64,
         loading: &mut dyn Loading,
-        on_step: &mut dyn FnMut(&State, &StepReport, Option<&StepAudit>),
+        on_step: OnStep<'_>,
     ) -> Result<(), SolveError> {
-        for step in steps_of(model, state.time, to, self.dt)? {
-            let (load, prescribed) = step.mean(loading);
-            let audit = self.step_prescribed(model, state, &load, Some(&prescribed))?;
-            state.time = step.ends[1];
-            on_step(state, &StepReport::linear(state.time, self.dt), Some(&audit));
-        }
-        Ok(())
+        super::integrate(self, model, state, to, loading, on_step)
     }
 }

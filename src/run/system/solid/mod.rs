@@ -1,0 +1,331 @@
+//! A solid alone: elastic or plastic through time, or in equilibrium at every step.
+
+mod loading;
+
+use super::{Applied, SolidView, System, stored_at_rest};
+use crate::failure::Failure;
+use crate::model::solid::{Analysis, QuasiStaticPlan, SolidPart, TimeMethod};
+use crate::run::checkpoint::{Body, Loaded};
+use crate::run::checkpoint_store::Interrupt;
+use crate::run::initial;
+use loading::SolidLoading;
+use std::io;
+use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::track::TrackSystem;
+use trackbed_fem as fem;
+use trackbed_fem::newmark::{self, NewmarkSolver};
+use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
+use trackbed_fem::nonlinear::{Memory, QuasiStatic, Statistics, StepControl, energy};
+use trackbed_fem::{SolveError, State, TimeIntegrator};
+
+/// Parts of a time step that are tried before a dynamic run gives up.
+const SMALLEST_PART: f64 = 1.0 / 256.0;
+
+/// How a solid is stepped, which its start, its energy balance and its checkpoint depend on.
+#[derive(Clone, Copy)]
+pub enum SolidKind {
+    /// Dynamics of an elastic solid.
+    Elastic(TimeMethod),
+    /// Dynamics of a plastic solid, or of one with initial stress.
+    Plastic(TimeMethod),
+    /// Equilibrium at every step.
+    QuasiStatic(QuasiStaticPlan),
+}
+
+impl SolidKind {
+    /// The kind of a solid that runs alone; none where it takes no steps in time.
+    pub fn of(part: &SolidPart) -> Option<SolidKind> {
+        match part.analysis {
+            Analysis::Dynamic(method) if part.is_linear() => Some(SolidKind::Elastic(method)),
+            Analysis::Dynamic(method) => Some(SolidKind::Plastic(method)),
+            Analysis::QuasiStatic(plan) => Some(SolidKind::QuasiStatic(plan)),
+            Analysis::Static | Analysis::StrengthReduction(_) => None,
+        }
+    }
+
+    /// The integrator for steps of length `step` [s].
+    fn integrator(self, part: &SolidPart, step: f64) -> Result<Box<dyn TimeIntegrator>, SolveError> {
+        let (model, newton) = (&part.model, part.newton);
+        let min = step * SMALLEST_PART;
+        let control = StepControl { initial: step, min, max: step, target_iterations: 40 };
+        Ok(match self {
+            SolidKind::Elastic(TimeMethod::Newmark(method)) => {
+                Box::new(NewmarkSolver::conditionally_stable(model, method, step)?)
+            }
+            SolidKind::Elastic(TimeMethod::Hht(alpha)) => Box::new(NewmarkSolver::hht(model, alpha, step)?),
+            SolidKind::Plastic(TimeMethod::Newmark(method)) => {
+                Box::new(Dynamics::newmark(model, method, newton, control)?)
+            }
+            SolidKind::Plastic(TimeMethod::Hht(alpha)) => {
+                Box::new(Dynamics::hht(model, alpha, newton, control)?)
+            }
+            SolidKind::QuasiStatic(plan) => Box::new(quasi_static(part, plan, [step; 2])?),
+        })
+    }
+}
+
+/// A solid alone, stepped by a method of time integration.
+pub struct SolidSystem<'a> {
+    part: &'a SolidPart,
+    kind: SolidKind,
+    loading: SolidLoading<'a>,
+    /// Memory of the integrator before a step that was given up, which the checkpoint holds then.
+    given_up: Option<Memory>,
+    state: State,
+    /// The state before the last step.
+    before: State,
+    integrator: Box<dyn TimeIntegrator>,
+    step: f64,
+    steps: u64,
+    /// Forces of the supports on a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
+    reactions: Vec<f64>,
+    spent: Spent,
+}
+
+impl<'a> SolidSystem<'a> {
+    /// The solid at time 0: with its initial stress, and the acceleration that its loads give it or in equilibrium with its weight
+    /// and the loads and supports at time 0. `step` is the length of its steps [s].
+    ///
+    /// # Errors
+    /// A body that is not held, no equilibrium at time 0, or a matrix that cannot be factored.
+    pub fn new(
+        part: &'a SolidPart,
+        kind: SolidKind,
+        step: f64,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Failure> {
+        let model = &part.model;
+        let mut loading = SolidLoading::new(part, kind, interrupt);
+        let (mut state, mut reactions) = (State::new(model), Vec::new());
+        match kind {
+            SolidKind::Elastic(_) => newmark::initial_acceleration(model, &mut state, &loading.at(0.0)),
+            SolidKind::Plastic(_) => {
+                (state, _) = initial::state(part, model, &loading.gravity)?;
+                dynamics::initial_acceleration(model, &mut state, &loading.at(0.0))
+            }
+            SolidKind::QuasiStatic(plan) => {
+                (state, loading.carried) = initial::state(part, model, &loading.gravity)?;
+                reactions = bring_on_loads(part, plan, &mut state, &mut loading)?;
+                Ok(())
+            }
+        }
+        .map_err(|e| part.failure(&e))?;
+        Ok(SolidSystem { reactions, ..SolidSystem::with(part, kind, step, loading, state)? })
+    }
+
+    /// The solid as a checkpoint has it.
+    ///
+    /// # Errors
+    /// As [`SolidSystem::new`]; a checkpoint of something else.
+    pub fn resume(
+        part: &'a SolidPart,
+        kind: SolidKind,
+        step: f64,
+        interrupt: &Interrupt,
+        loaded: &mut Loaded,
+    ) -> Result<Self, Failure> {
+        let loading = SolidLoading::new(part, kind, interrupt);
+        let mut system = SolidSystem::with(part, kind, step, loading, State::new(&part.model))?;
+        if system.integrator.memory().is_some() {
+            let memory = loaded.take()?;
+            system.integrator.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
+        }
+        // The load beside the state is known from the time.
+        match kind {
+            SolidKind::Elastic(_) => (system.state, _, system.spent) = loaded.take::<(_, Vec<f64>, _)>()?,
+            SolidKind::Plastic(_) => {
+                (system.state, system.steps, _, system.spent) = loaded.take::<(_, _, Vec<f64>, _)>()?;
+            }
+            SolidKind::QuasiStatic(_) => {
+                let carried;
+                (system.state, carried, system.steps, _, system.reactions, system.spent) =
+                    loaded.take::<(_, _, _, Vec<f64>, _, _)>()?;
+                system.loading.carried = carried;
+            }
+        }
+        Ok(system)
+    }
+
+    /// The solid in a state, with its integrator.
+    fn with(
+        part: &'a SolidPart,
+        kind: SolidKind,
+        step: f64,
+        loading: SolidLoading<'a>,
+        state: State,
+    ) -> Result<Self, Failure> {
+        Ok(SolidSystem {
+            part,
+            kind,
+            loading,
+            given_up: None,
+            before: state.clone(),
+            state,
+            integrator: kind.integrator(part, step).map_err(|e| part.failure(&e))?,
+            step,
+            steps: 0,
+            reactions: Vec::new(),
+            spent: Spent::default(),
+        })
+    }
+
+    /// Counts of the iteration; none for an elastic solid, which has none.
+    pub fn statistics(&self) -> Option<Statistics> {
+        self.integrator.memory().map(|memory| memory.statistics())
+    }
+
+    /// Adds the work of loads and supports since the state before, in equilibrium at both ends.
+    fn add_work_at_rest(&mut self) {
+        if self.state.time <= self.before.time {
+            return;
+        }
+        let [start, end] = [self.before.time, self.state.time].map(|time| self.loading.at(time));
+        let reactions = self.integrator.reactions().expect("a solid in equilibrium keeps its reactions");
+        // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
+        let mut work = 0.0;
+        for d in 0..start.len() {
+            let loads = start[d] + end[d] - 2.0 * self.loading.gravity[d];
+            let ends = loads + self.reactions[d] + reactions[d];
+            work += 0.5 * ends * (self.state.u[d] - self.before.u[d]);
+        }
+        self.spent.solid_load_work += work;
+        self.spent.plastic += energy::plastic_work(&self.part.model, &self.before.points, &self.state.points);
+        self.reactions.copy_from_slice(reactions);
+    }
+}
+
+/// The integrator of a solid in equilibrium, with the first and the largest length of its steps [s].
+fn quasi_static(
+    part: &SolidPart,
+    plan: QuasiStaticPlan,
+    [initial, max]: [f64; 2],
+) -> Result<QuasiStatic, SolveError> {
+    let (min, target_iterations) = (initial * plan.smallest_step, plan.target_iterations);
+    QuasiStatic::new(&part.model, part.newton, StepControl { initial, min, max, target_iterations })
+}
+
+/// Brings a solid to equilibrium with all that acts at time 0, over one unit of time before it, and returns the forces of its
+/// supports [N], shape `[3·nodes]`.
+fn bring_on_loads(
+    part: &SolidPart,
+    plan: QuasiStaticPlan,
+    state: &mut State,
+    loading: &mut SolidLoading<'_>,
+) -> Result<Vec<f64>, Failure> {
+    let mut begin = quasi_static(part, plan, [0.25, 1.0]).map_err(|e| part.failure(&e))?;
+    state.time = -1.0;
+    begin
+        .integrate(&part.model, state, 0.0, loading, &mut |_, _, _| {})
+        .map_err(|e| part.failure(&e).in_stage("before time 0, during application of weight and loads"))?;
+    state.time = 0.0;
+    Ok(begin.reactions().to_vec())
+}
+
+impl TrackSystem for SolidSystem<'_> {
+    fn window(&self) -> f64 {
+        self.step
+    }
+}
+
+impl System for SolidSystem<'_> {
+    fn progress(&self) -> Option<String> {
+        let Statistics { iterations, halvings, .. } = self.statistics()?;
+        let repeated = if halvings == 0 { String::new() } else { format!(", {halvings} halved") };
+        Some(format!("{iterations} iterations{repeated}"))
+    }
+
+    fn steps_done(&self, windows: u64) -> (u64, u64) {
+        (0, windows)
+    }
+
+    fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
+        let (part, elastic) = (self.part, matches!(self.kind, SolidKind::Elastic(_)));
+        self.before.copy_from(&self.state);
+        let (memory, spent_before) = (self.integrator.memory(), self.spent);
+        // The time of an elastic solid is the sum of its steps; the others have that of their number, whatever parts they made.
+        let to = if elastic { self.state.time + self.step } else { (self.steps + 1) as f64 * self.step };
+        let spent = &mut self.spent;
+        let mut work = if elastic { 0.0 } else { spent.solid_load_work };
+        let outcome = self.integrator.integrate(
+            &part.model,
+            &mut self.state,
+            to,
+            &mut self.loading,
+            &mut |_, _, audit| {
+                let Some(audit) = audit else { return };
+                work += audit.external_work + audit.support_work;
+                spent.rayleigh += audit.damping_dissipation;
+                spent.absorbed += audit.boundary_dissipation;
+                spent.plastic += audit.plastic_dissipation;
+                spent.numerical += audit.numerical_dissipation;
+            },
+        );
+        if outcome == Err(SolveError::Stopped) {
+            // The run goes on from the step before, whatever shorter steps this one has come to.
+            std::mem::swap(&mut self.state, &mut self.before);
+            (self.given_up, self.spent) = (memory, spent_before);
+            return Err(part.failure(&SolveError::Stopped));
+        }
+        self.steps += u64::from(outcome.is_ok());
+        // A step given up half-way counts as far as it came, so that the balance belongs to the state that is kept.
+        let moved = self.state.u.iter().zip(&self.before.u).map(|(u, before)| u - before);
+        let weight = self.loading.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
+        match self.kind {
+            SolidKind::Elastic(_) => self.spent.solid_load_work += work - weight,
+            SolidKind::Plastic(_) => self.spent.solid_load_work = work - weight,
+            SolidKind::QuasiStatic(_) => self.add_work_at_rest(),
+        }
+        outcome.map_err(|e| match self.kind {
+            SolidKind::Elastic(_) => {
+                Failure::Numerical(format!("at t = {:.6e} s: solid: {e}", self.before.time))
+            }
+            SolidKind::Plastic(_) | SolidKind::QuasiStatic(_) => part.failure(&e),
+        })
+    }
+
+    fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
+        if let Some(memory) = self.given_up.or_else(|| self.integrator.memory()) {
+            body.put(&memory)?;
+        }
+        let SolidSystem { state, steps, reactions, spent, .. } = self;
+        let load = self.loading.at(state.time);
+        match self.kind {
+            SolidKind::Elastic(_) => body.put(&(state, load, spent)),
+            SolidKind::Plastic(_) => body.put(&(state, steps, load, spent)),
+            SolidKind::QuasiStatic(_) => {
+                body.put(&(state, self.loading.carried, steps, load, reactions, spent))
+            }
+        }
+    }
+
+    fn stored(&self) -> Stored {
+        let model = &self.part.model;
+        let at_rest = stored_at_rest(model, &self.state, &self.loading.gravity);
+        match self.kind {
+            SolidKind::QuasiStatic(_) => at_rest,
+            _ => Stored { solid_kinetic: fem::energy::kinetic(model, &self.state), ..at_rest },
+        }
+    }
+
+    fn spent(&self) -> Spent {
+        self.spent
+    }
+
+    fn solid(&self) -> Option<SolidView<'_>> {
+        Some(SolidView { model: &self.part.model, state: &self.state })
+    }
+
+    fn reactions(&self) -> Option<Vec<f64>> {
+        Some(match self.kind {
+            SolidKind::QuasiStatic(_) => self.reactions.clone(),
+            _ => {
+                let load = self.loading.at(self.state.time);
+                fem::energy::reactions(&self.part.model, &self.state, &load)
+            }
+        })
+    }
+
+    fn keeps_its_state(&self) -> bool {
+        !matches!(self.kind, SolidKind::Elastic(_))
+    }
+}
