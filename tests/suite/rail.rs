@@ -395,7 +395,7 @@ fn rails_go_on_bit_for_bit() {
     let from = Some(folder.join("whole"));
     let next = trackbed::run::Options { from, ..options(&folder.join("next"), 1) };
     let refused = trackbed::run::run(&scene, &next).expect_err("a rail is refused");
-    assert!(refused.to_string().contains("expected sleepers without rails"), "{refused}");
+    assert!(refused.to_string().contains("expected no rail with --from"), "{refused}");
     assert!(refused.code() == 2 && !folder.join("next").exists());
 }
 
