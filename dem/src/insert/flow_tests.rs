@@ -291,7 +291,7 @@ fn what_cannot_leave_or_come_is_named() {
     assert_eq!(run.state.ledger.work_flow, 0.0);
     let force = crate::AppliedForce { body: 4, force: Vec3::x(), point: Vec3::zeros() };
     let error = step(&run.model, &mut run.state, &mut run.work, &NoSurface, &[force]).unwrap_err();
-    assert!(error.to_string().contains("body that is there"), "{error}");
+    assert!(error.to_string().contains("applied force 0 (body 4): no such body"), "{error}");
 
     let mut waiting = input.clone();
     waiting.bodies[160].absent = true;
