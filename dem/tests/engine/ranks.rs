@@ -258,7 +258,7 @@ fn other_models_and_features_are_refused() {
     let other = Model::new(pile(3, false)).expect("a good input");
     let error = with_ranks(&other, 2, |link| Ranks::new(link, &model, &start(&model), &[]).err());
     let text = error.expect("another model").to_string();
-    assert!(text.contains("rank 1") && text.contains("another model: 27 bodies"), "{text}");
+    assert!(text.contains("rank 1") && text.contains("other model: found 27 bodies"), "{text}");
 
     let block = Model::new(pile(3, true)).expect("a good input");
     let text = check(&block).expect_err("a block").to_string();
