@@ -97,7 +97,7 @@ pub enum Command {
 pub struct RunArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// Results directory [default: results/<scene>, with a hash of the overrides].
+    /// Results directory [default: results/SCENE, with a hash of the overrides].
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads; the results do not depend on it [default: all cores].
@@ -160,7 +160,7 @@ pub struct NewArgs {
 pub struct StudyArgs {
     /// Study file (TOML).
     pub study: PathBuf,
-    /// Results directory [default: results/<name of the study file>].
+    /// Results directory [default: results/NAME of the study file].
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads of each run [default: cores divided by simultaneous runs].
@@ -208,7 +208,7 @@ pub struct ModalArgs {
     /// Number of modes.
     #[arg(short = 'n', long, default_value_t = 6)]
     pub count: usize,
-    /// Results directory [default: results/<name>_modes].
+    /// Results directory [default: results/NAME_modes].
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads; the results do not depend on it [default: all cores].

@@ -40,7 +40,7 @@ impl Prediction {
         }
         // What the static solve takes is gone when the steps begin.
         for (regime, method) in plan.used().filter(|(_, method)| *method != Method::Direct) {
-            solver = solver.max(bytes(part, method, regime)?);
+            solver = solver.max(method_bytes(part, method, regime)?);
         }
         let results = RESULT_BYTES_PER_NODE * part.model.mesh().node_count() as u64;
         Ok(Prediction { model, solver, results, flops })
@@ -80,7 +80,7 @@ pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
 }
 
 /// Memory that a method takes, known before it is used [bytes].
-fn bytes(part: &SolidPart, method: Method, regime: Regime) -> Result<u64, Failure> {
+fn method_bytes(part: &SolidPart, method: Method, regime: Regime) -> Result<u64, Failure> {
     part.model.solver_memory(method, regime).map(|bytes| bytes as u64).map_err(|e| part.failure(&e))
 }
 
@@ -89,8 +89,8 @@ fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Val
         Regime::Statics => ("statics", &part.equations.statics_reason),
         Regime::Dynamics => ("steps", &part.equations.dynamics_reason),
     };
-    let factor = bytes(part, Method::Direct, regime)?;
-    let iteration = bytes(part, Method::Iterative { tolerance: Method::WINDOW_TOLERANCE }, regime)?;
+    let factor = method_bytes(part, Method::Direct, regime)?;
+    let iteration = method_bytes(part, Method::Iterative { tolerance: Method::WINDOW_TOLERANCE }, regime)?;
     let mut value = json!({
         "of": what,
         "method": method.name(),
@@ -103,7 +103,7 @@ fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Val
         Method::Iterative { .. } => (iteration, format!("direct solver: {}", size(factor))),
         // A library.
         _ => {
-            let own = bytes(part, method, regime)?;
+            let own = method_bytes(part, method, regime)?;
             value[format!("{}_bytes", method.name())] = own.into();
             let (factor, iteration) = (size(factor), size(iteration));
             let other = format!("direct solver: {factor}, conjugate gradients: {iteration}");

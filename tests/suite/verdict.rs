@@ -36,7 +36,7 @@ fn a_solid_that_is_right_passes() {
     let set = ["output.frames=0"];
     run(&repository().join("inputs/solid/pulse.toml"), &folder.join("out"), &set).good();
     let log = fs::read_to_string(folder.join("out/log.txt")).unwrap();
-    assert!(log.contains("verdict: passed, 1 account judged"), "{log}");
+    assert!(log.contains("checks: passed, 1 balance"), "{log}");
     let summary = json(&folder.join("out/summary.json"));
     let energy = judged(&summary, "largest energy error");
     assert_eq!(energy["outcome"], "passed");
