@@ -56,7 +56,7 @@ async function report(folder) {
     const seen = await tab.evaluate(look);
     await context.close();
     expect(faults.length === 0, `the page asks for ${faults[0]}`);
-    expect(seen.headings[0]?.startsWith('Verdict'), `the first heading is ${seen.headings[0]}`);
+    expect(seen.headings[0]?.startsWith('Checks and warnings'), `the first heading is ${seen.headings[0]}`);
     expect(seen.lost.length === 0, `links to ${seen.lost}`);
     expect(seen.width <= seen.page, `${seen.width} pixels wide on ${seen.page}`);
     expect(seen.plots.length > 0, 'no plot');
