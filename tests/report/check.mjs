@@ -41,7 +41,7 @@ const overlap = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) 
   && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
 
 /** A name of an axis with its unit, or one of a quantity that is counted or has no dimension. */
-const NAMED = /\[[^\]]+\]$|^load cycle N$|^neighbours$|^share of|ratio D$|^porosity$|^coordination/;
+const NAMED = /\[[^\]]+\]$|^load cycle N$|^neighbours$|^(share|fraction) of|ratio D$|^porosity$|^coordination/;
 
 async function report(folder) {
   const page = path.join(dir, `${path.basename(folder)}.html`);
