@@ -404,10 +404,10 @@ impl Simulation {
         })?;
         let lent = Lent(values.as_mut_ptr(), values.len());
         self.look(move |shown| {
-            // Capture the whole struct: its fields are not `Send`.
+            // Fields alone are not `Send`.
             let lent = lent;
             let Lent(start, count) = lent;
-            // SAFETY: the array is exclusively borrowed and alive while the caller waits.
+            // SAFETY: exclusively borrowed and alive while the caller waits.
             fill(shown, unsafe { std::slice::from_raw_parts_mut(start, count) });
             Ok(())
         })?;
@@ -445,7 +445,7 @@ impl Drop for Simulation {
 /// The owner waits.
 struct Lent(*mut f64, usize);
 
-// SAFETY: the owner waits while they are used.
+// SAFETY: the owner waits.
 unsafe impl Send for Lent {}
 
 fn table<'py, T: Element + Copy, const N: usize>(

@@ -15,9 +15,9 @@ pub struct StructurePlan {
     pub walls: Vec<usize>,
     /// Groups of grains.
     pub groups: Vec<u32>,
-    /// Its wall that is a rigid body with recorded motion.
+    /// Rigid body wall with recorded motion.
     pub body: Option<usize>,
-    /// Reference point of moments on the axis [m].
+    /// Reference point of moments [m].
     pub foot: [f64; 3],
     /// Sectors of equal angle.
     pub sectors: usize,
