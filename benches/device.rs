@@ -1,9 +1,8 @@
-//! Beds stepped by the processor and by a CUDA device: rates, and whether all bits are the same.
+//! CPU against CUDA: rates and bitwise equality.
 //!
-//! `cargo bench --bench device -- --scene s1 --tiles 1,3,10 --steps 2000`. The scenes are those of `bed.rs`, so many times side by side in both
-//! directions. Each bed settles on the processor, goes on from there on the device, and on the processor again: where every body is, how
-//! it moves, and the energies have to be equal at the end. Prints one line of `key=value` for each; exit code 1 if any bit differs.
-//! `--device-only` leaves the processor out; `--change FROM TO` replaces a piece of the kernels' text.
+//! `cargo bench --bench device -- --scene s1 --tiles 1,3,10 --steps 2000`. Scenes of `bed.rs`, tiled n × n,
+//! deposited on the CPU, then continued on both. Exit code 1 if positions, velocities or energies differ.
+//! `--device-only` skips the CPU; `--change FROM TO` edits the kernel source.
 
 #[path = "common/boxes.rs"]
 mod boxes;
@@ -30,7 +29,6 @@ struct Arguments {
     relax: u32,
     steps: u32,
     processor: bool,
-    /// Pieces of the text and what is to stand in their place.
     changes: Vec<[String; 2]>,
 }
 
@@ -55,22 +53,20 @@ fn arguments() -> Arguments {
             "--threads" => found.threads = number(&value()) as usize,
             "--relax" => found.relax = number(&value()),
             "--steps" => found.steps = number(&value()),
-            // For a profile of the device alone.
             "--device-only" => found.processor = false,
-            // For experiments.
             "--change" => found.changes.push([value(), value()]),
-            "--bench" => {} // cargo's own
+            "--bench" => {} // from cargo
             _ => panic!("{word}: unknown argument"),
         }
     }
     found
 }
 
-/// A scene `n` × `n` times side by side.
+/// Scene tiled `n` × `n`.
 fn tiled(scene: &str, n: usize) -> ModelInput {
     let one = scenes::input(scene, None);
-    // Blocks between grips stand apart; of beds, every other one of spheres is a mirror image, so that those at the seams have what the
-    // wall was to them.
+    // Gripped blocks are separate; beds of spheres alternate with mirror images, so that seams act like
+    // walls.
     let (width, mirrored) = match scene {
         "s3" => (0.5, false),
         "s2" => (0.4, false),
@@ -101,7 +97,6 @@ fn tiled(scene: &str, n: usize) -> ModelInput {
     all
 }
 
-/// Whether all bodies are and move alike, and all energies are the same.
 fn same(model: &Model, a: &State, b: &State) -> bool {
     let motion = |s: &State, k: usize| {
         [s.position(k), s.velocity(k), s.spin(k)].map(|v| [v.x, v.y, v.z].map(f64::to_bits))
@@ -111,7 +106,7 @@ fn same(model: &Model, a: &State, b: &State) -> bool {
         && format!("{:?}", measure::energies(model, a)) == format!("{:?}", measure::energies(model, b))
 }
 
-/// Steps a bed both ways; whether all bits are the same.
+/// Steps on both; whether all bits agree.
 fn compare(a: &Arguments, n: usize) -> bool {
     let begin = Instant::now();
     let model = Model::new(tiled(&a.scene, n)).expect("the bed is a model");

@@ -1,15 +1,14 @@
-//! The direct solver, in seconds: ordering with symbolic analysis, L L^T (first and again) and L U on one and two threads,
-//! solves for 1, 2, 4, 8 right-hand sides, memory predicted and used; and faer's own L L^T with the same ordering in
-//! the same run.
+//! Direct solver: symbolic analysis, L L^T (first, repeated), L U on one and two threads, 1 to 8 right-hand
+//! sides, predicted and used memory; faer's L L^T with the same ordering.
 //!
-//! Bricks of 10^3 and 16^3 elements (13,860 and 53,856 equations), base clamped, K dt²/4 + M for dt = 1 ms; and that of 24^3
-//! (176,400 equations, 5 GB) when `TRACKBED_LARGE` is set. Figures are medians; `cpu` is processor time of all threads,
-//! which is the one to trust on a shared machine.
+//! Bricks of 10^3 and 16^3 elements (13,860 and 53,856 equations), fixed base, K dt²/4 + M, dt = 1 ms; 24^3
+//! (176,400 equations, 5 GB) with `TRACKBED_LARGE`. Medians; `cpu`, CPU time of all threads, is reliable on
+//! shared machines.
 //!
-//! * `cargo bench --bench factor` (about 40 s); `-- 16` runs the brick of 16^3 alone.
-//! * `-- write FILE 16` writes the matrix for other programs: magic `SPDL`, u32 version 1, u64 n, u64 entries, u64
-//!   column starts [n + 1], u64 rows, f64 values, f64 load [n]; lower triangle, compressed columns, little endian.
-//! * `-- peer 16 THREADS` prints one line for `benches/factor_peers.py`.
+//! * `cargo bench --bench factor` (about 40 s); `-- 16`: 16^3 only.
+//! * `-- write FILE 16` exports: magic `SPDL`, u32 version 1, u64 n, u64 entries, u64 column starts [n + 1],
+//!   u64 rows, f64 values, f64 load [n]; lower triangle, compressed columns, little endian.
+//! * `-- peer 16 THREADS`: line for `benches/factor_peers.py`.
 
 #[path = "common/watch.rs"]
 mod watch;
@@ -55,11 +54,9 @@ struct Case {
     model: Model,
     analysis: Arc<Analysis>,
     values: Vec<f64>,
-    /// Ordering and symbolic analysis.
     watch: Watch,
 }
 
-/// Median wall and processor seconds of several runs.
 fn median(times: usize, mut work: impl FnMut()) -> (f64, f64) {
     let mut watches: Vec<(f64, f64)> = (0..times)
         .map(|_| {
@@ -74,7 +71,7 @@ fn median(times: usize, mut work: impl FnMut()) -> (f64, f64) {
     (wall, watches[times / 2].1)
 }
 
-/// Memory in bytes that /proc tells under `key`; zero where there is none.
+/// Bytes under `key` in /proc; zero if unknown.
 fn memory(key: &str) -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix(key));
@@ -132,7 +129,7 @@ impl Case {
         for threads in [1, 2] {
             watch::pool(threads).install(|| {
                 let before = memory("VmRSS:");
-                // Lets the kernel count the peak anew; without the right to do so the figure is that of the process.
+                // Resets the kernel's peak; without permission the process peak remains.
                 let _ = std::fs::write("/proc/self/clear_refs", "5");
                 let mut solver = DirectSolver::new(analysis.clone());
                 let name = format!("L L^T, {threads} thread(s)");
@@ -196,7 +193,7 @@ impl Case {
         }
     }
 
-    /// Largest `|A x - b| / |b|` of the first right-hand side.
+    /// Largest `|A x - b| / |b|`, first right-hand side.
     fn residual(&self, b: &[f64], x: &[f64]) -> f64 {
         let n = self.analysis.size();
         let (start, row) = self.analysis.pattern();
@@ -256,7 +253,6 @@ impl Case {
         println!("    faer solve: {:.1} ms wall, {:.1} ms cpu", wall * 1e3, cpu * 1e3);
     }
 
-    /// `analyse factor1 factor2 cpu2 solve`, in seconds.
     fn peer_line(&self, threads: usize) {
         watch::pool(threads).install(|| {
             let mut solver = DirectSolver::new(self.analysis.clone());

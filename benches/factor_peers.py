@@ -1,10 +1,10 @@
-"""Compares the direct solver with CHOLMOD (METIS) and MKL PARDISO on one matrix, in turns, and prints ratios.
+"""Compares the direct solver with CHOLMOD (METIS) and MKL PARDISO on one matrix, in turns.
 
 usage: factor_peers.py BENCH SIDE [--cholmod PROGRAM] [--pardiso "PYTHON SCRIPT"] [--turns 3]
 
-BENCH is the program that `cargo bench --bench factor --no-run` builds; SIDE the elements on an edge of the brick (16: 53,856
-equations). PROGRAM is called `PROGRAM FILE metis`, SCRIPT `FILE pardiso_spd THREADS`; both print `factor2=SECONDS cpu2=SECONDS
-solve=SECONDS` for the second factorization, its processor time, and a solve. The matrix is written by BENCH.
+BENCH: output of `cargo bench --bench factor --no-run`; SIDE: elements per edge (16: 53,856 equations). Calls
+`PROGRAM FILE metis` and `SCRIPT FILE pardiso_spd THREADS`, which print `factor2=SECONDS cpu2=SECONDS solve=SECONDS`
+(repeated factorisation, its CPU time, solve).
 """
 import argparse
 import os

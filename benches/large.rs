@@ -1,14 +1,13 @@
-//! Large elastic solids: a factor against conjugate gradients, in time and memory.
+//! Large elastic solids: direct solver against conjugate gradients, time and memory.
 //!
-//! An embankment on its subgrade as that of `inputs/solid/large.toml`, 20-node bricks of 0.41 (0.14 on the crest) x 0.5 x 0.7 m, lumped
-//! mass, grown in all directions at the same size of elements; windows of 0.1 ms under noise on the crest, as stones make it: the last window is no guess of the next.
+//! Embankment of `inputs/solid/large.toml` at several sizes, 20-node bricks of 0.41 (crest 0.14) x 0.5 x 0.7
+//! m, lumped mass. Windows of 0.1 ms with noise on the crest: no useful initial guess. Statics: weight and
+//! noise. CPU time of one thread.
 //!
-//! Statics: the same bodies under their weight and noise. Figures are processor time of one thread.
-//!
-//! * `cargo bench --bench large -- windows` or `-- statics` (1 thread), sizes up to 100,000 nodes; `-- windows 0.4` one of them, as a share of the
-//!   largest; `-- windows 1 gradients` without the factor, which takes 7.3 GB there.
-//! * `cargo bench --features mumps --bench large -- windows 0.6 mumps` or `-- statics 0.6 mumps`: the factor, gradients, and the library MUMPS
-//!   as it is and out of core.
+//! * `cargo bench --bench large -- windows` or `-- statics`, up to 100,000 nodes; `-- windows 0.4`: one
+//!   fraction of the largest; `-- windows 1 gradients`: without the direct solver (7.3 GB).
+//! * `cargo bench --features mumps --bench large -- windows 0.6 mumps` or `-- statics 0.6 mumps`: also MUMPS,
+//!   in core and out of core.
 
 #[path = "common/watch.rs"]
 mod watch;
@@ -24,7 +23,7 @@ use watch::{Watch, pool};
 
 const WINDOW: f64 = 1e-4;
 const THETA: f64 = 0.55;
-/// Shares of the largest counts of elements.
+/// Fractions of the largest element counts.
 const SHARES: [f64; 6] = [0.2, 0.3, 0.4, 0.6, 0.8, 1.0];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -58,7 +57,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A trapezoid of two soils, its base held.
 fn embankment(share: f64, methods: Methods) -> Result<Model, Box<dyn Error>> {
     let count = |n: f64| (n * share).round().max(1.0) as usize;
     let counts = [count(58.0), count(40.0), 2 * count(5.0)];
@@ -66,7 +64,7 @@ fn embankment(share: f64, methods: Methods) -> Result<Model, Box<dyn Error>> {
     let size: [f64; 3] = std::array::from_fn(|k| step[k] * counts[k] as f64);
     let mut mesh = Mesh::block(counts, size);
     for x in &mut mesh.coordinates {
-        // The upper half narrows to a third.
+        // Upper half narrows to a third.
         let above = (2.0 * x[2] / size[2] - 1.0).max(0.0);
         x[0] = (x[0] - 0.5 * size[0]) * (1.0 - above * 2.0 / 3.0);
     }
@@ -90,7 +88,7 @@ fn embankment(share: f64, methods: Methods) -> Result<Model, Box<dyn Error>> {
     })?)
 }
 
-/// All ways of a body of this size, each against the factor.
+/// All methods, relative to the direct solver.
 fn ways(statics: bool, share: f64) -> Result<(), Box<dyn Error>> {
     let tolerance = Method::WINDOW_TOLERANCE;
     let ways = [
@@ -128,16 +126,14 @@ fn ways(statics: bool, share: f64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Reproducible noise, uniform in [-1, 1) (Knuth's linear congruential generator).
+/// Reproducible uniform noise in [-1, 1) (Knuth's linear congruential generator).
 fn noise(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// Times of the set-up and of a window, the state after some, the iterations of one, and the memory.
 type Run = (Watch, Watch, State, f64, usize);
 
-/// Windows under noise on the crest.
 fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
     let mut set_up = Watch::default();
     let mut solver = set_up.time(|| ThetaSolver::new(model, THETA, WINDOW))?;
@@ -151,7 +147,7 @@ fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
         for &n in &crest {
             (0..3).for_each(|k| load[3 * n + k] = 100.0 * noise(&mut seed));
         }
-        // The first one touches what the others find warm.
+        // Warm-up.
         if k == 1 {
             watch = Watch::default();
         }
@@ -162,10 +158,8 @@ fn run(model: &Model) -> Result<Run, Box<dyn Error>> {
     Ok((set_up, one, state, mean, solver.solver_memory().unwrap_or(0)))
 }
 
-/// Times of the set-up and of one solution, that solution, iterations, memory.
 type Stand = (Watch, Watch, Vec<f64>, u32, usize);
 
-/// A body under its weight and noise.
 fn stand(model: &Model) -> Result<Stand, Box<dyn Error>> {
     let (mut set_up, mut watch) = (Watch::default(), Watch::default());
     let mut solver = set_up.time(|| StaticSolver::new(model))?;

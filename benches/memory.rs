@@ -1,9 +1,7 @@
-//! Memory of settled beds of 10,000 spheres and 1,000 clumps of 10 spheres, walls and contacts included: all that the
-//! run holds (model, state, scratch), in bytes as the allocator was asked for them, and the peak while the bed was
-//! built and stepped.
+//! Memory of beds at rest (10,000 spheres; 1,000 clumps of 10): allocated bytes of model, state and scratch,
+//! and the peak.
 //!
-//! `cargo bench --bench memory` (about 2 s). The search for neighbours, once in some thousand steps of a settled bed,
-//! takes scratch that is freed at once; it is in the peak. So is the input that the model was made from.
+//! `cargo bench --bench memory` (about 2 s). The peak includes input and scratch of the neighbour search.
 
 #[path = "common/bed.rs"]
 mod bed;
@@ -16,7 +14,7 @@ use bed::Bed;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// The system's allocator, counting.
+/// System allocator with counters.
 struct Counting;
 
 static LIVE: AtomicUsize = AtomicUsize::new(0);
@@ -26,24 +24,24 @@ fn grow(bytes: usize) {
     PEAK.fetch_max(LIVE.fetch_add(bytes, Relaxed) + bytes, Relaxed);
 }
 
-// SAFETY: every call goes to the system's allocator unchanged.
+// SAFETY: calls are forwarded unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         grow(layout.size());
-        // SAFETY: the caller's promises go on to the system.
+        // SAFETY: the caller's contract is forwarded.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
         LIVE.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the caller's promises go on to the system.
+        // SAFETY: as above.
         unsafe { System.dealloc(at, layout) }
     }
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         grow(size);
         LIVE.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the caller's promises go on to the system.
+        // SAFETY: as above.
         unsafe { System.realloc(at, layout, size) }
     }
 }

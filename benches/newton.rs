@@ -1,12 +1,12 @@
-//! Variants of Newton's iteration on a rough rigid footing, and the cost of flow without dilation.
+//! Newton variants on a rough rigid footing, and the cost of non-dilatant flow.
 //!
-//! Table 1: strip footing (phi = 20°, c = 10 kPa, E/c = 1000), 144 elements, psi = phi to a settlement of 0.25 half widths in 20 stations, psi = 0
-//! to 0.12 in 40; force tolerance 1e-4. `q/c` is the pressure reached over c, with the settlement where it stopped if it did.
-//! Table 2: square footing, brick elements, two steps into the yielding range: processor seconds per step and per iteration for psi = phi
-//! (L L^T), psi = 0 with L U and psi = 0 with GMRES on the elastic factor, and their ratio to psi = phi.
+//! Table 1: strip footing (phi = 20°, c = 10 kPa, E/c = 1000), 144 elements; psi = phi to 0.25 half widths in
+//! 20 steps, psi = 0 to 0.12 in 40; force tolerance 1e-4. `q/c` with the settlement at failure. Table 2:
+//! square footing, two plastic steps; CPU seconds per step and iteration: psi = phi (L L^T), psi = 0 (L U,
+//! GMRES on the elastic factor).
 //!
-//! Processor time of one thread. `cargo bench --bench newton` (about two minutes); `cargo bench --bench newton -- large` adds 54,000
-//! equations to table 2 (some minutes more), `-- coarse` takes 60 elements in table 1.
+//! One thread, CPU time. `cargo bench --bench newton` (two minutes); `-- large`: 54,000 equations (minutes
+//! more), `-- coarse`: 60 elements.
 
 #[path = "../fem/tests/verification/collapse_common.rs"]
 mod collapse_common;

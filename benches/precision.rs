@@ -1,22 +1,18 @@
-//! What single precision would bring in the contact loop of spheres at most, and what it would cost in accuracy.
+//! Upper bound of the gain of single precision in the contact loop, and its error.
 //!
 //! `cargo bench --bench precision`
 //!
-//! A loop of its own, with the arithmetic of the linear law (overlap, dashpot, sliding spring with Coulomb's limit) and the memory of
-//! the engine's (records of four numbers, springs with the pairs), once for numbers of 64 bits and once for those of 32, eight and sixteen pairs
-//! at a time. Then the error of forces where positions are kept with 32 bits, in beds as wide as a box test and a track.
+//! Separate loop with the linear law (overlap, dashpot, Coulomb slider) and the engine's memory layout, in
+//! f64 (eight pairs) and f32 (sixteen). Force errors with f32 positions, for box test and track widths.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Spheres along an edge of the bed.
 const EDGE: usize = 22;
-/// Times that all pairs are evaluated.
 const ROUNDS: usize = 400;
 
 macro_rules! kernel {
     ($real:ident, $name:ident, $lanes:expr, $features:literal) => {
-        /// Forces of all pairs, eight or sixteen at a time.
         #[cfg_attr(target_arch = "x86_64", target_feature(enable = $features))]
         fn $name(
             pairs: &[[u32; 2]],
@@ -77,7 +73,7 @@ macro_rules! kernel {
 kernel!(f64, double, 8, "avx2,fma");
 kernel!(f32, single, 16, "avx2,fma");
 
-/// Touching spheres on a face-centred lattice, the coordinates shifted by up to a hundredth of the radius, and their pairs.
+/// FCC lattice with contacts, coordinates perturbed by up to 0.01 radii, and its pairs.
 fn bed(radius: f64) -> (Vec<[f64; 4]>, Vec<[u32; 2]>) {
     let mut random = 1_u64;
     let mut noise = || {
@@ -114,7 +110,7 @@ fn main() {
     accuracy();
 }
 
-/// Seconds per pair of both loops, the best of nine.
+/// Seconds per pair, best of nine.
 #[cfg(target_arch = "x86_64")]
 fn speed() {
     let (spheres, pairs) = bed(0.01);
@@ -127,7 +123,7 @@ fn speed() {
         let still = vec![[0.0; 4]; spheres.len()];
         let start = Instant::now();
         for _ in 0..ROUNDS {
-            // SAFETY: the processor has these instructions, as was seen before the call.
+            // SAFETY: CPU support was checked before the call.
             unsafe { double(black_box(pairs), &spheres, &still, &mut memory, &mut force) };
         }
         best[0] = best[0].min(start.elapsed().as_secs_f64() / (ROUNDS * count) as f64);
@@ -151,7 +147,7 @@ fn speed() {
     );
 }
 
-/// Error of the normal force of contacts whose positions are rounded to 32 bits.
+/// Normal-force error with f32 positions.
 fn accuracy() {
     for (bed, width, stiffness, load) in [
         ("box test", 0.8, 50e6, 1000.0),

@@ -1,8 +1,8 @@
-"""Times a whole static run, from mesh files to results, against CalculiX on the same block, in turns on one core.
+"""Times a static run, from mesh files to results, against CalculiX on one core, in turns.
 
 usage: python3 benches/static_peer.py [elements per side = 16] [runs = 3]
-Needs `cargo build --release` done and `ccx` (CalculiX 2.20, Debian package calculix-ccx) on the path. Both read the
-mesh as text, solve one load case of 20-node hexahedra under the 3x3x3 rule, and write displacements and stresses.
+Needs `cargo build --release` and `ccx` (CalculiX 2.20, Debian package calculix-ccx). Both read a text mesh and solve
+one load case of 20-node hexahedra with 3x3x3 integration.
 """
 import os, resource, subprocess, sys, tempfile
 

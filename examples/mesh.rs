@@ -1,4 +1,4 @@
-//! Reads a mesh, looks for faults, and writes it in another form: what `trackbed mesh` does, from a program.
+//! Reads, checks and converts a mesh.
 //!
 //! ```sh
 //! cargo run --release --example mesh
@@ -9,7 +9,7 @@ use trackbed::mesh_tools::{check, info};
 use trackbed::read::read_mesh_file;
 use trackbed::write::{MeshOptions, write_mesh_file};
 
-/// Volume [m³] of a mesh before and after it was written as a file with this ending and read again.
+/// Returns mesh volumes [m³] before and after a round trip.
 pub fn round_trip(mesh: &Path, ending: &str) -> Result<[f64; 2], Box<dyn std::error::Error>> {
     let read = read_mesh_file(mesh)?;
     let faults = check(&read.mesh, &read.constraints);
@@ -25,7 +25,7 @@ pub fn round_trip(mesh: &Path, ending: &str) -> Result<[f64; 2], Box<dyn std::er
     Ok([info(&read.mesh, &read.constraints).volume, info(&again.mesh, &again.constraints).volume])
 }
 
-/// A quarter of a thick cylinder from Abaqus, radii 0.5 m and 1.5 m.
+/// Quarter of a thick cylinder from Abaqus, radii 0.5 m and 1.5 m.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/solid/cylinder/cylinder.inp");
     for ending in ["vtu", "msh", "cdb"] {

@@ -1,5 +1,4 @@
-//! Runs one scene with several values of a key and compares a number of the summary: the friction of spheres that settle in a
-//! box, and the contacts that each then has.
+//! Contacts of settled spheres over friction.
 //!
 //! ```sh
 //! cargo run --release --example parameter_study
@@ -8,15 +7,15 @@
 use std::path::Path;
 use trackbed::run::{Options, Outcome, Verbosity, run};
 
-/// Contacts per sphere of the bed that settles with each friction.
+/// Returns contacts per sphere for each friction coefficient.
 pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/grains/box.toml");
     let out = std::env::temp_dir().join(format!("trackbed_parameter_study_{}", std::process::id()));
     let mut found = Vec::new();
     for friction in frictions {
-        // As `--set` on the command line; one frame, for only the summary counts here.
+        // One frame, because only the summary is used.
         let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
-        // Each variant takes the place of the one before.
+        // Overwrites the previous run.
         let options = Options {
             out: Some(out.clone()),
             set,
@@ -32,7 +31,7 @@ pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> 
     Ok(found)
 }
 
-/// The rougher the spheres, the fewer contacts hold them.
+/// Higher friction needs fewer contacts.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let frictions = [0.1, 0.3, 0.5];
     for (friction, contacts) in frictions.iter().zip(study(&frictions)?) {

@@ -1,29 +1,29 @@
-//! What a call may take: memory of 20 times its input and 64 MB. Time is libFuzzer's to watch (`-timeout=1`).
+//! Memory limit of a call: 20 times its input plus 64 MB. Time: libFuzzer's `-timeout=1`.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Memory that a call may take besides 20 times its input [bytes].
+/// Constant part of the limit [bytes].
 const FLOOR: usize = 64 << 20;
 
-/// The system's allocator, with the memory in use counted.
+/// System allocator with counted memory.
 struct Counted;
 
 static USED: AtomicUsize = AtomicUsize::new(0);
 static MOST: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: all is done by the system's allocator.
+// SAFETY: calls are forwarded unchanged.
 unsafe impl GlobalAlloc for Counted {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let used = USED.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
         MOST.fetch_max(used, Ordering::Relaxed);
-        // SAFETY: as the caller promises.
+        // SAFETY: as above.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
         USED.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: as the caller promises.
+        // SAFETY: as above.
         unsafe { System.dealloc(at, layout) }
     }
 }
@@ -31,10 +31,10 @@ unsafe impl GlobalAlloc for Counted {
 #[global_allocator]
 static ALLOCATOR: Counted = Counted;
 
-/// Calls a target with its input.
+/// Calls a target.
 ///
 /// # Panics
-/// Where it takes more memory than it may.
+/// If it exceeds the memory limit.
 pub fn within(target: fn(&[u8]), data: &[u8]) {
     let before = USED.load(Ordering::Relaxed);
     MOST.store(before, Ordering::Relaxed);

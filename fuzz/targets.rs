@@ -1,5 +1,4 @@
-//! What is called with bytes at random, by cargo-fuzz and by the tests: whatever comes of it, it returns, soon and in little
-//! memory.
+//! Targets for random bytes (cargo-fuzz and tests): they return, fast and with little memory.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,7 +11,7 @@ use trackbed::scene::{Document, Scene};
 use trackbed::study::count_runs;
 use trackbed::write::hdf5;
 
-/// A file of its own for each call at one time.
+/// Unique file per concurrent call.
 fn file(ending: &str, bytes: &[u8]) -> PathBuf {
     static NUMBER: AtomicU32 = AtomicU32::new(0);
     let number = NUMBER.fetch_add(1, Ordering::Relaxed) % 64;
@@ -22,7 +21,7 @@ fn file(ending: &str, bytes: &[u8]) -> PathBuf {
     file
 }
 
-/// Readers of meshes: the first byte chooses the form, the rest is the file.
+/// Mesh readers; the first byte selects the format.
 pub fn mesh(data: &[u8]) {
     let Some((form, bytes)) = data.split_first() else { return };
     let file = file(MESH_ENDINGS[*form as usize % MESH_ENDINGS.len()], bytes);
@@ -30,7 +29,7 @@ pub fn mesh(data: &[u8]) {
     let _ = std::fs::remove_file(file);
 }
 
-/// Readers of surfaces, the same way.
+/// Surface readers; the first byte selects the format.
 pub fn surface(data: &[u8]) {
     let Some((form, bytes)) = data.split_first() else { return };
     let file = file(SURFACE_ENDINGS[*form as usize % SURFACE_ENDINGS.len()], bytes);
@@ -38,7 +37,7 @@ pub fn surface(data: &[u8]) {
     let _ = std::fs::remove_file(file);
 }
 
-/// Readers of the frames of a run: the first byte chooses the part, the rest is the file.
+/// Frame readers; the first byte selects the part.
 pub fn frame(data: &[u8]) {
     let Some((part, bytes)) = data.split_first() else { return };
     let is_solid = part % 4 == 3;
@@ -67,7 +66,7 @@ pub fn frame(data: &[u8]) {
     let _ = std::fs::remove_file(file);
 }
 
-/// A VTKHDF file that a resumed run goes on with: the first byte is the length of the mark, then come the mark and the file.
+/// VTKHDF file of a resumed run: length byte, mark, file.
 pub fn vtkhdf(data: &[u8]) {
     let Some((&length, bytes)) = data.split_first() else { return };
     let (mark, content) = bytes.split_at(bytes.len().min(usize::from(length)));
@@ -78,21 +77,21 @@ pub fn vtkhdf(data: &[u8]) {
     let _ = std::fs::remove_file(file);
 }
 
-/// The reader of checkpoints and of states.
+/// Checkpoint and state reader.
 pub fn checkpoint(data: &[u8]) {
     let file = file("checkpoint", data);
     drop(check_checkpoint(&file));
     let _ = std::fs::remove_file(file);
 }
 
-/// The reader of studies.
+/// Study reader.
 pub fn study(data: &[u8]) {
     let file = file("toml", data);
     drop(count_runs(&file));
     let _ = std::fs::remove_file(file);
 }
 
-/// The target of a name, which is that of its file in `fuzz_targets` and of its folder in `corpus`.
+/// Target by name, equal to its file in `fuzz_targets` and directory in `corpus`.
 pub fn named(name: &str) -> fn(&[u8]) {
     match name {
         "mesh" => mesh,
@@ -106,7 +105,7 @@ pub fn named(name: &str) -> fn(&[u8]) {
     }
 }
 
-/// The parser of scenes; the last line is an override as `--set` takes it.
+/// Scene parser; the last line is an override.
 pub fn scene(data: &[u8]) {
     let text = String::from_utf8_lossy(data).into_owned();
     let (text, set) = text.rsplit_once('\n').unwrap_or((&text, &text));

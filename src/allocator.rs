@@ -1,36 +1,35 @@
-//! Allocation of memory that ends the program in one line where the system has none left.
+//! Allocator that exits with one line when memory is exhausted.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// The system's allocator; a request that the system rejects ends the process with exit code 3.
+/// System allocator; failed requests exit with code 3.
 ///
-/// The standard library would print two lines, and with `RUST_BACKTRACE` collect a backtrace, which may not end without memory.
+/// The standard library prints two lines and possibly a backtrace, which may hang.
 pub struct Allocator;
 
-// SAFETY: all requests go to the system's allocator as they are; a pointer that is null is not returned on Unix.
+// SAFETY: passed to the system allocator; on Unix no null pointer is returned.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller keeps the promises of `alloc`.
+        // SAFETY: as required by `alloc`.
         given(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: the caller keeps the promises of `alloc_zeroed`.
+        // SAFETY: as required by `alloc_zeroed`.
         given(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: the caller keeps the promises of `realloc`.
+        // SAFETY: as required by `realloc`.
         given(unsafe { System.realloc(pointer, layout, size) }, size)
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the promises of `dealloc`.
+        // SAFETY: as required by `dealloc`.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
 
-/// The pointer; for none the end of the process.
 #[inline]
 fn given(pointer: *mut u8, size: usize) -> *mut u8 {
     if pointer.is_null() {
@@ -39,7 +38,7 @@ fn given(pointer: *mut u8, size: usize) -> *mut u8 {
     pointer
 }
 
-/// Ends the process with one line. It allocates nothing.
+/// Must not allocate.
 #[cfg(unix)]
 #[cold]
 fn exhausted(size: usize) {
@@ -62,17 +61,15 @@ fn exhausted(size: usize) {
         line[length..length + part.len()].copy_from_slice(part);
         length += part.len();
     }
-    // SAFETY: the bytes are those of the line. In one piece, so that lines of several processes do not mix.
+    // SAFETY: pointer and length of `line`. One call, so that lines do not mix.
     unsafe { libc::write(libc::STDERR_FILENO, line.as_ptr().cast(), length) };
     signal_hook::low_level::exit(3);
 }
 
-/// The standard library ends the process.
 #[cfg(not(unix))]
 #[cold]
 fn exhausted(_: usize) {}
 
-/// The digits of a number, in the last bytes of `digits`.
 #[cfg(unix)]
 fn decimal(mut number: usize, digits: &mut [u8; 20]) -> &[u8] {
     let mut first = digits.len();

@@ -1,4 +1,4 @@
-//! What each command does.
+//! Commands.
 
 pub mod check;
 mod convert;
@@ -22,10 +22,10 @@ use crate::start;
 use clap::CommandFactory;
 use output::print;
 
-/// Carries out a command.
+/// Executes a command.
 ///
 /// # Errors
-/// As the command says; see [`Failure`] for exit codes.
+/// See [`Failure`] for exit codes.
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
@@ -58,7 +58,6 @@ pub fn execute(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Makes a folder with a scene, and prints how to go on.
 fn new(args: &NewArgs) -> Result<(), Failure> {
     let Some(template) = &args.template else { return print(&start::list()) };
     let folder = args.folder.clone().unwrap_or_else(|| template.into());
@@ -73,18 +72,16 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&text))
 }
 
-/// Runs a scene in this process.
 #[cfg(not(feature = "mpi"))]
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     lead(args, run::Ranked::default())
 }
 
-/// Runs a scene in this process, or shared among those that `mpirun` has started.
 #[cfg(feature = "mpi")]
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let Some(world) = run::mpi::join()? else { return lead(args, run::Ranked::default()) };
     let (scene, set, out) = (args.scene.clone(), args.set.clone(), args.out.clone());
-    // Ranks are as many as the processors: each has one thread unless more are requested.
+    // One rank per CPU, each with one thread.
     let args = RunArgs { threads: args.threads.or(Some(1)), ..args };
     let threads = args.threads;
     world.share(
@@ -116,7 +113,7 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),
         run::Outcome::Done(summary) => {
-            // The results are in their folder, and the same text in its log: nobody need listen.
+            // Results are saved, so output may fail.
             let text = format!("{}results are in {}\n", summary.report(args.verbose), summary.dir.display());
             if let Err(failure) = print(&text) {
                 message::warn(&format!("standard output: {failure}"));
@@ -129,7 +126,6 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
     }
 }
 
-/// The size that `--memory` names [bytes].
 fn memory(text: Option<&str>) -> Result<Option<u64>, Failure> {
     let parse = |t: &str| {
         let expected = "a size above 0 such as 800MB or 8GB";

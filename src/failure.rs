@@ -1,26 +1,26 @@
-//! How a command can fail, and with which exit code.
+//! Failures and exit codes.
 
 use crate::machine;
 use crate::read::ReadError;
 use std::fmt;
 
-/// Why a command failed.
+/// Failure of a command.
 #[derive(Debug)]
 pub enum Failure {
-    /// Bad input: exit code 2. One sentence with file, line, key, found and expected.
+    /// Input error: exit code 2. A sentence with file, line, key, found and expected.
     Input(String),
-    /// Faults of keys of a scene, or of a place in a file: exit code 2. Each is a sentence as of [`Failure::Input`].
+    /// Input errors of keys or file positions: exit code 2, as [`Failure::Input`].
     Faults(Vec<ReadError>),
-    /// Numerical failure: exit code 3. What, where and when.
+    /// Numerical failure: exit code 3. Cause, place, time.
     Numerical(String),
-    /// Stopped by the user after a checkpoint was written: exit code 130. Where the run stands and how to go on.
+    /// Interrupted after a checkpoint: exit code 130. Position and resume command.
     Interrupted(String),
-    /// Anything else, such as a full disk: exit code 1.
+    /// Other errors: exit code 1.
     Other(String),
 }
 
 impl Failure {
-    /// The program's exit code.
+    /// Returns the exit code.
     pub fn code(&self) -> u8 {
         match self {
             Failure::Input(_) | Failure::Faults(_) => 2,
@@ -30,12 +30,12 @@ impl Failure {
         }
     }
 
-    /// Whether the input is wrong.
+    /// Whether the input is invalid.
     pub fn is_input(&self) -> bool {
         matches!(self, Failure::Input(_) | Failure::Faults(_))
     }
 
-    /// The sentences, one for each fault.
+    /// Returns one sentence per error.
     pub fn sentences(&self) -> Vec<String> {
         match self {
             Failure::Faults(faults) => faults.iter().map(ToString::to_string).collect(),
@@ -43,7 +43,6 @@ impl Failure {
         }
     }
 
-    /// A thread that the system does not start.
     pub(crate) fn thread(error: impl fmt::Display) -> Failure {
         let expected = "memory and processes for all. Reduce --threads, or raise the system limits (ulimit -v, ulimit -u)";
         Failure::Numerical(format!(
@@ -51,7 +50,7 @@ impl Failure {
         ))
     }
 
-    /// The same; a numerical failure also says in which stage it happened.
+    /// Adds the stage to a numerical failure.
     #[must_use]
     pub fn in_stage(self, stage: &str) -> Failure {
         match self {
@@ -60,7 +59,7 @@ impl Failure {
         }
     }
 
-    /// The same; a numerical failure also says that it happened at `time` [s].
+    /// Adds `time` [s] to a numerical failure.
     #[must_use]
     pub fn at(self, time: f64) -> Failure {
         match self {

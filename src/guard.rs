@@ -1,5 +1,4 @@
-//! A fault of the program itself ends a command as every other failure does: in one line, with an exit code, with what was
-//! kept before.
+//! Panics and aborts end a command like other failures.
 
 use crate::failure::Failure;
 use crate::machine;
@@ -8,10 +7,9 @@ use std::fs::File;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Place of the first panic, until it is reported.
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Notes where a panic is instead of printing it; with the variable `RUST_BACKTRACE` it is printed as well.
+/// Records panic locations; with `RUST_BACKTRACE`, also prints.
 pub fn install() {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
@@ -27,13 +25,13 @@ pub fn install() {
     }));
 }
 
-/// Files and connections that a command opens at a time, besides those of a viewer's clients and of the runs of a study.
+/// Without viewer clients and study runs.
 const FILES: usize = 16;
 
-/// Checks that as many files can be opened as a command needs: later the lack of one would be found in the middle of a run.
+/// Checks the limit of open files before a run.
 ///
 /// # Errors
-/// The limit of open files, of this process or of the system, is too low.
+/// Limit too low.
 pub fn check_files() -> Result<(), Failure> {
     let mut open = Vec::with_capacity(FILES);
     while open.len() < FILES {
@@ -46,57 +44,56 @@ pub fn check_files() -> Result<(), Failure> {
                 );
                 return Err(Failure::Other(text));
             }
-            // A system without this file.
+            // Not available on this system.
             Err(_) => break,
         }
     }
     Ok(())
 }
 
-/// Address space for one arena of the C library's allocator [bytes]: it reserves 64 MiB for each.
+/// Address space per malloc arena [bytes]; 64 MiB are reserved.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const ARENA: u64 = 1 << 30;
 
-/// Under a limit of the address space has threads share arenas: a thread that gets none has each of its allocations mapped by the system, 100 times
-/// slower.
+/// Limits malloc arenas under an address space limit: threads without one allocate by mmap, 100 times slower.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn share_arenas() {
     let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
-    // SAFETY: the call fills the structure that it is given, and does nothing else.
+    // SAFETY: `getrlimit` only writes the given struct.
     let code = unsafe { libc::getrlimit(libc::RLIMIT_AS, &mut limit) };
     if code == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
         let arenas = (limit.rlim_cur / ARENA).clamp(1, 1024) as libc::c_int;
-        // SAFETY: the call sets a parameter of the allocator, before there are other threads.
+        // SAFETY: set before other threads exist.
         unsafe { libc::mallopt(libc::M_ARENA_MAX, arenas) };
     }
 }
 
-/// Has a file that grows beyond the limit of its size (SIGXFSZ) be an error of that file instead of the end of the process.
+/// Turns SIGXFSZ into an I/O error.
 #[cfg(unix)]
 pub fn report_large_files() {
-    // Having any action, the signal does not end the process, and the system returns an error to the writer.
+    // Any handler prevents termination.
     drop(signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()));
 }
 
-/// Has an abort of the process, such as one whose stack has overflowed, end it with exit code 3 and one line.
+/// Makes an abort, such as a stack overflow, exit with code 3.
 #[cfg(unix)]
 pub fn end_at_abort() {
     const LINE: &[u8] = b"error: memory: found none free, or a stack overflow. Reduce the scene, or raise the system limits (ulimit -v, ulimit -s).\n";
     let action = || {
-        // SAFETY: the bytes are those of a constant.
+        // SAFETY: pointer and length of a constant.
         unsafe { libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len()) };
         signal_hook::low_level::exit(3);
     };
-    // SAFETY: the action calls `write` and `_exit` only, which are async-signal-safe.
+    // SAFETY: only calls `write` and `_exit`, which are async-signal-safe.
     let registered = unsafe { signal_hook::low_level::register(libc::SIGABRT, action) };
-    // Without it an abort ends the process by its signal.
+    // Otherwise the abort signal ends the process.
     drop(registered);
 }
 
-/// Carries `work` out; a panic in it, or in a thread that it waits for, is a failure with exit code 3.
+/// Runs `work`; panics, also in joined threads, become failures.
 ///
 /// # Errors
-/// Those of `work`, and a panic.
+/// Errors of `work`; panics.
 pub fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| {
         let place = PLACE.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -106,7 +103,6 @@ pub fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failur
     })
 }
 
-/// What a panic says, in one line.
 fn text(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
@@ -118,14 +114,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_one_line_with_exit_code_3() {
+    fn panic_is_one_line() {
         let parts = [1, 2, 3];
         let failure = guarded(|| Ok(parts[std::hint::black_box(3)])).unwrap_err();
         assert_eq!(failure.code(), 3);
         let text = failure.to_string();
         assert!(text.starts_with("internal error: index out of bounds"), "{text}");
         assert_eq!(text.lines().count(), 1);
-        // In a thread of the pool.
+        // In a pool thread.
         let failure = guarded(|| {
             rayon::join(|| panic!("two\nlines"), || ());
             Ok(())

@@ -1,9 +1,9 @@
 //! trackbed: coupled DEM–FEM solver for ballasted railway track.
 //!
-//! Data flows one way: a scene file ([`scene`]) is resolved into models ([`model`]), the run loop ([`mod@run`]) steps
-//! them, and writers ([`mod@write`]) put the results on disk.
+//! A scene file ([`scene`]) is resolved into models ([`model`]), advanced by [`mod@run`] and written by
+//! [`mod@write`].
 
-// A closed or full output must not end a run: see `message`.
+// Closed or full output must not stop a run.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod allocator;

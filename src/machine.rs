@@ -1,29 +1,29 @@
-//! What the system says of this machine and this process.
+//! System information on machine and process.
 
 use std::io;
 use std::path::Path;
 
-/// Resident memory of this process now [bytes].
+/// Resident memory [bytes].
 pub(crate) fn resident() -> Option<u64> {
     field(Path::new("/proc/self/status"), "VmRSS:")
 }
 
-/// Processor time that this process has taken so far, user and system, all threads [s].
+/// CPU time, user and system, all threads [s].
 #[cfg(unix)]
 pub(crate) fn cpu_seconds() -> Option<f64> {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the call fills the structure that it is given, and does nothing else.
+    // SAFETY: `clock_gettime` only writes the given struct.
     let code = unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
     (code == 0).then_some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
 }
 
-/// Not known on this system.
+/// Unknown on this system.
 #[cfg(not(unix))]
 pub(crate) fn cpu_seconds() -> Option<f64> {
     None
 }
 
-/// Memory that the machine, or the group that this process belongs to, has free [bytes].
+/// Free memory of the machine or control group [bytes].
 pub(crate) fn available() -> Option<u64> {
     let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");
     let number = |file: &str| std::fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
@@ -36,26 +36,23 @@ pub(crate) fn available() -> Option<u64> {
     }
 }
 
-/// The field of a status file that is given in kB [bytes].
 fn field(file: &Path, name: &str) -> Option<u64> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find(|l| l.starts_with(name))?;
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
 }
 
-/// Whether an error is that no further file can be opened.
 #[cfg(unix)]
 pub(crate) fn lacks_files(error: &io::Error) -> bool {
     matches!(error.raw_os_error(), Some(libc::EMFILE | libc::ENFILE))
 }
 
-/// Not known on this system.
+/// Unknown on this system.
 #[cfg(not(unix))]
 pub(crate) fn lacks_files(_: &io::Error) -> bool {
     false
 }
 
-/// An error of the system as text, with the remedy for a lack of files.
 pub(crate) fn words(error: &io::Error) -> String {
     let remedy = if lacks_files(error) { "; raise the limit of open files (ulimit -n)" } else { "" };
     format!("{error}{remedy}")

@@ -1,4 +1,4 @@
-//! The program: parse, run, say the error, exit code.
+//! Main program: command line, errors, exit code.
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         guard::report_large_files();
         guard::end_at_abort();
     }
-    // clap's own code for wrong usage is 2, which is the code for bad input here too.
+    // clap's exit code for wrong usage is also 2.
     let work = || {
         let command = trackbed::cli::Cli::parse().command;
         guard::check_files()?;
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             match failure {
-                // What the user asked for is no error.
+                // Requested, hence no error.
                 Failure::Interrupted(_) => message::say(&failure.to_string()),
                 _ => failure.sentences().iter().for_each(|sentence| message::error(sentence)),
             }

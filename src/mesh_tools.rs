@@ -1,4 +1,4 @@
-//! What the `mesh` commands tell: counts and quality, problems.
+//! Mesh measures and checks of the `mesh` commands.
 
 mod check;
 mod quality;
@@ -13,39 +13,39 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 pub use check::{Part, Problem, all_inside_out, check, sentences};
 pub use quality::{Quality, element_quality};
 
-/// A mesh in numbers.
+/// Mesh summary.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MeshInfo {
     /// Number of nodes.
     pub nodes: usize,
     /// Number of elements.
     pub elements: usize,
-    /// The kinds of elements, in the order of [`ElementKind::ALL`].
+    /// Element kinds in the order of [`ElementKind::ALL`].
     pub kinds: Vec<KindInfo>,
-    /// Lowest and highest coordinates of the nodes [m]; zero without nodes.
+    /// Lowest and highest node coordinates [m]; zero without nodes.
     pub bounds: [[f64; 3]; 2],
-    /// Volume of all elements [m³].
+    /// Total volume [m³].
     pub volume: f64,
-    /// The materials, by ascending number.
+    /// Materials in ascending order.
     pub materials: Vec<MaterialInfo>,
-    /// Scaled Jacobian: 1 for a brick, 0 or below for an element turned inside out somewhere.
+    /// Scaled Jacobian: 1 for a brick, at most 0 if inverted anywhere.
     pub scaled_jacobian: Range,
-    /// Longest over shortest edge, corner to corner; null in JSON where an edge has no length.
+    /// Longest over shortest edge; null in JSON for a zero edge.
     pub aspect_ratio: Range,
-    /// Number of elements whose volume is negative, inside out.
+    /// Inverted elements (negative volume).
     pub inside_out: usize,
-    /// Number of faces on the surface.
+    /// Boundary faces.
     pub boundary_faces: usize,
-    /// Number of degrees of freedom with a prescribed displacement.
+    /// Constrained degrees of freedom.
     pub constrained_dofs: usize,
-    /// Numbers of nodes in no element.
+    /// Unused node numbers.
     pub unused_nodes: Vec<u32>,
 }
 
-/// The elements of one kind.
+/// Elements of a kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindInfo {
-    /// The kind.
+    /// Kind.
     pub kind: ElementKind,
     /// Number of elements.
     pub elements: usize,
@@ -57,7 +57,7 @@ pub struct KindInfo {
     pub aspect_ratio: Range,
 }
 
-/// One material of a mesh.
+/// Material of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialInfo {
     /// Material number.
@@ -68,21 +68,21 @@ pub struct MaterialInfo {
     pub volume: f64,
 }
 
-/// Extremes of a measure and the numbers of the elements that have them.
+/// Extremes with element numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Range {
     /// Least value.
     pub least: f64,
-    /// Number of the element with the least value.
+    /// Element of the least value.
     pub least_element: u32,
     /// Greatest value.
     pub greatest: f64,
-    /// Number of the element with the greatest value.
+    /// Element of the greatest value.
     pub greatest_element: u32,
 }
 
 impl Range {
-    /// Extremes of the values of elements in order; the first of equal ones; zeros without elements.
+    /// First of equal values; zeros without elements.
     fn over(values: impl Iterator<Item = (u32, f64)>) -> Range {
         let none = Range { least: 0.0, least_element: 0, greatest: 0.0, greatest_element: 0 };
         values
@@ -105,7 +105,6 @@ impl Range {
     }
 }
 
-/// Numbers of the nodes that no element has, in node order.
 fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
     let mut used = vec![false; mesh.node_count()];
     for node in mesh.connectivity.nodes() {
@@ -114,7 +113,7 @@ fn unused_nodes(mesh: &Mesh) -> Vec<u32> {
     used.iter().zip(&mesh.node_ids).filter(|(used, _)| !**used).map(|(_, id)| *id).collect()
 }
 
-/// Counts, sizes and quality of a mesh.
+/// Computes counts, sizes and quality.
 pub fn info(mesh: &Mesh, constraints: &[Constraint]) -> MeshInfo {
     let qualities: Vec<Quality> = (0..mesh.element_count()).map(|e| element_quality(mesh, e)).collect();
     let mut materials: BTreeMap<u32, MaterialInfo> = BTreeMap::new();
@@ -230,7 +229,7 @@ mod tests {
         mesh.coordinates.push([1.0, 1.0, 4.0]);
         let constraint = |node, direction| Constraint { node, direction, value: 0.0 };
         let info = info(&mesh, &[constraint(0, 0), constraint(0, 1), constraint(0, 0)]);
-        // Nodes of an nx x ny x nz block: corners plus edges of the lattice.
+        // Corners and edges of an nx x ny x nz lattice.
         assert_eq!((info.nodes, info.elements), (3 * 4 * 4 + 2 * 16 + 3 * 12 + 3 * 12 + 1, 18));
         assert_eq!(info.bounds, [[0.0; 3], [2.0, 3.0, 4.0]]);
         assert!((info.volume - 18.0).abs() < 1e-12);
@@ -246,7 +245,7 @@ mod tests {
         assert!(text.contains("material 2") && text.contains("unused nodes"), "{text}");
     }
 
-    /// The embankment of the FEM verification: volumes from its drawing (see its `case.json`).
+    /// Embankment of the FEM verification: volumes from its drawing (see `case.json`).
     #[test]
     fn an_embankment_in_numbers() {
         let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/fem/E3_embankment_patch");
@@ -267,7 +266,7 @@ mod tests {
     #[test]
     fn the_worst_element_is_named() {
         let mut mesh = sample::straight_block([3, 1, 1]);
-        // The upper far corner of the second element, number 999, is pulled along x.
+        // Element 999: upper far corner moved.
         let corner = mesh.connectivity[1][6] as usize;
         mesh.coordinates[corner][0] += 0.3;
         let info = info(&mesh, &[]);

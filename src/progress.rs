@@ -1,50 +1,47 @@
-//! Progress of the stages of a run, with an estimate of the time left: a bar on a terminal, lines elsewhere, nothing when asked.
+//! Stage progress: a bar on terminals, else lines.
 
 use crate::message;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// How much a command prints beside its results.
+/// Amount of output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verbosity {
-    /// Errors alone.
+    /// Errors only.
     Quiet,
-    /// Remarks, a bar, or a line now and then where no terminal is, and a line for each stage that ends.
+    /// Warnings, a bar or occasional lines, completed stages.
     #[default]
     Normal,
-    /// A line each second of what a stage does, too.
+    /// Additionally a progress line per second.
     Verbose,
 }
 
-/// Time between two lines [s by the clock].
+/// Wall time between lines.
 const LINES: Duration = Duration::from_secs(10);
-/// The same of a verbose command.
 const VERBOSE_LINES: Duration = Duration::from_secs(1);
 
-/// Progress of one stage of a run.
+/// Progress of a stage.
 pub struct Progress {
     bar: ProgressBar,
     stage: &'static str,
     total: f64,
     begun: Instant,
-    /// Seconds that the stage took before the program was started anew.
+    /// Seconds before resuming.
     before: f64,
     verbosity: Verbosity,
-    /// When the next line is due, and the time to the one after it; none where no lines are wanted.
+    /// None without lines.
     due: Option<(Instant, Duration)>,
-    /// Share that is done, as last reported.
     share: f64,
 }
 
-/// Ticks of a bar: enough to move smoothly whatever the unit of the stage is.
 const TICKS: u64 = 1000;
 
-/// A bar that leaves some twenty of eighty columns to what follows it, and cuts that.
+/// Leaves about twenty of eighty columns for the message.
 const TEMPLATE: &str = "{prefix:>12} [{bar:20}] {percent:>3}%  {elapsed} of about {duration}  {wide_msg}";
 
 impl Progress {
-    /// Starts the stage `stage`, which ends when the measure reaches `total`.
+    /// Starts a stage that ends at `total`.
     pub fn start(stage: &'static str, total: f64, verbosity: Verbosity) -> Progress {
         let terminal = std::io::stderr().is_terminal();
         let target = match verbosity {
@@ -75,7 +72,7 @@ impl Progress {
         Progress { bar, stage, total, begun, before: 0.0, verbosity, due, share: 0.0 }
     }
 
-    /// The same for a stage that an earlier start of the program brought to `done` in `seconds`.
+    /// Resumes a stage at `done` after `seconds`.
     #[must_use]
     pub fn resumed(mut self, done: f64, seconds: f64) -> Progress {
         self.before = seconds;
@@ -84,12 +81,12 @@ impl Progress {
         self
     }
 
-    /// Seconds that the stage has taken so far.
+    /// Returns the stage time [s].
     pub fn seconds(&self) -> f64 {
         self.before + self.begun.elapsed().as_secs_f64()
     }
 
-    /// Reports how far the stage is, in the unit of `total`; `details` is called where a line is due.
+    /// Reports progress in units of `total`; `details` is called lazily.
     pub fn at(&mut self, done: f64, details: impl FnOnce() -> String) {
         self.share = (done / self.total).clamp(0.0, 1.0);
         self.bar.set_position((self.share * TICKS as f64) as u64);
@@ -101,7 +98,6 @@ impl Progress {
         }
     }
 
-    /// How far the stage is, in one line.
     fn line(&self, details: &str) -> String {
         let seconds = self.seconds();
         let time = |seconds: f64| {
@@ -118,12 +114,12 @@ impl Progress {
         format!("{:>12}  {}", self.stage, parts.join("  "))
     }
 
-    /// Text behind the bar; on eighty columns some twenty characters of it are seen.
+    /// Sets the message after the bar.
     pub fn message(&self, text: String) {
         self.bar.set_message(text);
     }
 
-    /// Ends the stage with a line that stays, and returns the seconds it took.
+    /// Ends the stage with a permanent line; returns its seconds.
     pub fn finish(self, text: &str) -> f64 {
         let seconds = self.seconds();
         self.bar.finish_and_clear();
@@ -139,7 +135,7 @@ mod tests {
     use super::*;
     use indicatif::InMemoryTerm;
 
-    /// A bar fits eighty columns whatever stands behind it, and shows how that begins.
+    /// The bar and the start of its message fit eighty columns.
     #[test]
     fn a_bar_fits_eighty_columns() {
         let terminal = InMemoryTerm::new(8, 80);
@@ -157,7 +153,7 @@ mod tests {
         assert!(shown.starts_with("     running [==========>"), "{shown}");
     }
 
-    /// A line says how far the stage is, what it takes, and what it does.
+    /// A line shows progress, time and activity.
     #[test]
     fn lines_where_no_terminal_is() {
         let hidden = ProgressDrawTarget::hidden;

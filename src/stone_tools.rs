@@ -1,8 +1,7 @@
-//! What the `stone` commands do: closed surfaces, read or random, made into stones of spheres.
+//! Grains of spheres from closed surfaces.
 //!
-//! Every stone is brought to sieve size 1 m with its principal axes along x, y, z, as libraries hold it; scenes scale it
-//! by the sieve size wanted. Nothing here depends on the number of threads: stones are made one by one, each in a fixed
-//! order of operations, and only different stones run beside each other.
+//! Sieve size 1 m and principal axes along x, y, z; scenes scale them. Results do not depend on threads: only
+//! different grains are computed in parallel.
 
 pub mod fill;
 pub mod grow;
@@ -20,77 +19,77 @@ use trackbed_dem::shape::polyhedron::Polyhedron;
 
 pub use measure::StoneReport;
 
-/// Least share of its bounding box that a body may fill.
+/// Volume over bounding box.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// What a stone is made of.
+/// Grain type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Overlapping spheres, rigid.
+    /// Rigid, overlapping spheres.
     Clump(fill::Options),
-    /// Separate spheres with bonds, breakable.
+    /// Breakable, bonded spheres.
     Bonded(grow::Options),
 }
 
-/// A body to make a stone of.
+/// Body of a grain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// Name of the stone.
+    /// Name.
     pub name: String,
-    /// Its shape, any size, anywhere.
+    /// Shape of any size and position.
     pub body: Polyhedron,
 }
 
-/// A stone and how well it fits.
+/// Grain with its accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
-    /// As it stands in a library.
+    /// Library entry.
     pub stone: Stone,
-    /// Its numbers.
+    /// Measures.
     pub report: StoneReport,
 }
 
-/// Why no stone can be made.
+/// Error for a grain.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StoneError {
-    /// The surface bounds several bodies.
+    /// Several bodies.
     #[error("stone '{name}': the surface bounds {pieces} separate bodies, expected one")]
     Pieces {
-        /// Name of the stone.
+        /// Name.
         name: String,
         /// Number of bodies.
         pieces: usize,
     },
-    /// There is hardly any body in its bounding box.
+    /// Too thin.
     #[error("stone '{name}': volume is {share:e} of the bounding box, too thin to be filled with spheres")]
     Thin {
-        /// Name of the stone.
+        /// Name.
         name: String,
-        /// Volume over that of the bounding box.
+        /// Volume over bounding box.
         share: f64,
     },
-    /// The spheres make no clump.
+    /// Not a valid clump.
     #[error("stone '{name}': {source}")]
     Clump {
-        /// Name of the stone.
+        /// Name.
         name: String,
-        /// What is wrong.
+        /// Cause.
         source: ShapeError,
     },
-    /// The spheres make no bonded stone.
+    /// Not a valid bonded grain.
     #[error("stone '{name}': {source}; increase --gap or --spheres")]
     Cluster {
-        /// Name of the stone.
+        /// Name.
         name: String,
-        /// What is wrong.
+        /// Cause.
         source: ClusterError,
     },
 }
 
-/// Makes a stone of each source, in their order.
+/// Makes a grain of each source.
 ///
 /// # Errors
-/// The first [`StoneError`] in that order.
+/// First [`StoneError`] in order.
 pub fn make(sources: &[Source], kind: Kind) -> Result<Vec<Made>, StoneError> {
     let made: Vec<Result<Made, StoneError>> = sources.par_iter().map(|s| make_one(s, kind)).collect();
     made.into_iter().collect()
@@ -101,7 +100,7 @@ fn make_one(source: &Source, kind: Kind) -> Result<Made, StoneError> {
     if source.body.pieces() != 1 {
         return Err(StoneError::Pieces { name: name(), pieces: source.body.pieces() });
     }
-    // Sieve size 1 in its own frame, so that every tolerance means the same for every file.
+    // Tolerances are then the same for all files.
     let body = source.body.in_principal_frame();
     let body = body.scaled(1.0 / body.sieve_size());
     let [lo, hi] = body.surface().bounds();

@@ -2,11 +2,10 @@
 
     python3 tests/attack.py PROGRAM [--short] [--seconds N] [--seed N] [--only KIND] [--keep FOLDER]
 
-An attempt fails where the program ends by a signal, by a panic or with another exit code than 0, 2, 3 or 130; where it reports bad
-input in no line or in more lines than there are faults; where an output contains a number that is not finite; where a file that it must
-not touch differs afterwards; or where it does not end. The table has a row for each kind. All kinds together take ten minutes (--seconds), with
---short less than one; exit code 1 where an attempt fails, with its command. The attempts of a seed are the same ones in each run, and their
-number depends on the time. Needs Python 3.11; kinds that need a C compiler (clock, kernels) are left out without one.
+Failures: signal or panic, exit code other than 0, 2, 3 or 130, wrong number of lines for bad input, non-finite output,
+changed unrelated files, timeout. All kinds take ten minutes (--seconds), with --short less than one; exit code 1 after a
+failure. A seed gives the same attempts; their number depends on the time. Needs Python 3.11; clock and kernels need a C
+compiler.
 """
 
 import argparse
@@ -20,7 +19,7 @@ import time
 from attacks import clients, files, kernels, outputs, scenes, surroundings
 from attacks.verdict import Bench
 
-# Kind: function, share of the time. A function yields after each attempt.
+# Kind: generator function (yields after each attempt), fraction of the time.
 KINDS = {
     "keys": (scenes.keys, 5),
     "sizes": (scenes.sizes, 2),

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# What is to be shown on a machine with a CUDA device; CI has none, and tests the same with a C compiler and the stand-in of tests/stand_in.
+# Checks that need a CUDA GPU; CI uses tests/stand_in.
 #
 #     tests/device_check.sh PROGRAM
 #
-# PROGRAM is target/release/trackbed. Where nothing can be built, ENGINE_TESTS and DEVICE_BENCH name what was built elsewhere, by
+# PROGRAM: target/release/trackbed. Without a build on this machine, ENGINE_TESTS and DEVICE_BENCH name the outputs of
 #
 #     cargo test --release --no-run -p trackbed-dem --features cuda --test engine
 #     cargo bench --no-run --bench device
 #
-# In turn: the engine's tests of devices on the device; whole runs, coupled ones among them, that leave the processor's bytes; runs that are killed
-# at random moments and gone on with; rates of settled beds beside the processor's. It takes some ten minutes, and stops at what differs.
+# Engine tests, grain-only and coupled runs against the CPU byte for byte, killed and resumed runs, rates of beds at
+# rest. About ten minutes; stops at the first difference.
 set -euo pipefail
 program=$(realpath "$1")
 tests=${ENGINE_TESTS:+$(realpath "$ENGINE_TESTS")}

@@ -1,8 +1,7 @@
 """Checks the pages: python3 tests/doc_check.py [PROGRAM]
 
-Every relative link of a page leads to a file, and its #anchor to a heading there. The pages have at most WORDS words, README outside
-of tables and code README_WORDS, and none of PHRASES. With PROGRAM, `trackbed check` reads the examples
-of docs/scene.md, put together into small scenes; an example that is in none of them is a fault. Exit code 1 where there is a fault.
+Relative links and anchors must exist; at most WORDS words, README_WORDS in README outside tables and code; none of
+PHRASES. With PROGRAM, `trackbed check` must accept the examples of docs/scene.md, assembled into scenes.
 """
 import os, re, shutil, subprocess, sys, tempfile
 
@@ -14,7 +13,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 def lines(page):
-    """Numbered lines outside of blocks of code."""
+    """Numbered lines outside code blocks."""
     code = False
     for number, line in enumerate(open(page, encoding="utf-8"), 1):
         if line.startswith("```"):
@@ -38,7 +37,7 @@ def words(text):
 
 
 def too_long():
-    """Faults of the pages' lengths."""
+    """Errors of page length."""
     text = {name: open(os.path.join(ROOT, name), encoding="utf-8").read() for name in pages()}
     prose = [line for _, line in lines(os.path.join(ROOT, "README.md")) if not line.startswith("|")]
     for name, found, most in [("pages", sum(map(words, text.values())), WORDS), ("README.md", words("".join(prose)), README_WORDS)]:
@@ -74,7 +73,7 @@ def links():
 
 
 def scenes(page):
-    """Small scenes of the examples of the page, by name, and all examples."""
+    """Scenes assembled from examples, by name, and all examples."""
     blocks = {}
     for part in re.split(r"\n(?=#{2,3} )", page):
         blocks[part.split("\n")[0].split(":")[0].lstrip("# ")] = re.findall(r"```toml\n(.*?)```", part, re.S)
@@ -140,7 +139,7 @@ def scenes(page):
         "rail": bed.replace("hold =", "spacing = 0.6\nhold =") + bogie + e("`[track.rail]`"),
         "meshed_sleeper": bed + e("`[track.sleeper.mesh]`") + e("`[track.load]`"),
     }
-    # A stone library is a file of its own.
+    # Stone libraries are separate files.
     return made, [b for heading in blocks for b in blocks[heading] if not b.startswith("name = ")]
 
 

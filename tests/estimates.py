@@ -2,16 +2,13 @@
 
     python3 tests/estimates.py BINARY [--threads N] [--cpu] [--only TEXT] [--most SECONDS] [--whole] [--set KEY=VALUE]
 
-Runs `explain --json` and then `run` for every scene in inputs/, one after the other, and prints the estimate, the time of the run,
-their ratio, and both times stage by stage. Scenes that take long are compared with fewer cycles or a shorter end, which `explain` and
-`run` are given alike (SHORTER below; the line says so); --whole: as they are. --most: leave out scenes that are estimated to take longer
-(900 s). --only TEXT (it may be given again): scenes whose path contains the text. --set: for `explain` and `run` of all scenes.
+Runs `explain --json` and `run` for every scene in inputs/ and prints both times and their ratio, by stage. Long scenes
+are shortened (SHORTER) unless --whole. --most: skip scenes estimated to take longer (900 s). --only TEXT (repeatable):
+paths with this text. --set: for all scenes.
 
-Times are by the clock, and nothing else should run on the machine meanwhile. With --cpu they are seconds of the processor on one thread,
-which work of others changes little; `explain` itself should have a core to itself (`nice -n -15` before the command).
-
-Exit code 1 where a ratio is outside 1/1.5 to 1.5 and more than a second is in between, or a stage is said to be unknown. Needs Python 3.11
-and nothing else.
+Wall times need an idle machine. --cpu: CPU seconds on one thread, robust to other load; `explain` still needs a free
+core (`nice -n -15`). Exit code 1 if a ratio is outside 1/1.5 to 1.5 by more than a second, or a stage is unknown. Needs
+Python 3.11.
 """
 
 import argparse
@@ -26,20 +23,20 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FACTOR = 1.5
-# What a second by the clock may go to besides.
+# Tolerance for other wall time.
 FLOOR = 1.0
-# What long scenes are shortened by.
+# Overrides that shorten long scenes.
 SHORTER = {
     "ballast/triaxial-cyclic.toml": ["time.end=1.0"],
     "ice/pile.toml": ["time.end=5"],
     "track/bay/scene.toml": ["track.load.cycles=1"],
 }
-# Whose `run` is another command's.
+# Scenes of another command.
 MODAL = ["verify/free_beam.toml"]
 
 
 def scenes():
-    """Files in inputs/ that are scenes."""
+    """Scene files in inputs/."""
     for path in sorted((ROOT / "inputs").rglob("*.toml")):
         tables = tomllib.loads(path.read_text())
         if "scene" not in tables and ("solid" in tables or "grains" in tables):
@@ -47,23 +44,23 @@ def scenes():
 
 
 def explained(words):
-    """The estimate of a scene; none, and what was said, where there is none."""
+    """Estimate, or None and the message."""
     done = subprocess.run(words, capture_output=True, text=True)
     time = json.loads(done.stdout)["time"] if done.returncode == 0 else None
     return time, done.stderr.strip()
 
 
 def ran(words, cpu):
-    """Seconds of a run, and of its stages by the clock."""
+    """Seconds of a run and its stages."""
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
-        # What a caller has raised for `explain` is not needed here: seconds of the processor do not depend on it.
+        # CPU time needs no raised priority.
         calm = (lambda: os.nice(max(0, 5 - os.nice(0)))) if cpu else None
         begun = clock.monotonic()
         subprocess.run([*words, "--out", str(out), "--quiet"], check=True, stderr=subprocess.DEVNULL, preexec_fn=calm)
         summary = json.loads((out / "summary.json").read_text())
         elapsed = clock.monotonic() - begun
-    # Of what the clock shows, on one thread, this was the run's own.
+    # CPU fraction of the wall time, one thread.
     share = min(1.0, summary["cpu_seconds"] / elapsed) if cpu else 1.0
     took = {stage["name"]: share * stage["seconds"] for stage in summary["stages"]}
     return sum(took.values()), took

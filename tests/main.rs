@@ -1,5 +1,4 @@
-//! The tests of the whole program: each runs the binary as a user would, on scene files, and judges what it says and
-//! what it leaves on disk.
+//! System tests: run the binary on scene files, check output and result files.
 
 mod suite {
     mod bad_input;

@@ -1,11 +1,11 @@
-"""Whether CUDA's run-time compiler takes the text of the kernels, for two generations of devices, without a device.
+"""Compiles the kernel source with NVRTC for two GPU generations, without a GPU.
 
     cargo run --release -p trackbed-dem --example kernels -- FOLDER
     pip install nvidia-cuda-nvrtc==13.0.88
     python3 tests/nvrtc_check.py FOLDER
 
-Products must not be contracted with sums (`--fmad=false`): that is what gives a device the processor's bits. Reports registers and
-bytes that do not fit into them, by kernel. Exit code 1 if a text is refused or a contraction is found.
+No fused multiply-add (`--fmad=false`), for results bitwise equal to the CPU. Prints registers and spilled bytes by
+kernel. Exit code 1 after a compiler error or a contraction.
 """
 
 import ctypes
@@ -24,7 +24,7 @@ def load():
     found = [sorted(glob.glob(os.path.join(libraries, n), recursive=True)) for n in ("libnvrtc-builtins.so*", "libnvrtc.so*")]
     if not all(found):
         sys.exit("nvidia-cuda-nvrtc is not installed in this environment")
-    # What it opens by name while it compiles must be there already.
+    # NVRTC opens this library by name.
     ctypes.CDLL(found[0][0], mode=ctypes.RTLD_GLOBAL)
     return ctypes.CDLL(found[1][0])
 
@@ -41,7 +41,7 @@ def text_of(program, what):
 
 
 def compiled(source, name, options):
-    """PTX and log of a text; None in place of the PTX if it is refused."""
+    """PTX (None after an error) and log."""
     program = ctypes.c_void_p()
     NVRTC.nvrtcCreateProgram(ctypes.byref(program), source, name.encode(), 0, None, None)
     array = (ctypes.c_char_p * len(options))(*[o.encode() for o in options])
@@ -57,7 +57,7 @@ def contractions(ptx):
 
 
 def kernels(log):
-    """Name, registers and bytes spilled of each kernel, as the assembler reports them."""
+    """Name, registers and spilled bytes of each kernel."""
     rows, name, spilled = [], "", 0
     for line in log.splitlines():
         if found := re.search(r"Compiling entry function '(\w+)'", line):
@@ -99,7 +99,7 @@ def main():
     version = ctypes.c_int(), ctypes.c_int()
     NVRTC.nvrtcVersion(ctypes.byref(version[0]), ctypes.byref(version[1]))
     print(f"NVRTC {version[0].value}.{version[1].value}")
-    # Compiled as usual there are contractions: what is looked for can be found.
+    # Positive control: the default options contract.
     ptx, log = compiled(open(paths[0], "rb").read(), "as_usual.cu", ["--gpu-architecture=sm_90"])
     wrong = [] if ptx and contractions(ptx) else [f"no contraction is found where there must be some\n{log}"]
     for path in paths:

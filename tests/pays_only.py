@@ -1,10 +1,8 @@
-"""A scene pays only for what it models: python3 tests/pays_only.py PROGRAM
+"""Unused features cost nothing: python3 tests/pays_only.py PROGRAM
 
-Each feature is added to a scene without it, and taken away again by an override (`--set KEY=`). Taken away, it must leave nothing
-behind: the same stages, contact kernels, predicted memory and files, instructions within 1 % and the largest memory within 6 %
-(the system's pages scatter by 4) of the scene that never had it. With it, a stage, a
-loop, a file or instructions must be there that were not, or the comparison says nothing. Instructions are counted by `perf stat`, on one
-thread. One row per feature; the exit code is 0 only when all hold.
+Each feature is added to a scene and removed by an override (`--set KEY=`). Removed: same stages, contact kernels,
+predicted memory and files, instructions within 1 %, peak memory within 6 % (system scatter: 4). Added: something must
+change. Instructions by `perf stat`, one thread. Exit code 0 if all hold.
 """
 
 import json
@@ -20,7 +18,7 @@ SOLID = ("inputs/solid/pulse.toml", ["output.frames=1"])
 COLUMN = ("inputs/verify/wave_column.toml", ["output.frames=1"])
 COUPLED = ("inputs/coupled/slab_mixed/scene.toml", ["time.end=0.05", "deposition.max_time=0.05", "output.frames=1", "output.state=false"])
 
-# Name, scene, the key that is added, its value.
+# Name, scene, added key, value.
 FEATURES = [
     ("rolling resistance", GRAINS, "material.0.rolling_friction", "0.1"),
     ("twisting resistance", GRAINS, "material.0.twisting_friction", "0.1"),
@@ -45,7 +43,7 @@ FEATURES = [
 
 
 def run(program, scene, sets, out):
-    """Instructions; stages, contact kernels, predicted memory and files with their sizes; bytes at most."""
+    """Instructions; stages, contact kernels, predicted memory, file sizes; peak bytes."""
     scene = os.path.join(ROOT, scene)
     sets = [part for s in sets for part in ("--set", s)]
     count = os.path.join(out, "count")
@@ -57,9 +55,9 @@ def run(program, scene, sets, out):
     summary = json.load(open(os.path.join(out, "results", "summary.json")))
     said = subprocess.run([program, "explain", scene, "--rehearse", "0"] + sets, capture_output=True, text=True, check=True).stdout
     lines = [line.strip() for line in said.splitlines() if re.match(r"\s*(stages|contact kernels|packed bed):", line)]
-    # The speed of the probe is the machine's.
+    # Machine-dependent speed.
     lines = [re.sub(r"; [0-9.]+ M sphere-steps/s.*", "", line) for line in lines]
-    # What these say of the run itself differs by its clock.
+    # Files with times.
     kept = lambda names: (f for f in names if f not in ("summary.json", "log.txt", "run.json"))
     paths = [os.path.join(base, f) for base, _, names in os.walk(os.path.join(out, "results")) for f in kept(names)]
     files = sorted(f"{path[len(out) + 9:]} {os.path.getsize(path)}" for path in paths)
@@ -77,7 +75,7 @@ def main():
         without = base[scene]
         with tempfile.TemporaryDirectory() as out:
             there = run(program, scene, sets + [f"{key}={value}"], out)
-        # The system gives memory in its own portions: the least of some runs counts.
+        # Memory is granted in portions: minimum of several runs.
         for turn in range(4):
             with tempfile.TemporaryDirectory() as out:
                 again = run(program, scene, sets + [f"{key}={value}", f"{key}="], out)

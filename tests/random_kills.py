@@ -2,11 +2,10 @@
 
     python3 tests/random_kills.py BINARY [--kills N] [--threads N] [--seed N] [--only TEXT] [--device]
 
-Takes the cases with `restart` of tests/scene_cases.toml in turn: every stage of every kind of scene. A run keeps a checkpoint
-twenty times a second; it is killed (SIGKILL) at a moment spread evenly over the time that a run without a break takes, once to
-three times, and then goes on to its end. What it leaves is compared as tests/scene_hashes.py compares it. Exit code 1 where
-anything differs or a run does not go on. With --device the runs that are killed have `--device gpu`, the others not, and cases that a device does
-not compute are left out; where there is none, LD_LIBRARY_PATH may lead to the libraries of tests/stand_in. Needs Python 3.11 and nothing else.
+Uses the cases with `restart` of tests/scene_cases.toml: every stage of every kind of scene. A run saves twenty
+checkpoints per second, is killed (SIGKILL) one to three times at uniformly random times, and completed. Comparison as in
+tests/scene_hashes.py; exit code 1 on any difference. --device: killed runs use `--device gpu`, unsupported cases are
+skipped; without a GPU, LD_LIBRARY_PATH may select tests/stand_in. Needs Python 3.11.
 """
 
 import argparse
@@ -21,12 +20,12 @@ import time
 
 import scene_hashes
 
-# Solved in one go: no checkpoint by the clock.
+# Static solution: no timed checkpoints.
 STATIC = {"inputs/solid/slope.toml"}
 
 
 def command(case, binary, out, threads):
-    """The run of a case, with many checkpoints where its kind takes them by the clock."""
+    """Run of a case, with frequent checkpoints if supported."""
     more = [] if case["scene"] in STATIC else ["output.checkpoint=0.05"]
     sets = [f"--set={s}" for s in [*case.get("set", []), *more]]
     scene = str(scene_hashes.ROOT / case["scene"])
@@ -34,7 +33,7 @@ def command(case, binary, out, threads):
 
 
 def stage(folder):
-    """The stage of the latest checkpoint, in the words of its head; "none" before the first."""
+    """Stage in the latest checkpoint header, or "none"."""
     heads = []
     for slot in sorted((folder / "checkpoint").glob("*")) if (folder / "checkpoint").is_dir() else []:
         lines = slot.read_bytes()[:4096].split(b"\n", 2)
@@ -44,7 +43,7 @@ def stage(folder):
 
 
 class Case:
-    """A case and what it leaves without a break."""
+    """A case and its uninterrupted results."""
 
     def __init__(self, case, binary, threads, work):
         self.case, self.binary, self.threads, self.work = case, binary, threads, work
@@ -56,7 +55,7 @@ class Case:
         self.files = scene_hashes.files(whole)
 
     def on_device(self):
-        """Has the runs that are killed use a device from now on; whether it computes the case."""
+        """Moves the killed runs to the GPU; whether the case is supported."""
         self.more = ["--device", "gpu"]
         out = self.work / "device"
         start = time.monotonic()
@@ -65,7 +64,7 @@ class Case:
         return "on a GPU" not in done.stderr or done.returncode != 2
 
     def attempt(self, rng, stages):
-        """Kills a run one to three times and lets it end; the number of kills that met a run, and what differs then."""
+        """Kills one to three times, then completes; effective kills and differences."""
         out, done = self.work / "killed", 0
         shutil.rmtree(out, ignore_errors=True)
         words = [*command(self.case, self.binary, out, self.threads), *self.more]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# One model over MPI: the same files on 1, 2, 3 and 4 ranks as without MPI, checkpoints that any number of ranks goes on from, and what is
-# left of a run of which a rank, or the first rank, is killed. Not part of the tests: it needs a program with the feature `mpi`, and mpirun.
+# Runs over MPI: identical files on 1 to 4 ranks and without MPI, checkpoints for any number of ranks, killed ranks.
+# Needs the feature `mpi` and mpirun.
 #
 #   LIBCLANG_PATH=/usr/lib/llvm-14/lib cargo build --release --features mpi
 #   tests/ranks_check.sh target/release/trackbed [spheres, default 6000]
@@ -10,7 +10,7 @@ count=${2:-6000}
 repository=$(realpath "$(dirname "$0")/..")
 folder=$(mktemp -d)
 cd "$folder"
-# OpenMPI refuses root and more ranks than processors otherwise; neither changes a result.
+# OpenMPI rejects root and oversubscription by default.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 ranks() { mpirun --oversubscribe --quiet -n "$@"; }
 fail() { echo "FAILED: $*; see $folder"; exit 1; }
@@ -62,7 +62,7 @@ EOF
     printf '[time]\nend = "0.15 s"\n\n[output]\nframes = 3\ncheckpoint = 1\n'
 } >scene.toml
 
-# Everything but what depends on the clock.
+# Without files that contain times.
 same() { diff -r -x summary.json -x log.txt -x run.json "$1" "$2" >differences || fail "$1 and $2 differ: $(head -3 differences)"; }
 
 "$trackbed" run scene.toml --out alone --quiet --threads 1
@@ -72,7 +72,7 @@ for n in ${RANKS-1 2 3 4}; do
     echo "$n ranks: the same $(find "ranks_$n" -type f | wc -l) files as without MPI, the state at the end included"
 done
 
-# The process of a rank of the run into a folder.
+# Process of a rank by its results directory.
 process() {
     for p in $(pgrep -f -- "--out $1\b"); do
         tr '\0' '\n' <"/proc/$p/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$2" && echo "$p"

@@ -4,25 +4,20 @@
     python3 tests/scene_hashes.py compare BINARY TABLE [the same options]
     python3 tests/scene_hashes.py list
 
-`record` runs each case of tests/scene_cases.toml with BINARY and writes TABLE: case, file, SHA-256. `compare` runs them
-again and lists every row that differs, is missing or is new; exit code 1 if there is any. --keep FOLDER leaves the files
-there. --only TEXT (it may be given again) takes the cases whose name contains the text. With --device the runs have `--device gpu`, and
-cases that a device does not compute are left out; where there is none, LD_LIBRARY_PATH may lead to the libraries of tests/stand_in.
+`record` runs the cases of tests/scene_cases.toml and writes TABLE: case, file, SHA-256. `compare` lists rows that
+differ, are missing or new (exit code 1). --keep FOLDER: keep the files. --only TEXT (repeatable): cases with this text.
+--device: `--device gpu`, without unsupported cases; without a GPU, LD_LIBRARY_PATH may select tests/stand_in.
 
-What is hashed, and what is left out on purpose:
+* .vtu, .vtp: elements, attributes, decoded arrays bitwise; not the storage: `format`, `offset`, `encoding`,
+  `compressor`, `header_type`, `version`, ranges, white space.
+* summary.json: without wall times, threads, memory, `version`, `scene_hash` (MACHINE_KEYS).
+* run.json: without `version` and scene path.
+* log.txt: without wall times.
+* `check`, `explain`: without memory, trial speed, vector instructions.
+* checkpoint/, end.state: ignored; cases with `restart` are interrupted twice and must write the same files.
+* Others (.csv, .dat, .svg, .pvd, .toml, .stl): byte by byte.
 
-* .vtu, .vtp: elements, attributes and the decoded numbers of every array, bit by bit. Left out is how they are stored:
-  `format`, `offset`, `encoding`, `compressor`, `header_type`, `version`, the ranges and white space.
-* summary.json: every value as written, except wall times, threads, memory, `version` and `scene_hash` (MACHINE_KEYS).
-* run.json: except `version` and where the scene lies.
-* log.txt: except the wall times of the stages and of the parts of the solver.
-* output of `check` and `explain`: except the lines on memory and on the speed of the probe, and the name of the vector
-  instructions.
-* checkpoint/, end.state: left out, for their layout is private; a case with `restart` is run again with two interruptions and must
-  then leave the same files.
-* Everything else (.csv, .dat, .svg, .pvd, .toml, .stl) byte by byte.
-
-Needs Python 3.11 and nothing else.
+Needs Python 3.11.
 """
 
 import argparse
@@ -54,11 +49,11 @@ NUMBERS |= {"Int32": "i", "UInt32": "I", "Int64": "q", "UInt64": "Q"}
 
 
 class Unreadable(Exception):
-    """A file that is not what its name says."""
+    """Invalid result file."""
 
 
 def blocks(text, header, compressed):
-    """Bytes of one array: base64 of a header and of the data, whole or in compressed blocks."""
+    """Bytes of an array: base64 header and data, plain or compressed."""
     width = struct.calcsize(header)
 
     def head(count):
@@ -66,7 +61,7 @@ def blocks(text, header, compressed):
         return struct.unpack_from(f"<{count}{header}", base64.b64decode(text[:letters])), letters
 
     if not compressed:
-        # Header and data are either one stream or two with padding between them.
+        # One stream, or two with padding between.
         (size,), letters = head(1)
         whole = base64.b64decode(text) if "=" not in text[:letters] else b""
         return whole[width : width + size] if whole else base64.b64decode(text[letters:])[:size]
@@ -80,7 +75,7 @@ def blocks(text, header, compressed):
 
 
 def array(element, root, appended):
-    """Numbers of a DataArray as little-endian bytes."""
+    """DataArray as little-endian bytes."""
     kind = NUMBERS.get(element.get("type"))
     if kind is None:
         raise Unreadable(f"an array of {element.get('type')}")
@@ -97,7 +92,7 @@ def array(element, root, appended):
 
 
 def vtk(content):
-    """Structure and decoded numbers of a VTK XML file."""
+    """Structure and decoded numbers of VTK XML."""
     root, digest = ElementTree.fromstring(content), hashlib.sha256()
     appended = root.find("AppendedData")
     if appended is not None and appended.get("encoding") != "base64":
@@ -119,7 +114,7 @@ def vtk(content):
 
 
 def summary(content):
-    """The summary without what the clock and the machine decide; numbers stay as they are written."""
+    """Summary without times and machine data; numbers as text."""
 
     def clean(value, path):
         if isinstance(value, dict):
@@ -133,7 +128,7 @@ def summary(content):
 
 
 def report(text):
-    """Output of `check` and `explain` without what the machine decides."""
+    """Output of `check` and `explain` without machine data."""
     text = text.replace(str(ROOT), ".")
     text = re.sub(r"memory: [0-9.]+ [kMG]?B.*", "memory", text)
     text = re.sub(r"packed bed: .*", "packed bed", text)
@@ -158,7 +153,7 @@ def digest_of(path):
 
 
 def files(folder):
-    """Digest of every file below a folder."""
+    """Digests of all files below a directory."""
     found = sorted(p for p in folder.rglob("*") if p.is_file())
     names = [(p.relative_to(folder).as_posix(), p) for p in found]
     return {name: digest_of(p) for name, p in names if not name.startswith(("checkpoint/", "end.state"))}
@@ -171,7 +166,7 @@ def execute(command, cwd):
 
 
 def interrupted(command, folder, seconds):
-    """Runs the command with an interruption after each of the times, and to its end; how often it was interrupted."""
+    """Runs with interruptions at the given times; their number."""
     count = 0
     for pause in seconds:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
@@ -185,11 +180,11 @@ def interrupted(command, folder, seconds):
 
 
 class NotOnDevice(Exception):
-    """A case that a device does not compute."""
+    """Case not supported on the device."""
 
 
 def scene_rows(case, binary, threads, work, device):
-    """Rows of a scene: what is reported on it, and what a run leaves."""
+    """Rows of a scene: reports and results."""
     scene, sets = str(ROOT / case["scene"]), [f"--set={s}" for s in case.get("set", [])]
     rows = {}
     for word, more in (("check", []), ("explain", ["--rehearse", "0"])):
@@ -223,7 +218,7 @@ def scene_rows(case, binary, threads, work, device):
 
 
 def command_rows(case, binary, work):
-    """Rows of other commands, run in the folder of their files; `@` stands for the root of the repository."""
+    """Rows of other commands; `@`: repository root."""
     out = work / "whole"
     out.mkdir()
     rows = {}
@@ -235,7 +230,7 @@ def command_rows(case, binary, work):
 
 
 def run_case(case, binary, options):
-    """The name of a case, its rows, which are none where a device does not compute it, and its seconds."""
+    """Name, rows (None if unsupported) and seconds of a case."""
     threads, keep, device = options.threads, options.keep, options.device
     work = pathlib.Path(tempfile.mkdtemp(prefix="scene_hashes_"))
     start = time.monotonic()
@@ -256,7 +251,7 @@ def run_case(case, binary, options):
 
 
 def is_scene(path):
-    """Scenes have a title; libraries of stones and tables of trains have none. Studies name a scene."""
+    """Scenes have a title, stone libraries and trains have none; studies name a scene."""
     content = tomllib.loads(path.read_text())
     return "title" in content and "scene" not in content
 
@@ -272,7 +267,7 @@ def cases(only):
 
 
 def run_all(chosen, binary, options):
-    """Rows of all cases: {(case, file): digest}, and how many cases have any."""
+    """Rows of all cases, {(case, file): digest}, and the number of cases with rows."""
     table, count = {}, 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         tasks = [pool.submit(run_case, c, binary, options) for c in chosen]
@@ -286,7 +281,7 @@ def run_all(chosen, binary, options):
 
 
 def compare(found, expected):
-    """Prints the rows that differ; their number."""
+    """Prints differing rows; their number."""
     differing = sorted(key for key in found.keys() | expected.keys() if found.get(key) != expected.get(key))
     for key in differing:
         word = "new" if key not in expected else "missing" if key not in found else "differs"

@@ -1,7 +1,7 @@
 // Checks the site of docs/site.py in a browser: node tests/site_check.mjs [PICTURES]
 //
-// Five pages at two widths: equations have height, nothing is wider than the window, search finds, nothing is requested from elsewhere.
-// The browser is found as by tests/view/browser.mjs; PICTURES is a folder for pictures of the pages.
+// Five pages at two widths: equations are rendered, nothing exceeds the window, search works, no external requests.
+// Browser as in tests/view/browser.mjs; PICTURES: directory for screenshots.
 import path from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { launch } from './view/browser.mjs';

@@ -2,12 +2,10 @@
 
     python3 tests/vtk_check.py [--volume V] FILE...
 
-FILE is a .pvd, .vtu, .vtk or .vtp; of a .pvd every file that it lists is checked. Each file must be read without an
-error, hold the arrays of its kind with the right number of components, and hold no number that is not finite.
-Cells must be right side out, by VTK's own shape functions and node order; with --volume, their summed
-volume in every .vtu must be V [m^3] to 1e-9. One line per file; the exit code is 0 only when all pass.
+FILE: .pvd (all listed files), .vtu, .vtk or .vtp. Readable, arrays of its kind with their components, finite. Cells must
+not be inverted for VTK; --volume: total of every .vtu is V [m^3] to 1e-9. Exit code 0 if all pass.
 
-Needs the Python package `vtk`; of it only modules that draw nothing, so that no graphics library is loaded.
+Needs the Python package `vtk`, without its graphics libraries.
 """
 
 import argparse
@@ -23,13 +21,13 @@ import numpy
 
 QUADRATIC_PYRAMID = 27
 
-# Parametric shapes of VTK's cell types.
+# Parametric shapes of VTK cell types.
 CELLS = {
     25: "hexahedron", 26: "wedge", 27: "pyramid", 24: "tetrahedron",
     12: "hexahedron", 13: "wedge", 14: "pyramid", 10: "tetrahedron",
 }
 
-# Arrays of each kind of file: where, name, number of components.
+# Arrays by file kind: location, name, components.
 KINDS = {
     "solid": (
         [("displacement", 3), ("velocity", 3), ("stress", 9), ("von_mises", 1)]
@@ -48,7 +46,7 @@ KINDS = {
 
 
 class Failure(Exception):
-    """A file that is not what it should be."""
+    """Invalid file."""
 
 
 def expect(condition, message):
@@ -57,7 +55,7 @@ def expect(condition, message):
 
 
 def read(path):
-    """The data set of a file; VTK's own complaints are failures."""
+    """Reads a file; VTK errors are failures."""
     if path.endswith(".vtk"):
         reader = vtkUnstructuredGridReader()
         reader.ReadAllFieldsOn()
@@ -65,7 +63,7 @@ def read(path):
         reader = vtkXMLUnstructuredGridReader() if path.endswith(".vtu") else vtkXMLPolyDataReader()
     complaints = []
     for event in ("ErrorEvent", "WarningEvent"):
-        # VTK hands over the text of the complaint when the observer asks for it so.
+        # Requests the message text from VTK.
         def observer(_object, _event, text="?"):
             complaints.append(text)
 
@@ -108,7 +106,7 @@ def gauss(count):
 
 
 def rule(shape):
-    """Points and weights on VTK's parametric shape; triangles and tetrahedra as collapsed squares and cubes."""
+    """Points and weights on VTK's parametric shape; triangles and tetrahedra by collapsed coordinates."""
     for u, weight_u in gauss(6):
         for v, weight_v in gauss(6):
             for w, weight_w in gauss(6):
@@ -122,7 +120,7 @@ def rule(shape):
 
 
 def enclosed_volume(cell):
-    """Volume inside VTK's own faces of a cell, by the divergence theorem; negative when they point inwards."""
+    """Volume within VTK's faces of a cell, by the divergence theorem; negative if inverted."""
     volume = 0.0
     for index in range(cell.GetNumberOfFaces()):
         face = cell.GetFace(index)
@@ -141,10 +139,9 @@ def enclosed_volume(cell):
 
 
 def cell_volume(cell):
-    """Volume by VTK's own derivatives at Gauss points, and the least determinant.
+    """Volume by VTK's derivatives at Gauss points, and the smallest determinant.
 
-    VTK's quadratic pyramid is a collapsed hexahedron inside, whose volume is not that of its own faces: there, the
-    volume within the faces, for both.
+    VTK's quadratic pyramid is a collapsed hexahedron, with another volume than its faces enclose: uses the latter.
     """
     if cell.GetCellType() == QUADRATIC_PYRAMID:
         volume = enclosed_volume(cell)
@@ -176,7 +173,7 @@ def check_file(path, volume):
     data = read(path)
     kind = kind_of(data, path)
     points, cells = data.GetNumberOfPoints(), data.GetNumberOfCells()
-    # No contacts at all is a result like any other; no grains or no solid is not.
+    # Contacts may be absent, grains or solid not.
     expect(kind == "chains" or (points > 0 and cells > 0), f"{points} points and {cells} cells")
     if points:
         expect(numpy.isfinite(vtk_to_numpy(data.GetPoints().GetData())).all(), "a point is not finite")
@@ -197,7 +194,7 @@ def check_file(path, volume):
 
 
 def frames(path):
-    """The files of a series, with their times checked."""
+    """Files of a series, with valid times."""
     root = ElementTree.parse(path).getroot()
     expect(root.tag == "VTKFile" and root.get("type") == "Collection", "not a collection")
     rows = root.findall("./Collection/DataSet")

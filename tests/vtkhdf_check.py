@@ -1,4 +1,4 @@
-"""Prints what VTK's own reader finds in a VTKHDF file: for every time the first, middle and last item of each array.
+"""Prints the first, middle and last item of each array of a VTKHDF file at every time, read by VTK.
 
 Usage: vtkhdf_check.py FILE
 """
@@ -11,7 +11,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 
 
 def number(value):
-    """A number as Rust's {:.17e} writes it."""
+    """Formats like Rust's {:.17e}."""
     mantissa, exponent = f"{float(value):.17e}".split("e")
     return f"{mantissa}e{int(exponent)}"
 

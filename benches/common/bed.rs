@@ -1,10 +1,10 @@
-//! The settled beds that are stepped.
+//! Beds at rest.
 
 use crate::{boxes, grains};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, Vec3, Work};
 
-/// A bed in a box with a floor, open at the top.
+/// Bed in an open box.
 pub struct Bed {
     pub model: Model,
     pub state: State,
@@ -12,13 +12,12 @@ pub struct Bed {
 }
 
 impl Bed {
-    /// 10,000 spheres with linear contact.
+    /// 10,000 spheres, linear contact.
     pub fn spheres() -> Bed {
         Bed::tiled(1, grains::stone())
     }
 
-    /// The bed of 10,000 spheres `n` × `n` times side by side, of one material; every other one is a mirror image, so
-    /// that spheres at the seams have what the wall was to them.
+    /// Bed tiled `n` × `n`; every second tile is mirrored, so that seams act like walls.
     pub fn tiled(n: usize, material: Material) -> Bed {
         let tile = tile();
         let place = |x: f64, k: usize| k as f64 * WIDTH + if k % 2 == 1 { WIDTH - x } else { x };
@@ -40,7 +39,7 @@ impl Bed {
         Bed::at_rest(input, 0.4, 500, grains::stone())
     }
 
-    /// `steps` build the contacts' memory up, which the tables do not hold.
+    /// Rebuilds the contact history in `steps`.
     pub fn at_rest(mut input: ModelInput, width: f64, steps: u32, material: Material) -> Bed {
         input.materials = vec![material];
         if input.time_step == ModelInput::default().time_step {
@@ -68,10 +67,10 @@ impl Bed {
     }
 }
 
-/// Width of the bed of 10,000 spheres [m].
+/// Bed width [m].
 pub const WIDTH: f64 = 0.42;
 
-/// The bed of 10,000 spheres.
+/// 10,000 spheres.
 pub fn tile() -> Vec<BodyInput> {
     grains::spheres(&grains::table("s1_10k.csv"))
 }

@@ -1,10 +1,10 @@
-//! Walls around grains, and clumps to fill them.
+//! Walls and clumps.
 
 use crate::grains;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::{BodyInput, Plane, Shape, Vec3};
 
-/// Four walls around x, y in [0, width].
+/// Walls around x, y in [0, width].
 pub fn walls(width: f64) -> Vec<Plane> {
     let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
     let far = Vec3::repeat(width);
@@ -16,7 +16,7 @@ pub fn walls(width: f64) -> Vec<Plane> {
     ]
 }
 
-/// Clumps of ten spheres, one for each row of centre and quaternion: shape and bodies.
+/// Ten-sphere clumps from rows of centre and quaternion.
 pub fn clumps(rows: &[Vec<f64>]) -> (Shape, Vec<BodyInput>) {
     let spheres: Vec<_> = grains::table("s2_clump.csv").iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
     let clump = Clump::from_spheres(&spheres).expect("the spheres make a clump");

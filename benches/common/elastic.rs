@@ -1,4 +1,4 @@
-//! The material of the peers' Hertz scene.
+//! Material of the Hertz scene.
 
 use crate::grains;
 use trackbed_dem::Material;

@@ -1,14 +1,14 @@
-//! Grains from `benches/data`, and what they are made of.
+//! Grains and materials.
 
 use std::path::Path;
 use trackbed_dem::{BodyInput, Material, Vec3};
 
-/// The numbers of a table, without its comments and its line of names.
+/// Numbers of a table in `benches/data`.
 pub fn table(name: &str) -> Vec<Vec<f64>> {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/data").join(name))
 }
 
-/// The numbers of a table of the user's, plain or compressed (`.gz`).
+/// Numbers of a table, plain or `.gz`.
 pub fn read(path: &Path) -> Vec<Vec<f64>> {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut text = String::new();
@@ -22,7 +22,7 @@ pub fn read(path: &Path) -> Vec<Vec<f64>> {
     text.lines().filter(|l| !l.starts_with('#')).skip(1).map(|l| row(l).expect("a row of numbers")).collect()
 }
 
-/// The grains of the peers' scenes: K = 1e5 N/m for a pair, and for a wall of the same material.
+/// K = 1e5 N/m for pairs and walls.
 pub fn stone() -> Material {
     Material {
         density: 2600.0,
@@ -35,7 +35,7 @@ pub fn stone() -> Material {
     }
 }
 
-/// A body of the unit sphere for each row x, y, z, r.
+/// Unit-sphere bodies from rows x, y, z, r.
 pub fn spheres(rows: &[Vec<f64>]) -> Vec<BodyInput> {
     let body = |row: &Vec<f64>| BodyInput {
         position: Vec3::new(row[0], row[1], row[2]),

@@ -1,4 +1,4 @@
-//! The scenes of the table in `bed.rs`.
+//! Scenes of `bed.rs`.
 
 use crate::{boxes, elastic, grains};
 use nalgebra::{Quaternion, UnitQuaternion};
@@ -7,13 +7,13 @@ use trackbed_dem::bond::{Bond, BondDamping, BondInput, Criterion, DirectBond};
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Material, ModelInput, Plane, Shape, TimeStep, TriangleSurface, Vec3};
 
-/// Width of the box of the blocks [m].
+/// Box width of the blocks [m].
 const WIDTH: f64 = 0.222;
 
-/// Share of a block that its rounding takes.
+/// Rounding, as a fraction of block size.
 const ROUNDING: f64 = 0.06;
 
-/// The bonded block: bonds of a beam of E = 1 GPa, radius and half length 1 cm; its lower layer is held, the upper moves.
+/// Bonded block: beam of E = 1 GPa, radius and half length 1 cm; lower layer fixed, upper moving.
 fn block() -> ModelInput {
     let mut input = ModelInput {
         materials: vec![Material { stiffness: 1e6, ..grains::stone() }],
@@ -44,7 +44,7 @@ fn block() -> ModelInput {
     input
 }
 
-/// Convex blocks of 5 cm that have settled: cores of 0.94 of their size, rounded by the rest.
+/// Convex 5 cm blocks at rest: cores of 0.94, dilated.
 fn blocks() -> ModelInput {
     let mut input = ModelInput {
         materials: vec![Material { stiffness: 1e6, ..grains::stone() }],
@@ -73,7 +73,7 @@ fn blocks() -> ModelInput {
     input
 }
 
-/// The model of a scene with its packing.
+/// Model of a scene.
 pub fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     if scene == "s3" {
         return block();
@@ -121,7 +121,7 @@ pub fn input(scene: &str, packing: Option<PathBuf>) -> ModelInput {
     input
 }
 
-/// A floor of 2 n² triangles over x, y in [0, width].
+/// Floor of 2 n² triangles, x, y in [0, width].
 pub fn floor(width: f64, n: u32) -> TriangleSurface {
     let at = |k: u32| width * f64::from(k) / f64::from(n);
     let vertex = |k: u32| Vec3::new(at(k % (n + 1)), at(k / (n + 1)), 0.0);
@@ -136,7 +136,7 @@ pub fn floor(width: f64, n: u32) -> TriangleSurface {
     }
 }
 
-/// The width of the box in a packing's comments [m].
+/// Box width in the comments [m].
 fn width(file: &Path) -> f64 {
     let text = std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     let comments = text.lines().filter(|l| l.starts_with('#')).flat_map(str::split_whitespace);

@@ -1,10 +1,10 @@
-//! Beds that are smaller, of two sizes, or on triangles.
+//! Smaller, bidisperse, and triangle-floored beds.
 
 use crate::bed::{Bed, WIDTH, of_spheres, tile};
 use crate::grains;
 use trackbed_dem::{BodyInput, Material, ModelInput, TimeStep, TriangleSurface, Vec3};
 
-/// A cube of about `count` spheres cut from the bed and settled anew; from then on of `material`, as the table's beds are.
+/// Cube of about `count` spheres, deposited again, then of `material`.
 pub fn cut(count: usize, material: Material) -> Bed {
     let tile = tile();
     let side = WIDTH * (count as f64 / tile.len() as f64).cbrt();
@@ -16,9 +16,8 @@ pub fn cut(count: usize, material: Material) -> Bed {
     Bed::at_rest(of_spheres(at_rest.collect()), side, 300, material)
 }
 
-/// Spheres 20 times smaller between those of a cube cut from the bed: the same bed on a scale of 1 : 20, again and again,
-/// without what would overlap, settled under 400 times gravity, with which overlaps over radii stay
-/// what they were, until spheres of both sizes touch as they do in a bed.
+/// Size ratio 20: scaled copies of the bed fill the gaps without overlap. Deposition at 400 times gravity
+/// keeps the ratio overlap/radius, until both sizes are in contact.
 pub fn two_sizes() -> Bed {
     let (side, scale) = (0.042, 0.05);
     let tile = tile();
@@ -39,20 +38,20 @@ pub fn two_sizes() -> Bed {
             }
         }
     }
-    // The step of the small ones.
+    // Step of the small spheres.
     let mut input = of_spheres(bodies);
     input.time_step = TimeStep::Auto { fraction: 0.8 };
     input.gravity *= 400.0;
     Bed::at_rest(input, side, 10_000, grains::stone())
 }
 
-/// The bed on a floor of 2 × 71 × 71 triangles.
+/// Floor of 2 × 71 × 71 triangles.
 pub fn triangles() -> Bed {
     let input = ModelInput { triangles: vec![floor(WIDTH, 71)], ..of_spheres(tile()) };
     Bed::at_rest(input, WIDTH, 300, grains::stone())
 }
 
-/// A level floor over x, y in [0, width]: squares, `count` to a side, halved.
+/// Halved squares over x, y in [0, width], `count` per side.
 fn floor(width: f64, count: u32) -> TriangleSurface {
     let at = |k: u32| width * f64::from(k) / f64::from(count);
     let vertices = (0..=count).flat_map(|j| (0..=count).map(move |i| Vec3::new(at(i), at(j), 0.0))).collect();

@@ -1,18 +1,18 @@
-//! Wall and processor time, and thread pools.
+//! Wall and CPU time, thread pools.
 
 use std::time::Instant;
 
-/// A pool of so many threads. It is never dropped, so that its threads' time stays in [`Watch`]'s account.
+/// Pool of `threads`, never dropped, so that [`Watch`] includes its CPU time.
 pub fn pool(threads: usize) -> &'static rayon::ThreadPool {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
     Box::leak(Box::new(pool))
 }
 
-/// Sums wall and processor seconds of some work. Processor time is the figure to trust on a shared machine.
+/// Wall and CPU seconds. CPU time is reliable on shared machines.
 #[derive(Default)]
 pub struct Watch {
     pub wall: f64,
-    /// Of all threads; zero where the system does not tell (it needs Linux).
+    /// All threads; zero except on Linux.
     pub cpu: f64,
 }
 
@@ -26,7 +26,7 @@ impl Watch {
     }
 }
 
-/// Processor seconds of all threads so far.
+/// CPU seconds of all threads.
 fn cpu_seconds() -> f64 {
     let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
         let text = std::fs::read_to_string(task.path().join("schedstat")).ok()?;

@@ -1,4 +1,4 @@
-//! The force of a train's axles on a sleeper: by Winkler's formula, and statically through a rail on pads.
+//! Axle forces on a sleeper: Winkler's formula, and a rail on pads (static).
 
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::influence::Winkler;
@@ -7,7 +7,7 @@ use trackbed_coupling::track::rail::{Rail, RailInput, Wheel};
 use trackbed_coupling::track::train::CarLayout;
 
 fn main() {
-    // A UIC 60 rail on sleepers 0.6 m apart, pad and bed in series under each seat; one car at 72 km/h, 70 kN a wheel.
+    // UIC 60 rail, sleeper spacing 0.6 m, pad and bed in series; one car at 72 km/h, 70 kN per wheel.
     let (bending, spacing, pad, bed) = (6.4e6, 0.6, 120e6, 40e6);
     let winkler = Winkler::new(bending, pad * bed / (pad + bed), spacing);
     let car = CarLayout { wheelbase: 2.5, bogie_spacing: 17.5, car_length: 25.0 };

@@ -1,4 +1,4 @@
-//! A sphere falls on an elastic block: two models, one loop, and the account of energy at the end.
+//! Sphere dropped on an elastic block, with the energy balance.
 
 use std::error::Error;
 use trackbed_coupling::ledger::Balance;
@@ -9,7 +9,7 @@ use trackbed_dem as dem;
 use trackbed_fem as fem;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // 1 × 1 × 0.5 m of stiff soil with a clamped base; its top is at 0.5 m.
+    // 1 × 1 × 0.5 m of stiff soil, clamped base, top at 0.5 m.
     let mesh = fem::Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]);
     let base = (0..mesh.node_count() as u32).filter(|&n| mesh.coordinates[n as usize][2] == 0.0);
     let constraints =
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         mesh,
         ..Default::default()
     })?;
-    // 5 cm of granite at 1 m/s, about to touch.
+    // Granite sphere of 5 cm at 1 m/s, just before contact.
     let grains = dem::Model::new(dem::ModelInput {
         materials: vec![dem::Material {
             density: 2650.0,

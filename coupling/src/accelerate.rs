@@ -1,19 +1,13 @@
-//! Quasi-Newton acceleration of the fixed-point iteration x = g(x) of an interface.
+//! Quasi-Newton acceleration of the interface fixed-point iteration x = g(x).
 //!
-//! From differences of earlier passes, Δr = r(i) − r(k) and Δg = g(i) − g(k) with r = g − x, the least-squares solution of
-//! Σ αᵢ Δrᵢ = −r(k) gives the next x = g(k) + Σ αᵢ Δgᵢ. With one unknown this is the secant method.
-//!
-//! Source: Degroote, Bathe & Vierendeels, Comput. Struct. 87 (2009) 793 (IQN-ILS); Anderson, J. ACM 12 (1965) 547. Limits:
-//! columns that depend on newer ones are left out, so near the end it falls back to plain iteration.
-//!
-//! Theory manual: equation (5.9) of `docs/theory/coupling.md`.
+//! Degroote, Bathe & Vierendeels, Comput. Struct. 87 (2009) 793 (IQN-ILS); Anderson, J. ACM 12 (1965) 547.
+//! Theory manual: eq. (5.9). Linearly dependent columns are dropped.
 
-/// Differences kept at most.
+/// Maximum number of stored differences.
 const DEPTH: usize = 8;
-/// Part of a column that must be independent of newer columns.
+/// Smallest independent fraction of a column.
 const INDEPENDENT: f64 = 1e-8;
 
-/// The passes of one window.
 #[derive(Default)]
 pub(crate) struct Accelerator {
     /// Pairs of residual and g, oldest first.
@@ -24,12 +18,11 @@ pub(crate) struct Accelerator {
 }
 
 impl Accelerator {
-    /// Forgets the last window.
     pub fn start(&mut self) {
         self.passes.clear();
     }
 
-    /// Takes the result `g` of a pass at `x` and replaces `x` by the place of the next pass.
+    /// Replaces `x` by the start of the next pass, given `g` at `x`.
     pub fn next(&mut self, x: &mut [f64], g: &[f64]) {
         let residual: Vec<f64> = g.iter().zip(x.iter()).map(|(g, x)| g - x).collect();
         x.copy_from_slice(g);
@@ -83,10 +76,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A linear map of three unknowns that plain iteration runs away from (factors −3, 2, −0.5): four passes find the
-    /// differences and the fifth the fixed point.
+    /// Plain iteration diverges (factors −3, 2, −0.5). Four passes collect differences, the fifth solves.
     #[test]
-    fn a_linear_map_is_solved_in_as_many_passes_as_unknowns_and_one() {
+    fn solves_linear_map_in_five_passes() {
         let map = |x: &[f64]| {
             vec![-3.0 * x[0] + x[1] + 4.0, 2.0 * x[1] - x[2] + 1.0, 0.3 * x[0] - 0.5 * x[2] - 2.0]
         };

@@ -1,21 +1,20 @@
-//! The discs about the nodes of a surface, and the operator that spreads contact forces over them (see [`spread`](crate::spread)).
+//! Discs of distributed load transfer (see [`spread`](crate::spread)).
 
 use crate::face::{Closest, Location, cross, dot};
 use crate::spread::{Spread, Turned};
 use crate::surface::SolidSurface;
 use std::collections::BTreeMap;
 
-/// Rings of quadrature points, at Gauss points in the square of the radius: each ring stands for its share of the area.
+/// Gauss points in the squared radius with their area fractions.
 const RINGS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Pairs of opposite points on a ring.
+/// Pairs of opposite points per ring.
 const PAIRS: usize = 6;
-/// Part of the radius by which a point may miss the surface along it.
+/// Tolerated tangential distance from the surface, over the radius.
 const MISSED: f64 = 1e-7;
-/// Part of the radius below which the centroid lies on the node.
+/// Offset over the radius below which centroid and node coincide.
 const CENTRED: f64 = 1e-14;
 
-/// A quadrature point on the surface.
 struct Point {
     patch: u32,
     natural: [f64; 2],
@@ -24,16 +23,15 @@ struct Point {
 }
 
 impl SolidSurface {
-    /// The same surface with each contact force spread over a disc of `radius` [m], see [`Spread`]. Zero: not spread.
+    /// Distributes each contact force over a disc of `radius` [m], see [`Spread`]; zero disables it.
     ///
-    /// The surface must be in the mesh's own shape.
+    /// The surface must be undeformed.
     pub fn spread_over(mut self, radius: f64) -> SolidSurface {
         self.spread = (radius > 0.0).then(|| operator(&self, radius));
         self
     }
 }
 
-/// The operator of `surface`, in its present shape, for discs of `radius` [m].
 fn operator(surface: &SolidSurface, radius: f64) -> Spread {
     let n = surface.nodes().len();
     let border = border(surface);
@@ -56,7 +54,7 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
                 }
             }
         } else {
-            // Points on a line that does not pass through the node: no couple can make up for that.
+            // Collinear points off the node: no couple restores the moment.
             own.insert(i, 1.0);
         }
         if let Some(inverse) = inverse {
@@ -76,7 +74,7 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
     spread
 }
 
-/// Sides that one face has alone: from corner to corner, over the mid-side node where the kind of face has one.
+/// Free sides of faces, split at mid-side nodes.
 fn border(surface: &SolidSurface) -> Vec<[[f64; 3]; 2]> {
     let mut out = Vec::new();
     for patch in 0..surface.faces().len() as u32 {
@@ -95,7 +93,7 @@ fn border(surface: &SolidSurface) -> Vec<[[f64; 3]; 2]> {
     out
 }
 
-/// Unit normals at the surface nodes: mean of the faces around them, weighted by area.
+/// Area-weighted unit normals at the surface nodes.
 fn normals(surface: &SolidSurface) -> Vec<[f64; 3]> {
     let mut out = vec![[0.0; 3]; surface.nodes().len()];
     for patch in 0..surface.faces().len() as u32 {
@@ -107,7 +105,6 @@ fn normals(surface: &SolidSurface) -> Vec<[f64; 3]> {
     out.into_iter().map(|n| n.map(|c| c / dot(n, n).sqrt())).collect()
 }
 
-/// The quadrature points of the disc about `x`.
 fn disc(
     surface: &SolidSurface,
     x: [f64; 3],
@@ -139,7 +136,7 @@ fn disc(
                 }
                 both(low)
             });
-            // The node itself lies on the surface, so the shortest pair does.
+            // The node lies on the surface, so the shortest pair does too.
             for (patch, closest) in found.into_iter().flatten() {
                 points.push(Point {
                     patch,
@@ -155,7 +152,7 @@ fn disc(
     points
 }
 
-/// The point of the surface below or above `point`; none beside its border.
+/// Surface point above or below `point`; `None` beyond the border.
 fn place(surface: &SolidSurface, point: [f64; 3], radius: f64) -> Option<(u32, Closest)> {
     let (patch, closest) = surface.nearest(point, radius)?;
     let off = [0, 1, 2].map(|d| point[d] - closest.point[d]);
@@ -170,8 +167,8 @@ fn place(surface: &SolidSurface, point: [f64; 3], radius: f64) -> Option<(u32, C
     (!outside).then_some((patch, closest))
 }
 
-/// Unit vector in the tangent plane towards the nearest border, and its distance over the radius, 1 at most. Any
-/// direction where none is near.
+/// Tangential unit vector to the nearest border (arbitrary if none is near), and its distance over the
+/// radius, at most 1.
 fn nearest_border(x: [f64; 3], normal: [f64; 3], border: &[[[f64; 3]; 2]], radius: f64) -> ([f64; 3], f64) {
     let tangential = |v: [f64; 3]| {
         let along = dot(v, normal);
@@ -199,7 +196,7 @@ fn nearest_border(x: [f64; 3], normal: [f64; 3], border: &[[[f64; 3]; 2]], radiu
     (best.1.unwrap_or_else(any), if squeeze < 1e-9 { 0.0 } else { squeeze })
 }
 
-/// Σ w (|r|² − r rᵀ) of the points about `c`; none for less than two of them.
+/// Σ w (|r|² − r rᵀ) about `c`; `None` for fewer than three points.
 fn inertia(points: &[Point], c: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     let mut j = [[0.0; 3]; 3];
     for p in points {
@@ -214,12 +211,12 @@ fn inertia(points: &[Point], c: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     (points.len() > 2).then_some(j)
 }
 
-/// Inverse of a symmetric matrix; none where the points lie on a line.
+/// Inverse of a symmetric matrix; `None` for collinear points.
 fn inverse(j: &[[f64; 3]; 3], radius: f64) -> Option<[[f64; 3]; 3]> {
     let rows = [cross(j[1], j[2]), cross(j[2], j[0]), cross(j[0], j[1])];
     let det = dot(j[0], rows[0]);
     (det > 1e-9 * radius.powi(6)).then(|| {
-        // Transposed cofactors; symmetric like the matrix.
+        // Transposed cofactors.
         [0, 1, 2].map(|a| [0, 1, 2].map(|b| rows[b][a] / det))
     })
 }

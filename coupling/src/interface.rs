@@ -1,25 +1,8 @@
-//! Stability numbers of the whole interface: all contacts on the solid's surface together, sticking, as they are now.
+//! Stability numbers of the assembled interface: all current contacts, taken as sticking.
 //!
-//! With the linearised contacts B_K = Σ Nᵀ (Kₙ n nᵀ + Kₜ (1 − n nᵀ)) N, shape functions N of the touched faces (through the discs of a
-//! distributed transfer), and B_C the same with the dashpots,
-//!
-//! W = Δt √λmax(M⁻¹ B_K),   D = Δt λmax(M⁻¹ B_C),
-//!
-//! M the consistent mass of the solid: contacts on one face or under one disc add up, discs cut by a border and the negative corner
-//! terms of an 8-node face are in N, and springs across the normal count as those along it. The third number belongs to the grains,
-//!
-//! Ω = Δt max √λmax(M_b⁻¹ Σ Jᵀ K J),
-//!
-//! M_b mass and inertia of a body, J its motion at its contacts with the surface, K the springs that no dashpot damps. The mean force of a
-//! window differs by Ω²/24 from the force at its middle, and that difference adds energy to an undamped contact at every window; the solid's
-//! θ > ½ dissipates (θ − ½)|Δv|²_M per window. In linear systems drawn at random (`docs/interface.py`: up to five nodes, six
-//! contacts, bodies of several contacts, all ratios of mass, any damping) the predicted scheme is stable where W ≤ 1, D ≤ 1 and
-//! Ω² ≤ 24 (θ − ½).
-//!
-//! λmax by the locally optimal gradient method (Knyazev, SIAM J. Sci. Comput. 23 (2001) 517) with the diagonal of M, on the elements at
-//! the surface. Limits: sliding contacts count as sticking; of the neighbours of a body only its own inertia counts in Ω.
-//!
-//! Theory manual: equation (5.11) of `docs/theory/coupling.md`.
+//! Theory manual: eq. (5.11). λmax by the locally optimal gradient method (Knyazev, SIAM J. Sci. Comput. 23
+//! (2001) 517). With the predicted scheme, random linear systems (`docs/interface.py`) are stable for W ≤ 1,
+//! D ≤ 1, Ω² ≤ 24 (θ − ½).
 
 use crate::face::dot;
 use crate::surface::SolidSurface;
@@ -30,28 +13,28 @@ use trackbed_dem::surface::SurfaceContact;
 use trackbed_fem as fem;
 use trackbed_fem::surface_mass::SurfaceMass;
 
-/// Damping ratio of a contact below which its spring counts as undamped.
+/// Damping ratio of undamped contact springs.
 pub const UNDAMPED: f64 = 0.02;
 
-/// Iterations of an eigenvalue at most, and the relative growth at which it is taken.
+/// Maximum iterations and relative change at convergence.
 const ITERATIONS: usize = 80;
 const CONVERGED: f64 = 1e-3;
-/// Added to an eigenvalue found from below.
+/// Safety factor: eigenvalues converge from below.
 const MARGIN: f64 = 1.02;
 
-/// W, D and Ω of the interface.
+/// Stability numbers of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceNumbers {
     /// W = Δt √λmax(M⁻¹ B_K) [-].
     pub stiffness: f64,
     /// D = Δt λmax(M⁻¹ B_C) [-].
     pub damping: f64,
-    /// Ω = Δt ω of the bodies on undamped contacts [-].
+    /// Ω = Δt ω of bodies on undamped contacts [-].
     pub phase: f64,
 }
 
 impl InterfaceNumbers {
-    /// The numbers for windows of `window` [s], given those for 1 s.
+    /// Scales the numbers for 1 s to windows of `window` [s].
     pub fn at(&self, window: f64) -> InterfaceNumbers {
         InterfaceNumbers {
             stiffness: window * self.stiffness,
@@ -60,7 +43,7 @@ impl InterfaceNumbers {
         }
     }
 
-    /// Each the larger of two.
+    /// Componentwise maximum.
     pub fn max(&self, other: &InterfaceNumbers) -> InterfaceNumbers {
         InterfaceNumbers {
             stiffness: self.stiffness.max(other.stiffness),
@@ -70,9 +53,9 @@ impl InterfaceNumbers {
     }
 }
 
-/// A matrix against the velocity of a point of the surface: `along` its normal and `across` it.
+/// Matrix against the surface velocity.
 pub(crate) struct PointMatrix {
-    /// Surface nodes of the touched face and values of its shape functions there; zero beyond the nodes of its kind.
+    /// Shape functions are zero beyond the nodes of the face.
     pub nodes: [u32; 8],
     pub shape: [f64; 8],
     pub normal: [f64; 3],
@@ -80,7 +63,6 @@ pub(crate) struct PointMatrix {
     pub across: f64,
 }
 
-/// Matrices at points of the surface, summed.
 #[derive(Default)]
 pub(crate) struct PointMatrices {
     pub points: Vec<PointMatrix>,
@@ -89,7 +71,7 @@ pub(crate) struct PointMatrices {
 }
 
 impl PointMatrices {
-    /// Product with the velocity of the surface nodes: calls `add` with surface node and force.
+    /// Product with nodal velocities: calls `add` with surface node and force.
     pub fn times(
         &mut self,
         surface: &SolidSurface,
@@ -121,7 +103,7 @@ impl PointMatrices {
     }
 }
 
-/// Forces at the surface nodes as the solid's nodes get them: calls `add` with surface node and force.
+/// Load transfer: calls `add` with surface node and force.
 pub(crate) fn distribute(surface: &SolidSurface, forces: &[[f64; 3]], mut add: impl FnMut(u32, [f64; 3])) {
     match surface.spread() {
         None => forces.iter().zip(0..).filter(|(f, _)| **f != [0.0; 3]).for_each(|(f, n)| add(n, *f)),
@@ -129,12 +111,12 @@ pub(crate) fn distribute(surface: &SolidSurface, forces: &[[f64; 3]], mut add: i
     }
 }
 
-/// A contact with the surface as springs and dashpots, along and across the normal [N/m, N s/m].
+/// Surface contact: springs and dashpots along and across the normal [N/m, N s/m].
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
     /// Face.
     pub patch: u32,
-    /// Natural coordinates on it.
+    /// Natural coordinates.
     pub local: [f64; 2],
     /// Springs.
     pub stiffness: [f64; 2],
@@ -142,17 +124,17 @@ pub struct SurfacePoint {
     pub damping: [f64; 2],
 }
 
-/// Computes the numbers of an interface, with the mass matrix at the surface.
+/// Assembled interface.
 pub struct Interface {
     mass: SurfaceMass,
     inverse: Vec<[f64; 3]>,
-    /// Row of the mass for each surface node.
+    /// Mass row of each surface node.
     rows: Vec<u32>,
     matrices: PointMatrices,
 }
 
 impl Interface {
-    /// For a surface of a solid.
+    /// Assembles the surface mass.
     pub fn new(solid: &fem::Model, surface: &SolidSurface) -> Interface {
         let mass = SurfaceMass::new(solid, surface.faces().iter().map(|f| f.element));
         let rows =
@@ -161,7 +143,7 @@ impl Interface {
         Interface { mass, inverse, rows, matrices: PointMatrices::default() }
     }
 
-    /// Numbers of the present contacts for windows of 1 s; contacts with the second surface (meshed sleepers) are left out.
+    /// Returns the numbers for windows of 1 s; contacts with meshed sleepers are omitted.
     pub fn numbers(
         &mut self,
         model: &dem::Model,
@@ -176,7 +158,7 @@ impl Interface {
         InterfaceNumbers { stiffness, damping, phase }
     }
 
-    /// W and D of points with springs and dashpots, for windows of 1 s.
+    /// Returns W and D of `points` for windows of 1 s.
     pub fn of_points(&mut self, surface: &SolidSurface, points: &[SurfacePoint]) -> [f64; 2] {
         let mut largest = |values: fn(&SurfacePoint) -> [f64; 2]| {
             self.matrices.points.clear();
@@ -195,7 +177,6 @@ impl Interface {
         [largest(|p| p.stiffness).sqrt(), largest(|p| p.damping)]
     }
 
-    /// λmax of M⁻¹ B with the matrices in hand.
     fn largest(&mut self, surface: &SolidSurface) -> f64 {
         if self.matrices.points.is_empty() {
             return 0.0;
@@ -243,7 +224,7 @@ impl Interface {
     }
 }
 
-/// Rayleigh quotient of the best combination of bases, and its shares; none where they are no basis.
+/// Rayleigh quotient and coefficients of the best combination; `None` for dependent bases.
 fn best(basis: &[[Vec<[f64; 3]>; 3]]) -> Option<(f64, [f64; 3])> {
     let product = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().zip(b).map(|(a, b)| dot(*a, *b)).sum::<f64>();
     let size = basis.iter().map(|b| product(&b[0], &b[2]).sqrt()).collect::<Vec<_>>();
@@ -273,7 +254,6 @@ fn best(basis: &[[Vec<[f64; 3]>; 3]]) -> Option<(f64, [f64; 3])> {
     None
 }
 
-/// The best combination becomes the first basis, its step from the old one the third.
 fn advance(basis: &mut [[Vec<[f64; 3]>; 3]; 3], used: usize, shares: [f64; 3]) {
     let [x, w, p] = basis;
     for which in 0..3 {
@@ -288,7 +268,7 @@ fn advance(basis: &mut [[Vec<[f64; 3]>; 3]; 3], used: usize, shares: [f64; 3]) {
     }
 }
 
-/// A start that no mode is likely to be orthogonal to; the same in every run.
+/// Reproducible start.
 fn pseudo_random(n: usize) -> Vec<[f64; 3]> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {
@@ -301,7 +281,6 @@ fn pseudo_random(n: usize) -> Vec<[f64; 3]> {
     (0..n).map(|_| [next(), next(), next()]).collect()
 }
 
-/// A contact linearised.
 fn point(model: &dem::Model, grains: &dem::State, c: &SurfaceContact) -> SurfacePoint {
     let body = c.body as usize;
     let sphere = grains.spheres(model, body).get(c.sphere as usize).map(|s| s.1);
@@ -316,7 +295,7 @@ fn point(model: &dem::Model, grains: &dem::State, c: &SurfaceContact) -> Surface
     }
 }
 
-/// Springs of a contact that no dashpot damps, along and across, for the mass of a body [kg].
+/// Returns the undamped springs, along and across, for a body mass [kg].
 pub fn undamped(stiffness: [f64; 2], damping: [f64; 2], mass: f64) -> [f64; 2] {
     [0, 1].map(|k| {
         let critical = 2.0 * (mass * stiffness[k]).sqrt();
@@ -324,7 +303,7 @@ pub fn undamped(stiffness: [f64; 2], damping: [f64; 2], mass: f64) -> [f64; 2] {
     })
 }
 
-/// Ω of the bodies on undamped contacts, for windows of 1 s.
+/// Ω for windows of 1 s.
 fn phase<'a>(
     model: &dem::Model,
     grains: &dem::State,
@@ -343,7 +322,7 @@ fn phase<'a>(
         let normal = dem::Vec3::from(surface.normal(p.patch, p.local));
         let [m, j] = [1.0 / mass.sqrt(), 1.0 / inertia.sqrt()];
         let own = bodies.entry(c.body).or_insert_with(Matrix6::zeros);
-        // Velocity of the point by unit motions, scaled by the roots of the inverse masses.
+        // Unit motions, scaled by the roots of the inverse masses.
         let columns: [dem::Vec3; 6] = std::array::from_fn(|k| {
             let mut unit = dem::Vec3::zeros();
             unit[k % 3] = 1.0;

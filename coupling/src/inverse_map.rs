@@ -1,11 +1,7 @@
-//! Natural coordinates of a point inside an element, by Newton (S2 eq. 21 and its text; the
-//! iteration itself is not given there).
+//! Natural coordinates of a point in an element, by Newton's method.
 //!
-//! Solves Σ Nᵢ(ξ) xᵢ = p from a given start. The stop is on the residual, 10⁻¹³ of the largest
-//! coordinate difference of the element. A point of a *face* is found by [`crate::face::closest_point`]
-//! instead: the three-dimensional map has no solution worth the name for a point off the element.
-//!
-//! Theory manual: equation (5.1) of `docs/theory/coupling.md`.
+//! RailwayFEM-DEM manual (2015), eq. 21; Theory manual: eq. (5.1). Points off the element have no useful
+//! solution: use [`crate::face::closest_point`].
 
 use nalgebra::{Matrix3, Vector3};
 use trackbed_fem::ElementKind;
@@ -19,12 +15,12 @@ const MAX_ITERATIONS: usize = 30;
 pub struct Natural {
     /// Natural coordinates (ξ, η, ζ).
     pub xi: [f64; 3],
-    /// Newton iterations used.
+    /// Newton iterations.
     pub iterations: usize,
 }
 
-/// Natural coordinates at which the element of this kind with node coordinates `x` [m] passes through `point` [m].
-/// `None` when Newton does not converge or the Jacobian is singular on the way.
+/// Natural coordinates of `point` [m] in the element with node coordinates `x` [m]. `None` if Newton does not
+/// converge or the Jacobian is singular.
 pub fn natural_point(
     kind: ElementKind,
     x: &ElementCoordinates,
@@ -64,9 +60,8 @@ mod tests {
     use crate::testing::Random;
     use trackbed_fem::element::hex20 as element;
 
-    /// Mean iteration counts of the reference study (Newton from ξ = 0 to a residual of 10⁻¹³ in half-edges, 300
-    /// elements with nodes moved by ±a half-edges, the same random elements here): 3.9, 4.0, 4.2, 4.4, 4.6 for
-    /// a = 0.05 … 0.25, at most 7, no failure.
+    /// Reference study: Newton from ξ = 0 to 10⁻¹³ half-edges, the same 300 random elements, nodes moved by
+    /// ±a half-edges. Means 3.9, 4.0, 4.2, 4.4, 4.6 for a = 0.05 … 0.25, at most 7.
     #[test]
     fn distorted_elements_are_inverted_in_about_four_iterations() {
         let mut random = Random::numpy_seed_3();
@@ -88,7 +83,6 @@ mod tests {
                 assert!(error < 1e-10, "a = {amplitude}: {error:e}");
                 assert!(found.iterations <= 7, "a = {amplitude}: {} iterations", found.iterations);
                 total += found.iterations;
-                // A warm start a little off, as from the step before.
                 let warm = natural_point(ElementKind::Hex20, &x, point, xi.map(|c| c + 1e-4)).unwrap();
                 assert!(warm.iterations <= 2, "warm start took {}", warm.iterations);
             }
@@ -98,8 +92,8 @@ mod tests {
         }
     }
 
-    /// The stop is in proportion to the element: natural coordinates of an element of any size are found to rounding, of a large
-    /// one, whose points are known to 1e-12 m only, as of a small one, where 1e-13 m is a part of it.
+    /// The tolerance scales with the element: large ones know points to 1e-12 m only, small ones are of size
+    /// 1e-13 m.
     #[test]
     fn elements_of_any_size_are_inverted_alike() {
         let mut random = Random::new(7);

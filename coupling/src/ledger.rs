@@ -1,52 +1,41 @@
-//! Energy of the whole system: grains, solid and interface in one account.
-//!
-//! Stored energy is a function of the state: kinetic energy of grains and solid, contact springs, strain, and the
-//! potential of gravity on both. Work and dissipation are summed step by step. The account closes when
-//!
-//! Δ stored + dissipated − work done from outside = 0.
-//!
-//! What remains is the error of the run. One part of it is known by itself: the two sides of the interface compute
-//! its work separately (grains with the predicted motion of the surface, solid with its own displacement), and their
-//! sum should vanish.
-//!
-//! Theory manual: equations (5.13), (5.14), (5.15) of `docs/theory/coupling.md`.
+//! Energy balance of grains, solid and interface. Theory manual: eqs. (5.13), (5.14), (5.15).
 
 use serde::{Deserialize, Serialize};
 
-/// Energy stored in the system at one instant [J].
+/// Stored energy [J].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Stored {
-    /// Kinetic energy of the grains, translation and rotation.
+    /// Kinetic energy of the grains, with rotation.
     pub grains_kinetic: f64,
-    /// Normal and tangential contact springs.
+    /// Contact springs.
     pub contact_springs: f64,
-    /// Bonds between grains.
+    /// Bonds.
     #[serde(default)]
     pub bonds: f64,
-    /// Springs of mounts of rigid bodies.
+    /// Supports of rigid bodies.
     #[serde(default)]
     pub mounts: f64,
-    /// Potential of gravity on the grains.
+    /// Gravity potential of the grains.
     pub grains_gravity: f64,
     /// Kinetic energy of the solid.
     pub solid_kinetic: f64,
-    /// Strain energy of the solid.
+    /// Strain energy.
     pub solid_strain: f64,
-    /// Potential of gravity on the solid.
+    /// Gravity potential of the solid.
     pub solid_gravity: f64,
-    /// Rails, their pads, and the track beyond the model: motion, bending and springs.
+    /// Rails, pads and track outside the model.
     #[serde(default)]
     pub rail: f64,
 }
 
 impl Stored {
-    /// The parts that springs and motion hold [J]; never below zero, but for gravity's.
+    /// Kinetic and spring energy [J].
     fn held(&self) -> f64 {
         let grains = self.grains_kinetic + self.contact_springs + self.bonds + self.mounts;
         grains + self.solid_kinetic + self.solid_strain + self.rail
     }
 
-    /// Sum of the sizes of the changes of all parts since `start` [J].
+    /// Sum of absolute changes [J].
     fn changes(&self, start: &Stored) -> f64 {
         let parts = |s: &Stored| {
             let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.mounts, s.grains_gravity];
@@ -56,7 +45,7 @@ impl Stored {
         parts(self).zip(parts(start)).map(|(now, before)| (now - before).abs()).sum()
     }
 
-    /// Sum of all parts [J].
+    /// Total stored energy [J].
     pub fn total(&self) -> f64 {
         self.grains_kinetic
             + self.contact_springs
@@ -70,74 +59,72 @@ impl Stored {
     }
 }
 
-/// Energy that has come in and gone since the start of the run [J].
+/// Work and dissipation since the start [J].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Spent {
-    /// Work of applied loads on grains and sleeper, and of body forces on grains, gravity excepted.
+    /// Applied loads on grains and sleeper, body forces on grains except gravity.
     pub applied_work: f64,
-    /// Work of moving walls, and of what holds motions fixed, on grains; and the energy that grains brought in through
-    /// inlets less what they took out.
+    /// Moving walls and prescribed motion on grains; inlets less outlets.
     pub wall_work: f64,
-    /// Work of the loads on the solid other than contact and gravity.
+    /// Loads on the solid except contact and gravity.
     pub solid_load_work: f64,
-    /// Dissipated by contact dashpots.
+    /// Contact dashpots.
     pub dashpot: f64,
-    /// The part of it by which those at the solid's surface took more than their law has for the motion they knew: they act on
-    /// the velocity that the surface was said to have in a window, the solid answers with another. Below zero as a rule.
+    /// Interface dashpot error: surface dashpots at the predicted velocity minus the law. Usually negative.
     #[serde(default)]
     pub dashpot_lag: f64,
-    /// Dissipated by friction.
+    /// Friction.
     pub friction: f64,
-    /// Dissipated by the dashpots of bonds.
+    /// Bond dashpots.
     #[serde(default)]
     pub bonds: f64,
-    /// Dissipated by the dashpots of mounts of rigid bodies.
+    /// Support dashpots of rigid bodies.
     #[serde(default)]
     pub mounts: f64,
-    /// Set free by breaking bonds.
+    /// Bond breakage.
     #[serde(default)]
     pub breaks: f64,
-    /// Dissipated by local damping of the grains.
+    /// Local damping of the grains.
     pub local_damping: f64,
-    /// Dissipated by Rayleigh damping of the solid.
+    /// Rayleigh damping.
     pub rayleigh: f64,
-    /// Taken up by the solid's absorbing boundaries.
+    /// Absorbing boundaries.
     #[serde(default)]
     pub absorbed: f64,
-    /// Dissipated by plastic flow of the solid.
+    /// Plastic flow.
     #[serde(default)]
     pub plastic: f64,
-    /// Dissipated by the solid's time integration (zero for θ = ½).
+    /// Numerical dissipation of the solid (zero for θ = ½).
     pub numerical: f64,
-    /// Work that the surface did on the grains, as the grains saw it.
+    /// Work of the surface on the grains, from the DEM.
     pub surface_on_grains: f64,
-    /// Work that the contacts did on the solid, as the solid saw it.
+    /// Work of the contacts on the solid, from the FEM.
     pub contacts_on_solid: f64,
-    /// Brought in by cycle jumps, which set grains elsewhere.
+    /// Cycle jumps, which displace grains.
     #[serde(default)]
     pub jumps: f64,
-    /// Work of wheels on rails, and of the rails' weight.
+    /// Wheels and rail weight.
     #[serde(default)]
     pub wheels: f64,
-    /// Work that the pads under rails did on sleepers, as the rails saw it; the sleepers see it as work of applied loads.
+    /// Work of rail pads on sleepers, which count it as applied loads.
     #[serde(default)]
     pub pads_on_sleepers: f64,
-    /// Dissipated in the pads on the modelled sleepers.
+    /// Pads on modelled sleepers.
     #[serde(default)]
     pub pads: f64,
-    /// Dissipated in the track beyond the model.
+    /// Track outside the model.
     #[serde(default)]
     pub track_beyond: f64,
 }
 
 impl Spent {
-    /// Work done on the system from outside [J].
+    /// External work [J].
     pub fn work(&self) -> f64 {
         let outside = self.applied_work - self.pads_on_sleepers + self.wheels + self.wall_work;
         outside + self.solid_load_work + self.jumps
     }
 
-    /// Energy dissipated [J].
+    /// Dissipated energy [J].
     pub fn dissipated(&self) -> f64 {
         let grains =
             self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping + self.mounts;
@@ -145,7 +132,7 @@ impl Spent {
         grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
-    /// Dissipated energies with their names [J]: each is zero or above but for the error of the run.
+    /// Named dissipations [J], non-negative except for numerical error.
     pub fn losses(&self) -> [(&'static str, f64); 11] {
         [
             ("dashpots of contacts", self.dashpot - self.dashpot_lag.min(0.0)),
@@ -162,7 +149,7 @@ impl Spent {
         ]
     }
 
-    /// Sum of the sizes of all works and losses [J].
+    /// Sum of absolute works and dissipations [J].
     fn turned_over(&self) -> f64 {
         let works = [self.applied_work - self.pads_on_sleepers, self.wheels, self.wall_work];
         let rest = [self.solid_load_work, self.jumps, self.breaks];
@@ -170,51 +157,49 @@ impl Spent {
         works.into_iter().chain(rest).chain(losses).map(f64::abs).sum()
     }
 
-    /// Interface work of both sides, which should cancel [J].
+    /// Interface work error [J].
     pub fn interface(&self) -> f64 {
         self.surface_on_grains + self.contacts_on_solid
     }
 }
 
-/// The account of a run.
+/// Energy balance of a run.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Balance {
     /// Stored energy at the start.
     pub start: Stored,
-    /// Stored energy now.
+    /// Current stored energy.
     pub now: Stored,
     /// Work and dissipation since the start.
     pub spent: Spent,
-    /// Energy below which an error means nothing, whatever has been turned over [J]: of the grains, see
-    /// [`reference_energy`](trackbed_dem::measure::reference_energy).
+    /// Smallest reference energy [J], from [`reference_energy`](trackbed_dem::measure::reference_energy).
     #[serde(default)]
     pub reference: f64,
 }
 
 impl Balance {
-    /// Δ stored + dissipated − work [J]: zero in exact arithmetic with exact integration.
+    /// Energy error [J].
     pub fn error(&self) -> f64 {
         self.now.total() - self.start.total() + self.spent.dissipated() - self.spent.work()
     }
 
-    /// What springs and motion hold now [J].
+    /// Current kinetic and spring energy [J].
     pub fn held(&self) -> f64 {
         self.now.held()
     }
 
-    /// The error with what a solid has gained in its time integration [J]: alone, it books there whatever does not close.
+    /// Energy error plus numerical gain of the solid [J], which absorbs any error of a solid without grains.
     pub fn unexplained(&self) -> f64 {
         self.error().abs() + (-self.spent.numerical).max(0.0)
     }
 
-    /// Energy that has changed its form or come and gone since the start [J]: the larger of the sum of all works and losses
-    /// and of the sum of all changes of stored energies, each by its size.
+    /// Reference energy [J]: the larger of Σ |work| + Σ |dissipation| and Σ |Δ stored energy|.
     pub fn turnover(&self) -> f64 {
         self.spent.turned_over().max(self.now.changes(&self.start))
     }
 
-    /// Below this an error means nothing [J]: a thousandth of the energy in springs and motion, the rounding of
-    /// the potential of gravity, whose zero is anywhere, or the reference energy.
+    /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
+    /// smallest reference.
     pub fn floor(&self) -> f64 {
         let gravity = |s: &Stored| s.grains_gravity.abs() + s.solid_gravity.abs();
         let held = 1e-3 * self.start.held().max(self.now.held());
@@ -226,7 +211,7 @@ impl Balance {
 mod tests {
     use super::*;
 
-    /// Losses below zero with no work, and energies that only change places, count as turned over.
+    /// Terms of opposite sign must not cancel.
     #[test]
     fn nothing_hides_behind_a_sum() {
         let spent = Spent { friction: -27e9, dashpot: 27e9, ..Spent::default() };
@@ -238,8 +223,7 @@ mod tests {
         assert_eq!((balance.error(), balance.turnover(), balance.floor()), (1.0, 5.0, 3e-3));
     }
 
-    /// What one part gives to another is no work from outside, and every loss is counted once: each case closes to rounding, and
-    /// the losses by name are all of what is dissipated, breaks apart.
+    /// Internal transfers are no external work; every loss counts once.
     #[test]
     fn every_way_of_energy_closes() {
         let none = Spent::default;
@@ -267,8 +251,7 @@ mod tests {
         }
     }
 
-    /// Dashpots at the surface that act on a velocity which the solid does not have may take less than nothing: what they lag
-    /// behind is no gain of theirs. What they take too much is theirs.
+    /// Negative error is no gain of the dashpots; positive error is their loss.
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
         let dashpots =

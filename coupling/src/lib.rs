@@ -1,9 +1,6 @@
-//! Exchange of force and motion between the grains and the solid: the only crate that sees both sides.
+//! DEM–FEM coupling: contact on moving solid surfaces, load transfer, coupled stepping, stability, track.
 //!
-//! [`face`] finds the closest point on a curved face of any kind, [`surface`] shows the solid's moving faces to the
-//! grains, [`transfer`] turns contact forces into nodal loads, [`spread`] takes them to discs, [`step`] is the coupled
-//! step in the order that [`scheme`] tells, [`stability`] says how long its windows may be, [`interface`] checks it for the contacts of a moment, and [`ledger`] keeps
-//! the energy of the whole system. [`track`] holds rails, trains and load cycles on sleepers. [`inverse_map`] is the three-dimensional map of a point into an element.
+//! Units are SI. Nodal arrays have the shape `[3·nodes]`.
 
 mod accelerate;
 mod discs;

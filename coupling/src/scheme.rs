@@ -1,37 +1,33 @@
-//! The order of the exchange: which side goes first in a window, and on what motion of the surface the grains go.
+//! Coupling schemes.
 //!
-//! | scheme | surface in the window | solid's load | order |
+//! | scheme | surface in the window | FEM load | order |
 //! |---|---|---|---|
-//! | predicted (B) | x₀ + v₀ τ | mean contact force of the same window | grains, solid |
-//! | lagged (A) | from x₀ to x₁, velocity from v₀ to v₁ | contact force of the window before, reached linearly | solid, grains |
-//! | stiffened | x₀ + v̄ τ, v̄ from a solve with the contacts' stiffness in the matrix | as B | solve, grains, solid |
-//! | iterated | x₀ + v̄ τ, v̄ the mean velocity that the solid then has | as B | both, again until v̄ repeats |
+//! | predicted | x₀ + v₀ τ | mean contact force | DEM, FEM |
+//! | lagged | from x₀ to x₁, velocity from v₀ to v₁ | previous contact force, reached linearly | FEM, DEM |
+//! | stiffened | x₀ + v̄ τ, v̄ from a solve with contact stiffness | as predicted | solve, DEM, FEM |
+//! | iterated | x₀ + v̄ τ, v̄ the computed mean | as predicted | both, repeated |
 //!
-//! In all but A the solid receives the impulse that the grains felt in the same window, so momentum is kept. Iterated to
-//! the end, both sides also agree on the work of the interface. A is the order of Kratos and of the seed programs; it is
-//! there for comparison.
-//!
-//! Source: Felippa, Park & Farhat, Comput. Methods Appl. Mech. Eng. 190 (2001) 3247 (staggered orders and their errors);
-//! `docs/theory/coupling.md`, section 5.5, for the stable windows. Limits: the stiffened scheme needs a solid with a constant matrix.
+//! All but lagged conserve momentum. Felippa, Park & Farhat, Comput. Methods Appl. Mech. Eng. 190 (2001)
+//! 3247; stability: Theory manual, section 5.5. Stiffened requires a constant FEM matrix.
 
 use serde::{Deserialize, Serialize};
 
-/// Order of the exchange.
+/// Coupling scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scheme {
-    /// Grains first on the predicted motion of the surface (B).
+    /// Staggered with predictor.
     #[default]
     Predicted,
-    /// Solid first with the force of the window before (A).
+    /// Conventional serial staggered: FEM first.
     Lagged,
-    /// As predicted, the prediction being a solve with the stiffness of the present contacts.
+    /// Semi-implicit: current contact stiffness in the predictor.
     Stiffened,
-    /// The window is repeated until the motion of the surface repeats.
+    /// Strong coupling: windows repeat until the surface motion converges.
     Iterated {
-        /// Largest change of the surface's mean velocity between two passes, relative to the largest such velocity.
+        /// Relative tolerance of the surface's mean velocity.
         tolerance: f64,
-        /// Passes at most.
+        /// Maximum number of passes.
         passes: u32,
     },
 }
@@ -49,14 +45,14 @@ impl std::fmt::Display for Scheme {
     }
 }
 
-/// How often windows were repeated.
+/// Counts of repeated windows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Passes {
-    /// Windows done.
+    /// Completed windows.
     pub windows: u64,
-    /// Passes of the grains in all of them.
+    /// DEM passes.
     pub passes: u64,
-    /// Windows that kept changing up to the last pass allowed.
+    /// Unconverged windows.
     pub unconverged: u64,
     /// Iterations of the stiffened solves.
     pub solves: u64,

@@ -1,23 +1,10 @@
-//! How long a window of the exchange may be: W = Δt √(Kₙ/m) and D = C Δt/m for every class of contact, before a run.
+//! A-priori limits of the coupling window: W = Δt √(Kₙ/m) and D = C Δt/m per contact class.
 //!
-//! m is the mass that a point of the solid's surface offers, 1/(Nᵀ M⁻¹ N) with the shape functions N of the touched face
-//! (and the spread, if there is one) and the mass matrix M of the solid: least at a corner of the lightest element, and
-//! found there, at mid-sides and in the middle, for the lightest face and the lightest within. At the border of the surface
-//! it is half of that, and a quarter at its corners; that mass is reported but not a criterion, since walls or slopes as a rule
-//! keep stones from it by their radius. A stone with the
-//! mass M_s and the dashpot C = 2 ζ √(M_s Kₙ) damps the pair of masses with
-//! ζ' = C/(2 √(m' Kₙ)) = ζ √((m + M_s)/m), m' = m M_s/(m + M_s), which is the damping that the limits refer to.
+//! m is the effective nodal mass 1/(Nᵀ M⁻¹ N). It is smaller at the border, which walls usually keep grains
+//! away from. Limits depend on the damping ratio of the mass pair, ζ' = ζ √((m + M_s)/m), grain mass M_s.
 //!
-//! Limits of W by scheme, from the two-mass study and the runs of it with this program's own windows
-//! (`docs/theory/coupling.md`, section 5.5): lagged 1.2 ζ'; predicted 1 with ζ' of 0.1 or more, else 0.5; stiffened 2 with ζ' of 0.05 or more and M_s of m
-//! or more, else 1; both 0.2 with ζ' below 0.02, since without any damping predicted grows slowly, by 0.021 W⁴ per window;
-//! iterated 5. D is at most 1 where the grains go on a motion that does not know their dashpot (predicted). The lagged scheme
-//! errs in its energy long before it is unstable: W is at most 0.1 there and D 0.2.
-//!
-//! Limits: one contact on one point. Several stones on one face add their stiffness; a solid that carries energy away is
-//! safer than the study's single node.
-//!
-//! Theory manual: equations (5.10), (5.12) of `docs/theory/coupling.md`.
+//! Theory manual: eqs. (5.10), (5.12), limits in section 5.5. Not included: several grains per face,
+//! radiation.
 
 use crate::face::landmarks;
 use crate::interface::InterfaceNumbers;
@@ -28,30 +15,30 @@ use trackbed_fem as fem;
 use trackbed_fem::SolveError;
 use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
-/// The two numbers that decide whether an exchange is stable, of the class of contacts with the largest W.
+/// Stability numbers of the contact class with the largest W.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stability {
-    /// W = Δt √(Kₙ/m): window Δt, contact stiffness Kₙ, mass m of the lightest surface point.
+    /// W = Δt √(Kₙ/m), m the smallest effective nodal mass.
     pub stiffness: f64,
-    /// D = C Δt/m: the dashpot C of the heaviest grain on the same point; the largest of all classes.
+    /// D = C Δt/m, C of the heaviest grain; largest of all classes.
     pub damping: f64,
 }
 
-/// Masses that points of a surface offer [kg]: within it, where there are such points, and at its border.
+/// Smallest effective nodal masses [kg].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointMasses {
-    /// At the corners of a face, the least.
+    /// Face corners.
     pub corner: f64,
-    /// At the middles of its sides, the least.
+    /// Mid-sides.
     pub side: f64,
-    /// In the middle, the least.
+    /// Face centres.
     pub middle: f64,
-    /// At the border of the surface, the least; infinite where none of the faces looked at has a border.
+    /// Border; infinite without one.
     pub border: f64,
 }
 
 impl PointMasses {
-    /// The least within the surface [kg].
+    /// Smallest mass off the border [kg].
     pub fn least(&self) -> f64 {
         self.corner.min(self.side).min(self.middle)
     }
@@ -66,11 +53,9 @@ impl PointMasses {
     }
 }
 
-/// No points yet.
 const NONE: PointMasses =
     PointMasses { corner: f64::INFINITY, side: f64::INFINITY, middle: f64::INFINITY, border: f64::INFINITY };
 
-/// Where on a face a point lies: corners and sides by number.
 #[derive(Clone, Copy)]
 enum Place {
     Corner(usize),
@@ -78,7 +63,7 @@ enum Place {
     Middle,
 }
 
-/// The points of a face that are looked at, with their natural coordinates.
+/// Sampled points of a face.
 fn places(surface: &SolidSurface, patch: u32) -> impl Iterator<Item = (Place, [f64; 2])> {
     let shape = surface.shape(patch);
     let corners = shape.corner_count();
@@ -87,9 +72,8 @@ fn places(surface: &SolidSurface, patch: u32) -> impl Iterator<Item = (Place, [f
     border.chain([(Place::Middle, shape.natural_centre())])
 }
 
-/// The few faces whose corners within the surface have the least entries in the diagonal of the mass matrix. In a free mesh
-/// the lightest points need not belong to the lightest element, since a point's mass comes from all elements around it;
-/// faces of 20-node bricks need no such search.
+/// Faces whose inner corners have the smallest diagonal mass: in unstructured meshes the lightest point need
+/// not belong to the lightest element.
 fn lightest_nodes(solid: &fem::Model, surface: &SolidSurface, own: impl Fn(&u32) -> bool) -> Vec<u32> {
     const MOST: usize = 3;
     let diagonal = solid.matrices().mass_diagonal();
@@ -107,13 +91,12 @@ fn lightest_nodes(solid: &fem::Model, surface: &SolidSurface, own: impl Fn(&u32)
     faces.into_iter().take(MOST).map(|(_, patch)| patch).collect()
 }
 
-/// Largest W of a scheme, for the damping ratio ζ' of the pair of masses and the ratio of the stone's mass to the point's.
+/// Returns the largest stable W for ζ' and the ratio of grain mass to nodal mass.
 pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
     match scheme {
         Scheme::Lagged => 1.2 * damping,
-        // Neutral without damping.
         Scheme::Iterated { .. } => 5.0,
-        // Predicted grows slowly without damping: by 0.021 W⁴ per window.
+        // Grows by 0.021 W⁴ per window.
         _ if damping < 0.02 => 0.2,
         Scheme::Predicted if damping >= 0.1 => 1.0,
         Scheme::Predicted => 0.5,
@@ -122,20 +105,19 @@ pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
     }
 }
 
-/// Largest W that windows of the program's own choice have: with contacts that stick, several on a face, the predicted scheme brings energy in
-/// long before it is unstable. A bay of track gains 2.2 % of what it dissipates in a cycle at W = 1, and 0.13 % at 0.5
-/// (`docs/theory/coupling.md`, section 5.5).
+/// Returns the largest W of automatic windows. Sticking contacts add energy below the stability limit: per
+/// cycle, a bay of track gains 2.2 % of its dissipation at W = 1, and 0.13 % at 0.5 (Theory manual, section
+/// 5.5).
 pub fn quiet_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Predicted { 0.5 } else { f64::INFINITY }
 }
 
-/// Largest W of a scheme for its energy: a force that does its work a window late errs by more than 5 % of an impact's
-/// energy beyond it, long before the exchange is unstable (`docs/theory/coupling.md`, section 5.5).
+/// Returns the largest W for an energy error of 5 % per impact (Theory manual, section 5.5).
 pub fn accurate_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Lagged { 0.1 } else { f64::INFINITY }
 }
 
-/// Largest D of a scheme; of the lagged one for its energy, as [`accurate_w`].
+/// Returns the largest D.
 pub fn largest_d(scheme: Scheme) -> f64 {
     match scheme {
         Scheme::Lagged => 0.2,
@@ -144,8 +126,9 @@ pub fn largest_d(scheme: Scheme) -> f64 {
     }
 }
 
-/// Masses that the surface offers where it belongs to elements of the material `material` and stones can come, which
-/// `reached` says of a face by number; none where there are no such faces, or where all such points are held.
+/// Returns the effective nodal masses on faces of `material` within reach of grains (`reached`).
+///
+/// `None` without unconstrained points.
 pub fn point_masses(
     solid: &fem::Model,
     surface: &SolidSurface,
@@ -167,7 +150,6 @@ pub fn point_masses(
         (0..surface.shape(patch).corner_count()).filter(|&side| surface.on_border(patch, side)).count()
     };
     let inmost = patches().min_by(|&a, &b| corners(a).cmp(&corners(b)).then(mass(a).total_cmp(&mass(b))))?;
-    // A corner of the surface before its sides before its middle.
     let outermost = patches()
         .min_by(|&a, &b| corners(b).min(2).cmp(&corners(a).min(2)).then(mass(a).total_cmp(&mass(b))))?;
     let mut solver = MassSolver::new(solid);
@@ -189,7 +171,7 @@ pub fn point_masses(
         }
     }
     masses.border = outer.least();
-    // A surface so small that it has no corner or side within.
+    // Without inner corners or sides.
     if masses.corner.is_infinite() {
         masses.corner = outer.corner;
     }
@@ -199,16 +181,15 @@ pub fn point_masses(
     masses.least().is_finite().then_some(masses)
 }
 
-/// Largest W and D of the whole interface, all contacts together ([`crate::interface`]): systems drawn at random are stable up to 1, and a bed
-/// of 60 spheres still trembles above this.
+/// Limits of W and D of the interface: random systems are stable up to 1; a bed of 60 spheres vibrates above
+/// 0.75.
 pub const INTERFACE: [f64; 2] = [0.75, 0.75];
 
-/// (Ω of a body in a bed over Ω on its contacts with the surface alone)²: neighbours stiffen it. With 1, a bed of 60 spheres that satisfies all
-/// limits still trembles at 3 mm/s.
+/// (Ω in a bed over Ω on surface contacts)²: neighbours stiffen a body. With 1, a bed of 60 spheres vibrates
+/// at 3 mm/s.
 const NEIGHBOURS: f64 = 4.0;
 
-/// Relative growth of an undamped contact per window, from above: ½ W² (Ω²/24 − (θ − ½)), Ω that of a body among others; zero where θ
-/// covers it.
+/// Returns the growth bound of undamped contacts per window, ½ W² (Ω²/24 − (θ − ½)), Ω among neighbours.
 pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
     if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
         return 0.0;
@@ -216,8 +197,9 @@ pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64
     (0.5 * n.stiffness.powi(2) * (NEIGHBOURS * n.phase.powi(2) / 24.0 - (theta - 0.5))).max(0.0)
 }
 
-/// How far the whole interface is beyond its limits: above 1 it may be unstable. 0 for schemes that it does not bound. Under a θ of ½
-/// undamped contacts grow in windows of any length ([`interface_growth`]), so Ω does not count.
+/// Returns the largest ratio of interface numbers to limits, 0 for unlimited schemes.
+///
+/// For θ = ½ undamped contacts always grow ([`interface_growth`]), so Ω is omitted.
 pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
     if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
         return 0.0;
@@ -227,23 +209,23 @@ pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64
     (n.stiffness / w).max(n.damping / d).max(phase)
 }
 
-/// Largest Ω of undamped contacts that θ covers: √(24 (θ − ½)) for a body among others.
+/// Returns the largest Ω for θ: √(24 (θ − ½)) among neighbours.
 pub fn largest_phase(theta: f64) -> f64 {
     (24.0 / NEIGHBOURS * (theta - 0.5)).max(0.0).sqrt()
 }
 
-/// θ that covers Ω, with a margin of a tenth, to the next 0.0005.
+/// Returns θ for Ω with a margin of 10 %, rounded up to 0.0005.
 pub fn theta_for(phase: f64) -> f64 {
     0.5 + (1.1 * NEIGHBOURS * phase.powi(2) / 24.0 * 2000.0).ceil() / 2000.0
 }
 
-/// Masses that points of some faces of a free body offer within a window of length `window` [s]: the impulse of a constant
-/// push along the normal over the velocity that the body's step with `theta` gives the point. What it holds against the
-/// push by its stiffness counts, which makes the mass that of a rigid body where waves cross the body many times in a
-/// window, and that of [`point_masses`] in very short ones. `surface` is of that body alone.
+/// Returns the effective nodal masses of a free body within a window of `window` [s].
+///
+/// Impulse of a constant normal force over the computed velocity: rigid-body mass in long windows,
+/// [`point_masses`] in short ones. `surface` is of that body only.
 ///
 /// # Errors
-/// A plastic body, or one whose matrix cannot be factored.
+/// Plastic body, or singular matrix.
 pub fn window_masses(
     body: &fem::Model,
     surface: &SolidSurface,
@@ -265,7 +247,7 @@ pub fn window_masses(
     Ok(masses)
 }
 
-/// The nodal loads of a unit push along the normal at a point of a face, shape `[3·nodes]`.
+/// Nodal loads of a unit normal force, shape `[3·nodes]`.
 fn push(solid: &fem::Model, surface: &SolidSurface, patch: u32, place: [f64; 2]) -> Vec<f64> {
     let normal = surface.normal(patch, place);
     let mut forces = vec![[0.0; 3]; surface.nodes().len()];
@@ -284,8 +266,8 @@ fn push(solid: &fem::Model, surface: &SolidSurface, patch: u32, place: [f64; 2])
     load
 }
 
-/// Solves with the mass matrix, by conjugate gradients preconditioned by its diagonal: the condition does not depend on
-/// the mesh (Wathen, IMA J. Numer. Anal. 7 (1987) 449).
+/// Diagonally preconditioned CG; the condition number is mesh-independent (Wathen, IMA J. Numer. Anal. 7
+/// (1987) 449).
 struct MassSolver<'a> {
     solid: &'a fem::Model,
     inverse: Vec<f64>,
@@ -299,12 +281,12 @@ impl<'a> MassSolver<'a> {
         MassSolver { solid, inverse }
     }
 
-    /// Mass of a point of a face against a push along its normal [kg].
+    /// Effective nodal mass along the normal [kg].
     fn at(&mut self, surface: &SolidSurface, patch: u32, place: [f64; 2]) -> f64 {
         const ACCURACY: f64 = 1e-4;
         let size = self.inverse.len();
         let mut load = push(self.solid, surface, patch, place);
-        // Held dofs take no part: neither their load nor their motion counts.
+        // Constrained dofs neither load nor move.
         for (l, i) in load.iter_mut().zip(&self.inverse) {
             if *i == 0.0 {
                 *l = 0.0;
@@ -348,7 +330,6 @@ mod tests {
     use trackbed_fem::mesh::Mesh;
     use trackbed_fem::{Elastic, ModelInput, Quadrature};
 
-    /// Ground of one material, and its top.
     fn ground(mesh: Mesh) -> (fem::Model, SolidSurface) {
         let solid = fem::Model::new(ModelInput {
             mesh,
@@ -362,15 +343,14 @@ mod tests {
         (solid, surface)
     }
 
-    /// Shares of one element's mass that points of a block's top offer, against the reference study (consistent mass,
-    /// 4 × 4 × 2 elements): mid-face 0.101, mid-edge 0.042, corner 0.018, of points within the block; those at
-    /// its border are lighter.
+    /// Reference study (consistent mass, 4 × 4 × 2 elements, inner points), over the element mass: mid-face
+    /// 0.101, mid-edge 0.042, corner 0.018.
     #[test]
-    fn masses_of_points_are_those_of_the_study() {
+    fn nodal_masses_match_reference_study() {
         let (solid, surface) = ground(Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]));
         let element = 2000.0 / 64.0;
         let mut solver = MassSolver::new(&solid);
-        // The face at the inner side of x = y = 0.5: its first corner is the middle of the top.
+        // Its first corner is the centre of the top.
         let inner = (0..16)
             .find(|&k| {
                 let x = surface.position(surface.face_nodes(k)[0]);
@@ -388,24 +368,20 @@ mod tests {
         }
         let least = point_masses(&solid, &surface, 1, |_| true).unwrap();
         println!("least of the block: {least:?} kg, share of a corner {:.4}", least.corner / element);
-        // The nearer to the border, the lighter: a corner one element away from it has a tenth less than the middle one.
+        // A corner one element from the border has a tenth less.
         let share = least.corner / (found[0] * element);
         assert!(share > 0.85 && share < 1.0 + 1e-9 && least.least() == least.corner, "{share}");
         assert!(least.border < 0.5 * least.corner && least.side > least.corner);
         assert!(point_masses(&solid, &surface, 2, |_| true).is_none());
         assert!(point_masses(&solid, &surface, 1, |_| false).is_none());
-        // Spread over a disc, a corner of the inside offers more.
         let faces = surface.faces().to_vec();
         let wide = SolidSurface::new(solid.mesh(), faces).spread_over(0.2);
         assert!(solver.at(&wide, inner, [-1.0, -1.0]) > 3.0 * found[0] * element);
     }
 
-    /// A strip of thin elements sets the least mass only where stones come to it: without it the points of the others are as heavy
-    /// as their width says.
     #[test]
-    fn faces_out_of_reach_do_not_count() {
+    fn ignores_unreachable_faces() {
         let mut mesh = Mesh::block([6, 4, 2], [1.2, 0.8, 0.4]);
-        // Elements of 0.2 m, those beyond x = 0.8 of 0.05 m.
         for x in &mut mesh.coordinates {
             x[0] = if x[0] > 0.8 { 0.8 + 0.25 * (x[0] - 0.8) } else { x[0] };
         }

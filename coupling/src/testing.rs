@@ -1,5 +1,5 @@
-//! Random numbers for tests: PCG64 (XSL-RR 128/64; O'Neill 2014), the generator behind NumPy's `default_rng`, so
-//! that the reference studies' own random elements can be drawn again.
+//! Random numbers for tests: PCG64 (XSL-RR 128/64; O'Neill 2014), as NumPy's `default_rng`, to repeat
+//! reference studies.
 
 pub struct Random {
     state: u128,
@@ -7,14 +7,13 @@ pub struct Random {
 }
 
 impl Random {
-    /// A generator of its own for each seed.
     pub fn new(seed: u64) -> Random {
         let mut random = Random { state: 0, increment: (u128::from(seed) << 1) | 1 };
         random.next();
         random
     }
 
-    /// NumPy's `default_rng(3)`, which the reference study of the inverse map used.
+    /// NumPy's `default_rng(3)`, from the reference study of the inverse map.
     pub fn numpy_seed_3() -> Random {
         Random {
             state: 323_726_261_719_206_589_602_543_583_274_561_722_519,

@@ -1,12 +1,6 @@
-//! Contact forces become nodal loads: Fᵢ = Nᵢ(ξ, η) F (S2 eq. 19), with the shape functions of the touched
-//! face at the mapped contact point.
+//! Consistent nodal loads of contact forces, audited at every sub-step.
 //!
-//! On a face the functions of the element's other nodes vanish, so this *is* the formula of the element, whatever its kind.
-//! Σ Nᵢ = 1 keeps the force exactly; Σ Nᵢ xᵢ = x(ξ, η) keeps the moment exactly about the mapped point, which is
-//! where the contact force acts on both partners (seed correction F5). Both sums are formed from the nodal
-//! loads and compared with the contact forces at every exchange.
-//!
-//! Theory manual: equation (5.2) of `docs/theory/coupling.md`.
+//! Fᵢ = Nᵢ(ξ, η) F: RailwayFEM-DEM manual (2015), eq. 19; Theory manual: eq. (5.2).
 
 use crate::face::{self, cross};
 use crate::surface::SolidSurface;
@@ -15,31 +9,30 @@ use trackbed_dem::sheet::couple_at_corners;
 use trackbed_dem::surface::SurfaceContact;
 use trackbed_fem::mesh::Face;
 
-/// Largest deviation between nodal loads and contact forces over all exchanges so far.
+/// Largest transfer errors so far.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct TransferAudit {
-    /// Exchanges with at least one contact.
+    /// Sub-steps with contacts.
     pub exchanges: u64,
     /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
     pub force: f64,
-    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| about the origin of coordinates, over Σ R |contact force| with the
-    /// distance R of the touched face's farthest node from there.
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ R |contact force|, R the farthest node's
+    /// distance from the origin.
     pub moment: f64,
 }
 
-/// Gathers the contact impulses of one window at the nodes of the surface.
+/// Contact impulses of one window at the surface nodes.
 pub struct Transfer {
-    /// Impulse at each surface node [N s]. Shape `[surface nodes]`.
+    /// Nodal impulse [N s]. Shape `[surface nodes]`.
     impulse: Vec<[f64; 3]>,
-    /// The part of it that dashpots made, and of that what they made in the first sub-step [N s].
+    /// Dashpot part, total and in the first sub-step [N s].
     drag: Vec<[f64; 3]>,
     first_drag: Vec<[f64; 3]>,
-    /// Sub-steps of this window so far.
     steps: u32,
-    /// Load at each surface node in the present sub-step [N], zero outside `loaded`.
+    /// Load in this sub-step [N], zero outside `loaded`.
     load: Vec<[f64; 3]>,
     loaded: Vec<u32>,
-    /// Contact impulse on each face [N s]. Shape `[faces]`.
+    /// Contact impulse per face [N s]. Shape `[faces]`.
     face_impulse: Vec<[f64; 3]>,
 }
 
@@ -58,7 +51,7 @@ impl Transfer {
         }
     }
 
-    /// Forgets the impulses of the last window.
+    /// Resets the impulses.
     pub fn begin_window(&mut self) {
         self.impulse.fill([0.0; 3]);
         self.drag.fill([0.0; 3]);
@@ -67,7 +60,7 @@ impl Transfer {
         self.face_impulse.fill([0.0; 3]);
     }
 
-    /// Adds the forces of one sub-step of duration `dt` [s] and audits their sums.
+    /// Adds the forces of a sub-step of `dt` [s].
     pub fn add(
         &mut self,
         surface: &SolidSurface,
@@ -108,7 +101,6 @@ impl Transfer {
             force_scale += norm(contact.force);
             moment_scale += surface.reach(contact.patch) * norm(contact.force);
         }
-        // The nodal loads' own sums, independent of how they came about.
         for &node in &self.loaded {
             let load = std::mem::take(&mut self.load[node as usize]);
             let x = surface.position(node);
@@ -130,7 +122,7 @@ impl Transfer {
         }
     }
 
-    /// Adds the moment of a contact with a triangle as forces at its corners, whose sum is zero.
+    /// Adds the couple of a triangle contact as corner forces.
     fn add_couple(&mut self, surface: &SolidSurface, contact: &SurfaceContact) {
         let nodes = surface.face_nodes(contact.patch);
         let corners = [0, 1, 2].map(|k| surface.position(nodes[k]));
@@ -143,12 +135,12 @@ impl Transfer {
         }
     }
 
-    /// Contact impulse of the window on the whole surface [N s].
+    /// Contact impulse of the window [N s].
     pub fn total_impulse(&self) -> [f64; 3] {
         self.impulse_on(0..self.face_impulse.len())
     }
 
-    /// Contact impulse of the window on some faces [N s].
+    /// Contact impulse on `faces` [N s].
     pub fn impulse_on(&self, faces: Range<usize>) -> [f64; 3] {
         let mut total = [0.0; 3];
         for impulse in &self.face_impulse[faces] {
@@ -159,13 +151,12 @@ impl Transfer {
         total
     }
 
-    /// Largest mean pressure on one face of an element over a window of duration `window` [s]: normal force over area [Pa].
-    /// Flat facets of one face, which follow each other, count together.
+    /// Returns the largest normal force over area of one face [Pa] in a window of `window` [s].
     pub fn peak_face_pressure(&self, surface: &SolidSurface, window: f64) -> f64 {
         self.peak_pressure_on(0..self.face_impulse.len(), surface, window)
     }
 
-    /// The same of some faces [Pa].
+    /// The same for `faces` [Pa]; flat facets of one element face count together.
     pub fn peak_pressure_on(&self, faces: Range<usize>, surface: &SolidSurface, window: f64) -> f64 {
         let mut patch = faces.start;
         let mut peak = 0.0_f64;
@@ -185,17 +176,15 @@ impl Transfer {
         peak
     }
 
-    /// Adds the mean nodal load of a window of duration `window` [s] to `load`, shape `[3·nodes]` of the solid.
+    /// Adds the mean nodal load over `window` [s] to `load`, shape `[3·nodes]`.
     pub fn add_mean_load(&self, surface: &SolidSurface, window: f64, load: &mut [f64]) {
         on_solid(surface, &self.impulse, |dof, impulse| load[dof] += impulse / window);
     }
 
-    /// Energy [J] that the dashpots of the window took beyond what they were booked with, as far as the solid's motion goes:
-    /// they knew its surface to move at `rate`, after `last` in the window before, and it moved at `found` in the mean
-    /// [m/s]. All of shape `[3·nodes]` of the solid.
+    /// Returns the interface dashpot error [J]; Theory manual: eq. (5.16).
     ///
-    /// A dashpot is booked with the approach speed extrapolated by half a grain step, which the first sub-step of a window
-    /// does across the surface's change of speed.
+    /// Surface velocity: predicted `rate`, in the previous window `last`, computed mean `found` [m/s]. Shapes
+    /// `[3·nodes]`.
     pub fn dashpot_lag(
         &self,
         surface: &SolidSurface,
@@ -209,9 +198,7 @@ impl Transfer {
         lag
     }
 
-    /// Audits the mean nodal load of a window, shape `[3·nodes]` of the solid, after it was spread: sums of force and
-    /// moment in the mesh's own shape, where the solid's equations have their loads, against those before. Nothing to do
-    /// without a spread.
+    /// Audits a distributed mean load, shape `[3·nodes]`, in the undeformed shape.
     pub fn audit_spread(&self, surface: &SolidSurface, window: f64, load: &[f64], audit: &mut TransferAudit) {
         if surface.spread().is_none() {
             return;
@@ -236,7 +223,7 @@ impl Transfer {
     }
 }
 
-/// Calls `f` with each degree of freedom of the solid and what of `impulse` at the surface's nodes is its.
+/// Calls `f` with each dof of the solid and its impulse.
 fn on_solid(surface: &SolidSurface, impulse: &[[f64; 3]], mut f: impl FnMut(usize, f64)) {
     let nodes = surface.nodes();
     let mut all = |node: u32, impulse: [f64; 3]| {

@@ -1,4 +1,4 @@
-//! A sphere dropped on a plane: heights of its bounces, which fall with the square of the coefficient of restitution.
+//! Bounce heights of a sphere on a plane, which fall with the square of the coefficient of restitution.
 //!
 //! `cargo run --release -p trackbed-dem --example bouncing_sphere`
 

@@ -1,4 +1,4 @@
-//! A thousand spheres that fall into a box and come to rest, with the energy balance at the end.
+//! Deposits a thousand spheres in a box and prints the energy balance.
 //!
 //! `cargo run --release -p trackbed-dem --example heap`
 

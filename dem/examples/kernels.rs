@@ -1,5 +1,4 @@
-//! Writes the text of the kernels that devices are given, for models with each of the laws, into a folder: one file each, for compilers
-//! to look at (`tests/nvrtc_check.py`).
+//! Writes the device kernel sources of models with each law, one file each, for `tests/nvrtc_check.py`.
 //!
 //! `cargo run --release -p trackbed-dem --example kernels -- FOLDER`
 
@@ -45,18 +44,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What the bodies of a model are and meet.
+/// Bodies of a model and their contact partners.
 #[derive(Clone, Copy, PartialEq)]
 enum Scene {
     Spheres,
-    /// Spheres with all that a model of them and planes can have.
+    /// Spheres, with all features supported for spheres and planes.
     All,
-    /// Clumps too, without bonds and with; then walls of triangles too, or periodic borders.
+    /// Clumps; then with bonds, triangle walls or periodic borders.
     Loose,
     Clumps,
     Walls,
     Borders,
-    /// Clumps on a surface whose contacts the processor works out.
+    /// Clumps on a surface with contacts computed on the CPU.
     Ground,
 }
 
@@ -103,7 +102,6 @@ impl Scene {
     }
 }
 
-/// Bonds the first two bodies.
 fn bonded(input: &mut ModelInput) {
     let tension_limit = f64::INFINITY;
     input.bond_kinds = vec![Bond::ContactPoint(ContactPoint {

@@ -1,13 +1,13 @@
-//! Steps of a bed of spheres on several ranks, here threads of one process: time of a step, ghosts, and what ranks send each other.
+//! Times steps of a bed of spheres on several ranks (threads).
 //!
-//!     cargo run --release -p trackbed-dem --example ranks -- RANKS SPHERES_ALONG_X SPHERES_ALONG_Y SPHERES_ALONG_Z [STEPS]
+//! cargo run --release -p trackbed-dem --example ranks -- RANKS NX NY NZ [STEPS]
 
 use std::time::Instant;
 use trackbed_dem::ranks::{Ranks, local, serve};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BackEnd, BodyInput, Material, Model, ModelInput, Plane, Shape, State, TimeStep, Vec3};
 
-/// Spheres of 1 cm that touch their six neighbours, in a box, each with a velocity of its own.
+/// 1 cm spheres in contact on a cubic lattice, with individual velocities.
 fn bed(counts: [usize; 3]) -> ModelInput {
     let stone = Material {
         density: 2600.0,
@@ -59,7 +59,7 @@ fn main() {
             let advance = |ranks: &mut Ranks<_>, state: &mut State| {
                 ranks.step(&model, state, &NoSurface, &[]).expect("a good step");
             };
-            // Lists have settled then.
+            // Warm-up of the lists.
             (0..50).for_each(|_| advance(&mut ranks, &mut state));
             let begun = Instant::now();
             (0..steps).for_each(|_| advance(&mut ranks, &mut state));
@@ -84,7 +84,7 @@ fn main() {
     });
 }
 
-/// On one thread.
+/// Single-threaded.
 fn alone(work: impl FnOnce() + Send) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
     pool.install(work);

@@ -1,13 +1,12 @@
-//! Explicit discrete elements for ballasted track: spheres, rigid clumps, blocks, walls.
+//! Explicit discrete element method for ballasted track: spheres, rigid clumps, blocks, walls.
 //!
-//! A [`Model`] is what a run never changes, a [`State`] all that it changes, a [`Work`] its scratch; [`step()`] advances
-//! the state. SI units throughout.
+//! A [`Model`] is constant in a run, a [`State`] evolves, a [`Work`] is scratch; [`step()`] advances the
+//! state. SI units.
 //!
-//! Folders are layers; each imports from those above it in this list only: `base` (vectors, errors, the ledger), `lanes`
-//! (several numbers at a time), `shape`, `spatial` (trees, cells, surfaces, how two shapes touch), `law` (laws of
-//! contact), `bodies` (arrays of motion), `pairs` (storage of contacts), `contact` (the loops over contacts),
-//! `integrate`, `body_force`, `bond`, `wall`, `engine` (model, state, scratch, search, step), `measure`, `stability` (the step that contacts
-//! allow), `insert`, `device` (steps computed elsewhere), `ranks` (steps computed by several processes).
+//! Modules are layers, which import only from earlier ones: `base`, `lanes` (SIMD), `shape`, `spatial`,
+//! `law`, `bodies`, `pairs` (contact storage), `contact` (contact loops), `integrate`, `body_force`, `bond`,
+//! `wall`, `engine`, `measure`, `stability` (critical time step), `insert`, `device` (GPU), `ranks` (several
+//! processes).
 
 mod base;
 mod bodies;

@@ -1,4 +1,4 @@
-//! What several unit tests are made of.
+//! Models shared by unit tests.
 
 use crate::base::Vec3;
 use crate::engine::input::{ModelInput, TimeStep};
@@ -7,7 +7,7 @@ use crate::shape::Shape;
 use crate::shape::clump::Clump;
 use crate::shape::plane::Plane;
 
-/// A soft material with friction.
+/// Soft frictional material.
 pub(crate) const SOFT: Material = Material {
     density: 2600.0,
     stiffness: 1e5,
@@ -18,7 +18,7 @@ pub(crate) const SOFT: Material = Material {
     ..Material::RIGID
 };
 
-/// Dumbbells (shape 0), spheres (shape 1) and a box (shape 2) of one material, without bodies, at half the limit of the step.
+/// Dumbbells (shape 0), spheres (1) and a box (2), no bodies, at half the critical time step.
 pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {
     let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
     ModelInput {
@@ -29,14 +29,14 @@ pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {
     }
 }
 
-/// A floor at z = 0 and walls at 0 and `side` across `axes`.
+/// Floor at z = 0, and walls at 0 and `side` across `axes`.
 pub(crate) fn shaft(side: f64, axes: &[Vec3]) -> Vec<Plane> {
     let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
     let walls = axes.iter().flat_map(|&d| [wall(Vec3::zeros(), d), wall(d * side, -d)]);
     walls.chain([wall(Vec3::zeros(), Vec3::z())]).collect()
 }
 
-/// A push that differs from body to body, downwards on the whole.
+/// Velocities that differ by body, downwards on average.
 pub(crate) fn push(k: usize) -> Vec3 {
     Vec3::new((k as f64 * 1.7).sin(), (k as f64 * 2.9).cos(), -1.0)
 }

@@ -1,4 +1,4 @@
-//! A steel cantilever under a transverse load at its tip: deflection against Timoshenko's beam.
+//! Cantilever under a transverse tip load: deflection against Timoshenko beam theory.
 //!
 //! `cargo run --release -p trackbed-fem --example cantilever`
 
@@ -17,7 +17,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quadrature = Quadrature::Gauss2;
     let model = Model::new(ModelInput { mesh, materials, quadrature, constraints, ..Default::default() })?;
 
-    // The load as a traction on the faces at the end.
+    // Traction on the end faces.
     let mut load = vec![0.0; model.dof_count()];
     let traction = [0.0, 0.0, -force / (height * width)];
     for face in model.mesh().boundary_faces() {

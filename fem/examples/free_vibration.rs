@@ -1,4 +1,4 @@
-//! A column let go from a stretched state: period and energy of three methods of time integration behind one trait.
+//! Column released from a stretched state: period and energy of three time integrators.
 //!
 //! `cargo run --release -p trackbed-fem --example free_vibration`
 

@@ -1,4 +1,5 @@
-//! Drained triaxial compression of one point: Mohr–Coulomb, cell pressure 100 kPa, strength against its closed form.
+//! Drained triaxial compression of one Mohr–Coulomb point at 100 kPa cell pressure: strength against the
+//! closed form.
 //!
 //! `cargo run --release -p trackbed-fem --example triaxial_point`
 
@@ -14,7 +15,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut state = PointState { stress: [-cell, -cell, -cell, 0.0, 0.0, 0.0], ..PointState::default() };
     for step in 1..=10 {
-        // Axial compression of 0.2 %; Newton finds the radial strain that keeps the cell pressure.
+        // Axial compression of 0.2 %; Newton iteration finds the radial strain at constant cell pressure.
         let mut strain = [0.0, 0.0, -2e-3, 0.0, 0.0, 0.0];
         for _ in 0..60 {
             let mut response = update(&soil, &state, &strain, true)?;

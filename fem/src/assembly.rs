@@ -1,13 +1,9 @@
-//! Assembly of the global stiffness and mass matrices.
+//! Assembles the global stiffness and mass matrices.
 //!
-//! Both matrices are symmetric and share one pattern over node pairs (p, q), q >= p, stored by rows. A stiffness entry
-//! is a 3×3 block; a mass entry is one number, because inertia does not mix directions: the mass takes a ninth of the
-//! memory and of the time. They cover all dofs, so reactions and prescribed values need nothing more. Boundary springs are
-//! added to the stiffness; boundary dashpots D are kept as the few blocks they are. Equation systems `k K + m M + d D` on
-//! the free dofs are written from them straight into the slots of a lower CSC matrix.
+//! Upper halves over node pairs (p, q), q >= p, by rows with one pattern: 3×3 stiffness blocks, scalar
+//! masses, all dofs. Boundary springs are part of the stiffness; dashpots D are stored separately.
 //!
-//! Determinism: element matrices of a chunk of fixed size are computed side by side, then added in element order by one
-//! thread, so the bits do not depend on the number of threads.
+//! Chunks of fixed size are added in element order: results are bitwise independent of the number of threads.
 
 use crate::assumed::modes::{self, HEX8_TERMS};
 use crate::assumed::{AssumedStrain, Dilatation, ElementStrains};
@@ -22,10 +18,10 @@ use crate::supports::{CONSTRAINED, Supports};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Elements computed before they are added; fixed, so that nothing depends on the number of threads.
+/// Fixed chunk size for reproducibility.
 const CHUNK: usize = 128;
 
-/// Stiffness and mass over all dofs: the upper half by node pairs.
+/// Stiffness and mass over all dofs, upper half by node pairs.
 #[derive(Clone, Debug)]
 pub struct Matrices {
     row_start: Vec<usize>,
@@ -35,56 +31,54 @@ pub struct Matrices {
     lumped: Option<Lumped>,
     springs: FaceMatrix,
     dashpots: FaceMatrix,
-    /// Slot of each block of the dashpots, ascending.
+    /// Slot of each dashpot block, ascending.
     dashpot_slots: Vec<usize>,
 }
 
-/// What a diagonal mass matrix needs beside the slots.
 #[derive(Clone, Debug)]
 struct Lumped {
-    /// The diagonal [kg]. Shape `[nodes]`.
+    /// Diagonal [kg]. Shape `[nodes]`.
     diagonal: Vec<f64>,
-    /// `∫ rho N_a dV` [kg]: the shares of a uniform acceleration. Shape `[nodes]`.
+    /// Row sums `∫ rho N_a dV` [kg]. Shape `[nodes]`.
     shares: Vec<f64>,
 }
 
-/// The factors of an equation matrix `stiffness K + mass M + dashpots D`.
+/// Factors of `stiffness K + mass M + dashpots D`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Combination {
-    /// Factor of the stiffness, springs included.
+    /// Stiffness factor, springs included.
     pub stiffness: f64,
-    /// Factor of the mass.
+    /// Mass factor.
     pub mass: f64,
-    /// Factor of the boundary dashpots.
+    /// Dashpot factor.
     pub dashpots: f64,
 }
 
 impl Combination {
-    /// The stiffness alone.
+    /// Stiffness only.
     pub const STIFFNESS: Combination = Combination { stiffness: 1.0, mass: 0.0, dashpots: 0.0 };
 }
 
-/// What the elements have in common: how stiffness and mass are formed.
+/// Common element formulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Formulation {
-    /// Rule of the stiffness.
+    /// Stiffness integration rule.
     pub quadrature: Quadrature,
-    /// Strains that the elements assume.
+    /// Assumed strains.
     pub assumed: AssumedStrain,
     /// Consistent or lumped mass.
     pub mass: Mass,
 }
 
-/// What one element adds.
 struct Contribution {
     /// 3×3 stiffness block and mass of each pair.
     pairs: Vec<([f64; 9], f64)>,
-    /// `∫ rho N_a dV` of each node, where the mass is lumped.
+    /// `∫ rho N_a dV` of each node, if the mass is lumped.
     shares: Vec<f64>,
 }
 
 impl Matrices {
-    /// Assembles stiffness and consistent mass. `material_of` gives the material of an element (by index).
+    /// Assembles stiffness and consistent mass; `material_of` maps element indices.
     pub fn assemble<'m>(
         mesh: &Mesh,
         rule: Quadrature,
@@ -94,8 +88,8 @@ impl Matrices {
         Matrices::assemble_with(mesh, formulation, &[], |e| (material_of(e), false))
     }
 
-    /// Assembles stiffness, mass, and the springs and dashpots of boundary layers, whose faces are faces of elements.
-    /// `material_of` gives the material of an element, and whether it yields.
+    /// Assembles stiffness, mass, and boundary layers; `material_of` returns the material and whether it
+    /// yields.
     pub fn assemble_with<'m>(
         mesh: &Mesh,
         formulation: Formulation,
@@ -133,7 +127,6 @@ impl Matrices {
         matrices
     }
 
-    /// Node pairs that share an element, q >= p, rows and columns ascending.
     fn pattern(mesh: &Mesh) -> Matrices {
         let nodes = mesh.node_count();
         let mut elements_of = vec![Vec::new(); nodes];
@@ -187,38 +180,33 @@ impl Matrices {
         }
     }
 
-    /// Number of nodes.
+    /// Node count.
     pub fn node_count(&self) -> usize {
         self.row_start.len() - 1
     }
 
-    /// Nodes q >= p that share an element with node `p`, ascending, `p` first.
+    /// Nodes q >= p that share an element with node `p`, ascending.
     pub fn row(&self, p: usize) -> &[u32] {
         &self.column[self.row_start[p]..self.row_start[p + 1]]
     }
 
-    /// Slot of the node pair (p, q), p <= q, that share an element.
     pub(crate) fn slot(&self, p: u32, q: u32) -> usize {
         let row = self.row_start[p as usize]..self.row_start[p as usize + 1];
         row.start + self.column[row].partition_point(|&c| c < q)
     }
 
-    /// Slots of the row of node `p`.
     pub(crate) fn slots(&self, p: usize) -> std::ops::Range<usize> {
         self.row_start[p]..self.row_start[p + 1]
     }
 
-    /// First slot of each row, and the number of all.
     pub(crate) fn row_starts(&self) -> &[usize] {
         &self.row_start
     }
 
-    /// Row of a slot.
     pub(crate) fn row_of(&self, slot: usize) -> usize {
         self.row_start.partition_point(|&s| s <= slot) - 1
     }
 
-    /// Stiffness blocks by slots [N/m].
     pub(crate) fn stiffness_blocks(&self) -> &[[f64; 9]] {
         &self.stiffness
     }
@@ -228,12 +216,11 @@ impl Matrices {
         self.dashpot_slots.iter().copied().zip(self.dashpots.entries().map(|(_, block)| block))
     }
 
-    /// Mass entries by slots [kg].
     pub(crate) fn mass_entries(&self) -> &[f64] {
         &self.mass
     }
 
-    /// `y = K x` [N] over all dofs; `x` in m. Shapes `[3 * nodes]`.
+    /// `y = K x` [N]; `x` in m. Shapes `[3 * nodes]`.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
         y.fill([0.0; 3]);
@@ -253,7 +240,7 @@ impl Matrices {
         }
     }
 
-    /// `y = M x` over all dofs: force [N] of an acceleration [m/s²], momentum of a velocity. Shapes `[3 * nodes]`.
+    /// `y = M x`. Shapes `[3 * nodes]`.
     pub fn mass_times(&self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
         if let Some(lumped) = &self.lumped {
@@ -276,7 +263,7 @@ impl Matrices {
         }
     }
 
-    /// `x·K x`, twice the strain energy of a displacement [J]. Half the cost of a product. Shape `[3 * nodes]`.
+    /// `x·K x`, twice the strain energy [J], at half the cost of a product. Shape `[3 * nodes]`.
     pub fn stiffness_form(&self, x: &[f64]) -> f64 {
         self.form(x, |row, columns, x, sum| {
             for (k, &q) in self.stiffness[row].iter().zip(columns) {
@@ -285,7 +272,7 @@ impl Matrices {
         })
     }
 
-    /// `x·M x`, twice the kinetic energy of a velocity [J]. Half the cost of a product. Shape `[3 * nodes]`.
+    /// `x·M x`, twice the kinetic energy [J], at half the cost of a product. Shape `[3 * nodes]`.
     pub fn mass_form(&self, x: &[f64]) -> f64 {
         if let Some(lumped) = &self.lumped {
             let square = |x: &[f64; 3]| x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
@@ -298,8 +285,7 @@ impl Matrices {
         })
     }
 
-    /// Quadratic form of a symmetric matrix from its upper half: each pair p < q counts twice, the diagonal once.
-    /// `add(slots, columns, x, sum)` adds the entries of a range of slots times x.
+    /// Quadratic form from the upper half; `add(slots, columns, x, sum)` adds slot entries times x.
     #[inline]
     fn form(
         &self,
@@ -309,7 +295,6 @@ impl Matrices {
         let x = x.as_chunks::<3>().0;
         let mut total = 0.0;
         for (p, xp) in x.iter().enumerate() {
-            // The diagonal entry is the first of its row.
             let (start, end) = (self.row_start[p], self.row_start[p + 1]);
             let (mut diagonal, mut above) = ([0.0; 3], [0.0; 3]);
             add(start..start + 1, &self.column[start..start + 1], x, &mut diagonal);
@@ -321,12 +306,12 @@ impl Matrices {
         total
     }
 
-    /// Diagonal of the mass matrix by nodes [kg]. Shape `[nodes]`.
+    /// Diagonal of the mass matrix [kg]. Shape `[nodes]`.
     pub fn mass_diagonal(&self) -> Vec<f64> {
         self.row_start[..self.node_count()].iter().map(|&slot| self.mass[slot]).collect()
     }
 
-    /// Columns q >= node and entries [kg] of a row of the mass matrix, the diagonal first.
+    /// Columns and entries [kg] of a mass row, diagonal first.
     pub(crate) fn mass_row(&self, node: usize) -> impl Iterator<Item = (u32, f64)> {
         let row = self.row_start[node]..self.row_start[node + 1];
         let lumped = self.lumped.as_ref().map(|l| l.diagonal[node]);
@@ -337,35 +322,33 @@ impl Matrices {
         })
     }
 
-    /// The diagonal [kg], shape `[nodes]`, when the mass is lumped.
+    /// Diagonal [kg] of a lumped mass. Shape `[nodes]`.
     pub fn lumped_mass(&self) -> Option<&[f64]> {
         self.lumped.as_ref().map(|l| l.diagonal.as_slice())
     }
 
-    /// `∫ rho N_a dV` [kg], shape `[nodes]`, when the mass is lumped; otherwise the row sums of the mass say the same.
+    /// Row sums `∫ rho N_a dV` [kg] of a lumped mass. Shape `[nodes]`.
     pub fn lumped_shares(&self) -> Option<&[f64]> {
         self.lumped.as_ref().map(|l| l.shares.as_slice())
     }
 
-    /// The boundary springs, which are part of the stiffness too.
+    /// Boundary springs, included in the stiffness.
     pub fn springs(&self) -> &FaceMatrix {
         &self.springs
     }
 
-    /// The boundary dashpots.
+    /// Boundary dashpots.
     pub fn dashpots(&self) -> &FaceMatrix {
         &self.dashpots
     }
 
-    /// Visits the lower half of the equation matrix, column by column, rows ascending:
-    /// `visit(column, row, stiffness, mass, dashpots)`, column and row being equation numbers. The diagonal entry comes
-    /// first.
+    /// Visits lower columns, rows ascending: `visit(column, row, stiffness, mass, dashpots)`, equation
+    /// numbers.
     pub(crate) fn visit_free(&self, supports: &Supports, mut visit: impl FnMut(usize, usize, f64, f64, f64)) {
         let index = supports.free_index();
         for (column, &dof) in supports.free().iter().enumerate() {
             let (p, i) = (dof as usize / 3, dof as usize % 3);
             let row = self.row_start[p]..self.row_start[p + 1];
-            // The dashpots of this row follow the slots in the same order.
             let first_dashpot = self.dashpot_slots.partition_point(|&s| s < row.start);
             let mut dashpots = self.dashpot_slots[first_dashpot..].iter().zip(first_dashpot..).peekable();
             for (slot, &q) in row.clone().zip(&self.column[row]) {
@@ -385,14 +368,12 @@ impl Matrices {
     }
 }
 
-/// The slot of the node pair p <= q of one element. The pattern holds every such pair, so the search succeeds.
 #[inline]
 fn slot(row_start: &[usize], column: &[u32], p: u32, q: u32) -> usize {
     let row = row_start[p as usize]..row_start[p as usize + 1];
     row.start + column[row].partition_point(|&c| c < q)
 }
 
-/// `sum += k v` for a row-major 3×3 block.
 #[inline]
 fn add_block(sum: &mut [f64; 3], k: &[f64; 9], v: &[f64; 3]) {
     sum[0] += k[0] * v[0] + k[1] * v[1] + k[2] * v[2];
@@ -400,7 +381,6 @@ fn add_block(sum: &mut [f64; 3], k: &[f64; 9], v: &[f64; 3]) {
     sum[2] += k[6] * v[0] + k[7] * v[1] + k[8] * v[2];
 }
 
-/// `sum += factor v`.
 #[inline]
 fn add_scaled(sum: &mut [f64; 3], factor: f64, v: &[f64; 3]) {
     for k in 0..3 {
@@ -426,7 +406,6 @@ fn contribution(
     }
 }
 
-/// What an element of N nodes adds.
 fn contribution_of<const N: usize>(
     mesh: &Mesh,
     element: usize,
@@ -449,7 +428,7 @@ fn contribution_of<const N: usize>(
         let strains = ElementStrains::new(kind, coordinates, points, assumed, material.poisson, yields);
         blocks_with_modes::<N>(&strains, lambda, mu)
     } else if kind.is_linear() {
-        // B-bar: the deviatoric part at the points, the volume strain as its mean.
+        // B-bar: deviatoric part at the points, volumetric strain as its mean.
         let products = gradient_products::<N>(&coordinates, points);
         let (mean, volume) = mean_gradients(&coordinates, points);
         let bulk = (lambda + 2.0 / 3.0 * mu) * volume;
@@ -474,12 +453,11 @@ fn contribution_of<const N: usize>(
     Contribution { pairs: blocks.into_iter().zip(masses).collect(), shares }
 }
 
-/// The blocks of the pairs a <= b of N nodes, row by row.
 fn upper_blocks<const N: usize>(block: impl Fn(usize, usize) -> [f64; 9]) -> Vec<[f64; 9]> {
     (0..N).flat_map(|a| (a..N).map(move |b| (a, b))).map(|(a, b)| block(a, b)).collect()
 }
 
-/// The same with the incompatible modes eliminated: `K_uu + K_uα A`.
+/// Blocks after elimination of the incompatible modes: `K_uu + K_uα A`.
 fn blocks_with_modes<const N: usize>(strains: &ElementStrains, lambda: f64, mu: f64) -> Vec<[f64; 9]> {
     let products = strains.products::<HEX8_TERMS>();
     upper_blocks::<N>(|a, b| {
@@ -509,7 +487,7 @@ mod tests {
     }
 
     #[test]
-    fn rigid_motions_meet_no_stiffness_and_the_right_inertia() {
+    fn rigid_motions_have_inertia_only() {
         let mut mesh = Mesh::block([2, 2, 1], [2.0, 2.0, 1.0]);
         for c in &mut mesh.coordinates {
             *c = [c[0] + 0.1 * c[1] * c[2], c[1] - 0.1 * c[0], c[2] + 0.05 * c[0] * c[1]];
@@ -541,7 +519,6 @@ mod tests {
         }
     }
 
-    /// The half-stored products and the CSC entries are the same matrix.
     #[test]
     fn products_agree_with_the_equation_matrix() {
         let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
@@ -567,7 +544,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_do_not_depend_on_the_number_of_threads() {
+    fn is_bitwise_independent_of_threads() {
         let mesh = Mesh::block([4, 4, 9], [1.0, 1.0, 2.0]);
         let bits = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

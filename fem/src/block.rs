@@ -1,4 +1,4 @@
-//! Bricks on a grid: the simplest mesh, for templates, tests and measurements.
+//! Structured meshes of bricks.
 
 use crate::element::ElementKind;
 use crate::element::hex20::HEX20_NODES;
@@ -6,9 +6,9 @@ use crate::element::hex20::NATURAL;
 use crate::mesh::Mesh;
 
 impl Mesh {
-    /// A block with one corner at the origin, `counts` elements and `size` [m] along x, y, z, of material 1.
+    /// Block with one corner at the origin, `counts` elements and `size` [m] along x, y, z, of material 1.
     ///
-    /// Nodes are numbered along x, then y, then z; so are elements. A count of 0 gives an empty mesh.
+    /// Numbered along x, then y, then z. A count of 0 gives an empty mesh.
     pub fn block(counts: [usize; 3], size: [f64; 3]) -> Mesh {
         let lines: [Vec<f64>; 3] = std::array::from_fn(|d| {
             (0..=counts[d]).map(|i| size[d] * i as f64 / counts[d].max(1) as f64).collect()
@@ -16,7 +16,7 @@ impl Mesh {
         Mesh::grid(&lines)
     }
 
-    /// A block of 20-node bricks of material 1 between grid planes at ascending coordinates [m] along x, y and z.
+    /// Hex20 block of material 1 between ascending grid planes [m] along x, y, z.
     ///
     /// Numbered as [`Mesh::block`]. Fewer than two planes along an axis give an empty mesh.
     pub fn grid(planes: &[Vec<f64>; 3]) -> Mesh {
@@ -30,7 +30,7 @@ impl Mesh {
             let low = planes[d][i / 2];
             if i.is_multiple_of(2) { low } else { 0.5 * (low + planes[d][i / 2 + 1]) }
         };
-        // On the grid of half elements a node has at most one odd index (a mid-side).
+        // On the half-element grid, a node has at most one odd index (mid-side).
         let mut index = vec![u32::MAX; nx * ny * nz];
         for k in 0..nz {
             for j in 0..ny {
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nodes_of_a_block_are_counted_and_placed() {
+    fn places_nodes_of_block() {
         let mesh = Mesh::block([2, 3, 1], [2.0, 3.0, 0.5]);
         assert_eq!(mesh.element_count(), 6);
         // corners + sides along x, y, z

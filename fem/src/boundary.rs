@@ -1,15 +1,12 @@
-//! Springs and dashpots per area on faces of the body: absorbing boundaries and elastic supports.
+//! Distributed springs and dashpots on faces: absorbing boundaries and elastic supports.
 //!
-//! On each face the boundary pushes back with the traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 -
-//! n n^T)) v`, n being the outward normal. The matrices are consistent, `∫ N_a N_b (…) dA`; the springs join the
-//! stiffness matrix (and with it take part in stiffness-proportional Rayleigh damping), the dashpots the damping matrix.
+//! Traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 - n n^T)) v`, outward normal n;
+//! consistent matrices `∫ N_a N_b (…) dA`. Springs join the stiffness (also in Rayleigh damping).
 //!
-//! With `c_n = rho c_p`, `c_t = rho c_s` a plane wave that meets the boundary at a right angle leaves without reflection.
-//! Source: Lysmer and Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877. A dashpot has no static stiffness, so a body on
-//! dashpots alone drifts; springs of the order G/R restore it: for a wave from a source at the distance R the outer medium
-//! acts like dashpots with springs beside them. Source: Deeks and Randolph, J. Eng. Mech. 120 (1994) 25-42
-//! (axisymmetric); Liu, Du, Du, Wang and Wu, Earthq. Eng. Eng. Vib. 5 (2006) 93-102 (three dimensions). Limits:
-//! oblique waves and surface waves are absorbed in part only; the normals are those of the undeformed body.
+//! `c_n = rho c_p`, `c_t = rho c_s` absorb plane waves at normal incidence (Lysmer and Kuhlemeyer 1969).
+//! Springs of order G/R, R being the source distance, prevent static drift (Deeks and Randolph 1994,
+//! axisymmetric; Liu and others 2006, three dimensions). Limits: oblique and surface waves are partly
+//! reflected; normals are undeformed.
 //!
 //! Theory manual: equation (4.17) of `docs/theory/solid.md`.
 
@@ -18,41 +15,41 @@ use crate::material::elastic::Elastic;
 use crate::mesh::{Face, Mesh};
 use std::collections::BTreeMap;
 
-/// Springs and dashpots on some faces of the body.
+/// Springs and dashpots on faces of the body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoundaryLayer {
-    /// The faces; each must lie on the boundary of the mesh, and once.
+    /// Boundary faces, each once.
     pub faces: Vec<Face>,
-    /// Dashpot along the normal [Pa s/m], 0 or above.
+    /// Normal dashpot [Pa s/m], 0 or above.
     pub dashpot_normal: f64,
-    /// Dashpot in the plane of the face [Pa s/m], 0 or above.
+    /// Tangential dashpot [Pa s/m], 0 or above.
     pub dashpot_tangential: f64,
-    /// Spring along the normal [Pa/m], 0 or above.
+    /// Normal spring [Pa/m], 0 or above.
     pub spring_normal: f64,
-    /// Spring in the plane of the face [Pa/m], 0 or above.
+    /// Tangential spring [Pa/m], 0 or above.
     pub spring_tangential: f64,
 }
 
-/// Factors of `G/R` for the normal and the tangential spring of [`BoundaryLayer::viscous_spring`].
+/// Factors of `G/R` in [`BoundaryLayer::viscous_spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringFactors {
-    /// Factor of the normal spring [-].
+    /// Normal factor [-].
     pub normal: f64,
-    /// Factor of the tangential spring [-].
+    /// Tangential factor [-].
     pub tangential: f64,
 }
 
 impl SpringFactors {
-    /// For bodies of three dimensions with loads on the surface: 4/3 and 2/3 (Liu and others 2006).
+    /// Three-dimensional bodies with surface loads (Liu and others 2006).
     pub const SPATIAL: SpringFactors = SpringFactors { normal: 4.0 / 3.0, tangential: 2.0 / 3.0 };
-    /// Exact for the static field around an expanding (u ~ 1/r², `t = 4 G u/R`) or twisted sphere (`t = 3 G u/R`).
+    /// Exact for an expanding (u ~ 1/r², `t = 4 G u/R`) or twisted sphere (`t = 3 G u/R`).
     pub const SPHERE: SpringFactors = SpringFactors { normal: 4.0, tangential: 3.0 };
-    /// Exact for the static field around an expanding or twisted cylinder in plane strain (u ~ 1/r, `t = 2 G u/R`).
+    /// Exact for an expanding or twisted cylinder in plane strain (u ~ 1/r, `t = 2 G u/R`).
     pub const CYLINDER: SpringFactors = SpringFactors { normal: 2.0, tangential: 2.0 };
 }
 
 impl BoundaryLayer {
-    /// Dashpots that let plane waves of a medium out: `rho c_p` and `rho c_s` (Lysmer and Kuhlemeyer 1969).
+    /// Absorbing dashpots `rho c_p` and `rho c_s` (Lysmer and Kuhlemeyer 1969).
     pub fn absorbing(faces: Vec<Face>, medium: &Elastic) -> BoundaryLayer {
         let (lambda, mu) = medium.lame();
         BoundaryLayer {
@@ -63,8 +60,7 @@ impl BoundaryLayer {
         }
     }
 
-    /// Absorbing dashpots with the springs `factor G/R` of a medium that goes on outside, `distance` R [m] being that
-    /// from the source of the waves to the boundary.
+    /// Absorbing dashpots with springs `factor G/R`; `distance` R [m] from wave source to boundary.
     pub fn viscous_spring(
         faces: Vec<Face>,
         medium: &Elastic,
@@ -79,13 +75,13 @@ impl BoundaryLayer {
         }
     }
 
-    /// Springs alone, per area [Pa/m].
+    /// Springs only, per area [Pa/m].
     pub fn springs(faces: Vec<Face>, normal: f64, tangential: f64) -> BoundaryLayer {
         BoundaryLayer { faces, spring_normal: normal, spring_tangential: tangential, ..Default::default() }
     }
 }
 
-/// Checks the constants and that the faces are on the boundary of the mesh, each at most once in a layer.
+/// Checks constants and faces of the layers.
 ///
 /// # Errors
 /// [`ModelError::BoundaryConstant`] or [`ModelError::BoundaryFace`].
@@ -121,7 +117,7 @@ pub(crate) fn check(mesh: &Mesh, layers: &[BoundaryLayer]) -> Result<(), ModelEr
     Ok(())
 }
 
-/// A symmetric matrix of 3×3 blocks over the node pairs of some faces; upper half, pairs ascending.
+/// Symmetric 3×3 blocks over node pairs of faces; upper half, ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaceMatrix {
     pairs: Vec<[u32; 2]>,
@@ -129,17 +125,16 @@ pub struct FaceMatrix {
 }
 
 impl FaceMatrix {
-    /// The consistent matrix of the springs [N/m].
+    /// Consistent spring matrix [N/m].
     pub fn springs(mesh: &Mesh, layers: &[BoundaryLayer]) -> FaceMatrix {
         FaceMatrix::assemble(mesh, layers, |l| [l.spring_normal, l.spring_tangential])
     }
 
-    /// The consistent matrix of the dashpots [N s/m].
+    /// Consistent dashpot matrix [N s/m].
     pub fn dashpots(mesh: &Mesh, layers: &[BoundaryLayer]) -> FaceMatrix {
         FaceMatrix::assemble(mesh, layers, |l| [l.dashpot_normal, l.dashpot_tangential])
     }
 
-    /// `constants` gives the normal and the tangential constant of a layer.
     fn assemble(
         mesh: &Mesh,
         layers: &[BoundaryLayer],
@@ -176,17 +171,16 @@ impl FaceMatrix {
         FaceMatrix { pairs: sums.keys().copied().collect(), blocks: sums.into_values().collect() }
     }
 
-    /// Whether there is nothing.
+    /// Whether the matrix has no entries.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Node pairs p <= q, ascending, with their 3×3 blocks (row-major; rows of p, columns of q).
+    /// Node pairs p <= q, ascending, with row-major 3×3 blocks (rows of p).
     pub fn entries(&self) -> impl Iterator<Item = ([u32; 2], &[f64; 9])> {
         self.pairs.iter().copied().zip(&self.blocks)
     }
 
-    /// The block of entry `index` in the order of [`FaceMatrix::entries`].
     #[inline]
     pub(crate) fn block(&self, index: usize) -> &[f64; 9] {
         &self.blocks[index]
@@ -223,18 +217,18 @@ impl FaceMatrix {
     }
 }
 
-/// A direction in which springs hold a point of the body; for the check that a body is held.
+/// Direction in which springs constrain a point.
 #[derive(Clone, Copy, Debug)]
 pub struct SpringPoint {
-    /// A node (index) of the same body.
+    /// Node index of the same body.
     pub node: usize,
-    /// The point [m].
+    /// Point [m].
     pub point: [f64; 3],
-    /// The direction, a unit vector.
+    /// Unit vector.
     pub direction: [f64; 3],
 }
 
-/// The directions in which the springs of the layers hold the body, at the integration points of their faces.
+/// Constrained directions at the integration points of the spring faces.
 pub fn spring_points(mesh: &Mesh, layers: &[BoundaryLayer]) -> Vec<SpringPoint> {
     let mut points = Vec::new();
     for layer in layers {
@@ -246,7 +240,7 @@ pub fn spring_points(mesh: &Mesh, layers: &[BoundaryLayer]) -> Vec<SpringPoint> 
                     points.push(SpringPoint { node, point, direction: n });
                 }
                 if layer.spring_tangential > 0.0 {
-                    // Any two directions across the normal do; the axis farthest from the normal gives them.
+                    // The axis farthest from the normal defines a tangential pair.
                     let axis = (0..3).fold(0, |k, i| if n[i].abs() < n[k].abs() { i } else { k });
                     let mut e = [0.0; 3];
                     e[axis] = 1.0;
@@ -262,7 +256,7 @@ pub fn spring_points(mesh: &Mesh, layers: &[BoundaryLayer]) -> Vec<SpringPoint> 
     points
 }
 
-/// The outward unit normal and the area per natural area [m²] at a point of a face.
+/// Outward unit normal and area per natural area [m²].
 fn unit_normal(mesh: &Mesh, face: &Face, xi: [f64; 2]) -> ([f64; 3], f64) {
     let (_, area) = face.point_and_area(mesh, xi);
     let size = area.iter().map(|a| a * a).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! Tests of the boundary layers: matrices against closed forms, refusals, and the held check.
+//! Tests of boundary layers: closed-form matrices, rejected input, rigid-body check.
 
 use super::*;
 use crate::mesh::Constraint;
@@ -8,9 +8,8 @@ fn faces(mesh: &Mesh, side: u8) -> Vec<Face> {
     mesh.boundary_faces().into_iter().filter(|f| f.side == side).collect()
 }
 
-/// A rigid translation meets area times constant; a turn about the normal meets the polar moment of the face.
 #[test]
-fn rigid_motions_of_a_flat_face_meet_area_and_polar_moment() {
+fn rigid_face_motions_match_area_moments() {
     let mesh = Mesh::block([2, 3, 1], [2.0, 3.0, 1.0]);
     let layer = BoundaryLayer { spring_normal: 7.0, spring_tangential: 5.0, ..Default::default() };
     let layer = BoundaryLayer { faces: faces(&mesh, 5), ..layer };
@@ -28,12 +27,12 @@ fn rigid_motions_of_a_flat_face_meet_area_and_polar_moment() {
     assert!((form(&|_| [0.6, 0.8, 0.0]) - 5.0 * 6.0).abs() < 1e-12);
     // ∫ x² + y² over 2 × 3 = 2³·3/3 + 2·3³/3.
     assert!((form(&|x| [-x[1], x[0], 0.0]) - 5.0 * 26.0).abs() < 1e-11);
-    // Tilting about the y axis: ∫ x².
+    // Rotation about y: ∫ x².
     assert!((form(&|x| [0.0, 0.0, x[0]]) - 7.0 * 8.0).abs() < 1e-11);
 }
 
 #[test]
-fn springs_hold_what_they_touch_and_dashpots_do_not() {
+fn springs_constrain_but_dashpots_do_not() {
     let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
     let free = |constraints: &[Constraint], layers: &[BoundaryLayer]| {
         let supports = Supports::new(&mesh, constraints).unwrap();
@@ -41,7 +40,7 @@ fn springs_hold_what_they_touch_and_dashpots_do_not() {
     };
     let base = faces(&mesh, 0);
     assert_eq!(free(&[], &[BoundaryLayer::springs(base.clone(), 1.0, 1e-3)]), None);
-    // Normal springs under a flat base leave two slides and a turn; a wall in front leaves the sideways slide.
+    // Normal springs leave two slides and a rotation; a front wall leaves sideways sliding.
     assert!(free(&[], &[BoundaryLayer::springs(base.clone(), 1.0, 0.0)]).is_some());
     let wall = |side| BoundaryLayer::springs(faces(&mesh, side), 1.0, 0.0);
     assert_eq!(free(&[], &[wall(0), wall(4)]).unwrap().1, 1);
@@ -72,7 +71,7 @@ fn bad_layers_are_named() {
 }
 
 #[test]
-fn constants_of_an_absorbing_boundary_are_the_wave_impedances() {
+fn absorbing_constants_are_wave_impedances() {
     let soil = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
     let layer = BoundaryLayer::viscous_spring(Vec::new(), &soil, 4.0, SpringFactors::SPATIAL);
     assert!((layer.dashpot_normal / (2000.0 * soil.compression_wave_speed()) - 1.0).abs() < 1e-14);

@@ -1,15 +1,12 @@
-//! Which nodes each element has: kinds of elements and their node indices, one after the other.
+//! Kinds and node indices of the elements.
 
 use crate::element::ElementKind;
 use std::ops::{Index, IndexMut};
 
-/// The elements of a mesh: kind and nodes of each, in the node order of its kind.
-///
-/// `connectivity[e]` is the slice of node indices (0-based) of element `e`.
+/// Kind and 0-based node indices of each element.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Connectivity {
     kinds: Vec<ElementKind>,
-    /// End of each element in `nodes`.
     ends: Vec<u32>,
     nodes: Vec<u32>,
 }
@@ -20,7 +17,7 @@ impl Connectivity {
         self.kinds.len()
     }
 
-    /// Whether there is no element.
+    /// Whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.kinds.is_empty()
     }
@@ -28,7 +25,7 @@ impl Connectivity {
     /// Adds an element.
     ///
     /// # Panics
-    /// When the number of nodes is not that of the kind.
+    /// If the number of nodes does not match the kind.
     pub fn push(&mut self, kind: ElementKind, nodes: &[u32]) {
         assert_eq!(nodes.len(), kind.node_count(), "nodes of a {}", kind.name());
         self.kinds.push(kind);
@@ -36,7 +33,7 @@ impl Connectivity {
         self.ends.push(self.nodes.len() as u32);
     }
 
-    /// Kind of element `element` (index).
+    /// Kind of an element (index).
     #[inline]
     pub fn kind(&self, element: usize) -> ElementKind {
         self.kinds[element]
@@ -47,17 +44,17 @@ impl Connectivity {
         &self.kinds
     }
 
-    /// Node indices of all elements, one after the other.
+    /// Node indices, concatenated.
     pub fn nodes(&self) -> &[u32] {
         &self.nodes
     }
 
-    /// The same, to renumber them.
+    /// Mutable node indices, for renumbering.
     pub fn nodes_mut(&mut self) -> &mut [u32] {
         &mut self.nodes
     }
 
-    /// Node indices element by element.
+    /// Iterates over the node indices by element.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         (0..self.len()).map(|e| &self[e])
     }
@@ -91,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn elements_of_different_kinds_lie_one_after_the_other() {
+    fn stores_mixed_kinds_in_order() {
         let mut c = Connectivity::default();
         c.push(ElementKind::Tet4, &[3, 1, 4, 0]);
         c.push(ElementKind::Hex8, &[0, 1, 2, 3, 4, 5, 6, 7]);

@@ -1,59 +1,58 @@
-//! Rayleigh damping: `C = alpha_m M + beta_k K`; boundary dashpots ([`crate::boundary`]) come on top of it.
+//! Rayleigh damping `C = alpha_m M + beta_k K`, without boundary dashpots.
 //!
-//! The damping ratio at the circular frequency w is `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien, Dynamics of
-//! Structures (1993), section 12-5). Two frequencies with their ratios fix the two constants. Limits: the part
-//! `alpha_m M` also brakes rigid motion, so it drags a body that settles or falls.
+//! Damping ratio `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien 1993, section 12-5). Limits:
+//! `alpha_m M` also damps rigid motion.
 //!
 //! Theory manual: equation (4.9) of `docs/theory/solid.md`.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The two constants of Rayleigh damping.
+/// Rayleigh constants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rayleigh {
-    /// Factor of the mass matrix [1/s], 0 or above.
+    /// Mass factor [1/s], 0 or above.
     pub alpha_m: f64,
-    /// Factor of the stiffness matrix [s], 0 or above.
+    /// Stiffness factor [s], 0 or above.
     pub beta_k: f64,
 }
 
-/// Frequencies or ratios that no pair of non-negative constants meets.
+/// Frequencies or ratios without non-negative constants.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum DampingError {
-    /// A frequency is not above 0, a ratio is below 0, or the frequencies are equal.
+    /// Frequency not above 0, ratio below 0, or equal frequencies.
     #[error(
         "damping needs two different frequencies above 0 and ratios of 0 or above, found {frequencies:?} Hz with \
          ratios {ratios:?}"
     )]
     Range {
-        /// The frequencies [Hz].
+        /// Frequencies [Hz].
         frequencies: [f64; 2],
-        /// The damping ratios [-].
+        /// Damping ratios [-].
         ratios: [f64; 2],
     },
-    /// The ratios differ so much that a constant would be negative, which feeds energy in.
+    /// Ratios that need a negative constant, which would add energy.
     #[error(
         "ratios {ratios:?} at {frequencies:?} Hz ask for a negative damping constant (alpha_m = {alpha_m} 1/s, \
          beta_k = {beta_k} s)"
     )]
     Negative {
-        /// The frequencies [Hz].
+        /// Frequencies [Hz].
         frequencies: [f64; 2],
-        /// The damping ratios [-].
+        /// Damping ratios [-].
         ratios: [f64; 2],
-        /// The constant that came out [1/s].
+        /// Computed constant [1/s].
         alpha_m: f64,
-        /// The constant that came out [s].
+        /// Computed constant [s].
         beta_k: f64,
     },
 }
 
 impl Rayleigh {
-    /// The constants that give `ratios` [-] at two `frequencies` [Hz].
+    /// Computes the constants from `ratios` [-] at two `frequencies` [Hz].
     ///
     /// # Errors
-    /// When the input is out of range, or when one of the constants would be negative.
+    /// Input out of range, or a negative constant.
     pub fn from_frequencies(frequencies: [f64; 2], ratios: [f64; 2]) -> Result<Rayleigh, DampingError> {
         let usable = frequencies.iter().all(|f| *f > 0.0 && f.is_finite())
             && ratios.iter().all(|z| *z >= 0.0 && z.is_finite())

@@ -1,9 +1,7 @@
-//! Energies, momenta, support reactions and their sums.
+//! Energies, momenta and support reactions.
 //!
-//! Kinetic energy `v·M v/2`, strain energy `u·K u/2` with that of the boundary springs in it. Linear momentum is the sum of
-//! `M v`; angular momentum is `sum x_a × (M v)_a`, exact for the isoparametric element with its consistent mass. It is
-//! taken with the undeformed positions: the linear theory conserves that one, because its stiffness resists no
-//! infinitesimal rotation of the undeformed body. Limits: small displacement, for moments too.
+//! Angular momentum `sum x_a × (M v)_a` uses undeformed positions, for which linear theory conserves it.
+//! Limits: small displacements.
 //!
 //! Theory manual: equation (4.2) of `docs/theory/solid.md`.
 
@@ -20,8 +18,7 @@ pub fn kinetic(model: &Model, state: &State) -> f64 {
     0.5 * model.matrices().mass_form(&state.v)
 }
 
-/// Elastic strain energy [J], that of the boundary springs included: of the stresses where the state has them, else of
-/// the displacement.
+/// Elastic strain energy [J] with boundary springs, from stresses if present.
 pub fn strain(model: &Model, state: &State) -> f64 {
     if state.points.is_empty() {
         0.5 * model.matrices().stiffness_form(&state.u)
@@ -30,7 +27,8 @@ pub fn strain(model: &Model, state: &State) -> f64 {
     }
 }
 
-/// Elastic energy of the Gauss points, the integral of [`ConstitutiveLaw::stored_energy`](crate::ConstitutiveLaw::stored_energy) [J].
+/// Elastic energy of the Gauss points [J], integral of
+/// [`ConstitutiveLaw::stored_energy`](crate::ConstitutiveLaw::stored_energy).
 pub fn of_points(model: &Model, points: &Points) -> f64 {
     let mesh = model.mesh();
     let mut total = 0.0;
@@ -45,8 +43,7 @@ pub fn of_points(model: &Model, points: &Points) -> f64 {
     total
 }
 
-/// Forces of the stresses at the Gauss points, `∫ B̄^T s dV` [N], with the strains that the elements assume. Shape
-/// `[3 * nodes]`.
+/// Internal force `∫ B̄^T s dV` [N] with assumed strains. Shape `[3 * nodes]`.
 pub fn force_of_points(model: &Model, points: &[PointState]) -> Vec<f64> {
     let mesh = model.mesh();
     let mut force = vec![0.0; model.dof_count()];
@@ -78,7 +75,7 @@ pub fn force_of_points(model: &Model, points: &[PointState]) -> Vec<f64> {
     force
 }
 
-/// Energy of the boundary springs alone [J]; a part of [`strain`].
+/// Energy of the boundary springs [J], included in [`strain`].
 pub fn boundary_springs(model: &Model, state: &State) -> f64 {
     0.5 * model.matrices().springs().form(&state.u)
 }
@@ -91,17 +88,14 @@ pub fn momentum(model: &Model, state: &State) -> ([f64; 3], [f64; 3]) {
     (sum.force, sum.moment)
 }
 
-/// Forces of the supports on the moving body [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere; with the
-/// forces of the stresses in place of `K u` where the state has them. Shape `[3 * nodes]`.
+/// Support reactions [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere. Shape `[3 * nodes]`.
 ///
-/// Exact for states that [`crate::newmark`] left with its own methods; a window step has
-/// [`crate::theta::ThetaSolver::mean_reactions`].
+/// Stresses replace `K u` if present. For window steps see [`crate::theta::ThetaSolver::mean_reactions`].
 pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     let n = model.dof_count();
     let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);
     inner_force(model, [&state.u, &state.v, &state.a], &mut inner, &mut scratch);
     if !state.points.is_empty() {
-        // The stresses in place of what the elastic matrix makes of the displacement; springs are in both.
         model.stiffness_times(&state.u, &mut scratch[..n]);
         let mut stresses = force_of_points(model, &state.points);
         model.boundary_spring_times(&state.u, &mut stresses);
@@ -110,7 +104,6 @@ pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     at_supports(model, &inner, load)
 }
 
-/// `force - load` at constrained dofs, 0 elsewhere [N]. Shapes `[3 * nodes]`.
 pub(crate) fn at_supports(model: &Model, force: &[f64], load: &[f64]) -> Vec<f64> {
     let mut reactions = vec![0.0; force.len()];
     for &(dof, _) in model.supports().fixed() {
@@ -119,8 +112,8 @@ pub(crate) fn at_supports(model: &Model, force: &[f64], load: &[f64]) -> Vec<f64
     reactions
 }
 
-/// Forces of the boundary springs and dashpots on the body [N], `-(K_s (u + beta_k v) + D v)`: Rayleigh damping takes the
-/// springs for a part of the stiffness. Shape `[3 * nodes]`.
+/// Forces of boundary springs and dashpots on the body [N], `-(K_s (u + beta_k v) + D v)`. Shape
+/// `[3 * nodes]`.
 pub fn boundary_forces(model: &Model, state: &State) -> Vec<f64> {
     let mut forces = vec![0.0; model.dof_count()];
     let beta = model.rayleigh().beta_k;
@@ -131,16 +124,16 @@ pub fn boundary_forces(model: &Model, state: &State) -> Vec<f64> {
     forces
 }
 
-/// Force and moment of nodal forces.
+/// Resultant of nodal forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resultant {
-    /// Sum of the forces [N].
+    /// Force [N].
     pub force: [f64; 3],
-    /// Moment about the origin [N m], with the undeformed positions.
+    /// Moment about the origin [N m], undeformed positions.
     pub moment: [f64; 3],
 }
 
-/// Some dofs under a name, such as the supports of one side.
+/// Named set of dofs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DofSet {
     /// Name.
@@ -149,22 +142,22 @@ pub struct DofSet {
     pub dofs: Vec<u32>,
 }
 
-/// Force and moment of nodal forces [N], shape `[3 * nodes]`.
+/// Resultant of nodal forces [N], shape `[3 * nodes]`.
 pub fn resultant(mesh: &Mesh, forces: &[f64]) -> Resultant {
     sum(mesh, (0..forces.len()).map(|d| (d, forces[d])))
 }
 
-/// Force and moment of those nodal forces [N], shape `[3 * nodes]`, that act at the dofs of a set.
+/// Resultant on a set of dofs [N]. Shape `[3 * nodes]`.
 pub fn resultant_of(mesh: &Mesh, forces: &[f64], set: &DofSet) -> Resultant {
     sum(mesh, set.dofs.iter().map(|&d| (d as usize, forces[d as usize])))
 }
 
-/// Sum of the reactions of all supports, as [`reactions`] gives them.
+/// Sum of all [`reactions`].
 pub fn reaction_sum(model: &Model, state: &State, load: &[f64]) -> Resultant {
     resultant(model.mesh(), &reactions(model, state, load))
 }
 
-/// Sums of the reactions by set, in the order of the sets.
+/// Sum of the reactions of each set.
 pub fn reaction_sums(model: &Model, state: &State, load: &[f64], sets: &[DofSet]) -> Vec<Resultant> {
     let reactions = reactions(model, state, load);
     sets.iter().map(|set| resultant_of(model.mesh(), &reactions, set)).collect()
@@ -174,7 +167,7 @@ fn sum(mesh: &Mesh, forces: impl Iterator<Item = (usize, f64)>) -> Resultant {
     let mut total = Resultant::default();
     for (dof, force) in forces {
         let (x, k) = (mesh.coordinates[dof / 3], dof % 3);
-        // e_k f at x has the moment x × e_k f: along i = k+1 the lever is x[j], along j = k+2 it is -x[i].
+        // Moment x × e_k f: lever x[j] about i = k+1, -x[i] about j = k+2.
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         total.force[k] += force;
         total.moment[i] += x[j] * force;
@@ -183,7 +176,7 @@ fn sum(mesh: &Mesh, forces: impl Iterator<Item = (usize, f64)>) -> Resultant {
     total
 }
 
-/// `M a + C v + K u` of a motion `[u, v, a]`, with all the damping. Shapes `[3 * nodes]`; scratch is twice as long.
+/// `M a + C v + K u` of a motion `[u, v, a]`. Shapes `[3 * nodes]`; scratch twice as long.
 pub(crate) fn inner_force(model: &Model, motion: [&[f64]; 3], force: &mut [f64], scratch: &mut [f64]) {
     let (c, [u, v, a]) = (model.rayleigh(), motion);
     let (mixed, inertia) = scratch.split_at_mut(u.len());

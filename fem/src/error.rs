@@ -1,11 +1,11 @@
-//! What can go wrong: the checks of a model, the choice of a method, the solution of the equations.
+//! Errors of models, methods and solvers.
 
 use crate::material::Region;
 use crate::solver::AnalysisError;
 use crate::solver::conjugate::Stopped;
 use thiserror::Error;
 
-/// Why a model cannot be built. Numbers of nodes and elements are those of the user's files.
+/// Model errors; numbers as in the input files.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs, reason = "the messages are the documentation")]
 pub enum ModelError {
@@ -45,7 +45,7 @@ pub enum ModelError {
     BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
 }
 
-/// Parameters that are not allowed. Messages name beta and gamma as scenes do: `alpha` and `delta`.
+/// Parameter errors; scenes name beta `alpha` and gamma `delta`.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NewmarkError {
     /// Not unconditionally stable.
@@ -54,41 +54,40 @@ pub enum NewmarkError {
          alpha >= 0.25 (0.5 + delta)^2 = {least_beta}"
     )]
     Unstable {
-        /// The beta given.
+        /// Given beta.
         beta: f64,
-        /// The gamma given.
+        /// Given gamma.
         gamma: f64,
-        /// The least beta for this gamma.
+        /// Least beta for this gamma.
         least_beta: f64,
     },
-    /// Negative, or not a finite number.
+    /// Negative or not finite.
     #[error("Newmark's alpha = {beta} and delta = {gamma} must be finite numbers, 0 or above")]
     Range {
-        /// The beta given.
+        /// Given beta.
         beta: f64,
-        /// The gamma given.
+        /// Given gamma.
         gamma: f64,
     },
-    /// HHT's α out of range.
+    /// HHT α out of range.
     #[error("HHT-alpha with alpha = {alpha} is not unconditionally stable: alpha must be between -1/3 and 0")]
     Hht {
-        /// The α given.
+        /// Given α.
         alpha: f64,
     },
-    /// HHT-α weighs the loads of both ends of a step.
+    /// HHT-α needs both loads.
     #[error("HHT-alpha needs the load at the start of the step, too")]
     LoadAtStart,
-    /// The displacement at the end does not depend on the acceleration there.
+    /// Not for prescribed motion.
     #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
     Prescribed,
 }
 
-/// A number of a message with four digits, or words where it is none.
 pub(crate) fn size(value: f64) -> String {
     if value.is_finite() { format!("{value:.3e}") } else { "more than a number holds".to_string() }
 }
 
-/// Why equations could not be solved. Numbers of nodes are those of the user's files.
+/// Solver errors; node numbers as in the input files.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs, reason = "the messages are the documentation")]
 pub enum SolveError {

@@ -1,21 +1,17 @@
-//! Small-strain kinematics of the isoparametric elements, and their elastic matrices.
+//! Small-strain kinematics and elastic matrices of isoparametric elements.
 //!
-//! With `x = sum N_a x_a`, `J = dx/dxi` and `g_a = dN_a/dx = J^-T dN_a/dxi`:
-//! strain `eps = sym(sum u_a ⊗ g_a)`; stiffness block `K_ab = ∫ lambda g_a⊗g_b + mu g_b⊗g_a + mu (g_a·g_b) 1 dV`;
-//! mass `M_ab = ∫ rho N_a N_b dV`, the same for the three directions.
-//!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapters 4 and 9. For an isotropic material
-//! lambda and mu stand outside the integral, so the 400 products of gradients are summed over the points first and
-//! combined once: an order of magnitude less work than B^T D B. Limits: small strain and rotation.
+//! `K_ab = ∫ lambda g_a⊗g_b + mu g_b⊗g_a + mu (g_a·g_b) 1 dV` with `g_a = dN_a/dx`,
+//! `M_ab = ∫ rho N_a N_b dV`. Source: Zienkiewicz and Taylor (2000), vol. 1, chapters 4 and 9. Gradient
+//! products are summed over the points first: an order of magnitude less work than B^T D B.
 //!
 //! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 
 use crate::element::{IntegrationPoint, MAX_NODES};
 
-/// A triple for each node of one element, such as its coordinates [m]; zero beyond the nodes of its kind.
+/// Vector per node, such as coordinates [m]; zero-padded.
 pub type ElementCoordinates = [[f64; 3]; MAX_NODES];
 
-/// Jacobian matrix `J[i][k] = dx_i/dxi_k` [m] and its determinant [m³], from the natural gradients.
+/// Jacobian `J[i][k] = dx_i/dxi_k` [m] and its determinant [m³].
 #[inline]
 pub fn jacobian(coordinates: &ElementCoordinates, gradients: &ElementCoordinates) -> ([[f64; 3]; 3], f64) {
     let mut j = [[0.0; 3]; 3];
@@ -32,7 +28,7 @@ pub fn jacobian(coordinates: &ElementCoordinates, gradients: &ElementCoordinates
     (j, det)
 }
 
-/// Gradients of the shape functions in space [1/m] where their natural gradients are `natural`, and det J [m³].
+/// Spatial gradients [1/m] and det J [m³] from the natural gradients.
 #[inline]
 pub fn spatial_gradients(
     coordinates: &ElementCoordinates,
@@ -51,7 +47,7 @@ pub fn spatial_gradients(
     (gradients, det)
 }
 
-/// Strain (engineering shear) of nodal displacements `u` [m] at a point with gradients `g`.
+/// Strain (engineering shear) of nodal displacements `u` [m].
 #[inline]
 pub fn strain(g: &ElementCoordinates, u: &ElementCoordinates) -> [f64; 6] {
     let mut e = [0.0; 6];
@@ -66,8 +62,7 @@ pub fn strain(g: &ElementCoordinates, u: &ElementCoordinates) -> [f64; 6] {
     e
 }
 
-/// Mean of the gradients over the volume of an element [1/m], and the volume [m³]: the gradients that make the volume
-/// strain of a linear element (B-bar, Hughes, Int. J. Numer. Methods Eng. 15 (1980) 1413-1418).
+/// Volume mean of the gradients [1/m] and volume [m³] for B-bar (Hughes 1980).
 pub fn mean_gradients(
     coordinates: &ElementCoordinates,
     points: &[IntegrationPoint],
@@ -87,11 +82,10 @@ pub fn mean_gradients(
     (mean, volume)
 }
 
-/// Products of gradients summed over the points of a rule: `[xx, yy, zz, xy, yz, xz][a][b]`, where the pair ij stands
-/// for `∫ dN_a/dx_i dN_b/dx_j dV` [m]. N is the number of nodes.
+/// Gradient products `[xx, yy, zz, xy, yz, xz][a][b]` of N nodes, `∫ dN_a/dx_i dN_b/dx_j dV` [m].
 pub type GradientProducts<const N: usize> = [[[f64; N]; N]; 6];
 
-/// Sums the gradient products of one element over the points of a rule.
+/// Gradient products of one element.
 pub fn gradient_products<const N: usize>(
     coordinates: &ElementCoordinates,
     points: &[IntegrationPoint],
@@ -104,7 +98,7 @@ pub fn gradient_products<const N: usize>(
     sum
 }
 
-/// Adds the products of the gradients `g` [1/m] of a point with the volume `volume` [m³].
+/// Adds the products of gradients `g` [1/m] with `volume` [m³].
 #[inline]
 pub fn add_gradient_products<const N: usize>(
     sum: &mut GradientProducts<N>,
@@ -128,7 +122,7 @@ pub fn add_gradient_products<const N: usize>(
     }
 }
 
-/// Stiffness block of the node pair (a, b), row-major [N/m], from the gradient products.
+/// Stiffness block (a, b), row-major [N/m].
 #[inline]
 pub fn stiffness_block<const N: usize>(
     p: &GradientProducts<N>,
@@ -137,7 +131,7 @@ pub fn stiffness_block<const N: usize>(
     a: usize,
     b: usize,
 ) -> [f64; 9] {
-    // The product yx of (a, b) is the product xy of (b, a).
+    // Product yx of (a, b) equals xy of (b, a).
     let (xx, yy, zz) = (p[0][a][b], p[1][a][b], p[2][a][b]);
     let (xy, yz, xz) = (p[3][a][b], p[4][a][b], p[5][a][b]);
     let (yx, zy, zx) = (p[3][b][a], p[4][b][a], p[5][b][a]);
@@ -155,7 +149,7 @@ pub fn stiffness_block<const N: usize>(
     ]
 }
 
-/// Consistent mass of one element, per direction [kg]. Shape `[nodes][nodes]`.
+/// Consistent mass per direction [kg]. Shape `[nodes][nodes]`.
 pub fn mass_matrix<const N: usize>(
     coordinates: &ElementCoordinates,
     points: &[IntegrationPoint],
@@ -191,9 +185,9 @@ mod tests {
         })
     }
 
-    /// The fast kernel against B^T D B, written from the strain and the stress of unit displacements.
+    /// Against explicit B^T D B.
     #[test]
-    fn stiffness_blocks_are_the_work_of_unit_displacements() {
+    fn stiffness_matches_btdb() {
         let (x, steel) = (distorted(), Elastic { young: 3.0, poisson: 0.27, density: 2.0 });
         let (lambda, mu) = steel.lame();
         for rule in [Quadrature::Gauss2, Quadrature::Gauss3] {
@@ -223,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn mass_adds_up_to_density_times_volume() {
+    fn mass_sums_to_density_times_volume() {
         let x = hex20::NATURAL.map(|x| [1.5 * x[0], 0.5 * x[1], 2.0 * x[2] + 0.3 * x[0]]);
         let total: f64 =
             mass_matrix::<20>(&x, mass_points(ElementKind::Hex20), 2000.0).iter().flatten().sum();

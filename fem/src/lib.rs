@@ -1,10 +1,9 @@
-//! Implicit finite elements for ballasted track: 20-node hexahedra and their companions, statics and dynamics, elastic and
-//! elastoplastic ([`nonlinear`]).
+//! Implicit finite elements for ballasted track: statics and dynamics, elastic and elastoplastic
+//! ([`nonlinear`]).
 //!
-//! A [`model::Model`] is built once from a mesh, materials and supports and never changes; a [`state::State`] is what a
-//! restart needs; the solvers ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`theta::ThetaSolver`]) hold a
-//! factor and scratch; [`modal::solve`] finds natural frequencies and mode shapes. Units are SI throughout. Nodal vectors
-//! are flat, index `3 * node + direction`.
+//! A [`model::Model`] is immutable; a [`state::State`] is sufficient for a restart; solvers
+//! ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`theta::ThetaSolver`]) own factor and scratch. SI
+//! units. Nodal vectors have the index `3 * node + direction`. Full references: `docs/theory/references.md`.
 //!
 //! ```
 //! use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh, loads, statics};

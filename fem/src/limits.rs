@@ -1,28 +1,28 @@
-//! How far a displacement is from the small strains and rotations that the equations assume.
+//! Check of the small-strain and small-rotation assumptions.
 
 use crate::element::stiffness_points;
 use crate::model::Model;
 
-/// The largest strain, rotation and displacement of a body.
+/// Largest strain, rotation and displacement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
-    /// Largest strain at a Gauss point, the square root of `ε:ε` [-].
+    /// Largest strain at a Gauss point, `sqrt(ε:ε)` [-].
     pub strain: f64,
-    /// Element that has it, as the user's files number it.
+    /// Its element (file number).
     pub strained: u32,
-    /// Largest rotation at a Gauss point, half the curl of the displacement [rad].
+    /// Largest rotation at a Gauss point, half the curl [rad].
     pub rotation: f64,
-    /// The element.
+    /// Its element.
     pub rotated: u32,
-    /// Displacement against the mean of the body [m] that is largest compared with the element.
+    /// Largest displacement relative to element size, without the mean [m].
     pub displacement: f64,
-    /// Longest side of the element's bounds [m].
+    /// Longest side of that element's bounds [m].
     pub size: f64,
-    /// The element.
+    /// Its element.
     pub moved: u32,
 }
 
-/// Measures a displacement, shape `[3 * nodes]`. A translation of the whole body does not count.
+/// Computes the extent of a displacement, shape `[3 * nodes]`.
 pub fn extent(model: &Model, u: &[f64]) -> Extent {
     let mesh = model.mesh();
     let nodes = mesh.node_count().max(1) as f64;
@@ -59,7 +59,6 @@ pub fn extent(model: &Model, u: &[f64]) -> Extent {
     found
 }
 
-/// Half the curl of a displacement with these values at the nodes [m] and gradients of their functions [1/m].
 fn rotation(gradients: &[[f64; 3]], moved: &[[f64; 3]]) -> f64 {
     let slope = |i: usize, j: usize| gradients.iter().zip(moved).map(|(g, u)| u[i] * g[j]).sum::<f64>();
     let axis = [slope(2, 1) - slope(1, 2), slope(0, 2) - slope(2, 0), slope(1, 0) - slope(0, 1)];

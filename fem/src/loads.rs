@@ -1,29 +1,28 @@
-//! Loads as consistent nodal forces: `F_a = ∫ N_a t dA` on faces, `F_a = N_a(xi) F` at points.
+//! Consistent nodal forces: `F_a = ∫ N_a t dA` on faces, `F_a = N_a(xi) F` at points.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 2.3. Quadrilaterals take the 3×3 rule (2×2 for four nodes), triangles one of seven points (three for three nodes). All
-//! functions *add* to `load`, shape `[3 * nodes]` [N]. A uniform pressure on a flat rectangular face puts -1/12 of the
-//! force on each corner and +1/3 on each mid-side, so the sign of a nodal force says nothing about contact. Limits:
-//! small displacement; the load does not follow the turning face. Gravity is [`crate::model::Model::gravity_load`].
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 2.3. All functions add to `load`, shape
+//! `[3 * nodes]` [N]. Uniform pressure on a rectangular hex20 face gives -1/12 per corner and +1/3 per
+//! mid-side. Limits: no follower loads.
 
 use crate::mesh::{Face, Mesh};
 
-/// Adds a uniform pressure [Pa] on a face; positive pressure compresses the body.
+/// Adds a uniform pressure [Pa], positive in compression.
 pub fn face_pressure(mesh: &Mesh, face: &Face, pressure: f64, load: &mut [f64]) {
     integrate(mesh, face, load, |area, _| area.map(|a| -pressure * a));
 }
 
-/// Adds a uniform traction [Pa] on a face: force per current area in the fixed directions x, y, z.
+/// Adds a uniform traction [Pa] in fixed axes x, y, z.
 pub fn face_traction(mesh: &Mesh, face: &Face, traction: [f64; 3], load: &mut [f64]) {
     integrate(mesh, face, load, |_, size| traction.map(|t| t * size));
 }
 
-/// Adds a force [N] at the natural point `xi` of element `element` (index).
+/// Adds a force [N] at the natural point `xi` of an element (index).
 pub fn point_load(mesh: &Mesh, element: usize, xi: [f64; 3], force: [f64; 3], load: &mut [f64]) {
     let kind = mesh.connectivity.kind(element);
     add(&mesh.connectivity[element], &kind.shape_functions(xi), force, load);
 }
 
-/// Adds a force [N] at the natural point `xi` of a face; only the face's nodes get a share.
+/// Adds a force [N] at the natural point `xi` of a face.
 pub fn face_point_load(face: &Face, xi: [f64; 2], force: [f64; 3], load: &mut [f64]) {
     add(face.nodes(), &face.shape.shape_functions(xi), force, load);
 }
@@ -52,7 +51,7 @@ mod tests {
 
     /// V0.7.
     #[test]
-    fn pressure_on_a_face_gives_minus_one_twelfth_and_plus_one_third() {
+    fn pressure_matches_consistent_nodal_fractions() {
         let mesh = Mesh::block([1, 1, 1], [2.0, 3.0, 1.0]);
         let face = mesh.face(0, 5);
         let mut load = vec![0.0; 60];
@@ -66,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn tractions_and_point_loads_keep_force_and_moment() {
+    fn loads_preserve_force_and_moment() {
         let mut mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         for c in &mut mesh.coordinates {
             *c = [c[0] + 0.2 * c[1], c[1] - 0.1 * c[2] * c[0], c[2] + 0.3 * c[0]];

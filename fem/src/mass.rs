@@ -1,34 +1,28 @@
-//! The choice of the mass matrix: consistent, or lumped on the diagonal.
+//! Consistent and lumped mass.
 //!
-//! Consistent: `M_ab = ∫ rho N_a N_b dV`. Lumped (HRZ): the diagonal of the consistent matrix of each element, scaled so
-//! that it adds up to the element's mass, `m_a = M_aa m / sum_b M_bb`. Row sums would give the corners of quadratic
-//! elements a negative mass; this diagonal is positive for every element.
-//!
-//! Source: Hinton, Rock and Zienkiewicz, Earthq. Eng. Struct. Dyn. 4 (1976) 245-249. Limits: lumping keeps the mass of
-//! each element exactly, its moments of inertia not; frequencies of quadratic elements become of second order in
-//! the element's size, in every direction, where the consistent mass has fourth. The load of gravity stays
-//! consistent, `∫ rho N_a g dV`, so that a lumped body carries the same static load.
+//! Lumped (HRZ): diagonal of the consistent matrix, scaled to the element mass, `m_a = M_aa m / sum_b M_bb`;
+//! always positive, unlike row sums. Source: Hinton, Rock and Zienkiewicz (1976). Limits: frequency errors of
+//! quadratic elements are of second order instead of fourth. Gravity loads stay consistent.
 //!
 //! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 
 use serde::{Deserialize, Serialize};
 
-/// How the mass is spread over the nodes.
+/// Mass discretisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mass {
-    /// The consistent mass matrix.
+    /// Consistent mass.
     #[default]
     Consistent,
-    /// A diagonal mass matrix, scaled from the diagonal of the consistent one element by element.
+    /// Diagonal mass (HRZ).
     Lumped,
 }
 
-/// The lumped masses [kg] of one element from its consistent matrix.
+/// Lumps the consistent mass [kg] of one element.
 pub fn lump<const N: usize>(consistent: &[[f64; N]; N]) -> [f64; N] {
     let total: f64 = consistent.iter().flatten().sum();
     let diagonal: f64 = (0..N).map(|a| consistent[a][a]).sum();
-    // A body without density has no mass to spread.
     let scale = if diagonal > 0.0 { total / diagonal } else { 0.0 };
     std::array::from_fn(|a| scale * consistent[a][a])
 }
@@ -50,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_keeps_its_mass_and_has_no_negative_share() {
+    fn lumping_keeps_mass_and_positivity() {
         of_natural_shape::<20>(ElementKind::Hex20);
         of_natural_shape::<15>(ElementKind::Wedge15);
         of_natural_shape::<13>(ElementKind::Pyramid13);
@@ -61,9 +55,8 @@ mod tests {
         of_natural_shape::<4>(ElementKind::Tet4);
     }
 
-    /// Against the integrals of the squared shape functions over the cube, worked out by hand.
     #[test]
-    fn shares_of_the_brick_are_those_of_the_exact_integrals() {
+    fn brick_masses_match_exact_integrals() {
         let masses = of_natural_shape::<20>(ElementKind::Hex20);
         let (corner, side) = (exact_corner(), exact_side());
         let sum = 8.0 * corner + 12.0 * side;
@@ -71,7 +64,8 @@ mod tests {
         assert!((masses[8] / 24.0 - side / sum).abs() < 1e-14, "{}", masses[8] / 24.0);
     }
 
-    /// `∫ ((1+x)(1+y)(1+z)(x+y+z-2)/8)²`: moments of (1+x)² x^k over [-1, 1] are 8/3, 4/3, 16/15 for k = 0, 1, 2.
+    /// `∫ ((1+x)(1+y)(1+z)(x+y+z-2)/8)²`: moments of (1+x)² x^k over [-1, 1] are 8/3, 4/3, 16/15 for k = 0,
+    /// 1, 2.
     fn exact_corner() -> f64 {
         let (m0, m1, m2) = (8.0 / 3.0, 4.0 / 3.0, 16.0 / 15.0);
         // (s - 2)² with s = x + y + z: s² - 4 s + 4.

@@ -1,55 +1,52 @@
-//! The finite-element mesh: nodes, elements, and the faces of its surface.
+//! Finite-element mesh: nodes, elements, boundary faces.
 
 use crate::connectivity::Connectivity;
 pub use crate::element::hex20::{FACE_NODES, HEX20_NODES};
 use crate::element::{ElementKind, FaceShape, MAX_FACE_NODES, mass_points};
 use crate::kinematics::{ElementCoordinates, jacobian};
 
-/// A mesh: 20-node hexahedra in SOLID186 node order (I…P corners, Q…T bottom, U…X top, Y…B uprights), and their
-/// companions.
+/// Mesh; hex20 in SOLID186 node order (I…P corners, Q…T bottom, U…X top, Y…B uprights).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Node numbers as the user's files name them. Shape `[nodes]`.
+    /// File numbers of nodes. Shape `[nodes]`.
     pub node_ids: Vec<u32>,
     /// Node coordinates [m]. Shape `[nodes][3]`.
     pub coordinates: Vec<[f64; 3]>,
-    /// Element numbers as the user's files name them. Shape `[elements]`.
+    /// File numbers of elements. Shape `[elements]`.
     pub element_ids: Vec<u32>,
-    /// Material number of each element as the user's files name it. Shape `[elements]`.
+    /// Material number per element. Shape `[elements]`.
     pub materials: Vec<u32>,
-    /// Kind and node indices (0-based, into `coordinates`) of each element.
+    /// Kind and node indices (0-based) per element.
     pub connectivity: Connectivity,
 }
 
-/// One face of an element on the boundary of the mesh.
+/// Boundary face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face {
-    /// Index of the element (0-based).
+    /// Element index (0-based).
     pub element: u32,
-    /// Number of the face in [`ElementKind::faces`]; for a hexahedron the SOLID186 face number minus one, 0–5.
+    /// Index in [`ElementKind::faces`]; for hexahedra the SOLID186 face number minus one.
     pub side: u8,
-    /// Its shape.
+    /// Shape.
     pub shape: FaceShape,
-    /// Node indices: corners counter-clockwise seen from outside, then the mid-side node after each corner. Those
-    /// beyond the nodes of the shape repeat the first.
+    /// Node indices: corners counter-clockwise from outside, then mid-sides; padded with the first.
     pub nodes: [u32; MAX_FACE_NODES],
 }
 
 impl Face {
-    /// The nodes of the face's shape.
+    /// Nodes of the face.
     #[inline]
     pub fn nodes(&self) -> &[u32] {
         &self.nodes[..self.shape.node_count()]
     }
 
-    /// The corners.
+    /// Corner nodes.
     #[inline]
     pub fn corners(&self) -> &[u32] {
         &self.nodes[..self.shape.corner_count()]
     }
 
-    /// Point [m] of the face at the natural point `xi`, and the area vector dx/dxi × dx/deta [m²] there: its length
-    /// is the area per unit of natural area, its direction the outward normal of the body.
+    /// Point [m] and outward area vector dx/dxi × dx/deta [m²] at the natural point `xi`.
     pub fn point_and_area(&self, mesh: &Mesh, xi: [f64; 2]) -> ([f64; 3], [f64; 3]) {
         let (n, d) = (self.shape.shape_functions(xi), self.shape.gradients(xi));
         let (mut point, mut tangent, mut cotangent) = ([0.0; 3], [0.0; 3], [0.0; 3]);
@@ -69,16 +66,16 @@ impl Face {
         (point, area)
     }
 
-    /// The middle of the face [m].
+    /// Centre [m].
     pub fn centre(&self, mesh: &Mesh) -> [f64; 3] {
         self.point_and_area(mesh, self.shape.natural_centre()).0
     }
 }
 
-/// A constraint as a mesh file names it: node number, direction 0–2, prescribed displacement [m].
+/// Prescribed displacement of one dof.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constraint {
-    /// Index of the node (0-based).
+    /// Node index (0-based).
     pub node: u32,
     /// Direction: 0 = x, 1 = y, 2 = z.
     pub direction: u8,
@@ -87,7 +84,7 @@ pub struct Constraint {
 }
 
 impl Mesh {
-    /// Number of nodes.
+    /// Node count.
     pub fn node_count(&self) -> usize {
         self.coordinates.len()
     }
@@ -97,7 +94,7 @@ impl Mesh {
         self.connectivity.len()
     }
 
-    /// The face `side` (number in [`ElementKind::faces`]) of element `element` (index).
+    /// Face `side` (as in [`ElementKind::faces`]) of an element (index).
     pub fn face(&self, element: usize, side: usize) -> Face {
         let (local, nodes) = (self.connectivity.kind(element).faces()[side], &self.connectivity[element]);
         let mut of_face = [nodes[local[0]]; MAX_FACE_NODES];
@@ -108,7 +105,7 @@ impl Mesh {
         Face { element: element as u32, side: side as u8, shape, nodes: of_face }
     }
 
-    /// The faces that belong to one element only, in element order then side order.
+    /// Faces of one element only, by element and side.
     pub fn boundary_faces(&self) -> Vec<Face> {
         let mut keyed: Vec<([u32; 4], Face)> = (0..self.element_count())
             .flat_map(|e| (0..self.connectivity.kind(e).faces().len()).map(move |s| (e, s)))
@@ -133,7 +130,7 @@ impl Mesh {
     /// Adds an element.
     ///
     /// # Panics
-    /// When the number of nodes is not that of the kind.
+    /// If the number of nodes does not match the kind.
     pub fn push_element(&mut self, id: u32, material: u32, kind: ElementKind, nodes: &[u32]) {
         self.element_ids.push(id);
         self.materials.push(material);
@@ -142,7 +139,7 @@ impl Mesh {
 }
 
 impl Mesh {
-    /// Coordinates of the nodes of element `element` (index) [m]; zero beyond the nodes of its kind.
+    /// Node coordinates of an element [m], zero-padded.
     #[inline]
     pub fn element_coordinates(&self, element: usize) -> ElementCoordinates {
         let mut x = ElementCoordinates::default();
@@ -152,8 +149,7 @@ impl Mesh {
         x
     }
 
-    /// The triples of the nodes of element `element` (index) out of a nodal vector of shape `[3 * nodes]`; zero beyond
-    /// the nodes of its kind.
+    /// Nodal values of an element, shape `[3 * nodes]`, zero-padded.
     #[inline]
     pub fn element_values(&self, element: usize, nodal: &[f64]) -> ElementCoordinates {
         let mut values = ElementCoordinates::default();
@@ -164,7 +160,7 @@ impl Mesh {
         values
     }
 
-    /// The middle of element `element` (index) [m].
+    /// Centre of an element (index) [m].
     pub fn element_centre(&self, element: usize) -> [f64; 3] {
         let kind = self.connectivity.kind(element);
         let n = kind.shape_functions(kind.natural_centre());
@@ -172,7 +168,7 @@ impl Mesh {
         std::array::from_fn(|k| x.iter().zip(&n).map(|(x, n)| n * x[k]).sum())
     }
 
-    /// Volume of element `element` [m³], by the rule of the mass.
+    /// Volume of an element [m³] by the mass rule.
     pub fn element_volume(&self, element: usize) -> f64 {
         let x = self.element_coordinates(element);
         mass_points(self.connectivity.kind(element))
@@ -181,9 +177,8 @@ impl Mesh {
             .sum()
     }
 
-    /// Quality of element `element`: smallest over largest determinant of the Jacobian at the nodes and the points of the
-    /// mass. 1 is a parallelepiped; 0 or below is degenerate or inverted somewhere. At the apex of a pyramid, the limits
-    /// along its four uprights count ([`ElementKind::limits_at_node`]).
+    /// Jacobian ratio, smallest over largest, at nodes ([`ElementKind::limits_at_node`]) and mass points: 1
+    /// for a parallelepiped, 0 or below if inverted.
     pub fn jacobian_ratio(&self, element: usize) -> f64 {
         let (x, kind) = (self.element_coordinates(element), self.connectivity.kind(element));
         let at_nodes = (0..kind.node_count())
@@ -196,7 +191,7 @@ impl Mesh {
         low / high.max(-low)
     }
 
-    /// Smallest and largest coordinates [m] of the nodes; infinite and reversed for an empty mesh.
+    /// Smallest and largest node coordinates [m]; infinite and reversed if empty.
     pub fn bounding_box(&self) -> ([f64; 3], [f64; 3]) {
         self.coordinates.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), c| {
             (std::array::from_fn(|k| low[k].min(c[k])), std::array::from_fn(|k| high[k].max(c[k])))
@@ -208,7 +203,6 @@ impl Mesh {
 mod tests {
     use super::*;
 
-    /// A curved, skewed two-element body: a block whose every node is moved smoothly.
     fn bent() -> Mesh {
         let mut mesh = Mesh::block([2, 2, 2], [2.0, 1.0, 1.0]);
         for c in &mut mesh.coordinates {
@@ -219,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn area_vectors_of_a_closed_surface_add_up_to_zero_and_enclose_the_volume() {
+    fn closed_surface_encloses_volume() {
         let mesh = bent();
         let (mut sum, mut enclosed, mut area) = ([0.0; 3], 0.0, 0.0);
         for face in mesh.boundary_faces() {
@@ -234,12 +228,12 @@ mod tests {
         }
         let volume: f64 = (0..mesh.element_count()).map(|e| mesh.element_volume(e)).sum();
         assert!(sum.iter().all(|s| s.abs() < 1e-13 * area), "{sum:?}");
-        // Outward faces give the volume with a plus sign; the 3×3 rule is exact for x · dA only on flat faces.
+        // The 3×3 rule is exact for x · dA on flat faces only.
         assert!((enclosed / volume - 1.0).abs() < 1e-3, "{enclosed} {volume}");
     }
 
     #[test]
-    fn all_six_faces_of_an_element_point_outward() {
+    fn element_faces_point_outward() {
         let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         let outward = [[0, 0, -1], [0, -1, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]];
         for (side, normal) in outward.into_iter().enumerate() {
@@ -251,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn inner_faces_are_not_on_the_boundary() {
+    fn excludes_inner_faces() {
         let faces = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]).boundary_faces();
         assert_eq!(faces.len(), 10);
         assert!(faces.iter().all(|f| (f.element, f.side) != (0, 2) && (f.element, f.side) != (1, 4)));

@@ -1,25 +1,22 @@
-//! Order of the elements of a mesh: mid-side nodes dropped or added.
+//! Conversion between linear and quadratic elements.
 //!
-//! A mesh of linear elements has about a quarter of the nodes of its quadratic mate and is solved many times
-//! faster, with an error of one order more: the cheap choice for a first look. Limits: dropping mid-side nodes makes curved
-//! sides straight, and adding them gives straight sides; materials, numbers of elements and numbers of corner
-//! nodes stay. Elements that have the order already are copied.
+//! Linear meshes have about a quarter of the nodes. Limits: added mid-sides are straight, dropped ones lose
+//! curvature.
 
 use crate::mesh::Mesh;
 use std::collections::{HashMap, HashSet};
 
 impl Mesh {
-    /// Where the nodes are found in [`Mesh::to_linear`]: the new index of each node, none for a mid-side node that is
-    /// dropped; to carry constraints and loads over. Shape `[nodes]`.
+    /// New index of each node in [`Mesh::to_linear`]. Shape `[nodes]`.
     ///
     /// # Panics
-    /// When an element names a node that does not exist; [`crate::Model::new`] refuses such meshes.
+    /// If an element refers to a missing node; [`crate::Model::new`] rejects such meshes.
     pub fn linear_node_map(&self) -> Vec<Option<u32>> {
         let mut dropped = vec![false; self.node_count()];
         for (nodes, kind) in self.connectivity.iter().zip(self.connectivity.kinds()) {
             nodes[kind.corner_count()..].iter().for_each(|&n| dropped[n as usize] = true);
         }
-        // A node that is a corner anywhere stays.
+        // Nodes that are a corner anywhere stay.
         for (nodes, kind) in self.connectivity.iter().zip(self.connectivity.kinds()) {
             nodes[..kind.corner_count()].iter().for_each(|&n| dropped[n as usize] = false);
         }
@@ -27,8 +24,8 @@ impl Mesh {
         dropped.into_iter().map(|dropped| if dropped { None } else { kept.next() }).collect()
     }
 
-    /// The mesh of the corners alone: hex20 → hex8, wedge15 → wedge6, pyramid13 → pyramid5, tet10 → tet4. The corners
-    /// keep their order and their numbers; [`Mesh::linear_node_map`] tells their new indices.
+    /// Converts hex20 → hex8, wedge15 → wedge6, pyramid13 → pyramid5, tet10 → tet4; corners keep order and
+    /// numbers ([`Mesh::linear_node_map`]).
     ///
     /// # Panics
     /// As [`Mesh::linear_node_map`].
@@ -50,13 +47,13 @@ impl Mesh {
         mesh
     }
 
-    /// The mesh with a mid-side node in the middle of every edge: hex8 → hex20, wedge6 → wedge15, pyramid5 →
-    /// pyramid13, tet4 → tet10. Elements that share an edge share its node, with those that were quadratic before too.
-    /// The nodes keep their indices and numbers; new ones follow, in the order of elements and edges, with the numbers
-    /// after the highest (where those run out, the lowest free ones).
+    /// Converts hex8 → hex20, wedge6 → wedge15, pyramid5 → pyramid13, tet4 → tet10, with one node per edge.
+    ///
+    /// Nodes keep indices and numbers; new ones follow by element and edge, numbered above, then from the
+    /// lowest free.
     ///
     /// # Panics
-    /// When an element names a node that does not exist.
+    /// If an element refers to a missing node.
     pub fn to_quadratic(&self) -> Mesh {
         let mut mesh = Mesh {
             node_ids: self.node_ids.clone(),
@@ -70,7 +67,6 @@ impl Mesh {
         let after = highest.checked_add(1).into_iter().flat_map(|first| first..=u32::MAX);
         let mut free = after.chain((1..highest).filter(|id| !used.contains(id)));
 
-        // Middle of each edge, by its corners in ascending order.
         let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
         let edge = |nodes: &[u32], [a, b]: [usize; 2]| [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
         for (nodes, kind) in self.connectivity.iter().zip(self.connectivity.kinds()) {
@@ -102,7 +98,6 @@ mod tests {
     use super::*;
     use crate::element::ElementKind;
 
-    /// One element of each linear kind, joined: a cube, a wedge on its side, a pyramid on its top, a tetrahedron on that.
     fn mixed() -> Mesh {
         let mut mesh = Mesh {
             coordinates: vec![
@@ -130,11 +125,11 @@ mod tests {
     }
 
     #[test]
-    fn mid_sides_are_added_once_and_dropped_again() {
+    fn adds_and_drops_mid_sides() {
         let linear = mixed();
         assert!((0..4).all(|e| linear.element_volume(e) > 0.0));
         let quadratic = linear.to_quadratic();
-        // Edges: 12 of the cube, 5 more of the wedge, 4 of the pyramid, 3 of the tetrahedron.
+        // Edges: 12 (cube), 5 (wedge), 4 (pyramid), 3 (tetrahedron).
         assert_eq!((quadratic.node_count(), quadratic.element_count()), (12 + 12 + 5 + 4 + 3, 4));
         assert_eq!(quadratic.boundary_faces().len(), linear.boundary_faces().len());
         assert_eq!(quadratic.node_ids[12..], (44..68).collect::<Vec<_>>());
@@ -147,7 +142,6 @@ mod tests {
         assert_eq!(quadratic.to_quadratic(), quadratic);
     }
 
-    /// A straight hex20 mesh keeps all nodes of its elements; only their order differs.
     #[test]
     fn a_straight_block_comes_back() {
         let block = Mesh::block([3, 2, 2], [3.0, 1.0, 0.5]);
@@ -170,9 +164,8 @@ mod tests {
         assert!((1..12).all(|e| shared(&back, 0, e) == shared(&block, 0, e)));
     }
 
-    /// A linear neighbour takes the mid-side nodes of a curved quadratic element.
     #[test]
-    fn mid_sides_of_a_curved_neighbour_are_shared() {
+    fn shares_curved_mid_sides() {
         let mut mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         let middle = mesh.connectivity[0][9] as usize;
         mesh.coordinates[middle][0] += 0.1;
@@ -189,7 +182,7 @@ mod tests {
         let quadratic = mesh.to_quadratic();
         assert_eq!(quadratic.connectivity[1][5] as usize, middle);
         assert_eq!(quadratic.node_count(), 20 + 1 + 4);
-        // No number is left above; the lowest free ones are taken.
+        // Numbers above are exhausted: the lowest free ones.
         assert_eq!(quadratic.node_ids[21..], [21, 22, 23, 24]);
         assert_eq!(quadratic.boundary_faces().len(), 9);
     }

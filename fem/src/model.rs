@@ -1,4 +1,4 @@
-//! The model: mesh, materials and supports, checked, with the matrices assembled. It never changes during a run.
+//! Immutable model: mesh, materials, supports and assembled matrices.
 
 mod checks;
 
@@ -21,43 +21,43 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// What a model is built from. The default is an empty mesh of no material under the reduced rule, without gravity.
+/// Model input; default: empty mesh, reduced rule.
 #[derive(Clone, Debug, Default)]
 pub struct ModelInput {
-    /// The mesh [m].
+    /// Mesh [m].
     pub mesh: Mesh,
-    /// Materials by the number that the mesh uses.
+    /// Materials by number.
     pub materials: BTreeMap<u32, Material>,
-    /// Rule of the stiffness.
+    /// Stiffness integration rule.
     pub quadrature: Quadrature,
-    /// Strains that the elements assume.
+    /// Assumed strains.
     pub assumed: AssumedStrain,
-    /// Supports and prescribed displacements, constant in time.
+    /// Supports and prescribed displacements.
     pub constraints: Vec<Constraint>,
-    /// Acceleration of gravity [m/s²].
+    /// Gravity [m/s²].
     pub gravity: [f64; 3],
-    /// Damping of the whole body.
+    /// Rayleigh damping.
     pub rayleigh: Rayleigh,
     /// Consistent or lumped mass.
     pub mass: Mass,
-    /// Springs and dashpots on faces of the body.
+    /// Springs and dashpots on faces.
     pub boundaries: Vec<BoundaryLayer>,
-    /// How the elastic equations are solved.
+    /// Solution methods.
     pub methods: Methods,
 }
 
-/// Memory and operations of a factorization.
+/// Cost of a factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverDemand {
     /// Memory of factor and fronts [bytes].
     pub bytes: usize,
     /// Floating-point operations.
     pub flops: f64,
-    /// Numbers in a triangle of the factor.
+    /// Entries of a triangular factor.
     pub factor_len: usize,
 }
 
-/// A checked solid with its matrices.
+/// Checked solid with its matrices.
 #[derive(Clone, Debug)]
 pub struct Model {
     mesh: Mesh,
@@ -71,12 +71,12 @@ pub struct Model {
     boundaries: Vec<BoundaryLayer>,
     methods: Methods,
     supports: Supports,
-    /// Shared by all copies: they depend on shapes, not on places.
+    /// Shared by copies: independent of position.
     matrices: Arc<Matrices>,
     analysis: OnceLock<Arc<Analysis>>,
-    /// First Gauss point of each element, and the number of all. Shape `[elements + 1]`.
+    /// First Gauss point per element. Shape `[elements + 1]`.
     point_start: Vec<u32>,
-    /// First value of the laws' own in each element, and the number of all. Shape `[elements + 1]`.
+    /// First state value per element. Shape `[elements + 1]`.
     value_start: Vec<u32>,
 }
 
@@ -84,8 +84,7 @@ impl Model {
     /// Checks the input and assembles the matrices.
     ///
     /// # Errors
-    /// See [`ModelError`]: everything that can be known before solving. Whether the body is held is checked by
-    /// [`crate::statics`] alone, because dynamics does not ask for it.
+    /// [`ModelError`]; rigid-body motion is checked by [`crate::statics`] only.
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
         let ModelInput {
             mesh,
@@ -139,57 +138,55 @@ impl Model {
         })
     }
 
-    /// The mesh.
+    /// Mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The materials by number.
+    /// Materials by number.
     pub fn materials(&self) -> &BTreeMap<u32, Material> {
         &self.materials
     }
 
-    /// The material of element `element` (index).
+    /// Material of an element.
     pub fn material(&self, element: usize) -> &Material {
         &self.materials[&self.mesh.materials[element]]
     }
 
-    /// The elastic constants and the density of element `element` (index).
+    /// Elastic constants and density of an element.
     pub fn elastic(&self, element: usize) -> &Elastic {
         &self.material(element).elastic
     }
 
-    /// Whether stress is proportional to strain in every element. Only such a model may be given to the linear solvers.
+    /// Whether all stresses are linear in strain, as linear solvers require.
     pub fn is_linear(&self) -> bool {
         self.plastic_material().is_none()
     }
 
-    /// The first material number in use that is plastic, if any.
+    /// First plastic material number in use.
     pub fn plastic_material(&self) -> Option<u32> {
         let used = |number: &u32| self.mesh.materials.contains(number);
         self.materials.iter().find(|(number, m)| !m.is_linear() && used(number)).map(|(&number, _)| number)
     }
 
-    /// Whether the consistent tangent is symmetric whatever yields.
+    /// Whether the tangent is always symmetric.
     pub fn symmetric_tangent(&self) -> bool {
         self.materials.values().all(Material::symmetric_tangent)
     }
 
-    /// The same body with other constants under the same numbers; the elastic parts must be those of this model, because the
-    /// matrices are kept.
+    /// Replaces the material laws; elastic constants must be unchanged.
     ///
     /// # Errors
-    /// A constant out of range, or a material that is missing.
+    /// Constant out of range or missing material.
     pub(crate) fn with_laws(&self, materials: BTreeMap<u32, Material>) -> Result<Model, ModelError> {
         checks::check_materials(&self.mesh, &materials)?;
         Ok(Model { materials, ..self.clone() })
     }
 
-    /// The same model with the nodes `nodes` (indices), which must be all those of bodies of their own, set elsewhere by
-    /// `way` [m]: matrices and factorizations stay, since none of them depends on a body's place.
+    /// Moves the bodies of `nodes` by `way` [m]; matrices and factors stay valid.
     ///
     /// # Panics
-    /// An element joins these nodes to others.
+    /// If an element joins these nodes to others.
     pub fn with_bodies_moved(&self, nodes: Range<usize>, way: [f64; 3]) -> Model {
         let inside = |n: &u32| nodes.contains(&(*n as usize));
         let whole = |e: &[u32]| e.iter().all(inside) || !e.iter().any(inside);
@@ -201,14 +198,13 @@ impl Model {
         moved
     }
 
-    /// Index of the first Gauss point of element `element` (index) in [`crate::State::points`]; for the number of elements,
-    /// the number of all points. The points of an element follow
-    /// [`stiffness_points`].
+    /// First Gauss point of an element in [`crate::State::points`], ordered as [`stiffness_points`]; the
+    /// element count gives the total.
     pub fn point_start(&self, element: usize) -> usize {
         self.point_start[element] as usize
     }
 
-    /// Where the own values of the law of element `element` (index) lie among [`Points::values`] at its point `i`.
+    /// State value range of point `i` of an element in [`Points::values`].
     #[inline]
     pub fn values(&self, element: usize, i: usize) -> Range<usize> {
         let (first, end) = (self.value_start[element] as usize, self.value_start[element + 1] as usize);
@@ -219,12 +215,12 @@ impl Model {
         first + i * count..first + (i + 1) * count
     }
 
-    /// Number of the laws' own values of all points together.
+    /// Total number of state values.
     pub fn value_count(&self) -> usize {
         self.value_start[self.mesh.element_count()] as usize
     }
 
-    /// Points without stress, their laws' own values those of a start from it.
+    /// Unstressed points with initial state values.
     pub fn new_points(&self) -> Points {
         let mut points = Points::new(self.point_count(), self.value_count());
         let (states, values) = points.split_mut();
@@ -236,14 +232,14 @@ impl Model {
         points
     }
 
-    /// Point `i` of element `element` (index) among `points`.
+    /// Point `i` of an element.
     #[inline]
     pub fn point<'a>(&self, points: &'a Points, element: usize, i: usize) -> Point<'a> {
         let state: &PointState = &points[self.point_start(element) + i];
         Point { state, values: &points.values()[self.values(element, i)] }
     }
 
-    /// Where the equations of the laws in use that are not linear come from, each once.
+    /// Distinct references of the nonlinear laws.
     pub fn law_sources(&self) -> Vec<&'static str> {
         let mut sources = Vec::new();
         for (number, material) in &self.materials {
@@ -255,27 +251,27 @@ impl Model {
         sources
     }
 
-    /// Whether elastic steps have the assembled matrix everywhere.
+    /// Whether elastic steps always have the assembled matrix.
     pub fn has_constant_elasticity(&self) -> bool {
         self.materials.values().all(|m| m.law.has_constant_elasticity())
     }
 
-    /// Number of Gauss points of all elements.
+    /// Number of Gauss points.
     pub fn point_count(&self) -> usize {
         self.point_start(self.mesh.element_count())
     }
 
-    /// The rule of the stiffness.
+    /// Stiffness integration rule.
     pub fn quadrature(&self) -> Quadrature {
         self.quadrature
     }
 
-    /// The strains that the elements assume.
+    /// Assumed strains.
     pub fn assumed(&self) -> AssumedStrain {
         self.assumed
     }
 
-    /// The strains of element `element` (index).
+    /// Assumed strains of an element.
     pub fn element_strains(&self, element: usize) -> ElementStrains {
         let kind = self.mesh.connectivity.kind(element);
         let rule = stiffness_points(kind, self.quadrature);
@@ -284,17 +280,17 @@ impl Model {
         ElementStrains::new(kind, coordinates, rule, self.assumed, poisson, yields)
     }
 
-    /// The constraints as given.
+    /// Constraints as given.
     pub fn constraints(&self) -> &[Constraint] {
         &self.constraints
     }
 
-    /// The supports as numbered.
+    /// Supports.
     pub fn supports(&self) -> &Supports {
         &self.supports
     }
 
-    /// The damping constants.
+    /// Damping constants.
     pub fn rayleigh(&self) -> Rayleigh {
         self.rayleigh
     }
@@ -304,57 +300,57 @@ impl Model {
         self.mass
     }
 
-    /// The springs and dashpots on faces, as given.
+    /// Springs and dashpots on faces.
     pub fn boundaries(&self) -> &[BoundaryLayer] {
         &self.boundaries
     }
 
-    /// How the elastic equations are solved. What yields, natural modes and reductions take a factor whatever they say.
+    /// Solution methods of elastic equations.
     pub fn methods(&self) -> Methods {
         self.methods
     }
 
-    /// The acceleration of gravity [m/s²].
+    /// Gravity [m/s²].
     pub fn gravity(&self) -> [f64; 3] {
         self.gravity
     }
 
-    /// Number of dofs, `3 * nodes`: the length of every nodal vector.
+    /// Number of dofs, `3 * nodes`.
     pub fn dof_count(&self) -> usize {
         3 * self.mesh.node_count()
     }
 
-    /// Number of dofs that are not constrained: the size of the equation system.
+    /// Number of free dofs.
     pub fn free_dof_count(&self) -> usize {
         self.supports.free().len()
     }
 
-    /// The assembled matrices.
+    /// Assembled matrices.
     pub fn matrices(&self) -> &Matrices {
         &self.matrices
     }
 
-    /// `y = K x` over all dofs, boundary springs included. Shapes `[3 * nodes]`.
+    /// `y = K x` with boundary springs. Shapes `[3 * nodes]`.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         self.matrices.stiffness_times(x, y);
     }
 
-    /// `y = M x` over all dofs. Shapes `[3 * nodes]`.
+    /// `y = M x`. Shapes `[3 * nodes]`.
     pub fn mass_times(&self, x: &[f64], y: &mut [f64]) {
         self.matrices.mass_times(x, y);
     }
 
-    /// Adds the forces of the boundary springs, `y += K_s x` over all dofs; they are part of [`Model::stiffness_times`].
+    /// `y += K_s x` of the boundary springs, included in [`Model::stiffness_times`].
     pub fn boundary_spring_times(&self, x: &[f64], y: &mut [f64]) {
         self.matrices.springs().add_times(x, y);
     }
 
-    /// Adds the forces of the boundary dashpots, `y += D v` over all dofs; Rayleigh damping is not among them.
+    /// `y += D v` of the boundary dashpots, without Rayleigh damping.
     pub fn dashpot_times(&self, v: &[f64], y: &mut [f64]) {
         self.matrices.dashpots().add_times(v, y);
     }
 
-    /// The nodal forces of gravity [N], the consistent load `∫ rho N_a g dV`. Shape `[3 * nodes]`.
+    /// Consistent gravity load `∫ rho N_a g dV` [N]. Shape `[3 * nodes]`.
     pub fn gravity_load(&self) -> Vec<f64> {
         if let Some(shares) = self.matrices.lumped_shares() {
             return shares.iter().flat_map(|m| self.gravity.map(|g| m * g)).collect();
@@ -365,15 +361,15 @@ impl Model {
         load
     }
 
-    /// Mass of the whole body [kg].
+    /// Total mass [kg].
     pub fn total_mass(&self) -> f64 {
         (0..self.mesh.element_count()).map(|e| self.elastic(e).density * self.mesh.element_volume(e)).sum()
     }
 
-    /// Memory and operations of a factorization of the model's equations, known before it is made.
+    /// Predicts the cost of a factorisation.
     ///
     /// # Errors
-    /// The equations cannot be analysed.
+    /// Failed analysis.
     pub fn solver_demand(&self, symmetric: bool) -> Result<SolverDemand, SolveError> {
         let analysis = self.analysis()?;
         Ok(SolverDemand {
@@ -383,29 +379,27 @@ impl Model {
         })
     }
 
-    /// Memory that a method takes for the model's equations, known before it is used [bytes].
+    /// Predicts the memory of a method [bytes].
     ///
     /// # Errors
-    /// The equations cannot be analysed; [`SolveError::Library`], also where the program was built without the library.
+    /// Failed analysis; [`SolveError::Library`].
     pub fn solver_memory(&self, method: Method, regime: Regime) -> Result<usize, SolveError> {
         method.memory(&self.equations(Combination::STIFFNESS), regime)
     }
 
-    /// The equations of a combination of the matrices.
     pub(crate) fn equations(&self, combination: Combination) -> Equations<'_> {
         let Model { mesh, matrices, supports, analysis, .. } = self;
         Equations { mesh, matrices, supports, combination, analysis }
     }
 
-    /// A solver of the equations of a step in time, by the method of the model.
+    /// Solver for time steps.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`], [`SolveError::Library`], or no memory.
+    /// [`SolveError::NoStiffness`], [`SolveError::Library`], or out of memory.
     pub(crate) fn step_solver(&self, combination: Combination) -> Result<Box<dyn SystemSolver>, SolveError> {
         self.methods.dynamics.solver(&self.equations(combination), Regime::Dynamics)
     }
 
-    /// The ordering and symbolic factorization, made once and shared by all solvers of this model.
     pub(crate) fn analysis(&self) -> Result<Arc<Analysis>, SolveError> {
         self.equations(Combination::STIFFNESS).analysis()
     }

@@ -1,11 +1,11 @@
-//! The state of the solid: what a checkpoint holds. No field may be left out of it, since binary formats go by position.
+//! State of the solid in checkpoints; positional formats require every field.
 
 use crate::material::Points;
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
-/// Motion of all nodes at one time, shapes `[3 * nodes]`, and history of the material.
+/// Nodal motion, shapes `[3 * nodes]`, and material history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time [s].
@@ -16,16 +16,13 @@ pub struct State {
     pub v: Vec<f64>,
     /// Accelerations [m/s²].
     pub a: Vec<f64>,
-    /// Stress and history of the Gauss points, element by element in the order of
-    /// [`stiffness_points`](crate::element::stiffness_points), see [`Model::point_start`]. Empty for a linear model
-    /// without initial stress. Shape `[points]`.
+    /// Gauss point states, see [`Model::point_start`]; may be empty for linear models. Shape `[points]`.
     #[serde(default)]
     pub points: Points,
 }
 
 impl State {
-    /// The body at rest at time 0, undeformed but for the prescribed displacements, without stress at the Gauss points of
-    /// a plastic model.
+    /// Rest state at time 0, undeformed except prescribed displacements.
     pub fn new(model: &Model) -> State {
         let n = model.dof_count();
         let points = if model.is_linear() { Points::default() } else { model.new_points() };
@@ -36,7 +33,7 @@ impl State {
         state
     }
 
-    /// Becomes a copy of another state of the same model, without new memory but for the Gauss points.
+    /// Copies a state of the same model; only Gauss points may allocate.
     pub fn copy_from(&mut self, other: &State) {
         self.time = other.time;
         self.u.clone_from(&other.u);
@@ -46,24 +43,26 @@ impl State {
     }
 }
 
-/// What entered and left the body in one step; for the ledger of energy.
+/// Energy terms of one step, to rounding:
 ///
-/// `external_work + support_work = change of (kinetic + strain) + damping_dissipation + boundary_dissipation +
-/// plastic_dissipation + numerical_dissipation`, to rounding. The strain energy includes that of the boundary springs.
+/// ```text
+/// external_work + support_work = change of (kinetic + strain) + damping_dissipation
+///     + boundary_dissipation + plastic_dissipation + numerical_dissipation
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepAudit {
-    /// Work of the load on the displacement of the step [J].
+    /// Work of the load [J].
     pub external_work: f64,
-    /// Work of the supports on the prescribed displacements of the step [J].
+    /// Work of the supports [J].
     pub support_work: f64,
-    /// Energy taken by Rayleigh damping [J].
+    /// Rayleigh damping [J].
     pub damping_dissipation: f64,
-    /// Energy taken by boundary dashpots [J].
+    /// Boundary dashpots [J].
     pub boundary_dissipation: f64,
-    /// Energy taken by plastic flow [J].
+    /// Plastic dissipation [J].
     #[serde(default)]
     pub plastic_dissipation: f64,
-    /// Energy taken by the time integration itself [J]; negative when it feeds energy in.
+    /// Numerical dissipation [J]; negative if spurious energy is added.
     pub numerical_dissipation: f64,
 }
 

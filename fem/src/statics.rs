@@ -1,10 +1,8 @@
-//! Statics: `K u = F` with prescribed displacements, and the reactions `R = K u - F` at the supports.
+//! Statics: `K u = F`, reactions `R = K u - F`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 1.6. A body with a free rigid motion
-//! is refused from its geometry before factoring; a mechanism that only the stiffness shows (a hinge, a mode without
-//! stiffness of the reduced rule) is found by its pivot. Each solution is checked against equilibrium and corrected
-//! when rounding or the tolerance of an iteration shows. Limits: pivots below 1e-11 of the diagonal count as no stiffness, which also refuses bodies
-//! so slender (some thousand elements in a single row) or so unlike in stiffness that few digits would be left.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 1.6. Rigid-body motion is detected from geometry,
+//! mechanisms from pivots. Limits: relative pivots below 1e-11 are rejected, also for very slender bodies
+//! (some thousand elements in a row) or extreme stiffness contrast.
 
 use crate::assembly::Combination;
 use crate::boundary::spring_points;
@@ -14,35 +12,33 @@ use crate::error::SolveError;
 use crate::model::Model;
 use crate::supports::name;
 
-/// Residual over the largest force above which the solution is corrected by one more solve.
+/// Relative residual that requires correction.
 const IMPROVE: f64 = 1e-13;
-/// Solves at most.
 const CORRECTIONS: usize = 3;
-/// Residual over the largest force above which the solution is refused, unless the tolerance of an iteration is larger.
+/// Largest accepted relative residual.
 const REFUSE: f64 = 1e-6;
 
-/// A static solution. Shapes `[3 * nodes]`.
+/// Static solution. Shapes `[3 * nodes]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Static {
     /// Displacements [m].
     pub u: Vec<f64>,
-    /// Forces of the supports on the body [N]; 0 at free dofs.
+    /// Support reactions [N]; 0 at free dofs.
     pub reactions: Vec<f64>,
 }
 
-/// Holds the factor of the stiffness matrix, or what an iteration needs, for any number of loads.
+/// Static solver for any number of loads.
 pub struct StaticSolver {
     system: Box<dyn SystemSolver>,
-    /// Residual over the largest force at which no correction follows.
     enough: f64,
     nodal: Vec<f64>,
     equations: Vec<f64>,
 }
 
-/// Checks, before any solve, that no body of the model can move as a rigid body.
+/// Checks all bodies for rigid-body motion.
 ///
 /// # Errors
-/// [`SolveError::NotHeld`] names a node and direction that can move freely.
+/// [`SolveError::NotHeld`] with a free node and direction.
 pub fn check_held(model: &Model) -> Result<(), SolveError> {
     let springs = spring_points(model.mesh(), model.boundaries());
     match model.supports().free_motion_on_springs(model.mesh(), &springs) {
@@ -55,12 +51,11 @@ pub fn check_held(model: &Model) -> Result<(), SolveError> {
 }
 
 impl StaticSolver {
-    /// Checks that the body is held, and factors its stiffness or sets up conjugate gradients with smoothed aggregation, as the
-    /// model's [`methods`](Model::methods) say.
+    /// Checks the constraints and prepares the solver of [`methods`](Model::methods).
     ///
     /// # Errors
-    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`] name a node and direction that can move freely;
-    /// [`SolveError::Plastic`] refuses a plastic material; [`SolveError::Library`] names the failure of a library.
+    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`]; [`SolveError::Plastic`];
+    /// [`SolveError::Library`].
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
         check_linear(model)?;
         check_held(model)?;
@@ -71,29 +66,28 @@ impl StaticSolver {
         Ok(StaticSolver { system, enough, nodal: vec![0.0; model.dof_count()], equations })
     }
 
-    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// Memory of conjugate gradients or of a library beside that of the model [bytes].
+    /// Additional solver memory [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }
 
-    /// Displacements and reactions under `load` [N], shape `[3 * nodes]`, and the prescribed displacements of the model.
+    /// Solves for displacements and reactions under `load` [N], shape `[3 * nodes]`.
     ///
     /// # Errors
-    /// A load of the wrong length or with values that are not finite, or a solution that misses equilibrium.
+    /// Load of wrong length or not finite; equilibrium not satisfied.
     pub fn solve(&mut self, model: &Model, load: &[f64]) -> Result<Static, SolveError> {
         self.solve_prescribed(model, load, None)
     }
 
-    /// As [`StaticSolver::solve`], with other displacements [m] of the constrained dofs, in the order of
-    /// [`crate::supports::Supports::fixed`].
+    /// Like [`StaticSolver::solve`], with displacements [m] ordered as [`crate::supports::Supports::fixed`].
     ///
     /// # Errors
-    /// As [`StaticSolver::solve`], for the displacements too.
+    /// As [`StaticSolver::solve`].
     pub fn solve_prescribed(
         &mut self,
         model: &Model,
@@ -125,8 +119,7 @@ impl StaticSolver {
         Ok(Static { u, reactions })
     }
 
-    /// Adds the solution of `K du = F - K u` to u, leaves `K u` behind, and returns the dof and the size of the largest
-    /// residual against the largest force.
+    /// Returns dof and size of the largest relative residual of `F - K u`.
     fn correct(&mut self, model: &Model, load: &[f64], u: &mut [f64]) -> Result<(usize, f64), SolveError> {
         let free = model.supports().free();
         model.stiffness_times(u, &mut self.nodal);
@@ -150,7 +143,7 @@ impl StaticSolver {
     }
 }
 
-/// One static solution: builds a [`StaticSolver`], uses it once.
+/// Solves once with a new [`StaticSolver`].
 ///
 /// # Errors
 /// As [`StaticSolver::new`] and [`StaticSolver::solve`].
@@ -158,12 +151,10 @@ pub fn solve(model: &Model, load: &[f64]) -> Result<Static, SolveError> {
     StaticSolver::new(model)?.solve(model, load)
 }
 
-/// A linear solver must not be given a plastic material.
 pub(crate) fn check_linear(model: &Model) -> Result<(), SolveError> {
     model.plastic_material().map_or(Ok(()), |material| Err(SolveError::Plastic { material }))
 }
 
-/// A load must have a finite value for every dof.
 pub(crate) fn check_load(model: &Model, load: &[f64], time: f64) -> Result<(), SolveError> {
     if load.len() != model.dof_count() {
         return Err(SolveError::Length { what: "load", found: load.len(), expected: model.dof_count() });
@@ -171,7 +162,6 @@ pub(crate) fn check_load(model: &Model, load: &[f64], time: f64) -> Result<(), S
     check_finite(model, "the load", load, time)
 }
 
-/// Prescribed displacements must have a finite value for every constrained dof.
 pub(crate) fn check_prescribed(
     model: &Model,
     prescribed: Option<&[f64]>,
@@ -191,7 +181,6 @@ pub(crate) fn check_prescribed(
     }
 }
 
-/// Names the first value that is not finite.
 pub(crate) fn check_finite(
     model: &Model,
     what: &'static str,

@@ -1,11 +1,8 @@
-//! Stress recovery. Components xx, yy, zz, xy, yz, zx [Pa], tension positive.
+//! Stress recovery: xx, yy, zz, xy, yz, zx [Pa], tension positive.
 //!
-//! Nodal stresses: the stress at the eight points of the 2×2×2 rule, where that of the hex20 is one order better than
-//! elsewhere (Barlow, Int. J. Numer. Methods Eng. 10 (1976) 243-251), is continued to the nodes by the trilinear
-//! polynomial through those points, for both rules of the stiffness. At a shared node the mean over the elements of each
-//! material is formed first, then the mean over the materials, so that a layer with many small elements does not
-//! outweigh its neighbour. Limits: at a material border the true stress jumps in some components; the mean hides that, and
-//! [`at_natural`] on either side shows it.
+//! Stresses at the 2×2×2 points, superconvergent in the hex20 (Barlow 1976), are extrapolated trilinearly to
+//! the nodes. Shared nodes average over elements of each material, then over materials. Limits: stress jumps
+//! at material interfaces are averaged; see [`at_natural`].
 
 use crate::element::quadrature::{GAUSS2, LINE2, PYRAMID8, Quadrature};
 use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
@@ -17,20 +14,19 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// Stress at the points of the model's rule in element `element` (index), in the order of the rule.
+/// Stress at the integration points of an element (index).
 pub fn gauss(model: &Model, u: &[f64], element: usize) -> Vec<[f64; 6]> {
     let points = stiffness_points(model.mesh().connectivity.kind(element), model.quadrature());
     at_points(model, u, element, points.iter().map(|p| p.xi))
 }
 
-/// Stress at the natural point `xi` of element `element` (index).
+/// Stress at the natural point `xi` of an element (index).
 pub fn at_natural(model: &Model, u: &[f64], element: usize, xi: [f64; 3]) -> [f64; 6] {
     let strains = model.element_strains(element);
     let strain = strains.strain(&strains.at(xi), &model.mesh().element_values(element, u));
     model.elastic(element).stress(&strain)
 }
 
-/// Stresses at natural points of element `element` (index).
 fn at_points(
     model: &Model,
     u: &[f64],
@@ -42,7 +38,6 @@ fn at_points(
     points.map(|xi| model.elastic(element).stress(&strains.strain(&strains.at(xi), &moved))).collect()
 }
 
-/// Natural points whose stresses are extrapolated to the nodes of a kind of element.
 pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
     match kind {
         ElementKind::Hex20 | ElementKind::Hex8 => GAUSS2.map(|p| p.0).to_vec(),
@@ -50,13 +45,13 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
             mass_points(ElementKind::Wedge6).iter().map(|p| p.xi).collect()
         }
         ElementKind::Tet10 => stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect(),
-        // Not the nodes: at the apex of a pyramid the stress of the element has no limit.
+        // Not the nodes: stress has no limit at the apex.
         ElementKind::Pyramid13 => PYRAMID8.map(|p| p.0).to_vec(),
         ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
     }
 }
 
-/// Stress at every node, extrapolated and averaged as stated above. Shape `[nodes][6]`.
+/// Averaged nodal stress. Shape `[nodes][6]`.
 pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
     nodal_mean(model, |e| {
         let kind = model.mesh().connectivity.kind(e);
@@ -65,12 +60,9 @@ pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
     })
 }
 
-/// Nodal values from values at the Gauss points, `of_point(element, index in State::points)`: the linear (on hexahedra
-/// trilinear) least-squares fit through the points of each element, averaged over the elements of each material, then over
-/// the materials. Shape `[nodes][C]`.
+/// Averaged nodal values of `of_point(element, index in State::points)`. Shape `[nodes][C]`.
 ///
-/// Under the 2×2×2 rule the fit goes through the points. A fit in place of an interpolation, because plastic stresses are not
-/// smooth within an element.
+/// Least squares per element, as plastic stresses are not smooth; exact for the 2×2×2 rule.
 pub fn nodal_from_points<const C: usize>(
     model: &Model,
     of_point: impl Fn(usize, usize) -> [f64; C] + Send + Sync,
@@ -91,18 +83,17 @@ pub fn nodal_from_points<const C: usize>(
     })
 }
 
-/// Stress at every node from the states of the points. Shape `[nodes][6]`.
+/// Nodal stress from point states. Shape `[nodes][6]`.
 pub fn nodal_of_points(model: &Model, state: &State) -> Vec<[f64; 6]> {
     nodal_from_points(model, |_, p| state.points[p].stress)
 }
 
-/// Equivalent plastic strain at every node [-], not below 0. Shape `[nodes]`.
+/// Nodal equivalent plastic strain [-], not below 0. Shape `[nodes]`.
 pub fn nodal_kappa(model: &Model, state: &State) -> Vec<f64> {
     nodal_from_points(model, |_, p| [state.points[p].kappa]).into_iter().map(|[k]| k.max(0.0)).collect()
 }
 
-/// Yield function at every node [Pa], at most 0 at the points and near them; minus infinity at nodes of an element without
-/// plasticity. Shape `[nodes]`.
+/// Nodal yield function [Pa]; minus infinity next to elastic elements. Shape `[nodes]`.
 pub fn nodal_yield_function(model: &Model, state: &State) -> Vec<f64> {
     nodal_from_points(model, |e, p| {
         let point = model.point(&state.points, e, p - model.point_start(e));
@@ -113,7 +104,7 @@ pub fn nodal_yield_function(model: &Model, state: &State) -> Vec<f64> {
     .collect()
 }
 
-/// Where the middle of element `element` (index) is [m], and the mean of the stresses of its points over its volume [Pa].
+/// Centre [m] and mean stress [Pa] of an element (index).
 pub fn centroid_of_points(model: &Model, state: &State, element: usize) -> ([f64; 3], [f64; 6]) {
     let mesh = model.mesh();
     let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
@@ -131,7 +122,7 @@ pub fn centroid_of_points(model: &Model, state: &State, element: usize) -> ([f64
     (centre, mean.map(|m| m / volume))
 }
 
-/// Weights of the Gauss points at each node in the least-squares fit. Shape `[nodes][points]`.
+/// Least-squares weights. Shape `[nodes][points]`.
 fn fit_weights(kind: ElementKind, rule: Quadrature) -> &'static [Vec<f64>] {
     static TABLES: [[OnceLock<Vec<Vec<f64>>>; 3]; 8] = [const { [const { OnceLock::new() }; 3] }; 8];
     TABLES[kind as usize][rule as usize].get_or_init(|| {
@@ -148,7 +139,7 @@ fn fit_weights(kind: ElementKind, rule: Quadrature) -> &'static [Vec<f64>] {
         };
         let points: Vec<Vec<f64>> = stiffness_points(kind, rule).iter().map(|p| terms(p.xi)).collect();
         let a = DMatrix::from_fn(points.len(), points[0].len(), |i, j| points[i][j]);
-        // The points of every rule tell these polynomials apart, so the normal matrix can be inverted.
+        // Invertible: the points of every rule separate these polynomials.
         let fit = (a.transpose() * &a).try_inverse().map(|inverse| inverse * a.transpose());
         let weights = |x: &[f64; 3]| {
             let at = DMatrix::from_row_slice(1, points[0].len(), &terms(*x));
@@ -161,8 +152,7 @@ fn fit_weights(kind: ElementKind, rule: Quadrature) -> &'static [Vec<f64>] {
     })
 }
 
-/// Averages nodal values of elements: first over the elements of each material, then over the materials.
-/// `of_element(e)` gives the values at the nodes of element e. Shape `[nodes][C]`.
+/// Averages `of_element(e)` over elements of each material, then over materials. Shape `[nodes][C]`.
 pub(crate) fn nodal_mean<const C: usize>(
     model: &Model,
     of_element: impl Fn(usize) -> [[f64; C]; MAX_NODES] + Send + Sync,
@@ -170,7 +160,6 @@ pub(crate) fn nodal_mean<const C: usize>(
     let mesh = model.mesh();
     let elements: Vec<[[f64; C]; MAX_NODES]> =
         (0..mesh.element_count()).into_par_iter().map(of_element).collect();
-    // Sum and count per node and material, in element order.
     let mut sums: Vec<BTreeMap<u32, ([f64; C], u32)>> = vec![BTreeMap::new(); mesh.node_count()];
     for (e, values) in elements.iter().enumerate() {
         for (&node, value) in mesh.connectivity[e].iter().zip(values) {
@@ -192,15 +181,14 @@ pub(crate) fn nodal_mean<const C: usize>(
         .collect()
 }
 
-/// Equivalent stress of von Mises [Pa].
+/// Von Mises stress [Pa].
 pub fn von_mises(s: &[f64; 6]) -> f64 {
     let normal = (s[0] - s[1]).powi(2) + (s[1] - s[2]).powi(2) + (s[2] - s[0]).powi(2);
     (0.5 * normal + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt()
 }
 
-/// Values at the sampling points of a kind → values at its nodes: by the trilinear polynomial through the points of a
-/// hexahedron, the linear one (times linear along the axis of a wedge) through those of the others, in the sense of least
-/// squares for the pyramid13; one value for the pyramid5 and the tet4.
+/// Extrapolates to nodes: trilinear (hexahedra), linear (others), least squares (pyramid13), constant
+/// (pyramid5, tet4).
 pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]) -> [[f64; C]; MAX_NODES] {
     let mut nodes = [[0.0; C]; MAX_NODES];
     for (value, node) in nodes.iter_mut().zip(kind.natural()) {
@@ -214,7 +202,6 @@ pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]
     nodes
 }
 
-/// Weight of sampling point `i` at the natural point `x`.
 fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
     match kind {
         ElementKind::Hex20 | ElementKind::Hex8 => {
@@ -222,14 +209,14 @@ fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
             (0..3).map(|k| 0.5 * (1.0 + x[k] * xi[k] / LINE2[1].0.powi(2))).product()
         }
         ElementKind::Wedge15 | ElementKind::Wedge6 => {
-            // The three points of the triangle are 1/6, 1/6, 2/3 in its area coordinates.
+            // Triangle points: 1/6, 1/6, 2/3 in area coordinates.
             let p = mass_points(ElementKind::Wedge6)[i].xi;
             let area = |at: [f64; 3]| [1.0 - at[0] - at[1], at[0], at[1]];
             let corner = (0..3).max_by(|a, b| area(p)[*a].total_cmp(&area(p)[*b])).unwrap_or(0);
             (2.0 * area(x)[corner] - 1.0 / 3.0) * 0.5 * (1.0 + x[2] * p[2] / LINE2[1].0.powi(2))
         }
         ElementKind::Tet10 => {
-            // The four points are (5 - √5)/20 and once (5 + 3√5)/20 in volume coordinates.
+            // Points: (5 - √5)/20 and once (5 + 3√5)/20 in volume coordinates.
             let p = stiffness_points(ElementKind::Tet10, Quadrature::Gauss2)[i].xi;
             let volume = |at: [f64; 3]| [1.0 - at[0] - at[1] - at[2], at[0], at[1], at[2]];
             let corner = (0..4).max_by(|a, b| volume(p)[*a].total_cmp(&volume(p)[*b])).unwrap_or(0);
@@ -237,7 +224,7 @@ fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
             (volume(x)[corner] - far) / (near - far)
         }
         ElementKind::Pyramid13 => {
-            // Least squares through the eight points: the constant, x, y and t - middle are orthogonal on them.
+            // Constant, x, y and t - middle are orthogonal on the points.
             let middle = PYRAMID8.iter().map(|p| p.0[2]).sum::<f64>() / 8.0;
             let functions = |at: [f64; 3]| [1.0, at[0], at[1], at[2] - middle];
             let term = |k: usize| {
@@ -255,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn extrapolation_is_exact_for_the_polynomials_of_each_kind() {
+    fn extrapolation_is_exact_for_polynomials() {
         for kind in ElementKind::ALL {
             let field = |x: [f64; 3]| match kind.linear() {
                 ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
@@ -272,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fit_through_the_points_keeps_its_polynomials_under_every_rule() {
+    fn fit_reproduces_polynomials() {
         for kind in ElementKind::ALL {
             let field = |x: [f64; 3]| match kind.linear() {
                 ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],

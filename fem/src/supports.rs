@@ -1,29 +1,24 @@
-//! Supports: prescribed displacements, the numbering of the free dofs, and the check that a body is held.
+//! Supports: prescribed displacements, numbering of free dofs, rigid-body check.
 //!
-//! A dof is `3 * node + direction`. Constrained dofs keep their prescribed value for the whole run and are left out of
-//! the equations; the reaction there is what the equations leave over.
-//!
-//! A body (elements joined by nodes) is held when no rigid motion is compatible with its supports: the six rigid
-//! motions, restricted to the supported dofs, must be linearly independent. That is decided from the geometry alone,
-//! through the eigenvalues of their 6×6 Gram matrix, before anything is factored. Limits: supports gathered within a
-//! millionth of the body's size count as one point; bodies hinged at a shared node or edge are left to the pivots of the
-//! factorization.
+//! A body is constrained if the six rigid motions are linearly independent on the supported dofs (eigenvalues
+//! of the 6×6 Gram matrix). Limits: supports within a millionth of the body size count as one point; hinges
+//! are detected by pivots.
 
 use crate::boundary::SpringPoint;
 use crate::error::ModelError;
 use crate::mesh::{Constraint, Mesh};
 use nalgebra::{Matrix6, Vector6};
 
-/// Names of the directions, for messages.
+/// Names of the directions.
 pub const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 
-/// Marks a constrained dof in [`Supports::free_index`].
+/// Constrained dof in [`Supports::free_index`].
 pub const CONSTRAINED: u32 = u32::MAX;
 
-/// Ratio of the smallest to the largest eigenvalue below which a rigid motion counts as free: (1e-6)².
+/// Eigenvalue ratio of a free rigid motion: (1e-6)².
 const FREE_MOTION: f64 = 1e-12;
 
-/// The supports of a mesh, checked and numbered.
+/// Numbered supports of a mesh.
 #[derive(Clone, Debug)]
 pub struct Supports {
     fixed: Vec<(u32, f64)>,
@@ -32,10 +27,10 @@ pub struct Supports {
 }
 
 impl Supports {
-    /// Checks and numbers the constraints. Repeated equal constraints are merged.
+    /// Checks and numbers the constraints, merging duplicates.
     ///
     /// # Errors
-    /// A node or direction out of range, a value that is not finite, or two different values for one dof.
+    /// Node or direction out of range, value not finite, or contradiction.
     pub fn new(mesh: &Mesh, constraints: &[Constraint]) -> Result<Supports, ModelError> {
         let mut fixed = Vec::with_capacity(constraints.len());
         for (index, c) in constraints.iter().enumerate() {
@@ -75,12 +70,12 @@ impl Supports {
         Ok(Supports { fixed, free, free_index })
     }
 
-    /// Constrained dofs in ascending order, with the prescribed displacement [m].
+    /// Constrained dofs, ascending, with displacements [m].
     pub fn fixed(&self) -> &[(u32, f64)] {
         &self.fixed
     }
 
-    /// Free dofs in ascending order: equation number → dof.
+    /// Free dofs, ascending: equation number → dof.
     pub fn free(&self) -> &[u32] {
         &self.free
     }
@@ -90,27 +85,26 @@ impl Supports {
         &self.free_index
     }
 
-    /// Takes the entries of the free dofs out of a nodal vector. Shapes `[3 * nodes]` and `[equations]`.
+    /// Gathers free dofs. Shapes `[3 * nodes]` and `[equations]`.
     pub fn gather(&self, nodal: &[f64], equations: &mut [f64]) {
         for (e, &dof) in equations.iter_mut().zip(&self.free) {
             *e = nodal[dof as usize];
         }
     }
 
-    /// Puts equation values into the free dofs of a nodal vector; constrained dofs stay as they are.
+    /// Scatters equation values to free dofs.
     pub fn scatter(&self, equations: &[f64], nodal: &mut [f64]) {
         for (e, &dof) in equations.iter().zip(&self.free) {
             nodal[dof as usize] = *e;
         }
     }
 
-    /// A node (by index) and direction that the supports leave free to move with a body, if there is one: where the free
-    /// rigid motion is largest.
+    /// Node index and direction of the largest free rigid motion.
     pub fn free_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
         self.free_motion_on_springs(mesh, &[])
     }
 
-    /// As [`Supports::free_motion`], where springs hold the body too; how stiff they are does not matter.
+    /// Like [`Supports::free_motion`], with springs of any stiffness.
     pub fn free_motion_on_springs(&self, mesh: &Mesh, springs: &[SpringPoint]) -> Option<(usize, usize)> {
         let body = bodies(mesh);
         let count = body.iter().max().map_or(0, |b| b + 1);
@@ -140,7 +134,7 @@ impl Supports {
         let offset = |x: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| x[k] - centre[k]) };
         let size =
             nodes.iter().flat_map(|&n| offset(mesh.coordinates[n])).fold(0.0, |m: f64, v| m.max(v.abs()));
-        // Displacement of a dof under the unit translations and the rotations that move the body's edge by one.
+        // Unit translations, and rotations that move the body's edge by one.
         let row_at = |point: [f64; 3], direction: usize| -> Vector6<f64> {
             let r = offset(point).map(|v| v / size);
             let turn = match direction {
@@ -176,7 +170,7 @@ impl Supports {
         for &n in nodes {
             for k in (0..3).filter(|k| self.free_index[3 * n + k] != CONSTRAINED) {
                 let moved = row(n, k).dot(&motion).abs();
-                // A margin, so that rounding does not choose between nodes that move alike.
+                // Margin against rounding between equal motions.
                 if moved > worst.0 * (1.0 + 1e-9) {
                     worst = (moved, (n, k));
                 }
@@ -186,12 +180,11 @@ impl Supports {
     }
 }
 
-/// Number (as in the user's files) and direction name of a dof.
 pub(crate) fn name(mesh: &Mesh, dof: usize) -> (u32, &'static str) {
     (mesh.node_ids[dof / 3], DIRECTIONS[dof % 3])
 }
 
-/// Body number of each node: nodes joined by elements belong together. Numbered in order of their first node.
+/// Body number of each node.
 fn bodies(mesh: &Mesh) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
     fn root(parent: &mut [usize], mut n: usize) -> usize {
@@ -239,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_free_rigid_motion_is_found_and_named() {
+    fn finds_free_rigid_motion() {
         let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
         let held = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
         assert_eq!(held.free_motion(&mesh), None);
@@ -247,7 +240,7 @@ mod tests {
         assert_eq!(sliding.free_motion(&mesh).unwrap().1, 0);
         let none = Supports::new(&mesh, &[]).unwrap();
         assert!(none.free_motion(&mesh).is_some());
-        // Six constraints placed rightly hold a body; two of them on one line leave a turn.
+        // Six constraints hold a body; two on one line leave a rotation.
         let node = |x: f64, y: f64, z: f64| {
             mesh.coordinates.iter().position(|c| *c == [x, y, z]).expect("a corner of the block") as u32
         };
@@ -262,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_body_of_two_is_checked_too() {
+    fn checks_second_body() {
         let mut mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         let other = Mesh::block([1, 1, 1], [1.0; 3]);
         mesh.coordinates.extend(other.coordinates.iter().map(|c| [c[0] + 5.0, c[1], c[2] + 1.0]));
@@ -274,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn contradictions_are_refused_and_repeats_are_merged() {
+    fn rejects_contradictions_and_merges_duplicates() {
         let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
         let c = |value| Constraint { node: 3, direction: 1, value };
         assert_eq!(Supports::new(&mesh, &[c(0.1), c(0.1)]).unwrap().fixed(), &[(10, 0.1)]);

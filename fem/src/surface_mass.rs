@@ -1,25 +1,23 @@
-//! The mass matrix of the nodes next to a surface, for quantities that decay within few elements of it.
+//! Mass matrix near a surface.
 //!
-//! M⁻¹ of a consistent mass decays exponentially with the distance in elements (Demko, Moss and Smith, Math. Comp. 43 (1984)
-//! 491), so what a load on the surface accelerates in an instant is found from the elements at the surface alone.
+//! M⁻¹ of a consistent mass decays exponentially with element distance (Demko, Moss and Smith, Math. Comp. 43
+//! (1984) 491), so surface elements suffice for instantaneous accelerations.
 
 use crate::model::Model;
 
-/// Principal part of the mass matrix: some nodes and what couples them.
+/// Principal submatrix of the mass.
 #[derive(Clone, Debug)]
 pub struct SurfaceMass {
-    /// Node of the model for each row.
     nodes: Vec<u32>,
     row_start: Vec<usize>,
     column: Vec<u32>,
-    /// Entries from the diagonal on by rows [kg].
     mass: Vec<f64>,
-    /// 1 for free dofs, 0 for constrained ones. Shape `[rows][3]`.
+    /// 1 if free, else 0. Shape `[rows][3]`.
     free: Vec<[f64; 3]>,
 }
 
 impl SurfaceMass {
-    /// The part for all nodes of some elements.
+    /// Submatrix for all nodes of some elements.
     pub fn new(model: &Model, elements: impl Iterator<Item = u32>) -> SurfaceMass {
         let mesh = model.mesh();
         let mut nodes: Vec<u32> =
@@ -70,7 +68,7 @@ impl SurfaceMass {
         diagonal.zip(&self.free).map(|(m, free)| free.map(|f| f * m)).collect()
     }
 
-    /// `y = M x`, constrained dofs left out. Shapes `[rows][3]`.
+    /// `y = M x` on free dofs. Shapes `[rows][3]`.
     pub fn times(&self, x: &[[f64; 3]], y: &mut [[f64; 3]]) {
         y.fill([0.0; 3]);
         for p in 0..x.len() {
@@ -96,7 +94,6 @@ mod tests {
     use super::*;
     use crate::{Constraint, Elastic, Mesh, ModelInput};
 
-    /// All elements of a block: the product is that of the whole matrix where nothing is held.
     #[test]
     fn whole_block_gives_the_whole_product() {
         let elastic = Elastic { young: 2e7, poisson: 0.3, density: 2000.0 };

@@ -1,4 +1,4 @@
-//! Failures of the program as exceptions.
+//! Failures as Python exceptions.
 
 use pyo3::PyErr;
 use pyo3::create_exception;
@@ -12,7 +12,7 @@ create_exception!(
     "A run that has failed numerically: what, where, when, and where its last checkpoint is."
 );
 
-/// The exception for a failure, with the program's sentences.
+/// Converts a failure with its sentences.
 pub fn raised(failure: &Failure) -> PyErr {
     let text = failure.sentences().join("\n");
     match failure {

@@ -1,4 +1,4 @@
-//! What the Python package takes from the program: runs, checks, stepwise simulations.
+//! Python module: runs, checks, stepwise simulations.
 
 mod errors;
 mod link;
@@ -12,7 +12,7 @@ use std::ffi::OsString;
 #[pymodule]
 fn _trackbed(m: &Bound<'_, PyModule>) -> PyResult<()> {
     trackbed::guard::install();
-    // Runs of a study are processes of their own.
+    // Studies start separate processes.
     let python: String = m.py().import("sys")?.getattr("executable")?.extract()?;
     trackbed::program::started_by([python, "-m".into(), "trackbed".into()].map(OsString::from).to_vec());
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -36,7 +36,7 @@ fn command(py: Python<'_>, words: Vec<String>) -> u8 {
         let cli = match cli::Cli::try_parse_from(words) {
             Ok(cli) => cli,
             Err(error) => {
-                // Where nobody listens there is nothing to do about it.
+                // Output may be closed.
                 let _ = error.print();
                 return u8::try_from(error.exit_code()).unwrap_or(2);
             }

@@ -1,5 +1,4 @@
-//! The link between a run on its thread and the interpreter: the run pauses after a window, carries out what it is asked to look at,
-//! and goes on.
+//! Link between run thread and interpreter: a paused run executes requests.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
@@ -8,68 +7,67 @@ use trackbed::failure::Failure;
 use trackbed::run::{Companion, Outcome, Shown};
 use trackbed_dem as dem;
 
-/// What a paused run carries out with its state.
+/// Request executed on a paused run.
 pub type Look = Box<dyn FnOnce(&Shown<'_>) + Send>;
 
-/// How far a run goes.
+/// Target of a run.
 #[derive(Clone, Copy, Debug)]
 pub enum Goal {
-    /// So many windows, or the last.
+    /// Number of windows, or the end.
     Windows(u64),
-    /// The first window that ends at this time or later [s], or the last.
+    /// First window ending at or after this time [s].
     Time(f64),
-    /// Its end.
+    /// End.
     End,
 }
 
-/// What a paused run is to do.
+/// Command to a paused run.
 pub enum Order {
-    /// Carry this out.
+    /// Execute.
     Look(Look),
-    /// Go on.
+    /// Continue.
     Go(Goal),
 }
 
-/// What a run reports.
+/// Report of a run.
 pub enum Report {
-    /// It waits for orders.
+    /// Paused.
     Paused(Place),
-    /// It has ended.
+    /// Ended.
     Ended(Result<Outcome, Failure>),
 }
 
-/// Where a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
-    /// Time since the start of the main loop [s].
+    /// Main-loop time [s].
     pub time: f64,
-    /// Windows done.
+    /// Completed windows.
     pub done: u64,
-    /// Windows of the whole loop, as far as is known.
+    /// Expected total of windows.
     pub windows: u64,
 }
 
-/// A force on a body, through its centre of mass [N].
+/// Force on a body at its centre [N].
 #[derive(Clone, Copy, Debug)]
 pub struct Push {
-    /// Body (index).
+    /// Body index.
     pub body: usize,
     /// Force [N].
     pub force: [f64; 3],
 }
 
-/// The run's end of the link.
+/// Run side of the link.
 pub struct Link {
     goal: Mutex<Goal>,
     orders: Mutex<Receiver<Order>>,
     reports: Sender<Report>,
     pushes: Mutex<Vec<Push>>,
-    /// Whether it is to pause after the present window, whatever its goal.
     pause: AtomicBool,
 }
 
 impl Link {
-    /// A link that pauses before the first window.
+    /// Creates a link that pauses before the first window.
     pub fn new(orders: Receiver<Order>, reports: Sender<Report>) -> Link {
         Link {
             goal: Mutex::new(Goal::Windows(0)),
@@ -80,18 +78,18 @@ impl Link {
         }
     }
 
-    /// Has the run pause after its present window.
+    /// Pauses the run after its current window.
     pub fn pause(&self) {
         self.pause.store(true, Ordering::Relaxed);
     }
 
-    /// Forces that act in every step.
+    /// Returns the forces applied in each step.
     pub fn pushes(&self) -> MutexGuard<'_, Vec<Push>> {
         locked(&self.pushes)
     }
 }
 
-/// What a lock holds; nobody leaves it half changed.
+/// Locks a mutex; its data are never left inconsistent.
 pub fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -105,7 +103,7 @@ impl Companion for Link {
                 *left = left.saturating_sub(1);
                 *left == 0 || last
             }
-            // A window that ends at the time but for the rounding of the sum.
+            // Tolerance for rounding of the summed time.
             Goal::Time(time) => shown.time >= *time * (1.0 - 1e-12) || last,
             Goal::End => false,
         };
@@ -114,7 +112,7 @@ impl Companion for Link {
         }
         let orders = locked(&self.orders);
         let place = Place { time: shown.time, done: shown.done, windows: shown.windows };
-        // Where nobody listens any more the run has been asked to stop, and does so after this window.
+        // Without a receiver, a stop is requested.
         if self.reports.send(Report::Paused(place)).is_err() {
             return Ok(());
         }

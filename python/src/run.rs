@@ -1,4 +1,4 @@
-//! Whole runs, checks and estimates.
+//! Whole runs, checks, estimates.
 
 use crate::errors::raised;
 use pyo3::prelude::*;
@@ -12,10 +12,9 @@ use trackbed::failure::Failure;
 use trackbed::run::{self as running, Interrupt, Options, Outcome, Verbosity};
 use trackbed::scene;
 
-/// Time between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Options of a run, as Python gives them.
+/// Converts Python arguments to run options.
 #[expect(clippy::too_many_arguments, reason = "one for each option of the program")]
 pub fn options(
     out: Option<PathBuf>,
@@ -50,10 +49,10 @@ pub fn options(
     })
 }
 
-/// The folder of the results of a run that has ended.
+/// Returns the results directory.
 ///
 /// # Errors
-/// What ended it.
+/// Failures of the run.
 pub fn folder(outcome: Result<Outcome, Failure>) -> PyResult<PathBuf> {
     match outcome {
         Ok(Outcome::Done(summary)) => Ok(summary.dir.clone()),
@@ -62,14 +61,14 @@ pub fn folder(outcome: Result<Outcome, Failure>) -> PyResult<PathBuf> {
     }
 }
 
-/// Reports of a thread, which may be waited for without the interpreter.
+/// Receiver usable without the interpreter.
 pub type Reports<T> = Mutex<Receiver<T>>;
 
-/// Waits for a report without holding the interpreter. A signal, such as Ctrl-C, makes the `request`; its exception comes with the
-/// report.
+/// Waits for a report without the interpreter lock. Signals raise `request`; their exception is returned with
+/// the report.
 ///
 /// # Errors
-/// The thread has ended without a report.
+/// Thread ended without a report.
 pub fn wait<T: Send>(
     py: Python<'_>,
     reports: &Reports<T>,
@@ -119,13 +118,13 @@ pub fn run(
     let (send, reports) = mpsc::channel();
     let worker = thread::spawn(move || {
         let outcome = trackbed::guard::guarded(|| running::run(&scene, &options));
-        // Who waits is there until this has come.
+        // The receiver waits for this.
         let _ = send.send(outcome);
     });
     let (outcome, signal) = wait(py, &Mutex::new(reports), || interrupt.request())?;
     // It has reported and ends.
     let _ = worker.join();
-    // A run that was just done when it was to stop is done, but who pressed Ctrl-C wants to hear of it.
+    // Ctrl-C is raised although the run completed.
     folder(outcome).and_then(|dir| signal.map_or(Ok(dir), Err))
 }
 

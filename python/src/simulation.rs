@@ -1,4 +1,4 @@
-//! A run that is advanced from Python.
+//! Stepwise simulation.
 
 use crate::link::{Goal, Link, Order, Place, Push, Report};
 use crate::run::{Reports, folder, options, wait};
@@ -21,7 +21,7 @@ pub struct Simulation {
     worker: Option<JoinHandle<()>>,
     interrupt: Interrupt,
     place: Place,
-    /// Folder of the results, once they are complete.
+    /// Set once complete.
     folder: Option<PathBuf>,
 }
 
@@ -52,7 +52,7 @@ impl Simulation {
         options.accompanied = Accompanied(Some(link.clone()));
         let worker = thread::spawn(move || {
             let outcome = trackbed::guard::guarded(|| running::run(&scene, &options));
-            // Nobody may be there any more.
+            // The receiver may be gone.
             let _ = send.send(Report::Ended(outcome));
         });
         let mut simulation = Simulation {
@@ -64,7 +64,7 @@ impl Simulation {
             place: Place::default(),
             folder: None,
         };
-        // Until the bed is there the run keeps where it is and ends.
+        // While packing, the run saves and stops.
         let (report, signal) = wait(py, &simulation.reports, || simulation.interrupt.request())?;
         simulation.take(report)?;
         signal.map_or(Ok(simulation), Err)
@@ -293,7 +293,6 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Lets the run go on and waits until it pauses or ends.
     fn go(&mut self, py: Python<'_>, goal: Goal) -> PyResult<()> {
         if self.finished() { Ok(()) } else { self.send(py, goal) }
     }
@@ -306,7 +305,6 @@ impl Simulation {
         signal.map_or(Ok(()), Err)
     }
 
-    /// Takes a report in.
     fn take(&mut self, report: Report) -> PyResult<()> {
         match report {
             Report::Paused(place) => self.place = place,
@@ -319,7 +317,6 @@ impl Simulation {
         Ok(())
     }
 
-    /// Has the paused run look at something.
     fn look<T: Send + 'static>(
         &self,
         look: impl FnOnce(&Shown<'_>) -> PyResult<T> + Send + 'static,
@@ -327,7 +324,7 @@ impl Simulation {
         let orders = self.orders.as_ref().ok_or_else(closed)?;
         let (send, seen) = mpsc::channel();
         let task = Box::new(move |shown: &Shown<'_>| {
-            // Who has asked waits.
+            // The requester waits.
             let _ = send.send(look(shown));
         });
         orders.send(Order::Look(task)).map_err(|_| closed())?;
@@ -344,7 +341,7 @@ impl Simulation {
         })
     }
 
-    /// An array with a row for each body, filled in place.
+    /// One row per body, filled in place.
     fn rows<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -360,7 +357,6 @@ impl Simulation {
         })
     }
 
-    /// An array with a row for each node, filled in place.
     fn nodal<'py>(
         &self,
         py: Python<'py>,
@@ -382,7 +378,7 @@ impl Simulation {
         })
     }
 
-    /// Fills an array, of the caller or a new one, without a copy in between.
+    /// Without copying.
     fn fill<'py>(
         &self,
         py: Python<'py>,
@@ -408,10 +404,10 @@ impl Simulation {
         })?;
         let lent = Lent(values.as_mut_ptr(), values.len());
         self.look(move |shown| {
-            // As a whole: parts of it alone could not be sent.
+            // Fields alone are not `Send`.
             let lent = lent;
             let Lent(start, count) = lent;
-            // SAFETY: the array is borrowed exclusively, and its slice lives, until the caller, which waits for this, goes on.
+            // SAFETY: exclusively borrowed and alive while the caller waits.
             fill(shown, unsafe { std::slice::from_raw_parts_mut(start, count) });
             Ok(())
         })?;
@@ -419,7 +415,6 @@ impl Simulation {
         Ok(array)
     }
 
-    /// A value for each body.
     fn list<'py, T: Element + Copy + Send + 'static>(
         &self,
         py: Python<'py>,
@@ -431,12 +426,11 @@ impl Simulation {
         Ok(PyArray1::from_vec(py, self.grains(all)?))
     }
 
-    /// Stops the run and waits for its end.
     fn stop(&mut self, py: Python<'_>) {
         self.interrupt.request();
         self.orders = None;
         if let Some(worker) = self.worker.take() {
-            // What it reports concerns nobody any more.
+            // Its report is not needed.
             let _ = py.detach(|| worker.join());
         }
     }
@@ -448,13 +442,12 @@ impl Drop for Simulation {
     }
 }
 
-/// Values of an array whose owner waits.
+/// The owner waits.
 struct Lent(*mut f64, usize);
 
-// SAFETY: the owner waits while they are used elsewhere.
+// SAFETY: the owner waits.
 unsafe impl Send for Lent {}
 
-/// A table of rows.
 fn table<'py, T: Element + Copy, const N: usize>(
     py: Python<'py>,
     rows: &[[T; N]],

@@ -1,4 +1,4 @@
-//! The command line of `convert`.
+//! Arguments of `convert`.
 
 use clap::Args;
 use std::path::PathBuf;

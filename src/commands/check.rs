@@ -1,4 +1,4 @@
-//! `trackbed check`: reads and resolves everything that a run would, runs nothing, and reports what would happen.
+//! `trackbed check`: resolves and reports a scene.
 
 use crate::failure::Failure;
 use crate::model::exchange::{self, CouplingPart, Windows};
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use trackbed_dem as dem;
 
-/// What a run of a scene would do: as lines, and as numbers by name.
+/// Report of a scene: lines, and numbers by name.
 pub struct Report {
     title: String,
     lines: Vec<String>,
@@ -21,12 +21,12 @@ pub struct Report {
 }
 
 impl Report {
-    /// For people.
+    /// Formats as text.
     pub fn text(&self) -> String {
         self.lines.iter().fold(format!("{}\n", self.title), |text, line| text + "  " + line + "\n")
     }
 
-    /// For programs: JSON with `title`, `findings`, `solid`, `grains`, `coupling` (null where a scene has none) and the `lines`.
+    /// Formats as JSON: `title`, `findings`, `solid`, `grains`, `coupling`, `lines`.
     pub fn json(&self) -> String {
         let mut all = self.numbers.clone();
         all["title"] = json!(self.title);
@@ -34,12 +34,10 @@ impl Report {
         format!("{all:#}\n")
     }
 
-    /// Adds a line.
     pub(super) fn add(&mut self, line: String) {
         self.lines.push(line);
     }
 
-    /// Adds how long a run will take.
     pub(super) fn estimate(&mut self, estimate: &Estimate) {
         self.lines.push(estimate.line());
         self.numbers["time"] = json!({
@@ -53,16 +51,16 @@ impl Report {
 /// Validates a scene.
 ///
 /// # Errors
-/// The same bad input that a run would refuse.
+/// Input errors of a run.
 pub fn check(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
     let (document, job) = read(scene, set)?;
     report(&document, &job, memory, strict)
 }
 
-/// A scene with overrides, resolved.
+/// Resolves a scene with overrides.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
     let mut document = Document::open(scene)?;
     for assignment in set {
@@ -73,11 +71,10 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
     Ok((document, job))
 }
 
-/// What a run of a scene would do.
+/// Reports a scene.
 ///
 /// # Errors
-/// Bad input that shows only when models are made; a solid that needs more than `memory` [bytes]; where it is `strict`, values
-/// that are not plausible.
+/// Input errors; more than `memory` [bytes]; implausible values if `strict`.
 pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
     let mut findings = plausible::weigh(&document.read()?, job);
     findings.extend(plausible::near_mode(job));
@@ -110,12 +107,10 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
     Ok(Report { title: job.title.clone(), lines, numbers })
 }
 
-/// Whether a line has a value that is beyond what a number holds.
 fn has_no_number(line: &str) -> bool {
     line.split(|c: char| !c.is_alphanumeric()).any(|word| matches!(word, "inf" | "NaN"))
 }
 
-/// What a line of the report is about: its words before the first value.
 fn quantity(line: &str) -> String {
     let words = line.split_whitespace().map(|word| word.trim_matches(|c: char| !c.is_alphanumeric()));
     words
@@ -164,14 +159,13 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
     Ok((lines, numbers))
 }
 
-/// Whether no grain moves by forces, so that none limits the step.
+/// Then no step limit exists.
 fn all_prescribed(grains: &GrainsPart) -> bool {
     let groups = &grains.groups;
     let prescribed = |part: u32| groups.moving.iter().any(|m| m.part == part);
     !groups.bodies.is_empty() && groups.bodies.iter().all(|b| prescribed(b.part))
 }
 
-/// The model of the grains with rigid sleepers, and its lines with those of the stages.
 fn grain_lines(
     document: &Document,
     job: &Job,

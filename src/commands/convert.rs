@@ -1,11 +1,10 @@
-//! `trackbed convert`: files of older programs, and ours, in each other's forms.
+//! `trackbed convert`: files of legacy programs.
 
 use super::output::print;
 use crate::cli::ConvertArgs;
 use crate::convert::{self, Options};
 use crate::failure::Failure;
 
-/// Converts a file and prints what became of it.
 pub(super) fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let region = match args.region.as_deref() {
         None => None,

@@ -1,5 +1,4 @@
-//! `trackbed explain`: the report of `check`, and which stages a run will go through, with which loops, how much memory, and
-//! how long it may take on this machine.
+//! `trackbed explain`: `check` with kernels, memory and run time.
 
 use super::check::{self, Report};
 use crate::failure::Failure;
@@ -12,30 +11,27 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use trackbed_dem as dem;
 
-/// Spheres along a side of the probe.
 const SIDE: usize = 16;
-/// Steps that are timed.
 const STEPS: u32 = 200;
-/// Longest rehearsal [s].
 const LONGEST: f64 = 3600.0;
 
-/// How a scene is explained.
+/// Options.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct How {
-    /// Most memory that a solid may need [bytes].
+    /// Memory limit of the solid [bytes].
     pub memory: Option<u64>,
-    /// Refuse values that are not plausible.
+    /// Reject implausible values.
     pub strict: bool,
-    /// Threads that the run will have; none: all cores.
+    /// Threads; default all cores.
     pub threads: Option<usize>,
-    /// Longest time of the rehearsal [s]; 0: none.
+    /// Trial run time [s]; 0 for none.
     pub rehearse: f64,
 }
 
-/// The report of `check`, and what a run will do and cost.
+/// Reports a scene with its cost.
 ///
 /// # Errors
-/// The same bad input that a run would refuse.
+/// Input errors.
 pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failure> {
     if !(0.0..=LONGEST).contains(&how.rehearse) {
         let found = how.rehearse;
@@ -65,16 +61,12 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
     Ok(report)
 }
 
-/// A small bed with the scene's law.
 struct Probe {
-    /// Seconds of one step of one sphere.
     seconds: f64,
-    /// Bytes per sphere.
     bytes: f64,
 }
 
 impl Probe {
-    /// Memory and speed.
     fn line(&self, model: &dem::Model) -> String {
         format!(
             "packed bed: {:.0} B per sphere and contacts, {} in all, constants and results apart; {:.1} M sphere-steps/s on one \
@@ -86,17 +78,17 @@ impl Probe {
         )
     }
 
-    /// Spheres of the scene's mean size on a simple cubic lattice, each pressed against six: about the contacts of a
-    /// packed bed. The step is so short that they stay there.
+    /// Simple cubic lattice of mean spheres with six contacts each, as in a packed bed. Steps are too short
+    /// to move them.
     ///
     /// # Errors
-    /// Contacts so stiff or soft that no step can be made.
+    /// No stable time step.
     fn run(grains: &GrainsPart, model: &dem::Model) -> Result<Probe, Box<dyn Error>> {
         let radii = (0..model.body_count()).flat_map(|b| model.members(b)).map(|m| m.1);
         let radius = radii.sum::<f64>() / model.sphere_count().max(1) as f64;
         let radius = if radius > 0.0 { radius } else { 0.01 };
         let material = grains.groups.bodies.first().map_or(0, |b| b.material);
-        // Without bonds: these join the bodies of the scene.
+        // Bonds refer to scene bodies.
         let (materials, contacts) = (grains.materials.all.clone(), grains.materials.pairs.clone());
         let sphere =
             |position| dem::BodyInput { material, position, scale: radius, ..dem::BodyInput::default() };

@@ -1,4 +1,4 @@
-//! `trackbed mesh`: counts and measures a mesh, finds its faults, converts it.
+//! `trackbed mesh`: measures, checks and converts meshes.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,6 @@ use crate::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_fi
 use crate::scene::{Document, Scene};
 use crate::write::{MeshOptions, write_mesh_file};
 
-/// Prints counts, sizes, materials, sets and quality.
 pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;
     let mut text = mesh_tools::info(&file.mesh, &file.constraints).to_string();
@@ -35,7 +34,6 @@ pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
     print(&format!("{text}\n{}", remarks(&file.warnings)))
 }
 
-/// Prints that there is no fault, or fails with all of them.
 pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;
     let mut problems = mesh_tools::check(&file.mesh, &file.constraints);
@@ -51,7 +49,6 @@ pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     Err(Failure::Input(format!("{}: found {text}, expected a mesh without defects", args.input.display())))
 }
 
-/// Writes the mesh in another form.
 pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>) -> Result<(), Failure> {
     let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     if !ending.is_empty() && !MESH_ENDINGS.contains(&ending.as_str()) {
@@ -71,7 +68,6 @@ pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>
     print(&format!("{} written\n{}{}", output.display(), remarks(&file.warnings), remarks(&lost)))
 }
 
-/// Refuses to write over a file that the mesh is read from.
 fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
     let mut read = vec![input.to_path_buf()];
     if is_scene(input) {
@@ -98,7 +94,6 @@ fn is_scene(input: &Path) -> bool {
     input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
-/// Reads a mesh of any form, or the one of a scene's solid.
 fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
     if !is_scene(&args.input) {
         return Ok(read_mesh_file(&args.input)?);

@@ -1,4 +1,4 @@
-//! `trackbed modal`: natural frequencies and modes of the solid part of a scene.
+//! `trackbed modal`: natural frequencies and modes of the solid.
 
 use crate::cli::ModalArgs;
 use crate::columns::modes;
@@ -15,13 +15,13 @@ use std::path::Path;
 use trackbed_fem as fem;
 use trackbed_fem::modal::{ModalError, Modes};
 
-/// Masses of solids whose squares a number holds with many digits [kg].
+/// Masses whose squares are accurate [kg].
 const MASS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// Finds the lowest modes and writes `modes.csv`, `results.pvd` and a `.vtu` for each mode.
+/// Writes `modes.csv`, `results.pvd` and a `.vtu` per mode.
 ///
 /// # Errors
-/// Bad input, or modes that were not found.
+/// Input errors; missing modes.
 pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
     let mut document = Document::open(&args.scene)?;
     for assignment in &args.set {
@@ -32,7 +32,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         return Err(document.error("solid", "nothing", "a solid").into());
     };
     run::thread_pool(args.threads)?.install(|| {
-        // Sleepers that lie free on the grains are no part of it.
+        // Sleepers are free on the grains.
         let part = solid::build(&document, part, vector(&scene.gravity), true, None)?;
         let unknowns = part.model.free_dof_count();
         if args.count == 0 || args.count > unknowns {
@@ -74,7 +74,6 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
     })
 }
 
-/// Columns of `modes.csv`.
 const MODES: [Field<[f64; 6]>; 6] = [
     (modes::MODE, |r| r[0]),
     (modes::FREQUENCY, |r| r[1]),

@@ -1,4 +1,4 @@
-//! `trackbed render`: pictures and videos of results.
+//! `trackbed render`: images and videos.
 
 use super::output::print;
 use crate::cli::RenderArgs;
@@ -6,10 +6,10 @@ use crate::failure::Failure;
 use crate::render::options::{self, Options, Part, refuse};
 use crate::render::{self, Written};
 
-/// Writes a picture or a video of the results of a folder.
+/// Writes an image or video.
 ///
 /// # Errors
-/// Bad input; a file that cannot be written.
+/// Input and I/O errors.
 pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     if !args.dir.is_dir() {
         let found = if args.dir.exists() { "a file" } else { "no such directory" };
@@ -33,7 +33,6 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     print(&format!("{}: {} x {} pixels, {what}\n", file.display(), size[0], size[1]))
 }
 
-/// The options of a picture from the words of the command line.
 fn chosen(args: &RenderArgs) -> Result<Options, Failure> {
     let within = |option: &str, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
         true => Ok(value),
@@ -82,7 +81,6 @@ fn chosen(args: &RenderArgs) -> Result<Options, Failure> {
     })
 }
 
-/// `PART=VALUE` words with their values read.
 fn by_part<T>(
     option: &str,
     words: &[String],

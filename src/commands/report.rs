@@ -1,14 +1,14 @@
-//! `trackbed report`: a page of one or several runs.
+//! `trackbed report`: HTML report of runs.
 
 use super::output::print;
 use crate::cli::ReportArgs;
 use crate::failure::Failure;
 use crate::report::{self, Options};
 
-/// Writes the report of folders of results, and prints where it is.
+/// Writes a report and prints its path.
 ///
 /// # Errors
-/// Bad input, or a page that cannot be written.
+/// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
     let options = Options { folders: args.folders, out: args.out, title: args.title };
     let page = report::write(&options)?;

@@ -1,4 +1,4 @@
-//! `trackbed schema`: the keys of scene files, for editors and for the reference.
+//! `trackbed schema`: scene keys.
 
 use super::output::print;
 use crate::failure::Failure;
@@ -7,10 +7,10 @@ use crate::scene::{reference, schema as scene_schema};
 use crate::write::{WriteError, atomic};
 use std::path::{Path, PathBuf};
 
-/// Prints the JSON schema, or with `markdown` the tables of keys; with a page there, its tables are renewed.
+/// Prints the JSON schema, or key tables with `markdown`; updates a given page.
 ///
 /// # Errors
-/// A page that cannot be read or written, or that has a mark without a table.
+/// I/O errors, or a mark without table.
 pub fn schema(markdown: Option<Option<PathBuf>>) -> Result<(), Failure> {
     let keys = scene_schema::keys();
     match markdown {

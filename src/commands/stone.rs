@@ -1,4 +1,4 @@
-//! `trackbed stone`: makes stones of spheres from surfaces or at random, and measures libraries and surfaces.
+//! `trackbed stone`: grains of spheres from surfaces or random shapes.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -16,15 +16,12 @@ use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::shape::polyhedron::{self, Polyhedron};
 
-/// Most spheres of a clump: the moments of the union take n³ steps.
+/// Moments of the union take n³ operations.
 const MOST_CLUMP: usize = 200;
-/// Most spheres of a bonded stone.
 const MOST_BONDED: usize = 2000;
 const MOST_STONES: usize = 10_000;
-/// Most spheres of a rough stone: more would leave some inside.
 const MOST_ROUGH: usize = 12;
 
-/// Carries out a `stone` command.
 pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
     match command {
         StoneCommand::Make { surfaces, stones } => {
@@ -64,7 +61,6 @@ pub(super) fn stone(command: &StoneCommand) -> Result<(), Failure> {
     }
 }
 
-/// Makes the stones, prints their measures, writes the library.
 fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, command: &str) -> Result<(), Failure> {
     let made = make(sources, kind).map_err(|e| Failure::Input(e.to_string()))?;
     let mut text: String = made.iter().map(|m| format!("{}: {}\n", m.stone.name, m.report)).collect();
@@ -76,7 +72,6 @@ fn finish(sources: &[Source], kind: Kind, args: &StoneArgs, command: &str) -> Re
     print(&text)
 }
 
-/// Makes rough stones, prints their measures, writes the library.
 fn rough_stones(args: &RoughArgs) -> Result<(), Failure> {
     within("--count", args.count, MOST_STONES)?;
     if !(2..=MOST_ROUGH).contains(&args.spheres) {
@@ -135,7 +130,6 @@ fn write_surfaces(dir: &Path, sources: &[Source], force: bool) -> Result<(), Fai
     Ok(())
 }
 
-/// A surface of a file as the source of a stone.
 fn source(file: &Path) -> Result<Source, Failure> {
     let surface = read_surface(file)?;
     let body = Polyhedron::new(&surface).map_err(|e| {
@@ -156,7 +150,6 @@ fn within(option: &str, found: usize, most: usize) -> Result<(), Failure> {
     Err(bad(option, &found.to_string(), &format!("1 to {most}")))
 }
 
-/// A number or a range `low:high`, from `least` to 1.
 fn range(option: &str, text: &str, least: f64) -> Result<[f64; 2], Failure> {
     let (low, high) = text.split_once(':').unwrap_or((text, text));
     match (low.trim().parse::<f64>(), high.trim().parse::<f64>()) {
@@ -165,7 +158,7 @@ fn range(option: &str, text: &str, least: f64) -> Result<[f64; 2], Failure> {
     }
 }
 
-/// The options for the kind of stone; those of the other kind are refused. A seed also starts random shapes.
+/// Rejects options of other types. The seed also affects random shapes.
 fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
     let share = |option: &str, value: Option<f64>, default: f64, most: f64| {
         let v = value.unwrap_or(default);
@@ -202,7 +195,6 @@ fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
     }
 }
 
-/// Refuses a file that exists, unless it may be replaced, and one that cannot be.
 fn free(out: Option<&Path>, force: bool) -> Result<(), Failure> {
     let Some(out) = out else { return Ok(()) };
     let shown = out.display().to_string();
@@ -223,7 +215,6 @@ fn free(out: Option<&Path>, force: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints the numbers of a library's stones, or of a surface.
 fn info(input: &Path) -> Result<(), Failure> {
     if input.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
         return library_info(input);
@@ -270,7 +261,6 @@ fn info(input: &Path) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Numbers of a polyhedron of a library, in words.
 fn of_polyhedron(body: &Dilated) -> String {
     let (mut extents, sieve) = (body.extents(), body.sieve_size());
     extents.sort_by(|a, b| b.total_cmp(a));
@@ -303,7 +293,7 @@ fn library_info(input: &Path) -> Result<(), Failure> {
     }
     let mut text = format!("{}: {} stones\n{}\n", library.name, library.stones.len(), library.source);
     for (i, stone) in library.stones.iter().enumerate() {
-        // A stone alone, so that rigid and bonded ones may stand in one file.
+        // Rigid and bonded grains may share a file.
         let alone = StoneLibrary { stones: vec![stone.clone()], ..library.clone() };
         if !stone.corners.is_empty() {
             let body = alone.polyhedra().map_err(|e| fault(&e))?.swap_remove(0);

@@ -1,4 +1,4 @@
-//! `trackbed study`: variations of a scene, their errors and costs.
+//! `trackbed study`: parameter studies with errors and costs.
 
 use super::{check, output};
 use crate::cli::StudyArgs;
@@ -8,10 +8,10 @@ use crate::run::Interrupt;
 use crate::study;
 use std::path::Path;
 
-/// Carries out a study, and prints the head of its table and what to take.
+/// Runs a study and prints its table.
 ///
 /// # Errors
-/// Bad input, an interrupt, a reference that failed, or what the system refuses.
+/// Input and I/O errors, interrupts, a failed reference.
 pub fn study(args: StudyArgs) -> Result<(), Failure> {
     let quiet = args.quiet;
     let options = study::Options {
@@ -27,14 +27,13 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
     let text = study::execute(&args.study, &options, &check)?;
-    // The tables are in their folder: nobody need listen.
+    // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {
         message::note(&format!("standard output: {failure}"));
     }
     Ok(())
 }
 
-/// The part of the runs that `--task` names: k and N.
 fn part(text: &str) -> Result<(usize, usize), Failure> {
     let numbers = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
     match numbers {

@@ -10,10 +10,10 @@ use crate::results::series;
 use crate::run::size;
 use crate::view::{self, Coding, Results};
 
-/// Serves the results of a folder, or writes them as one HTML file.
+/// Serves results, or exports one HTML file.
 ///
 /// # Errors
-/// A folder without results; see [`Failure`].
+/// No results; see [`Failure`].
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let dir = &args.dir;
     if !dir.is_dir() {
@@ -44,7 +44,7 @@ fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
 }
 
 fn serve(args: &ViewArgs) -> Result<(), Failure> {
-    // A folder with runs below it, as a study leaves it, is shown run by run.
+    // Study directories are shown run by run.
     if series::folders(&args.dir).is_empty() {
         Results::open(&args.dir, Coding::Exact)?;
     }
@@ -57,7 +57,6 @@ fn serve(args: &ViewArgs) -> Result<(), Failure> {
     view::server::serve(listener, port, &args.dir)
 }
 
-/// Opens the address in the user's browser.
 fn open(address: &str) {
     let program = match std::env::consts::OS {
         "windows" => "explorer",

@@ -1,8 +1,7 @@
-//! `ANIMATION_3D.DAT`: places, sizes and velocities of grains, moment by moment.
+//! `ANIMATION_3D.DAT`: grain positions, radii and velocities by frame.
 //!
-//! The older programs show their form in a figure only, of which it is known that a frame has place, size and velocity of
-//! each particle and may have a last column of the user's. The form here: a head `3D: TIME COUNT`, then COUNT rows
-//! `x y z r vx vy vz`, with an eighth column where there is one: the number of the part or fragment.
+//! The older programs show the format only in a figure. Assumed: header `3D: TIME COUNT`, COUNT rows `x y z r
+//! vx vy vz`, optionally a part or fragment id.
 
 use super::rows;
 use crate::columns::converted;
@@ -12,13 +11,13 @@ use crate::write::csv::{Field, write_table};
 use crate::write::{GrainFrame, Values, WriteError, atomic};
 use std::path::Path;
 
-/// What a moment begins with.
+/// Start of a frame.
 pub const HEAD: &str = "3D:";
 
-/// Grains at one moment. Fields have the shape `[spheres]`.
+/// Grains of a frame. Fields have the shape `[spheres]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moment {
-    /// Time [s], or a step.
+    /// Time [s] or step.
     pub time: f64,
     /// Centres [m].
     pub position: Vec<[f64; 3]>,
@@ -26,12 +25,12 @@ pub struct Moment {
     pub radius: Vec<f64>,
     /// Velocities [m/s].
     pub velocity: Vec<[f64; 3]>,
-    /// The last column; none where the file has none.
+    /// Last column, if present.
     pub part: Option<Vec<f64>>,
 }
 
 impl Moment {
-    /// As a frame of ours: spheres numbered in their order. Parts are numbered in the order of their values.
+    /// Converts to a frame: spheres in order, parts numbered by value.
     pub fn frame(&self) -> GrainFrame {
         let count = self.position.len();
         let mut values = self.part.clone().unwrap_or_default();
@@ -58,10 +57,10 @@ impl Moment {
     }
 }
 
-/// Reads all moments of a file.
+/// Reads all frames of a file.
 ///
 /// # Errors
-/// What is damaged, with its line; no moment; rows of other widths within a moment.
+/// Damaged lines, no frame, varying row widths.
 pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
     let mut moments = Vec::new();
     for block in rows::blocks(file, text, HEAD, [7, 8])? {
@@ -90,10 +89,10 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
     Ok(moments)
 }
 
-/// Writes moments in the form.
+/// Writes frames in this format.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
     let failed = |error| WriteError::io(output)(error);
     atomic::write(output, |out| {
@@ -111,13 +110,12 @@ pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> 
     Ok(vec![format!("{} moments", moments.len())])
 }
 
-/// A row of the table: moment, number of the sphere in it.
 type Row<'a> = (&'a Moment, usize);
 
-/// Writes moments as one table.
+/// Writes all frames as one table.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn to_csv(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
     let columns: [Field<Row<'_>>; 10] = [
         (converted::TIME, |(m, _)| m.time),

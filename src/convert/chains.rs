@@ -1,8 +1,7 @@
-//! Force-chain files: contacts with their partners and forces, moment by moment.
+//! Force-chain files: contact partners and forces by frame.
 //!
-//! The form: a head `3DF: TIME COUNT`, then COUNT rows `i j Fn Ft`, the numbers of the two particles from 1 on and the
-//! normal and tangential force [N]. Read are rows of five columns too, whose first counts the rows. We write four, and 0 for
-//! a partner that is no particle.
+//! Header `3DF: TIME COUNT`, then COUNT rows `i j Fn Ft`: particle ids from 1 (0 for others), normal and
+//! tangential force [N]. A preceding row index is accepted.
 
 use super::animation;
 use super::rows;
@@ -13,13 +12,12 @@ use crate::write::csv::{Field, write_table};
 use crate::write::{ChainFrame, WriteError, atomic};
 use std::path::Path;
 
-/// What a moment begins with.
+/// Start of a frame.
 pub const HEAD: &str = "3DF:";
 
-/// Kind of a chain to a wall in our frames, and of one between grains.
 const BETWEEN_GRAINS: u32 = 0;
 
-/// A contact: its partners by number from 1, 0 for what is no particle, and its forces.
+/// Contact: partner ids from 1, 0 for others, and forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Chain {
     /// First particle.
@@ -32,17 +30,17 @@ pub struct Chain {
     pub tangential: f64,
 }
 
-/// Contacts at one moment.
+/// Contacts of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moment {
-    /// Time [s], or a step.
+    /// Time [s] or step.
     pub time: f64,
-    /// The contacts.
+    /// Contacts.
     pub chains: Vec<Chain>,
 }
 
 impl Moment {
-    /// As chains between the grains of the same moment, and how many were left out because a partner is no grain of it.
+    /// Converts to chains between `grains`; also returns the number dropped for unknown partners.
     pub fn frame(&self, grains: &animation::Moment) -> (ChainFrame, usize) {
         let mut frame = ChainFrame::default();
         let place = |number: u32| grains.position.get((number as usize).checked_sub(1)?);
@@ -64,10 +62,10 @@ impl Moment {
     }
 }
 
-/// Reads all moments of a file.
+/// Reads all frames of a file.
 ///
 /// # Errors
-/// What is damaged, with its line; no moment.
+/// Damaged lines, no frame.
 pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
     let mut moments = Vec::new();
     for block in rows::blocks(file, text, HEAD, [4, 5])? {
@@ -93,10 +91,10 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<Moment>, Failure> {
     Ok(moments)
 }
 
-/// Writes moments in the form.
+/// Writes frames in this format.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn write(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
     let failed = |error| WriteError::io(output)(error);
     atomic::write(output, |out| {
@@ -119,10 +117,10 @@ const COLUMNS: [Field<(f64, Chain)>; 5] = [
     (converted::TANGENTIAL_FORCE, |(_, c)| c.tangential),
 ];
 
-/// Writes moments as one table.
+/// Writes all frames as one table.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn to_csv(moments: &[Moment], output: &Path) -> Result<Vec<String>, Failure> {
     write_table(output, &COLUMNS, moments.iter().flat_map(|m| m.chains.iter().map(|c| (m.time, *c))))?;
     Ok(vec![format!("{} moments", moments.len())])

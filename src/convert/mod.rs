@@ -1,6 +1,6 @@
-//! Files of older programs of the field, and ours, in each other's forms: parameter decks, packings, animations, force chains.
+//! Conversion from and to files of older programs: parameter decks, packings, animations, force chains.
 //!
-//! `docs/guide/formats.md` documents the forms; each reader has its own file here.
+//! Formats: `docs/guide/formats.md`.
 
 mod animation;
 mod chains;
@@ -17,7 +17,6 @@ use crate::read::source::{self, LARGEST};
 use crate::write::{FORMATS, Frame, Writers};
 use std::path::Path;
 
-/// What a file turned out to be.
 enum Input {
     Results,
     Chains(String),
@@ -26,10 +25,10 @@ enum Input {
     Packing(String),
 }
 
-/// Converts `input` to `output`; what the user should know, a line each.
+/// Converts `input` to `output`; returns notes, one per line.
 ///
 /// # Errors
-/// Bad input: what is damaged, or has no such form; the disk refuses.
+/// Damaged input, unsupported conversion; I/O errors.
 pub fn convert(input: &Path, output: &Path, options: &Options) -> Result<Vec<String>, Failure> {
     if output.exists() && !options.force {
         let found = format!("output: found {}, which exists", output.display());
@@ -76,13 +75,12 @@ pub fn convert(input: &Path, output: &Path, options: &Options) -> Result<Vec<Str
     }
 }
 
-/// Looks what a file is.
 fn look(input: &Path) -> Result<Input, Failure> {
     if input.is_dir() {
         return Ok(Input::Results);
     }
     let bytes = source::bytes(input, LARGEST).map_err(|refusal| Failure::Input(refusal.sentence(input)))?;
-    // Comments may be in any 8-bit code page; what counts is ASCII.
+    // Comments may use any 8-bit code page; data are ASCII.
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let first = text.lines().map(str::trim).find(|l| !l.is_empty()).unwrap_or_default();
     let starts = |head: &str| first.get(..head.len()).is_some_and(|f| f.eq_ignore_ascii_case(head));
@@ -94,7 +92,6 @@ fn look(input: &Path) -> Result<Input, Failure> {
     })
 }
 
-/// Writes moments as frames in a folder, with the chains of the same moments where there are some.
 fn folder(
     output: &Path,
     options: &Options,
@@ -108,7 +105,7 @@ fn folder(
     };
     let folder = output.join(format.folder);
     std::fs::create_dir_all(&folder).map_err(|e| Failure::Other(format!("{}: {e}", folder.display())))?;
-    // Of all that frames may hold an animation has the velocity alone.
+    // Animations only have the velocity.
     let fields = Some(vec!["velocity".to_string()]);
     let formats = [format];
     let mut writers = Writers::begin(output, &formats)?.only(&fields);

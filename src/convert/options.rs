@@ -1,20 +1,20 @@
-//! What files do not say themselves.
+//! Conversion options.
 
 use std::path::PathBuf;
 
-/// What is converted to what, and what the files themselves do not say.
+/// Options not contained in the files.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Of a deck: packing that its `restart` reads.
+    /// Deck: packing for its `restart`.
     pub packing: Option<PathBuf>,
-    /// Of a deck: terrain or structure.
+    /// Deck: terrain or structure.
     pub terrain: Option<PathBuf>,
-    /// Of a deck without packing: box that grains are scattered in [m].
+    /// Deck without packing: box for random grains [m].
     pub region: Option<[f64; 3]>,
-    /// Of chains: animation with the places of their grains.
+    /// Chains: animation of their grains.
     pub grains: Option<PathBuf>,
-    /// Of a folder: format of its frames, `"vtk"` where none is named.
+    /// Directory: frame format, default `"vtk"`.
     pub format: Option<String>,
-    /// Whether files may be replaced.
+    /// Whether to replace existing files.
     pub force: bool,
 }

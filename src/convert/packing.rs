@@ -1,7 +1,6 @@
-//! Packing files: spheres that a run starts with.
+//! Packing files: initial spheres.
 //!
-//! Rows `x y z r` with blanks or commas, in front of each the number of the sphere where there are five columns; a first row
-//! of one number is their count. Written is what `packing` of `[[grains]]` reads.
+//! Rows `x y z r`, optionally after an index; a first row of one number is the count.
 
 use super::rows;
 use crate::columns::converted;
@@ -16,12 +15,11 @@ const COLUMNS: [Field<[f64; 4]>; 4] =
 /// Reads the spheres of a packing.
 ///
 /// # Errors
-/// What is damaged, with its line.
+/// Damaged lines.
 pub fn parse(file: &Path, text: &str) -> Result<Vec<[f64; 4]>, ReadError> {
     let mut spheres = Vec::new();
     let mut count = None;
     for (line, body) in text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())) {
-        // A heading, and comments.
         if body.is_empty() || !number::looks_numeric(body) && spheres.is_empty() {
             continue;
         }
@@ -55,10 +53,10 @@ pub fn parse(file: &Path, text: &str) -> Result<Vec<[f64; 4]>, ReadError> {
     Ok(spheres)
 }
 
-/// Writes a packing as ours.
+/// Writes a packing in trackbed's format.
 ///
 /// # Errors
-/// What is damaged; the disk refuses.
+/// Damaged lines; I/O errors.
 pub fn convert((file, text): (&Path, &str), output: &Path) -> Result<Vec<String>, Failure> {
     let spheres = parse(file, text)?;
     write_table(output, &COLUMNS, &spheres)?;

@@ -1,4 +1,4 @@
-//! Grains and chains of the frames of a run.
+//! Grains and chains of result frames.
 
 use super::{animation, chains};
 use crate::failure::Failure;
@@ -7,10 +7,10 @@ use crate::results::series::{self, Part};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The grains of all frames; the last column is the fragment, or the part where frames have no fragments.
+/// Reads the grains of all frames; the last column is the fragment, else the part.
 ///
 /// # Errors
-/// No frames, or damaged ones.
+/// Missing or damaged frames.
 pub fn grains(dir: &Path) -> Result<Vec<animation::Moment>, Failure> {
     let mut moments = Vec::new();
     for frame in series::read(dir)? {
@@ -34,10 +34,11 @@ pub fn grains(dir: &Path) -> Result<Vec<animation::Moment>, Failure> {
     Ok(moments)
 }
 
-/// The force chains of all frames; partners are numbered as the spheres of the animation, a body by its first sphere.
+/// Reads the force chains of all frames; partners are sphere indices of the animation, bodies by their first
+/// sphere.
 ///
 /// # Errors
-/// No frames, damaged ones, or chains without the numbers of their partners.
+/// Missing or damaged frames, chains without partner ids.
 pub fn chains(dir: &Path) -> Result<Vec<chains::Moment>, Failure> {
     let mut moments = Vec::new();
     for frame in series::read(dir)? {

@@ -1,13 +1,13 @@
-//! Rows of numbers under heads, as these files have them.
+//! Numeric rows below headers.
 
 use crate::read::ReadError;
 use crate::read::number;
 use std::path::Path;
 
-/// The numbers of a line, separated by blanks, tabs or commas.
+/// Numbers of a line, separated by blanks, tabs or commas.
 ///
 /// # Errors
-/// A field that is no finite number.
+/// Fields that are not finite numbers.
 pub fn numbers(file: &Path, line: usize, text: &str) -> Result<Vec<f64>, ReadError> {
     let fields = text.split(|c: char| c.is_whitespace() || c == ',').filter(|f| !f.is_empty());
     let value = |field: &str| {
@@ -18,21 +18,20 @@ pub fn numbers(file: &Path, line: usize, text: &str) -> Result<Vec<f64>, ReadErr
     fields.map(value).collect()
 }
 
-/// A block of a file: the two numbers of its head, and its rows with their lines.
+/// Block of a file.
 pub struct Block {
-    /// Line of the head.
+    /// Line of the header.
     pub line: usize,
     /// Time or step.
     pub time: f64,
-    /// The rows.
+    /// Rows with their lines.
     pub rows: Vec<(usize, Vec<f64>)>,
 }
 
-/// Splits a text into blocks that begin with `head`, each with as many rows as its head says; `widths` are the numbers
-/// that a row may have.
+/// Splits text into blocks below `head` lines with row counts; `widths` are the allowed row widths.
 ///
 /// # Errors
-/// Rows before the first head, a head without its two numbers, another number of rows or of columns.
+/// Damaged headers, wrong row counts or widths.
 pub fn blocks(file: &Path, text: &str, head: &str, widths: [usize; 2]) -> Result<Vec<Block>, ReadError> {
     let mut blocks: Vec<(Block, usize)> = Vec::new();
     for (line, body) in text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())) {

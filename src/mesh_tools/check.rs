@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, beyond what its readers refuse.
+//! Mesh defects beyond reader errors.
 
 use std::collections::HashMap;
 
@@ -9,69 +9,68 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::{element_quality, unused_nodes};
 
-/// Nodes nearer than this times the size of the mesh are one point that was meshed twice.
+/// Tolerance of coincident nodes over the mesh size.
 const COINCIDENT: f64 = 1e-9;
 
-/// Names of the corners of SOLID186.
 const CORNERS: [&str; 8] = ["I", "J", "K", "L", "M", "N", "O", "P"];
 
-/// Something that makes a mesh unfit to compute with, or suspect.
+/// Defect or suspect property of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case", tag = "problem")]
 pub enum Problem {
-    /// No elements at all.
+    /// No elements.
     #[error("the mesh has no elements")]
     Empty,
-    /// The Jacobian determinant is not positive.
+    /// Jacobian determinant not positive.
     #[error("element {element} is inverted at {place}: Jacobian determinant {determinant:e} m³")]
     Inverted {
-        /// Number of the element.
+        /// Element id.
         element: u32,
-        /// The corner or Gauss point where the determinant is least.
+        /// Corner or Gauss point of the least determinant.
         place: String,
-        /// The determinant there [m³].
+        /// Determinant [m³].
         determinant: f64,
-        /// Volume of the element [m³]; negative where all of it is inside out.
+        /// Element volume [m³]; negative if inverted.
         volume: f64,
     },
-    /// Two nodes in one place, so that elements that look joined are not.
+    /// Two nodes at one position: elements are not connected.
     #[error("nodes {first} and {second} coincide: distance {distance:e} m")]
     Coincident {
-        /// Number of a node.
+        /// Node id.
         first: u32,
-        /// Number of the other.
+        /// Other node id.
         second: u32,
-        /// Their distance [m].
+        /// Distance [m].
         distance: f64,
     },
-    /// The mesh falls apart into bodies that share no node.
+    /// Bodies without common nodes.
     #[error("the mesh has {} unconnected parts: {}", parts.len(), name(parts))]
     Disconnected {
-        /// The parts, in the order of their first elements.
+        /// Parts, by first element.
         parts: Vec<Part>,
     },
-    /// A body that no constraint holds.
+    /// Body without constraint.
     #[error("no constraint in the part of {}", name(std::slice::from_ref(part)))]
     Unconstrained {
-        /// The part.
+        /// Unconstrained part.
         part: Part,
     },
     /// Nodes without stiffness.
     #[error("nodes in no element: {count}, the first is node {first}")]
     Unused {
-        /// Their number.
+        /// Number of nodes.
         count: usize,
-        /// Number of the first.
+        /// First node id.
         first: u32,
     },
 }
 
-/// Elements that hang together by shared nodes.
+/// Elements connected by nodes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Part {
-    /// How many elements.
+    /// Number of elements.
     pub elements: usize,
-    /// Number of the first of them.
+    /// First element id.
     pub first_element: u32,
 }
 
@@ -81,7 +80,7 @@ fn name(parts: &[Part]) -> String {
     if parts.len() > 5 { format!("{shown}, …") } else { shown }
 }
 
-/// The problems of a mesh, in a fixed order; empty when all is well.
+/// Returns the defects of a mesh, in fixed order.
 pub fn check(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     if mesh.element_count() == 0 {
         return vec![Problem::Empty];
@@ -96,10 +95,9 @@ pub fn check(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     problems
 }
 
-/// Ids that a sentence names at most.
 const SHOWN: usize = 10;
 
-/// What holds when every element is inside out.
+/// Reports a mesh whose elements are all inverted.
 pub fn all_inside_out(mesh: &Mesh, problems: &[Problem]) -> Option<String> {
     let negative = |p: &&Problem| matches!(p, Problem::Inverted { volume, .. } if *volume < 0.0);
     let all = mesh.element_count();
@@ -114,7 +112,7 @@ pub fn all_inside_out(mesh: &Mesh, problems: &[Problem]) -> Option<String> {
     ))
 }
 
-/// The problems as sentences, one for each cause, with ten numbers at most.
+/// Returns one sentence per cause, with at most ten ids.
 pub fn sentences(mesh: &Mesh, problems: &[Problem]) -> Vec<String> {
     let (mut all, mut at) = (Vec::new(), 0);
     let same = |a: &Problem, b: &Problem| std::mem::discriminant(a) == std::mem::discriminant(b);
@@ -132,7 +130,6 @@ pub fn sentences(mesh: &Mesh, problems: &[Problem]) -> Vec<String> {
     all
 }
 
-/// Several problems of one kind in one sentence; kinds that occur once only as they are.
 fn joined(group: &[&Problem]) -> Vec<String> {
     let list = |names: Vec<String>| {
         let end = if group.len() > SHOWN { format!(", … ({} in all)", group.len()) } else { String::new() };
@@ -184,8 +181,7 @@ fn inverted(mesh: &Mesh, element: usize) -> Option<Problem> {
     (determinant <= 0.0).then_some(Problem::Inverted { element, place, determinant, volume })
 }
 
-/// Pairs of coincident nodes. Nodes go into cells somewhat larger than the distance sought; each looks into the
-/// cells that its neighbourhood touches, mostly its own only.
+/// Cells are somewhat larger than the tolerance, so few neighbours are searched.
 fn coincident(mesh: &Mesh) -> Vec<Problem> {
     let extent = (0..3).map(|axis| {
         let values = mesh.coordinates.iter().map(|x| x[axis]);
@@ -220,7 +216,6 @@ fn coincident(mesh: &Mesh) -> Vec<Problem> {
     found
 }
 
-/// Parts of the mesh by union of the nodes of each element, and which of them nothing holds.
 fn parts(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     let mut parent: Vec<usize> = (0..mesh.node_count()).collect();
     for element in mesh.connectivity.iter() {
@@ -250,7 +245,6 @@ fn parts(mesh: &Mesh, constraints: &[Constraint]) -> Vec<Problem> {
     problems
 }
 
-/// The node that stands for the part of `node`; paths are halved on the way.
 fn root(parent: &mut [usize], mut node: usize) -> usize {
     while parent[node] != node {
         parent[node] = parent[parent[node]];
@@ -273,7 +267,7 @@ mod tests {
         problems.iter().map(Problem::to_string).collect()
     }
 
-    /// A mirrored mesh has one cause; of some elements inside out ten are named.
+    /// A mirrored mesh has one cause; partial inversion lists ten elements.
     #[test]
     fn one_cause_is_one_sentence() {
         let mut mesh = sample::straight_block([4, 3, 2]);
@@ -302,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn an_inverted_element_is_named_with_the_place() {
+    fn reports_position_of_inversion() {
         let mut mesh = sample::straight_block([2, 1, 1]);
         let middle = mesh.connectivity[0][8] as usize;
         mesh.coordinates[middle][0] = 0.2;
@@ -312,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unheld_body_and_unused_nodes_are_reported() {
+    fn reports_unconstrained_body_and_unused_nodes() {
         let mut mesh = sample::block([2, 1, 1]);
         mesh.node_ids.push(5000);
         mesh.coordinates.push([9.0; 3]);
@@ -324,9 +318,9 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_in_two_parts_that_touch_without_sharing_nodes() {
+    fn reports_coincident_nodes_of_two_parts() {
         let mut mesh = sample::straight_block([2, 1, 1]);
-        // The second element gets nodes of its own on the shared face, one of them a little off.
+        // Separate nodes on the shared face, one slightly displaced.
         let shared: Vec<u32> =
             mesh.connectivity[1].iter().copied().filter(|n| mesh.connectivity[0].contains(n)).collect();
         for (copy, node) in shared.iter().enumerate() {

@@ -1,14 +1,11 @@
-//! Shape of one element.
+//! Shape quality of elements.
 //!
-//! Scaled Jacobian: the least of det J / (|g1| |g2| |g3|) over the corners and the Gauss points of the mass, g the
-//! columns of J = dx/dξ (Knupp 2000 takes the corners only, which misses curved edges), so that it is 1 for a
-//! brick and for the natural tetrahedron. It is not positive for an element that is turned inside out at one of these
-//! points. At the apex of a pyramid, where the gradients depend on the direction, the limits along the four uprights count.
+//! Scaled Jacobian: least det J / (|g1| |g2| |g3|) over corners and Gauss points of the mass, g the columns
+//! of J = dx/dξ. Knupp 2000 uses corners only, which misses curved edges. At a pyramid's apex the limits
+//! along the four uprights count.
 //!
-//! Aspect ratio: longest over shortest of the edges, measured from corner to corner.
-//!
-//! Volume: by the rule of the mass; for hexahedra 3x3x3 Gauss points, exact, since det J has degree 5 at most in each
-//! natural coordinate.
+//! Aspect ratio: longest over shortest edge, between corners. Volume: integration rule of the mass; for
+//! hexahedra 3x3x3 Gauss points, exact, since det J has degree ≤ 5.
 
 use trackbed_fem::Mesh;
 use trackbed_fem::element::{ElementKind, mass_points};
@@ -19,17 +16,17 @@ use trackbed_fem::kinematics::ElementCoordinates;
 pub struct Quality {
     /// Least scaled Jacobian, at most 1.
     pub scaled_jacobian: f64,
-    /// Longest over shortest edge, at least 1; infinite where an edge has no length.
+    /// Aspect ratio, at least 1; infinite for an edge without length.
     pub aspect_ratio: f64,
-    /// Volume [m³]; negative for an element numbered inside out.
+    /// Volume [m³]; negative if inverted.
     pub volume: f64,
     /// Least determinant of the Jacobian matrix [m³].
     pub determinant: f64,
-    /// Where that is: below the number of corners that corner, else the Gauss point plus that number.
+    /// Its corner, or Gauss point plus the number of corners.
     pub worst_point: usize,
 }
 
-/// Shape and size of element `element` (index) of a mesh.
+/// Returns the quality of element `element` (index).
 pub fn element_quality(mesh: &Mesh, element: usize) -> Quality {
     let (x, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
     quality(kind, &x)
@@ -62,7 +59,6 @@ fn quality(kind: ElementKind, x: &ElementCoordinates) -> Quality {
     quality
 }
 
-/// dx/dξ for each natural coordinate ξ.
 fn columns(x: &ElementCoordinates, gradients: &ElementCoordinates) -> [[f64; 3]; 3] {
     let mut columns = [[0.0; 3]; 3];
     for (gradient, point) in gradients.iter().zip(x) {
@@ -105,11 +101,9 @@ mod tests {
         hex20::NATURAL.map(|xi| [0, 1, 2].map(|axis| 0.5 * size[axis] * (1.0 + hex20_axis(xi, axis))))
     }
 
-    /// Coordinate along x, y, z of a node of a brick whose node I is at the origin, J along x, L along y.
     fn hex20_axis(xi: [f64; 3], axis: usize) -> f64 {
         let [i, j, l, m] = [0, 1, 3, 4].map(|n| hex20::NATURAL[n]);
         let ahead = [j, l, m][axis];
-        // The natural axis in which the neighbour of I differs from I.
         let natural = (0..3).find(|a| ahead[*a] != i[*a]).unwrap();
         xi[natural]
     }
@@ -124,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheared_brick_has_the_sine_of_its_angle() {
+    fn sheared_brick_gives_sine_of_angle() {
         let sheared = brick([1.0; 3]).map(|[x, y, z]| [x + y, y, z]);
         let found = quality(ElementKind::Hex20, &sheared);
         assert!((found.scaled_jacobian - 0.5_f64.sqrt()).abs() < 1e-13);
@@ -132,9 +126,9 @@ mod tests {
     }
 
     #[test]
-    fn a_curved_element_has_the_volume_of_its_curved_body() {
-        // Mid-sides of all four edges along x are raised by h: a parabolic arch, whose volume stays that of
-        // the brick (top and bottom rise alike); raising the top ones alone adds 2/3 h.
+    fn curved_element_volume_is_exact() {
+        // Raising the mid-sides of all edges along x by h gives a parabolic arch of equal volume; raising
+        // only the top ones adds 2/3 h.
         let h = 0.15;
         let mut x = brick([1.0; 3]);
         for (point, [a, b]) in x[8..].iter_mut().zip(ElementKind::Hex20.edges()) {
@@ -146,15 +140,15 @@ mod tests {
     }
 
     #[test]
-    fn an_element_turned_inside_out_is_found_at_a_corner() {
-        // A mid-side node beyond a quarter of the edge from its corner: det J turns negative at that corner.
+    fn detects_inversion_at_corner() {
+        // A mid-side beyond a quarter of the edge makes det J negative at the corner.
         let mut x = brick([1.0; 3]);
         x[8][0] = 0.2;
         let found = quality(ElementKind::Hex20, &x);
         assert!(found.scaled_jacobian < 0.0 && found.worst_point == 0, "{found:?}");
         x[8][0] = 0.3;
         assert!(quality(ElementKind::Hex20, &x).scaled_jacobian > 0.0);
-        // The same at the apex of a pyramid, which is its fifth corner: upright 0-4.
+        // Likewise at the apex, the fifth corner of a pyramid: upright 0-4.
         let mut x = ElementCoordinates::default();
         x[..13].copy_from_slice(ElementKind::Pyramid13.natural());
         assert!((quality(ElementKind::Pyramid13, &x).scaled_jacobian - 1.0).abs() < 1e-6);

@@ -1,19 +1,17 @@
-//! How long a run is, and in which steps a solid that runs alone goes.
+//! Run duration, and the time step of a solid without grains.
 
 use super::grains::GrainsPart;
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_coupling::track::CyclicLoad;
 
-/// Most steps that a run may be given: a run of so many would take years.
+/// Such a run would take years.
 const MOST: u64 = 1_000_000_000_000;
-/// Tables that give a solid without grains a time integration.
 pub(super) const TIME_INTEGRATION: &str = "[solid.dynamics] or [solid.quasi_static]";
 
-/// Length of the steps that are counted where a scene counts steps [s]: of the solid that runs alone, else of the grains, which then
-/// have a step that stays the same.
+/// Counted time step [s]: of a solid-only model, else the constant DEM time step.
 ///
 /// # Errors
-/// The step follows the contacts, so that a number of steps is no time.
+/// The DEM time step is not constant.
 pub fn counted_step(scene: &Table<Scene>, needed_by: &str) -> Result<f64, SceneError> {
     let time = scene.below("time", &scene.time);
     let (key, step) = match scene.grains.is_empty() {
@@ -27,24 +25,23 @@ pub fn counted_step(scene: &Table<Scene>, needed_by: &str) -> Result<f64, SceneE
     }
 }
 
-/// Time of `steps` steps [s].
 fn after(scene: &Table<Scene>, steps: u64) -> Result<f64, SceneError> {
     let step = counted_step(scene, "time.steps")?;
     if !(1..=MOST).contains(&steps) {
         let found = steps.to_string();
         return Err(scene.below("time", &scene.time).error("steps", found, format!("1 to {MOST}")));
     }
-    // Just below, so that the rounding of the product makes no further step.
+    // Rounding must not add a step.
     Ok(steps as f64 * step * (1.0 - 1e-13))
 }
 
-/// Time of the run proper [s]; 0 of a static solid.
+/// Duration of the main stage [s]; 0 for a static solid.
 ///
 /// # Errors
-/// No time, two of them, or one that is too short for the load cycles.
+/// No time, two times, or too short for the load cycles.
 pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
-    // A push comes after the cycles, or stands for itself.
+    // After the cycles, or alone.
     let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
     let counted = match (counted, push) {
         (Some(cycles), Some(push)) => Some(cycles + push),
@@ -77,13 +74,13 @@ pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64
     }
 }
 
-/// Most steps of a solid that runs alone: at a thousand steps a second they take twelve days.
+/// At 1000 steps per second, twelve days.
 const MOST_STEPS: f64 = 1e9;
 
-/// Step of a solid that runs alone through time [s].
+/// Time step of a solid-only dynamic model [s].
 ///
 /// # Errors
-/// None where it is needed, or one where it has no effect.
+/// Missing, or without effect.
 pub fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneError> {
     let alone_and_dynamic = scene.grains.is_empty() && end > 0.0;
     let time = scene.below("time", &scene.time);

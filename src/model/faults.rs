@@ -1,42 +1,41 @@
-//! All faults of a scene at once: what is at fault is mended, and the rest read again.
+//! Reports all independent input errors: erroneous values are replaced, and the scene is read again.
 
 use super::Job;
 use crate::failure::Failure;
 use crate::scene::{Document, Problem, Scene, SceneError};
 use std::time::{Duration, Instant};
 
-/// Most faults that are reported.
 const MOST: usize = 20;
-/// Time after which no further ones are looked for: models are made anew for each.
+/// Each further error needs a new model.
 const LONGEST: Duration = Duration::from_secs(2);
 
 /// Reads a scene.
 ///
 /// # Errors
-/// Bad input: every key that is unknown, missing, or of the wrong type or unit.
+/// Unknown or missing keys, wrong types or units.
 pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
     let again = |rest: &Document| Ok(rest.read::<Scene>().map(drop)?);
-    // Forms of keys do not depend on each other.
+    // Key types are independent.
     document.read().map_err(|first| all(document, first.into(), again, of_form, |_, _| true))
 }
 
 /// Resolves a scene.
 ///
 /// # Errors
-/// Bad input, as far as one fault does not follow from another: [`Job::new`].
+/// All independent input errors; see [`Job::new`].
 pub fn resolve(document: &Document, scene: &Scene) -> Result<Job, Failure> {
     let again = |rest: &Document| Job::new(rest, &rest.read()?).map(drop);
     Job::new(document, scene).map_err(|first| all(document, first, again, of_value, apart))
 }
 
-/// What is put in the place of a value of a wrong form, one after the other, where a scene must have one.
+/// Substitutes for a required value of wrong type.
 const FORMS: [&str; 5] = ["1", "\"1\"", "true", "[1, 1, 1]", "[]"];
 
-/// The same of a number out of its range.
+/// Substitutes for a number out of range.
 const VALUES: [&str; 3] = ["1", "0.3", "1000"];
 
-/// A failure with the further faults that `again` finds where those before are mended by one of `mendings`, as long as they
-/// are `independent` of them and about values that the scene has.
+/// Adds errors that `again` reports after replacing earlier erroneous values, if `independent` and about
+/// existing values.
 fn all(
     document: &Document,
     first: Failure,
@@ -69,17 +68,16 @@ fn all(
     Failure::Faults(faults)
 }
 
-/// Whether a fault is about a value that the scene has, and not about what took the place of another.
+/// Errors of substitutes do not count.
 fn is_new(document: &Document, faults: &[SceneError], next: &SceneError) -> bool {
     document.has(&next.key) && faults.iter().all(|fault| !within(&next.key, &fault.key))
 }
 
-/// Whether a key is another one, or in its table.
 fn within(key: &str, table: &str) -> bool {
     key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Overrides that may mend a value out of its range: another number. What is no number decides what else a scene must have.
+/// Other values than numbers select which keys are required, so they stay.
 fn of_value(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     let value = document.value(&fault.key).unwrap_or_default();
     let number = value.trim_matches('"').starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+');
@@ -87,7 +85,7 @@ fn of_value(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     others.map(|value| vec![format!("{}={value}", fault.key)]).collect()
 }
 
-/// Overrides that may mend the form of a key: the key that was meant in the place of an unknown one, none, or another value.
+/// Tries the key probably meant, none, or another value.
 fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     let key = &fault.key;
     if !document.has(key) {
@@ -109,8 +107,7 @@ fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     renamed.into_iter().chain([vec![gone.clone()]]).chain(others).collect()
 }
 
-/// Whether two faults are in tables apart from each other: within one, and between a table and what holds it, values may depend
-/// on each other.
+/// Values within a table, and in nested tables, may depend on each other.
 fn apart(before: &SceneError, next: &SceneError) -> bool {
     let table = |key: &str| key.rsplit_once('.').map_or(String::new(), |(table, _)| table.to_string());
     !within(&next.key, &table(&before.key))

@@ -1,5 +1,4 @@
-//! Scene → models: names resolved to numbers, ranges checked, everything derived. Nothing after this asks whether a
-//! key of the scene was set.
+//! Scene → models: names resolved, ranges checked, values derived. Later code reads no scene keys.
 
 mod duration;
 pub mod exchange;
@@ -23,31 +22,30 @@ use std::sync::Arc;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_fem as fem;
 
-/// Longest title [characters].
 const LONGEST: usize = 200;
 
-/// A resolved scene.
+/// Resolved scene.
 pub struct Job {
-    /// One line that says what it is.
+    /// Title.
     pub title: String,
     /// The solid.
     pub solid: Option<solid::SolidPart>,
     /// The grains.
     pub grains: Option<grains::GrainsPart>,
-    /// The exchange between them.
+    /// DEM–FEM coupling.
     pub coupling: Option<exchange::CouplingPart>,
-    /// Physical time of the run proper [s]; 0 for a static solid.
+    /// Main-stage duration [s]; 0 for a static solid.
     pub end: f64,
-    /// Step of a solid that runs alone [s].
+    /// Time step of a solid-only model [s].
     pub solid_step: Option<f64>,
-    /// What is written.
+    /// Output.
     pub output: OutputPlan,
-    /// What is observed, by name.
+    /// Named probes.
     pub probes: Vec<(String, Observed)>,
 }
 
 impl Job {
-    /// The surface of the ground that grains touch, in the place of the mesh; none without both.
+    /// Returns the ground surface, if coupled.
     pub fn ground(&self) -> Option<SolidSurface> {
         let (plan, solid, grains) = (self.coupling.as_ref()?, self.solid.as_ref()?, self.grains.as_ref()?);
         Some(plan.ground(solid, grains))
@@ -56,7 +54,7 @@ impl Job {
     /// Resolves a scene.
     ///
     /// # Errors
-    /// Bad input: one sentence with file, line, key, found and expected.
+    /// Input errors.
     pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
         let scene = &Table::root(document, scene);
         if scene.solid.is_none() && scene.grains.is_empty() {
@@ -69,7 +67,7 @@ impl Job {
         let mut sleepers = track::sleeper::meshed(scene, gravity)?;
         let build = |s| solid::build(document, s, gravity, coupled, sleepers.take());
         let solid = scene.solid.as_ref().map(build).transpose()?;
-        // A static solve stands at the start of every run but that of an elastic moving solid alone.
+        // Only elastic dynamic solid-only runs start without a static solve.
         if let Some(part) = &solid
             && (coupled || !matches!(part.analysis, solid::Analysis::Dynamic(_)) || !part.is_linear())
         {
@@ -120,7 +118,6 @@ impl Job {
     }
 }
 
-/// Refuses keys that would have no effect beside the other parts of the scene.
 fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
     if scene.grains.is_empty() {
         scene.reject_without([("wind", scene.wind.is_some())], "[[grains]]")?;
@@ -153,7 +150,6 @@ fn refuse_idle_keys(scene: &Table<Scene>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Refuses tables that have no effect without grains.
 fn refuse_tables_of_grains(scene: &Table<Scene>) -> Result<(), SceneError> {
     let tables = [
         ("material", !scene.material.is_empty()),

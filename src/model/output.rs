@@ -1,4 +1,4 @@
-//! What a run writes, resolved.
+//! `[output]` resolved.
 
 use super::duration::{TIME_INTEGRATION, counted_step};
 use crate::scene::{Chains, Output, Scene, SceneError, Table};
@@ -6,43 +6,43 @@ use crate::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, bo
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-/// Time by the clock between two checkpoints where the scene does not say [s].
+/// Default wall time between checkpoints [s].
 const CHECKPOINT: f64 = 600.0;
 
-/// What is written, resolved.
+/// Output of a run.
 #[derive(Clone, Debug)]
 pub struct OutputPlan {
-    /// Frames over the run proper; the start is one more.
+    /// Main-stage frames, without the initial one.
     pub frames: u32,
-    /// Time between rows of the history [s].
+    /// History interval [s].
     pub history_interval: f64,
-    /// Time by the clock between two checkpoints.
+    /// Wall time between checkpoints.
     pub checkpoint: Duration,
-    /// Formats of the frames.
+    /// Frame formats.
     pub formats: Vec<&'static Format>,
-    /// Nodes and Gauss points of the last state as CSV.
+    /// Final nodes and Gauss points as CSV.
     pub tables: bool,
-    /// Grains of the last state as CSV.
+    /// Final grains as CSV.
     pub packing: bool,
-    /// The state at the end, in full.
+    /// Complete final state.
     pub state: bool,
-    /// Fields that frames hold of those that may be chosen; none: all.
+    /// Optional frame fields; default all.
     pub fields: Option<Vec<String>>,
-    /// Fields of the grains beside those that all frames may have.
+    /// Additional grain fields.
     pub extra: Vec<&'static str>,
-    /// Tensors of the solid beside those that all frames may have.
+    /// Additional tensors of the solid.
     pub tensors: Vec<&'static str>,
-    /// Last part of the run that has frames of its own: how long [s], how many.
+    /// Detailed last part: duration [s], frames.
     pub last: Option<(f64, u32)>,
-    /// Frames show the contacts above the mean force only.
+    /// Frames show contacts above the mean force.
     pub strong_chains: bool,
 }
 
 impl OutputPlan {
-    /// Resolves `[output]` of a scene whose run proper lasts `end` [s]; 0 for a static solid.
+    /// Resolves `[output]` for a main stage of `end` [s].
     ///
     /// # Errors
-    /// A key that would have no effect in this scene, or a value out of its range.
+    /// Values out of range, or keys without effect.
     pub fn new(scene: &Table<Scene>, end: f64) -> Result<OutputPlan, SceneError> {
         let o = scene.below("output", &scene.output);
         refuse_idle_keys(scene, &o, end)?;
@@ -84,7 +84,6 @@ impl OutputPlan {
     }
 }
 
-/// Time that a number of steps takes, by which the scene counts frames or rows in place of the key for a time [s].
 fn steps(
     scene: &Table<Scene>,
     o: &Table<Output>,
@@ -101,21 +100,16 @@ fn steps(
     o.check(&key, steps as f64, |n| n >= 1.0, "1 or more").map(|n| Some(n * step))
 }
 
-/// Frames over the run proper.
 fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, SceneError> {
     const MOST: f64 = 100_000.0;
     let (key, frames) = match steps(scene, o, "frame", o.frame_steps, o.frames.is_some())? {
-        // The end may lie just below a whole number of steps.
+        // The end may lie just below a whole step.
         Some(interval) => ("frame_steps", (end / interval * (1.0 + 1e-9)).floor()),
         None => ("frames", f64::from(o.frames.unwrap_or(20))),
     };
     o.check(key, frames, |n| n <= MOST, "at most 100000 frames").map(|n| n as u32)
 }
 
-/// Fields that frames hold.
-///
-/// # Errors
-/// One that this scene has not.
 fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
     let solid = SOLID_FIELDS.into_iter().chain(SOLID_EXTRA).filter(|_| scene.solid.is_some());
     let bodies = body_fields(Written::ByDefault).filter(|_| !scene.grains.is_empty());
@@ -130,7 +124,6 @@ fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, Scene
     Ok(o.fields.clone())
 }
 
-/// The last part of a run, in more detail.
 fn last(scene: &Scene, o: &Table<Output>, end: f64, frames: u32) -> Result<Option<(f64, u32)>, SceneError> {
     let Some(last) = o.optional("last", &o.last) else { return Ok(None) };
     if scene.track.as_ref().is_some_and(|t| t.jump.is_some()) {
@@ -149,13 +142,12 @@ fn last(scene: &Scene, o: &Table<Output>, end: f64, frames: u32) -> Result<Optio
     Ok(Some((time, last.frames)))
 }
 
-/// Whether the grains of a scene have a field beside those that all have.
 fn has_extra(scene: &Scene, name: &str) -> bool {
     !scene.grains.is_empty()
         && match name {
-            // Where a grain began says nothing once it was put back between the borders.
+            // Periodic wrapping invalidates the initial position.
             "displacement" | "initial_position" => scene.periodic.is_none(),
-            // The sum of contacts, bonds and gravity is all that acts.
+            // No other forces.
             "acceleration" => {
                 let held = scene.grains.iter().any(|g| g.motion.is_some());
                 !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
@@ -164,7 +156,6 @@ fn has_extra(scene: &Scene, name: &str) -> bool {
         }
 }
 
-/// Fields of the grains beside those that all frames may have: those named, else those of bonds and of a slide.
 fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
     let wanted = |name: &str| match &o.fields {
         Some(named) => named.iter().any(|n| n == name),
@@ -177,12 +168,10 @@ fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
     body_fields(Written::OnRequest).filter(|name| has_extra(scene, name) && wanted(name)).collect()
 }
 
-/// Whether a format shows nothing but the solid.
 fn of_solid_alone(format: &Format) -> bool {
     format.parts.iter().all(|part| *part == Part::Solid)
 }
 
-/// Refuses keys that would have no effect.
 fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), SceneError> {
     let formats = FORMATS.into_iter().filter(|format| of_solid_alone(format));
     let mut of_solid: Vec<(&str, bool)> =

@@ -1,4 +1,4 @@
-//! `[[probe]]` resolved: what of a run is observed.
+//! `[[probe]]` resolved.
 
 use super::grains::GrainsPart;
 use super::solid::{self, SolidPart};
@@ -6,20 +6,19 @@ use crate::scene::units::vector;
 use crate::scene::{Probe, SceneError, Table};
 use trackbed_dem::measure::BoxRegion;
 
-/// What a probe observes.
+/// Observed object.
 #[derive(Clone, Copy, Debug)]
 pub enum Observed {
-    /// A node of the solid, by index.
+    /// Node of the solid, by index.
     Node(usize),
-    /// A grain, by number.
+    /// Grain, by index.
     Grain(usize),
-    /// A group of grains, by number.
+    /// Group, by index.
     Group(u32),
-    /// The grains with their centre in a box.
+    /// Grains with centre in a box.
     Region(BoxRegion),
 }
 
-/// The probe of a table, with its name.
 pub(super) fn probe(
     table: &Table<Probe>,
     solid: Option<&SolidPart>,
@@ -48,10 +47,9 @@ pub(super) fn probe(
     Ok((name, observed))
 }
 
-/// A node by its number, or the one nearest to a place.
 fn node(table: &Table<Probe>, solid: &SolidPart) -> Result<(String, Observed), SceneError> {
     let mesh = solid.model.mesh();
-    // Sleepers are elsewhere until they are set down.
+    // Sleepers move when they are set down.
     let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
     let node = match (table.node, table.at) {
         (Some(id), _) => solid::find_node(table, mesh, id)?,
@@ -68,7 +66,6 @@ fn node(table: &Table<Probe>, solid: &SolidPart) -> Result<(String, Observed), S
     Ok((format!("n{}", mesh.node_ids[node]), Observed::Node(node)))
 }
 
-/// A grain, a group, or the grains in a box.
 fn of_grains(table: &Table<Probe>, grains: &GrainsPart) -> Result<(String, Observed), SceneError> {
     if let Some(grain) = table.grain {
         let count = grains.groups.bodies.len();

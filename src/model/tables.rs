@@ -1,4 +1,4 @@
-//! Tables that grains are made from: sphere packings and sieve limits in CSV, stone libraries in TOML.
+//! Grain tables: packings and sieve limits in CSV, libraries in TOML.
 
 mod grading;
 mod heading;
@@ -35,7 +35,7 @@ fn text(file: &Path, what: &str) -> Result<String, ReadError> {
     Ok(text)
 }
 
-/// Reads a file line by line, so that a long one takes no memory, with the numbers of the lines; without a byte order mark.
+/// Without byte order mark.
 fn each_line(
     file: &Path,
     what: &str,
@@ -59,8 +59,7 @@ fn each_line(
     }
 }
 
-/// Refuses a row that has not as many columns as the heading, or as there are names where there is none. One number
-/// more may be the second half of another: `0,5` for 0.5.
+/// One extra field may be a decimal comma: `0,5` for 0.5.
 fn check_width(
     file: &Path,
     line: usize,
@@ -79,19 +78,18 @@ fn check_width(
     Err(fault(file, Some(line), "row", format!("{} columns", fields.len()), expected))
 }
 
-/// Fields of a line of a CSV file, trimmed, quotes kept off; `None` for an empty line and a comment.
+/// Trimmed, unquoted fields; `None` for blank lines and comments.
 fn fields(line: &str) -> Option<Vec<&str>> {
     let line = line.trim();
     let data = !line.is_empty() && !line.starts_with('#');
     data.then(|| line.split(',').map(|f| f.trim().trim_matches('"')).collect())
 }
 
-/// Rows of a CSV file that are neither empty nor comments, with their line numbers.
 fn rows(content: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
     (1..).zip(content.lines()).filter_map(|(i, line)| Some((i, fields(line)?)))
 }
 
-/// Rows of numbers in SI units under a heading that may be missing; each row starts with the columns named.
+/// SI units below an optional heading; named columns come first.
 fn numbers<const N: usize>(
     file: &Path,
     what: &str,
@@ -103,7 +101,7 @@ fn numbers<const N: usize>(
     each_line(file, what, |line, text| {
         let Some(fields) = fields(text) else { return Ok(()) };
         if std::mem::take(&mut first) && fields[0].parse::<f64>().is_err() {
-            // A heading may name more columns, which are passed over.
+            // A heading may name further columns.
             heading = Some(fields.len()).filter(|width| *width >= N);
             factors = heading::factors(file, line, &fields, columns)?;
             return Ok(());
@@ -119,7 +117,6 @@ fn numbers<const N: usize>(
     })
 }
 
-/// All rows of [`numbers`], one at least.
 fn table<const N: usize>(file: &Path, columns: &[Column; N]) -> Result<Vec<(usize, [f64; N])>, ReadError> {
     let mut table = Vec::new();
     numbers(file, "packing", columns, |line, row| {
@@ -136,10 +133,10 @@ const X: Column = Column::length("x", &["x"]);
 const Y: Column = Column::length("y", &["y"]);
 const Z: Column = Column::length("z", &["z"]);
 
-/// Spheres `x, y, z, r` [m] of a packing; a first row that is not numbers is a heading.
+/// Reads spheres `x, y, z, r` [m], with optional heading.
 ///
 /// # Errors
-/// The file is missing, a row has too few columns, or a value is no finite number.
+/// Missing file, or invalid rows.
 pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     let row = |(line, [x, y, z, r]): (usize, [f64; 4])| {
         if r > 0.0 {
@@ -151,24 +148,24 @@ pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     table(file, &[X, Y, Z, radius])?.into_iter().map(row).collect()
 }
 
-/// A stone of a packing, a clump or a polyhedron.
+/// Clump or polyhedron of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedStone {
     /// Centre of mass [m].
     pub position: [f64; 3],
-    /// Turns the stone's principal frame into the world's: w, x, y, z.
+    /// Quaternion, principal to world axes: w, x, y, z.
     pub orientation: [f64; 4],
-    /// Factor on the lengths of the stone in its library.
+    /// Scale relative to the library.
     pub scale: f64,
-    /// Number of the stone in its library, from 0.
+    /// Library index, from 0.
     pub stone: usize,
 }
 
-/// Stones `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a packing made of `stones` stones; a first row that is not
-/// numbers is a heading.
+/// Reads grains `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a library of `stones`, with optional
+/// heading.
 ///
 /// # Errors
-/// The file is missing, a row has too few columns, a value is no finite number, or out of range.
+/// Missing file, or invalid rows.
 pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
     let [qw, qx] = [Column::number("qw", &["qw"]), Column::number("qx", &["qx"])];
     let [qy, qz] = [Column::number("qy", &["qy"]), Column::number("qz", &["qz"])];
@@ -193,11 +190,10 @@ pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, Rea
     table(file, &columns)?.into_iter().map(row).collect()
 }
 
-/// Rows of time and `value` of a history in SI units; a first row that is not numbers is a heading, whose units are obeyed.
+/// Reads time and `value` in SI units, with optional heading.
 ///
 /// # Errors
-/// The file is missing, a row has too few columns, a value is no finite number, times do not ascend, or the heading names
-/// other columns or units.
+/// Missing file, invalid rows, unordered times, wrong heading.
 pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     let name = value.name;
@@ -219,10 +215,10 @@ pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError>
     Ok(points)
 }
 
-/// The stones of a library file.
+/// Reads a library of clumps.
 ///
 /// # Errors
-/// The file is missing or no library, or a stone is no clump.
+/// Missing file, or other grains.
 pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -231,10 +227,10 @@ pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
         .map_err(|e| document.error("stones", e.to_string(), "connected spheres with positive radii"))
 }
 
-/// The stones of a library file as dilated polyhedra.
+/// Reads a library of dilated polyhedra.
 ///
 /// # Errors
-/// The file is missing or no library, or a stone is no dilated polyhedron.
+/// Missing file, or other grains.
 pub fn polyhedra(file: &Path) -> Result<Vec<Dilated>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -243,10 +239,10 @@ pub fn polyhedra(file: &Path) -> Result<Vec<Dilated>, SceneError> {
         .map_err(|e| document.error("stones", e.to_string(), "convex `corners` and a positive `radius`"))
 }
 
-/// The stones of a library file as bonded clusters.
+/// Reads a library of bonded clusters.
 ///
 /// # Errors
-/// The file is missing or no library, or a stone is no cluster.
+/// Missing file, or other grains.
 pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -255,10 +251,10 @@ pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
         .map_err(|e| document.error("stones", e.to_string(), "spheres that bonds hold in one piece"))
 }
 
-/// Rows `a, b` of bonded pairs, numbers of grains from 0 to `count` − 1; a first row that is not numbers is a heading.
+/// Reads bonded pairs `a, b` of indices below `count`, with optional heading.
 ///
 /// # Errors
-/// The file is missing, or a row is not two different numbers of grains.
+/// Missing file, or invalid pairs.
 pub fn pairs(file: &Path, count: usize) -> Result<Vec<[usize; 2]>, ReadError> {
     let row = |(line, v): (usize, [f64; 2])| {
         let good = |x: f64| x.fract() == 0.0 && (0.0..count as f64).contains(&x);
@@ -283,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grade_is_the_middle_of_its_limits() {
+    fn grade_is_mean_of_limits() {
         let path = file(
             "sieves.csv",
             "# note\nstandard,grade,sieve_mm,passing_lo_pct,passing_hi_pct\nX,A,63,100,100\nX,A,50,70,90\nX,B,50,0,1\nX,A,31.5,0,0\n",
@@ -302,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_packing_names_line_and_column() {
+    fn bad_packing_reports_position() {
         let path = file("packing.csv", "x,y,z,r\n0,0,0,0.1\n0,zero,0,0.1\n");
         let error = packing(&path).unwrap_err().to_string();
         assert!(error.ends_with(":3: y: found \"zero\", expected a number"), "{error}");

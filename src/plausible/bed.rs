@@ -1,4 +1,4 @@
-//! Where grains are: against gravity, walls and the solid; whether they can settle.
+//! Plausibility of grain positions.
 
 use super::findings::{Findings, Usual, shown};
 use super::grains::length;
@@ -6,15 +6,15 @@ use crate::model::Job;
 use crate::scene::Scene;
 use crate::scene::walls::{Wall, WallKind};
 
-/// Share of the grains that may be where they should not: a few at a border are no slip of the pen.
+/// Tolerated fraction of misplaced grains.
 const SHARE: f64 = 0.2;
 
-/// Corners of what a list of points takes up.
+/// Bounding box.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Least coordinates [m].
+    /// Lower corner [m].
     pub low: [f64; 3],
-    /// Largest coordinates [m].
+    /// Upper corner [m].
     pub high: [f64; 3],
 }
 
@@ -28,30 +28,30 @@ impl Extent {
         (all.low[0] <= all.high[0]).then_some(all)
     }
 
-    /// The longest side [m].
+    /// Returns the longest side [m].
     pub fn longest(&self) -> f64 {
         (0..3).map(|d| self.high[d] - self.low[d]).fold(0.0, f64::max)
     }
 }
 
-/// Where the grains start.
+/// Returns the initial extent of the grains.
 pub fn of_grains(job: &Job) -> Option<Extent> {
     let bodies = &job.grains.as_ref()?.groups.bodies;
     Extent::of(bodies.iter().map(place))
 }
 
-/// What the solid takes up.
+/// Returns the extent of the solid.
 pub fn of_solid(job: &Job) -> Option<Extent> {
     Extent::of(job.solid.as_ref()?.model.mesh().coordinates.iter().copied())
 }
 
-/// Mean size of the grains of a scene, as far as it says so [m].
+/// Returns the mean grain size, if given [m].
 pub fn size(scene: &Scene) -> Option<f64> {
     let sizes = scene.grains.iter().filter_map(|g| g.size.as_ref().map(|s| 0.5 * (s[0].si + s[1].si)));
     sizes.reduce(f64::max)
 }
 
-/// Weighs the places of grains.
+/// Checks grain positions.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     gravity(findings, scene);
     held(findings, scene, job);
@@ -76,7 +76,7 @@ fn gravity(findings: &mut Findings, scene: &Scene) {
     findings.weigh("gravity", size, Usual::or_zero(0.5, 2000.0, "m/s2"));
 }
 
-/// Whether a wall carries what lies on it, `down` a unit vector.
+/// `down`: unit vector.
 fn carries(wall: &Wall, down: [f64; 3]) -> bool {
     match (wall.kind, wall.normal) {
         (WallKind::Plane, Some(n)) => dot(n, down) < -0.05 * dot(n, n).sqrt(),
@@ -84,7 +84,6 @@ fn carries(wall: &Wall, down: [f64; 3]) -> bool {
     }
 }
 
-/// A bed that falls for ever.
 fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
     let weight = length(&scene.gravity);
     let free = scene.grains.iter().any(|g| g.motion.is_none());
@@ -107,7 +106,6 @@ fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Grains on the wrong side of fixed planes.
 fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(part) = &job.grains else { return };
     let bodies = &part.groups.bodies;
@@ -119,7 +117,7 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
             continue;
         };
         let behind = |b: &&trackbed_dem::BodyInput| {
-            // Those that wait for an inlet are nowhere yet.
+            // Queued grains have no position.
             if b.absent {
                 return false;
             }
@@ -127,7 +125,7 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
             dot([0, 1, 2].map(|d| x[d] - point[d].si), normal) < 0.0
         };
         let share = bodies.iter().filter(behind).count() as f64 / bodies.len().max(1) as f64;
-        // A lid over a heap that is cut off later is closed after settling.
+        // Lids close after deposition.
         let lid = dot(normal, [0, 1, 2].map(|d| scene.gravity[d].si)) > 0.0;
         if share > SHARE && !lid {
             let found = format!("{:.0} % of the grains behind the plane", 100.0 * share);
@@ -136,7 +134,6 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Grains of which some are in a closed container and some beside it.
 fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(part) = &job.grains else { return };
     let present = || part.groups.bodies.iter().filter(|b| !b.absent).map(place);
@@ -174,7 +171,6 @@ fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Groups that start inside the solid, or far from it.
 fn in_the_solid(findings: &mut Findings, scene: &Scene, job: &Job) {
     let (Some(part), Some(solid), Some(_)) = (&job.grains, &job.solid, &scene.coupling) else { return };
     let Some(whole) = of_solid(job) else { return };
@@ -188,7 +184,7 @@ fn in_the_solid(findings: &mut Findings, scene: &Scene, job: &Job) {
             findings.add(true, key, "all grains outside the plan of the solid", "grains above its surface");
             continue;
         }
-        // Nodes below the bed, sleepers that lie on it apart.
+        // Nodes below the bed.
         let margin = 0.05 * whole.longest();
         let below =
             |p: &&[f64; 3]| (0..2).all(|d| p[d] >= bed.low[d] - margin && p[d] <= bed.high[d] + margin);
@@ -213,11 +209,10 @@ fn place(body: &trackbed_dem::BodyInput) -> [f64; 3] {
     [body.position.x, body.position.y, body.position.z]
 }
 
-/// Millimetres against metres.
 fn scales(findings: &mut Findings, scene: &Scene, job: &Job) {
     let solid = of_solid(job).map(|e| e.longest());
     if let Some(length) = solid {
-        // What is too large: `geometry`.
+        // Upper limit: see `geometry`.
         findings.weigh("solid", length.min(3000.0), Usual::new(1e-3, 3000.0, "m"));
     }
     if let (Some(length), Some(size)) = (solid, size(scene)) {
@@ -236,7 +231,6 @@ fn scales(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Settling that has no time, no weight or no end.
 fn settling(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(d) = &scene.deposition else { return };
     let weight = length(&scene.gravity);
@@ -254,7 +248,7 @@ fn settling(findings: &mut Findings, scene: &Scene, job: &Job) {
     findings.weigh("deposition.local_damping", d.local_damping, Usual::or_zero(1e-3, 0.9, ""));
     findings.weigh("deposition.max_time", d.max_time.si, Usual::new(1e-3, 600.0, "s"));
     let Some(bed) = of_grains(job) else { return };
-    // The upper grains fall through the gaps between all others, half of the height.
+    // Upper grains fall through gaps, half of the height.
     let fall = ((bed.high[2] - bed.low[2]) / weight).sqrt();
     if d.layers <= 1 && d.max_time.si < 0.1 * fall {
         let found = format!("{}, for a fall of about {}", shown(d.max_time.si, "s"), shown(fall, "s"));

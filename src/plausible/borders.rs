@@ -1,4 +1,4 @@
-//! Grains filled in up to a border of the solid with no wall to hold them there: they roll off it.
+//! Grains filled up to an open border.
 
 use super::bed::{Extent, of_solid};
 use super::findings::{Findings, shown};
@@ -8,11 +8,11 @@ use crate::scene::walls::{Wall, WallKind};
 
 const AXES: [&str; 2] = ["x", "y"];
 
-/// Checks each fill against the four borders of the solid.
+/// Checks each fill against the four solid borders.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let (Some(part), Some(solid), Some(_)) = (&job.grains, of_solid(job), &scene.coupling) else { return };
     let size = 2.0 * part.groups.mean_reach();
-    // Whether walls of other kinds hold the grains is not seen from their keys.
+    // Other walls may hold the grains.
     if scene.walls.iter().any(|w| !matches!(w.kind, WallKind::Plane)) {
         return;
     }
@@ -37,7 +37,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Borders that a fill comes as near to as half a grain of `size` [m], and that no plane and no periodic border closes.
+/// Open borders within half a grain `size` [m] of a fill.
 fn open_borders(scene: &Scene, solid: &Extent, fill: ([f64; 2], [f64; 2]), size: f64) -> Vec<String> {
     let mut open = Vec::new();
     for d in (0..2).filter(|d| !is_periodic(scene, *d)) {
@@ -51,7 +51,7 @@ fn open_borders(scene: &Scene, solid: &Extent, fill: ([f64; 2], [f64; 2]), size:
     open
 }
 
-/// Whether a plane faces inwards along an axis within a grain's size of a border, or inside of it.
+/// A plane within a grain size of a border, or inside it.
 fn closes(wall: &Wall, d: usize, sign: f64, border: f64, size: f64) -> bool {
     let (Some(point), Some(normal)) = (&wall.point, wall.normal) else { return false };
     let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();

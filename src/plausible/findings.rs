@@ -1,22 +1,22 @@
-//! What is found and the ranges that it is weighed by.
+//! Findings and typical ranges.
 
 use serde::Serialize;
 use std::fmt;
 use trackbed_dem::law::parameter::{Parameter, Typical};
 
-/// Factor beyond the usual range from which a value is implausible.
+/// Factor beyond the typical range of implausible values.
 const FAR: f64 = 30.0;
 
-/// A value that is not plausible.
+/// Implausible or unusual value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// Whether it cannot be meant.
+    /// Whether implausible.
     pub serious: bool,
-    /// The key.
+    /// Key.
     pub key: String,
-    /// What was found.
+    /// Value found.
     pub found: String,
-    /// What is usual.
+    /// Typical values.
     pub usual: String,
 }
 
@@ -27,11 +27,11 @@ impl fmt::Display for Finding {
     }
 }
 
-/// What was found so far.
+/// Findings so far.
 #[derive(Debug, Default)]
 pub struct Findings(pub Vec<Finding>);
 
-/// A usual range [SI units]; zero may be usual beside it.
+/// Typical range [SI units], optionally with zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Usual {
     low: f64,
@@ -41,25 +41,25 @@ pub struct Usual {
 }
 
 impl Usual {
-    /// A range.
+    /// Creates a range.
     pub const fn new(low: f64, high: f64, unit: &'static str) -> Usual {
         Usual { low, high, unit, zero: false }
     }
 
-    /// The typical range of a parameter.
+    /// Returns the typical range of a parameter.
     pub fn of<T>(parameter: &Parameter<T>) -> Usual {
         let Typical { low, high, or_zero } = parameter.typical;
         Usual { low, high, unit: parameter.unit, zero: or_zero }
     }
 
-    /// The same with zero, which switches something off.
+    /// Creates a range with zero, which disables a feature.
     pub const fn or_zero(low: f64, high: f64, unit: &'static str) -> Usual {
         Usual { low, high, unit, zero: true }
     }
 }
 
 impl Findings {
-    /// Weighs a value against its range.
+    /// Checks a value against its range.
     pub fn weigh(&mut self, key: impl Into<String>, value: f64, usual: Usual) {
         let Usual { low, high, unit, zero } = usual;
         if (low..=high).contains(&value) || zero && value == 0.0 {
@@ -71,14 +71,14 @@ impl Findings {
         self.add(far, key, shown(value, unit), range);
     }
 
-    /// The same of a key that may be absent.
+    /// Checks an optional value.
     pub fn weigh_some(&mut self, key: impl Into<String>, value: Option<f64>, usual: Usual) {
         if let Some(value) = value {
             self.weigh(key, value, usual);
         }
     }
 
-    /// Adds what was found.
+    /// Adds a finding.
     pub fn add(
         &mut self,
         serious: bool,
@@ -90,7 +90,7 @@ impl Findings {
     }
 }
 
-/// A value with its unit: plain where that is short.
+/// Formats a value with unit.
 pub fn shown(value: f64, unit: &str) -> String {
     let size = value.abs();
     if !value.is_finite() {

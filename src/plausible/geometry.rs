@@ -1,4 +1,4 @@
-//! Geometry that cannot be meant: a mesh in millimetres, sleepers through walls, gravity across the axis of the bed.
+//! Implausible geometry, such as millimetre meshes.
 
 use super::bed::of_solid;
 use super::findings::{Findings, shown};
@@ -7,27 +7,27 @@ use crate::model::Job;
 use crate::scene::Scene;
 use crate::scene::walls::WallKind;
 
-/// Edge of an element that no ground is meshed with [m].
+/// Element edge [m].
 const ELEMENT: f64 = 30.0;
-/// Length of a solid that no ground has [m].
+/// Length of a solid [m].
 const SOLID: f64 = 3000.0;
-/// Mean vertical strain under the weight of the solid that small strains do not allow.
+/// Mean vertical strain under self-weight.
 const STRAIN: f64 = 0.1;
-/// Least Young's modulus of ground [Pa].
+/// Young's modulus of ground [Pa].
 const SOFT: f64 = 1e6;
-/// Depth of a sleeper behind a wall that rounding does not explain [m].
+/// Sleeper depth behind a wall [m].
 const BEHIND: f64 = 1e-3;
-/// Share of gravity along z below which grains do not lie on a floor across z.
+/// Gravity fraction along z.
 const ACROSS: f64 = 0.5;
 
-/// Weighs what scene and job say about the geometry.
+/// Checks the geometry.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     millimetres(findings, scene, job);
     sleepers_through_walls(findings, scene);
     gravity_across(findings, scene);
 }
 
-/// A solid whose size, elements or settlement are a thousand times too large.
+/// A thousand times too large.
 fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
     let (Some(table), Some(part), Some(extent)) = (&scene.solid, &job.solid, of_solid(job)) else { return };
     let mesh = part.model.mesh();
@@ -36,7 +36,7 @@ fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
     let height = extent.high[2] - extent.low[2];
     let softest = table.material.iter().filter_map(|m| m.young).map(|y| y.si).fold(f64::INFINITY, f64::min);
     let weight = length(&scene.gravity) * part.model.total_mass() / volume;
-    // A modulus that no ground has is another finding.
+    // Implausible moduli are reported elsewhere.
     let weighs = table.gravity && softest >= SOFT;
     let strain = if weighs { 0.5 * weight * height / softest } else { 0.0 };
     let longest = extent.longest();
@@ -55,7 +55,6 @@ fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
     findings.add(true, "solid", found, remedy);
 }
 
-/// Sleepers of which a part lies behind a plane that stands.
 fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
     let Some(track) = &scene.track else { return };
     let sleeper = &track.sleeper;
@@ -71,7 +70,7 @@ fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
                 continue;
             };
             let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // The height of the sleeper follows from the bed: only upright walls are compared.
+            // Sleeper height is unknown: only vertical walls are compared.
             if size == 0.0 || n[2].abs() > 1e-6 * size {
                 continue;
             }
@@ -90,7 +89,7 @@ fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
     }
 }
 
-/// Gravity across z, along which grains are stacked and sleepers set down.
+/// Grains are stacked and sleepers set down along z.
 fn gravity_across(findings: &mut Findings, scene: &Scene) {
     let size = length(&scene.gravity);
     let along_z = scene.track.is_some() || scene.coupling.is_some() || scene.deposition.is_some();

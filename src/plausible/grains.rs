@@ -1,4 +1,4 @@
-//! Sizes, counts and motions of grains, walls, wind and water.
+//! Plausibility of grains, walls, wind and water.
 
 use super::findings::{Findings, Usual};
 use crate::scene::Scene;
@@ -7,12 +7,12 @@ use crate::scene::units::Quantity;
 use crate::scene::walls::{Mount, Wall};
 use std::f64::consts::TAU;
 
-/// From silt to boulders.
+/// Silt to boulders.
 const SIZE: Usual = Usual::new(1e-5, 2.0, "m");
 const SPEED: Usual = Usual::or_zero(1e-9, 100.0, "m/s");
 const SPIN: Usual = Usual::or_zero(1e-9, 1000.0, "rad/s");
 
-/// Weighs the groups, walls, wind and water.
+/// Checks groups, walls, wind and water.
 pub fn weigh(findings: &mut Findings, scene: &Scene) {
     scene.grains.iter().enumerate().for_each(|(k, g)| group(findings, k, g));
     scene.walls.iter().enumerate().for_each(|(k, w)| wall(findings, k, w));
@@ -30,7 +30,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene) {
     }
 }
 
-/// Length of a vector of quantities.
+/// Returns the length of a vector.
 pub fn length<D>(v: &[Quantity<D>; 3]) -> f64 {
     v.iter().map(|x| x.si * x.si).sum::<f64>().sqrt()
 }
@@ -117,7 +117,7 @@ fn wall(findings: &mut Findings, k: usize, w: &Wall) {
     }
 }
 
-/// From a slack mooring to a machine's bearing; up to what keeps a body from swinging.
+/// Slack mooring to machine bearing; up to overdamped.
 fn mount(findings: &mut Findings, key: &str, mass: f64, m: &Mount) {
     let (frequency, share) = (Usual::or_zero(0.002, 500.0, "Hz"), Usual::or_zero(1e-4, 2.0, ""));
     let angular = |d: usize| match (&m.frequency, &m.stiffness) {

@@ -1,4 +1,4 @@
-//! How slow a pressed bed moves for its inertia: whether a factor on its masses leaves it quasi-static.
+//! Mass scaling: whether the bed stays quasi-static.
 
 use super::findings::{Findings, shown};
 use crate::model::Job;
@@ -6,22 +6,21 @@ use crate::scene::Scene;
 use std::f64::consts::PI;
 use trackbed_dem::Material;
 
-/// Inertial number below which a granular bed is quasi-static: its stresses do not depend on it there (GDR MiDi, Eur. Phys. J. E
-/// 14 (2004) 341; da Cruz et al., Phys. Rev. E 72 (2005) 021309).
+/// Inertial number below which granular stresses are rate-independent (GDR MiDi, Eur. Phys. J. E 14 (2004)
+/// 341; da Cruz et al., Phys. Rev. E 72 (2005) 021309).
 const QUASI_STATIC: f64 = 1e-3;
-/// The same beyond which it flows and inertia rules.
+/// Limit of inertial flow.
 const INERTIAL: f64 = 0.1;
-/// Modulus of a bed of stones of size d and contact stiffness K, over K/d. 0.18 in the box test of this program (125 MPa with 50 MN/m
-/// and stones of 0.07 m).
+/// Bed modulus over K/d, grain size d, contact stiffness K: 0.18 in the box test (125 MPa, 50 MN/m, 0.07 m).
 const MODULUS: f64 = 0.18;
-/// The same of bodies with moduli, K the stiffness of a contact that bears the largest pressure times d²: 0.33 in the box test (110 MPa with 15 GPa
-/// and corners of 180 MPa).
+/// The same for elastic grains, K at the largest pressure times d²: 0.33 in the box test (110 MPa, 15 GPa,
+/// corner strength 180 MPa).
 const ELASTIC_MODULUS: f64 = 0.33;
-/// Factor on masses from which a scene without a cyclic load is remarked on: no rate is known of it.
+/// Limit without a cyclic load, whose rate is unknown.
 const UNKNOWN: f64 = 100.0;
 
-/// Weighs a factor on the masses of grains by the inertial number I = ε̇ d √(f ρ / p) that a cyclic load is likely to bring about,
-/// with the strain rate ε̇ = π ν Δp/M of a haversine of the frequency ν and the range Δp on a bed of modulus M.
+/// Checks mass scaling by I = ε̇ d √(f ρ / p), ε̇ = π ν Δp/M for a haversine of frequency ν and range Δp on
+/// bed modulus M.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(factor) = scene.time.mass_factor.filter(|f| *f > 1.0) else { return };
     let key = "time.mass_factor";
@@ -47,7 +46,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// The likely inertial number; none where there is no load of a frequency on stones with a stiffness.
+/// None without cyclic load or stiffness.
 fn number(scene: &Scene, job: &Job, factor: f64) -> Option<f64> {
     let (track, grains) = (scene.track.as_ref()?, job.grains.as_ref()?);
     let load = track.load.as_ref()?;
@@ -65,14 +64,14 @@ fn number(scene: &Scene, job: &Job, factor: f64) -> Option<f64> {
     Some(rate * size * (factor * material.density / pressure).sqrt())
 }
 
-/// Modulus of a bed [Pa] of stones of `size` [m] under a `pressure` [Pa]; none where contacts have no stiffness.
+/// Bed modulus [Pa] for `size` [m] and `pressure` [Pa].
 fn modulus(material: Material, size: f64, pressure: f64) -> Option<f64> {
     let Some(young) = material.young else {
         return (material.stiffness > 0.0).then(|| MODULUS * material.stiffness / size);
     };
     let force = pressure * size * size;
     let effective = young / (2.0 * (1.0 - material.poisson * material.poisson));
-    // The circle of contact of two spheres of half the size (Hertz); corners crush until the pressure in its middle is their strength.
+    // Hertz radius of spheres of half the size; corners crush until the peak pressure equals their strength.
     let circle = libm::cbrt(0.75 * force * 0.25 * size / effective);
     let circle = circle.max((1.5 * force / (PI * material.corner_strength)).sqrt());
     Some(ELASTIC_MODULUS * 2.0 * effective * circle / size)

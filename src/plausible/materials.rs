@@ -1,4 +1,4 @@
-//! Constants of materials, of pairs of them, and of bonds.
+//! Plausibility of material, pair and bond constants.
 
 use super::findings::{Findings, Usual};
 use crate::model::grains::parameters;
@@ -8,15 +8,15 @@ use trackbed_dem::PairOverride;
 use trackbed_dem::law::damping::Damping;
 use trackbed_dem::law::parameter::{self, Parameter};
 
-/// From soft models to diamond.
+/// Soft models to diamond.
 const YOUNG: Usual = Usual::new(1e4, 1.2e12, "Pa");
 const POISSON: Usual = Usual::or_zero(0.01, 0.495, "");
-/// From gas-like soils on a model scale to steel.
+/// Model-scale soft soils to steel.
 const SOLID_YOUNG: Usual = Usual::new(1e5, 1e12, "Pa");
 const STRENGTH: Usual = Usual::new(100.0, 5e9, "Pa");
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// Weighs all materials.
+/// Checks all materials.
 pub fn weigh(findings: &mut Findings, scene: &Scene) {
     scene.material.iter().enumerate().for_each(|(k, m)| grain(findings, k, m));
     scene.contact.iter().enumerate().for_each(|(k, c)| pair(findings, k, c));
@@ -26,7 +26,7 @@ pub fn weigh(findings: &mut Findings, scene: &Scene) {
 
 fn grain(findings: &mut Findings, k: usize, m: &GrainMaterial) {
     let material = parameters(m);
-    // The density of walls has no effect.
+    // Wall density has no effect.
     let is_set = |p: &&Parameter<_>| p.key != "density" || m.density.is_some();
     for p in parameter::MATERIAL.iter().filter(is_set) {
         findings.weigh_some(format!("material.{k}.{}", p.key), p.value(&material), Usual::of(p));

@@ -1,9 +1,7 @@
-//! Whether the numbers of a scene are plausible: values that can be computed with, but that no ballast, soil or track has, as a
-//! slip of a unit makes them (80 Pa for 80 MPa, millimetres for metres).
+//! Plausibility of scene values, such as unit errors (80 Pa for 80 MPa, millimetres for metres).
 //!
-//! Every entry names the key, what was found and what is usual. What lies outside of the usual range by a factor of 30, or
-//! cannot be meant, is *implausible*; the rest is *unusual*. Ranges are wide on purpose: a remark on what is right is worse than
-//! none on what is odd.
+//! Beyond the typical range by a factor of 30 is *implausible*, otherwise *unusual*. Ranges are wide: false
+//! warnings are worse than missing ones.
 
 mod bed;
 mod borders;
@@ -24,7 +22,7 @@ pub use findings::Finding;
 use findings::Findings;
 pub use resonance::{AMPLIFICATION, Resonance, near_mode, resonance};
 
-/// Everything of a scene that is not plausible, the implausible first.
+/// Returns all findings, implausible first.
 pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     let mut findings = Findings::default();
     materials::weigh(&mut findings, scene);
@@ -41,10 +39,10 @@ pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     all
 }
 
-/// Refuses a scene with values that are not plausible, by the worst of them.
+/// Rejects a scene by its worst finding.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn refuse(document: &Document, findings: &[Finding]) -> Result<(), Failure> {
     let Some(worst) = findings.first() else { return Ok(()) };
     let others = match findings.len() - 1 {
@@ -61,7 +59,7 @@ mod tests {
     use findings::Usual;
 
     #[test]
-    fn far_outside_is_serious_and_zero_may_be_usual() {
+    fn classifies_distance_from_range() {
         let mut findings = Findings::default();
         let young = Usual::new(1e5, 1e12, "Pa");
         for value in [1e5, 3e10, 9e4, 80.0, 4e13] {

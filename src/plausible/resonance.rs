@@ -1,35 +1,33 @@
-//! Load frequency against the natural frequencies of the solid on its supports: a mesh on a rigid base resonates where the ground does not.
+//! Loads near natural frequencies: a mesh on a rigid base resonates, real ground does not.
 
 use super::findings::Finding;
 use crate::model::Job;
 use trackbed_fem as fem;
 use trackbed_fem::modal::{self, Modes};
 
-/// Modes that are searched.
 const MODES: usize = 12;
-/// Most unknowns of a solid whose modes are searched: a few seconds.
+/// Modal search takes a few seconds.
 const UNKNOWNS: usize = 150_000;
-/// Smallest effective mass of a mode, over the mass of the solid.
+/// Smallest effective over total mass.
 const SHARE: f64 = 0.1;
-/// Amplification above which a load is near a mode: of one with most of the mass, a frequency within about a fourth of the mode's.
+/// Amplification limit: within about a quarter of the dominant frequency.
 pub const AMPLIFICATION: f64 = 2.0;
 
-/// A vertical mode of the solid and the load frequency nearest to it.
+/// Vertical mode with the nearest load frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
-    /// Frequency of the load [Hz].
+    /// Load frequency [Hz].
     pub load: f64,
-    /// Frequency of the mode [Hz].
+    /// Natural frequency [Hz].
     pub mode: f64,
-    /// Effective mass of the mode, over the mass of the solid [-].
+    /// Effective over total mass [-].
     pub share: f64,
-    /// Deflection of the undamped mode over the static one of all modes under a load spread as the mass is:
-    /// share / |1 − (f/fₙ)²| [-].
+    /// Undamped modal over static deflection, load distributed like mass: share / |1 − (f/fₙ)²| [-].
     pub amplification: f64,
 }
 
 impl Resonance {
-    /// What was found, and the remedy.
+    /// Formats finding and remedy.
     pub fn message(&self) -> String {
         let (found, expected) = (self.found(), self.expected());
         format!("track.load: {found}, expected {expected}")
@@ -53,8 +51,7 @@ impl Resonance {
     }
 }
 
-/// The mode that the load of the track amplifies most; none without a cyclic load, or where modes cannot be had: a solid without
-/// density, with absorbing borders, or too large.
+/// Returns the mode most amplified by the track load; none without cyclic load or modes.
 pub fn resonance(job: &Job) -> Option<Resonance> {
     let load = job.grains.as_ref()?.track.load.as_ref()?;
     let model = &job.solid.as_ref()?.model;
@@ -81,7 +78,7 @@ fn nearest(frequencies: &[f64], modes: &Modes, model: &fem::Model) -> Option<Res
     found.max_by(|a, b| a.amplification.total_cmp(&b.amplification))
 }
 
-/// The finding on a load near a mode of the solid.
+/// Returns the finding on a near mode.
 pub fn near_mode(job: &Job) -> Option<Finding> {
     let found = resonance(job).filter(|r| r.amplification > AMPLIFICATION)?;
     Some(Finding { serious: false, key: "track.load".into(), found: found.found(), usual: found.expected() })

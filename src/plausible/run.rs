@@ -1,17 +1,17 @@
-//! Time, steps and what is written.
+//! Plausibility of time, steps and output.
 
 use super::findings::{Findings, Usual, shown};
 use crate::model::Job;
 use crate::scene::Scene;
 
-/// Bytes of a frame for each node and for each body, all formats.
+/// Frame bytes per node and body.
 const BYTES: f64 = 400.0;
-/// Results above this size are remarked on [bytes].
+/// Result size limit [bytes].
 const LARGE: f64 = 200e9;
-/// Steps of spheres in a second of one core.
+/// Particle updates per second on one core.
 const RATE: f64 = 15e6;
 
-/// Weighs time, steps and output.
+/// Checks time, steps and output.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let grains = job.grains.is_some();
     let longest = if grains { 1e4 } else { 1e6 };
@@ -62,7 +62,7 @@ fn output(findings: &mut Findings, scene: &Scene, job: &Job) {
     }
 }
 
-/// Roughly how long the grains take: steps of a fifth of √(m/k) of the mean grain.
+/// Steps of a fifth of √(m/k) of the mean grain.
 fn duration(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(size) = super::bed::size(scene) else { return };
     let material = |name: &str| scene.material.iter().find(|m| m.name == name);

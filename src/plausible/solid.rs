@@ -1,11 +1,11 @@
-//! Loads on the solid, displacements of its supports, its damping.
+//! Plausibility of solid loads, support displacements, damping.
 
 use super::bed::of_solid;
 use super::findings::{Findings, Usual, shown};
 use crate::model::Job;
 use crate::scene::Scene;
 
-/// Weighs loads and supports of the solid.
+/// Checks loads and supports.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(solid) = &scene.solid else { return };
     let softest = solid.material.iter().filter_map(|m| m.young).map(|y| y.si).fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! Sleepers, rails and their loads.
+//! Plausibility of sleepers, rails and loads.
 
 use super::bed::{of_grains, size};
 use super::findings::{Findings, Usual, shown};
@@ -10,7 +10,7 @@ use crate::scene::track::{SeatLoad, Sleeper, TrackTable};
 const FORCE: Usual = Usual::or_zero(1.0, 2e6, "N");
 const FREQUENCY: Usual = Usual::new(0.01, 300.0, "Hz");
 
-/// Weighs the track.
+/// Checks the track.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(track) = &scene.track else { return };
     sleeper(findings, &track.sleeper);
@@ -46,7 +46,6 @@ fn sleeper(findings: &mut Findings, s: &Sleeper) {
     }
 }
 
-/// A sleeper beside the bed.
 fn place(findings: &mut Findings, s: &Sleeper, job: &Job) {
     let Some(bed) = of_grains(job) else { return };
     for d in 0..2 {
@@ -89,7 +88,7 @@ fn load(findings: &mut Findings, l: &SeatLoad) {
     }
 }
 
-/// A load that the sleeper would not feel beside its weight.
+/// Negligible relative to sleeper weight.
 fn against_weight(findings: &mut Findings, scene: &Scene, l: &SeatLoad, s: &Sleeper) {
     let (Some(most), Some(mass)) = (l.maximum, s.mass) else { return };
     let weight = mass.si * length(&scene.gravity);
@@ -99,7 +98,7 @@ fn against_weight(findings: &mut Findings, scene: &Scene, l: &SeatLoad, s: &Slee
     }
 }
 
-/// A load that presses stones into each other: overlap of a contact under the mean pressure, over the size of the stones.
+/// Overlap under the mean pressure, over grain size.
 fn against_stiffness(findings: &mut Findings, scene: &Scene, l: &SeatLoad, s: &Sleeper) {
     let most = l.maximum.or(l.axle_load).map(|v| v.si);
     let stiffness = scene.grains.iter().filter_map(|g| {

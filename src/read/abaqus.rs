@@ -1,18 +1,13 @@
-//! Abaqus input files (`.inp`), also in CalculiX' dialect.
+//! Reader of Abaqus and CalculiX input files (`.inp`).
 //!
-//! Read are *NODE, *ELEMENT, *NSET, *ELSET (both with GENERATE), *MATERIAL with *ELASTIC and *DENSITY, *SOLID SECTION,
-//! *SURFACE (faces of elements), *BOUNDARY (numbers and sets, ranges of directions, ENCASTRE, PINNED, XSYMM and its like), *INCLUDE (followed), and
-//! one *PART with one *INSTANCE that is not moved. Everything else is passed over; what would change geometry or
-//! directions is refused.
+//! Material ids: trailing number of the name if all names have distinct ones (`MATERIAL_3`), else order of
+//! *MATERIAL. Without sections all elements get 1.
 //!
-//! Material numbers: the number at the end of the name where all names end in different numbers (`MATERIAL_3`),
-//! else the order of the *MATERIAL keywords; elements without a section get 1 where there are no sections at all.
+//! Source: Abaqus Keywords Reference and Analysis User's Guide, "Three-dimensional solid element library":
+//! C3D20, C3D15 and C3D10 number mid-side nodes as SOLID186 and VTK do. A 13-node pyramid is a C3D20 with
+//! repeated nodes.
 //!
-//! Source: Abaqus Keywords Reference and Analysis User's Guide, "Three-dimensional solid element library": C3D20, C3D15
-//! and C3D10 number mid-side nodes as SOLID186 and VTK do. Abaqus has no 13-node pyramid: C3D20 with repeated nodes
-//! is read as one.
-//!
-//! Limits: constraints of the model and of the first step; no local coordinate systems.
+//! Not supported: constraints of later steps, local coordinate systems, several or moved parts.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,7 +23,6 @@ use super::error::ReadError;
 use super::mesh_file::{Builder, MeshFile};
 use super::number;
 
-/// Keywords that make or move nodes and elements, or turn directions.
 const REFUSED: [&str; 12] = [
     "NGEN",
     "NFILL",
@@ -44,7 +38,6 @@ const REFUSED: [&str; 12] = [
     "ELPROGRESSIVE",
 ];
 
-/// Keywords whose meaning is lost when they are passed over.
 const MECHANICAL: [&str; 17] = [
     "MODELCHANGE",
     "EQUATION",
@@ -65,31 +58,22 @@ const MECHANICAL: [&str; 17] = [
     "SURFACEINTERACTION",
 ];
 
-/// What the keywords tell, before it is put together.
 #[derive(Default)]
 pub(super) struct Deck {
-    /// Element sets by number.
     pub element_sets: BTreeMap<String, Members>,
-    /// Node sets by number.
     pub node_sets: BTreeMap<String, Members>,
-    /// Members that the keywords of sets have added so far.
     pub members: u64,
-    /// Names of sets as first written, by upper case.
+    /// First spelling by upper case.
     pub names: BTreeMap<String, String>,
-    /// Materials in file order.
     pub materials: Vec<data::Material>,
-    /// Element set and material of each section, with its line.
     pub sections: Vec<(usize, String, String)>,
     pub boundaries: Vec<data::Boundary>,
-    /// Whether the first step has replaced the constraints of the model.
     pub renewed: bool,
-    /// Names and rows of *SURFACE.
     pub surfaces: Vec<(String, Vec<faces::Row>)>,
-    /// Elements of other kinds that are written as bricks with repeated nodes.
+    /// Elements of other kinds written as bricks with repeated nodes.
     pub folded: std::collections::HashSet<u32>,
-    /// Elements left out, so that sets may name them.
+    /// Skipped elements; sets may name them.
     pub left_out: std::collections::HashSet<u32>,
-    /// Elements: index in the mesh, in file order.
     pub parts: Vec<String>,
     pub instances: Vec<String>,
     pub steps: usize,
@@ -99,8 +83,8 @@ pub(super) struct Deck {
 /// Reads an Abaqus input file.
 ///
 /// # Errors
-/// A keyword that changes geometry or directions, several parts, an element that is no stress solid of the known kinds,
-/// wrong counts, unreadable numbers, absent nodes, elements, sets and materials.
+/// Unsupported keywords or elements, wrong counts, unreadable numbers, unknown nodes, elements, sets and
+/// materials.
 pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
     let mut builder = Builder::new(file);
     let mut deck = Deck::default();
@@ -109,7 +93,7 @@ pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
         return Err(ReadError::whole(file, "Abaqus input", "no keyword", "keywords such as *NODE"));
     }
     for block in &blocks {
-        // Faults are reported with the file that the keyword stands in.
+        // Errors name the included file.
         builder.file.clone_from(&block.file);
         keyword(&mut builder, &mut deck, block)?;
     }
@@ -180,7 +164,6 @@ fn keyword(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
     }
 }
 
-/// Keeps the rows of a *SURFACE of elements.
 fn surface(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
     let name = block.required(builder, "NAME")?.to_string();
     let kind = block.option("TYPE").unwrap_or("ELEMENT").to_uppercase();
@@ -192,7 +175,6 @@ fn surface(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), 
     Ok(())
 }
 
-/// Makes sets of faces of the rows of *SURFACE.
 fn surfaces(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
     for (name, rows) in &deck.surfaces {
         let mut found = Vec::new();
@@ -236,7 +218,6 @@ fn nodes(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), Re
         let id = data::whole(builder, line, "node number", row.first().copied())?;
         let mut point = [0.0; 3];
         for (axis, x) in point.iter_mut().enumerate() {
-            // Coordinates that are left out are zero.
             if let Some(text) = row.get(axis + 1).filter(|t| !t.is_empty()) {
                 *x = data::real(builder, line, &format!("coordinates of node {id}"), text)?;
             }
@@ -251,15 +232,11 @@ fn nodes(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), Re
     Ok(())
 }
 
-/// What an element type is here.
 enum Type {
-    /// A kind of this program.
     Solid(ElementKind),
-    /// A brick whose nodes may repeat.
+    /// Brick whose nodes may repeat.
     Brick(usize),
-    /// Nothing with volume.
     Other,
-    /// A volume that is not known here.
     Unknown,
 }
 
@@ -309,7 +286,7 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
                 nodes.push(data::whole(builder, line, &format!("node of element {id}"), Some(*text))?);
             }
             at += 1;
-            // An element of many nodes goes on in the next line.
+            // Elements with many nodes continue on the next line.
             let more = if count > 0 { nodes.len() < count } else { row.last().is_some_and(|t| t.is_empty()) };
             match block.row(at) {
                 Some((_, next)) if more => row = next,
@@ -346,7 +323,7 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
 }
 
 impl Deck {
-    /// The upper-case name of a set, which keeps its first spelling, without the name of the instance in front.
+    /// Upper-case set name without its instance prefix; records the first spelling.
     pub fn name(&mut self, written: &str) -> String {
         let written = self.without_instance(written).to_string();
         let upper = written.to_uppercase();
@@ -354,7 +331,6 @@ impl Deck {
         upper
     }
 
-    /// `Part-1-1.Top` as `Top`.
     pub fn without_instance<'a>(&self, written: &'a str) -> &'a str {
         match written.split_once('.') {
             Some((instance, rest)) if self.instances.iter().any(|i| i.eq_ignore_ascii_case(instance)) => rest,

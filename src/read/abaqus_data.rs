@@ -9,7 +9,6 @@ use super::error::ReadError;
 use super::mesh_file::{Builder, FileMaterial};
 use super::number;
 
-/// A material as its keywords tell it.
 #[derive(Default)]
 pub(super) struct Material {
     pub name: String,
@@ -17,14 +16,11 @@ pub(super) struct Material {
     pub density: Option<f64>,
 }
 
-/// A row of *BOUNDARY.
 pub(super) struct Boundary {
     line: usize,
-    /// Node number or name of a set, as written.
     target: String,
     directions: Vec<u8>,
     value: f64,
-    /// Step that the row stands in, 0 for the model.
     step: usize,
 }
 
@@ -39,7 +35,6 @@ pub(super) fn real(builder: &Builder, line: usize, key: &str, text: &str) -> Res
     value.ok_or_else(|| builder.fault(line, key, format!("\"{text}\""), "a finite number"))
 }
 
-/// *ELASTIC and *DENSITY of the last material.
 pub(super) fn property(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
     let key = format!("*{}", block.keyword);
     let Some(material) = deck.materials.last_mut() else {
@@ -71,7 +66,6 @@ pub(super) fn property(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
     Ok(())
 }
 
-/// The numbers of the materials, in file order.
 fn numbers(materials: &[Material]) -> Vec<u32> {
     let trailing = |name: &str| {
         let digits = name.len() - name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
@@ -84,7 +78,6 @@ fn numbers(materials: &[Material]) -> Vec<u32> {
     }
 }
 
-/// Gives the elements the materials of their sections.
 pub(super) fn sections(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
     let numbers = numbers(&deck.materials);
     let mut renumbered = Vec::new();
@@ -134,7 +127,7 @@ pub(super) fn sections(builder: &mut Builder, deck: &Deck) -> Result<(), ReadErr
     Ok(())
 }
 
-/// Keeps the rows of *BOUNDARY of the model and of the first step.
+/// Only the model and the first step count.
 pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
     if deck.steps > 1 {
         *deck.skipped.entry("BOUNDARY of later steps".into()).or_insert(0) += 1;
@@ -195,7 +188,6 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
                     let found = format!("{first} to {last}");
                     return Err(builder.fault(line, "directions of *BOUNDARY", found, "1 to 3"));
                 }
-                // Rotations and temperatures mean nothing to solids.
                 ((first..=last.min(3)).map(|d| d as u8 - 1).collect(), value)
             }
         };
@@ -204,7 +196,7 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
     Ok(())
 }
 
-/// OP=NEW in the first step removes all constraints of the model; beside it the step has no others.
+/// OP=NEW in the first step removes all constraints of the model; the step must then contain no others.
 fn renew(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
     if deck.renewed {
         return Ok(());
@@ -230,7 +222,6 @@ fn renew(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), Re
     Ok(())
 }
 
-/// Constraints of nodes and sets of nodes.
 pub(super) fn boundaries(builder: &mut Builder, deck: &Deck) -> Result<(), ReadError> {
     for row in &deck.boundaries {
         let target = deck.without_instance(&row.target);

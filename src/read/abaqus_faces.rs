@@ -1,4 +1,4 @@
-//! *SURFACE of an Abaqus input file: sets of faces, and the numbers of faces S1 to S6.
+//! Face sets (*SURFACE) and face labels S1 to S6 of Abaqus.
 //!
 //! Source: Abaqus Analysis User's Guide, "Three-dimensional solid element library", element faces.
 
@@ -18,8 +18,7 @@ const WEDGE: &[&[usize]] = &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2
 const PYRAMID: &[&[usize]] = &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]];
 const TETRAHEDRON: &[&[usize]] = &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]];
 
-/// Corners of the faces S1, S2, … of an element, by node. A pyramid of 13 nodes, and others if they are `folded`, are bricks with
-/// repeated nodes.
+/// Corner nodes of faces S1, S2, …. 13-node pyramids and `folded` elements are bricks with repeated nodes.
 fn faces(kind: ElementKind, nodes: &[u32], folded: bool) -> Vec<Vec<u32>> {
     let (of_kind, corners) = match kind.linear() {
         _ if folded || kind == ElementKind::Pyramid13 => {
@@ -39,22 +38,20 @@ fn faces(kind: ElementKind, nodes: &[u32], folded: bool) -> Vec<Vec<u32>> {
     of_kind.iter().map(distinct).collect()
 }
 
-/// The number of a face by its corners.
 pub(crate) fn face_number(kind: ElementKind, nodes: &[u32], corners: &[u32]) -> usize {
     let wanted = key(corners);
     let all = faces(kind, nodes, false);
     1 + all.iter().position(|face| key(face) == wanted).expect("every face of a kind has a number")
 }
 
-/// A row of *SURFACE: elements and the number of a face, or none for the faces that are free.
+/// Row of *SURFACE: elements and face label; no label selects free faces.
 pub(super) struct Row {
     pub line: usize,
-    /// Number of an element or name of a set, as written.
+    /// Element id or set name.
     pub target: String,
     face: Option<usize>,
 }
 
-/// The rows of a *SURFACE of elements.
 pub(super) fn rows(builder: &Builder, block: &Block) -> Result<Vec<Row>, ReadError> {
     let mut rows = Vec::new();
     for (line, row) in block.rows() {
@@ -73,7 +70,6 @@ pub(super) fn rows(builder: &Builder, block: &Block) -> Result<Vec<Row>, ReadErr
     Ok(rows)
 }
 
-/// The faces of a row on its elements; of `folded` ones the file has bricks with repeated nodes.
 pub(super) fn faces_of(
     builder: &Builder,
     row: &Row,
@@ -88,7 +84,6 @@ pub(super) fn faces_of(
     Ok(found)
 }
 
-/// The face `number` of elements.
 fn numbered(
     builder: &Builder,
     folded: &HashSet<u32>,
@@ -116,7 +111,7 @@ fn numbered(
     Ok(())
 }
 
-/// The faces of elements that no other element has.
+/// Collects faces of single elements.
 fn free(builder: &Builder, elements: &[u32], found: &mut Vec<[u32; 2]>) {
     let members: HashSet<u32> = elements.iter().copied().collect();
     let all = builder.made.mesh.boundary_faces().into_iter().filter(|face| members.contains(&face.element));

@@ -1,57 +1,51 @@
-//! Abaqus input as keywords with their options and data lines.
+//! Splits Abaqus input into keywords with options and data lines.
 
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
 use super::mesh_file::{Builder, read_text};
 
-/// Files within files that are followed.
+/// Nesting depth of *INCLUDE.
 const DEPTH: usize = 10;
-/// Files that may be included in all, one as often as it is named.
+/// Included files, repeats counted.
 const FILES: usize = 200;
 
-/// A keyword line and the data lines below it.
 pub(super) struct Block {
     pub file: PathBuf,
     pub line: usize,
     /// Upper case, without blanks and star.
     pub keyword: String,
-    /// Upper-case names and values as written.
+    /// Upper-case names with their values.
     options: Vec<(String, String)>,
-    /// Data lines with their numbers.
     data: Vec<(usize, String)>,
 }
 
 impl Block {
-    /// The value of an option; empty for one without a value.
     pub fn option(&self, name: &str) -> Option<&str> {
         self.options.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str())
     }
 
-    /// The value of an option that must be there.
     pub fn required(&self, builder: &Builder, name: &str) -> Result<&str, ReadError> {
         self.option(name).filter(|v| !v.is_empty()).ok_or_else(|| {
             builder.fault(self.line, format!("*{}", self.keyword), format!("no {name}"), format!("{name}=…"))
         })
     }
 
-    /// Number of data lines.
     pub fn len(&self) -> usize {
         self.data.len()
     }
 
-    /// Data line `at`: its number and its fields; a comma at the end leaves an empty last field.
+    /// Line number and fields of data line `at`; a trailing comma leaves an empty last field.
     pub fn row(&self, at: usize) -> Option<(usize, Vec<&str>)> {
         self.data.get(at).map(|(line, text)| (*line, fields(text).collect()))
     }
 
-    /// All data lines.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Vec<&str>)> {
         (0..self.len()).filter_map(|at| self.row(at))
     }
 }
 
-/// The fields of a line between commas, trimmed, without the quotes of names; a comma within quotes belongs to its name.
+/// Trimmed fields without quotes; a comma within quotes belongs to the name.
 fn fields(text: &str) -> impl Iterator<Item = &str> {
     let mut quoted = false;
     let outside = move |c: char| {
@@ -65,17 +59,15 @@ fn unquoted(text: &str) -> &str {
     text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(text)
 }
 
-/// The keywords of a file and of those that it includes.
 pub(super) fn read_blocks(file: &Path) -> Result<Vec<Block>, ReadError> {
     let mut blocks = Vec::new();
     follow(file, 0, &mut blocks, &mut Vec::new())?;
     Ok(blocks)
 }
 
-/// The file and those that it includes, as far as they can be read; what is missing shows when it is read as a mesh.
+/// Readable files among `file` and its includes; the mesh reader reports the missing ones.
 pub(super) fn files(file: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    // Faults are for the reader to report.
     let _ = follow(file, 0, &mut Vec::new(), &mut files);
     files
 }
@@ -96,7 +88,7 @@ fn follow(
         }
         let Some(keyword) = text.strip_prefix('*') else {
             match blocks.last_mut() {
-                // Data behind *INCLUDE goes on with the keyword before it.
+                // Data after *INCLUDE belong to the preceding keyword.
                 Some(block) => block.data.push((line, text.to_string())),
                 None => {
                     let shown: String = text.chars().take(40).collect();
@@ -106,7 +98,7 @@ fn follow(
             }
             continue;
         };
-        // A keyword line that ends with a comma goes on in the next line.
+        // A trailing comma continues the keyword line.
         let mut whole = keyword.to_string();
         while whole.ends_with(',') {
             match lines.next() {

@@ -1,7 +1,7 @@
 //! Sets of an Abaqus input file.
 //!
-//! A row with GENERATE names as many numbers as it likes in three fields, and a set can be built of others: so a range
-//! stays a range until it is known which nodes and elements there are, and the members of all sets are counted.
+//! Three fields with GENERATE name any number of members, and sets nest. Ranges are therefore expanded only
+//! against existing nodes and elements, and all members are counted.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -12,38 +12,33 @@ use super::error::ReadError;
 use super::mesh_file::Builder;
 use super::number;
 
-/// Members that all sets together may have beside those that the file lists one by one, or names by its nodes and elements.
+/// Members of all sets together, beyond listed ids, nodes and elements.
 const MOST: u64 = 10_000_000;
-/// Sets that a node, an element or a listed number may be in on the average.
+/// Mean number of sets per node, element or listed id.
 const SETS: u64 = 20;
 
-/// Numbers of nodes or elements, as the rows of a set list them.
+/// Ids as listed by set rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Members {
     ones: Vec<u32>,
-    /// First, last and step.
     ranges: Vec<[u32; 3]>,
 }
 
-/// The numbers that there are.
 pub(super) struct Known<'a> {
-    /// All of them, in file order.
     ids: &'a [u32],
     index: &'a dyn Fn(u32) -> Option<u32>,
 }
 
 impl Members {
-    /// Single numbers.
     pub fn of(ids: impl IntoIterator<Item = u32>) -> Members {
         Members { ones: ids.into_iter().collect(), ..Members::default() }
     }
 
-    /// Adds single numbers.
     pub fn add(&mut self, ids: impl IntoIterator<Item = u32>) {
         self.ones.extend(ids);
     }
 
-    /// Adds another set; what both have counts once.
+    /// Adds another set; common members count once.
     fn join(&mut self, other: &Members) {
         self.ones.extend(&other.ones);
         self.ranges.extend(&other.ranges);
@@ -53,12 +48,11 @@ impl Members {
         self.ranges.dedup();
     }
 
-    /// Numbers and ranges that are kept.
     fn len(&self) -> u64 {
         (self.ones.len() + self.ranges.len()) as u64
     }
 
-    /// Indices of the members that there are, and the number of those that there are not.
+    /// Indices of existing members, and the number of missing ones.
     pub fn resolve(&self, known: &Known<'_>) -> (Vec<u32>, u64) {
         let mut found: Vec<u32> = self.ones.iter().filter_map(|id| (known.index)(*id)).collect();
         let mut absent = (self.ones.len() - found.len()) as u64;
@@ -75,14 +69,13 @@ impl Members {
         (found, absent)
     }
 
-    /// The first member that there is not.
+    /// First missing member.
     pub fn first_absent(&self, known: &Known<'_>) -> Option<u32> {
         let absent = |id: &u32| (known.index)(*id).is_none();
         let one = self.ones.iter().copied().find(absent);
         one.or_else(|| self.ranges.iter().find_map(|range| numbers(range).find(absent)))
     }
 
-    /// Members that `ids` names too.
     fn among(&self, ids: &HashSet<u32>) -> u64 {
         let ones = self.ones.iter().filter(|id| ids.contains(id)).count();
         let ranges =
@@ -90,7 +83,6 @@ impl Members {
         (ones + ranges) as u64
     }
 
-    /// Members to be looked at when the set is resolved.
     fn work(&self, known: usize) -> u64 {
         self.ones.len() as u64 + self.ranges.iter().map(|r| count(r).min(known as u64)).sum::<u64>()
     }
@@ -108,17 +100,14 @@ fn numbers([first, last, step]: &[u32; 3]) -> impl Iterator<Item = u32> + use<> 
     (*first..=*last).step_by(*step as usize)
 }
 
-/// Calls `with` with the nodes that there are.
 pub(super) fn with_nodes<T>(builder: &Builder, with: impl FnOnce(&Known<'_>) -> T) -> T {
     with(&Known { ids: &builder.made.mesh.node_ids, index: &|id| builder.node_index(id) })
 }
 
-/// Calls `with` with the elements that there are.
 pub(super) fn with_elements<T>(builder: &Builder, with: impl FnOnce(&Known<'_>) -> T) -> T {
     with(&Known { ids: &builder.made.mesh.element_ids, index: &|id| builder.element_index(id) })
 }
 
-/// Members of a set as its rows list them; names of other sets are resolved by `sets`.
 fn members(
     builder: &Builder,
     deck: &Deck,
@@ -184,7 +173,7 @@ pub(super) fn element_set(builder: &mut Builder, deck: &mut Deck, block: &Block)
     store(builder, block, &mut deck.members, deck.element_sets.entry(name).or_default(), &ids)
 }
 
-/// Adds members to a set, and their number to `all`, which is limited.
+/// Adds members, counted in the limited total `all`.
 fn store(
     builder: &Builder,
     block: &Block,
@@ -198,7 +187,7 @@ fn store(
     Ok(())
 }
 
-/// Refuses more members of sets than a mesh of this size has use for.
+/// Rejects implausibly many set members for the mesh size.
 fn check_count(builder: &Builder, line: usize, all: u64) -> Result<(), ReadError> {
     let mesh = &builder.made.mesh;
     let most = MOST + SETS * (mesh.node_count() + mesh.element_count()) as u64;
@@ -208,7 +197,6 @@ fn check_count(builder: &Builder, line: usize, all: u64) -> Result<(), ReadError
     Err(builder.fault(line, "sets", format!("{all} members in all of them"), format!("at most {most}")))
 }
 
-/// Refuses sets that take more members to resolve than a mesh of this size has use for.
 pub(super) fn check_sizes(builder: &Builder, deck: &Deck) -> Result<(), ReadError> {
     let mesh = &builder.made.mesh;
     let nodes = deck.node_sets.values().map(|s| s.work(mesh.node_count())).sum::<u64>();
@@ -216,7 +204,7 @@ pub(super) fn check_sizes(builder: &Builder, deck: &Deck) -> Result<(), ReadErro
     check_count(builder, 0, nodes + elements)
 }
 
-/// Hands the sets over, but for those that only serve a section of the same name as a material.
+/// Passes sets on, except those that only serve a section named like a material.
 pub(super) fn sets(builder: &mut Builder, deck: &Deck) {
     let spelled = |upper: &String| deck.names.get(upper).unwrap_or(upper).clone();
     for (upper, ids) in &deck.node_sets {

@@ -1,22 +1,15 @@
-//! The three ANSYS lists: `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT`.
+//! Reader of the ANSYS lists `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT`.
 //!
-//! Our layout, written by the macros of `inputs/ansys`, one row per item:
+//! Layout of the macros in `inputs/ansys`, one row per item:
 //!
 //! | list | columns |
 //! |---|---|
 //! | nodes | `id x y z` [m] |
 //! | elements | `id mat n1 … n20`, SOLID186 order I…P, Q…T, U…X, Y…B |
-//! | constraints | `node dir value`: dir 1, 2, 3, UX, UY, UZ or ALL; value [m], absent means 0 |
+//! | constraints | `node dir value`: dir 1, 2, 3, UX, UY, UZ or ALL; value [m], default 0 |
 //!
-//! Also read: elements without number or without material or without both, of several lines each, and
-//! listings of the commands NLIST, ELIST and DLIST, and the fixed columns of NWRITE. How numbers, separators, comments and
-//! headers may be written is said in the `number`, `table` and `header` modules.
-//!
-//! Bricks with repeated nodes are wedges, pyramids and tetrahedra, as in SOLID186, and bricks whose mid-side nodes are all
-//! 0 are of the linear kinds (see `degenerate` beside this module). Lines of 8 nodes are linear bricks too.
-//!
-//! Limits: nodes in rotated coordinate systems are
-//! refused, since constraints would be in rotated directions.
+//! Also read: elements without id or material, over several lines, or of 8 nodes; listings of NLIST, ELIST
+//! and DLIST; NWRITE columns. Rotated nodal coordinate systems are rejected.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -68,23 +61,21 @@ impl Default for ListLayout {
     }
 }
 
-/// What the lists hold.
+/// Contents of the lists.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lists {
-    /// The mesh; nodes and elements in file order, without nodes that belong to no element.
+    /// Mesh in file order, without unused nodes.
     pub mesh: Mesh,
     /// Constraints in file order, one per node and direction.
     pub constraints: Vec<Constraint>,
-    /// What was guessed or looks like a mistake, one sentence each.
+    /// Guesses and likely mistakes, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Reads the lists; without a constraint list there are no constraints.
+/// Reads the lists; `constraints` is optional.
 ///
 /// # Errors
-/// The first fault: a missing or empty file, wrong columns, an unreadable or non-finite number, a number
-/// given twice, an absent or repeated node in an element, a constraint on an absent node, in an unknown
-/// direction, or with two values.
+/// Missing files, wrong columns, unreadable numbers, duplicate or unknown ids, conflicting constraints.
 pub fn read_lists(
     nodes: &Path,
     elements: &Path,
@@ -119,10 +110,8 @@ impl From<Lists> for MeshFile {
     }
 }
 
-/// Index of each node number.
 type NodeIndex = HashMap<u32, u32>;
 
-/// Names of the reals of a node.
 const VALUES: [&str; 6] =
     ["coordinate x", "coordinate y", "coordinate z", "nodal rotation", "nodal rotation", "nodal rotation"];
 
@@ -139,7 +128,7 @@ fn read_nodes(file: &Path, lists: &mut Lists) -> Result<NodeIndex, ReadError> {
     }
     let mut index = NodeIndex::with_capacity(table.rows.len());
     for (i, row) in table.rows.iter().enumerate() {
-        // NLIST adds the three angles of the nodal coordinate system.
+        // NLIST adds three angles of the nodal coordinate system.
         if blanks.is_none() && row.width() != 4 && row.width() != 7 {
             let found = row.width().to_string();
             return Err(ReadError::at(file, row.line, "columns of a node", found, "4 (id x y z)"));
@@ -218,7 +207,7 @@ fn read_element(
         } else if let Some(n) = column.checked_sub(columns.nodes) {
             let key = format!("element {id}, node n{}", n + 1);
             let node = value(&key)?;
-            // 0 is a mid-side node that is not there.
+            // 0 marks an absent mid-side node.
             if node != 0 && !index.contains_key(&node) {
                 return Err(ReadError::at(file, line, key, node.to_string(), "a node of the node list"));
             }
@@ -229,7 +218,7 @@ fn read_element(
         let line = table.rows[record.first].line;
         ReadError::at(file, line, format!("element {id}"), fault.found, fault.expected)
     })?;
-    // from_brick leaves no 0, and every other number was found above.
+    // from_brick drops zeros; other ids were checked above.
     let nodes = nodes.iter().map(|node| index[node]).collect();
     Ok((id, material, kind, nodes))
 }

@@ -1,10 +1,7 @@
-//! Every form that the lists may take, and every fault that they may have.
-
 use std::path::PathBuf;
 
 use super::*;
 
-/// A fresh folder for one test.
 fn folder(name: &str) -> PathBuf {
     let dir = std::env::temp_dir().join(format!("trackbed_lists_{}_{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&dir);
@@ -12,7 +9,7 @@ fn folder(name: &str) -> PathBuf {
     dir
 }
 
-/// Nodes 1–20 and 101–112: two bricks that share a face, numbered as users do, in no order.
+/// Two bricks with a common face, nodes unordered.
 fn brick_nodes() -> String {
     let mut rows: Vec<String> =
         (1..=32).map(|i| format!("{} {}.5 {} {}", node(i), i, i * i, -(i as i32))).collect();
@@ -32,7 +29,6 @@ fn elements() -> String {
     format!("7 2 {}\n3 1 {}\n", element_nodes(1), element_nodes(13))
 }
 
-/// Reads lists given as text, from files in a folder of their own.
 fn read(name: &str, nodes: &str, elements: &str, constraints: Option<&str>) -> Result<Lists, String> {
     read_as(name, nodes, elements, constraints, ListLayout::default())
 }
@@ -54,7 +50,6 @@ fn read_as(
     });
     let result = read_lists(&path("NODECOORD.DAT"), &path("ELEMENTNUM.DAT"), dof.as_deref(), &layout);
     std::fs::remove_dir_all(&dir).unwrap();
-    // Messages without the folder, so that they can be compared whole.
     let prefix = format!("{}{}", dir.display(), std::path::MAIN_SEPARATOR);
     result
         .map(|mut lists| {
@@ -77,7 +72,7 @@ fn our_layout() {
     assert_eq!(mesh.coordinates[30], [2.5, 4.0, -2.0]);
     assert_eq!(mesh.element_ids, [7, 3]);
     assert_eq!(mesh.materials, [2, 1]);
-    // Node number 1 is the last of the file, index 31.
+    // Node 1 is the last of the file, index 31.
     assert_eq!(mesh.connectivity[0], std::array::from_fn::<u32, 20, _>(|n| 31 - n as u32));
     assert_eq!(mesh.connectivity[1], std::array::from_fn::<u32, 20, _>(|n| 19 - n as u32));
     let expected = [(27, 0, 0.0), (0, 2, -1.5e-3), (30, 0, 0.0), (30, 1, 0.0), (30, 2, 0.0)];
@@ -87,7 +82,7 @@ fn our_layout() {
 }
 
 #[test]
-fn columns_are_recognised_by_count_and_content() {
+fn recognises_columns_by_count_and_content() {
     let (a, b) = (element_nodes(1), element_nodes(13));
     let cases = [
         ("21_id", format!("7 {a}\n3 {b}\n"), [7, 3], [1, 1], true),
@@ -104,9 +99,9 @@ fn columns_are_recognised_by_count_and_content() {
     }
 }
 
-/// Ten columns are number, material and 8 nodes, unless two lines make an element of 20 nodes.
+/// Ten columns are id, material and 8 nodes, unless two lines make an element of 20 nodes.
 #[test]
-fn ten_columns_are_eight_nodes_or_half_of_twenty() {
+fn reads_ambiguous_ten_columns() {
     let eight = "1 1 1 2 3 4 9 10 11 12\n2 1 9 10 11 12 17 18 19 20\n";
     for text in [
         eight.to_string(),
@@ -124,7 +119,7 @@ fn ten_columns_are_eight_nodes_or_half_of_twenty() {
     assert_eq!((lists.mesh.element_count(), lists.mesh.connectivity.kind(0)), (1, ElementKind::Hex20));
 }
 
-/// NWRITE leaves zeros at the end of a row blank: only in its columns is a short row a node.
+/// NWRITE leaves trailing zeros blank: a short row is a node only in its columns.
 #[test]
 fn blank_coordinates_of_nwrite_are_zero() {
     let points: Vec<[f64; 3]> =
@@ -143,7 +138,6 @@ fn blank_coordinates_of_nwrite_are_zero() {
             lists.warnings[0]
                 .ends_with("4 rows have blank coordinates, which are 0 in the columns of NWRITE")
         );
-        // A blank field between others keeps its column.
         let gap = nodes.replacen(
             &format!("{:id$}{:real$.13e}{:real$.13e}\n", 4, 1.0, 1.0),
             &format!("{:id$}{:real$}{:real$.13e}\n", 4, "", 1.0),
@@ -157,7 +151,7 @@ fn blank_coordinates_of_nwrite_are_zero() {
 }
 
 #[test]
-fn listings_in_other_coordinate_systems_are_refused() {
+fn rejects_rotated_coordinate_systems() {
     let plain = brick_nodes();
     for system in ["1", "2", "11"] {
         let nodes =
@@ -190,7 +184,7 @@ fn the_scene_may_tell_the_columns() {
     assert_eq!(error, expected);
 }
 
-/// The formats of `inputs/ansys`: whole numbers as F10.0, reals as E26.17, elements on two lines.
+/// Formats of the macros: integers as F10.0, reals as E26.17, elements on two lines.
 #[test]
 fn lists_as_the_macros_write_them() {
     let whole = |text: &str| format!("{:>10}", format!("{text}."));
@@ -312,7 +306,7 @@ fn faults_of_the_element_list() {
         bad("wide", " 112\n", " 112 5\n"),
         "ELEMENTNUM.DAT:2: columns of an element: found 23, expected 22 (id mat n1…n20)"
     );
-    // The first element lacks a node: 22 is still what most lines have.
+    // The first element lacks a node; most lines still have 22 columns.
     let narrow = elements().replacen(" 20\n", "\n", 1) + &elements().replace("7 2 ", "8 2 ");
     assert_eq!(
         refused("narrow", &brick_nodes(), &narrow, None),
@@ -324,7 +318,6 @@ fn faults_of_the_element_list() {
 
 #[test]
 fn bricks_with_repeated_or_missing_nodes() {
-    // The forms that SOLID186 takes with repeated nodes, in its own order I…B.
     let forms = [
         (ElementKind::Wedge15, [1, 2, 3, 3, 5, 6, 7, 7, 9, 10, 3, 12, 13, 14, 7, 16, 17, 18, 19, 19]),
         (ElementKind::Pyramid13, [1, 2, 3, 4, 5, 5, 5, 5, 9, 10, 11, 12, 5, 5, 5, 5, 17, 18, 19, 20]),
@@ -334,7 +327,6 @@ fn bricks_with_repeated_or_missing_nodes() {
         let text = |nodes: &[u32]| nodes.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
         let lists = read(kind.name(), &brick_nodes(), &format!("4 1 {}\n", text(&nodes)), None).unwrap();
         assert_eq!((lists.mesh.connectivity.kind(0), lists.mesh.node_count()), (kind, kind.node_count()));
-        // Without mid-side nodes, as 0 and as lines of 8 nodes.
         let corners = text(&nodes[..8]);
         for row in [format!("4 1 {corners}{}\n", " 0".repeat(12)), format!("4 1 {corners}\n")] {
             let lists = read(kind.name(), &brick_nodes(), &row, None).unwrap();
@@ -398,9 +390,8 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn unused_nodes_are_left_out_with_a_warning() {
+fn drops_unused_nodes_with_warning() {
     let plain = read("unused_not", &brick_nodes(), &elements(), Some("112 1 0\n1 ALL\n")).unwrap();
-    // One unused node in front of all others, one behind, both constrained.
     let nodes = "900 0 0 0\n".to_string() + &brick_nodes();
     let lists = read("unused", &nodes, &elements(), Some("900 1 0\n112 1 0\n1 ALL\n")).unwrap();
     assert_eq!(lists.warnings, ["NODECOORD.DAT: node 900 belongs to no element and is left out"]);
@@ -412,10 +403,9 @@ fn unused_nodes_are_left_out_with_a_warning() {
     assert_eq!((lists.mesh, lists.constraints), (plain.mesh, plain.constraints));
 }
 
-/// The embankment of the FEM verification, 480 elements in three materials, through every mangling at once:
-/// commas, `D` exponents, carriage returns, elements of three lines, headers, a byte order mark.
+/// Embankment of the FEM verification: 480 elements, three materials.
 #[test]
-fn a_mangled_mesh_is_the_plain_mesh() {
+fn reads_reformatted_mesh_identically() {
     let embankment = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/fem/E3_embankment_patch");
     let read = |dir: &Path| {
         let (n, e, d) = (dir.join("NODECOORD.DAT"), dir.join("ELEMENTNUM.DAT"), dir.join("DOF.DAT"));

@@ -1,11 +1,9 @@
-//! ESRI ASCII grids (`.asc`): heights on a square grid.
+//! Reader of ESRI ASCII grids (`.asc`): heights on a rectangular grid.
 //!
-//! A head of names with a number each: `ncols`, `nrows`, `xllcorner` and `yllcorner` (corner of the lower left cell) or
-//! `xllcenter` and `yllcenter` (its middle), `cellsize` (or `dx` and `dy`, as GDAL writes them), and `NODATA_value`. Then
-//! the heights, the northern row first; line breaks among them carry no meaning.
+//! `xllcorner`, `yllcorner` are the corner of the lower left cell, `xllcenter`, `yllcenter` its centre; GDAL
+//! also writes `dx` and `dy`. Heights start with the northern row; line breaks are ignored.
 //!
 //! Source: Esri, "Esri ASCII raster format", ArcGIS Desktop help.
-//! Limits: coordinates and heights in metres, on a plane; degrees make a surface of the size of a degree.
 
 use std::path::Path;
 
@@ -15,7 +13,6 @@ use super::mesh_file::read_text;
 use super::number;
 use super::surface::Surface;
 
-/// Names that the head may have.
 const NAMES: [&str; 10] = [
     "ncols",
     "nrows",
@@ -29,7 +26,6 @@ const NAMES: [&str; 10] = [
     "nodata_value",
 ];
 
-/// Values of the head with their lines.
 #[derive(Default)]
 struct Head {
     values: [Option<(f64, usize)>; NAMES.len()],
@@ -40,12 +36,10 @@ impl Head {
         NAMES.iter().position(|n| *n == name).and_then(|k| self.values[k])
     }
 
-    /// A value that must be there.
     fn need(&self, file: &Path, name: &str) -> Result<(f64, usize), ReadError> {
         self.get(name).ok_or_else(|| ReadError::whole(file, name, "nothing", "a line with its value"))
     }
 
-    /// A number of samples.
     fn count(&self, file: &Path, name: &str) -> Result<usize, ReadError> {
         let (value, line) = self.need(file, name)?;
         let fits = value.fract() == 0.0 && (2.0..=MOST_SAMPLES as f64).contains(&value);
@@ -56,7 +50,7 @@ impl Head {
         if fits { Ok(value as usize) } else { Err(fault()) }
     }
 
-    /// Distances of columns and rows.
+    /// Spacing of columns and rows [m].
     fn step(&self, file: &Path) -> Result<[f64; 2], ReadError> {
         let names = if self.get("cellsize").is_some() || self.get("dx").is_none() {
             ["cellsize"; 2]
@@ -74,7 +68,7 @@ impl Head {
         Ok(step)
     }
 
-    /// Middle of the cell in the lower left [m].
+    /// Centre of the lower left cell [m].
     fn origin(&self, file: &Path, step: [f64; 2]) -> Result<[f64; 2], ReadError> {
         let mut origin = [0.0; 2];
         for (k, names) in [["xllcorner", "xllcenter"], ["yllcorner", "yllcenter"]].iter().enumerate() {
@@ -95,8 +89,7 @@ impl Head {
 /// Reads an ESRI ASCII grid as a surface.
 ///
 /// # Errors
-/// A head that lacks a value or has one that makes no sense, a height that is no number, or another number of heights than
-/// the head says.
+/// Missing or invalid header values, unreadable heights, wrong number of heights.
 pub fn read_asc(file: &Path) -> Result<Surface, ReadError> {
     parse(file, &read_text(file, "ESRI ASCII grid")?)
 }
@@ -147,7 +140,6 @@ fn parse(file: &Path, text: &str) -> Result<Surface, ReadError> {
     Grid { columns, rows, corner, step, heights }.surface(file)
 }
 
-/// Takes a line of the head.
 fn head_line(file: &Path, line: usize, words: &[&str], head: &mut Head) -> Result<(), ReadError> {
     let name = words[0].to_ascii_lowercase();
     let Some(place) = NAMES.iter().position(|n| *n == name) else {

@@ -6,9 +6,9 @@ fn read(text: &str) -> Result<Surface, String> {
     parse(Path::new("a.asc"), text).map_err(|e| e.to_string())
 }
 
-/// Places of the samples: middles of cells, northern row first; all normals point up.
+/// Samples lie at cell centres, northern row first; all normals point up.
 #[test]
-fn samples_stand_in_the_middles_of_cells() {
+fn samples_lie_at_cell_centres() {
     let surface = read(&format!("{HEAD}1 2 3\n4 5 6\n")).unwrap();
     let vertices = [
         [105.0, 215.0, 1.0],
@@ -27,7 +27,6 @@ fn samples_stand_in_the_middles_of_cells() {
     }
 }
 
-/// Centres in place of corners, line breaks anywhere, steps that differ, and cells without data, which leave a triangle less.
 #[test]
 fn other_heads_and_holes() {
     let centres = HEAD.replace("corner", "center");

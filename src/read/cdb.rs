@@ -1,13 +1,10 @@
-//! ANSYS archives (`.cdb`, `.dat`) as CDWRITE writes them with the option DB.
+//! Reader of ANSYS archives (`.cdb`, `.dat`) written by CDWRITE with option DB.
 //!
-//! Read are NBLOCK, EBLOCK (solid form, and the compact form without SOLID), ET and ETBLOCK, CMBLOCK (node and element
-//! components), D, MP and MPDATA (EX, NUXY or PRXY, DENS). They may stand in any order; all else is passed over,
-//! and commands that would change the mechanics are counted in a warning.
+//! Source: ANSYS Mechanical APDL Command Reference and Programmer's Reference, "Format of the coded database
+//! file".
 //!
-//! Source: ANSYS Mechanical APDL Command Reference and Programmer's Reference, "Format of the coded database file".
-//!
-//! Limits: blocked archives only; constraints on nodes in turned coordinate systems are refused; of temperature
-//! tables the first value is taken.
+//! Limits: blocked archives only, no constraints in rotated nodal systems, first value of temperature tables.
+//! Other commands that affect the mechanics are counted in a warning.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,43 +15,34 @@ use super::error::ReadError;
 use super::mesh_file::{Builder, FileMaterial, MeshFile, read_text};
 use super::number;
 
-/// Commands whose meaning is lost when they are passed over.
 const MECHANICAL: [&str; 14] = [
     "F", "SF", "SFE", "SFBLOCK", "SFEBLOCK", "CE", "CEBLOCK", "CP", "IC", "INISTATE", "TB", "BF", "DSYM",
     "CERIG",
 ];
 
-/// A named set of nodes or elements.
 pub(super) struct Component {
     pub name: String,
     pub of_nodes: bool,
-    /// First and last numbers of ranges.
     pub ranges: Vec<(u32, u32)>,
 }
 
-/// What the commands of an archive tell, before it is put together.
 #[derive(Default)]
 pub(super) struct Archive {
-    /// Element type number to type, such as 186.
+    /// Element type, such as 186, by type id.
     pub types: BTreeMap<u32, u32>,
-    /// Elements as they stand.
     pub elements: Vec<RawElement>,
-    /// Node number and line of nodes in turned coordinate systems.
+    /// Line of each node in a rotated coordinate system.
     pub turned: BTreeMap<u32, usize>,
     components: Vec<Component>,
-    /// Constraints as commands: line and fields.
     constraints: Vec<(usize, Vec<String>)>,
-    /// Material number to its values by label.
     properties: BTreeMap<u32, BTreeMap<String, f64>>,
-    /// Commands passed over, with counts.
     skipped: BTreeMap<String, usize>,
 }
 
 /// Reads an archive.
 ///
 /// # Errors
-/// A file that is no blocked archive, a damaged block, an element of an unknown type or form, an absent node, a
-/// constraint that cannot be understood.
+/// Unblocked archives, damaged blocks, unknown element types or nodes, unreadable constraints.
 pub fn read_cdb(file: &Path) -> Result<MeshFile, ReadError> {
     let text = read_text(file, "ANSYS archive")?;
     let mut builder = Builder::new(file);
@@ -76,7 +64,6 @@ pub fn read_cdb(file: &Path) -> Result<MeshFile, ReadError> {
     builder.finish()
 }
 
-/// One command line; blocks take their rows from `lines`.
 fn command(
     lines: &mut Lines,
     line: usize,
@@ -131,7 +118,7 @@ fn real(builder: &Builder, line: usize, key: &str, text: &str) -> Result<f64, Re
     value.ok_or_else(|| builder.fault(line, key, format!("\"{text}\""), "a finite number"))
 }
 
-/// `ET, number, type`: the type as a number or as a name such as SOLID186.
+/// `ET, number, type`; type is a number or a name such as SOLID186.
 fn element_type(
     builder: &Builder,
     archive: &mut Archive,

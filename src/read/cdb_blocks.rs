@@ -1,4 +1,4 @@
-//! The blocks of an ANSYS archive: rows of fixed width under a line with their Fortran format.
+//! Blocks of an ANSYS archive: fixed-width rows below their Fortran format.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,6 @@ use super::error::ReadError;
 use super::mesh_file::Builder;
 use super::number;
 
-/// The lines of an archive, with their numbers.
 pub(super) struct Lines<'a> {
     file: PathBuf,
     lines: std::iter::Peekable<std::iter::Enumerate<std::str::Lines<'a>>>,
@@ -19,7 +18,7 @@ impl<'a> Lines<'a> {
         Lines { file: file.to_path_buf(), lines: text.lines().enumerate().peekable() }
     }
 
-    /// The next command: a line that is neither empty nor a comment, without the comment at its end.
+    /// Next command without comments.
     pub fn next(&mut self) -> Option<(usize, &'a str)> {
         for (number, line) in self.lines.by_ref() {
             let body = line.split('!').next().unwrap_or_default().trim();
@@ -30,7 +29,7 @@ impl<'a> Lines<'a> {
         None
     }
 
-    /// The next row of a block as it stands; the end of the file is an error.
+    /// Next raw row; the end of the file is an error.
     fn row(&mut self, block: &str) -> Result<(usize, &'a str), ReadError> {
         match self.lines.next() {
             Some((number, line)) => Ok((number + 1, line)),
@@ -38,7 +37,6 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Whether the next line is a row of numbers.
     fn numeric(&mut self) -> bool {
         let number =
             |line: &str| line.trim_start().trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
@@ -50,17 +48,15 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Fields of a row: whole numbers, then reals, as in `(3i9,6e21.13e3)` or `(1i7,2i9,6e21.13)`.
+/// Row format: integers, then reals, as in `(3i9,6e21.13e3)` or `(1i7,2i9,6e21.13)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Format {
-    /// Widths of the whole numbers.
     pub whole: Vec<usize>,
     pub real: usize,
     pub real_width: usize,
 }
 
 impl Format {
-    /// The format of a line such as `(3i9,6e21.13e3)`, `(19i9)`, `(1i9,3e20.9e3)`.
     pub fn parse(text: &str) -> Option<Format> {
         let inner = text.trim().strip_prefix('(')?.split(')').next()?.to_ascii_lowercase();
         let mut parts = inner.split(',').map(str::trim);
@@ -82,12 +78,11 @@ impl Format {
         (!whole.is_empty()).then_some(Format { whole, real, real_width })
     }
 
-    /// Place of whole number `at` in a row, or of the first real.
     fn place(&self, at: usize) -> usize {
         self.whole[..at].iter().sum()
     }
 
-    /// Whole number `at` of a row: `None` when the row ends before it or the field is blank.
+    /// `None` if blank or beyond the end.
     fn whole<'a>(&self, row: &'a str, at: usize) -> Option<&'a str> {
         field(row, self.place(at), *self.whole.get(at)?)
     }
@@ -97,7 +92,6 @@ impl Format {
     }
 }
 
-/// The field of a row, or `None` when it is blank or beyond the end.
 fn field(row: &str, start: usize, width: usize) -> Option<&str> {
     let row = row.trim_end();
     let end = (start + width).min(row.len());
@@ -111,7 +105,6 @@ fn format(lines: &mut Lines, block: &str) -> Result<Format, ReadError> {
     })
 }
 
-/// All whole numbers of a row up to its end; blank fields are 0.
 fn whole_row(
     lines: &Lines,
     format: &Format,
@@ -131,14 +124,14 @@ fn whole(lines: &Lines, line: usize, text: &str, key: &str) -> Result<u32, ReadE
         .ok_or_else(|| lines.fault(line, key, format!("\"{text}\""), "a whole number of 0 or more"))
 }
 
-/// Whether a row ends a block: -1 in its first field, or the command that CDWRITE puts there.
+/// Whether a row ends a block: -1 in its first field, or CDWRITE's end command.
 fn ends(row: &str) -> bool {
     let row = row.trim();
     row.split([',', ' ']).next() == Some("-1")
         || (row.starts_with(['N', 'n', 'E', 'e']) && row.split(',').any(|f| f.trim() == "-1"))
 }
 
-/// `NBLOCK`: number, two entries of the solid model, coordinates, angles; or number and coordinates.
+/// `NBLOCK`: id, two entries of the solid model, coordinates, angles; or id and coordinates.
 pub(super) fn nodes(
     lines: &mut Lines,
     _line: usize,
@@ -158,7 +151,7 @@ pub(super) fn nodes(
         let id = whole(lines, line, format.whole(row, 0).unwrap_or(""), "node number")?;
         let mut values = [0.0; 6];
         for (at, value) in values.iter_mut().enumerate().take(format.real) {
-            // Trailing zeros are left out.
+            // Trailing zeros are omitted.
             let Some(text) = format.real(row, at) else { continue };
             let key = format!("coordinates of node {id}");
             *value = number::real(text)
@@ -171,7 +164,7 @@ pub(super) fn nodes(
     }
 }
 
-/// `EBLOCK`: with SOLID eleven entries and the nodes, else five entries and the nodes.
+/// `EBLOCK`: eleven entries (SOLID) or five, then the nodes.
 pub(super) fn elements(
     lines: &mut Lines,
     line: usize,
@@ -225,14 +218,12 @@ pub(super) fn elements(
 }
 
 impl Archive {
-    /// Whether an element of the compact form has more nodes than the first row holds. The type is known by then,
-    /// since archives define types first.
+    /// Whether a compact element needs a second row. Archives define types first.
     fn takes_two_rows(&self, kind: u32) -> bool {
         self.types.get(&kind).is_some_and(|t| super::cdb_elements::node_count(*t) > 10)
     }
 }
 
-/// `ETBLOCK`: number and type a row.
 pub(super) fn types(lines: &mut Lines, _line: usize, archive: &mut Archive) -> Result<(), ReadError> {
     let format = format(lines, "ETBLOCK")?;
     loop {
@@ -246,11 +237,10 @@ pub(super) fn types(lines: &mut Lines, _line: usize, archive: &mut Archive) -> R
     }
 }
 
-/// Kinds of components of the solid model, which a mesh has no use for.
+/// Components of the solid model are skipped.
 const GEOMETRY: [&str; 8] = ["KP", "KPS", "LINE", "LINES", "AREA", "AREAS", "VOLU", "VOLUS"];
 
-/// `CMBLOCK, name, NODE or ELEM, count`: a negative number ends a range that the number before it begins.
-/// `None` for a component of the solid model, whose rows are passed over.
+/// `CMBLOCK, name, NODE or ELEM, count`: a negative number ends the range begun by its predecessor.
 pub(super) fn component(
     lines: &mut Lines,
     line: usize,

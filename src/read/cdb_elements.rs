@@ -1,4 +1,4 @@
-//! The elements of an ANSYS archive: which types are solids, and what their nodes mean.
+//! Element types of ANSYS archives.
 
 use std::collections::BTreeMap;
 
@@ -9,26 +9,20 @@ use super::degenerate::from_brick;
 use super::error::ReadError;
 use super::mesh_file::Builder;
 
-/// An element as it stands in a block.
 pub(super) struct RawElement {
     pub line: usize,
     pub material: u32,
-    /// Element type number.
     pub kind: u32,
     pub id: u32,
     pub nodes: Vec<u32>,
 }
 
-/// Bricks of 8 nodes that carry stress.
 const BRICKS8: [u32; 5] = [45, 65, 73, 185, 190];
-/// Bricks of 20 nodes.
 const BRICKS20: [u32; 2] = [95, 186];
-/// Tetrahedra of 10 nodes.
 const TETRAHEDRA10: [u32; 2] = [92, 187];
-/// The tetrahedron of 4 nodes.
 const TETRAHEDRON4: u32 = 285;
 
-/// Types without volume. The second is whether they carry force, so that they are missed when left out.
+/// Name of a type without volume, and whether skipping it loses force.
 fn without_volume(kind: u32) -> Option<(&'static str, bool)> {
     Some(match kind {
         200 => ("MESH200", false),
@@ -49,7 +43,7 @@ fn without_volume(kind: u32) -> Option<(&'static str, bool)> {
     })
 }
 
-/// Nodes of a type in full; 10 where that does not matter to the reading.
+/// Node count of a type; 10 if irrelevant.
 pub(super) fn node_count(kind: u32) -> usize {
     match kind {
         _ if BRICKS20.contains(&kind) => 20,
@@ -58,7 +52,6 @@ pub(super) fn node_count(kind: u32) -> usize {
     }
 }
 
-/// Adds the solid elements and counts the others.
 pub(super) fn add(builder: &mut Builder, archive: &Archive) -> Result<(), ReadError> {
     let mut missed: BTreeMap<String, usize> = BTreeMap::new();
     for raw in &archive.elements {
@@ -86,7 +79,6 @@ pub(super) fn add(builder: &mut Builder, archive: &Archive) -> Result<(), ReadEr
     Ok(())
 }
 
-/// The kind of element and its nodes.
 fn shape(builder: &Builder, raw: &RawElement, kind: u32) -> Result<(ElementKind, Vec<u32>), ReadError> {
     let key = || format!("element {}", raw.id);
     let mut nodes = raw.nodes.clone();

@@ -1,4 +1,4 @@
-//! Bricks with repeated nodes: wedges, pyramids and tetrahedra in the form of SOLID186 and SOLID185.
+//! Degenerate bricks: wedges, pyramids and tetrahedra in the form of SOLID186 and SOLID185.
 //!
 //! | kind | corners I…P | mid-sides Q…T, U…X, Y…B |
 //! |---|---|---|
@@ -6,19 +6,17 @@
 //! | pyramid | I J K L, M M M M | U = V = W = X = M |
 //! | tetrahedron | I J K K, M M M M | S = K, U = V = W = X = M, B = A |
 //!
-//! Source: ANSYS Mechanical APDL Element Reference, SOLID186 and SOLID185. A mid-side node of 0 is missing: where
-//! all are missing the element has straight sides and is of the linear kind. Abaqus folds its bricks in the same way.
+//! Source: ANSYS Mechanical APDL Element Reference, SOLID186 and SOLID185. A mid-side node 0 is absent; if
+//! all are, the element is linear. Abaqus uses the same forms.
 
 use trackbed_fem::ElementKind;
 
-/// Positions in a brick of the corners and mid-sides of each kind, in the node order of the kind, and the positions
-/// that repeat another one.
 struct Form {
     kind: ElementKind,
     linear: ElementKind,
-    /// Position in the brick of each node of the kind, corners first.
+    /// Brick positions of the nodes, corners first.
     nodes: &'static [usize],
-    /// Pairs: position that repeats, and the one it repeats.
+    /// Repeating and repeated positions.
     repeats: &'static [(usize, usize)],
 }
 
@@ -49,23 +47,22 @@ const FORMS: [Form; 4] = [
     },
 ];
 
-/// Names of the nodes of SOLID186.
 const LETTERS: [&str; 20] =
     ["I", "J", "K", "L", "M", "N", "O", "P", "Q", "R", "S", "T", "U", "V", "W", "X", "Y", "Z", "A", "B"];
 
-/// Why the nodes of a brick are none of the known forms.
+/// Mismatch of brick nodes with all known forms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What stands there.
+    /// Value found.
     pub found: String,
-    /// What belongs there.
+    /// Expected value.
     pub expected: &'static str,
 }
 
-/// The kind of element that a brick of 8 or 20 node numbers is, and its nodes in the order of that kind.
+/// Returns the element kind of 8 or 20 brick node ids, and its nodes in their order.
 ///
 /// # Errors
-/// Nodes that repeat in another way, missing corners, and some mid-side nodes missing but not all.
+/// Unknown repetitions, missing corners, some but not all mid-sides missing.
 pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
     const FORMS_EXPECTED: &str = "different nodes, or those of a wedge (K = L, O = P), a pyramid (M = N = O = P) or a \
                               tetrahedron (both)";
@@ -74,7 +71,7 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
         return Err(Fault { found: format!("no node {}", LETTERS[corner]), expected: "all corners" });
     }
     let holds = |form: &Form| form.repeats.iter().filter(|(p, _)| *p < 8).all(|(p, of)| ids[*p] == ids[*of]);
-    // From the most folded form to the plain brick, which holds for any nodes.
+    // Most degenerate first; the plain brick matches any nodes.
     let order = [3, 2, 1, 0].map(|f| &FORMS[f]);
     let form = order.into_iter().find(|form| holds(form)).unwrap_or(&FORMS[0]);
     let corner_count = form.linear.node_count();
@@ -88,8 +85,7 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
             expected: "all mid-side nodes of an element, or none",
         });
     }
-    // A mid-side of an edge without length repeats a corner, mostly that of the edge; where mid-sides are missing it may be
-    // missing too.
+    // Mid-sides of collapsed edges repeat a corner, usually their own, or are absent.
     for &(p, of) in form.repeats.iter().filter(|(p, _)| (8..ids.len()).contains(p)) {
         let corner_of_point = of < 8 && ids[..8].contains(&ids[p]);
         if ids[p] != ids[of] && ids[p] != 0 && !corner_of_point {
@@ -106,7 +102,7 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
     Ok((kind, nodes))
 }
 
-/// The brick of 20 nodes (quadratic kinds) or 8 (linear ones) that stands for an element: what [`from_brick`] reads.
+/// Brick of 20 or 8 nodes that [`from_brick`] reads as this element.
 pub fn to_brick(kind: ElementKind, nodes: &[u32]) -> Vec<u32> {
     let form = FORMS.iter().find(|form| form.linear == kind.linear()).unwrap_or(&FORMS[0]);
     let mut brick = vec![0; if kind.is_linear() { 8 } else { 20 }];
@@ -125,19 +121,13 @@ pub fn to_brick(kind: ElementKind, nodes: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// The forms of the Element Reference, letter by letter.
     #[test]
     fn the_forms_of_the_element_reference() {
         let letters = |text: &str| -> Vec<u32> {
             text.split(' ').map(|l| LETTERS.iter().position(|x| *x == l).unwrap() as u32 + 1).collect()
         };
         for (kind, brick, nodes) in [
-            (
-                ElementKind::Tet10,
-                "I J K K M M M M Q R K T M M M M Y Z A A",
-                // Corners, then the middles of 01 12 20 03 13 23.
-                "I J K M Q R T Y Z A",
-            ),
+            (ElementKind::Tet10, "I J K K M M M M Q R K T M M M M Y Z A A", "I J K M Q R T Y Z A"),
             (ElementKind::Pyramid13, "I J K L M M M M Q R S T M M M M Y Z A B", "I J K L M Q R S T Y Z A B"),
             (
                 ElementKind::Wedge15,
@@ -151,7 +141,6 @@ mod tests {
             let (eight, corners) = (&brick[..8], &nodes[..kind.corner_count()]);
             assert_eq!(from_brick(eight), Ok((kind.linear(), corners.to_vec())));
             assert_eq!(to_brick(kind.linear(), corners), eight);
-            // All mid-sides missing: the linear kind, written either way.
             for mut dropped in [brick.clone(), eight.to_vec()] {
                 dropped.resize(20, 0);
                 dropped[8..].fill(0);
@@ -173,7 +162,7 @@ mod tests {
         assert_eq!(with(&[(19, 12)]), "node 12 more than once");
         assert_eq!(with(&[(9, 0)]), "no node R, and other mid-side nodes are there");
         assert_eq!(with(&[(2, 0)]), "no node K");
-        // A wedge whose mid-side S is not K, and one whose upright B is not A.
+        // Mid-side S is not K; then B is not A.
         assert_eq!(with(&[(3, 3), (7, 7)]), "node S = 11 on an edge of a wedge15");
         assert_eq!(with(&[(3, 3), (7, 7), (10, 3), (14, 7)]), "node B = 20 on an edge of a wedge15");
     }

@@ -1,11 +1,8 @@
-//! The columns of an element list: which there are, and which rows belong to one element.
+//! Columns of an element list, and the rows of each element.
 //!
-//! An element may take one line or several. The number of columns of an element is the one that divides the
-//! lines of the file into whole elements; the first of 22, 21, 20 and 26 that fits is taken. Where none does, and all
-//! lines have the same 10, 9, 8 or 14 columns, they are elements of 8 nodes; so they are where two lines of 10 would make no element of
-//! 20 nodes. Otherwise the message is about the
-//! number of columns that most lines have, or else about the one that gets furthest, so that it names the first damaged
-//! element.
+//! The column count is the first of 22, 21, 20 and 26 that divides the file into whole elements. Otherwise
+//! uniform lines of 10, 9, 8 or 14 columns are elements of 8 nodes, as are lines of 10 that do not pair into
+//! 20 nodes.
 
 use super::ansys_lists::ElementColumns;
 use super::degenerate::from_brick;
@@ -13,14 +10,14 @@ use super::error::ReadError;
 use super::number;
 use super::table::{Row, Table};
 
-/// What the columns before the nodes are.
+/// Meaning of the columns before the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// Column of the element number.
+    /// Column of the element id.
     pub id: Option<usize>,
-    /// Column of the material number.
+    /// Column of the material id.
     pub material: Option<usize>,
-    /// First of the node columns.
+    /// First node column.
     pub nodes: usize,
     /// Number of nodes: 20 or 8.
     pub count: usize,
@@ -30,7 +27,7 @@ const ID_MATERIAL: Columns = Columns { id: Some(0), material: Some(1), nodes: 2,
 const ID: Columns = Columns { id: Some(0), material: None, nodes: 1, count: 20 };
 const MATERIAL: Columns = Columns { id: None, material: Some(0), nodes: 1, count: 20 };
 const NEITHER: Columns = Columns { id: None, material: None, nodes: 0, count: 20 };
-/// Element, material, type, real constant, coordinate system, section: a listing of ELIST.
+/// ELIST: element, material, type, real constant, coordinate system, section.
 const LISTING: Columns = Columns { id: Some(0), material: Some(1), nodes: 6, count: 20 };
 
 impl Columns {
@@ -38,7 +35,6 @@ impl Columns {
         self.nodes + self.count
     }
 
-    /// The same columns before 8 nodes.
     fn of_eight(self) -> Columns {
         Columns { count: 8, ..self }
     }
@@ -54,17 +50,16 @@ impl Columns {
     }
 }
 
-/// One element: its rows are `first..end` of the table.
+/// Element in rows `first..end` of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record {
     /// First row.
     pub first: usize,
-    /// One past its last row.
+    /// One past the last row.
     pub end: usize,
 }
 
-/// Splits the table into elements, finding the columns unless `wanted` tells them. Pushes a warning where the
-/// choice rests on a guess.
+/// Splits the table into elements, with columns `wanted` or a guess that adds a warning.
 pub fn split(
     table: &Table,
     wanted: ElementColumns,
@@ -117,19 +112,16 @@ pub fn split(
     Ok((columns, records))
 }
 
-/// Whether the fields of an element without number and material are nodes of a brick.
 fn is_brick(table: &Table, record: Record) -> bool {
     let ids: Option<Vec<u32>> = fields(table, record).map(|(_, text)| number::whole(text)).collect();
     ids.is_some_and(|ids| from_brick(&ids).is_ok())
 }
 
-/// Whether most lines have just these columns.
 fn usual(table: &Table, columns: Columns) -> bool {
     let count = table.rows.iter().filter(|row| row.width() == columns.width()).count();
     2 * count > table.rows.len()
 }
 
-/// Groups rows into elements of a width; stops at the first fault.
 fn group(table: &Table, columns: Columns) -> (Vec<Record>, Option<ReadError>) {
     let width = columns.width();
     let mut records = Vec::with_capacity(table.rows.len());
@@ -162,8 +154,7 @@ fn wrong_width(table: &Table, columns: Columns, first: usize, end: usize, count:
     ReadError::at(&table.file, line, key, found, expected)
 }
 
-/// Of 21 columns (9 with 8 nodes) the first is a material number where its values repeat (few different ones), and an element
-/// number where they differ.
+/// Of 21 (8 nodes: 9) columns, the first is a material id if its values repeat, else an element id.
 fn id_or_material(
     table: &Table,
     count: usize,
@@ -192,7 +183,6 @@ fn id_or_material(
     Ok(Columns { count, ..columns })
 }
 
-/// The fields of one element with the line of each, in order.
 pub fn fields<'a>(table: &'a Table, record: Record) -> impl Iterator<Item = (usize, &'a str)> + 'a {
     let rows: &'a [Row] = &table.rows[record.first..record.end];
     rows.iter().flat_map(move |row| table.fields(row).map(move |field| (row.line, field)))

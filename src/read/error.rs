@@ -1,69 +1,69 @@
-//! Errors of input files and scenes: one skeleton for all messages.
+//! Error messages of input files and scenes.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::message::shown;
 
-/// Longest name or value of a file in a message [characters].
+/// Longest name or value in a message [characters].
 const LONGEST: usize = 300;
-/// Longest list of what was expected [characters].
+/// Longest list of expected values [characters].
 const LONGEST_LIST: usize = 1000;
 
-/// Problem of a key: the forms that an input error can have.
+/// Problem of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Problem {
-    /// Value that is not allowed: `found X, expected Y`.
+    /// Value not allowed: `found X, expected Y`.
     Value {
         /// Value in the file.
         found: Box<str>,
-        /// Noun phrase that lists the allowed values.
+        /// Noun phrase for the allowed values.
         expected: Box<str>,
     },
     /// Key that excludes another: `found together with Z, expected only one of them`.
     Conflict {
-        /// The other key or table.
+        /// Other key or table.
         with: Box<str>,
     },
-    /// Key that needs another: `found without Z, expected both`.
+    /// Key that requires another: `found without Z, expected both`.
     Requirement {
-        /// The missing key or table.
+        /// Missing key or table.
         without: Box<str>,
     },
-    /// Key without use: `found, but it has no effect without Z`.
+    /// Key without effect: `found, but it has no effect without Z`.
     NoEffect {
-        /// Key, table or value that would give it effect.
+        /// Key, table or value that gives it effect.
         without: Box<str>,
     },
     /// Missing key: `found nothing, expected Y`.
     Missing {
-        /// Noun phrase for the missing value.
+        /// Noun phrase for the value.
         expected: Box<str>,
     },
 }
 
 impl Problem {
-    /// Value that is not allowed.
+    /// Creates an error of a value.
     pub fn value(found: impl Into<String>, expected: impl Into<String>) -> Problem {
         Problem::Value { found: found.into().into(), expected: expected.into().into() }
     }
 
-    /// Key that excludes another.
+    /// Creates a conflict of two keys.
     pub fn conflict(with: impl Into<String>) -> Problem {
         Problem::Conflict { with: with.into().into() }
     }
 
-    /// Key that needs another.
+    /// Creates a missing requirement.
     pub fn requirement(without: impl Into<String>) -> Problem {
         Problem::Requirement { without: without.into().into() }
     }
 
-    /// Key without use.
+    /// Creates an error of a key without effect.
     pub fn no_effect(without: impl Into<String>) -> Problem {
         Problem::NoEffect { without: without.into().into() }
     }
 
-    /// Missing key.
+    /// Creates an error of a missing key.
     pub fn missing(expected: impl Into<String>) -> Problem {
         Problem::Missing { expected: expected.into().into() }
     }
@@ -91,29 +91,28 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Error of an input file, printed as one line: `FILE:LINE: key: found X, expected Y. Remedy.`
+/// Input error, printed as one line: `FILE:LINE: key: found X, expected Y. Remedy.`
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct ReadError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Line number, counted from 1; `None` where the fault is in no single line.
+    /// Line number from 1; `None` if several lines are concerned.
     pub line: Option<usize>,
-    /// The field or item at fault, in the words of the file's documentation.
+    /// Field or item, named as in the documentation.
     pub key: String,
     /// Problem of the key.
     pub problem: Problem,
-    /// Sentence on the remedy, without its full stop; `None` if it is obvious.
+    /// Remedy without full stop; `None` if obvious.
     pub remedy: Option<Box<str>>,
 }
 
 impl ReadError {
-    /// Error with `remedy`, a sentence without its full stop.
+    /// Adds a remedy, a sentence without full stop.
     #[must_use]
     pub fn remedy(self, remedy: impl Into<String>) -> Self {
         ReadError { remedy: Some(remedy.into().into()), ..self }
     }
 
-    /// A fault at a line of `file`.
     pub(crate) fn at(
         file: &Path,
         line: usize,
@@ -125,7 +124,6 @@ impl ReadError {
         ReadError { file: file.to_path_buf(), line: Some(line), key: key.into(), problem, remedy: None }
     }
 
-    /// A fault of `file` as a whole.
     pub(crate) fn whole(
         file: &Path,
         key: impl Into<String>,
@@ -156,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prints_one_sentence_with_file_line_field_found_and_expected() {
+    fn prints_error_as_one_line() {
         let file = Path::new("NODECOORD.DAT");
         let at = ReadError::at(file, 17, "coordinate y", "\"1.2.3\"", "a number");
         assert_eq!(at.to_string(), "NODECOORD.DAT:17: coordinate y: found \"1.2.3\", expected a number");

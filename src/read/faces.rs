@@ -1,11 +1,10 @@
-//! The faces of all elements: which of them a file names, and which elements cannot lie side by side.
+//! Element faces by corner nodes, and elements that overlap.
 
 use trackbed_fem::Mesh;
 
-/// Numbers of a face's corners in ascending order; the fourth of a triangle is the largest number there is.
+/// Ascending corner ids; the fourth of a triangle is `u32::MAX`.
 pub(crate) type Key = [u32; 4];
 
-/// The key of a face by its corners.
 pub(crate) fn key(corners: &[u32]) -> Key {
     let mut key = [u32::MAX; 4];
     for (k, corner) in key.iter_mut().zip(corners) {
@@ -15,7 +14,6 @@ pub(crate) fn key(corners: &[u32]) -> Key {
     key
 }
 
-/// All faces of a mesh by their corners.
 pub(super) struct Faces(Vec<(Key, [u32; 2])>);
 
 impl Faces {
@@ -23,7 +21,7 @@ impl Faces {
         let mut all = Vec::new();
         for (e, nodes) in mesh.connectivity.iter().enumerate() {
             for (side, local) in mesh.connectivity.kind(e).faces().iter().enumerate() {
-                // A face of 3 or 4 nodes has corners only; else half of them are.
+                // Faces of 3 or 4 nodes have corners only; otherwise half are corners.
                 let corners = if local.len() > 4 { local.len() / 2 } else { local.len() };
                 let mut of_face = [u32::MAX; 4];
                 of_face.iter_mut().zip(&local[..corners]).for_each(|(node, l)| *node = nodes[*l]);
@@ -35,14 +33,13 @@ impl Faces {
         Faces(all)
     }
 
-    /// Elements and sides of the faces with these corners: none, one, or the two of an inner face.
+    /// Element and side of the faces with these corners; two for an inner face.
     pub fn find(&self, key: Key) -> impl Iterator<Item = [u32; 2]> + '_ {
         let first = self.0.partition_point(|(k, _)| *k < key);
         self.0[first..].iter().take_while(move |(k, _)| *k == key).map(|(_, face)| *face)
     }
 
-    /// The first of the faces that more than two elements have, or two elements with the same corners: key, found and expected
-    /// of an error.
+    /// First face of more than two elements, or pair of identical elements: key, found, expected.
     pub fn fault(&self, mesh: &Mesh) -> Option<(String, String, String)> {
         let faults = self.0.chunk_by(|a, b| a.0 == b.0).filter(|group| crowded(mesh, group));
         let of_elements =
@@ -72,12 +69,10 @@ impl Faces {
     }
 }
 
-/// Whether elements that share a face cannot lie side by side.
 fn crowded(mesh: &Mesh, group: &[(Key, [u32; 2])]) -> bool {
     group.len() > 2 || group.len() == 2 && are_twins(mesh, group)
 }
 
-/// Whether two elements have the same corners.
 fn are_twins(mesh: &Mesh, pair: &[(Key, [u32; 2])]) -> bool {
     let corners = |at: usize| {
         let element = pair[at].1[0] as usize;
@@ -103,7 +98,6 @@ mod tests {
         let found: Vec<[u32; 2]> = Faces::of(&mesh).find(key(inner.corners())).collect();
         assert!(found.len() <= 2 && found.contains(&[0, 3]), "{found:?}");
 
-        // The same brick as a linear one, from another corner.
         let mut twin = mesh.clone();
         let c: Vec<u32> = mesh.connectivity[1][..8].to_vec();
         twin.push_element(50, 1, ElementKind::Hex8, &[c[1], c[2], c[3], c[0], c[5], c[6], c[7], c[4]]);
@@ -111,7 +105,6 @@ mod tests {
         assert!(key.contains(&format!("{}", mesh.element_ids[1])) && key.contains("50"), "{key}");
         assert!(found.starts_with("the same corners"), "{found}");
 
-        // A wedge that stands on a face between two bricks.
         let mut three = mesh.clone();
         let face = (0..6)
             .map(|side| mesh.face(0, side))

@@ -1,11 +1,9 @@
-//! GeoTIFF (`.tif`, `.tiff`): heights on a grid, as geographic programs exchange them.
+//! Reader of GeoTIFF heights (`.tif`, `.tiff`).
 //!
-//! One band of whole or real numbers, stripped or tiled, raw, packed, deflated or LZW. Places come from the pixel scale
-//! with a tie point, or from a transformation without rotation; whether a sample stands in the middle of its cell or on
-//! its corner, from the raster type. Values equal to GDAL's "no data" and values that are no numbers leave holes.
+//! One unrotated band; the raster type places samples at cell centres or corners. No-data values are holes.
 //!
 //! Source: OGC GeoTIFF standard 1.1 (19-008r4). Decoding: crate `tiff`.
-//! Limits: first image of the file alone; coordinates on a plane in metres: degrees (model type 2) are refused.
+//! Limits: first image only, plane coordinates in metres.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -18,10 +16,8 @@ use super::grid::{Grid, MOST_SAMPLES};
 use super::mesh_file::read_bytes;
 use super::surface::Surface;
 
-/// Keys of the key directory: type of the model, meaning of a sample.
 const MODEL_TYPE: u64 = 1024;
 const RASTER_TYPE: u64 = 1025;
-/// Values of the two.
 const GEOGRAPHIC: u64 = 2;
 const PIXEL_IS_POINT: u64 = 2;
 
@@ -30,7 +26,7 @@ type Source = Decoder<Cursor<Vec<u8>>>;
 /// Reads a GeoTIFF as a surface.
 ///
 /// # Errors
-/// What is no TIFF, or damaged; more than one band; no place; a grid that is turned; degrees in place of metres.
+/// Damaged or other files, several bands, missing position, rotated grids, degrees.
 pub fn read_geotiff(file: &Path) -> Result<Surface, ReadError> {
     let bytes = read_bytes(file, "GeoTIFF")?;
     let broken =
@@ -62,7 +58,6 @@ pub fn read_geotiff(file: &Path) -> Result<Surface, ReadError> {
     Grid { columns, rows, corner, step, heights }.surface(file)
 }
 
-/// Place of the first sample and the distances.
 fn place(file: &Path, source: &mut Source) -> Result<([f64; 2], [f64; 2]), ReadError> {
     let keys = source.get_tag_u64_vec(Tag::GeoKeyDirectoryTag).unwrap_or_default();
     let key = |id: u64| keys.chunks_exact(4).skip(1).find(|k| k[0] == id && k[1] == 0).map(|k| k[3]);
@@ -91,17 +86,15 @@ fn place(file: &Path, source: &mut Source) -> Result<([f64; 2], [f64; 2]), ReadE
         let found = format!("steps ({}, {}) from ({}, {})", step[0], step[1], origin[0], origin[1]);
         return Err(ReadError::whole(file, "place", found, "finite places, steps above 0, north up"));
     }
-    // An area's sample stands in its middle.
+    // Area samples lie at cell centres.
     let shift = if key(RASTER_TYPE) == Some(PIXEL_IS_POINT) { 0.0 } else { 0.5 };
     Ok(([origin[0] + shift * step[0], origin[1] - shift * step[1]], step))
 }
 
-/// GDAL's value for "no data".
 fn absent(source: &mut Source) -> Option<f64> {
     source.get_tag_ascii_string(Tag::GdalNodata).ok()?.trim().trim_end_matches('\0').parse().ok()
 }
 
-/// The samples as real numbers.
 fn values(file: &Path, image: DecodingResult) -> Result<Vec<f64>, ReadError> {
     Ok(match image {
         DecodingResult::U8(v) => v.into_iter().map(f64::from).collect(),

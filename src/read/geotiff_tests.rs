@@ -2,7 +2,6 @@ use super::*;
 use tiff::encoder::colortype::{ColorType, Gray16, Gray32Float, Gray64Float, RGB8};
 use tiff::encoder::{TiffEncoder, TiffValue};
 
-/// Tags beside the image: pixel scale, tie point, keys, no data.
 struct Tags<'a> {
     scale: &'a [f64],
     tie: &'a [f64],
@@ -60,7 +59,7 @@ fn read(bytes: &[u8]) -> Result<Surface, String> {
 const SIX: [f32; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 
 #[test]
-fn samples_of_areas_and_of_points_have_their_places() {
+fn places_area_and_point_samples() {
     let surface = file::<Gray32Float>(&GOOD, [3, 2], &SIX).unwrap();
     assert_eq!((surface.vertices[0], surface.triangles.len()), ([105.0, 230.0, 1.0], 4));
     assert_eq!(surface.vertices[5], [125.0, 210.0, 6.0]);

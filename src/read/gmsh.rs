@@ -1,19 +1,18 @@
-//! Gmsh meshes (`.msh`), formats 2.2 and 4.1, text and binary.
+//! Reader of Gmsh meshes (`.msh`), formats 2.2 and 4.1, text and binary.
 //!
-//! | in Gmsh | here |
+//! | Gmsh | mesh |
 //! |---|---|
-//! | physical volume | material number; a set of elements when it has a name |
-//! | physical surface | set of faces, and of their nodes, by name or as `physical_surface_7` |
-//! | physical curve, point | set of the nodes of its elements, likewise |
-//! | no physical volume at all | the number of the geometric volume is the material number |
+//! | physical volume | material id; element set if named |
+//! | physical surface | face and node set, by name or `physical_surface_7` |
+//! | physical curve, point | node set, likewise |
+//! | no physical volume | geometric volume id is the material id |
 //!
-//! A volume in several physical groups takes the material of the first, and belongs to the set of each. Elements of
-//! fewer dimensions only make sets.
+//! A volume in several groups takes the material of the first and joins all sets.
 //!
-//! Source: Gmsh Reference Manual, "MSH file format" and "Node ordering". Gmsh numbers mid-side nodes by edges in
-//! another order than ANSYS, Abaqus and VTK for all kinds of elements.
+//! Source: Gmsh Reference Manual, "MSH file format" and "Node ordering". Mid-side nodes follow another edge
+//! order than in ANSYS, Abaqus and VTK.
 //!
-//! Limits: no nodes in the middle of faces or volumes (hex27 and its like).
+//! Not supported: nodes inside faces or volumes (hex27).
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,14 +25,13 @@ use super::gmsh4;
 use super::mesh_file::{Builder, MeshFile, order_from_edges, read_bytes};
 use super::tokens::{Encoding, Tokens};
 
-/// Edges of each quadratic kind in the order of Gmsh's mid-side nodes (figures of "Node ordering").
+/// Edges in the order of Gmsh's mid-side nodes (figures of "Node ordering").
 const HEX: [[usize; 2]; 12] =
     [[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]];
 const WEDGE: [[usize; 2]; 9] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]];
 const PYRAMID: [[usize; 2]; 8] = [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3], [2, 4], [3, 4]];
 const TET: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [2, 3], [1, 3]];
 
-/// Gmsh's number of each kind.
 pub(crate) const TYPES: [(i32, ElementKind); 8] = [
     (17, ElementKind::Hex20),
     (18, ElementKind::Wedge15),
@@ -45,7 +43,7 @@ pub(crate) const TYPES: [(i32, ElementKind); 8] = [
     (4, ElementKind::Tet4),
 ];
 
-/// For each node of a kind its position in Gmsh's element.
+/// Gmsh position of each node of a kind.
 pub(crate) fn order(kind: ElementKind) -> Vec<usize> {
     match kind.linear() {
         ElementKind::Hex8 => order_from_edges(kind, &HEX),
@@ -55,7 +53,6 @@ pub(crate) fn order(kind: ElementKind) -> Vec<usize> {
     }
 }
 
-/// Types that are not volumes here: dimension and number of nodes.
 const LOWER: [(i32, usize, usize); 14] = [
     (15, 0, 1),
     (1, 1, 2),
@@ -73,10 +70,8 @@ const LOWER: [(i32, usize, usize); 14] = [
     (23, 2, 15),
 ];
 
-/// Types of `LOWER` with four corners.
 const QUADRANGLES: [i32; 3] = [3, 10, 16];
 
-/// Dimension and number of nodes of a type.
 pub(super) enum Shape {
     Volume(ElementKind),
     Lower { dimension: usize, nodes: usize, corners: usize },
@@ -101,7 +96,6 @@ pub(super) fn shape(tokens: &mut Tokens, kind: i32) -> Result<Shape, ReadError> 
     Err(tokens.fault("element type", name, expected))
 }
 
-/// An element as it stands in the file.
 pub(super) struct RawElement {
     pub line: usize,
     pub id: u32,
@@ -109,35 +103,30 @@ pub(super) struct RawElement {
     /// Physical volumes, then the geometric volume.
     pub groups: Vec<u32>,
     pub entity: u32,
-    /// Nodes in Gmsh's order.
     pub nodes: Vec<u32>,
 }
 
-/// Name of the physical volume of material 0: Gmsh numbers its groups from 1.
+/// Physical volume of material 0: Gmsh numbers groups from 1.
 pub(crate) const MATERIAL_0: &str = "material_0";
 
-/// What the sections tell, before it is put together.
 #[derive(Default)]
 pub(super) struct Sections {
-    /// Names of physical groups by dimension and number.
     pub names: BTreeMap<(usize, u32), String>,
     pub elements: Vec<RawElement>,
-    /// Node numbers of physical groups of dimension 0 to 2.
     pub node_groups: BTreeMap<(usize, u32), Vec<u32>>,
-    /// Corners of the faces of physical surfaces, by node number.
     pub face_groups: BTreeMap<u32, Vec<[u32; 4]>>,
-    /// Physical groups of the entities, by dimension and number (4.1).
+    /// Physical groups by dimension and entity (4.1).
     pub entities: BTreeMap<(usize, i32), Vec<u32>>,
 }
 
-/// Sections with numbers, whose form `$MeshFormat` says.
+/// Sections encoded as `$MeshFormat` states.
 const SECTIONS: [&str; 4] = ["$PhysicalNames", "$Entities", "$Nodes", "$Elements"];
 
 /// Reads a Gmsh mesh.
 ///
 /// # Errors
-/// A version other than 2.2 and 4.1, a truncated or damaged section, an element type with nodes beside its edges, a
-/// number given twice, an absent node.
+/// Versions other than 2.2 and 4.1, damaged sections, element types with inner nodes, duplicate ids, unknown
+/// nodes.
 pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
     let bytes = read_bytes(file, "Gmsh mesh")?;
     let mut builder = Builder::new(file);
@@ -160,7 +149,7 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
             (None, name) if SECTIONS.contains(&name) => {
                 return Err(tokens.fault("section", name, "$MeshFormat first"));
             }
-            // Comments and sections of other programs may stand before it.
+            // Comments and foreign sections are allowed.
             (None, _) => true,
         };
         tokens.encoding = encoding;
@@ -199,7 +188,7 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
     put_together(builder, sections)
 }
 
-/// Whether the format is 2.2 (otherwise 4.1), and how numbers are written.
+/// Whether the format is 2.2 (else 4.1), and its encoding.
 fn mesh_format(tokens: &mut Tokens) -> Result<(bool, Encoding), ReadError> {
     let version = tokens.word("version")?;
     let old = match version {
@@ -229,7 +218,6 @@ fn mesh_format(tokens: &mut Tokens) -> Result<(bool, Encoding), ReadError> {
 }
 
 fn physical_names(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadError> {
-    // Text in binary files too.
     tokens.encoding = Encoding::Text;
     let count = tokens.count("number of physical names")?;
     for _ in 0..count {
@@ -262,7 +250,7 @@ fn nodes2(tokens: &mut Tokens, builder: &mut Builder) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// In a binary file counts of 2.2 are text, and the numbers begin behind the line end.
+/// Binary files of 2.2 have text counts; numbers begin after the line end.
 fn skip_line_end(tokens: &mut Tokens, encoding: Encoding) {
     if encoding != Encoding::Text {
         tokens.rest_of_line();
@@ -291,7 +279,7 @@ fn elements2(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadErr
                 None => tokens.int_id("element number")?,
             };
             let tags: Vec<i32> = (0..tag_count).map(|_| tokens.int("tag")).collect::<Result<_, _>>()?;
-            // Numbers of groups are negative where the element is seen from its other side.
+            // Group ids are negative for reversed elements.
             let physical = tags.first().map_or(0, |t| t.unsigned_abs());
             let entity = tags.get(1).map_or(0, |t| t.unsigned_abs());
             let groups: Vec<u32> = if physical == 0 { vec![] } else { vec![physical] };
@@ -302,7 +290,6 @@ fn elements2(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadErr
     Ok(())
 }
 
-/// Reads the nodes of an element and keeps them.
 pub(super) fn one_element<'a>(
     tokens: &mut Tokens<'a>,
     sections: &mut Sections,
@@ -383,7 +370,6 @@ fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile
     builder.finish()
 }
 
-/// The faces of a physical surface as those of volumes.
 fn face_set(builder: &mut Builder, all: &Faces, name: &str, faces: &[[u32; 4]]) {
     let (mut found, mut absent) = (Vec::new(), 0);
     for ids in faces {
@@ -399,7 +385,7 @@ fn face_set(builder: &mut Builder, all: &Faces, name: &str, faces: &[[u32; 4]]) 
     }
 }
 
-/// Format 2.2 holds an element once for each of its physical groups, with the same nodes.
+/// Format 2.2 repeats an element for each of its physical groups.
 fn merge_repeated(elements: &mut Vec<RawElement>) {
     let mut first: std::collections::HashMap<Vec<u32>, usize> = std::collections::HashMap::new();
     let mut kept: Vec<RawElement> = Vec::with_capacity(elements.len());

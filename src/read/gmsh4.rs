@@ -1,11 +1,11 @@
-//! The sections of Gmsh's format 4.1.
+//! Sections of Gmsh format 4.1.
 
 use super::error::ReadError;
 use super::gmsh::{Sections, Shape, one_element, shape};
 use super::mesh_file::Builder;
 use super::tokens::Tokens;
 
-/// `$Entities`: the physical groups of points, curves, surfaces and volumes.
+/// `$Entities`: physical groups of points, curves, surfaces, volumes.
 pub(super) fn entities(tokens: &mut Tokens, sections: &mut Sections) -> Result<(), ReadError> {
     let mut counts = [0; 4];
     for count in &mut counts {
@@ -33,7 +33,7 @@ pub(super) fn entities(tokens: &mut Tokens, sections: &mut Sections) -> Result<(
     Ok(())
 }
 
-/// `$Nodes`: blocks by entity, in each all numbers and then all coordinates.
+/// `$Nodes`: blocks by entity, each all ids, then all coordinates.
 pub(super) fn nodes(tokens: &mut Tokens, builder: &mut Builder) -> Result<(), ReadError> {
     let blocks = tokens.count("number of blocks of nodes")?;
     for key in ["number of nodes", "least node number", "greatest node number"] {

@@ -1,35 +1,35 @@
-//! Heights on a regular grid, as terrain models hold them, and the triangles between them.
+//! Triangulated heights on a regular grid.
 //!
-//! A sample is a vertex; four neighbours with a height make two triangles, three make one, so that cells without data
-//! leave holes and the border follows them. Surfaces run through the samples, which stand in the middles of the cells.
+//! Samples are vertices at cell centres. Four valid neighbours give two triangles, three give one, so cells
+//! without data leave holes.
 
 use std::path::Path;
 
 use super::error::ReadError;
 use super::surface::Surface;
 
-/// Most samples of a grid: what of it becomes triangles would fill 16 GB.
+/// Largest number of samples; their triangles would fill 16 GB.
 pub const MOST_SAMPLES: usize = 100_000_000;
 
-/// Heights [m] in rows from north to south, each from west to east; `None` where there is none.
+/// Heights [m] in rows from north to south, each from west to east.
 pub struct Grid {
     /// Samples in a row.
     pub columns: usize,
     /// Number of rows.
     pub rows: usize,
-    /// Place of the first sample, the most northern and western [m].
+    /// Position of the north-western sample [m].
     pub corner: [f64; 2],
-    /// Distances of columns and of rows, above 0 [m].
+    /// Spacing of columns and rows, positive [m].
     pub step: [f64; 2],
-    /// Heights, row by row.
+    /// Heights by rows [m]; `None` for no data.
     pub heights: Vec<Option<f64>>,
 }
 
 impl Grid {
-    /// The surface through the samples, wound so that normals point up.
+    /// Returns the surface through the samples, normals up.
     ///
     /// # Errors
-    /// Fewer than three samples that lie beside each other: no triangle.
+    /// No three adjacent samples.
     pub fn surface(&self, file: &Path) -> Result<Surface, ReadError> {
         let mut surface = Surface::default();
         let mut index = vec![u32::MAX; self.heights.len()];

@@ -1,16 +1,15 @@
-//! Lines of a list that hold no row of numbers: the headers that are known.
+//! Header lines of lists.
 //!
 //! | form | example |
 //! |---|---|
 //! | column heading | `NODE  X [m]  Y [m]  Z [m]` |
-//! | listing of ANSYS | `LIST ALL SELECTED NODES.   DSYS=      0` |
+//! | ANSYS listing | `LIST ALL SELECTED NODES.   DSYS=      0` |
 //! | rule | `----------` |
-//! | words of another script, without digits | `节点 坐标` |
+//! | other script, no digits | `节点 坐标` |
 //!
-//! A heading is obeyed or refused: its units must be SI, its columns in the order of the list. Any other line is an error,
-//! since it may be a row of another form: a command, a number that its field was too narrow for.
+//! Headings must have SI units and the column order of the list. Other lines are errors: they could be
+//! commands or overflowed numbers.
 
-/// What a list holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     Nodes,
@@ -19,11 +18,10 @@ pub(super) enum Content {
     Surface,
 }
 
-/// Words of a heading with the place of their column in the list; words without a place stand anywhere.
+/// Heading words with their list column, if fixed.
 type Words = &'static [(&'static str, u8)];
 
 impl Content {
-    /// Name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Content::Nodes => "node list",
@@ -33,7 +31,6 @@ impl Content {
         }
     }
 
-    /// A heading and a row, for messages.
     pub fn example(self) -> &'static str {
         match self {
             Content::Nodes => "id x y z",
@@ -111,7 +108,6 @@ impl Content {
     }
 }
 
-/// Words of any heading.
 const PLAIN: [&str; 28] = [
     "list",
     "table",
@@ -143,7 +139,6 @@ const PLAIN: [&str; 28] = [
     "selected",
 ];
 
-/// Units of length that are no metres.
 const UNITS: [&str; 22] = [
     "mm",
     "millimetre",
@@ -169,11 +164,10 @@ const UNITS: [&str; 22] = [
     "mil",
 ];
 
-/// Words of columns that are not x, y and z.
 const CURVILINEAR: [&str; 9] =
     ["r", "theta", "phi", "rho", "radius", "cylindrical", "spherical", "polar", "toroidal"];
 
-/// What a line without a row of numbers is refused for: key, found, expected; `None` for a known header.
+/// Key, found and expected for an unknown line; `None` for a known header.
 pub(super) fn refusal(body: &str, content: Content) -> Option<(&'static str, String, String)> {
     if body.chars().all(|c| "-=_+.~| ".contains(c)) {
         return None;
@@ -198,7 +192,6 @@ pub(super) fn refusal(body: &str, content: Content) -> Option<(&'static str, Str
     heading(body, content)
 }
 
-/// The same for what may be a heading of columns.
 fn heading(body: &str, content: Content) -> Option<(&'static str, String, String)> {
     let shown: String = body.chars().take(60).collect();
     let lower = body.to_lowercase();
@@ -207,7 +200,7 @@ fn heading(body: &str, content: Content) -> Option<(&'static str, String, String
     let mut last = 0;
     for (at, word) in words.iter().enumerate() {
         let plain = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        // `coordinates in m`; else `in` are inches.
+        // `coordinates in m`; otherwise `in` means inches.
         let of_unit = words.get(at + 1).is_some_and(|next| UNITS.contains(next) || PLAIN.contains(next));
         if UNITS.contains(word) || *word == "in" && !of_unit {
             let expected =
@@ -248,14 +241,14 @@ fn unknown(body: &str, content: Content) -> (&'static str, String, String) {
     (content.name(), format!("\"{shown}\""), expected)
 }
 
-/// Whether a line is a heading of columns, which ends the page header of a listing.
+/// A column heading ends the page header of a listing.
 pub(super) fn is_heading(body: &str, content: Content) -> bool {
     let letters = body.bytes().any(|b| b.is_ascii_alphabetic());
     letters && heading(body, content).is_none()
 }
 
-/// The number of a row that its field was too narrow for: `*****` of a Fortran format, `#####` of a spreadsheet.
-/// `within` is whether marks alone are no rule: rows of numbers stand before them.
+/// Overflowed number: `*****` of Fortran, `#####` of a spreadsheet. `within`: rows of numbers precede, so
+/// marks alone are no rule.
 pub(super) fn overflow(body: &str, within: bool) -> Option<String> {
     let mut fields = body.split([' ', '\t', ',']).filter(|f| !f.is_empty());
     let first = fields.next()?;

@@ -27,7 +27,7 @@ fn known_headers() {
 }
 
 #[test]
-fn other_coordinates_units_and_orders_are_refused() {
+fn rejects_other_coordinates_units_and_orders() {
     for (body, expected) in [
         ("LIST ALL SELECTED NODES.   DSYS=      1", "coordinate system: found DSYS = 1, expected DSYS = 0"),
         ("DSYS= 11", "coordinate system: found DSYS = 11"),

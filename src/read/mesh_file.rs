@@ -1,4 +1,4 @@
-//! What every mesh file comes down to, and what the readers share to build it.
+//! Common content of mesh files, and its builder.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -10,36 +10,34 @@ use super::error::ReadError;
 use super::faces::Faces;
 use super::source;
 
-/// What a mesh file holds.
+/// Content of a mesh file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshFile {
-    /// Nodes and volume elements in file order, without nodes that belong to no element.
+    /// Nodes and volume elements in file order, without unused nodes.
     pub mesh: Mesh,
     /// Constraints in file order, one per node and direction.
     pub constraints: Vec<Constraint>,
-    /// Whether the form of the file cannot hold constraints.
+    /// Whether the format cannot contain constraints.
     pub no_constraints: bool,
-    /// Named sets of nodes: indices of nodes, ascending.
+    /// Node indices of named sets, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Named sets of elements: indices of elements, ascending.
+    /// Element indices of named sets, ascending.
     pub element_sets: BTreeMap<String, Vec<u32>>,
-    /// Named sets of faces: index of the element and number of the face in `ElementKind::faces`, ascending. A set of nodes has
-    /// the same name.
+    /// Element index and face of `ElementKind::faces`, ascending. A node set has the same name.
     pub face_sets: BTreeMap<String, Vec<[u32; 2]>>,
-    /// Elastic constants by material number, where the file tells them.
+    /// Elastic constants by material id, if given.
     pub materials: BTreeMap<u32, FileMaterial>,
-    /// Types of volume elements as the file names them, with their counts, in the order of their first elements.
+    /// Element types with counts, in file order.
     pub element_types: Vec<(String, usize)>,
-    /// What was guessed, left out, or looks like a mistake, one sentence each.
+    /// Guesses, omissions and likely mistakes, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Largest coordinate, so that volumes and their products are finite numbers.
+/// Largest coordinate: keeps volumes and their products finite.
 pub(crate) const FARTHEST: f64 = 1e15;
-/// What is expected of coordinates.
 pub(super) const FARTHEST_EXPECTED: &str = "coordinates up to 1e15";
 
-/// Linear elastic constants of a mesh file, in the units of the file.
+/// Linear elastic constants, in file units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FileMaterial {
     /// Young's modulus [Pa].
@@ -50,19 +48,13 @@ pub struct FileMaterial {
     pub density: Option<f64>,
 }
 
-/// A mesh file while it is read.
 pub(super) struct Builder {
-    /// The file, for messages.
     pub file: PathBuf,
-    /// What was read so far.
+    /// Content so far.
     pub made: MeshFile,
-    /// Index of each node number.
     nodes: HashMap<u32, u32>,
-    /// Index of each element number.
     elements: HashMap<u32, u32>,
-    /// Value and line of each constraint by node index and direction.
     given: HashMap<(u32, u8), (f64, usize)>,
-    /// Elements left out, by type.
     left_out: BTreeMap<String, usize>,
 }
 
@@ -78,7 +70,6 @@ impl Builder {
         }
     }
 
-    /// A fault of this file.
     pub fn fault(
         &self,
         line: usize,
@@ -92,12 +83,11 @@ impl Builder {
         ReadError::at(&self.file, line, key, found, expected)
     }
 
-    /// Adds a warning, with the file's name in front.
     pub fn warn(&mut self, sentence: impl AsRef<str>) {
         self.made.warnings.push(format!("{}: {}", self.file.display(), sentence.as_ref()));
     }
 
-    /// Adds a node; `line` 0 where the file has none.
+    /// Adds a node; `line` is 0 if unknown.
     pub fn node(&mut self, line: usize, id: u32, point: [f64; 3]) -> Result<(), ReadError> {
         if let Some(x) = point.iter().find(|x| !x.is_finite()) {
             return Err(self.fault(
@@ -119,17 +109,15 @@ impl Builder {
         Ok(())
     }
 
-    /// Index of a node number.
     pub fn node_index(&self, id: u32) -> Option<u32> {
         self.nodes.get(&id).copied()
     }
 
-    /// Index of an element number.
     pub fn element_index(&self, id: u32) -> Option<u32> {
         self.elements.get(&id).copied()
     }
 
-    /// Adds an element by node numbers in the order of its kind, named `type_name` by the file.
+    /// Adds an element by node ids in kind order.
     pub fn element(
         &mut self,
         line: usize,
@@ -174,12 +162,11 @@ impl Builder {
         Ok(())
     }
 
-    /// Counts an element that is left out.
     pub fn leave_out(&mut self, type_name: &str) {
         *self.left_out.entry(type_name.to_string()).or_insert(0) += 1;
     }
 
-    /// Adds a constraint; one that is there already must have the same value.
+    /// Adds a constraint; duplicates must have the same value.
     pub fn constrain(&mut self, line: usize, node: u32, direction: u8, value: f64) -> Result<(), ReadError> {
         let id = self.made.mesh.node_ids[node as usize];
         let key = || format!("constraint of node {id} in {}", ["x", "y", "z"][direction as usize]);
@@ -197,22 +184,19 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds nodes to a set, which is made when it is new.
     pub fn node_set(&mut self, name: &str, nodes: impl IntoIterator<Item = u32>) {
         self.made.node_sets.entry(name.to_string()).or_default().extend(nodes);
     }
 
-    /// Adds elements to a set, which is made when it is new.
     pub fn element_set(&mut self, name: &str, elements: impl IntoIterator<Item = u32>) {
         self.made.element_sets.entry(name.to_string()).or_default().extend(elements);
     }
 
-    /// Adds faces (element, side) to a set, which is made when it is new.
     pub fn face_set(&mut self, name: &str, faces: impl IntoIterator<Item = [u32; 2]>) {
         self.made.face_sets.entry(name.to_string()).or_default().extend(faces);
     }
 
-    /// The file read: without unused nodes, with sets in order. A file without volume elements is refused.
+    /// Drops unused nodes and sorts sets. A file without volume elements is rejected.
     pub fn finish(mut self) -> Result<MeshFile, ReadError> {
         for (name, count) in std::mem::take(&mut self.left_out) {
             self.warn(format!("{count} elements of type {name} are left out"));
@@ -249,7 +233,7 @@ impl Builder {
     }
 }
 
-/// Refuses elements that cannot lie side by side.
+/// Rejects overlapping elements.
 pub(super) fn check_faces(file: &Path, mesh: &Mesh) -> Result<(), ReadError> {
     match Faces::of(mesh).fault(mesh) {
         None => Ok(()),
@@ -257,8 +241,7 @@ pub(super) fn check_faces(file: &Path, mesh: &Mesh) -> Result<(), ReadError> {
     }
 }
 
-/// Leaves out nodes that belong to no element, with their constraints: they have no stiffness, and meshing often
-/// leaves some behind.
+/// Drops unused nodes and their constraints; meshing often leaves nodes without stiffness.
 pub(super) fn drop_unused_nodes(
     file: &Path,
     mesh: &mut Mesh,
@@ -307,7 +290,7 @@ pub(super) fn drop_unused_nodes(
     warnings.push(format!("{}: {sentence}", file.display()));
 }
 
-/// The bytes of a file; `what` names its content in messages.
+/// Bytes of a file; `what` names the content in messages.
 pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> {
     source::bytes(file, source::LARGEST).map_err(|refusal| {
         let (found, expected) = refusal.words(|error| match error.kind() {
@@ -318,14 +301,14 @@ pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> 
     })
 }
 
-/// The text of a file. Titles may hold any 8-bit code page; the data are ASCII.
+/// Text of a file; titles may use any 8-bit code page, data are ASCII.
 pub(super) fn read_text(file: &Path, what: &str) -> Result<String, ReadError> {
     let text = String::from_utf8_lossy(&read_bytes(file, what)?).into_owned();
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
 }
 
-/// Reorders from a format's list of edges (pairs of corners, in the order of its mid-side nodes) to ours: for each
-/// node of the kind, its position in the format. Corners keep their places.
+/// Format position of each node, from the format's corner pairs of mid-side nodes. Corners keep their
+/// positions.
 pub(crate) fn order_from_edges(kind: ElementKind, edges: &[[usize; 2]]) -> Vec<usize> {
     let corners = kind.corner_count();
     let mid = |edge: &[usize; 2]| {

@@ -1,7 +1,6 @@
-//! Readers of meshes and surfaces made by other programs.
+//! Readers of meshes and surfaces of other programs.
 //!
-//! Every reader returns the mesh with node numbers mapped to indices in file order, and refuses what it does
-//! not understand with one sentence that names file, line, field, what stands there and what belongs there.
+//! Node ids become indices in file order.
 
 mod abaqus;
 mod abaqus_data;
@@ -54,10 +53,10 @@ pub use surface::{SURFACE_ENDINGS, Surface, read_surface};
 pub use vtk_legacy::read_vtk;
 pub use vtu::read_vtu;
 
-/// Endings of mesh files that can be read and written.
+/// File extensions of meshes.
 pub const MESH_ENDINGS: [&str; 5] = ["cdb", "msh", "inp", "vtu", "vtk"];
 
-/// The files that [`read_mesh_file`] reads for a mesh: the three lists of a folder, what an Abaqus file includes.
+/// Lists the files read by [`read_mesh_file`].
 pub fn mesh_files(path: &Path) -> Vec<PathBuf> {
     if path.is_dir() {
         return folder_files(path);
@@ -68,22 +67,21 @@ pub fn mesh_files(path: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// The three lists of a folder.
+/// Lists the files of a directory.
 pub fn folder_files(folder: &Path) -> Vec<PathBuf> {
     [NODES, ELEMENTS, CONSTRAINTS].map(|name| folder.join(name)).to_vec()
 }
 
-/// Lists of a folder.
 const NODES: &str = "NODECOORD.DAT";
 const ELEMENTS: &str = "ELEMENTNUM.DAT";
 const CONSTRAINTS: &str = "DOF.DAT";
 
-/// Reads a mesh of any form, identified by the ending of its name: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp` (Abaqus,
-/// CalculiX), `.vtu`, `.vtk`; a folder holds `NODECOORD.DAT`, `ELEMENTNUM.DAT` and, where there are constraints,
+/// Reads a mesh, with its format given by the extension: `.cdb` (ANSYS archive), `.msh` (Gmsh), `.inp`
+/// (Abaqus, CalculiX), `.vtu`, `.vtk`; a directory holds `NODECOORD.DAT`, `ELEMENTNUM.DAT` and optionally
 /// `DOF.DAT`.
 ///
 /// # Errors
-/// Another ending, and what the reader of the form refuses.
+/// Unknown extensions and errors of the format's reader.
 pub fn read_mesh_file(path: &Path) -> Result<MeshFile, ReadError> {
     if path.is_dir() {
         let constraints = path.join(CONSTRAINTS);

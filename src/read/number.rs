@@ -1,10 +1,9 @@
-//! Numbers as Fortran programs print them.
+//! Numbers as printed by Fortran.
 //!
-//! Besides the usual forms: exponents with `D` (`1.0D+03`), with three digits (`1.0E+002`), and with the
-//! letter pushed out by the third digit (`7.547503+002`), which needs a decimal point in the mantissa so that
-//! a range such as `1-20` stays an error; whole numbers printed as reals (`12.`).
+//! Exponents may be `D` (`1.0D+03`) or have three digits (`1.0E+002`), also without letter (`7.547503+002`).
+//! The latter requires a decimal point: a range such as `1-20` stays an error. Integers may be reals (`12.`).
 
-/// A real number, or `None` when the text is not one. Overflow gives an infinity, which callers refuse.
+/// Reads a real; overflow gives infinity, which callers reject.
 pub fn real(text: &str) -> Option<f64> {
     let plain = text.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.' | b'e' | b'E'));
     if plain && let Ok(value) = text.parse() {
@@ -28,7 +27,7 @@ pub fn real(text: &str) -> Option<f64> {
     fortran.parse().ok()
 }
 
-/// A whole number of 0 or more that fits an identifier, also printed as a real (`12.`, `1.2E+01`).
+/// Reads an identifier ≥ 0, also printed as a real (`12.`, `1.2E+01`).
 pub fn whole(text: &str) -> Option<u32> {
     if let Ok(value) = text.parse() {
         return Some(value);
@@ -37,7 +36,7 @@ pub fn whole(text: &str) -> Option<u32> {
     (value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value)).then_some(value as u32)
 }
 
-/// Whether a field starts as a number does: a digit after an optional sign and point.
+/// Whether a field starts with a digit after optional sign and point.
 pub fn looks_numeric(text: &str) -> bool {
     text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit())
 }
@@ -71,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn non_finite_numbers_are_numbers_for_the_caller_to_refuse() {
+    fn returns_infinity_on_overflow() {
         assert!(real("NaN").unwrap().is_nan());
         assert_eq!(real("-Infinity"), Some(f64::NEG_INFINITY));
         assert_eq!(real("1.0E+999"), Some(f64::INFINITY));

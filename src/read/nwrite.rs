@@ -1,14 +1,13 @@
-//! Nodes in the fixed columns of the ANSYS command NWRITE, which leaves zeros at the end of a row blank.
+//! Fixed columns of NWRITE, which leaves trailing zeros blank.
 //!
-//! Source: ANSYS Mechanical APDL Command Reference, NWRITE: `(I9,6G21.13E3)`, in older versions `(I8,6G20.13)`.
+//! Source: ANSYS Mechanical APDL Command Reference, NWRITE: `(I9,6G21.13E3)`, in older versions
+//! `(I8,6G20.13)`.
 
 use super::table::{Row, Table};
 
-/// Columns of the number and of a real.
 const WIDTHS: [(usize, usize); 2] = [(9, 21), (8, 20)];
 
-/// For each row the columns of its fields after the number, from 0, where rows are shorter than `id x y z` and all stand in
-/// the columns of NWRITE.
+/// Column of each field after the id, from 0, if rows are shorter than `id x y z` and all fit NWRITE.
 pub(super) fn places(table: &Table) -> Option<Vec<Vec<usize>>> {
     let short = table.rows.iter().any(|row| row.width() < 4);
     let full = table.rows.iter().any(|row| row.width() >= 4);
@@ -18,7 +17,6 @@ pub(super) fn places(table: &Table) -> Option<Vec<Vec<usize>>> {
     WIDTHS.iter().find_map(|widths| table.rows.iter().map(|row| in_columns(table, row, *widths)).collect())
 }
 
-/// The column of each real of a row, if every field lies within its columns.
 fn in_columns(table: &Table, row: &Row, (id, real): (usize, usize)) -> Option<Vec<usize>> {
     if table.extent(row, 0).1 != id {
         return None;

@@ -1,12 +1,10 @@
-//! Wavefront OBJ: vertices and polygons.
+//! Reader of Wavefront OBJ: vertices and polygons.
 //!
-//! Read are `v x y z` (a weight or colours behind them are left out) and `f`, whose corners name a vertex as `v`, `v/vt`,
-//! `v//vn` or `v/vt/vn` (either may be left empty), counted from 1, or backwards from the last one as −1, −2, …. A polygon becomes a fan of
-//! triangles about its first corner. Left out: textures, normals, groups, names, materials, smoothing, points and
-//! lines. Anything else, such as curved surfaces, is refused.
+//! Corners are `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or backwards as −1, −2, …. Polygons become
+//! triangle fans, exact for convex outlines. Textures, normals, groups and materials are skipped; curved
+//! surfaces are rejected.
 //!
 //! Source: Wavefront Technologies, Advanced Visualizer Manual, appendix B1, "Object files".
-//! Limits: a fan fits convex polygons; of a concave one it may leave its outline.
 
 use std::path::Path;
 
@@ -15,22 +13,20 @@ use super::mesh_file::read_text;
 use super::number;
 use super::surface::Surface;
 
-/// Statements without meaning for a surface of flat triangles.
 const IGNORED: [&str; 13] =
     ["vt", "vn", "vp", "g", "o", "s", "usemtl", "mtllib", "l", "p", "mg", "lod", "shadow_obj"];
 
 /// Reads an OBJ file; equal vertices are merged.
 ///
 /// # Errors
-/// A statement that is not understood, a damaged one, a corner that names a vertex that does not exist (yet, for a
-/// backward number), or no face at all.
+/// Unknown or damaged statements, unknown vertices, no face.
 pub fn read_obj(file: &Path) -> Result<Surface, ReadError> {
     parse(file, &read_text(file, "OBJ surface")?)
 }
 
 fn parse(file: &Path, text: &str) -> Result<Surface, ReadError> {
     let mut surface = Surface::default();
-    // Triangles with the line they come from: their vertices may come later.
+    // With source lines: vertices may follow later.
     let mut lines = Vec::new();
     let mut joined = String::new();
     let mut start = 1;
@@ -38,7 +34,6 @@ fn parse(file: &Path, text: &str) -> Result<Surface, ReadError> {
         if joined.is_empty() {
             start = number + 1;
         }
-        // A backslash at its end continues a line in the next one.
         let body = raw.split('#').next().unwrap_or_default().trim();
         if let Some(part) = body.strip_suffix('\\') {
             joined.push_str(part);
@@ -113,7 +108,7 @@ fn statement(
     Ok(())
 }
 
-/// The vertex of a corner, from 0; whether it exists shows at the end.
+/// Vertex of a corner, from 0; existence is checked at the end.
 fn corner(file: &Path, line: usize, word: &str, count: usize) -> Result<u32, ReadError> {
     let fault =
         |expected: String| ReadError::at(file, line, "corner of a face", format!("\"{word}\""), expected);

@@ -1,5 +1,3 @@
-//! Forms of vertices and faces, and damaged files.
-
 use super::*;
 use trackbed_dem::shape::polyhedron::Polyhedron;
 
@@ -11,7 +9,7 @@ const CUBE: &str = "# a cube\nmtllib c.mtl\no cube\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 
 v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1 # last\nvt 0 0\nvn 0 0 1\ns off\nusemtl stone\n";
 
 #[test]
-fn every_form_of_a_corner_gives_the_same_cube() {
+fn reads_all_corner_formats() {
     let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
     let write = |form: &dyn Fn(i32) -> String| {
         faces.iter().fold(CUBE.to_string(), |text, f| {
@@ -25,20 +23,20 @@ fn every_form_of_a_corner_gives_the_same_cube() {
     assert_eq!(read(&write(&|v| format!("{v}/1"))).unwrap(), plain);
     assert_eq!(read(&write(&|v| format!("{v}//1"))).unwrap(), plain);
     assert_eq!(read(&write(&|v| format!("{v}/1/1"))).unwrap(), plain);
-    // Backwards from the eight vertices so far, faces broken over two lines.
+    // Backward indices, and faces over two lines.
     assert_eq!(read(&write(&|v| (v - 9).to_string())).unwrap(), plain);
     assert_eq!(read(&write(&|v| v.to_string()).replace(" 6 ", " 6 \\\n ")).unwrap(), plain);
     assert_eq!(read(&write(&|v| v.to_string()).replace('\n', "\r\n")).unwrap(), plain);
 }
 
 #[test]
-fn a_pentagon_is_a_fan_of_three() {
+fn splits_pentagon_into_three_triangles() {
     let surface = read("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\nf 1 2 3 4 5\n").unwrap();
     assert_eq!(surface.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
 }
 
 #[test]
-fn faces_may_come_before_their_vertices_but_not_backwards() {
+fn forward_indices_allowed_backward_rejected() {
     assert_eq!(read("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").unwrap().triangles, [[0, 1, 2]]);
     assert_eq!(
         read("v 0 0 0\nf -1 -2 -3\n").unwrap_err(),

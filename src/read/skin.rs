@@ -1,6 +1,6 @@
-//! The skin of a finite-element mesh as a surface of triangles: faces of one element only.
+//! Skin of a finite-element mesh as triangles.
 //!
-//! Corners of faces are joined by straight edges: mid-side nodes of curved faces are left out, so neighbours agree.
+//! Mid-side nodes are dropped, so neighbouring faces match.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::error::ReadError;
 use super::read_mesh_file;
 use super::surface::Surface;
 
-/// Reads a mesh and takes its skin.
+/// Reads the skin of a mesh.
 ///
 /// # Errors
 /// As [`read_mesh_file`].

@@ -1,5 +1,4 @@
-//! Whole files, read with a look at them first: only regular files, whose size is known before, and none that the memory
-//! cannot hold.
+//! Bounded reading of whole regular files.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Take};
@@ -7,24 +6,21 @@ use std::path::Path;
 
 use crate::machine;
 
-/// Largest file that is written by hand or by `stone` [bytes]: scenes, stone libraries, tables.
+/// Largest file of a scene, stone library or table [bytes].
 pub(crate) const LARGEST_TEXT: u64 = 64 << 20;
-/// Largest file of a mesh, a surface, a packing or a checkpoint [bytes].
+/// Largest file of a mesh, surface, packing or checkpoint [bytes].
 pub(crate) const LARGEST: u64 = 8 << 30;
-/// Part of the free memory that a file may take: what is made of it needs more than the file itself.
+/// Inverse fraction of free memory: content needs more than the file's bytes.
 const SHARE: u64 = 2;
 
-/// Why a file is not read.
 #[derive(Debug)]
 pub(crate) enum Refusal {
-    /// The system refuses.
     System(io::Error),
-    /// It is no file that can be read as a whole: what was found and what was expected.
+    /// Not readable as a whole: found and expected.
     Unfit(String, String),
 }
 
 impl Refusal {
-    /// What was found and what was expected; `system` words an error of the system.
     pub fn words(self, system: impl FnOnce(io::Error) -> String) -> (String, String) {
         match self {
             Refusal::System(error) => (system(error), "a readable file".into()),
@@ -32,7 +28,6 @@ impl Refusal {
         }
     }
 
-    /// The same in one sentence about `file`.
     pub fn sentence(self, file: &Path) -> String {
         let (found, expected) = self.words(|e| machine::words(&e));
         format!("{}: found {found}, expected {expected}", file.display())
@@ -45,12 +40,12 @@ impl From<io::Error> for Refusal {
     }
 }
 
-/// A regular file of at most `most` bytes, opened, which ends at that limit.
+/// Opens a regular file of at most `most` bytes and ends reading there.
 ///
 /// # Errors
-/// The file is missing or unreadable, no regular file (a folder, a device, a pipe), or too large.
+/// I/O errors; no regular file, or too large.
 pub(crate) fn open(file: &Path, most: u64) -> Result<Take<File>, Refusal> {
-    // Before it is opened: opening a pipe waits for its other end.
+    // Before opening: opening a pipe blocks.
     let found = fs::metadata(file)?;
     if !found.is_file() {
         let kind = if found.is_dir() { "a directory" } else { "a device or a pipe" };
@@ -66,10 +61,10 @@ fn too_large(size: u64, most: u64, why: &str) -> Refusal {
     Refusal::Unfit(format!("{size} bytes"), format!("at most {most} bytes{why}"))
 }
 
-/// The bytes of a regular file of at most `most` bytes.
+/// Bytes of a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`open`]; the memory cannot hold it.
+/// As [`open`]; insufficient memory.
 pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
     let mut source = open(file, most)?;
     let free = machine::available().map_or(most, |free| free / SHARE);
@@ -79,7 +74,7 @@ pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
         return Err(too_large(size, least, why));
     }
     let mut bytes = Vec::with_capacity(size as usize);
-    // A file of the system that has no size, or one that grows meanwhile, ends at the limit as well.
+    // A file that reports no size, or grows meanwhile, ends at the limit too.
     source.set_limit(least + 1);
     source.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > least {
@@ -88,12 +83,11 @@ pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
     Ok(bytes)
 }
 
-/// The text of a regular file of at most [`LARGEST_TEXT`] bytes, without a byte order mark.
+/// Text of at most [`LARGEST_TEXT`] bytes, without byte order mark.
 ///
 /// # Errors
-/// As [`bytes`]; it is not UTF-8.
+/// As [`bytes`]; not UTF-8.
 pub(crate) fn text(file: &Path) -> Result<String, Refusal> {
-    // The words of the standard library for the same fault.
     let not_utf8 = |_| io::Error::new(io::ErrorKind::InvalidData, "stream did not contain valid UTF-8");
     let text = String::from_utf8(bytes(file, LARGEST_TEXT)?).map_err(not_utf8)?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
@@ -109,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn only_regular_files_of_a_size_that_fits_are_read() {
+    fn rejects_irregular_or_large_files() {
         let file = std::env::temp_dir().join(format!("trackbed-source-{}", std::process::id()));
         fs::write(&file, "12345").unwrap();
         assert_eq!(bytes(&file, 5).unwrap(), b"12345");
@@ -120,7 +114,6 @@ mod tests {
         if cfg!(target_os = "linux") {
             let device = refused(Path::new("/dev/zero"), LARGEST);
             assert_eq!(device, "found a device or a pipe, expected a regular file");
-            // Says that it has no bytes, and has some.
             assert_eq!(
                 refused(Path::new("/proc/self/status"), 10),
                 "found 11 bytes, expected at most 10 bytes"

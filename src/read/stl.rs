@@ -1,10 +1,8 @@
-//! STL: triangles without common vertices, text or binary.
+//! Reader of STL, text or binary.
 //!
-//! A file is binary when its length is that of its count of triangles (80 bytes of title, a count, 50 bytes each): a
-//! binary title may begin with `solid`, so that word tells nothing. Otherwise it is text when it begins with `solid` and
-//! holds no zero byte; anything else is a damaged binary file. Binary numbers are little-endian, as the format says.
-//! Normals are left out: the order of the vertices tells the same, and is what programs agree on. Several solids in one
-//! text file make one surface.
+//! A file is binary if its triangle count gives its length: binary titles may also begin with `solid`.
+//! Otherwise it is text if it begins with `solid` and has no zero byte. Normals are ignored, since programs
+//! agree on the vertex order.
 //!
 //! Source: 3D Systems, StereoLithography Interface Specification, 1989.
 
@@ -15,14 +13,14 @@ use super::mesh_file::read_bytes;
 use super::number;
 use super::surface::Surface;
 
-/// Bytes before the first triangle, and of each triangle.
+/// Bytes of the header, and of a triangle.
 const HEAD: usize = 84;
 const FACET: usize = 50;
 
-/// Reads an STL file; three vertices of its own for each triangle, in file order.
+/// Reads an STL file; triangles share no vertices.
 ///
 /// # Errors
-/// A damaged file, coordinates that are no finite numbers, or no triangle at all.
+/// Damaged files, non-finite coordinates, no triangle.
 pub fn read_stl(file: &Path) -> Result<Surface, ReadError> {
     let bytes = read_bytes(file, "STL surface")?;
     parse(file, &bytes)
@@ -55,7 +53,7 @@ fn parse(file: &Path, bytes: &[u8]) -> Result<Surface, ReadError> {
 fn binary(file: &Path, bytes: &[u8]) -> Result<Surface, ReadError> {
     let mut surface = Surface::default();
     for (i, facet) in bytes[HEAD..].chunks_exact(FACET).enumerate() {
-        // Twelve bytes of normal come first, two of attributes last.
+        // Twelve bytes of normal first, two of attributes last.
         for corner in facet[12..48].chunks_exact(12) {
             let point: [f64; 3] = std::array::from_fn(|k| {
                 f64::from(f32::from_le_bytes([
@@ -81,7 +79,6 @@ fn last_three(surface: &Surface) -> [u32; 3] {
     [n - 3, n - 2, n - 1]
 }
 
-/// What may come next in a text file.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
     Outside,
@@ -92,7 +89,6 @@ enum State {
 }
 
 impl State {
-    /// The statement that belongs here.
     fn expected(self) -> &'static str {
         match self {
             State::Outside => "`solid`",
@@ -137,7 +133,7 @@ fn text(file: &Path, text: &str) -> Result<Surface, ReadError> {
         };
     }
     if state != State::Outside {
-        // A file without its last line `endsolid` has lost nothing; one that ends in a triangle has.
+        // A missing last `endsolid` loses nothing; a truncated triangle does.
         if state != State::Solid {
             return Err(ReadError::at(file, last, "statement", "the end of the file", state.expected()));
         }

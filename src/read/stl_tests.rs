@@ -1,8 +1,6 @@
-//! Text and binary STL, distinguished, and damaged files.
-
 use super::*;
 
-/// A tetrahedron: corners of its triangles.
+/// Triangles of a tetrahedron.
 const TET: [[[f32; 3]; 3]; 4] = [
     [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
     [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
@@ -37,7 +35,7 @@ fn read(bytes: &[u8]) -> Result<Surface, String> {
 }
 
 #[test]
-fn text_and_binary_give_the_same_triangles_whatever_the_title() {
+fn reads_text_and_binary_identically() {
     let text = read(ascii().as_bytes()).unwrap();
     assert_eq!((text.vertices.len(), text.triangles.len()), (12, 4));
     assert_eq!(text.corners(2)[1].z, 0.0);
@@ -49,7 +47,7 @@ fn text_and_binary_give_the_same_triangles_whatever_the_title() {
     assert_eq!(read(loud.as_bytes()).unwrap(), text);
     let twice = read((ascii() + "\n" + &ascii()).as_bytes()).unwrap();
     assert_eq!(twice.triangles.len(), 8);
-    // Without the last line nothing is lost.
+    // A missing last line loses nothing.
     assert_eq!(read(ascii().replace("endsolid a tetrahedron", "").as_bytes()).unwrap(), text);
 }
 
@@ -90,7 +88,7 @@ fn damaged_text_is_named_by_line() {
 }
 
 #[test]
-fn a_damaged_binary_file_is_named_by_its_length() {
+fn rejects_binary_of_wrong_length() {
     for title in ["by a program", "solid by a program"] {
         let whole = binary_file(title);
         let error = read(&whole[..whole.len() - 10]).unwrap_err();

@@ -1,10 +1,7 @@
-//! Surfaces of triangles from files of other programs.
+//! Triangle surfaces from files of other programs.
 //!
-//! Besides STL and OBJ (`stl.rs`, `obj.rs`) the plain list that solvers of the field exchange: a line with
-//! the number of vertices and of triangles, the vertices (`x y z`), then the triangles (three vertex numbers, counted
-//! from 1; from 0 where a 0 occurs). Comments, separators and number forms are those of the other lists
-//! (`table`). Triangles may be wound either way, and the surface may be closed or open. Terrain comes from grids of heights too
-//! (`asc.rs`, `geotiff.rs`), and a body from the skin of a finite-element mesh (`skin.rs`).
+//! The plain list gives the numbers of vertices and triangles, the vertices (`x y z`), and three vertex ids
+//! per triangle, from 1 (from 0 if a 0 occurs). Any winding is accepted; surfaces may be open.
 
 use std::path::Path;
 
@@ -15,21 +12,18 @@ use super::{MESH_ENDINGS, asc, geotiff, obj, skin, stl};
 
 pub use trackbed_dem::shape::polyhedron::Surface;
 
-/// Endings of surface files that can be read.
+/// File extensions of surfaces.
 pub const SURFACE_ENDINGS: [&str; 9] = ["stl", "obj", "dat", "txt", "tri", "srf", "asc", "tif", "tiff"];
 
-/// Vertices of an STL file nearer than this times the diagonal of its box are one, where equal ones alone leave it open.
+/// Merging distance of STL vertices over the box diagonal, if exact merging leaves gaps.
 const STL_TOLERANCE: f64 = 1e-6;
 
-/// Reads a surface, identified by the ending of its name: `.stl` (text or binary), `.obj`, the plain list `.dat`, `.txt`,
-/// `.tri`, `.srf`, the grids of heights `.asc` (ESRI) and `.tif`, `.tiff` (GeoTIFF), or the skin of a mesh (`.cdb`, `.msh`,
-/// `.inp`, `.vtu`, `.vtk`). Lengths are taken as metres.
-///
-/// Equal vertices are merged, since STL repeats each for every triangle; where an STL file then still is open, vertices
-/// within 1e-6 of its size are merged too.
+/// Reads a surface [m], with its format given by the extension: `.stl`, `.obj`, the plain list `.dat`,
+/// `.txt`, `.tri`, `.srf`, heights `.asc` (ESRI) and `.tif`, `.tiff` (GeoTIFF), or the skin of a mesh. Equal
+/// vertices are merged; open STL files also within 1e-6 of their size.
 ///
 /// # Errors
-/// Another ending, and what the reader of the form refuses.
+/// Unknown extensions and errors of the format's reader.
 pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
@@ -49,7 +43,7 @@ pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
     }
 }
 
-/// Merges the vertices of separate triangles.
+/// Merges vertices of separate triangles.
 fn mended(soup: &Surface) -> Surface {
     let open = |s: &Surface| s.topology().map_or(0, |t| t.open_edges);
     let exact = soup.merged(0.0);
@@ -63,8 +57,7 @@ fn mended(soup: &Surface) -> Surface {
 /// Reads the plain list.
 ///
 /// # Errors
-/// Counts that do not fit the rows, rows of another width, coordinates that are no finite numbers, and triangles that
-/// name a vertex that does not exist.
+/// Wrong counts or row widths, non-finite coordinates, unknown vertices.
 pub fn read_plain(file: &Path) -> Result<Surface, ReadError> {
     let table = Table::read(file, Content::Surface)?;
     let Some(head) = table.rows.first() else {

@@ -1,10 +1,7 @@
-//! The plain list, the choice by ending, and the mending of STL files.
-
 use super::*;
 use std::path::PathBuf;
 use trackbed_dem::shape::polyhedron::Polyhedron;
 
-/// A file of the temporary folder, removed in the end.
 struct File(PathBuf);
 
 impl File {
@@ -29,12 +26,12 @@ impl Drop for File {
 const TET: &str = "4 4\n0 0 0\n1.0D0 0 0\n0 1 0\n0, 0, 1\n1 2 3\n1 2 4\n1 3 4\n2 3 4\n";
 
 #[test]
-fn the_plain_list_counts_from_one_or_zero_and_needs_no_winding() {
+fn reads_plain_list_of_any_winding() {
     let one = File::new("a.dat", TET).read().unwrap();
     assert_eq!(one.triangles, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
     let zero = TET.replace("1 2 3\n1 2 4\n1 3 4\n2 3 4", "0 1 2\n0 1 3\n0 2 3\n1 2 3");
     assert_eq!(File::new("b.tri", zero).read().unwrap(), one);
-    // Ascending numbers carry no winding.
+    // Ascending ids carry no winding.
     assert!(one.topology().unwrap().turned_edges > 0);
     assert!((Polyhedron::new(&one).unwrap().moments().volume - 1.0 / 6.0).abs() < 1e-15);
     let open = TET.replace("4 4\n", "4 3\n").replace("2 3 4\n", "");
@@ -70,7 +67,7 @@ fn damaged_lists_are_named_by_line() {
 }
 
 #[test]
-fn an_stl_file_with_rounded_vertices_is_mended() {
+fn merges_rounded_stl_vertices() {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut text = "solid t\n".to_string();
     for (i, t) in [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]].iter().enumerate() {

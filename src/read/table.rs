@@ -1,8 +1,7 @@
-//! A text file as rows of fields: what is common to the three lists.
+//! Text file as rows of fields.
 //!
-//! Fields are separated by blanks, tabs or commas. A line is a row of numbers, a comment by its own mark (it starts with `!`, `#`,
-//! `/` or `*`; the rest of a line after `!` or `#` is one too), or a header of a known form (`header`); anything else is an error.
-//! Pages of a listing may repeat the program's banner, up to the column heading.
+//! Fields are separated by blanks, tabs or commas. Comments start with `!`, `#`, `/` or `*`; `!` and `#` also
+//! after data. Pages of a listing may repeat the banner, up to the column heading.
 
 use std::path::{Path, PathBuf};
 
@@ -11,39 +10,33 @@ use super::header::{self, Content};
 use super::mesh_file::read_bytes;
 use super::number;
 
-/// Lines from the banner of a page to its column heading, at most.
 const PAGE: usize = 15;
 
-/// One line of a file that holds data.
 pub struct Row {
     /// Line number, from 1.
     pub line: usize,
-    /// Place of the line in the text.
+    /// Byte offset.
     start: usize,
     fields: Vec<(usize, usize)>,
 }
 
-/// The rows of a file.
 pub struct Table {
-    /// The file.
     pub file: PathBuf,
-    /// Its lines with data, in file order.
     pub rows: Vec<Row>,
     text: String,
 }
 
 impl Table {
-    /// Reads `file`.
     pub fn read(file: &Path, content: Content) -> Result<Table, ReadError> {
         let bytes = read_bytes(file, content.name())?;
-        // Headers may hold any 8-bit code page; the data are ASCII.
+        // Headers may use any 8-bit code page; data are ASCII.
         let text = String::from_utf8_lossy(&bytes).into_owned();
         Self::parse(file, content, text)
     }
 
     fn parse(file: &Path, content: Content, text: String) -> Result<Table, ReadError> {
         let mut rows: Vec<Row> = Vec::new();
-        // Line of the banner of a page whose column heading is still to come.
+        // Line of a banner whose column heading is pending.
         let mut page: Option<usize> = None;
         let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let mut offset = start;
@@ -92,29 +85,25 @@ impl Table {
         }
     }
 
-    /// The fields of a row.
     pub fn fields<'a>(&'a self, row: &'a Row) -> impl ExactSizeIterator<Item = &'a str> + 'a {
         row.fields.iter().map(|f| &self.text[f.0..f.1])
     }
 
-    /// Field `column` of a row.
     pub fn field<'a>(&'a self, row: &Row, column: usize) -> &'a str {
         let (from, to) = row.fields[column];
         &self.text[from..to]
     }
 
-    /// First and last column of a field in its line, the first of all is 0.
+    /// First and last column of a field in its line, from 0.
     pub fn extent(&self, row: &Row, column: usize) -> (usize, usize) {
         let (from, to) = row.fields[column];
         (from - row.start, to - row.start)
     }
 
-    /// Field `column` of a row as an identifier.
     pub fn whole(&self, row: &Row, column: usize, key: &str) -> Result<u32, ReadError> {
         whole(&self.file, row.line, self.field(row, column), key)
     }
 
-    /// Field `column` of a row as a finite real.
     pub fn real(&self, row: &Row, column: usize, key: &str) -> Result<f64, ReadError> {
         let text = self.field(row, column);
         let fault = |expected| ReadError::at(&self.file, row.line, key, format!("\"{text}\""), expected);
@@ -124,19 +113,16 @@ impl Table {
 }
 
 impl Row {
-    /// Number of fields.
     pub fn width(&self) -> usize {
         self.fields.len()
     }
 }
 
-/// A field as an identifier.
 pub fn whole(file: &Path, line: usize, text: &str, key: &str) -> Result<u32, ReadError> {
     number::whole(text)
         .ok_or_else(|| ReadError::at(file, line, key, format!("\"{text}\""), "a whole number of 0 or more"))
 }
 
-/// Whether a line begins a page of a listing: `*** MAPDL - ENGINEERING ANALYSIS SYSTEM  RELEASE … ***`.
 fn is_banner(body: &str) -> bool {
     let upper = body.to_ascii_uppercase();
     upper.starts_with("***") && ["ANALYSIS SYSTEM", "ANSYS", "MAPDL"].iter().any(|name| upper.contains(name))
@@ -159,7 +145,7 @@ fn check_overflow(file: &Path, line: usize, body: &str, within: bool) -> Result<
     }
 }
 
-/// Refuses decimal commas and semicolons, which would be columns of their own or no columns at all.
+/// Rejects decimal commas and semicolons, which would split or join columns.
 fn check_separators(file: &Path, line: usize, body: &str) -> Result<(), ReadError> {
     let fault = |found: &str, expected: &str| {
         let shown: String = found.chars().take(40).collect();
@@ -186,8 +172,7 @@ fn check_separators(file: &Path, line: usize, body: &str) -> Result<(), ReadErro
     }
 }
 
-/// Byte ranges of the fields of a trimmed line; the error is the number of a column left empty between
-/// commas. A comma at the end of the line closes its last field.
+/// Byte ranges of fields; the error is the number of an empty column. A trailing comma closes the last field.
 fn split(body: &str, base: usize) -> Result<Vec<(usize, usize)>, usize> {
     let mut fields = Vec::new();
     let mut at = 0;

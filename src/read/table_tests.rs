@@ -14,7 +14,7 @@ fn row(line: usize, fields: &[&str]) -> (usize, Vec<String>) {
 }
 
 #[test]
-fn separators_line_ends_comments_and_the_byte_order_mark() {
+fn reads_all_separators_and_comments() {
     let text = "\u{feff}! c\r\n# c\r\n/PREP7\r\n*** c\r\n\r\n 1, 2.0 ,3\t4 \r\n5 6 ! rest\n7,8,\n\n9";
     let expected =
         vec![row(6, &["1", "2.0", "3", "4"]), row(7, &["5", "6"]), row(8, &["7", "8"]), row(10, &["9"])];
@@ -22,7 +22,7 @@ fn separators_line_ends_comments_and_the_byte_order_mark() {
 }
 
 #[test]
-fn headers_and_their_repeats_are_left_out() {
+fn skips_repeated_headers() {
     let text = "LIST 3 NODES\nNODE X\n1 2\nNODE X\nLIST 3 NODES\n---\n3 4\n";
     assert_eq!(rows(text).unwrap(), vec![row(3, &["1", "2"]), row(7, &["3", "4"])]);
 }
@@ -31,21 +31,21 @@ fn headers_and_their_repeats_are_left_out() {
 fn a_damaged_row_is_no_header() {
     let error = rows("1 2\nO3 4\n").unwrap_err();
     assert!(error.starts_with("F.DAT:2: node list: found \"O3 4\", expected a row of numbers"), "{error}");
-    // Neither above the first row, nor without any number.
+    // Neither above the first row, nor without a number.
     for text in ["O3 4\n1 2\n", "base ALL\n1 2\n", "1 2\nbase ALL\n"] {
         assert!(rows(text).unwrap_err().contains("expected a row of numbers, id x y z, a column heading"));
     }
 }
 
 #[test]
-fn an_empty_field_between_commas_is_named() {
+fn rejects_empty_field_between_commas() {
     let error = rows("1,2\n3,,4\n").unwrap_err();
     assert_eq!(error, "F.DAT:2: column 2: found nothing between two commas, expected a number");
 }
 
-/// `*****` of a Fortran format, in any list and any number of columns; comments with stars stay comments.
+/// Overflow marks in any list and column count; comments with stars stay comments.
 #[test]
-fn numbers_too_wide_for_their_field_are_refused() {
+fn rejects_overflowed_numbers() {
     let stars = [
         "1 1 0.\n***** 1  0.00000E+00\n",
         "***** UX 0.0\n",
@@ -97,7 +97,7 @@ const BANNER: &str = "\n *** MAPDL - ENGINEERING ANALYSIS SYSTEM  RELEASE 2021 R
                       stage 2\n\n\n";
 
 #[test]
-fn pages_of_a_listing_have_banner_title_and_heading() {
+fn reads_pages_of_listing() {
     let heading = "    NODE  LABEL     REAL           IMAG\n";
     let first = " LIST CONSTRAINTS FOR SELECTED NODES         1 TO       32 BY        1\n CURRENTLY SELECTED DOF SET= UX\n";
     let page = |row: &str| format!("{BANNER}{heading}{row}\n");

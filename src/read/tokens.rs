@@ -1,11 +1,10 @@
-//! Numbers of a file whose sections are text or binary: what Gmsh and legacy VTK have in common.
+//! Numbers of text or binary sections.
 
 use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
 use super::number;
 
-/// How numbers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -13,12 +12,10 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// A place in the bytes of a file.
 pub(super) struct Tokens<'a> {
     file: PathBuf,
     bytes: &'a [u8],
     at: usize,
-    /// Line of `counted`, from 1.
     line: usize,
     counted: usize,
     pub encoding: Encoding,
@@ -42,7 +39,7 @@ impl<'a> Tokens<'a> {
         Tokens { file: file.to_path_buf(), bytes, at, line: 1, counted: 0, encoding: Encoding::Text }
     }
 
-    /// Line of the present place, from 1. Means little behind binary numbers.
+    /// Current line, from 1; meaningless after binary numbers.
     pub fn line(&mut self) -> usize {
         let new = &self.bytes[self.counted..self.at.min(self.bytes.len())];
         self.line += new.iter().filter(|b| **b == b'\n').count();
@@ -50,18 +47,15 @@ impl<'a> Tokens<'a> {
         self.line
     }
 
-    /// A fault at the present place.
     pub fn fault(&mut self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> ReadError {
         let line = self.line();
         ReadError::at(&self.file, line, key, found, expected)
     }
 
-    /// Bytes that are left.
     pub fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// The rest of the line, trimmed; `None` at the end of the file.
     pub fn rest_of_line(&mut self) -> Option<&'a str> {
         if self.at >= self.bytes.len() {
             return None;
@@ -72,7 +66,6 @@ impl<'a> Tokens<'a> {
         Some(std::str::from_utf8(&rest[..end]).unwrap_or("\u{fffd}").trim())
     }
 
-    /// The next line that is not empty.
     pub fn next_line(&mut self) -> Option<&'a str> {
         loop {
             let line = self.rest_of_line()?;
@@ -82,14 +75,12 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Whether the next line that is not empty starts with a word.
     pub fn next_is(&self, word: &str) -> bool {
         let rest = &self.bytes[self.at..];
         let skip = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
         rest[skip..].starts_with(word.as_bytes())
     }
 
-    /// The next word between blanks, of text.
     pub fn word(&mut self, key: &str) -> Result<&'a str, ReadError> {
         while self.bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {
             self.at += 1;
@@ -103,7 +94,6 @@ impl<'a> Tokens<'a> {
         Ok(std::str::from_utf8(&rest[..end]).unwrap_or("\u{fffd}"))
     }
 
-    /// Raw bytes.
     pub fn take(&mut self, count: usize, key: &str) -> Result<&'a [u8], ReadError> {
         if count > self.left() {
             return Err(self.fault(key, "the end of the file", "more bytes"));
@@ -124,7 +114,6 @@ impl<'a> Tokens<'a> {
         parse(word).ok_or_else(|| self.fault(key, shown, expected))
     }
 
-    /// A 4-byte integer.
     pub fn int(&mut self, key: &str) -> Result<i32, ReadError> {
         if self.encoding == Encoding::Text {
             return self.text_number(key, |w| w.parse().ok(), "a whole number");
@@ -132,7 +121,6 @@ impl<'a> Tokens<'a> {
         Ok(binary!(self, key, i32))
     }
 
-    /// An 8-byte integer of 0 or more.
     pub fn size(&mut self, key: &str) -> Result<u64, ReadError> {
         if self.encoding == Encoding::Text {
             return self.text_number(key, |w| w.parse().ok(), "a whole number of 0 or more");
@@ -140,7 +128,6 @@ impl<'a> Tokens<'a> {
         Ok(binary!(self, key, u64))
     }
 
-    /// An 8-byte real.
     pub fn real(&mut self, key: &str) -> Result<f64, ReadError> {
         if self.encoding == Encoding::Text {
             return self.text_number(key, number::real, "a number");
@@ -148,19 +135,19 @@ impl<'a> Tokens<'a> {
         Ok(binary!(self, key, f64))
     }
 
-    /// A number of things of which each takes at least one byte, so that a damaged count is found at once.
+    /// Count of items of at least one byte each: damaged counts fail immediately.
     pub fn count(&mut self, key: &str) -> Result<usize, ReadError> {
         let count = self.size(key)?;
         self.plausible(count, key)
     }
 
-    /// The same, of a 4-byte integer.
+    /// `count` of a 4-byte integer.
     pub fn int_count(&mut self, key: &str) -> Result<usize, ReadError> {
         let count = self.int(key)?;
         self.plausible(u64::try_from(count).unwrap_or(u64::MAX), key)
     }
 
-    /// A count that the rest of the file can hold.
+    /// Count limited by the remaining bytes.
     pub fn plausible(&mut self, count: u64, key: &str) -> Result<usize, ReadError> {
         if count > self.left() as u64 {
             let expected = format!("a count that {} bytes can hold", self.left());
@@ -169,13 +156,12 @@ impl<'a> Tokens<'a> {
         Ok(count as usize)
     }
 
-    /// A node, element or group number.
     pub fn id(&mut self, key: &str) -> Result<u32, ReadError> {
         let id = self.size(key)?;
         u32::try_from(id).map_err(|_| self.fault(key, id.to_string(), "a number below 4294967296"))
     }
 
-    /// The same, of a 4-byte integer.
+    /// `id` of a 4-byte integer.
     pub fn int_id(&mut self, key: &str) -> Result<u32, ReadError> {
         let id = self.int(key)?;
         u32::try_from(id).map_err(|_| self.fault(key, id.to_string(), "a whole number of 0 or more"))

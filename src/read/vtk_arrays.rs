@@ -1,4 +1,4 @@
-//! The arrays of a VTK XML file of one piece, each decoded when it is wanted: a viewer shows a few of many.
+//! Arrays of a one-piece VTK XML file, decoded on demand: a viewer shows few of many.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,6 @@ use super::vtu::{coding_of, text_numbers};
 use super::vtu_data::{Coding, decode};
 use super::xml::tags;
 
-/// Where an array stands in its file.
 #[derive(Debug)]
 struct Entry {
     section: String,
@@ -20,28 +19,25 @@ struct Entry {
     text: Range<usize>,
 }
 
-/// A file with the places of its arrays.
 #[derive(Debug)]
 pub(crate) struct Arrays {
     file: PathBuf,
     bytes: Vec<u8>,
     coding: Coding,
     entries: Vec<Entry>,
-    /// Number of points.
     pub points: usize,
 }
 
-/// Sections that arrays can stand in.
 const SECTIONS: [&str; 6] = ["PointData", "CellData", "Points", "Cells", "Lines", "Polys"];
 
-/// Numbers that an array can hold: the largest file is far smaller.
+/// Largest array; files are far smaller.
 const MOST: u64 = 1 << 32;
 
 impl Arrays {
     /// Opens a file of type `kind`, such as `PolyData`.
     ///
     /// # Errors
-    /// The file cannot be read, is of another type, or keeps its arrays in a form that this program does not write.
+    /// I/O errors, other types or codings.
     pub(crate) fn open(file: &Path, kind: &str) -> Result<Arrays, ReadError> {
         let bytes = read_bytes(file, "VTK file")?;
         let fault = |key: &str, found: &str, expected: &str| ReadError::whole(file, key, found, expected);
@@ -92,21 +88,20 @@ impl Arrays {
         Ok(Arrays { file: file.to_path_buf(), bytes, coding, entries, points })
     }
 
-    /// Names of the arrays of a section, with the numbers of their components.
+    /// Array names of a section with component counts.
     pub(crate) fn names(&self, section: &str) -> impl Iterator<Item = (&str, usize)> {
         let of_section = self.entries.iter().filter(move |e| e.section == section);
         of_section.map(|e| (e.name.as_str(), e.components))
     }
 
-    /// Number of components of an array, if there is one of this name.
     pub(crate) fn components(&self, section: &str, name: &str) -> Option<usize> {
         self.names(section).find(|(n, _)| *n == name).map(|(_, components)| components)
     }
 
-    /// The numbers of an array.
+    /// Values of an array.
     ///
     /// # Errors
-    /// There is none of this name, or it is damaged.
+    /// Missing or damaged array.
     pub(crate) fn values(&self, section: &str, name: &str) -> Result<Vec<f64>, ReadError> {
         let key = format!("array {name} of {section}");
         let fault = |found: String| ReadError::whole(&self.file, key.clone(), found, "a whole array");
@@ -131,7 +126,7 @@ impl Arrays {
         Ok(values)
     }
 
-    /// The numbers of an array as indices.
+    /// Values of an array as indices.
     ///
     /// # Errors
     /// As [`Arrays::values`].

@@ -1,16 +1,15 @@
-//! An unstructured grid of VTK as a mesh: what `.vtu` and `.vtk` have in common.
+//! VTK unstructured grid as a mesh.
 //!
 //! | array | meaning |
 //! |---|---|
-//! | points: `node_id` | numbers of the nodes; else 1, 2, … |
+//! | points: `node_id` | node ids; else 1, 2, … |
 //! | points: `constraint`, `constraint_value` | 1 for x, plus 2 for y, plus 4 for z; three values, else 0 |
 //! | points: `node_set:NAME`, cells: `element_set:NAME` | members where not 0 |
-//! | cells: `face_set:NAME` | bits of the faces that are members: 1 for the first of the kind, plus 2 for the second, … |
-//! | cells: `element_id` | numbers of the elements; else 1, 2, … |
-//! | cells: `material` (or MaterialIds, MaterialID, gmsh:physical, CellEntityIds) | material numbers; else 1 |
+//! | cells: `face_set:NAME` | bits of member faces: 1 for the first of the kind, plus 2 for the second, … |
+//! | cells: `element_id` | element ids; else 1, 2, … |
+//! | cells: `material` (or MaterialIds, MaterialID, gmsh:physical, CellEntityIds) | material ids; else 1 |
 //!
-//! Node order: that of VTK is ours for all eight kinds. VTK up to 9.0 documented wedges with the first triangle seen
-//! from outside; a wedge that is inside out in the present order is turned, with a remark.
+//! VTK up to 9.0 documented wedges with reversed triangles; inverted wedges are reversed with a warning.
 //!
 //! Source: VTK's classes vtkQuadraticHexahedron and so on; checked with VTK 9.7 (`tests/vtk_check.py`).
 
@@ -19,7 +18,6 @@ use trackbed_fem::ElementKind;
 use super::error::ReadError;
 use super::mesh_file::{Builder, MeshFile};
 
-/// Numbers of one array.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Array {
     pub name: String,
@@ -27,7 +25,6 @@ pub(super) struct Array {
     pub values: Vec<f64>,
 }
 
-/// A grid as the file holds it.
 #[derive(Default)]
 pub(super) struct Grid {
     pub points: Vec<f64>,
@@ -39,7 +36,6 @@ pub(super) struct Grid {
     pub cell_data: Vec<Array>,
 }
 
-/// VTK's number of each kind.
 pub(crate) const TYPES: [(u8, ElementKind, &str); 8] = [
     (25, ElementKind::Hex20, "VTK_QUADRATIC_HEXAHEDRON"),
     (26, ElementKind::Wedge15, "VTK_QUADRATIC_WEDGE"),
@@ -51,14 +47,11 @@ pub(crate) const TYPES: [(u8, ElementKind, &str); 8] = [
     (10, ElementKind::Tet4, "VTK_TETRA"),
 ];
 
-/// Types of fewer than three dimensions.
 const LOWER: [u8; 18] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36];
-/// A brick with its corners in rows.
 const VOXEL: u8 = 11;
 
 const MATERIALS: [&str; 5] = ["material", "MaterialIds", "MaterialID", "gmsh:physical", "CellEntityIds"];
 
-/// The mesh of a grid.
 pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadError> {
     let (nodes, cells) = (grid.points.len() / 3, grid.types.len());
     if !grid.points.len().is_multiple_of(3) {
@@ -101,7 +94,7 @@ pub(super) fn mesh(mut builder: Builder, grid: Grid) -> Result<MeshFile, ReadErr
     builder.finish()
 }
 
-/// Identifiers of points or cells: the first of the named arrays, else `first`, `first + step`…
+/// Ids: the first named array present, else `first`, `first + step`…
 struct Ids<'a> {
     array: Option<&'a Array>,
     step: u32,
@@ -113,7 +106,7 @@ impl Ids<'_> {
         Ids { array, step }
     }
 
-    /// The identifier of one point or cell: those of cells that are left out do not matter.
+    /// Id of a point or cell; skipped cells need none.
     fn get(&self, builder: &Builder, at: usize) -> Result<u32, ReadError> {
         let Some(array) = self.array else { return Ok(1 + at as u32 * self.step) };
         let value = array.values[at];
@@ -124,7 +117,7 @@ impl Ids<'_> {
     }
 }
 
-/// Adds the cells of three dimensions; returns which they are.
+/// Adds volume cells; returns their indices.
 fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<usize>, ReadError> {
     let cells = grid.types.len();
     let element_ids = Ids::of(&grid.cell_data, &["element_id"], 1);
@@ -183,7 +176,7 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
     Ok(kept)
 }
 
-/// A set of faces: bit k of a cell's value is its face k, from 0.
+/// Bit k of a cell value selects face k, from 0.
 fn face_set(builder: &mut Builder, name: &str, kept: &[usize], array: &Array) -> Result<(), ReadError> {
     let mut faces = Vec::new();
     for (element, cell) in kept.iter().enumerate() {
@@ -204,12 +197,10 @@ fn face_set(builder: &mut Builder, name: &str, kept: &[usize], array: &Array) ->
     Ok(())
 }
 
-/// A wedge numbered the other way round.
 fn turn(nodes: &mut [u32]) {
     nodes.swap(1, 2);
     nodes.swap(4, 5);
     if nodes.len() == 15 {
-        // Middles of 01 12 20, 34 45 53, 03 14 25.
         nodes.swap(6, 8);
         nodes.swap(9, 11);
         nodes.swap(13, 14);

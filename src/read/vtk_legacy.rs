@@ -1,6 +1,6 @@
-//! Legacy VTK files (`.vtk`), text and binary, with an unstructured grid.
+//! Reader of legacy VTK (`.vtk`) unstructured grids, text and binary.
 //!
-//! Source: VTK User's Guide, "VTK file formats", versions 2.0 to 5.1. Arrays with a meaning: see `vtk_grid`.
+//! Source: VTK User's Guide, "VTK file formats", versions 2.0 to 5.1. Array names: see `vtk_grid`.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use super::vtk_grid::{self, Array, Grid};
 /// Reads a legacy VTK file.
 ///
 /// # Errors
-/// Another data set than an unstructured grid, a truncated or damaged array, a cell of an unknown type, an absent point.
+/// Other data sets, damaged arrays, unknown cell types, unknown points.
 pub fn read_vtk(file: &Path) -> Result<MeshFile, ReadError> {
     let bytes = read_bytes(file, "VTK file")?;
     let mut tokens = Tokens::new(file, &bytes);
@@ -42,9 +42,8 @@ struct Reader<'a> {
     tokens: Tokens<'a>,
     encoding: Encoding,
     grid: Grid,
-    /// Whether arrays belong to points; `None` before the first POINT_DATA or CELL_DATA.
+    /// Whether arrays belong to points; `None` before POINT_DATA or CELL_DATA.
     of_points: Option<bool>,
-    /// Number of points or cells that arrays belong to.
     count: usize,
 }
 
@@ -68,7 +67,7 @@ impl Reader<'_> {
             }
             "POINT_DATA" | "CELL_DATA" => {
                 self.of_points = Some(word(0).eq_ignore_ascii_case("POINT_DATA"));
-                // A section may hold no array, so that the rest of the file says nothing about its count.
+                // A section may be empty: remaining bytes do not limit its count.
                 self.count = self.unlimited("number of values", word(1))? as usize;
                 Ok(())
             }
@@ -128,7 +127,7 @@ impl Reader<'_> {
         }
     }
 
-    /// METADATA between the arrays of a FIELD ends with an empty line.
+    /// METADATA within a FIELD end with an empty line.
     fn metadata(&mut self) {
         if self.tokens.next_is("METADATA") {
             self.tokens_to_empty_line();
@@ -139,7 +138,6 @@ impl Reader<'_> {
         while self.tokens.rest_of_line().is_some_and(|line| !line.is_empty()) {}
     }
 
-    /// A count that the rest of the file can hold.
     fn number(&mut self, key: &str, word: &str) -> Result<usize, ReadError> {
         let count = self.unlimited(key, word)?;
         self.tokens.plausible(count, key)
@@ -152,7 +150,7 @@ impl Reader<'_> {
         })
     }
 
-    /// `CELLS cells numbers` with the count of nodes before those of each cell, or, since version 5, `CELLS ends numbers`
+    /// `CELLS cells numbers` with node counts before each cell, or, since version 5, `CELLS ends numbers`
     /// with OFFSETS and CONNECTIVITY.
     fn cells(&mut self, first: &str, second: &str) -> Result<(), ReadError> {
         let (count, size) = (self.number("CELLS", first)?, self.number("CELLS", second)?);
@@ -167,7 +165,6 @@ impl Reader<'_> {
                 both.push(self.values(length, kind.trim(), word)?);
             }
             self.grid.connectivity = both.pop().unwrap_or_default();
-            // The first offset is 0.
             self.grid.ends = both.pop().unwrap_or_default();
             if !self.grid.ends.is_empty() {
                 self.grid.ends.remove(0);
@@ -190,7 +187,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Reads an array and keeps it where it belongs to points or cells.
+    /// Stores an array of points or cells, skips others.
     fn array(&mut self, name: &str, components: usize, tuples: usize, kind: &str) -> Result<(), ReadError> {
         let name = decode(name);
         let values = self.values(tuples.saturating_mul(components), kind, &name)?;
@@ -217,7 +214,7 @@ impl Reader<'_> {
             self.tokens.plausible(count as u64, key)?;
             return (0..count).map(|_| self.tokens.real(key)).collect();
         }
-        // vtkIdType is 4 bytes in legacy files of any machine.
+        // vtkIdType has 4 bytes in legacy files.
         let width = if kind == "vtkidtype" { 4 } else { width };
         let bytes = self.tokens.take(count.saturating_mul(width), key)?;
         let number = |b: &[u8]| -> f64 {
@@ -236,7 +233,6 @@ impl Reader<'_> {
     }
 }
 
-/// A name with its blanks and the like written as `%20`.
 fn decode(name: &str) -> String {
     let mut bytes = Vec::with_capacity(name.len());
     let mut rest = name.as_bytes();

@@ -1,9 +1,9 @@
-//! VTK XML files (`.vtu`) with an unstructured grid: text, base64, appended raw or base64, plain or zlib.
+//! Reader of VTK XML (`.vtu`) unstructured grids: text, base64, appended raw or base64, plain or zlib.
 //!
-//! Source: VTK's wiki and User's Guide, "VTK XML formats", header types UInt32 and UInt64. Arrays with a meaning: see
+//! Source: VTK's wiki and User's Guide, "VTK XML formats", header types UInt32 and UInt64. Array names: see
 //! `vtk_grid`.
 //!
-//! Limits: no parallel files (`.pvtu`), no LZ4 and LZMA.
+//! Not supported: parallel files (`.pvtu`), LZ4, LZMA.
 
 use std::path::Path;
 
@@ -14,7 +14,6 @@ use super::vtk_grid::{self, Array, Grid};
 use super::vtu_data::{Coding, decode};
 use super::xml::{Tag, tags};
 
-/// An array of the file that is not decoded yet.
 struct Raw<'a> {
     section: &'static str,
     piece: usize,
@@ -22,11 +21,10 @@ struct Raw<'a> {
     text: &'a [u8],
 }
 
-/// Numbers that one byte of a file may stand for: those of regular grids are packed to a few.
+/// Most numbers per byte of a file: regular grids compress well.
 const DENSEST: u64 = 40;
-/// Numbers that any file may hold.
 const FREE: u64 = 1_000_000;
-/// Nodes of the largest cell, and mean number of cells of lower dimension at a point.
+/// Nodes of the largest cell, and mean number of lower-dimensional cells per point.
 const CELL_NODES: u64 = 27;
 const POINT_CELLS: u64 = 64;
 
@@ -35,8 +33,7 @@ const SECTIONS: [&str; 4] = ["PointData", "CellData", "Points", "Cells"];
 /// Reads a `.vtu` file.
 ///
 /// # Errors
-/// Another data set than an unstructured grid, another compressor than zlib, a truncated or damaged array, a cell of an
-/// unknown type, an absent point.
+/// Other data sets, compressors other than zlib, damaged arrays, unknown cell types, unknown points.
 pub fn read_vtu(file: &Path) -> Result<MeshFile, ReadError> {
     let bytes = read_bytes(file, "VTK file")?;
     let builder = Builder::new(file);
@@ -94,7 +91,6 @@ pub fn read_vtu(file: &Path) -> Result<MeshFile, ReadError> {
         add_piece(file, of_piece, coding, appended, pieces[piece], &mut grid, &mut left)?;
     }
     if pieces.len() > 1 {
-        // Arrays of several pieces belong together by name.
         grid.point_data = joined(grid.point_data);
         grid.cell_data = joined(grid.cell_data);
     }
@@ -123,7 +119,6 @@ pub(super) fn coding_of(tag: &Tag) -> Result<Coding, (&'static str, String, &'st
     Ok(Coding { zlib, wide, big_endian })
 }
 
-/// Decodes the arrays of a piece and puts them behind those of the pieces before.
 fn add_piece<'a>(
     file: &Path,
     raw: impl Iterator<Item = &'a Raw<'a>>,
@@ -193,7 +188,7 @@ fn add_piece<'a>(
     Ok(())
 }
 
-/// Numbers that an array may have in a piece of so many points and cells.
+/// Largest plausible array of a piece.
 fn most_numbers(section: &str, name: &str, points: u64, cells: u64, components: u64) -> u64 {
     match (section, name) {
         ("Points", _) => points.saturating_mul(3),
@@ -207,7 +202,6 @@ fn most_numbers(section: &str, name: &str, points: u64, cells: u64, components: 
     }
 }
 
-/// Numbers in text.
 pub(super) fn text_numbers(text: &[u8]) -> Result<Vec<f64>, String> {
     let text = std::str::from_utf8(text).map_err(|_| "no text".to_string())?;
     let number = |word: &str| {
@@ -216,7 +210,6 @@ pub(super) fn text_numbers(text: &[u8]) -> Result<Vec<f64>, String> {
     text.split_whitespace().map(number).collect()
 }
 
-/// Arrays of the same name one behind the other.
 fn joined(arrays: Vec<Array>) -> Vec<Array> {
     let mut out: Vec<Array> = Vec::new();
     for array in arrays {

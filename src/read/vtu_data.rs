@@ -1,32 +1,27 @@
-//! The binary arrays of VTK XML files: lengths in front, base64 or raw, plain or compressed in blocks.
+//! Binary arrays of VTK XML files.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use std::io::Read;
 
-/// How a file writes its binary arrays.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Coding {
-    /// Blocks compressed by zlib.
     pub zlib: bool,
-    /// Lengths of 8 bytes instead of 4.
     pub wide: bool,
     pub big_endian: bool,
 }
 
-/// zlib makes data at most 1032 times shorter (Deflate's longest match); a damaged length says more.
+/// Largest compression of zlib (Deflate's longest match); damaged lengths exceed it.
 const MOST_COMPRESSION: u64 = 1032;
 
-/// Bytes of an array, read piece by piece.
 struct Stream<'a> {
     bytes: &'a [u8],
     base64: bool,
-    /// Bytes of the last group of base64 that were not read yet.
+    /// Decoded, unread bytes of the last base64 group.
     pending: Vec<u8>,
 }
 
 impl Stream<'_> {
-    /// The next bytes of base64 at once, where neither white space nor padding stands within them: files of a million
-    /// grains have 100 MB.
+    /// Fast path for base64 without white space or padding: files of a million grains have 100 MB.
     fn whole_groups(&mut self, count: usize) -> Option<Vec<u8>> {
         let letters = count.div_ceil(3) * 4;
         if !self.pending.is_empty() || letters > self.bytes.len() {
@@ -57,7 +52,7 @@ impl Stream<'_> {
         }
         let mut out = std::mem::take(&mut self.pending);
         while out.len() < count {
-            // Groups of four letters; a length may be padded on its own, so that padding stands within the data.
+            // Padding may stand within the data after encoded lengths.
             let mut group = [0; 4];
             let mut filled = 0;
             while filled < 4 {
@@ -77,8 +72,8 @@ impl Stream<'_> {
     }
 }
 
-/// The numbers of an array of type `kind` from the start of `bytes`, at most so many; the error names what was found. What says
-/// that it is longer is not unpacked.
+/// Decodes at most `most` numbers of type `kind`; the error states the value found. Longer arrays are not
+/// inflated.
 pub(super) fn decode(
     bytes: &[u8],
     base64: bool,
@@ -99,7 +94,6 @@ pub(super) fn decode(
     numbers(&data, kind, width, coding.big_endian)
 }
 
-/// Bytes of a number.
 fn width(kind: &str) -> Result<usize, String> {
     match kind {
         "Int8" | "UInt8" => Ok(1),
@@ -130,7 +124,7 @@ fn plain(
     stream.read(usize::try_from(count).map_err(|_| format!("a length of {count}"))?)
 }
 
-/// Number of blocks, length of a block, length of the last one if shorter, compressed lengths, and the blocks.
+/// Number of blocks, block length, length of a shorter last block, compressed lengths, blocks.
 fn inflate(
     stream: &mut Stream,
     coding: Coding,
@@ -145,7 +139,7 @@ fn inflate(
     let shorter = if last > 0 { last } else { size };
     fits(size.saturating_mul(blocks.saturating_sub(1)).saturating_add(shorter))?;
     let lengths: Vec<u64> = (0..blocks).map(|_| length(stream, coding)).collect::<Result<_, _>>()?;
-    // The lengths are base64 of their own: what is left of their last group is padding.
+    // Lengths are encoded separately: the remainder of their last group is padding.
     stream.pending.clear();
     let mut out = Vec::new();
     for (block, packed) in lengths.iter().enumerate() {
@@ -194,7 +188,6 @@ mod tests {
 
     #[test]
     fn base64_with_padding_in_the_middle() {
-        // 4 bytes of length, then "abc": together, and each padded on its own.
         for text in ["AwAAAGFiYw==", "AwAAAA==YWJj", "  AwAA\nAGFiYw=="] {
             let mut stream = Stream { bytes: text.as_bytes(), base64: true, pending: Vec::new() };
             assert_eq!(plain(&mut stream, Coding::default(), |_| Ok(())).unwrap(), b"abc", "{text}");

@@ -1,28 +1,21 @@
-//! The tags of an XML file that may have binary data behind them.
+//! Tags of an XML file with appended binary data.
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// An opening or closing tag.
 pub(crate) struct Tag<'a> {
-    /// Its name, with a slash in front when it closes.
     pub name: String,
-    /// The opening tag.
     start: Option<BytesStart<'a>>,
-    /// Whether it closes itself.
     closed: bool,
-    /// Place of the byte behind it.
     pub end: usize,
 }
 
 impl Tag<'_> {
-    /// The value of an attribute.
     pub fn attribute(&self, name: &str) -> Option<String> {
         let attribute = self.start.as_ref()?.try_get_attribute(name).ok()??;
         Some(attribute.unescape_value().ok()?.into_owned())
     }
 
-    /// The bytes between the tag and the next one.
     pub fn text_after<'b>(&self, bytes: &'b [u8]) -> &'b [u8] {
         if self.closed {
             return &[];
@@ -32,10 +25,10 @@ impl Tag<'_> {
     }
 }
 
-/// The tags of a file in order, without comments and declarations. Stops at the first that is damaged.
+/// Tags in order, without comments and declarations, up to the first damaged tag.
 pub(crate) fn tags(bytes: &[u8]) -> impl Iterator<Item = Tag<'_>> {
     let mut reader = Reader::from_reader(bytes);
-    // Whether tags pair up is not asked: behind the one that binary data follows they may not.
+    // Pairing is not checked: appended binary data can break it.
     reader.config_mut().check_end_names = false;
     reader.config_mut().allow_unmatched_ends = true;
     std::iter::from_fn(move || {
@@ -73,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_damaged_tag_is_the_end() {
+    fn stops_at_damaged_tag() {
         for text in ["<A><B c=", "<A><B", "<A><!-- no end", "<A>\u{0}\u{1}"] {
             assert_eq!(tags(text.as_bytes()).map(|t| t.name).collect::<Vec<_>>(), ["A"], "{text}");
         }

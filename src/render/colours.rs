@@ -1,8 +1,8 @@
-//! Colour maps and palettes, those of the viewer.
+//! Colour maps and palettes, as in the viewer.
 
 use super::draw::Colour;
 
-/// Names of the maps with their colours at even distances. The first two can be read by colour-blind people.
+/// The first two maps suit colour-blind readers.
 const MAPS: [(&str, &str); 4] = [
     ("viridis", "440154 482475 414487 355f8d 2a788e 21918c 22a884 44bf70 7ad151 bddf26 fde725"),
     ("cividis", "00224e 123570 3b496c 575d6d 707173 8a8678 a59c74 c3b369 e1cc55 fee838"),
@@ -10,18 +10,16 @@ const MAPS: [(&str, &str); 4] = [
     ("diverging", "3b4cc0 6788ee 9abbff c9d7f0 edd1c2 f7a889 e26952 b40426"),
 ];
 
-/// Groups: colours that differ in lightness too (Okabe and Ito 2008, and lighter ones of the same).
+/// Group colours that also differ in lightness (Okabe and Ito 2008, and lighter variants).
 const GROUPS: &str = "e69f00 56b4e9 009e73 f0e442 0072b2 d55e00 cc79a7 999999 ffd37a a8dcf8 7fd6bd 7fb3dd";
 
-/// Colours of a table.
 const TABLE: usize = 256;
 
-/// Names of the maps.
 pub fn maps() -> impl Iterator<Item = &'static str> {
     MAPS.iter().map(|(name, _)| *name)
 }
 
-/// A colour `#rrggbb`, with or without the `#`.
+/// Parses `#rrggbb` or `rrggbb`.
 pub fn parse(text: &str) -> Option<Colour> {
     let digits = text.strip_prefix('#').unwrap_or(text);
     if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
@@ -31,7 +29,6 @@ pub fn parse(text: &str) -> Option<Colour> {
     Some([16, 8, 0].map(|k| ((n >> k) & 255) as f32 / 255.0))
 }
 
-/// The 256 colours of a map.
 pub fn table(name: &str) -> Option<Vec<Colour>> {
     let (_, stops) = MAPS.iter().find(|(n, _)| *n == name)?;
     let stops: Vec<Colour> = stops.split(' ').filter_map(parse).collect();
@@ -43,13 +40,12 @@ pub fn table(name: &str) -> Option<Vec<Colour>> {
     Some((0..TABLE).map(colour).collect())
 }
 
-/// The colour of a group.
 pub fn group(number: usize) -> Colour {
     let known = GROUPS.split(' ').count();
     GROUPS.split(' ').nth(number % known).and_then(parse).unwrap_or_default()
 }
 
-/// The colour of a piece by its place, 0 the largest, which is red; the others are green of several shades.
+/// Colour of a piece by rank: the largest (0) is red, others are shades of green.
 pub fn piece(place: usize) -> Colour {
     let share = |k: usize, n: usize| ((place * k) % n) as f32 / n as f32;
     match place {
@@ -63,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_begin_and_end_with_their_stops() {
+    fn tables_include_end_colours() {
         let table = table("viridis").unwrap();
         assert_eq!((table[0], table[255]), (parse("440154").unwrap(), parse("#fde725").unwrap()));
         assert_eq!(table.len(), 256);

@@ -1,8 +1,7 @@
-//! Names and units of fields as people read them, and numbers of legends.
+//! Field labels and units, legend numbers.
 
 use crate::write::body_field;
 
-/// Fields of the solid: name, label.
 const SOLID: [(&str, &str); 15] = [
     ("von_mises", "Von Mises stress"),
     ("stress_zz", "Vertical stress σzz"),
@@ -21,12 +20,10 @@ const SOLID: [(&str, &str); 15] = [
     ("element:yielded", "Yielded"),
 ];
 
-/// Label and unit of a field of grains.
 pub fn grains(field: &str) -> (String, &'static str) {
     body_field(field).map_or_else(|| (field.to_string(), ""), |known| (known.label.to_string(), known.unit))
 }
 
-/// Label and unit of a field of the solid.
 pub fn solid(field: &str) -> (String, &'static str) {
     let known = SOLID.iter().find(|s| s.0 == field).map(|s| s.1.to_string());
     let label =
@@ -45,7 +42,7 @@ pub fn solid(field: &str) -> (String, &'static str) {
     (label, unit)
 }
 
-/// The factor and the name of the unit with which numbers up to `most` read best.
+/// Factor and unit prefix that suit numbers up to `most`.
 pub fn scaled(unit: &str, most: f64) -> (f64, String) {
     const PREFIXES: [(f64, &str); 6] =
         [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ")];
@@ -58,7 +55,7 @@ pub fn scaled(unit: &str, most: f64) -> (f64, String) {
     fits.map_or((1.0, unit.to_string()), |(factor, prefix)| (*factor, format!("{prefix}{unit}")))
 }
 
-/// Round numbers from `low` to `high`, `most` steps of them at most, with the decimals that they need.
+/// At most `most` round steps from `low` to `high`, and their decimals.
 pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
     if high <= low || !(high - low).is_finite() {
         return (vec![low], 3);
@@ -81,14 +78,14 @@ pub fn ticks(low: f64, high: f64, most: usize) -> (Vec<f64>, usize) {
     ((first..=last).map(|k| k as f64 * size).collect(), usize::try_from(-exponent).unwrap_or(0))
 }
 
-/// A number with so many decimals; very large and very small ones with an exponent. The minus is a true one.
+/// Number with typographic minus; exponents for very large and small values.
 pub fn figure(value: f64, decimals: usize) -> String {
     let text = match value.abs() {
         a if a >= 1e6 || decimals > 6 => {
             let text = format!("{value:.2e}");
             text.replace(".00e", "e").replace("0e", "e")
         }
-        // Rounding may leave a negative nothing.
+        // Rounding may give negative zero.
         _ => format!("{:.*}", decimals, value + 0.0),
     };
     let text = if text.trim_start_matches('-').bytes().all(|b| b == b'0' || b == b'.') {

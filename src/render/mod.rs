@@ -1,7 +1,4 @@
-//! Pictures of results: drawn by the processor alone, without a display, into PNG, JPEG, BMP or AVI files.
-//!
-//! A frame of results (`run`) becomes things to draw (`parts`), these become pixels (`draw`), with a caption, legends and axes
-//! around them (`sheet`), and a file (`encode`).
+//! Pictures of results, without a display, as PNG, JPEG, BMP or AVI files.
 
 mod colours;
 mod draw;
@@ -24,33 +21,32 @@ use parts::{Limits, Parts};
 use run::{Moment, Run, Wanted};
 use sheet::{Ink, Picture, legend, marks};
 
-/// Name of the picture where none is given.
 const NAME: &str = "picture.png";
-/// Room around what is shown [units of the sheet].
+/// Margin [sheet units].
 const MARGIN: f32 = 20.0;
-/// Room for the caption.
+/// Height of the caption.
 const HEAD: f32 = 58.0;
-/// Room for axes and scale.
+/// Height of axes and scale.
 const FOOT: f32 = 44.0;
-/// How deep the ground below grains is shown, as a share of their extent.
+/// Depth of ground shown below grains over their extent.
 const BELOW: f32 = 0.35;
 
-/// What was written.
+/// Written file.
 pub struct Written {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
     /// Columns and rows.
     pub size: [usize; 2],
-    /// Numbers of the frames.
+    /// Frame indices.
     pub frames: Vec<usize>,
-    /// Their times [s].
+    /// Frame times [s].
     pub times: Vec<f64>,
 }
 
-/// Makes a picture, or a video of several frames.
+/// Renders a picture, or a video of several frames.
 ///
 /// # Errors
-/// Bad input: no results, no such frame or field, a file that exists; a file that cannot be written.
+/// Missing results, frames or fields, existing file; I/O errors.
 pub fn render(options: &Options) -> Result<Written, Failure> {
     let file = options.out.clone().unwrap_or_else(|| options.dir.join(NAME));
     let form = Form::of(&file).ok_or_else(|| {
@@ -101,7 +97,6 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     Ok(Written { file, size: options.size, frames, times })
 }
 
-/// Why there is no file.
 enum Refused {
     Results(Failure),
     Disk(WriteError),
@@ -118,7 +113,6 @@ impl From<Refused> for Failure {
         use std::io::ErrorKind::{NotFound, PermissionDenied, ReadOnlyFilesystem};
         match refused {
             Refused::Results(failure) => failure,
-            // The place was given by the user.
             Refused::Disk(WriteError::Io { file, source })
                 if matches!(source.kind(), NotFound | PermissionDenied | ReadOnlyFilesystem) =>
             {
@@ -130,7 +124,6 @@ impl From<Refused> for Failure {
     }
 }
 
-/// What holds for all pictures of a video.
 struct Studio<'a> {
     run: &'a Run,
     options: &'a Options,
@@ -138,12 +131,12 @@ struct Studio<'a> {
     origin: [f64; 3],
     limits: Limits,
     eye: Camera,
-    /// The frame that was read last while the limits were found.
+    /// Last frame read for the colour limits.
     first: Option<(usize, Moment)>,
 }
 
 impl<'a> Studio<'a> {
-    /// Finds the limits of colours of all frames, and the place of the eye from the first and the last.
+    /// Computes colour limits of all frames, and the camera from first and last.
     fn new(run: &'a Run, options: &'a Options, frames: &[usize]) -> Result<Studio<'a>, Failure> {
         let wanted = wanted(run, options)?;
         let ends = [frames[0], frames[frames.len() - 1]];
@@ -188,7 +181,6 @@ impl<'a> Studio<'a> {
         Ok(Studio { run, options, wanted, origin, limits, eye, first: last.filter(|_| frames.len() == 1) })
     }
 
-    /// The picture of a frame.
     fn picture(&self, frame: usize) -> Result<Picture, Failure> {
         let (run, options) = (self.run, self.options);
         let read;
@@ -223,7 +215,6 @@ impl<'a> Studio<'a> {
         Ok(picture)
     }
 
-    /// What the caption says below the title.
     fn remark(&self, frame: usize) -> String {
         let run = self.run;
         let mut words = vec![format!("t = {:.4} s", run.frames[frame].time), format!("frame {frame}")];
@@ -242,11 +233,10 @@ impl<'a> Studio<'a> {
     }
 }
 
-/// What is read of each frame.
 fn wanted(run: &Run, options: &Options) -> Result<Wanted, Failure> {
     let has_grains = run.has(series::Part::Grains);
     let grains = has_grains && options.shows(Part::Grains, true);
-    // Where chains are all that there is, they are what is wanted.
+    // Chains are the default without grains.
     let chains = run.has(series::Part::Chains) && options.shows(Part::Chains, !has_grains);
     let solid = run.skin.is_some() && options.shows(Part::Solid, true);
     let field = |shown: bool, part| shown.then(|| run.field(options, part)).transpose();
@@ -260,14 +250,12 @@ fn wanted(run: &Run, options: &Options) -> Result<Wanted, Failure> {
 }
 
 impl Wanted {
-    /// Whether there will be a legend.
     fn coloured(&self) -> bool {
         let field = |f: &Option<String>| f.as_deref().is_some_and(|f| f != "constant");
         field(&self.grains) || field(&self.solid) || self.chains
     }
 }
 
-/// Middle of everything in a frame [m].
 fn middle(run: &Run, moment: &Moment) -> [f64; 3] {
     let boxes = [moment.grains.as_ref().and_then(|g| g.bounds()), run.skin.as_ref().map(|s| s.bounds())];
     let found = boxes.into_iter().flatten().next().or_else(|| {
@@ -277,7 +265,7 @@ fn middle(run: &Run, moment: &Moment) -> [f64; 3] {
     found.map_or([0.0; 3], |b| [0, 1, 2].map(|k| 0.5 * (b[0][k] + b[1][k])))
 }
 
-/// Corners of a box around grains with a part of what is below them.
+/// Box of the grains and ground below.
 fn below(grains: &[V3]) -> Vec<V3> {
     let low = grains.iter().fold(V3::repeat(f32::INFINITY), |a, b| a.inf(b));
     let high = grains.iter().fold(V3::repeat(f32::NEG_INFINITY), |a, b| a.sup(b));
@@ -289,7 +277,7 @@ fn below(grains: &[V3]) -> Vec<V3> {
     (0..8).map(corner).collect()
 }
 
-/// The direction from which all grains are seen where their centres lie in a plane and there is nothing else; `None` where not.
+/// View direction of a 2D scene, normal to the plane of all centres.
 fn flat(run: &Run, moment: &Moment) -> Option<V3> {
     let grains = moment.grains.as_ref().filter(|g| g.bodies.id.len() > 1 && run.skin.is_none())?;
     let plane = |k: &usize| {

@@ -1,4 +1,4 @@
-//! What a user can choose of a picture, from the words of the command line. Names are those of the viewer.
+//! Options of pictures from the command line, named as in the viewer.
 
 use std::path::PathBuf;
 
@@ -6,32 +6,31 @@ use super::colours;
 use super::draw::{Colour, V3};
 use crate::failure::Failure;
 
-/// What can be shown: parts of the model, and what stands around them.
+/// Shown part of model or sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
-    /// Stones.
+    /// Grains.
     Grains,
     /// Force chains.
     Chains,
-    /// The solid.
+    /// Solid.
     Solid,
     /// Walls.
     Boundary,
     /// Sleepers and rails.
     Track,
-    /// Edges of elements.
+    /// Element edges.
     Edges,
     /// Legends.
     Legends,
     /// Title and time.
     Caption,
-    /// Directions of the axes.
+    /// Axis directions.
     Axes,
-    /// A length.
+    /// Length scale.
     Scale,
 }
 
-/// Parts by name.
 const PARTS: [(Part, &str); 10] = [
     (Part::Grains, "grains"),
     (Part::Chains, "chains"),
@@ -44,10 +43,9 @@ const PARTS: [(Part, &str); 10] = [
     (Part::Axes, "axes"),
     (Part::Scale, "scale"),
 ];
-/// How many of them are bodies of the model, and have colours.
 const BODIES: usize = 5;
 
-/// Directions from which the viewer looks at a scene; z points up.
+/// View directions of the viewer; z points up.
 const SIDES: [(&str, [f32; 3]); 7] = [
     ("oblique", [0.55, -1.0, 0.5]),
     ("front", [0.0, -1.0, 0.0]),
@@ -58,59 +56,59 @@ const SIDES: [(&str, [f32; 3]); 7] = [
     ("bottom", [0.0, 0.0, -1.0]),
 ];
 
-/// Largest side of a picture [pixels].
+/// Largest side [pixels].
 const LARGEST: usize = 16384;
-/// Most pixels of a picture: 8192 × 4096.
+/// Most pixels: 8192 × 4096.
 const MOST: usize = 1 << 25;
-/// Smallest side.
+/// Smallest side [pixels].
 const SMALLEST: usize = 16;
 
-/// Which frames.
+/// Selected frames.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Frames {
-    /// The last one.
+    /// Last frame.
     Last,
-    /// The one in which the load is largest.
+    /// Frame of largest load.
     Peak,
-    /// By number from 0.
+    /// Index from 0.
     Number(usize),
-    /// The one nearest to a time [s].
+    /// Frame nearest to a time [s].
     Time(f64),
-    /// From a number to another, both included, every so many.
+    /// First and last index, inclusive, and step.
     Range(usize, usize, usize),
 }
 
-/// Where something is cut off.
+/// Clipping range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clip {
-    /// A part alone.
+    /// Clipped part; `None` for all.
     pub part: Option<Part>,
     /// Axis, from 0.
     pub axis: usize,
-    /// What lies between is kept [m].
+    /// Kept range [m].
     pub range: [f64; 2],
 }
 
-/// Everything that can be chosen.
+/// Options of a picture.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Folder of the results.
+    /// Results directory.
     pub dir: PathBuf,
-    /// File to write.
+    /// Output file.
     pub out: Option<PathBuf>,
-    /// Replace a file that exists.
+    /// Whether to replace an existing file.
     pub force: bool,
     /// Frames.
     pub frames: Option<Frames>,
     /// Columns and rows.
     pub size: [usize; 2],
-    /// Parts shown beside those shown anyway.
+    /// Additional parts.
     pub show: Vec<Part>,
-    /// Parts not shown.
+    /// Hidden parts.
     pub hide: Vec<Part>,
     /// Fields by part.
     pub fields: Vec<(Option<Part>, String)>,
-    /// Limits of colours by part.
+    /// Colour limits by part.
     pub ranges: Vec<(Option<Part>, [f64; 2])>,
     /// Colour maps by part.
     pub maps: Vec<(Option<Part>, String)>,
@@ -118,54 +116,53 @@ pub struct Options {
     pub opacities: Vec<(Option<Part>, f32)>,
     /// Direction to the eye.
     pub towards: Option<V3>,
-    /// What is far is small.
+    /// Perspective projection.
     pub perspective: Option<bool>,
-    /// Magnification about the middle.
+    /// Magnification.
     pub zoom: f32,
-    /// Shows the grains with a part of the solid below.
+    /// Grains with a part of the solid below.
     pub near_grains: bool,
-    /// Behind everything.
+    /// Background colour.
     pub background: Colour,
-    /// What is cut off.
+    /// Clipping ranges.
     pub clips: Vec<Clip>,
-    /// Factor of the displacement of the solid.
+    /// Displacement factor of the solid.
     pub deform: f64,
-    /// Frame that displacements, and the field of the solid, are counted from.
+    /// Reference frame of displacements and solid fields.
     pub since: Option<usize>,
-    /// Steps of the colours of the solid; 0: none.
+    /// Colour steps of the solid; 0 for continuous.
     pub bands: usize,
-    /// Chains below this share of the largest force are left out.
+    /// Least chain force over the largest.
     pub least: f64,
-    /// Factor of the thickness of chains.
+    /// Thickness factor of chains.
     pub thickness: f64,
-    /// Frames of a video in a second.
+    /// Video frame rate [1/s].
     pub rate: f64,
 }
 
-/// A refusal: option, found, expected.
+/// Creates an error: option, found, expected.
 pub fn refuse(option: &str, found: &str, expected: &str) -> Failure {
     Failure::Input(format!("--{option}: found {found}, expected {expected}"))
 }
 
-/// Names joined for a message.
+/// Joins names for a message.
 pub fn joined<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// A part by its name, of the first `count`.
 fn part(option: &str, name: &str, count: usize) -> Result<Part, Failure> {
     let known = PARTS.iter().take(count).find(|(_, n)| *n == name);
     let names = || format!("one of {}", joined(PARTS.iter().take(count).map(|p| p.1)));
     known.map(|p| p.0).ok_or_else(|| refuse(option, &format!("\"{name}\""), &names()))
 }
 
-/// Parts from words with commas between.
+/// Parses comma-separated parts.
 pub fn parts(option: &str, words: &[String]) -> Result<Vec<Part>, Failure> {
     let all = words.iter().flat_map(|w| w.split(',')).map(str::trim).filter(|w| !w.is_empty());
     all.map(|name| part(option, name, PARTS.len())).collect()
 }
 
-/// `PART=VALUE`, or a value for all parts.
+/// Parses `PART=VALUE`, or a value for all parts.
 pub fn of_part(option: &str, word: &str) -> Result<(Option<Part>, String), Failure> {
     match word.split_once('=') {
         Some((name, value)) => Ok((Some(part(option, name.trim(), BODIES)?), value.trim().to_string())),
@@ -173,13 +170,12 @@ pub fn of_part(option: &str, word: &str) -> Result<(Option<Part>, String), Failu
     }
 }
 
-/// A number that is finite.
+/// Parses a finite number.
 pub fn number(option: &str, text: &str, expected: &str) -> Result<f64, Failure> {
     let parsed = text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
     parsed.ok_or_else(|| refuse(option, &format!("\"{text}\""), expected))
 }
 
-/// `LOW:HIGH`; an end left out is `open`.
 fn range(option: &str, text: &str, open: Option<f64>) -> Result<[f64; 2], Failure> {
     let expected = if open.is_some() { "LOW:HIGH, either of which may be left out" } else { "LOW:HIGH" };
     let wrong = || refuse(option, &format!("\"{text}\""), expected);
@@ -192,12 +188,12 @@ fn range(option: &str, text: &str, open: Option<f64>) -> Result<[f64; 2], Failur
     if ends[0] < ends[1] { Ok(ends) } else { Err(refuse(option, &format!("\"{text}\""), "LOW below HIGH")) }
 }
 
-/// Limits of colours.
+/// Parses colour limits.
 pub fn limits(option: &str, text: &str) -> Result<[f64; 2], Failure> {
     range(option, text, None)
 }
 
-/// `[PART:]AXIS=LOW:HIGH`.
+/// Parses `[PART:]AXIS=LOW:HIGH`.
 pub fn clip(word: &str) -> Result<Clip, Failure> {
     let expected = "[PART:]AXIS=LOW:HIGH with an axis x, y or z, such as x=-1:1 or grains:y=0:";
     let wrong = || refuse("clip", &format!("\"{word}\""), expected);
@@ -210,7 +206,7 @@ pub fn clip(word: &str) -> Result<Clip, Failure> {
     Ok(Clip { part: of, axis, range: range("clip", ends, Some(1e30))? })
 }
 
-/// Frames: a number, a time with its unit, a word, a range.
+/// Parses frames: index, time with unit, word, range.
 pub fn frames(word: &str) -> Result<Frames, Failure> {
     let expected = "a number from 0, a time such as 0.5s, last, peak, all, or A:B or A:B:STEP for a video";
     let wrong = || refuse("frame", &format!("\"{word}\""), expected);
@@ -237,7 +233,7 @@ pub fn frames(word: &str) -> Result<Frames, Failure> {
     }
 }
 
-/// Columns and rows: `1280x720`.
+/// Parses columns and rows: `1280x720`.
 pub fn size(word: &str) -> Result<[usize; 2], Failure> {
     let expected = format!("WIDTHxHEIGHT, {SMALLEST} to {LARGEST} pixels each and at most {MOST} together");
     let wrong = || refuse("size", &format!("\"{word}\""), &expected);
@@ -249,7 +245,7 @@ pub fn size(word: &str) -> Result<[usize; 2], Failure> {
     }
 }
 
-/// A direction to the eye: a name, or azimuth from the axis x towards y and elevation [degrees].
+/// Parses a view direction: name, or azimuth from x towards y and elevation [degrees].
 pub fn towards(word: &str) -> Result<V3, Failure> {
     if let Some((_, side)) = SIDES.iter().find(|(name, _)| *name == word) {
         return Ok(V3::from(*side));
@@ -269,12 +265,12 @@ pub fn towards(word: &str) -> Result<V3, Failure> {
     Ok(V3::from(direction.map(|v| v as f32)))
 }
 
-/// The direction from which solid things are looked at.
+/// Returns the default direction for 3D scenes.
 pub fn oblique() -> V3 {
     V3::from(SIDES[0].1)
 }
 
-/// A background: a word or a colour.
+/// Parses a background: word or colour.
 pub fn background(word: &str) -> Result<Colour, Failure> {
     let known = match word {
         "white" => Some([1.0; 3]),
@@ -286,7 +282,7 @@ pub fn background(word: &str) -> Result<Colour, Failure> {
     })
 }
 
-/// A name of a map.
+/// Checks a map name.
 pub fn map(name: &str) -> Result<(), Failure> {
     let expected = || format!("one of {}", joined(colours::maps()));
     match colours::maps().any(|m| m == name) {
@@ -296,17 +292,17 @@ pub fn map(name: &str) -> Result<(), Failure> {
 }
 
 impl Options {
-    /// What was chosen last for a part, or for all.
+    /// Returns the last choice.
     pub fn of<T: Clone>(list: &[(Option<Part>, T)], part: Part) -> Option<T> {
         list.iter().rev().find(|(of, _)| of.is_none_or(|of| of == part)).map(|(_, value)| value.clone())
     }
 
-    /// The clips of a part.
+    /// Returns the clipping ranges of a part.
     pub fn clips_of(&self, part: Part) -> impl Iterator<Item = &Clip> {
         self.clips.iter().filter(move |c| c.part.is_none_or(|of| of == part))
     }
 
-    /// Whether a part is shown, of which `normally` is the case without a word of the user.
+    /// Whether a part is shown, by default `normally`.
     pub fn shows(&self, part: Part, normally: bool) -> bool {
         !self.hide.contains(&part) && (normally || self.show.contains(&part))
     }

@@ -1,4 +1,4 @@
-//! Things to draw from the parts of a frame.
+//! Scene objects of a frame.
 
 mod surfaces;
 
@@ -10,26 +10,22 @@ use super::run::{Moment, Run, Wanted, of_elements};
 use super::sheet::{Key, Legend};
 use crate::failure::Failure;
 
-/// Colours of what has none from values, those of the viewer.
+/// Default colours, as in the viewer.
 const STONE: &str = "b9ab94";
-/// How much stones of one colour differ in lightness.
+/// Lightness variation of grains of one colour.
 const SHADES: f32 = 0.17;
-/// Radius of the strongest chain, as a share of the size of a stone; the section of a chain grows with its force. Radius of the weakest,
-/// as a share of that.
+/// Strongest chain radius over grain size, and weakest over strongest. Cross-section is proportional to
+/// force.
 const CHAIN: (f64, f64) = (0.2, 0.1);
 
-/// Limits of colours by part.
+/// Colour limits by part.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
-    /// Of grains.
     pub grains: Option<[f64; 2]>,
-    /// Of chains.
     pub chains: Option<[f64; 2]>,
-    /// Of the solid.
     pub solid: Option<[f64; 2]>,
 }
 
-/// Smallest box around both.
 fn union(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
     match (a, b) {
         (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
@@ -42,7 +38,6 @@ fn ends(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 impl Limits {
-    /// Of a frame.
     pub fn of(run: &Run, moment: &Moment, wanted: &Wanted) -> Limits {
         let forces = moment.chains.as_ref().map(forces);
         let of_skin = moment
@@ -63,7 +58,6 @@ impl Limits {
         }
     }
 
-    /// Of both.
     #[must_use]
     pub fn and(self, other: Limits) -> Limits {
         Limits {
@@ -73,7 +67,7 @@ impl Limits {
         }
     }
 
-    /// With what the user has given.
+    /// Applies limits given by the user.
     #[must_use]
     pub fn given(self, options: &Options) -> Limits {
         let of = |part, own| Options::of(&options.ranges, part).or(own);
@@ -85,15 +79,12 @@ impl Limits {
     }
 }
 
-/// A picture in the making: its scene, legends, and the box of what is shown.
+/// Scene, legends and bounding boxes of a picture.
 pub struct Parts<'a> {
-    /// What is drawn.
     pub scene: Scene,
-    /// Legends.
     pub legends: Vec<Legend>,
-    /// Corners of boxes around what is shown.
     pub corners: Vec<V3>,
-    /// Corners of the box around the grains, or else the chains, that are shown.
+    /// Bounding box of visible grains, else of chains.
     pub bed: Option<[V3; 2]>,
     run: &'a Run,
     options: &'a Options,
@@ -102,7 +93,6 @@ pub struct Parts<'a> {
     limits: Limits,
 }
 
-/// Magnitudes of the forces of chains [N].
 fn forces(chains: &crate::results::lines::Chains) -> Vec<f64> {
     let of = |name: &str| chains.forces.iter().find(|(n, _)| *n == name).map(|(_, v)| v.clone());
     of("magnitude").or_else(|| of("normal_force")).unwrap_or_else(|| vec![1.0; chains.ends.len() / 6])
@@ -112,7 +102,6 @@ fn plain(colour: &str) -> Colour {
     colours::parse(colour).unwrap_or_default()
 }
 
-/// A number from 0 to 1 that differs from body to body.
 fn scatter(id: u32) -> f32 {
     let mut h = id.wrapping_mul(0x9e37_79b9);
     h ^= h >> 15;
@@ -122,10 +111,10 @@ fn scatter(id: u32) -> f32 {
 }
 
 impl<'a> Parts<'a> {
-    /// All parts that are shown of a frame; places are drawn relative to `origin`.
+    /// Visible parts of a frame, relative to `origin`.
     ///
     /// # Errors
-    /// A map that does not exist.
+    /// Unknown map.
     pub fn of(
         run: &'a Run,
         moment: &Moment,
@@ -155,7 +144,7 @@ impl<'a> Parts<'a> {
         Ok(parts)
     }
 
-    /// Size of what is of interest [m]: the median stone; without stones a part of the solid.
+    /// Size [m] of the median grain, otherwise a fraction of the solid.
     fn grain_size(&self, moment: &Moment) -> f64 {
         if let Some(grains) = moment.grains.as_ref().filter(|g| !g.bodies.id.is_empty()) {
             let mut sizes = grains.bodies.extents();
@@ -171,7 +160,6 @@ impl<'a> Parts<'a> {
         V3::from([0, 1, 2].map(|k| (x[k] - self.origin[k]) as f32))
     }
 
-    /// Whether a place of a part is not cut off.
     fn kept(&self, part: Part, x: &[f64]) -> bool {
         self.options.clips_of(part).all(|c| x[c.axis] >= c.range[0] && x[c.axis] <= c.range[1])
     }
@@ -185,7 +173,6 @@ impl<'a> Parts<'a> {
         colours::table(&name).unwrap_or_default()
     }
 
-    /// A box counts for the place of the picture.
     fn boxed(&mut self, low: V3, high: V3) {
         if low.x <= high.x {
             let corner =
@@ -230,7 +217,6 @@ impl<'a> Parts<'a> {
         self.grain_legend(moment, field, (range, table));
     }
 
-    /// The legend of what grains are coloured by.
     fn grain_legend(&mut self, moment: &Moment, field: &str, (range, table): ([f64; 2], Vec<Colour>)) {
         let stones = moment.walls.as_ref().zip(moment.stone_values.as_ref());
         let stones = stones.into_iter().flat_map(|(walls, values)| walls.of_stones(values));
@@ -289,7 +275,7 @@ impl<'a> Parts<'a> {
             }
             self.scene.tubes.push(Tube { ends, radius, colour: paint.of(*force as f32), look });
         }
-        // Beside grains these are in the same place.
+        // Grains cover the same positions.
         if self.bed.is_none() {
             self.boxed(low, high);
             self.bed = (low.x <= high.x).then_some([low, high]);

@@ -1,4 +1,4 @@
-//! The results of a run that pictures are made of, frame by frame.
+//! Results of a run for pictures, frame by frame.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,67 +15,49 @@ use crate::results::series::{self, About, Frame};
 use crate::results::solid::{self, CELL, Skin};
 use crate::results::tables::Table;
 
-/// Fields of grains that are made here.
 const MADE: [&str; 4] = ["constant", "diameter", "displacement", "piece"];
-/// Parts of the displacement of the solid.
 const DISPLACEMENTS: [&str; 4] = ["displacement", "displacement_x", "displacement_y", "displacement_z"];
-/// Fields of the solid of which the first one that it has is shown.
+/// Default solid fields, by preference.
 const FIRST: [&str; 3] = ["stress_zz", "von_mises", "displacement"];
 
-/// Results with what holds for all frames.
 pub struct Run {
-    /// Title and status.
     pub about: About,
-    /// Frames.
     pub frames: Vec<Frame>,
-    /// The skin of the solid.
     pub skin: Option<Skin>,
-    /// Fields that grains can be coloured by.
     pub grain_fields: Vec<String>,
-    /// Fields that the solid can be coloured by.
     pub solid_fields: Vec<String>,
     history: Option<Table>,
     cycles: Option<Table>,
 }
 
-/// What is read of a frame.
 #[derive(Clone, Debug)]
 pub struct Wanted {
-    /// Field of the grains.
     pub grains: Option<String>,
-    /// Field of the solid.
     pub solid: Option<String>,
-    /// Force chains.
     pub chains: bool,
-    /// Walls, sleepers, rails.
     pub walls: bool,
-    /// Frame that is taken away.
     pub since: Option<usize>,
 }
 
-/// A frame.
 pub struct Moment {
-    /// Grains.
     pub grains: Option<GrainFile>,
-    /// One number per grain.
     pub grain_values: Option<Vec<f64>>,
-    /// Force chains.
     pub chains: Option<Chains>,
-    /// Walls, sleepers, rails, grains with faces.
+    /// Walls, sleepers, rails, polyhedral grains.
     pub walls: Option<Walls>,
-    /// One number per triangle of these, of grains with faces.
+    /// Value per triangle of polyhedral grains.
     pub stone_values: Option<Vec<f64>>,
-    /// Displacement of the nodes of the mesh, three numbers each [m].
+    /// Nodal displacement, three components [m].
     pub displacement: Option<Vec<f64>>,
-    /// One number per node of the mesh, or per element.
+    /// Value per node or element.
     pub solid_values: Option<Vec<f64>>,
 }
 
 impl Run {
-    /// Opens a folder.
+    /// Opens a results directory.
     ///
     /// # Errors
-    /// It holds no frames; a file is damaged.
+    /// No frames; damaged file.
     pub fn open(dir: &Path) -> Result<Run, Failure> {
         let frames = series::read(dir)?;
         let first = |part: series::Part| frames.iter().find_map(|frame| frame.file(part));
@@ -106,15 +88,14 @@ impl Run {
         Ok(Run { about: About::of(dir), frames, skin, grain_fields, solid_fields, history, cycles })
     }
 
-    /// Whether any frame has a part.
     pub fn has(&self, part: series::Part) -> bool {
         self.frames.iter().any(|frame| frame.file(part).is_some())
     }
 
-    /// The field of a part that the user chose, or the usual one.
+    /// Selected or default field of a part.
     ///
     /// # Errors
-    /// No shown part has it.
+    /// Unknown field.
     pub fn field(&self, options: &Options, part: Part) -> Result<String, Failure> {
         let known = if part == Part::Solid { &self.solid_fields } else { &self.grain_fields };
         let usual = || match part {
@@ -126,16 +107,16 @@ impl Run {
         };
         let chosen = options.fields.iter().rev().find(|(of, field)| match of {
             Some(of) => *of == part,
-            // A name without a part is meant for the parts that have it.
+            // A name without part applies to all parts that have it.
             None => known.contains(field),
         });
         Ok(chosen.map_or_else(usual, |(_, field)| field.clone()))
     }
 
-    /// Refuses fields that there are not.
+    /// Checks the selected fields.
     ///
     /// # Errors
-    /// The first of them, with those that there are.
+    /// First unknown field, with the known ones.
     pub fn check_fields(&self, options: &Options) -> Result<(), Failure> {
         for (of, field) in &options.fields {
             let lists: &[(&str, &Vec<String>)] =
@@ -161,10 +142,10 @@ impl Run {
         Ok(())
     }
 
-    /// The numbers of the frames that the user chose.
+    /// Indices of the selected frames.
     ///
     /// # Errors
-    /// There is no such frame.
+    /// Unknown frame.
     pub fn chosen(&self, frames: &Frames) -> Result<Vec<usize>, Failure> {
         let last = self.frames.len() - 1;
         let expected = || format!("0 to {last}");
@@ -175,7 +156,6 @@ impl Run {
             Frames::Number(k) => Err(refuse("frame", &k.to_string(), &expected())),
             Frames::Time(time) => {
                 let (from, to) = (self.frames[0].time, self.frames[last].time);
-                // Half a step beyond the ends is nearest to them.
                 let slack = 0.5 * (to - from) / last.max(1) as f64 + 1e-12;
                 if *time < from - slack || *time > to + slack {
                     return Err(refuse(
@@ -198,14 +178,13 @@ impl Run {
         }
     }
 
-    /// Row of the history at a time.
     fn row(&self, time: f64) -> Option<usize> {
         let times = self.history.as_ref()?.column(TIME)?;
         let after = times.partition_point(|t| *t <= time + 1e-6 * time.abs());
         (!times.is_empty()).then(|| after.saturating_sub(1))
     }
 
-    /// Loads by rows of the history [N].
+    /// Load by history row [N].
     fn loads(&self) -> Option<&[f64]> {
         let history = self.history.as_ref()?;
         ["", "_1"].into_iter().find_map(|n| history.column(LOAD.of(n)))
@@ -217,7 +196,6 @@ impl Run {
         self.loads()?.get(row).copied()
     }
 
-    /// The frame in which the load is largest; the last one where there is no load.
     fn peak(&self) -> usize {
         let last = self.frames.len() - 1;
         let loads: Option<Vec<f64>> = (0..=last).map(|k| self.load(k)).collect();
@@ -226,7 +204,7 @@ impl Run {
         loads.and_then(largest).unwrap_or(last)
     }
 
-    /// Number of the load cycle at a frame: the load has come down through its middle so often before, as the table of cycles counts.
+    /// Load cycle at a frame: unloadings through the mean load, as in the cycle table.
     pub fn cycle(&self, frame: usize) -> Option<u64> {
         let numbers = self.cycles.as_ref()?.column(CYCLE)?;
         let loads = self.loads()?;
@@ -241,7 +219,7 @@ impl Run {
     /// Reads a frame.
     ///
     /// # Errors
-    /// A file is damaged.
+    /// Damaged file.
     pub fn moment(&self, frame: usize, wanted: &Wanted) -> Result<Moment, Failure> {
         let file = |part: series::Part| self.frames[frame].file(part);
         let read_grains = wanted.grains.as_ref().zip(file(series::Part::Grains));
@@ -279,7 +257,7 @@ impl Run {
         Ok(Moment { grains, grain_values, chains, walls, stone_values, displacement, solid_values })
     }
 
-    /// One number per grain; `None` for a constant colour.
+    /// Value per grain; `None` for a constant colour.
     fn grain_values(
         &self,
         grains: &GrainFile,
@@ -300,12 +278,11 @@ impl Run {
     }
 }
 
-/// Whether a field of the solid has one number per element.
+/// Whether a solid field has values per element.
 pub fn of_elements(field: &str) -> bool {
     field.starts_with(CELL)
 }
 
-/// Length, or a part, of displacements.
 fn reduced(u: &[f64], name: &str) -> Vec<f64> {
     let part = DISPLACEMENTS.iter().position(|d| *d == name).unwrap_or(0);
     let of = |u: &[f64]| match part {
@@ -315,7 +292,7 @@ fn reduced(u: &[f64], name: &str) -> Vec<f64> {
     u.chunks_exact(3).map(of).collect()
 }
 
-/// How far grains have moved since another frame [m]; 0 for those that were not there.
+/// Grain displacement since another frame [m]; 0 for new grains.
 fn moved(grains: &GrainFile, before: Option<&GrainFile>) -> Vec<f64> {
     let place = |file: &GrainFile, body: usize| {
         let s = 3 * file.bodies.start[body] as usize;
@@ -331,7 +308,7 @@ fn moved(grains: &GrainFile, before: Option<&GrainFile>) -> Vec<f64> {
     grains.bodies.id.iter().enumerate().map(of).collect()
 }
 
-/// Place of each grain's piece by volume, 0 the largest, from the number of its piece.
+/// Rank by volume of each grain's piece, 0 the largest.
 fn pieces(grains: &GrainFile, fragment: &[f64]) -> Vec<f64> {
     let mut volume: Vec<(u64, f64)> = Vec::new();
     let mut at: HashMap<u64, usize> = HashMap::new();

@@ -1,4 +1,4 @@
-//! What the folder of a run offers for a report: its files, read as far as they are there.
+//! Data of a results directory.
 
 use crate::failure::Failure;
 use crate::read::source;
@@ -9,53 +9,51 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The tables that are read, by their names without `.csv`.
 const TABLES: [&str; 9] =
     ["history", "cycles", "push", "breaks", "gradation", "radial", "safety", "modes", "gauss"];
 
-/// How a run stands.
+/// State of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// It ended, and its accounts have nothing to remark.
+    /// Completed without warnings.
     Passed,
-    /// It ended, with remarks.
+    /// Completed with warnings.
     Warned,
-    /// It has no result, or a part of one.
+    /// Failed.
     Failed,
-    /// It was interrupted and can go on.
+    /// Interrupted, resumable.
     Interrupted,
-    /// It goes on.
+    /// Running.
     Running,
-    /// It ended without a word: killed, or the machine went down.
+    /// Ended without status.
     Stopped,
-    /// Modes, which have no account.
+    /// Modal analysis, without checks.
     Modes,
 }
 
-/// What a folder offers.
+/// Data of a results directory.
 pub struct RunData {
-    /// The folder.
+    /// Directory.
     pub dir: PathBuf,
-    /// Short name, different for each folder.
+    /// Unique short name.
     pub label: String,
-    /// `summary.json`; null where there is none yet.
+    /// `summary.json`, or null.
     pub summary: Value,
     /// `run.json`.
     pub file: Option<RunFile>,
-    /// Every key of the scene with its overrides.
+    /// Scene keys with overrides.
     pub keys: BTreeMap<String, String>,
-    /// The scene, where this program understands it.
+    /// Scene, if understood.
     pub scene: Option<Scene>,
     tables: BTreeMap<&'static str, Table>,
-    /// Process that holds the lock, and whether it is there.
     lock: Option<(u32, bool)>,
 }
 
 impl RunData {
-    /// Reads a folder.
+    /// Reads a directory.
     ///
     /// # Errors
-    /// Bad input: it is no folder with results, or one of its files is not what its name says.
+    /// No results, or an invalid file.
     pub fn read(dir: &Path) -> Result<RunData, Failure> {
         let refuse = |found: &str| {
             let expected = "a results directory";
@@ -96,17 +94,17 @@ impl RunData {
         })
     }
 
-    /// A table of the folder.
+    /// Returns a non-empty table.
     pub fn table(&self, name: &str) -> Option<&Table> {
         self.tables.get(name).filter(|t| t.rows() > 0)
     }
 
-    /// Names of tables with rows that could not be read, and how many.
+    /// Returns tables with unreadable rows, and their number.
     pub fn damaged(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
         self.tables.iter().filter(|(_, t)| t.skipped > 0).map(|(name, t)| (*name, t.skipped))
     }
 
-    /// A value of the summary, by keys and indices such as `model.bodies`; null where there is none.
+    /// Returns a summary value such as `model.bodies`, or null.
     pub fn value(&self, path: &str) -> &Value {
         path.split('.').fold(&self.summary, |value, key| match key.parse::<usize>() {
             Ok(index) if value.is_array() => value.get(index).unwrap_or(&Value::Null),
@@ -114,28 +112,28 @@ impl RunData {
         })
     }
 
-    /// A number of the summary.
+    /// Returns a finite number of the summary.
     pub fn number(&self, path: &str) -> Option<f64> {
         self.value(path).as_f64().filter(|v| v.is_finite())
     }
 
-    /// A text of the summary.
+    /// Returns a text of the summary.
     pub fn text(&self, path: &str) -> Option<&str> {
         self.value(path).as_str()
     }
 
-    /// A list of the summary; empty where there is none.
+    /// Returns a list of the summary, or an empty one.
     pub fn list(&self, path: &str) -> &[Value] {
         self.value(path).as_array().map_or(&[], Vec::as_slice)
     }
 
-    /// Title of the scene.
+    /// Returns the scene title.
     pub fn title(&self) -> &str {
         let named = self.text("title").or(self.scene.as_ref().map(|s| s.title.as_str()));
         named.filter(|t| !t.is_empty()).unwrap_or(&self.label)
     }
 
-    /// How the run stands.
+    /// Returns the state of the run.
     pub fn state(&self) -> State {
         match (self.text("status"), self.text("verdict.outcome")) {
             (Some("done"), Some("failed")) => State::Failed,
@@ -149,13 +147,12 @@ impl RunData {
         }
     }
 
-    /// Process that holds the folder's lock.
+    /// Returns the process in the lock file.
     pub fn process(&self) -> Option<u32> {
         self.lock.map(|l| l.0)
     }
 }
 
-/// The summary; null where there is none.
 fn summary(file: &Path) -> Result<Value, Failure> {
     if !file.exists() {
         return Ok(Value::Null);
@@ -171,15 +168,14 @@ fn summary(file: &Path) -> Result<Value, Failure> {
     }
 }
 
-/// Process of the lock of a folder, and whether there is such a process on this machine. The lock itself is left alone: a
-/// run that begins at this moment must find it free.
+/// Not locked, because a starting run needs the file.
 fn lock(dir: &Path) -> Option<(u32, bool)> {
     let text = std::fs::read_to_string(dir.join("run.lock")).ok()?;
     let process: u32 = text.lines().next()?.trim().parse().ok()?;
     Some((process, Path::new("/proc").join(process.to_string()).exists()))
 }
 
-/// Gives folders of one name longer ones, and those that are still alike numbers.
+/// Makes labels unique by longer paths, then numbers.
 pub fn distinguish(runs: &mut [RunData]) {
     let alike = |runs: &[RunData], k: usize| runs.iter().filter(|r| r.label == runs[k].label).count() > 1;
     let doubled: Vec<usize> = (0..runs.len()).filter(|&k| alike(runs, k)).collect();

@@ -1,7 +1,6 @@
-//! A report of one or several runs: one page with tables and plots, made of the files in their folders alone.
+//! Report of runs, from results directories only.
 //!
-//! Every `sections` entry looks for its data in the folders and is left out where none of them has any, so a run that was
-//! interrupted, has failed or still goes on is reported as far as it came.
+//! Each of the `sections` is omitted without data, so incomplete runs are reported.
 
 mod data;
 mod page;
@@ -15,21 +14,21 @@ use data::RunData;
 use maud::Markup;
 use std::path::{Path, PathBuf};
 
-/// What to report.
+/// Report options.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Folders of results.
+    /// Results directories.
     pub folders: Vec<PathBuf>,
-    /// The page; default `report.html` in the folder, if it is one.
+    /// Output file; default `report.html` in the directory.
     pub out: Option<PathBuf>,
-    /// Title of the page; default that of the scene.
+    /// Page title; default: scene title.
     pub title: Option<String>,
 }
 
-/// Writes a report, and returns where it is.
+/// Writes a report and returns its path.
 ///
 /// # Errors
-/// Bad input: a folder without results, a page that is no page. The page cannot be written.
+/// Input and I/O errors.
 pub fn write(options: &Options) -> Result<PathBuf, Failure> {
     let out = match (&options.out, options.folders.as_slice()) {
         (Some(out), _) => out.clone(),
@@ -61,7 +60,6 @@ fn put(out: &Path, text: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The title that all runs have, or one that counts them.
 fn title(runs: &[RunData]) -> String {
     let first = runs[0].title();
     match (runs.len(), runs.iter().all(|r| r.title() == first)) {
@@ -71,7 +69,6 @@ fn title(runs: &[RunData]) -> String {
     }
 }
 
-/// The line below the title.
 fn head(runs: &[RunData]) -> Markup {
     let whose = match runs {
         [run] => format!("Results in {}", run.dir.display()),

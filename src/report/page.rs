@@ -1,23 +1,23 @@
-//! The page: its head with the style sheet, sections, tables. It is well-formed as XML too, and needs nothing from outside.
+//! HTML page, self-contained and well-formed XML.
 //!
-//! Content is of the type [`Markup`], into which every text goes escaped. [`PreEscaped`] is used for constants of the program only.
+//! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants.
 
 use super::quantity::{Scale, exact, number, scale, with_unit};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// A part of the page.
+/// Section of the page.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// Name for links.
+    /// Anchor.
     pub id: &'static str,
-    /// Its head.
+    /// Heading.
     pub title: &'static str,
-    /// Its content.
+    /// Content.
     pub html: Markup,
 }
 
 impl Section {
-    /// A section; none where it has no content.
+    /// Creates a section; none if empty.
     pub fn new(id: &'static str, title: &'static str, html: Markup) -> Option<Section> {
         (!html.0.trim().is_empty()).then_some(Section { id, title, html })
     }
@@ -64,11 +64,11 @@ summary { cursor: pointer; }
   h2 { break-after: avoid; } .plots { grid-template-columns: 1fr 1fr; } a { color: inherit; text-decoration: none; } }
 ";
 
-/// Elements of the head without an end, closed as XML has it.
+/// Void elements, closed as in XML.
 const METAS: &str =
     "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
 
-/// The whole page.
+/// Formats the page.
 pub fn page(title: &str, head: &Markup, sections: &[Section]) -> String {
     let page = html! {
         (DOCTYPE) "\n"
@@ -76,7 +76,7 @@ pub fn page(title: &str, head: &Markup, sections: &[Section]) -> String {
             head {
                 "\n" (PreEscaped(METAS))
                 title { (title) } "\n"
-                // A style sheet has no references: `>` is itself there.
+                // CSS needs no escaping of `>`.
                 style { (PreEscaped(STYLE)) } "\n"
             }
             "\n"
@@ -95,18 +95,18 @@ pub fn page(title: &str, head: &Markup, sections: &[Section]) -> String {
     page.0.chars().map(printable).collect()
 }
 
-/// The character, or a sign for a control character, which XML cannot hold.
+/// Replaces control characters, which XML forbids.
 fn printable(c: char) -> char {
     let fits = !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     if fits || matches!(c, '\n' | '\t') { c } else { '\u{fffd}' }
 }
 
-/// A paragraph of plain text.
+/// Formats a text paragraph.
 pub fn paragraph(text: &str) -> Markup {
     html! { p class="note" { (text) } "\n" }
 }
 
-/// Content below a heading; nothing without content.
+/// Adds a heading to non-empty content.
 pub fn headed(heading: &str, content: Markup) -> Markup {
     if content.0.is_empty() {
         content
@@ -115,7 +115,7 @@ pub fn headed(heading: &str, content: Markup) -> Markup {
     }
 }
 
-/// Plots beside each other; nothing where there is none.
+/// Arranges plots side by side.
 pub fn plots(figures: impl IntoIterator<Item = Markup>) -> Markup {
     let all = joined(figures);
     if all.0.is_empty() {
@@ -125,33 +125,33 @@ pub fn plots(figures: impl IntoIterator<Item = Markup>) -> Markup {
     }
 }
 
-/// Parts of the page one after the other.
+/// Concatenates parts.
 pub fn joined(parts: impl IntoIterator<Item = Markup>) -> Markup {
     html! { @for part in parts { (part) } }
 }
 
-/// A cell of a table.
+/// Table cell.
 #[derive(Clone, Debug)]
 pub enum Cell {
-    /// Nothing is known.
+    /// Empty.
     Nothing,
-    /// A text.
+    /// Text.
     Text(String),
-    /// A value in SI units, which stands behind the pointer to its last digit; with the prefix for its own size.
+    /// SI value with prefix; exact as tooltip.
     Value(f64, &'static str),
-    /// A value in SI units whose unit stands in the head of the column.
+    /// SI value in the column unit.
     Scaled(f64, Scale, &'static str),
-    /// Content with elements of its own.
+    /// Markup.
     Html(Markup),
 }
 
 impl Cell {
-    /// A value, if there is one.
+    /// Creates a value cell.
     pub fn of(value: Option<f64>, unit: &'static str) -> Cell {
         value.filter(|v| v.is_finite()).map_or(Cell::Nothing, |v| Cell::Value(v, unit))
     }
 
-    /// A text.
+    /// Creates a text cell.
     pub fn text(text: impl Into<String>) -> Cell {
         Cell::Text(text.into())
     }
@@ -175,12 +175,12 @@ impl Cell {
     }
 }
 
-/// A table whose values stand under each other at their left, for rows of different kinds.
+/// Formats a left-aligned table of mixed rows.
 pub fn facts_table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
     table_of(Some("facts"), heads, rows)
 }
 
-/// A table: heads, and rows whose first cell names them. Nothing without rows.
+/// Formats a table with named rows; nothing without rows.
 pub fn table(heads: &[&str], rows: &[(String, Vec<Cell>)]) -> Markup {
     table_of(None, heads, rows)
 }
@@ -214,8 +214,7 @@ fn table_of(class: Option<&str>, heads: &[&str], rows: &[(String, Vec<Cell>)]) -
     }
 }
 
-/// A table of columns of values, each with its unit in the head and one prefix: (name, unit, values), beside the names of
-/// the rows.
+/// Formats value columns (name, unit, values), each with one prefix.
 pub fn columns(first: &str, names: &[String], columns: &[(&str, &'static str, Vec<Option<f64>>)]) -> Markup {
     let scales: Vec<Scale> = columns
         .iter()

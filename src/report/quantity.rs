@@ -1,23 +1,22 @@
-//! Numbers for people: SI prefixes by size, four or five digits, a typographic minus.
+//! Readable numbers: SI prefixes, four or five digits.
 
 use crate::write::svg::minus;
 
-/// A unit with its prefix, and what a value in SI units is multiplied by.
+/// Prefixed unit with factor from SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// Factor from SI units.
     pub factor: f64,
-    /// Unit with prefix, such as `kN/m`; empty for a plain number.
+    /// Unit such as `kN/m`, or empty.
     pub unit: String,
 }
 
-/// Powers of a thousand and their prefixes.
 const PREFIXES: [(i32, &str); 7] = [(-3, "n"), (-2, "µ"), (-1, "m"), (0, ""), (1, "k"), (2, "M"), (3, "G")];
 
-/// The prefix with which values of a unit, the largest of which has the size `largest`, are read best.
+/// Selects the prefix for values up to `largest`.
 pub fn scale(unit: &str, largest: f64) -> Scale {
     let largest = largest.abs();
-    // Kilograms have their prefix already; what is not in the list is written as it is.
+    // Other units are unscaled.
     let (base, steps, highest) = match unit {
         "N" | "Pa" | "J" | "N/m" | "N m" | "Hz" | "W" | "B" => (unit, true, 3),
         "m" | "m/s" | "s" | "rad" => (unit, true, 0),
@@ -29,15 +28,15 @@ pub fn scale(unit: &str, largest: f64) -> Scale {
     if !steps || largest == 0.0 || !largest.is_finite() {
         return Scale { factor: 1.0, unit: base.into() };
     }
-    // What rounds to a thousand has the next prefix.
+    // Rounding to 1000 needs the next prefix.
     let power = (libm::log10(largest * 1.000_001) / 3.0).floor() as i32;
-    // Lengths of a bed are read in millimetres even where they are above a metre by a little.
+    // Lengths near a metre stay in millimetres.
     let power = power.clamp(-3, highest);
     let prefix = PREFIXES.iter().find(|p| p.0 == power).map_or("", |p| p.1);
     Scale { factor: 10.0_f64.powi(-3 * power), unit: format!("{prefix}{base}") }
 }
 
-/// A number with five digits, or fewer where the others are zeros.
+/// Formats with at most five digits.
 pub fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -59,13 +58,13 @@ pub fn number(value: f64) -> String {
     minus(&text)
 }
 
-/// A value with its unit for people, such as `30.24 mm`.
+/// Formats such as `30.24 mm`.
 pub fn with_unit(value: f64, unit: &str) -> String {
     let scale = scale(unit, value);
     format!("{} {}", number(value * scale.factor), scale.unit).trim_end().to_string()
 }
 
-/// A value with its unit to the last digit, such as `0.0302412 m`.
+/// Formats all digits, such as `0.0302412 m`.
 pub fn exact(value: f64, unit: &str) -> String {
     let (plain, scientific) = (format!("{value}"), format!("{value:e}"));
     let digits = if plain.len() <= scientific.len() + 4 { plain } else { scientific };

@@ -1,4 +1,4 @@
-//! Grains of a frame: spheres, and the bodies that they make up.
+//! Grains of a frame: spheres and their bodies.
 
 use std::path::Path;
 
@@ -7,26 +7,24 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use crate::failure::Failure;
 use crate::read::vtk_arrays::Arrays;
 
-/// How far a sphere of a rigid body may be from its place, as a share of the size of the body: rounding.
+/// Rounding tolerance of rigid bodies over their size.
 const RIGID: f64 = 1e-7;
 
-/// Arrays that are no fields to colour by.
 const GEOMETRY: [&str; 3] = ["radius", "orientation", "id"];
 
-/// The bodies of a frame: neighbouring spheres of one number.
+/// Bodies of a frame: consecutive spheres of equal id.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bodies {
-    /// Number of each body.
+    /// Body ids.
     pub id: Vec<u32>,
-    /// First sphere of each body, and the number of all spheres.
+    /// First sphere of each body, then the total number of spheres.
     pub start: Vec<u32>,
-    /// Radius of each sphere [m].
+    /// Sphere radius [m].
     pub radius: Vec<f64>,
-    /// Place of each sphere seen from the first of its body, in the axes of the body [m].
+    /// Position relative to the first sphere of the body, in body axes [m].
     pub offset: Vec<Vector3<f64>>,
 }
 
-/// Spheres of a frame as the file has them.
 struct Spheres {
     position: Vec<f64>,
     orientation: Vec<f64>,
@@ -45,19 +43,19 @@ impl Spheres {
     }
 }
 
-/// A file of grains.
+/// Grain file.
 pub struct GrainFile {
     arrays: Arrays,
     spheres: Spheres,
-    /// Its bodies.
+    /// Bodies.
     pub bodies: Bodies,
 }
 
 impl GrainFile {
-    /// Reads places, radii and numbers.
+    /// Reads positions, radii and ids.
     ///
     /// # Errors
-    /// The file is not one of grains.
+    /// Not a grain file.
     pub fn open(file: &Path) -> Result<GrainFile, Failure> {
         let arrays = Arrays::open(file, "PolyData")?;
         let position = arrays.values("Points", "Points")?;
@@ -83,16 +81,16 @@ impl GrainFile {
         Ok(GrainFile { arrays, spheres, bodies: Bodies { id: ids, start, radius, offset } })
     }
 
-    /// Names of the fields that bodies can be coloured by; vectors by their length.
+    /// Returns the colour fields; vectors count by magnitude.
     pub fn fields(&self) -> Vec<String> {
         let names = self.arrays.names("PointData").filter(|(name, _)| !GEOMETRY.contains(name));
         names.map(|(name, _)| if name == "velocity" { "speed".into() } else { name.to_string() }).collect()
     }
 
-    /// One number per body: of a vector its length, for several spheres that of the mean.
+    /// Returns a value per body: magnitude of vectors, mean over spheres.
     ///
     /// # Errors
-    /// There is no such field, or it is damaged.
+    /// Unknown or damaged field.
     pub fn field(&self, name: &str) -> Result<Vec<f64>, Failure> {
         let stored = if name == "speed" { "velocity" } else { name };
         let components = self.arrays.components("PointData", stored).unwrap_or(1);
@@ -104,7 +102,7 @@ impl GrainFile {
                 sum / count
             };
             match components {
-                // The same for all spheres of a body: no rounding.
+                // Equal values: no rounding.
                 1 if values[first] == values[of[1] as usize - 1] => values[first],
                 1 => mean(0),
                 _ => (0..components).map(|c| mean(c).powi(2)).sum::<f64>().sqrt(),
@@ -113,17 +111,17 @@ impl GrainFile {
         Ok(means.collect())
     }
 
-    /// Centres of all spheres, three numbers each [m].
+    /// Returns the sphere centres, three coordinates each [m].
     pub fn centres(&self) -> &[f64] {
         &self.spheres.position
     }
 
-    /// Orientation of the body that a sphere belongs to.
+    /// Returns the orientation of a sphere's body.
     pub fn turn(&self, sphere: usize) -> UnitQuaternion<f64> {
         self.spheres.turn(sphere)
     }
 
-    /// Corners of the box around all spheres [m]; `None` without any.
+    /// Returns the bounding box of all spheres [m]; `None` without spheres.
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (x, r) in self.spheres.position.chunks_exact(3).zip(&self.bodies.radius) {
@@ -135,7 +133,7 @@ impl GrainFile {
         (!self.bodies.radius.is_empty()).then_some(bounds)
     }
 
-    /// Whether the bodies are those of `known`, moved and turned.
+    /// Whether the bodies equal `known` up to rigid motion.
     pub fn are(&self, known: &Bodies) -> bool {
         let own = &self.bodies;
         own.id == known.id
@@ -155,7 +153,7 @@ impl Bodies {
         self.radius.len() > self.id.len()
     }
 
-    /// Longest extent of each body [m].
+    /// Returns the longest extent of each body [m].
     pub fn extents(&self) -> Vec<f64> {
         let extent = |of: &[u32]| {
             let all = || of[0] as usize..of[1] as usize;

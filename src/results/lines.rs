@@ -7,13 +7,13 @@ use crate::read::ReadError;
 use crate::read::vtk_arrays::Arrays;
 use crate::write::WallKind;
 
-/// Force chains: lines between the partners of contacts.
+/// Lines between contact partners.
 pub struct Chains {
-    /// Both ends of each, six numbers [m].
+    /// Both ends, six coordinates each [m].
     pub ends: Vec<f64>,
-    /// `normal_force`, `tangential_force`, `magnitude` [N], those that the file has.
+    /// Available of `normal_force`, `tangential_force`, `magnitude` [N].
     pub forces: Vec<(&'static str, Vec<f64>)>,
-    /// `kind` and `strong`, those that the file has.
+    /// Available of `kind` and `strong`.
     pub marks: Vec<(&'static str, Vec<u8>)>,
 }
 
@@ -21,7 +21,7 @@ impl Chains {
     /// Reads a file.
     ///
     /// # Errors
-    /// The file is not one of chains.
+    /// Not a chain file.
     pub fn open(file: &Path) -> Result<Chains, Failure> {
         let arrays = Arrays::open(file, "PolyData")?;
         let points = arrays.values("Points", "Points")?;
@@ -49,17 +49,16 @@ impl Chains {
 
 /// Walls: planes, surfaces, sleepers, rails.
 pub struct Walls {
-    /// Places of the points, three numbers each [m].
+    /// Points, three coordinates each [m].
     pub points: Vec<f64>,
-    /// Three points of each triangle.
+    /// Point indices of triangles.
     pub triangles: Vec<u32>,
-    /// Two points of each edge of the polygons.
+    /// Point indices of polygon edges.
     pub edges: Vec<u32>,
-    /// Wall that each triangle belongs to.
+    /// Wall id of each triangle.
     pub id: Vec<u32>,
     /// [`WallKind`] of each triangle.
     pub kind: Vec<u8>,
-    /// Polygon that each triangle is of.
     polygon: Vec<u32>,
     arrays: Arrays,
 }
@@ -68,7 +67,7 @@ impl Walls {
     /// Reads a file.
     ///
     /// # Errors
-    /// The file is not one of walls.
+    /// Not a wall file.
     pub fn open(file: &Path) -> Result<Walls, Failure> {
         let arrays = Arrays::open(file, "PolyData")?;
         let points = arrays.values("Points", "Points")?;
@@ -104,16 +103,16 @@ impl Walls {
         Ok(walls)
     }
 
-    /// Names of the fields that grains with faces can be coloured by; vectors by their length.
+    /// Returns the colour fields of polyhedral grains; vectors count by magnitude.
     pub fn fields(&self) -> Vec<String> {
         let names = self.arrays.names("CellData").filter(|(name, _)| !["id", "kind"].contains(name));
         names.map(|(name, _)| if name == "velocity" { "speed".into() } else { name.to_string() }).collect()
     }
 
-    /// One number per triangle: of a vector its length; `None` where there is no such field.
+    /// Returns a value per triangle, of vectors the magnitude; `None` if unknown.
     ///
     /// # Errors
-    /// The field is damaged.
+    /// Damaged field.
     pub fn field(&self, name: &str) -> Result<Option<Vec<f64>>, Failure> {
         let stored = if name == "speed" { "velocity" } else { name };
         let Some(components) = self.arrays.components("CellData", stored) else { return Ok(None) };
@@ -125,14 +124,14 @@ impl Walls {
         Ok(Some(self.polygon.iter().map(of).collect()))
     }
 
-    /// Values of the triangles of grains with faces.
+    /// Selects values of polyhedral grains.
     pub fn of_stones<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let stone = |(_, kind): &(&f64, &u8)| **kind == WallKind::Stone as u8;
         values.iter().zip(&self.kind).filter(stone).map(|(v, _)| *v)
     }
 }
 
-/// What walls are in files that do not say so: one square is a plane, six are a box.
+/// Wall kinds of older files: one square is a plane, six are a box.
 fn kinds(ids: &[u32], ends: &[u32]) -> Vec<u32> {
     let squares = |id: u32| {
         let corners = (0..ends.len().min(ids.len())).filter(|p| ids[*p] == id);

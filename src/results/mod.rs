@@ -1,5 +1,4 @@
-//! Results of a run as they lie on disk: the list of frames, grains, force chains, walls, the solid. Whoever shows results reads
-//! them here.
+//! Reads result files of a run.
 
 pub mod grains;
 pub mod lines;

@@ -1,14 +1,13 @@
-//! The inside of a solid where a plane cuts it.
+//! Plane sections of a mesh.
 
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
 use super::solid::triangles;
 
-/// A point on the plane: place [m] and value.
+/// Position [m] and value.
 pub type Point = [f64; 4];
 
-/// Tetrahedra that make up an element, by its corners.
 fn tetrahedra(kind: ElementKind) -> &'static [[usize; 4]] {
     match kind.corner_count() {
         8 => &[[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]],
@@ -18,7 +17,7 @@ fn tetrahedra(kind: ElementKind) -> &'static [[usize; 4]] {
     }
 }
 
-/// The eight tetrahedra between the corners of one and the middles of its edges.
+/// Eight sub-tetrahedra from corners and edge midpoints.
 fn eight([a, b, c, d]: [[f64; 3]; 4]) -> [[[f64; 3]; 4]; 8] {
     let mid = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
     let (ab, ac, ad) = (mid(a, b), mid(a, c), mid(a, d));
@@ -35,9 +34,8 @@ fn eight([a, b, c, d]: [[f64; 3]; 4]) -> [[[f64; 3]; 4]; 8] {
     ]
 }
 
-/// Triangles of the section of a mesh with the plane normal · x = offset. `nodes` has place and value of each node of the mesh;
-/// `elements` the value of each element in place of those of nodes. Quadratic elements are cut in eight pieces for each tetrahedron of
-/// their corners, with places and values of the nodes between by their shape functions.
+/// Returns the triangles of the section normal · x = offset. `nodes` has position and value per node;
+/// `elements` overrides values. Quadratic elements are cut in eight pieces per corner tetrahedron.
 pub fn section(
     mesh: &Mesh,
     nodes: &[Point],
@@ -75,13 +73,12 @@ pub fn section(
     out
 }
 
-/// Whether nodes lie on both sides.
 fn crossed(own: &[u32], nodes: &[Point], side: impl Fn(&Point) -> f64) -> bool {
     let above = own.iter().filter(|n| side(&nodes[**n as usize]) > 0.0).count();
     above > 0 && above < own.len()
 }
 
-/// Lines in which the same plane cuts the faces of elements: both ends of each [m].
+/// Returns the lines where the plane cuts element faces: both ends [m].
 pub fn outlines(mesh: &Mesh, nodes: &[Point], normal: [f64; 3], offset: f64) -> Vec<[[f64; 3]; 2]> {
     let side = |p: &Point| normal[0] * p[0] + normal[1] * p[1] + normal[2] * p[2] - offset;
     let mut out = Vec::new();
@@ -110,7 +107,6 @@ pub fn outlines(mesh: &Mesh, nodes: &[Point], normal: [f64; 3], offset: f64) -> 
     out
 }
 
-/// Adds the section of a tetrahedron: a triangle, or two.
 fn cut(corners: [Point; 4], side: impl Fn(&Point) -> f64, out: &mut Vec<[Point; 3]>) {
     let s = corners.map(|c| side(&c));
     let (above, below): (Vec<usize>, Vec<usize>) = (0..4).partition(|k| s[*k] > 0.0);
@@ -132,9 +128,9 @@ fn cut(corners: [Point; 4], side: impl Fn(&Point) -> f64, out: &mut Vec<[Point; 
 mod tests {
     use super::*;
 
-    /// Section of a unit cube: its area and the integral of a linear value over it are those of the plane's square.
+    /// Area and integral of a linear value over the section of a unit cube.
     #[test]
-    fn a_cube_is_cut_in_its_square_with_linear_values() {
+    fn cube_section_integrates_linear_values() {
         for kind in [ElementKind::Hex8, ElementKind::Hex20] {
             let mut mesh = Mesh::default();
             let natural = kind.natural();

@@ -1,4 +1,4 @@
-//! The frames of a folder of results, from its `results.pvd`.
+//! Frames of a results directory, from `results.pvd`.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -6,31 +6,30 @@ use std::path::{Component, Path, PathBuf};
 use crate::failure::Failure;
 use crate::read::xml::tags;
 
-/// The list of frames.
+/// File name of the list.
 pub const SERIES: &str = "results.pvd";
 
-/// Folders below the one that is shown which may hold results of their own.
 const DEEPEST: usize = 4;
 const MOST_FOLDERS: usize = 2000;
 
-/// Parts of a frame, in the numbers of the list.
+/// Part of a frame, numbered as in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The solid (`.vtu`).
+    /// Solid (`.vtu`).
     Solid = 0,
     /// Grains, one point per sphere.
     Grains = 1,
-    /// Lines of contacts.
+    /// Contact lines.
     Chains = 2,
     /// Walls, sleepers, rails.
     Walls = 3,
 }
 
-/// All parts with their names in addresses.
+/// Parts with their names in URLs.
 pub const PARTS: [(Part, &str); 4] =
     [(Part::Solid, "solid"), (Part::Grains, "grains"), (Part::Chains, "chains"), (Part::Walls, "walls")];
 
-/// The files of one moment.
+/// Files of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Simulated time [s].
@@ -39,16 +38,16 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The file of a part, where there is one.
+    /// Returns the file of a part, if present.
     pub fn file(&self, part: Part) -> Option<&Path> {
         self.files[part as usize].as_deref()
     }
 }
 
-/// Reads the list of a folder; what it names and is not there is left out.
+/// Reads the list; missing files are skipped.
 ///
 /// # Errors
-/// There is no list, it names nothing that is there, or it names a file outside the folder.
+/// No list, no existing file, files outside the directory.
 pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
     let list = dir.join(SERIES);
     let fault = |found: &str, expected: &str| {
@@ -84,10 +83,10 @@ pub fn read(dir: &Path) -> Result<Vec<Frame>, Failure> {
     Ok(frames)
 }
 
-/// A file below `root`, which is canonical; `None` where there is none of that name.
+/// Returns a file below the canonical `root`; `None` if missing.
 ///
 /// # Errors
-/// A name that leads out of `root`, by itself or by a link.
+/// Paths or links that leave `root`.
 pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     let out =
         || Failure::Input(format!("{}: found \"{name}\", expected a file in the directory", root.display()));
@@ -102,18 +101,18 @@ pub fn inside(root: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     }
 }
 
-/// What a folder says of its run.
+/// Description of a run.
 pub struct About {
-    /// Title of the scene; the folder's name where there is none.
+    /// Title of the scene, else the directory name.
     pub title: String,
-    /// How the run ended; `not finished` without a summary: it was interrupted, or goes on.
+    /// Final status; `not finished` without a summary.
     pub status: String,
-    /// Name of the folder.
+    /// Directory name.
     pub folder: String,
 }
 
 impl About {
-    /// From the summary in the folder.
+    /// Reads the summary of a directory.
     pub fn of(dir: &Path) -> About {
         let summary: serde_json::Value = own(dir, "summary.json")
             .and_then(|file| fs::read(file).ok())
@@ -127,13 +126,13 @@ impl About {
     }
 }
 
-/// A file of the folder, where there is one that is no link to elsewhere.
+/// Returns a file of the directory, unless a link leads elsewhere.
 pub fn own(dir: &Path, name: &str) -> Option<PathBuf> {
     let root = dir.canonicalize().ok()?;
     inside(&root, name).ok().flatten().filter(|file| file.is_file())
 }
 
-/// Folders with results in `root` and below it, as names from there ("" is `root` itself), in order. Links are not followed.
+/// Lists results directories relative to `root` ("" for itself), sorted. Links are not followed.
 pub fn folders(root: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![(PathBuf::new(), 0)];

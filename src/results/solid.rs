@@ -1,4 +1,4 @@
-//! The solid: its skin, displacements and fields of the nodes and elements of the skin.
+//! Skin of the solid with displacements and fields.
 
 use std::path::Path;
 
@@ -9,37 +9,31 @@ use crate::failure::Failure;
 use crate::read::vtk_arrays::Arrays;
 use crate::read::{ReadError, read_vtu};
 
-/// Names of the stresses of a tensor field, by place in its 3x3 matrix.
 const TENSOR: [(&str, usize); 6] = [("xx", 0), ("yy", 4), ("zz", 8), ("xy", 1), ("yz", 5), ("zx", 6)];
-/// Principal values from the largest on, and their mean.
 const PRINCIPAL: [&str; 4] = ["1", "2", "3", "mean"];
-/// Arrays that are no fields to colour by.
 const NUMBERS: [&str; 2] = ["node_id", "element_id"];
-/// What marks a field of elements.
+/// Prefix of element fields.
 pub const CELL: &str = "element:";
 
-/// The skin: faces that belong to one element only.
+/// Faces of single elements.
 pub struct Skin {
-    /// Node of the mesh behind each node of the skin.
     nodes: Vec<u32>,
-    /// Element of the mesh behind each triangle.
     element: Vec<u32>,
-    /// Three nodes of the skin for each triangle.
+    /// Skin nodes of triangles.
     pub triangles: Vec<u32>,
-    /// Two nodes of the skin for each piece of an edge of an element.
+    /// Skin nodes of element edge segments.
     pub edges: Vec<u32>,
-    /// Number of each node of the skin in the user's mesh.
+    /// Id of each skin node in the user's mesh.
     pub node_ids: Vec<u32>,
-    /// Number of the element of each triangle in the user's mesh.
+    /// Element id of each triangle in the user's mesh.
     pub element_ids: Vec<u32>,
-    /// Places of the nodes, three numbers each [m].
+    /// Node positions, three coordinates each [m].
     pub points: Vec<f64>,
-    /// The mesh that it is of.
+    /// Mesh of the solid.
     pub mesh: Mesh,
 }
 
-/// Corner triangles of a face of so many nodes: corners first, then the mid node behind each corner. The mid nodes of a
-/// quadrilateral span two triangles more, those of a triangle one.
+/// Triangles of a face: corners first, then mid-side nodes.
 pub(super) fn triangles(nodes: usize) -> &'static [[usize; 3]] {
     match nodes {
         8 => &[[0, 4, 7], [1, 5, 4], [2, 6, 5], [3, 7, 6], [4, 5, 6], [4, 6, 7]],
@@ -50,10 +44,10 @@ pub(super) fn triangles(nodes: usize) -> &'static [[usize; 3]] {
 }
 
 impl Skin {
-    /// The skin of the mesh of a file.
+    /// Reads the skin of a mesh.
     ///
     /// # Errors
-    /// The file holds no mesh.
+    /// No mesh.
     pub fn open(file: &Path) -> Result<Skin, Failure> {
         let mesh = read_vtu(file)?.mesh;
         let mut of_mesh = vec![u32::MAX; mesh.node_count()];
@@ -105,7 +99,7 @@ impl Skin {
         Ok(skin)
     }
 
-    /// Corners of the box around the mesh [m].
+    /// Returns the bounding box [m].
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (k, x) in self.points.iter().enumerate() {
@@ -115,15 +109,15 @@ impl Skin {
         bounds
     }
 
-    /// The displacement of a frame at the nodes of the skin, three numbers each [m]; zeros where the file has none.
+    /// Returns the displacement of skin nodes, three components each [m]; zero if absent.
     ///
     /// # Errors
-    /// The file is of another mesh, or damaged.
+    /// Different mesh, damaged file.
     pub fn displacement(&self, file: &Path) -> Result<Vec<f64>, Failure> {
         Ok(self.shown_places(&self.displacement_of_mesh(file)?))
     }
 
-    /// The same at all nodes of the mesh.
+    /// Returns the displacement of all nodes.
     ///
     /// # Errors
     /// As [`Skin::displacement`].
@@ -135,13 +129,13 @@ impl Skin {
         })
     }
 
-    /// Of numbers of all nodes, or all elements, those of the nodes or triangles of the skin.
+    /// Selects skin nodes or triangles.
     pub fn shown(&self, values: &[f64], of_elements: bool) -> Vec<f64> {
         let places = if of_elements { &self.element } else { &self.nodes };
         places.iter().map(|n| values[*n as usize]).collect()
     }
 
-    /// Of three numbers for each node of the mesh, those of the nodes of the skin.
+    /// Selects skin nodes from three values per mesh node.
     pub fn shown_places(&self, values: &[f64]) -> Vec<f64> {
         self.nodes.iter().flat_map(|n| &values[3 * *n as usize..3 * *n as usize + 3]).copied().collect()
     }
@@ -157,15 +151,15 @@ impl Skin {
         Ok(arrays)
     }
 
-    /// A field of a frame: one number per node of the skin, or per triangle for a field of elements.
+    /// Returns a field per skin node, or per triangle for element fields.
     ///
     /// # Errors
-    /// As [`Skin::displacement`]; there is no such field.
+    /// As [`Skin::displacement`]; unknown field.
     pub fn field(&self, file: &Path, name: &str) -> Result<Vec<f64>, Failure> {
         Ok(self.shown(&self.field_of_mesh(file, name)?, name.starts_with(CELL)))
     }
 
-    /// The same for all nodes, or all elements, of the mesh.
+    /// Returns a field of all nodes or elements.
     ///
     /// # Errors
     /// As [`Skin::field`].
@@ -188,10 +182,10 @@ impl Skin {
     }
 }
 
-/// Names of the fields of a file, parts of vectors and tensors among them; those of elements are marked.
+/// Returns the field names of a file, with components; element fields are prefixed.
 ///
 /// # Errors
-/// The file is not one of a solid.
+/// Not a solid file.
 pub fn fields(file: &Path) -> Result<Vec<String>, Failure> {
     let arrays = Arrays::open(file, "UnstructuredGrid")?;
     let mut names = Vec::new();
@@ -203,7 +197,7 @@ pub fn fields(file: &Path) -> Result<Vec<String>, Failure> {
                     names.extend(TENSOR.iter().map(|(part, _)| format!("{name}_{part}")));
                     names.extend(PRINCIPAL.iter().map(|part| format!("{name}_{part}")));
                 }
-                // Who draws makes the parts of the displacement: it may be counted from another frame.
+                // Components of the displacement depend on its reference frame.
                 3 if name == "displacement" => {}
                 3 => {
                     names.extend(["x", "y", "z"].map(|part| format!("{name}_{part}")));
@@ -216,7 +210,6 @@ pub fn fields(file: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// One number of an item: itself, a part of a vector or its length, a part or a principal value of a tensor.
 fn reduced(item: &[f64], part: &str) -> Option<f64> {
     match (item.len(), part) {
         (1, "") => Some(item[0]),

@@ -1,29 +1,28 @@
-//! Tables of a run, such as `history.csv` and `cycles.csv`: a head with units, rows that may still be growing.
+//! Tables of a run, such as `history.csv` and `cycles.csv`, possibly still growing.
 
 use crate::columns::Name;
 use crate::failure::Failure;
 use crate::read::source;
 use std::path::Path;
 
-/// Columns of numbers.
+/// Numeric columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Name of each column with its unit in brackets.
+    /// Column names with units in brackets.
     pub names: Vec<String>,
-    /// Name of each column, without its unit.
+    /// Column names without units.
     pub heads: Vec<String>,
     /// Values by column.
     pub columns: Vec<Vec<f64>>,
-    /// Rows that could not be read: with too few values, or with one that is no finite number.
+    /// Rows skipped as incomplete or non-finite.
     pub skipped: usize,
 }
 
 impl Table {
-    /// Reads a table; none where the file is missing. The last row is left out while it has no end, and so is every row that
-    /// has not a finite number in each column.
+    /// Reads a table; `None` without file. Unterminated, incomplete and non-finite rows are skipped.
     ///
     /// # Errors
-    /// Bad input: the file is not to be read, or has no head.
+    /// Unreadable file, no header.
     pub fn read(file: &Path) -> Result<Option<Table>, Failure> {
         if !file.exists() {
             return Ok(None);
@@ -55,31 +54,30 @@ impl Table {
         Ok(Some(table))
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)
     }
 
-    /// Values of a column.
+    /// Returns the values of a column.
     pub fn column<'n>(&self, name: impl Into<Name<'n>>) -> Option<&[f64]> {
         let name = name.into().to_string();
         let index = self.heads.iter().position(|h| *h == name)?;
         Some(&self.columns[index])
     }
 
-    /// Points (x, y) of two columns, where both are there.
+    /// Returns points (x, y) of two columns, if both exist.
     pub fn points<'n>(&self, x: impl Into<Name<'n>>, y: impl Into<Name<'n>>) -> Option<Vec<[f64; 2]>> {
         Some(self.column(x)?.iter().zip(self.column(y)?).map(|(x, y)| [*x, *y]).collect())
     }
 
-    /// Items that have a column, such as `plate` of `plate_force_x` for `<wall>_force`, axis x.
+    /// Returns items with such a column, such as `plate` of `plate_force_x` for `<wall>_force`, axis x.
     pub fn items<'n>(&self, name: impl Into<Name<'n>>) -> Vec<&str> {
         let name = name.into();
         self.heads.iter().filter_map(|h| name.item_in(h)).collect()
     }
 }
 
-/// Name in a head such as `settlement [m]`.
 fn head(text: &str) -> String {
     text.rsplit_once(" [").map_or(text, |(name, _)| name).into()
 }
@@ -92,7 +90,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_table_that_grows_is_read_up_to_its_last_whole_row() {
+    fn reads_growing_table_without_partial_row() {
         let dir = folder("table");
         let file = dir.join("t.csv");
         assert_eq!(Table::read(&file).unwrap(), None);

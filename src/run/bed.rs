@@ -1,4 +1,4 @@
-//! A bed of grains on its way to the run proper: it settles, is shaken, pressed, squeezed.
+//! Grain bed during packing: deposition, vibration, compaction.
 
 use super::checkpoint_store::CheckpointStore;
 use super::packing::StageEnergy;
@@ -8,14 +8,14 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
 
-/// Time that bodies need to get going before slowness counts as rest [s].
+/// Acceleration time before low speed means rest [s].
 const START: f64 = 0.02;
 
-/// Grains with the walls and the rigid solid that hold them.
+/// Grains with surrounding walls and rigid solid.
 pub struct Bed<'a> {
     /// Model.
     pub model: dem::Model,
-    /// Its state.
+    /// State.
     pub state: dem::State,
     work: dem::Work,
     surface: Option<&'a SolidSurface>,
@@ -24,7 +24,7 @@ pub struct Bed<'a> {
 }
 
 impl<'a> Bed<'a> {
-    /// The bed at the start of a stage; `doing` is said when a step fails.
+    /// Creates a bed; `doing` names its stage in errors.
     pub fn new(
         model: dem::Model,
         surface: Option<&'a SolidSurface>,
@@ -36,10 +36,10 @@ impl<'a> Bed<'a> {
         Bed { model, state, work, surface, checkpoints, doing }
     }
 
-    /// One step under forces.
+    /// Advances one step under forces.
     ///
     /// # Errors
-    /// Overlaps or speeds without meaning; an interrupt.
+    /// Numerical failures; interrupts.
     pub fn step(&mut self, applied: &[dem::AppliedForce]) -> Result<(), Failure> {
         dem::stability::follow(&self.model, &mut self.state);
         let Bed { model, state, work, .. } = self;
@@ -47,19 +47,19 @@ impl<'a> Bed<'a> {
             Some(s) => work.step(model, state, s, applied),
             None => work.step(model, state, &dem::surface::NoSurface, applied),
         }
-        // A bed is looked at after every step.
+        // Every step of a bed is observed.
         .and_then(|()| work.download(model, state))
         .map_err(|e| Failure::Numerical(format!("{}: {e}", self.doing)))?;
         self.checkpoints.check(self.doing, self.state.time)
     }
 
-    /// Length of the next step [s].
+    /// Returns the next step length [s].
     pub fn dt(&mut self) -> f64 {
         dem::stability::follow(&self.model, &mut self.state);
         self.state.dt()
     }
 
-    /// Steps until a millisecond has passed, the time between two looks at the bed.
+    /// Advances a millisecond, the check interval.
     ///
     /// # Errors
     /// As [`Bed::step`].
@@ -71,7 +71,7 @@ impl<'a> Bed<'a> {
         Ok(())
     }
 
-    /// Lets the bed come to rest, for as long as the plan allows; whether it did.
+    /// Lets the bed settle; returns whether in time.
     ///
     /// # Errors
     /// As [`Bed::step`].
@@ -87,15 +87,15 @@ impl<'a> Bed<'a> {
         Ok(false)
     }
 
-    /// Energy balance of the stage, which has come to its end.
+    /// Returns the energy balance of the stage.
     ///
     /// # Errors
-    /// Contacts at the start that cannot be found.
+    /// Failed initial contact detection.
     pub fn energy(&self, stage: &str) -> Result<StageEnergy, Failure> {
         StageEnergy::of(stage, &self.model, &self.state, self.surface)
     }
 
-    /// The first bodies of the model where they are now, at rest: as many as `inputs`, which hold all else.
+    /// Returns the first bodies at rest in place, other data from `inputs`.
     pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
         let place = |(b, input): (usize, &BodyInput)| match input.absent {
             true => input.clone(),
@@ -115,20 +115,20 @@ impl<'a> Bed<'a> {
     }
 }
 
-/// Whether the last step has passed a multiple of `interval` [s].
+/// Whether the last step passed a multiple of `interval` [s].
 pub fn passed(state: &dem::State, interval: f64) -> bool {
     (state.time / interval).floor() > ((state.time - state.last_dt()) / interval).floor()
 }
 
-/// Root-mean-square speed of all bodies [m/s].
+/// Returns the RMS speed of all bodies [m/s].
 pub fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
     let present = (0..model.body_count()).filter(|&b| state.present(b));
     let sum: f64 = present.map(|b| state.velocity(b).norm_squared()).sum();
     (sum / state.present_count().max(1) as f64).sqrt()
 }
 
-/// Height at which a box with half sides `half`, let down at `centre` in plan, meets the highest sphere below it [m];
-/// where there is none, the highest point of the solid, or 0.
+/// Returns the contact height [m] of a box lowered at `centre` in plan; without a sphere below, the top of
+/// the solid, or 0.
 pub fn top_below(
     model: &dem::Model,
     state: &dem::State,

@@ -1,4 +1,4 @@
-//! What a run says of bonds and of groups of grains: columns of `history.csv`, `breaks.csv`, the summary.
+//! Output of bonds and grain groups.
 
 use super::recorder::{Now, Recorder};
 use super::summary::{BondSummary, BreakageRecord};
@@ -10,7 +10,7 @@ use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::bond::{Break, BreakMode};
 
-/// Number, breaks and energies of bonds.
+/// Bond count, breaks and energies.
 pub struct Bonds;
 
 impl<S: System> Recorder<S> for Bonds {
@@ -30,7 +30,7 @@ impl<S: System> Recorder<S> for Bonds {
     }
 }
 
-/// Mean place of each recorded group of grains, and the force of its bonds and contacts.
+/// Mean position, bond and contact force of recorded groups.
 pub struct Groups;
 
 impl<S: System> Recorder<S> for Groups {
@@ -51,7 +51,6 @@ impl<S: System> Recorder<S> for Groups {
     }
 }
 
-/// Columns of `breaks.csv`.
 const BREAKS: [Field<Break>; 9] = [
     (breaks::TIME, |b| b.time),
     (breaks::BOND, |b| f64::from(b.bond)),
@@ -64,15 +63,15 @@ const BREAKS: [Field<Break>; 9] = [
     (breaks::ENERGY, |b| b.energy),
 ];
 
-/// Writes every break to `breaks.csv`.
+/// Writes `breaks.csv`.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn write_breaks(dir: &Path, state: &dem::State) -> Result<(), Failure> {
     Ok(write_table(&dir.join("breaks.csv"), &BREAKS, state.breaks())?)
 }
 
-/// What became of the bonds.
+/// Summarises the bonds.
 pub fn summary(view: GrainsView<'_>) -> BondSummary {
     let (tension, shear) = view.state.broken_bonds();
     let fragments = dem::measure::fragments(view.model, view.state);

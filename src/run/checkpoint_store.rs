@@ -1,4 +1,4 @@
-//! Checkpoints of a run, written when they are due: after an interval of the clock, and when the user interrupts the run.
+//! Checkpoints at wall-time intervals and on interrupts.
 
 use super::checkpoint::{Body, Moment, Slots};
 use crate::failure::Failure;
@@ -10,38 +10,30 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at a request from outside.
 const WATCH: Duration = Duration::from_millis(50);
 
-/// A request to stop a run at the end of its present step.
+/// Request to stop after the current step.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     stop: Arc<AtomicBool>,
-    /// Whether a stage is under way that looks at the request and keeps where it is.
     keeps: Arc<AtomicBool>,
-    /// Whether a stage has seen the request.
     seen: Arc<AtomicBool>,
-    /// Whether it is acknowledged, or need not be any more.
     acknowledged: Arc<AtomicBool>,
-    /// Steps after which the run stops by itself.
     steps: Option<u64>,
-    /// Where the run was when, if that is wanted.
     trace: Option<Trace>,
 }
 
-/// Moments of a run and when it was there by the clock, some 20 ms apart.
+/// About 20 ms apart.
 pub(crate) type Trace = Arc<Mutex<Vec<(Instant, Moment)>>>;
 
-/// Time between two moments of a trace.
 const TRACE: Duration = Duration::from_millis(20);
 
 impl Interrupt {
-    /// A request that comes with Ctrl-C (SIGINT), SIGTERM, or SIGHUP, of a terminal that is closed, unless it is ignored as
-    /// under `nohup`. It is acknowledged at once on standard error, with what the program stops after. A second signal ends the
-    /// program at once, with exit code 130, as the first does where nothing could be kept.
+    /// Creates a request raised by Ctrl-C (SIGINT), SIGTERM or, unless ignored, SIGHUP, and acknowledged with
+    /// `after`. A second signal, or the first if nothing can be saved, exits with code 130.
     ///
     /// # Errors
-    /// The system refuses the handlers, or has no thread.
+    /// Handlers or thread unavailable.
     pub fn on_signals(after: &'static str) -> Result<Interrupt, Failure> {
         use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
@@ -56,7 +48,7 @@ impl Interrupt {
         let interrupt = Interrupt::default();
         let again = Arc::new(AtomicBool::new(false));
         for signal in signals {
-            // In this order: the first signal finds `again` unset, the second finds it set.
+            // The first signal finds `again` unset, the second set.
             flag::register_conditional_shutdown(signal, 130, again.clone())?;
             flag::register(signal, again.clone())?;
             flag::register(signal, interrupt.stop.clone())?;
@@ -67,7 +59,6 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Waits for a request and says what becomes of it: a step of a large solid may take minutes.
     fn watch(&self, after: &str) {
         while !self.stopped() {
             std::thread::sleep(WATCH);
@@ -83,36 +74,34 @@ impl Interrupt {
         }
     }
 
-    /// Whether a signal ends the program at once from now on, or waits for what is under way to be kept.
+    /// Whether a signal exits at once or waits for a save.
     pub(crate) fn end_at_once(&self, at_once: bool) {
-        // One that has come meanwhile belongs to the stage that ends.
+        // Pending requests belong to the ending stage.
         self.seen.fetch_or(self.stopped(), Ordering::Relaxed);
         self.keeps.store(!at_once, Ordering::Relaxed);
     }
 
-    /// Whether a signal has come.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// None until [`Interrupt::request`]; and a trace of the run.
     pub(crate) fn traced() -> (Interrupt, Trace) {
         let trace = Trace::default();
         (Interrupt { trace: Some(trace.clone()), ..Interrupt::default() }, trace)
     }
 
-    /// Makes the request.
+    /// Raises the request.
     pub fn request(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// A request that comes of itself after so many steps of the program, in whatever stages they are.
+    /// Creates a request raised after `steps` steps of all stages.
     pub fn after(steps: u64) -> Interrupt {
         Interrupt { steps: Some(steps), ..Interrupt::default() }
     }
 }
 
-/// Whether the program was started with a signal ignored, by the system's own account.
+/// Whether the signal was ignored at program start.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -121,12 +110,11 @@ fn is_ignored(signal: i32) -> bool {
     mask & (1 << (signal - 1)) != 0
 }
 
-/// Time between two looks at the clock that is aimed at, from half to twice.
+/// Target time between clock checks, from half to twice.
 const LOOK: Duration = Duration::from_millis(2);
-/// Most steps between two looks at the clock.
 const STRIDE: u32 = 1024;
 
-/// Writes the checkpoints of a run when they are due.
+/// Writes checkpoints when due.
 pub struct CheckpointStore {
     slots: RefCell<Slots>,
     interrupt: Interrupt,
@@ -136,12 +124,11 @@ pub struct CheckpointStore {
     stride: Cell<u32>,
     left: Cell<u32>,
     steps: Cell<u64>,
-    /// How the user goes on, for the message.
     command: String,
 }
 
 impl CheckpointStore {
-    /// A store that is written about every `interval`; `command` is what continues the run.
+    /// Creates a store; `command` resumes the run.
     pub fn new(slots: Slots, interrupt: Interrupt, interval: Duration, command: String) -> CheckpointStore {
         let now = Cell::new(Instant::now());
         CheckpointStore {
@@ -157,25 +144,25 @@ impl CheckpointStore {
         }
     }
 
-    /// The request to stop.
+    /// Returns the stop request.
     pub fn interrupt(&self) -> &Interrupt {
         &self.interrupt
     }
 
-    /// Begins a stage that calls [`CheckpointStore::step`] after every step.
+    /// Begins a stage that calls [`CheckpointStore::step`] after each step.
     pub fn begin(&self) {
         self.interrupt.end_at_once(false);
     }
 
-    /// Ends it: from now on a signal ends the program at once.
+    /// Ends the stage: signals then exit at once.
     pub fn end(&self) {
         self.interrupt.end_at_once(true);
     }
 
-    /// After a step: writes a checkpoint if one is due. `moment` is where the run is, `fill` puts its state in.
+    /// Writes a due checkpoint of `moment`, filled by `fill`.
     ///
     /// # Errors
-    /// [`Failure::Interrupted`] after the checkpoint that an interrupt requests; what the system refuses.
+    /// [`Failure::Interrupted`] after a requested checkpoint; I/O errors.
     #[inline]
     pub fn step(
         &self,
@@ -183,7 +170,7 @@ impl CheckpointStore {
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         if self.stopped() {
-            // A run that stops at once says so in one line.
+            // Printed as one line.
             self.interrupt.acknowledged.store(true, Ordering::Relaxed);
             let moment = moment();
             let place =
@@ -192,7 +179,7 @@ impl CheckpointStore {
             return Err(Failure::Interrupted(format!("interrupted: {place}; resume with: {}", self.command)));
         }
         let due = self.due();
-        // A run that is traced is thrown away: it needs no checkpoint but the one at its end.
+        // Traced runs are discarded.
         if self.interrupt.trace.is_some() {
             self.follow(moment);
             return Ok(());
@@ -200,11 +187,10 @@ impl CheckpointStore {
         if due { self.save(moment(), fill) } else { Ok(()) }
     }
 
-    /// After a step of a stage that only starts again from its beginning, where a checkpoint was written; `time`: simulated time of
-    /// the bed that takes it [s].
+    /// Handles a step of a stage without checkpoints; `time`: simulated [s].
     ///
     /// # Errors
-    /// [`Failure::Interrupted`] when an interrupt requests it.
+    /// [`Failure::Interrupted`] on request.
     #[inline]
     pub fn check(&self, stage: &str, time: f64) -> Result<(), Failure> {
         if !self.stopped() {
@@ -222,7 +208,6 @@ impl CheckpointStore {
         )))
     }
 
-    /// Adds where the run is to its trace, if that is due.
     fn follow(&self, moment: impl FnOnce() -> Moment) {
         let Some(trace) = &self.interrupt.trace else { return };
         let mut trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
@@ -231,7 +216,6 @@ impl CheckpointStore {
         }
     }
 
-    /// Counts a step; whether the run is to stop after it.
     #[inline]
     fn stopped(&self) -> bool {
         self.steps.set(self.steps.get() + 1);
@@ -239,10 +223,10 @@ impl CheckpointStore {
             || self.interrupt.steps.is_some_and(|steps| self.steps.get() >= steps)
     }
 
-    /// Writes a checkpoint now.
+    /// Writes a checkpoint.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn save(
         &self,
         moment: Moment,
@@ -253,10 +237,10 @@ impl CheckpointStore {
         done
     }
 
-    /// Writes a state to a file of its own.
+    /// Writes a state file.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn save_file(
         &self,
         file: &Path,
@@ -266,29 +250,29 @@ impl CheckpointStore {
         self.slots.borrow().save_file(file, moment, fill)
     }
 
-    /// Removes the checkpoints: there is nothing to go on from.
+    /// Removes all checkpoints.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn clear(&self) -> Result<(), Failure> {
         self.slots.borrow_mut().clear()
     }
 
-    /// Removes checkpoints that another run left.
+    /// Removes checkpoints of another run.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn clear_others(&self) -> Result<(), Failure> {
         self.slots.borrow_mut().clear_others()
     }
 
-    /// Where the last checkpoint is, if there is one.
+    /// Describes the last checkpoint, if any.
     pub fn kept(&self) -> Option<String> {
         let slots = self.slots.borrow();
         slots.has_one().then(|| slots.dir().display().to_string())
     }
 
-    /// Whether the interval is over. Looks at the clock now and then only.
+    /// Reads the clock only occasionally.
     fn due(&self) -> bool {
         self.left.set(self.left.get() - 1);
         if self.left.get() > 0 {

@@ -1,4 +1,4 @@
-//! Who accompanies a run from within its process: is shown the state at the end of each window, and may push grains.
+//! In-process observer of a run, which may apply grain forces.
 
 use super::system::{GrainsView, SolidView};
 use crate::failure::Failure;
@@ -7,37 +7,37 @@ use std::sync::Arc;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
-/// A run as it is at the start of its main loop, or after a window of it.
+/// State at the main loop start or after a window.
 pub struct Shown<'a> {
-    /// Time since the start of the main loop [s].
+    /// Main-loop time [s].
     pub time: f64,
-    /// Windows done.
+    /// Completed windows.
     pub done: u64,
-    /// Windows of the whole loop, as far as is known.
+    /// Expected total of windows.
     pub windows: u64,
-    /// The grains, if there are any.
+    /// Grains, if any.
     pub grains: Option<GrainsView<'a>>,
-    /// The solid, if there is one.
+    /// Solid, if any.
     pub solid: Option<SolidView<'a>>,
-    /// Energy stored now [J].
+    /// Stored energy [J].
     pub stored: Stored,
     /// Work and dissipation so far [J].
     pub spent: Spent,
 }
 
-/// Accompanies the main loop of a run, on the thread of the run. What it does is no part of a checkpoint.
+/// Observer of the main loop, on its thread. Not saved in checkpoints.
 pub trait Companion: Send + Sync {
-    /// Sees the state before the first window, and after each.
+    /// Observes the state before the first window and after each.
     ///
     /// # Errors
-    /// Ends the run.
+    /// Errors stop the run.
     fn follow(&self, shown: &Shown<'_>) -> Result<(), Failure>;
 
-    /// Adds forces on grains for the coming step; their work enters the account of energy.
+    /// Adds grain forces for the next step; their work enters the energy balance.
     fn push(&self, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>);
 }
 
-/// The companion of a run, if it has one.
+/// Optional observer of a run.
 #[derive(Clone, Default)]
 pub struct Accompanied(pub Option<Arc<dyn Companion>>);
 

@@ -1,4 +1,4 @@
-//! What all stages of a run share and none changes.
+//! Immutable context shared by all stages.
 
 use super::checkpoint_store::CheckpointStore;
 use super::companion::Accompanied;
@@ -17,49 +17,49 @@ use std::cell::{Cell, OnceCell};
 use std::path::Path;
 use trackbed_fem as fem;
 
-/// One run in progress.
+/// Run in progress.
 pub struct Run<'a> {
-    /// The scene file, for messages about its keys.
+    /// Scene file, for messages.
     pub document: &'a Document,
-    /// The scene, resolved.
+    /// Resolved scene.
     pub job: &'a Job,
-    /// Folder of the results.
+    /// Results directory.
     pub dir: &'a Path,
-    /// How much is printed.
+    /// Verbosity.
     pub verbosity: Verbosity,
-    /// Most memory that a solid may need [bytes].
+    /// Memory limit of the solid [bytes].
     pub memory: Option<u64>,
-    /// Where the steps of the grains are computed in the main loop.
+    /// Device of the main DEM steps.
     pub device: Place,
-    /// The ranks that share these steps, if there are any.
+    /// Ranks that share these steps.
     pub ranks: &'a Ranked,
-    /// Whether the folder is cleared of earlier results and holds those of this run.
+    /// Whether the directory holds results of this run.
     pub prepared: Cell<bool>,
-    /// Where checkpoints go.
+    /// Checkpoint store.
     pub checkpoints: CheckpointStore,
-    /// Whether the main loop is continued from a checkpoint, so that the files in the folder are its own.
+    /// Whether the main loop resumes and keeps files.
     pub continued: bool,
-    /// The solid with its meshed sleepers where they were set down.
+    /// Solid with sleepers set down.
     pub set_down: &'a OnceCell<fem::Model>,
-    /// The run from whose end this one goes on.
+    /// Earlier run, source of the initial state.
     pub from: Option<Source<'a>>,
-    /// Who accompanies the run.
+    /// Observer.
     pub accompanied: &'a Accompanied,
-    /// Values that are not plausible, until they are remarked on.
+    /// Pending plausibility warnings.
     pub findings: Cell<Vec<Finding>>,
 }
 
 impl Run<'_> {
-    /// Remarks on values that are not plausible, once: when it is sure that the scene is not refused.
+    /// Prints plausibility warnings once, after the scene is accepted.
     pub fn remark(&self) {
         self.findings.take().iter().for_each(|finding| message::warn(&finding.to_string()));
     }
 
-    /// The folder of the results is no longer where it was; `place` is where it is now, if that is known.
+    /// Error for a moved results directory; `place`: new location.
     pub fn gone(&self, place: Option<&Path>) -> Failure {
         let dir = self.dir.display();
         let head = format!("{dir}: results directory was renamed or removed during the run");
-        // A run that has neither is not gone on with: it is begun again.
+        // Without either, a run starts from scratch.
         let begun = self.prepared.get() || self.checkpoints.kept().is_some();
         Failure::Other(match place {
             _ if !begun => format!("{head}; nothing had been written"),
@@ -72,10 +72,10 @@ impl Run<'_> {
         })
     }
 
-    /// Makes the folder of the results; of a run that is continued its files stay.
+    /// Creates the results directory; resuming keeps files.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn prepare(&self) -> Result<(), Failure> {
         self.remark();
         if self.continued {

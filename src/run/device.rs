@@ -1,4 +1,4 @@
-//! Where the steps of grains are computed.
+//! Device of the DEM steps.
 
 use crate::failure::Failure;
 use crate::message;
@@ -19,10 +19,10 @@ pub enum Place {
     Gpu,
 }
 
-/// Whether a scene can be computed there, before anything is written.
+/// Checks that the device supports a scene.
 ///
 /// # Errors
-/// Bad input: the scene has what a device does not compute, or this machine lacks what a device needs.
+/// Unsupported features, missing hardware.
 pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     if place == Place::Cpu {
         return Ok(());
@@ -31,33 +31,33 @@ pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     let Some(grains) = &job.grains else {
         return Err(refused("not supported on a GPU: scenes without grains".into()));
     };
-    // A scene whose grains are wrong is refused where they are made, with the keys to blame.
+    // Grain errors are reported where models are built.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
         device::check(&model).map_err(|e| refused(e.to_string()))?;
     }
     Cuda::missing().map_or(Ok(()), |what| Err(refused(what.into())))
 }
 
-/// What computes the steps.
+/// DEM step executor.
 pub enum Steps {
-    /// The processor.
+    /// CPU.
     Processor(Box<dem::Work>),
-    /// A device.
+    /// GPU.
     Device(Box<Device<Cuda>>),
-    /// Several ranks, of which this process is the first.
+    /// Several ranks, this process first.
     Ranks(Box<Ranks<Box<dyn Link>>>),
 }
 
 impl Steps {
-    /// On the processor.
+    /// Creates a CPU executor.
     pub fn processor(work: dem::Work) -> Steps {
         Steps::Processor(Box::new(work))
     }
 
-    /// On a device, which takes the state over.
+    /// Creates a GPU executor that owns the state.
     ///
     /// # Errors
-    /// The model has what a device does not compute; there is no device, or it has no memory for the state.
+    /// Unsupported features, no device, insufficient memory.
     pub fn device(model: &dem::Model, state: &dem::State) -> Result<Steps, Failure> {
         let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
         let text = device::source(model).map_err(|e| refused(e.to_string()))?;
@@ -67,10 +67,10 @@ impl Steps {
         Ok(Steps::Device(Box::new(device)))
     }
 
-    /// On several ranks, which make the model from `description` and take the state over.
+    /// Creates a rank executor that owns the state; ranks build the model from `description`.
     ///
     /// # Errors
-    /// A rank is lost, or cannot make the model.
+    /// A lost rank, or a failed model.
     pub fn ranks(
         link: Box<dyn Link>,
         model: &dem::Model,
@@ -82,21 +82,21 @@ impl Steps {
         Ok(Steps::Ranks(Box::new(ranks)))
     }
 
-    /// Whether the state is stepped elsewhere, so that changes of it must be handed over.
+    /// Whether state changes must be transferred to the executor.
     pub fn elsewhere(&self) -> bool {
         !matches!(self, Steps::Processor(_))
     }
 
-    /// What ranks have sent each other, if the steps are shared among several.
+    /// Returns message counters between ranks.
     pub fn traffic(&self) -> Option<&Traffic> {
         if let Steps::Ranks(ranks) = self { Some(ranks.traffic()) } else { None }
     }
 }
 
-/// Why a step of grains failed, in words.
+/// Converts a step error.
 pub fn failed(error: StepError) -> Failure {
     let text = error.to_string();
-    // A rank that is lost says nothing of the numbers.
+    // A lost rank is no numerical failure.
     if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
 }
 

@@ -1,42 +1,38 @@
-//! The energy account while a run goes on: it stops a run whose numbers mean nothing any more.
+//! Energy check during a run.
 
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::ledger::Balance;
 
-/// Energy error over the energy turned over: above this it is remarked, and above the second the run stops.
+/// Relative energy error for a warning, and for a stop.
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
 
-/// Share of what springs and motion hold that counts as turned over when a run is to be stopped: in the first steps next to
-/// nothing has been turned over yet, and the error of a first contact is large beside that.
+/// Fraction of elastic and kinetic energy added to the reference energy, which is almost zero in the first
+/// steps: first contacts must not stop the run.
 const HELD: f64 = 0.25;
 
-/// First checks with energy turned over or held that may be above the second limit: at a start from rest the error of the first step is large
-/// beside the next to nothing that it turns over.
+/// Checks allowed above the stop limit, because the first step from rest has almost no reference energy.
 const FIRST: u32 = 2;
 
-/// The energy account over a run: its errors in proportion to what had been turned over.
+/// Relative energy error over a run.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct EnergyWatch {
-    /// Largest energy turned over so far, or the floor where that is larger [J].
+    /// Largest reference energy or floor [J].
     scale: f64,
-    /// Largest error so far [J].
     largest: f64,
-    /// Error now [J].
     error: f64,
-    /// First checks that were above the second limit.
     #[serde(default)]
     first: u32,
-    /// Whether a check with energy turned over or held was within the limit.
+    /// Whether a check with nonzero energy passed.
     #[serde(default)]
     begun: bool,
 }
 
 impl EnergyWatch {
-    /// Takes a check of the balance into account.
+    /// Adds a balance check.
     ///
     /// # Errors
-    /// The error is so large that nothing of the run means anything.
+    /// Above the stop limit.
     pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
         self.scale = self.scale.max(balance.turnover()).max(balance.floor());
         self.error = balance.error().abs();
@@ -59,12 +55,12 @@ impl EnergyWatch {
         )))
     }
 
-    /// Error now over the most that has been turned over.
+    /// Returns the current error over the largest reference energy.
     pub fn now(&self) -> f64 {
         relative(self.error, self.scale)
     }
 
-    /// Largest error at any row over the most that has been turned over.
+    /// Returns the largest error over the largest reference energy.
     pub fn worst(&self) -> f64 {
         relative(self.largest, self.scale)
     }
@@ -86,11 +82,11 @@ mod tests {
     }
 
     #[test]
-    fn energy_is_judged_at_every_row_by_the_largest_turnover_so_far() {
+    fn checks_rows_by_largest_reference_energy() {
         let mut watch = EnergyWatch::default();
         watch.follow(&balance(0.2, 0.81)).unwrap();
         assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
-        // The same error with nothing turned over at the moment.
+        // The same error, zero current reference energy.
         watch.follow(&balance(1.01, 0.0)).unwrap();
         assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
         let failure = watch.follow(&balance(1.5, 0.0)).unwrap_err();
@@ -102,7 +98,7 @@ mod tests {
         EnergyWatch::default().follow(&balance(1.0 + 1e-14, 0.0)).unwrap();
     }
 
-    /// A later row that closes does not make up for one that did not.
+    /// A later small error does not cancel an earlier large one.
     #[test]
     fn the_worst_row_is_remembered() {
         let mut watch = EnergyWatch::default();
@@ -112,8 +108,8 @@ mod tests {
         assert!((watch.worst() - 0.05 / 0.8).abs() < 1e-12, "{watch:?}");
     }
 
-    /// A solid that gains energy in its time integration books it there, and the account closes all the same: 0.3 J gained of
-    /// 1 J held stop the run, as an error of that size does.
+    /// Numerical energy gain keeps the balance closed: a gain of 0.3 J of 1 J stored must stop the run like
+    /// an error.
     #[test]
     fn a_gain_of_the_time_integration_stops_a_run() {
         let closed = Balance { spent: Spent { numerical: -0.3, ..Spent::default() }, ..balance(1.3, 0.0) };
@@ -124,9 +120,9 @@ mod tests {
         EnergyWatch::default().follow(&lost).unwrap();
     }
 
-    /// The first step of a ramp from rest errs by a third of what it turns over; that falls with the next ones.
+    /// From rest, the first step of a ramp errs by a third of its reference energy, later steps by less.
     #[test]
-    fn an_error_that_does_not_stay_does_not_stop_a_run() {
+    fn transient_error_continues_run() {
         let ramp = |error: f64, work: f64| {
             let now = Stored { grains_kinetic: work, ..Stored::default() };
             let spent = Spent { applied_work: work + error, ..Spent::default() };
@@ -137,7 +133,7 @@ mod tests {
             let time = f64::from(k);
             watch.follow(&ramp(0.3 * time, time.powi(2))).unwrap();
         }
-        // It stays, or the energy explodes.
+        // Persistent, or exploding.
         let stays = |k: i32| ramp(0.3 * f64::from(k), f64::from(k));
         let explodes = |k: i32| ramp(0.3 * 3.0_f64.powi(k), 3.0_f64.powi(k));
         let mut watch = [EnergyWatch::default(); 2];
@@ -145,7 +141,7 @@ mod tests {
         assert!((1..4).any(|k| watch[1].follow(&explodes(k)).is_err()));
     }
 
-    /// The error of a first contact, large beside what has been turned over, is small beside what moves.
+    /// The error of a first contact is large relative to work, small relative to kinetic energy.
     #[test]
     fn the_first_steps_are_judged_by_what_moves() {
         let mut watch = EnergyWatch::default();

@@ -1,10 +1,9 @@
-//! Acoustic events: breaks of bonds, those near each other in space and time joined to one; their magnitudes and how often
-//! each size comes.
+//! Acoustic events: bond breaks clustered in space and time, with magnitudes and b-value.
 //!
-//! Magnitude M = (lg E − 4.8)/1.5, E the energy set free [J] (Gutenberg and Richter 1956). Numbers follow lg N = a − b M; b
-//! is the estimate of the greatest likelihood for bins of width Δ, lg e/(mean M − (M_c − Δ/2)), over the events from M_c on,
-//! with the error 2.3 b² s/√n of Shi and Bolt (Bull. Seism. Soc. Am. 72, 1982); M_c is the bin that most events are in
-//! (Wiemer and Wyss 2000). Joining breaks: Hazzard and Young, Int. J. Rock Mech. 37, 2000.
+//! Magnitude M = (lg E − 4.8)/1.5, E the released energy [J] (Gutenberg and Richter 1956). lg N = a − b M;
+//! maximum likelihood b with bin width Δ: lg e/(mean M − (M_c − Δ/2)) for events from M_c, standard error 2.3
+//! b² s/√n (Shi and Bolt, Bull. Seism. Soc. Am. 72, 1982). M_c: most frequent bin (Wiemer and Wyss 2000).
+//! Clustering: Hazzard and Young, Int. J. Rock Mech. 37, 2000.
 //!
 //! Theory manual: equation (6.41) of `docs/theory/track.md`.
 
@@ -18,30 +17,28 @@ use std::path::Path;
 use trackbed_dem::Vec3;
 use trackbed_dem::bond::{Break, BreakMode};
 
-/// Width of a bin of magnitudes.
 const BIN: f64 = 0.1;
-/// Fewest events that make a b-value.
 const FEWEST: usize = 50;
 
-/// An acoustic event.
+/// Acoustic event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Time of its first break [s].
+    /// Time of the first break [s].
     pub time: f64,
-    /// Time to its last break [s].
+    /// Duration to the last break [s].
     pub duration: f64,
-    /// Mean place of its breaks, weighted by energy [m].
+    /// Energy-weighted mean position [m].
     pub place: Vec3,
-    /// Breaks.
+    /// Number of breaks.
     pub breaks: usize,
-    /// Of these by shear.
+    /// Number of shear breaks.
     pub shear: usize,
-    /// Energy [J].
+    /// Released energy [J].
     pub energy: f64,
 }
 
 impl Event {
-    /// Magnitude.
+    /// Returns the magnitude.
     pub fn magnitude(&self) -> f64 {
         (libm::log10(self.energy) - 4.8) / 1.5
     }
@@ -50,20 +47,20 @@ impl Event {
 /// Events of a run.
 #[derive(Debug, Serialize)]
 pub struct EventRecord {
-    /// Number of events that set energy free.
+    /// Events with released energy.
     pub count: usize,
-    /// Breaks of the largest.
+    /// Breaks of the largest event.
     pub most_breaks: usize,
     /// Smallest and largest magnitude.
     pub magnitudes: [f64; 2],
-    /// Magnitude from which events are complete.
+    /// Magnitude of completeness.
     pub complete_from: f64,
-    /// Events from it on.
+    /// Number of complete events.
     pub complete: usize,
-    /// b-value; none of fewer than 50 events.
+    /// b-value; none for fewer than 50 events.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_value: Option<f64>,
-    /// Its standard error.
+    /// Standard error of b.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub b_error: Option<f64>,
 }
@@ -80,10 +77,10 @@ const EVENTS: [Field<Event>; 9] = [
     (events::MAGNITUDE, Event::magnitude),
 ];
 
-/// Joins the breaks of a run, writes `events.csv`, and finds the b-value; none without breaks.
+/// Clusters breaks and writes `events.csv`; none without breaks.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn record(dir: &Path, breaks: &[Break], plan: Option<EventPlan>) -> Result<Option<EventRecord>, Failure> {
     let events: Vec<Event> = joined(breaks, plan).into_iter().filter(|e| e.energy > 0.0).collect();
     write_table(&dir.join("events.csv"), &EVENTS, &events)?;
@@ -106,7 +103,7 @@ pub fn record(dir: &Path, breaks: &[Break], plan: Option<EventPlan>) -> Result<O
     }))
 }
 
-/// Events in the order of their first breaks: breaks within the distance and the time of one of the event join it.
+/// A break joins an event near any of its breaks in distance and time.
 fn joined(breaks: &[Break], plan: Option<EventPlan>) -> Vec<Event> {
     let mut parent: Vec<usize> = (0..breaks.len()).collect();
     fn root(parent: &mut [usize], mut k: usize) -> usize {
@@ -156,12 +153,11 @@ fn joined(breaks: &[Break], plan: Option<EventPlan>) -> Vec<Event> {
     events
 }
 
-/// Magnitude of completeness, events from it on, and their b-value with its error.
 fn b_value(magnitudes: &[f64]) -> (f64, usize, Option<(f64, f64)>) {
     let bin = |m: f64| (m / BIN).round() as i64;
     let mut counts = std::collections::BTreeMap::new();
     magnitudes.iter().for_each(|m| *counts.entry(bin(*m)).or_insert(0_usize) += 1);
-    // Of bins with as many events the lowest.
+    // The lowest bin on ties.
     let most = counts.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map_or(0, |(k, _)| *k);
     let from = most as f64 * BIN;
     let above: Vec<f64> = magnitudes.iter().copied().filter(|m| bin(*m) >= most).collect();
@@ -176,7 +172,7 @@ fn b_value(magnitudes: &[f64]) -> (f64, usize, Option<(f64, f64)>) {
 }
 
 impl EventRecord {
-    /// Line of the report.
+    /// Formats a report line.
     pub fn report(&self) -> String {
         let b = match (self.b_value, self.b_error) {
             (Some(b), Some(error)) => format!(", b-value {b:.2} ± {error:.2} from {} of them", self.complete),
@@ -204,9 +200,9 @@ mod tests {
         }
     }
 
-    /// A chain of neighbours is one event; what is late or far is another.
+    /// A chain of neighbours is one event; late or distant breaks are separate.
     #[test]
-    fn neighbours_in_space_and_time_are_joined() {
+    fn clusters_neighbours_in_space_and_time() {
         let breaks = [
             broken(0.0, 0.0, 1.0),
             broken(0.5, 1.0, 3.0),
@@ -221,7 +217,7 @@ mod tests {
         assert_eq!(joined(&breaks, None).len(), 5);
     }
 
-    /// Numbers drawn from lg N = a − b M give b back within three errors, for several b.
+    /// Samples of lg N = a − b M return b within three errors.
     #[test]
     fn b_values_of_known_laws() {
         let mut seed = 1_u64;
@@ -239,7 +235,7 @@ mod tests {
         assert!(b_value(&[-9.0; 20]).2.is_none());
     }
 
-    /// 63 kJ are magnitude 0.
+    /// 63 kJ is magnitude 0.
     #[test]
     fn magnitude_of_an_energy() {
         let event = &joined(&[broken(0.0, 0.0, libm::pow(10.0, 4.8))], None)[0];

@@ -1,4 +1,4 @@
-//! What the writers show of a running system.
+//! Frames of a running system.
 
 use super::runout;
 use super::system::{GrainsView, SolidView};
@@ -17,10 +17,9 @@ use trackbed_dem::shape::Shape;
 use trackbed_fem::element::stiffness_points;
 use trackbed_fem::stress;
 
-/// Yield function of a material without a yield surface: inside by definition.
+/// Elastic material: inside by definition.
 const NO_YIELD_SURFACE: f64 = -1.0;
 
-/// The fields of a solid that a frame shows.
 struct SolidFields {
     stress: Vec<[f64; 6]>,
     von_mises: Vec<f64>,
@@ -61,7 +60,7 @@ impl SolidFields {
     }
 }
 
-/// Strain at every node, total or plastic: that of the Gauss points, continued to the nodes as stresses are.
+/// Extrapolated from Gauss points like stresses.
 fn strains(view: SolidView<'_>, plastic: bool) -> Vec<[f64; 6]> {
     let SolidView { model, state } = view;
     let tensor = |[xx, yy, zz, xy, yz, zx]: [f64; 6]| [xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx];
@@ -80,24 +79,24 @@ fn strains(view: SolidView<'_>, plastic: bool) -> Vec<[f64; 6]> {
     })
 }
 
-/// The grains of a frame, and how they are shown.
+/// Grains of a frame with display options.
 pub struct Shown<'a> {
-    /// The grains.
+    /// Grains.
     pub view: GrainsView<'a>,
-    /// What the scene says of them.
+    /// Resolved grains.
     pub part: &'a GrainsPart,
-    /// Whether contacts above the mean normal force are shown alone.
+    /// Whether only contacts above the mean force are shown.
     pub strong_only: bool,
-    /// Fields of the grains beside those that all frames may have.
+    /// Additional grain fields.
     pub extra: &'a [&'static str],
-    /// Adds what else is drawn with the walls.
+    /// Draws further objects with the walls.
     pub draw: &'a dyn Fn(&mut WallFrame),
 }
 
-/// Writes frame `number` at `time` [s] in every format of a run. What no format shows is not computed.
+/// Writes frame `number` at `time` [s], computing only displayed fields.
 ///
 /// # Errors
-/// A file cannot be written, or a field is not finite.
+/// I/O errors, or a non-finite field.
 pub fn write(
     writers: &mut Writers,
     (number, time): (usize, f64),
@@ -111,7 +110,7 @@ pub fn write(
     let Some(Shown { view, part, strong_only, extra, draw }) = grains else {
         return Ok(writers.frame(&frame)?);
     };
-    // Computed once for all that is shown of them.
+    // Computed once for all uses.
     let stones = writers.show(Part::Walls) && view.model.has_faces();
     let any = stones || writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
@@ -134,7 +133,7 @@ pub fn write(
     })?)
 }
 
-/// Writes a solid that has one state as the only frame of a run.
+/// Writes a static solid.
 ///
 /// # Errors
 /// As [`write`].
@@ -144,12 +143,11 @@ pub fn write_state(dir: &Path, output: &OutputPlan, view: SolidView<'_>) -> Resu
     Ok(writers.end()?)
 }
 
-/// A node of an elastic element has no yield function: it counts as inside.
+/// Elastic elements count as inside.
 fn finite_yield_function(values: Vec<f64>) -> Vec<f64> {
     values.into_iter().map(|f| if f == f64::NEG_INFINITY { NO_YIELD_SURFACE } else { f }).collect()
 }
 
-/// Kind of a chain by what its contact is with.
 fn kind(partner: &dem::Partner) -> u32 {
     match partner {
         dem::Partner::Body(_) => 0,
@@ -160,25 +158,20 @@ fn kind(partner: &dem::Partner) -> u32 {
     }
 }
 
-/// Kind of a chain that is a bond; its normal force is negative where it pulls.
+/// Tension is negative.
 const BOND: u32 = 5;
 
-/// What the fields of bodies are computed from.
 struct BodyFields<'a> {
     view: GrainsView<'a>,
     stress: Vec<[f64; 6]>,
     neighbours: Vec<u32>,
     force: Vec<dem::Vec3>,
     fragments: Vec<u32>,
-    /// Fields beside those that are written by default.
     more: &'a [&'static str],
 }
 
-/// An item of a frame: a sphere or a polygon.
 struct Item {
-    /// Number of its body; [`NO_BODY`] for what is no body.
     body: u32,
-    /// Centre [m] and radius [m] of a sphere.
     sphere: Option<(dem::Vec3, f64)>,
 }
 
@@ -198,7 +191,6 @@ impl<'a> BodyFields<'a> {
         }
     }
 
-    /// All fields of items but those `without`.
     fn all(&self, items: &[Item], without: &[&str]) -> Vec<(&'static str, Values)> {
         let wanted = |field: &&BodyField| match field.written {
             Written::OnRequest => self.more.contains(&field.name),
@@ -207,7 +199,7 @@ impl<'a> BodyFields<'a> {
         BODY_FIELDS.iter().filter(wanted).map(|field| (field.name, self.values(field.name, items))).collect()
     }
 
-    /// One field; zero for items of no body.
+    /// Zero without a body.
     fn values(&self, name: &str, items: &[Item]) -> Values {
         let GrainsView { model, state } = self.view;
         let body = |item: &Item| (item.body != NO_BODY).then_some(item.body as usize);
@@ -264,7 +256,6 @@ impl<'a> BodyFields<'a> {
         }
     }
 
-    /// The grains: one point per sphere.
     fn spheres(&self) -> GrainFrame {
         let GrainsView { model, state } = self.view;
         let (mut position, mut items) = (Vec::new(), Vec::new());
@@ -279,7 +270,7 @@ impl<'a> BodyFields<'a> {
         GrainFrame { position, fields }
     }
 
-    /// Fields of `count` polygons, of which the first belong to the bodies `of`.
+    /// The first polygons belong to bodies `of`.
     fn of_polygons(&self, of: &[u32], count: usize) -> Vec<(&'static str, Values)> {
         let bodies = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count);
         let items: Vec<Item> = bodies.map(|body| Item { body, sphere: None }).collect();
@@ -287,14 +278,14 @@ impl<'a> BodyFields<'a> {
     }
 }
 
-/// The way that puts a body back between periodic borders; `None` where there are none.
+/// `None` without periodic borders.
 fn into_box(view: GrainsView<'_>, body: usize) -> Option<dem::Vec3> {
     let x = view.state.position(body);
     let periodic = view.model.periodic().iter().any(Option::is_some);
     periodic.then(|| view.model.wrap(&x) - x)
 }
 
-/// A point moved; one that does not move keeps its bits.
+/// Unmoved points stay bitwise identical.
 fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
     match way {
         Some(way) if way != dem::Vec3::zeros() => x + way,
@@ -302,8 +293,6 @@ fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
     }
 }
 
-/// Force chains: a line from partner to partner for each contact that carries force, or for those alone that carry more
-/// than the mean normal force.
 fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
     let mean = dem::measure::strong_network(contacts).mean_force;
@@ -313,7 +302,7 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
             continue;
         }
         frame.strong.push(u32::from(strong));
-        // The centre of a sleeper is far from where it is touched: a line to it would cross stones without force.
+        // A line to the distant centre of a sleeper would cross unloaded grains.
         let end = |body: usize, shift: Option<dem::Vec3>| match view.model.shape(body) {
             Shape::Box { .. } => c.point,
             _ => moved(view.state.position(body), shift),
@@ -346,8 +335,7 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
     frame
 }
 
-/// Walls, sleepers and grains with faces as polygons, and the body of each polygon where it is such a grain. Planes, which have no end, are
-/// shown as squares as wide as the grains.
+/// With the bodies of faceted grains. Infinite planes become squares as wide as the grains.
 fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
     let (mut frame, mut of) = (WallFrame::default(), Vec::new());
     let mut add = |id, points: &[dem::Vec3], polygons: &[&[u32]]| {
@@ -386,14 +374,13 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
                 push(&mut frame, (id, WallKind::Stone), &points, &polygons);
                 of.resize(frame.polygons.len(), body as u32);
             }
-            // A stone keeps its number while others come and go.
+            // Ids are stable under insertion and removal.
             id += 1;
         }
     }
     (frame, of)
 }
 
-/// Adds polygons of one wall.
 fn push(frame: &mut WallFrame, (id, kind): (u32, WallKind), points: &[dem::Vec3], polygons: &[&[u32]]) {
     let first = frame.points.len() as u32;
     frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
@@ -404,7 +391,7 @@ fn push(frame: &mut WallFrame, (id, kind): (u32, WallKind), points: &[dem::Vec3]
     }
 }
 
-/// Middle of the grains and half the largest side of the box around them [m].
+/// Centre and half the largest side [m].
 fn extent(view: GrainsView<'_>) -> (dem::Vec3, f64) {
     let mut low = dem::Vec3::repeat(f64::INFINITY);
     let mut high = dem::Vec3::repeat(f64::NEG_INFINITY);
@@ -426,7 +413,7 @@ mod tests {
     use trackbed_dem::Partner;
 
     #[test]
-    fn every_kind_of_chain_has_a_number_of_its_own() {
+    fn chain_kinds_are_distinct() {
         let partners =
             [Partner::Body(0), Partner::Plane(0), Partner::Triangle(0), Partner::Patch(0), Partner::Wall(0)];
         let mut kinds: Vec<u32> = partners.iter().map(kind).chain([BOND]).collect();

@@ -1,9 +1,8 @@
-//! Runs that go on from the end of another: `trackbed run NEXT --from DIR`.
+//! Runs that start from the final state of another: `trackbed run NEXT --from DIR`.
 //!
-//! At its end a run with grains keeps its state in `end.state`: where everything is and how it moves, the memory of all contacts,
-//! broken bonds, the solid with its plastic strains. Another run begins with it in place of packing a bed, with time, accounts
-//! and settlement from zero. It is to be the same model; [`FREE`] lists what may be another. With `--bed` the grains alone are put into
-//! another scene, which has the same [`BED`].
+//! `end.state` contains grains with contact history, broken bonds, and the solid with plastic strains. The
+//! next run starts from it instead of packing, with time, balances and settlement at zero. The model must be
+//! the same except [`FREE`]. With `--bed`, grains with the same [`BED`] are imported into another scene.
 
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;
@@ -14,12 +13,12 @@ use crate::scene::Document;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Name of the file.
+/// File name.
 pub const FILE: &str = "end.state";
-/// Stage of the state at the end of a run.
+/// Stage name of a final state.
 pub const END: &str = "end";
 
-/// Keys that may differ from those of the run before, be new, or be missing.
+/// May be changed, added or removed.
 const FREE: [&str; 17] = [
     "title",
     "gravity",
@@ -39,29 +38,28 @@ const FREE: [&str; 17] = [
     "coupling.window",
     "coupling.substeps",
 ];
-/// Tables whose numbers may differ: no key may be new or missing there, and no law another.
+/// Numbers may change; keys and laws must stay.
 const CONSTANTS: [&str; 4] = ["material", "contact", "solid.material", "solid.rayleigh"];
-/// Words among them.
 const WORDS: [&str; 10] =
     ["name", "id", "model", "between", "normal", "tangential", "damping", "rolling", "twisting", "cone"];
-/// Keys that name files, which may lie elsewhere: their content is compared.
+/// Compared by content.
 const FILES: [&str; 9] =
     ["mesh", "nodes", "elements", "constraints", "library", "packing", "file", "surface", "pairs"];
 
-/// Tables that are to be the same where a bed is put into another scene.
+/// Must match with `--bed`.
 const BED: [&str; 4] = ["grains", "bond", "periodic", "outlet"];
 
-/// The end of another run.
+/// Final state of another run.
 pub struct Previous {
-    /// Its state.
+    /// State.
     pub loaded: Loaded,
-    /// Hash of the file.
+    /// File hash.
     pub hash: String,
-    /// Whether its grains were joined with a solid.
+    /// Whether the run was coupled.
     pub coupled: bool,
 }
 
-/// What is carried over and what is not, in words; `bed`: the bed alone.
+/// Describes the imported data; `bed`: grains only.
 pub fn carries(bed: bool) -> &'static str {
     match bed {
         true => {
@@ -73,10 +71,10 @@ pub fn carries(bed: bool) -> &'static str {
     }
 }
 
-/// Reads the end of the run in `dir` and makes sure that a scene can go on from it.
+/// Reads the final state in `dir` and checks compatibility.
 ///
 /// # Errors
-/// Bad input: no such state, or the scene is another model.
+/// No state, or another model.
 pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Result<Previous, Failure> {
     let file = dir.join(FILE);
     if !file.is_file() {
@@ -99,7 +97,7 @@ pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Resu
     Ok(Previous { loaded, hash, coupled })
 }
 
-/// The hash of what a run depends on that goes on from a state.
+/// Returns the hash of scene and initial state.
 pub fn hash_after(scene: &str, state: &str) -> String {
     let mut hash = Hash::default();
     hash.add(scene.as_bytes());
@@ -107,10 +105,10 @@ pub fn hash_after(scene: &str, state: &str) -> String {
     hash.hex()
 }
 
-/// Refuses a scene of whose state a part would stay behind.
+/// Rejects scenes that would drop part of the state.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), Failure> {
     if source.bed && job.grains.is_none() {
         let expected = "a scene with grains for --bed";
@@ -123,7 +121,6 @@ pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), F
     Ok(())
 }
 
-/// A key by which a scene is another model.
 struct Difference {
     key: String,
     found: String,
@@ -136,7 +133,6 @@ impl Difference {
     }
 }
 
-/// The keys of the scene that was run, if this program can go on with its results.
 fn earlier(
     dir: &Path,
     document: &Document,
@@ -151,7 +147,7 @@ fn earlier(
             expected: format!("version {}", origin.version),
         });
     }
-    // The scene that was run lies where it was, with the files that it includes.
+    // At its original location, with included files.
     let place =
         RunFile::read(dir).map_or_else(|| document.file().to_path_buf(), |run| PathBuf::from(run.scene));
     let old = Document::parse(&place, before.scene.clone()).ok().and_then(|mut old| {
@@ -165,7 +161,6 @@ fn earlier(
     })
 }
 
-/// What makes a scene another model than that of the keys `old`; or, for `bed`, its grains others.
 fn difference(
     dir: &Path,
     document: &Document,
@@ -198,12 +193,10 @@ fn difference(
     })
 }
 
-/// What a run goes on with.
 const OWN_MODEL: &str = "--from requires the same model (--bed imports grains into another)";
-/// What a bed goes on with.
 const OWN_GRAINS: &str = "--bed requires the same grains";
 
-/// Whether a key may be what it is where only the bed goes on. Bodies know their materials by number.
+/// Bodies refer to materials by index.
 fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
     let (before, now) = (old.get(key), new.get(key));
     let last = key.rsplit('.').next().unwrap_or(key);
@@ -212,23 +205,20 @@ fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<Strin
     before == now || file || !(material || BED.iter().any(|table| is_in(key, table)))
 }
 
-/// Whether a key is that of a table, or lies below it.
 fn is_in(key: &str, table: &str) -> bool {
     key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Whether files that a key names may have another content.
 fn may_be_free(key: &str, bed: bool) -> bool {
     if bed { !BED.iter().any(|table| is_in(key, table)) } else { FREE.iter().any(|table| is_in(key, table)) }
 }
 
-/// Whether a key may be what it is.
 fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
     let (before, now) = (old.get(key), new.get(key));
     let last = key.rsplit('.').next().unwrap_or(key);
     let both = before.is_some() && now.is_some();
     let in_table = |table: &&str| is_in(key, table);
-    // The state holds the masses of the grains.
+    // The state contains grain masses.
     let mass = key == "time.mass_factor" || key.starts_with("material.") && last == "density";
     before == now
         || !mass && FREE.iter().any(in_table)
@@ -237,10 +227,9 @@ fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, Stri
             && (FILES.contains(&last) || CONSTANTS.iter().any(in_table) && !WORDS.contains(&last))
 }
 
-/// Files that a scene names below some keys.
 fn files(keys: &BTreeMap<String, String>, below: impl Fn(&str) -> bool) -> impl Iterator<Item = PathBuf> {
     let names = keys.iter().filter(move |(key, _)| below(key));
-    // Values are TOML: words in quotes, alone or in lists.
+    // Quoted strings, single or in lists.
     names.flat_map(|(_, value)| value.split('"').skip(1).step_by(2)).map(PathBuf::from)
 }
 
@@ -249,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn loads_and_constants_are_free_and_the_model_is_not() {
+    fn accepts_changed_loads_rejects_changed_model() {
         let keys = |text: &str| {
             let document = Document::parse(Path::new("scene.toml"), text.into()).unwrap();
             document.keys()

@@ -1,6 +1,6 @@
-//! A hash of texts, for checkpoints and for the identity of a scene.
+//! Hash of texts for checkpoints and scene identity.
 
-/// 64-bit FNV-1a hash (Fowler, Noll, Vo) of a sequence of texts.
+/// 64-bit FNV-1a hash (Fowler, Noll, Vo).
 #[derive(Clone, Copy, Debug)]
 pub struct Hash(u64);
 
@@ -11,19 +11,19 @@ impl Default for Hash {
 }
 
 impl Hash {
-    /// Adds some bytes.
+    /// Adds bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }
     }
 
-    /// The hash as a number.
+    /// Returns the value.
     pub fn value(self) -> u64 {
         self.0
     }
 
-    /// The hash in hexadecimal.
+    /// Returns the value in hexadecimal.
     pub fn hex(self) -> String {
         format!("{:016x}", self.0)
     }

@@ -1,4 +1,4 @@
-//! The state that a plastic solid starts from.
+//! Initial state of a plastic solid.
 
 use crate::failure::Failure;
 use crate::model::solid::{InitialStressKind, InitialStressPlan, SolidPart};
@@ -6,11 +6,10 @@ use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Model, State, TimeIntegrator};
 
-/// The state of `model`, a solid or its ground alone, with its initial stress, and the share of the weight that this stress
-/// carries already.
+/// Returns the initial stress state, and the fraction of weight that it balances.
 ///
 /// # Errors
-/// The stress finds no equilibrium.
+/// No equilibrium.
 pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State, f64), Failure> {
     let mut state = undeformed(model);
     let Some(InitialStressPlan { kind, steps, loads }) = &part.initial_stress else {
@@ -34,11 +33,10 @@ pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State,
     Ok((State { points, ..undeformed(model) }, 1.0))
 }
 
-/// The state with its initial stress, then in equilibrium with `load` [N] (weight included, shape `[3·nodes]`), which is
-/// brought on in steps.
+/// Returns the initial state in equilibrium with `load` [N], shape `[3·nodes]`, applied in steps.
 ///
 /// # Errors
-/// There is no equilibrium.
+/// No equilibrium.
 pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
     let (mut state, carried) = state(part, model, gravity)?;
     let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 40 };
@@ -55,14 +53,14 @@ pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]
     Ok(state)
 }
 
-/// No displacement anywhere, not even at supports that will be moved: they move while the stress follows.
+/// Moving supports move with the stress.
 fn undeformed(model: &Model) -> State {
     let mut state = State::new(model);
     state.u.fill(0.0);
     state
 }
 
-/// Height of the highest node against gravity [m].
+/// Against gravity [m].
 fn top(model: &Model) -> f64 {
     let g = model.gravity();
     let size = g.iter().map(|g| g * g).sum::<f64>().sqrt();

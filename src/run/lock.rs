@@ -1,7 +1,7 @@
-//! The lock of a folder of results: one command at a time writes there.
+//! Lock of a results directory.
 //!
-//! The file `run.lock` holds the number of the process and the scene that it runs, and is locked by the system (advisory), which ends with the process
-//! however that ends: the file that a killed run leaves behind locks nobody out. It is removed at the end.
+//! `run.lock` contains process id and scene, under an advisory lock that ends with the process. A file left
+//! by a killed run blocks nothing.
 
 use crate::failure::Failure;
 use crate::{machine, message};
@@ -9,32 +9,31 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Name of the file.
+/// File name.
 pub const FILE: &str = "run.lock";
-/// Times that a lock is tried to be taken, where another process removes its own meanwhile.
+/// Other processes may be removing their locks.
 const TRIES: usize = 20;
 
-/// A folder that nobody else writes to.
+/// Locked directory.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     file: File,
-    /// Folders that were made for it, the outer ones first.
     made: Vec<PathBuf>,
-    /// Whether a run that was killed has left its lock.
+    /// Whether a killed run left its lock.
     pub left_behind: bool,
 }
 
-/// Whether the lock of a run is in a folder: of one at work there, or of one that was killed.
+/// Whether a lock file exists, active or left behind.
 pub fn is_there(dir: &Path) -> bool {
     dir.join(FILE).is_file()
 }
 
 impl Lock {
-    /// Locks a folder, which is made where it is missing; goes again with the lock if nothing was put there.
+    /// Locks a directory, created if missing, removed on drop if empty.
     ///
     /// # Errors
-    /// Bad input: another process has it. It is no folder; what the system refuses.
+    /// Locked by another process, no directory; I/O errors.
     pub fn take(dir: &Path) -> Result<Lock, Failure> {
         if dir.exists() && !dir.is_dir() {
             return Err(Failure::Other(format!("{}: found a file, expected a directory", dir.display())));
@@ -71,13 +70,13 @@ impl Lock {
 }
 
 impl Lock {
-    /// Adds to the lock which scene is run, so that another one of its name goes elsewhere from the beginning.
+    /// Adds the scene, so that namesakes use other directories.
     pub fn name(&mut self, scene: &Path) {
-        // A lock without a name locks as well.
+        // The name is optional.
         let _ = self.file.write_all(format!("{}\n", scene.display()).as_bytes());
     }
 
-    /// Where the folder is if it is no longer where it was: its new place, if the system tells it.
+    /// Returns the new location of a moved directory, if known.
     pub fn moved(&self) -> Option<Option<PathBuf>> {
         if self.is_there() {
             return None;
@@ -89,7 +88,7 @@ impl Lock {
         )
     }
 
-    /// Whether the lock is the file of its name.
+    /// The file may have been replaced.
     #[cfg(unix)]
     fn is_there(&self) -> bool {
         use std::os::unix::fs::MetadataExt;
@@ -103,7 +102,6 @@ impl Lock {
     }
 }
 
-/// Where an open file is now, by the system's own account.
 #[cfg(target_os = "linux")]
 fn place(file: &File) -> Option<PathBuf> {
     use std::os::fd::AsRawFd;
@@ -115,7 +113,7 @@ fn place(_: &File) -> Option<PathBuf> {
     None
 }
 
-/// The locked file and whether it was there before; none where another process has it.
+/// File, and whether it existed; none if locked by another process.
 fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
     let own = format!("{}\n", std::process::id());
     for _ in 0..TRIES {
@@ -124,7 +122,7 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Ok(None),
-            // Some file systems know no locks.
+            // Some file systems do not support locks.
             Err(TryLockError::Error(e)) => {
                 message::warn(&format!("{}: cannot be locked against other runs ({e})", path.display()));
             }
@@ -132,7 +130,7 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
         file.set_len(0)?;
         file.rewind()?;
         file.write_all(own.as_bytes())?;
-        // The process that had it may have removed the file between its opening and its lock.
+        // The previous owner may have removed the file.
         let mut there = String::new();
         match File::open(path).and_then(|mut f| f.read_to_string(&mut there)) {
             Ok(_) if there == own => return Ok(Some((file, before))),
@@ -144,13 +142,13 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
 }
 
 fn remove(made: &[PathBuf]) {
-    // Folders that hold something stay.
+    // Non-empty directories stay.
     made.iter().rev().for_each(|dir| drop(fs::remove_dir(dir)));
 }
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // While it is locked, so that no lock of another process is removed; what cannot be removed locks nobody out.
+        // Removed while locked, so that no other lock is deleted.
         match self.moved() {
             None => drop(fs::remove_file(&self.path)),
             Some(place) => drop(place.map(|dir| fs::remove_file(dir.join(FILE)))),
@@ -166,7 +164,7 @@ mod tests {
     use crate::write::sample::folder;
 
     #[test]
-    fn one_at_a_time_and_what_is_dead_locks_nobody_out() {
+    fn locks_once_and_ignores_dead_processes() {
         let dir = folder("lock");
         let inner = dir.join("a/b");
         let lock = Lock::take(&inner).unwrap();

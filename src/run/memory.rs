@@ -1,7 +1,7 @@
-//! How much memory a solid will need, predicted before it is solved.
+//! Memory prediction of a solid.
 //!
-//! What the model takes is there already and is asked of the system; what the factorization will take follows from the
-//! structure of its equations; what the results take is a handful of nodal vectors. A run that will not fit is refused.
+//! The model is measured, the factorization follows from the equation structure, results are a few nodal
+//! vectors.
 
 use crate::failure::Failure;
 use crate::machine::{available, resident};
@@ -9,27 +9,27 @@ use crate::model::solid::{Analysis, SolidPart};
 use serde_json::{Value, json};
 use trackbed_fem::{Method, Regime};
 
-/// Bytes of a nodal vector's worth of results for each node: state, stresses, and the text of a frame.
+/// State, stresses, frame text.
 const RESULT_BYTES_PER_NODE: u64 = 1200;
 
-/// The memory that a solid will need [bytes].
+/// Predicted memory of a solid [bytes].
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction {
-    /// Taken by the model by now.
+    /// Model, already allocated.
     pub model: u64,
-    /// Factor and fronts of the equations.
+    /// Factor and frontal matrices.
     pub solver: u64,
     /// State and results.
     pub results: u64,
-    /// Floating-point operations of one factorization; 0 without one.
+    /// Floating-point operations per factorization; 0 without one.
     pub flops: f64,
 }
 
 impl Prediction {
-    /// Predicts for a solid whose model is made.
+    /// Predicts memory of an assembled model.
     ///
     /// # Errors
-    /// The equations cannot be analysed.
+    /// Failed analysis.
     pub fn of(part: &SolidPart) -> Result<Prediction, Failure> {
         let (model, plan) = (resident().unwrap_or(0), &part.equations);
         let (mut solver, mut flops) = (0, 0.0);
@@ -38,7 +38,7 @@ impl Prediction {
             let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
             (solver, flops) = (demand.bytes as u64, demand.flops);
         }
-        // What the static solve takes is gone when the steps begin.
+        // The static solver is freed before time steps.
         for (regime, method) in plan.used().filter(|(_, method)| *method != Method::Direct) {
             solver = solver.max(method_bytes(part, method, regime)?);
         }
@@ -46,15 +46,15 @@ impl Prediction {
         Ok(Prediction { model, solver, results, flops })
     }
 
-    /// All of it [bytes].
+    /// Returns the total [bytes].
     pub fn total(&self) -> u64 {
         self.model + self.solver + self.results
     }
 
-    /// Refuses what will not fit into `limit` bytes, or into the memory that the machine has free.
+    /// Rejects demand above `limit` bytes or free memory.
     ///
     /// # Errors
-    /// Bad input, with both figures.
+    /// Input error.
     pub fn check(&self, limit: Option<u64>) -> Result<(), Failure> {
         let further = self.solver + self.results;
         if let Some(limit) = limit
@@ -71,7 +71,7 @@ impl Prediction {
     }
 }
 
-/// How the equations of an elastic solid are solved, why, and with how much memory, beside that of the other methods.
+/// Returns solvers with reason and memory.
 ///
 /// # Errors
 /// As [`Prediction::of`].
@@ -79,7 +79,6 @@ pub fn methods(part: &SolidPart) -> Result<Vec<(String, Value)>, Failure> {
     part.equations.used().map(|(regime, method)| line(part, regime, method)).collect()
 }
 
-/// Memory that a method takes, known before it is used [bytes].
 fn method_bytes(part: &SolidPart, method: Method, regime: Regime) -> Result<u64, Failure> {
     part.model.solver_memory(method, regime).map(|bytes| bytes as u64).map_err(|e| part.failure(&e))
 }
@@ -101,7 +100,7 @@ fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Val
     let (own, other) = match method {
         Method::Direct => (factor, format!("conjugate gradients: {}", size(iteration))),
         Method::Iterative { .. } => (iteration, format!("direct solver: {}", size(factor))),
-        // A library.
+        // MUMPS.
         _ => {
             let own = method_bytes(part, method, regime)?;
             value[format!("{}_bytes", method.name())] = own.into();
@@ -120,13 +119,13 @@ fn refused(total: u64, expected: &str) -> Failure {
     ))
 }
 
-/// A size for people.
+/// Formats a size.
 pub fn size(bytes: u64) -> String {
     let bytes = bytes as f64;
     if bytes >= 1e9 { format!("{:.2} GB", bytes / 1e9) } else { format!("{:.0} MB", (bytes / 1e6).ceil()) }
 }
 
-/// Reads a size such as `800MB`, `2 GB` or a number of bytes.
+/// Parses a size such as `800MB`, `2 GB` or bytes.
 pub fn parse_size(text: &str) -> Option<u64> {
     let text = text.trim();
     let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());

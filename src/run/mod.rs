@@ -1,4 +1,4 @@
-//! The run: fill, settle, place the sleeper, load, write.
+//! Run of a scene.
 
 mod bed;
 mod bond_output;
@@ -71,53 +71,52 @@ use stages::{Carried, RUN, RunState};
 use std::cell::{Cell, OnceCell};
 use std::path::{Path, PathBuf};
 
-/// How to run a scene.
+/// Run options.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Folder of the results; default `results/<name>`.
+    /// Results directory; default `results/<name>`.
     pub out: Option<PathBuf>,
     /// Threads; default all cores.
     pub threads: Option<usize>,
     /// Overrides `key.path=value`.
     pub set: Vec<String>,
-    /// Most memory that a solid may need [bytes]; default what the machine has free.
+    /// Memory limit of the solid [bytes]; default free.
     pub memory: Option<u64>,
-    /// Where the steps of grains alone are computed.
+    /// Device of the DEM steps.
     pub device: Place,
-    /// The ranks that share the steps of grains alone with this process, if there are any.
+    /// Ranks that share the DEM steps.
     pub ranks: Ranked,
-    /// Go on from the last checkpoint in the folder of the results.
+    /// Resume from the last checkpoint.
     pub resume: bool,
-    /// Folder of a finished run from whose end this one goes on.
+    /// Finished run whose final state is the start.
     pub from: Option<PathBuf>,
-    /// Only the bed of that run is taken, into another model.
+    /// Import only the grains of that run.
     pub bed: bool,
-    /// Replace what is in the folder of the results: a checkpoint, results of another scene, files of others.
+    /// Overwrite checkpoint, results and unrelated files.
     pub force: bool,
-    /// Refuse values that are not plausible.
+    /// Reject implausible values.
     pub strict: bool,
-    /// Request to stop with a checkpoint.
+    /// Stop request.
     pub interrupt: Interrupt,
-    /// Who accompanies the run.
+    /// Observer.
     pub accompanied: Accompanied,
-    /// How much is printed.
+    /// Verbosity.
     pub verbosity: Verbosity,
 }
 
-/// What became of a run.
+/// Outcome of a run.
 #[derive(Debug)]
 pub enum Outcome {
-    /// It is done.
+    /// Completed.
     Done(Box<Summary>),
-    /// It was to be resumed, but was done already; the folder of its results.
+    /// Resumed, but already completed; results directory.
     WasDone(PathBuf),
 }
 
 /// Runs a scene and writes its results.
 ///
 /// # Errors
-/// Bad input, before anything is written; a numerical failure or an interrupt, with what was written until then left in
-/// place.
+/// Input errors, before any output; numerical failures, interrupts.
 pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let mut document = Document::open(scene)?;
     for assignment in &options.set {
@@ -143,7 +142,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
-    // What a run of the same scene has left before its first checkpoint is no loss.
+    // Output before the first checkpoint is no loss.
     let own = options.resume && RunFile::of(&document, source).is_of(&dir);
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
@@ -198,10 +197,10 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     })
 }
 
-/// The checkpoint that a run goes on from; none where it was ended before its first: `own` says that its files are there.
+/// None before the first checkpoint: `own` if existing files belong to the run.
 ///
 /// # Errors
-/// Bad input: no run of this scene was begun in the folder; a checkpoint that does not fit.
+/// No run of this scene, or an unsuitable checkpoint.
 fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Result<Option<Loaded>, Failure> {
     if !slots.any() && (own || lock::is_there(dir)) {
         message::note(&format!("{}: no checkpoint yet; the run starts from the beginning", dir.display()));
@@ -212,7 +211,6 @@ fn resumed(slots: &mut Slots, dir: &Path, document: &Document, own: bool) -> Res
     Ok(Some(checkpoint))
 }
 
-/// The state that the stages begin with: a checkpoint of the run, or the end of the run before.
 fn begun<'a>(
     loaded: Option<Loaded>,
     previous: Option<from::Previous>,
@@ -232,7 +230,6 @@ fn begun<'a>(
     Ok(state)
 }
 
-/// Remarks on values of a scene that are not plausible; or refuses them.
 fn weigh(
     document: &Document,
     scene: &Scene,
@@ -243,14 +240,14 @@ fn weigh(
     if options.strict {
         plausible::refuse(document, &findings)?;
     }
-    // A run that is resumed has had them.
+    // Printed before by the resumed run.
     Ok(if options.verbosity == Verbosity::Quiet || options.resume { Vec::new() } else { findings })
 }
 
-/// Carries out the stages of a run, and writes its summary whatever becomes of them.
+/// Always writes the summary.
 fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<Outcome, Failure> {
     let result = guarded(|| {
-        // What the main loop would refuse is refused before hours of packing.
+        // Reported before hours of packing.
         let begins = state.loaded.is_none() && state.carried.is_none();
         if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && begins) {
             stages::preview(run.document, run.job, grains)?;
@@ -271,7 +268,7 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
     summary.run.cpu_seconds = machine::cpu_seconds();
     match &result {
         Ok(()) => summary.run.status = "done".into(),
-        // Bad input leaves nothing behind, not even a summary.
+        // Input errors leave no files.
         Err(failure) if failure.is_input() => {}
         Err(Failure::Interrupted(_)) => summary.run.status = "interrupted".into(),
         Err(failure) => summary.run.status = format!("failed: {failure}"),
@@ -280,12 +277,11 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
         Err(failure) if failure.is_input() => return Err(failure),
         other => other,
     };
-    // Nothing is written where another folder may be by now.
+    // Another directory may be at this path.
     if let Some(place) = lock.moved() {
         return Err(run.gone(place.as_deref()));
     }
-    // A failure before the first file, such as one while settling, has no folder yet, or one with the results of
-    // an earlier run. What stopped the run comes before what stopped its summary.
+    // The directory may be missing, or hold old results. The run failure has priority.
     let cleared = if run.prepared.get() { Ok(()) } else { run.prepare() };
     let written = cleared.and_then(|()| summary.write(run.dir)).and_then(|()| summary.write_log(run.dir));
     let result = match (result, run.checkpoints.kept()) {
@@ -298,12 +294,11 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
         (result, _) => result,
     };
     result.and(written)?;
-    // A run that is done has nothing to go on from; until here the last checkpoint stands.
+    // Until here the last checkpoint is needed.
     run.checkpoints.clear()?;
     Ok(Outcome::Done(Box::new(state.summary)))
 }
 
-/// Size and sources of the solid, and its memory, which may be refused.
 fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
     if let Some(solid) = &run.job.solid {
         summary.warnings.extend(solid.warnings.iter().cloned());

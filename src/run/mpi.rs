@@ -1,7 +1,7 @@
-//! Ranks that `mpirun` has started, by rsmpi.
+//! Ranks started by `mpirun`, via rsmpi.
 //!
-//! A rank that waits looks whether the processes of the others on its machine are still there: MPI itself only waits. `mpirun` ends all
-//! ranks soon after it has found one dead, OpenMPI 4.1 within some 0.1 s: the sentence that says which comes at once.
+//! MPI only waits, so a waiting rank checks other local processes. `mpirun` ends all ranks soon after a death
+//! (OpenMPI 4.1: about 0.1 s), so the loss is reported at once.
 
 use super::origin::quoted;
 use crate::failure::Failure;
@@ -19,45 +19,38 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use trackbed_dem::ranks::{Link, Lost};
 
-/// Longest piece of a message [bytes]: MPI counts with 31 bits.
+/// MPI counts have 31 bits [bytes].
 const PIECE: usize = 1 << 30;
 
-/// Looks for a message before a rank lets others have its processor, where each has its own, and how long it does so before it sleeps
-/// between looks.
+/// Polls before yielding a CPU that is not oversubscribed, and before sleeping.
 const LOOKS: u32 = 2000;
 const AWAKE: Duration = Duration::from_millis(20);
 const NAP: Duration = Duration::from_micros(100);
 
-/// Time between two looks at the processes of others.
 const WATCH: Duration = Duration::from_millis(20);
 
-/// Longest time that a rank waits for one before it to say which is lost.
+/// Longest wait for the report of lower ranks.
 const PARTING: Duration = Duration::from_secs(2);
 
-/// Bytes of the name of a machine that ranks compare.
 const NAME: usize = 64;
 
 /// All ranks.
 pub struct World {
     universe: Option<Universe>,
     peers: Arc<Vec<Peer>>,
-    /// Whether a rank is lost.
     lost: Arc<AtomicBool>,
 }
 
-/// The process of a rank.
 #[derive(Clone, Debug)]
 struct Peer {
     machine: String,
     process: u32,
-    /// Whether it is on this machine.
     here: bool,
 }
 
 impl Peer {
-    /// Whether it has ended, as far as can be seen from here.
     fn has_ended(&self) -> bool {
-        // One that has ended and is not waited for yet has the state Z.
+        // State Z: ended, not yet reaped.
         let state = |text: String| text.rsplit(')').next().and_then(|rest| rest.trim_start().chars().next());
         self.here
             && std::fs::read_to_string(format!("/proc/{}/stat", self.process))
@@ -65,21 +58,21 @@ impl Peer {
     }
 }
 
-/// The ranks that `mpirun` has started; none where it has not.
+/// Joins the ranks of `mpirun`, if any.
 ///
 /// # Errors
-/// MPI does not work.
+/// MPI failures.
 pub fn join() -> Result<Option<World>, Failure> {
-    // What OpenMPI, and MPICH and its relatives, set. Without them MPI would be started for one process.
+    // Set by OpenMPI, MPICH and derivatives. Otherwise MPI would start for one process.
     let started =
         ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"].iter().any(|v| std::env::var_os(v).is_some());
     if !started {
         return Ok(None);
     }
-    // OpenMPI ends a process whose message comes from the memory of one that was killed, before it can say so.
+    // Otherwise OpenMPI kills a process that reads memory of a killed rank.
     const COPY: &str = "OMPI_MCA_btl_vader_single_copy_mechanism";
     if std::env::var_os(COPY).is_none() {
-        // SAFETY: the command has just begun, and no other thread of it reads or writes the environment.
+        // SAFETY: no other thread uses the environment yet.
         unsafe { std::env::set_var(COPY, "none") };
     }
     let failed =
@@ -96,7 +89,6 @@ pub fn join() -> Result<Option<World>, Failure> {
     }))
 }
 
-/// The processes of all ranks, by rank.
 fn peers(world: &SimpleCommunicator) -> Vec<Peer> {
     let machine = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let mut own = [0_u8; NAME + 4];
@@ -118,10 +110,10 @@ fn peers(world: &SimpleCommunicator) -> Vec<Peer> {
 }
 
 impl World {
-    /// Has the first rank `lead` and all others `follow`; `out` is the folder of the results.
+    /// Runs `lead` on the first rank, `follow` on others; `out`: results directory.
     ///
     /// # Errors
-    /// What the first rank says; the others say nothing. Where a rank is lost, all processes end here.
+    /// Failures of the first rank. A lost rank ends all processes.
     pub fn share(
         mut self,
         lead: impl FnOnce(Box<dyn Link>) -> Result<(), Failure>,
@@ -144,16 +136,16 @@ impl World {
         let outcome = if rank == 0 {
             lead(link)
         } else {
-            // The first rank says when to end; where it is gone the others see that.
+            // Other ranks detect the end of the first.
             for signal in [SIGTERM, SIGINT, SIGHUP] {
                 _ = signal_hook::flag::register(signal, Arc::default());
             }
             follow(link).map_err(|lost| Failure::Other(lost.to_string()))
         };
-        // It is said already which rank is lost; the end of MPI would wait for it.
+        // Finalising MPI would block.
         let lost = self.lost.load(Ordering::Relaxed);
         if outcome.is_err() && (rank > 0 || lost) {
-            // Ranks before this one, of which one says what is lost, must not take this one for it.
+            // Lower ranks must not report this rank as lost.
             let begun = Instant::now();
             while lost && self.peers[..rank].iter().any(|peer| !peer.has_ended()) && begun.elapsed() < PARTING
             {
@@ -165,38 +157,31 @@ impl World {
         outcome
     }
 
-    /// Whether ranks share processors of this machine.
     fn crowded(&self) -> bool {
-        // SAFETY: the call reads a number of the system's.
+        // SAFETY: `sysconf` has no preconditions.
         let processors = unsafe { libc::sysconf(libc::_SC_NPROCESSORS_ONLN) };
         self.peers.iter().filter(|peer| peer.here).count() > usize::try_from(processors).unwrap_or(1)
     }
 }
 
-/// A message on its way.
 type Sent = Request<'static, [u8], StaticScope>;
 
-/// Messages by MPI.
 struct Mpi {
     world: SimpleCommunicator,
     rank: usize,
     peers: Arc<Vec<Peer>>,
     lost: Arc<AtomicBool>,
-    /// Folder of the results.
     out: String,
-    /// Looks for a message before others are let in.
     looks: u32,
-    /// Messages on their way, and room for the next ones.
+    /// In transit, and free buffers.
     sent: VecDeque<(Sent, Vec<u8>)>,
     spare: Vec<Vec<u8>>,
 }
 
-// SAFETY: a communicator and a request are numbers or addresses that MPI gave out; MPI was started for calls by any one thread at
-// a time, and a link has one owner.
+// SAFETY: handles; MPI is initialised for serialised calls, and a link has one owner.
 unsafe impl Send for Mpi {}
 
 impl Mpi {
-    /// Takes back the room of messages that are gone.
     fn settle(&mut self) {
         while let Some((request, room)) = self.sent.pop_front() {
             match request.test() {
@@ -210,16 +195,16 @@ impl Mpi {
         let mut room = self.spare.pop().unwrap_or_default();
         room.clear();
         room.extend_from_slice(piece);
-        // SAFETY: the room lies beside the request in `sent`, untouched, until MPI says that the message is gone, or for ever.
+        // SAFETY: the buffer stays in `sent`, untouched, until sent, or forever.
         let bytes: &'static [u8] = unsafe { std::slice::from_raw_parts(room.as_ptr(), room.len()) };
         let request = self.world.process_at_rank(to as i32).immediate_send(StaticScope, bytes);
         self.sent.push_back((request, room));
     }
 
-    /// A rank whose process has ended. The first rank says so, or if that has ended the first that is left.
+    /// Reported by the first rank, or else the lowest remaining.
     fn look_for_lost(&self) -> Result<(), Lost> {
         let ended: Vec<bool> = self.peers.iter().map(Peer::has_ended).collect();
-        // The first rank ends once it has said that another is lost.
+        // The first rank exits after its report.
         let others = ended.iter().skip(1).position(|ended| *ended).map(|k| k + 1);
         let Some(rank) = others.or(ended[0].then_some(0)) else { return Ok(()) };
         let Peer { machine, process, .. } = &self.peers[rank];
@@ -234,7 +219,6 @@ impl Mpi {
         Err(lost)
     }
 
-    /// Waits for the next piece of a message and appends it; its length.
     fn piece(&mut self, from: usize, message: &mut Vec<u8>) -> Result<usize, Lost> {
         let (mut looks, mut since, mut watched) = (0_u32, None, Instant::now());
         loop {
@@ -276,7 +260,7 @@ impl Link for Mpi {
 
     fn send(&mut self, to: usize, message: &[u8]) -> Result<(), Lost> {
         self.settle();
-        // A piece that is not full is the last one.
+        // A partial piece is the last.
         let mut rest = message;
         loop {
             let (piece, left) = rest.split_at(rest.len().min(PIECE));
@@ -308,7 +292,7 @@ impl Drop for Mpi {
                 break;
             }
         }
-        // What is still on its way keeps its room; the process ends.
+        // Buffers in transit must outlive the process.
         self.sent.drain(..).for_each(std::mem::forget);
     }
 }

@@ -1,4 +1,4 @@
-//! What a folder of results holds before a run: no result is replaced without `--force`.
+//! Protection of existing results without `--force`.
 
 use super::checkpoint::{Origin, Slots};
 use super::folder;
@@ -9,14 +9,12 @@ use crate::message::shown;
 use crate::read::source;
 use std::path::Path;
 
-/// Longest title of another scene in a message [characters].
 const LONGEST: usize = 80;
 
-/// Refuses to begin a run anew in a folder with the checkpoint of an interrupted run, with results of whatever run, or with files
-/// of others under the names of results.
+/// Rejects a new run over a checkpoint, results, or unrelated files.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn check(dir: &Path, origin: &Origin, slots: &Slots, lock: &Lock) -> Result<(), Failure> {
     let refuse = |found: &str, expected: &str| {
         Err(Failure::Input(format!("{}: found {found}, expected {expected}", dir.display())))

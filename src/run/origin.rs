@@ -1,4 +1,4 @@
-//! What a run is of: its scene, overrides and files; where its results go, and how it is continued.
+//! Origin of a run, its results directory, and resume command.
 
 use super::checkpoint::{self, Origin};
 use super::hash::Hash;
@@ -10,10 +10,10 @@ use crate::scene::{Document, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Whether the results in `dir` are those of a finished run of the same scene, without any checkpoint of a later one.
+/// Whether `dir` contains final results of the scene, without a later checkpoint.
 ///
 /// # Errors
-/// Bad input: they are of another scene.
+/// Results of another scene.
 pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
     let bytes = source::bytes(&dir.join("summary.json"), source::LARGEST_TEXT).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -27,7 +27,7 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
     Ok(true)
 }
 
-/// The command that continues a run.
+/// Returns the resume command.
 pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<Source<'_>>) -> String {
     let mut command = format!("trackbed run {} --resume --out {}", quoted(scene), quoted(dir));
     set.iter().for_each(|s| command += &format!(" --set {}", quoted(Path::new(s))));
@@ -36,13 +36,13 @@ pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<Sou
 }
 
 impl Source<'_> {
-    /// As it is given on the command line.
+    /// Formats as command-line options.
     pub fn words(&self) -> String {
         format!(" --from {}{}", quoted(self.dir), if self.bed { " --bed" } else { "" })
     }
 }
 
-/// A path or text as one word of a shell.
+/// Quotes a path as a shell word.
 pub fn quoted(text: &Path) -> String {
     let text = text.display().to_string();
     match text.chars().all(|c| c.is_alphanumeric() || "/._-=+".contains(c)) {
@@ -51,14 +51,13 @@ pub fn quoted(text: &Path) -> String {
     }
 }
 
-/// Hash of what the results of a run depend on: equal hashes, equal results.
+/// Returns the hash of all data that determine the results.
 pub fn scene_hash(document: &Document, scene: &Scene) -> String {
     origin(document, scene).scene_hash
 }
 
-/// `results/` and the name of the scene file, or of its folder when the file is just called `scene.toml`; with overrides and
-/// a hash of them, so that each variant has a folder of its own. Where the folder is another scene's of the same name, a hash of
-/// the way to the file is added too.
+/// Returns `results/` with scene name (or directory, for `scene.toml`), overrides and their hash; for
+/// namesakes also a path hash.
 pub fn default_folder(scene: &Path, set: &[String]) -> PathBuf {
     let mut name = plain_name(scene);
     if !set.is_empty() {
@@ -72,14 +71,12 @@ pub fn default_folder(scene: &Path, set: &[String]) -> PathBuf {
     if own.exists() || is_of_another(&plain, scene, &whole) { own } else { plain }
 }
 
-/// Six digits that parts of a name are known by.
 fn short_hash<'a>(parts: impl Iterator<Item = &'a [u8]>) -> String {
     let mut hash = Hash::default();
     parts.for_each(|part| hash.add(part));
     hash.hex()[..6].into()
 }
 
-/// Whether a folder has results of another scene, or such a scene is being run there.
 fn is_of_another(dir: &Path, scene: &Path, whole: &Path) -> bool {
     let same = |path: &str| fs::canonicalize(path).ok().map(|path| path == whole);
     let lock = fs::read_to_string(dir.join(lock::FILE)).unwrap_or_default();
@@ -87,11 +84,10 @@ fn is_of_another(dir: &Path, scene: &Path, whole: &Path) -> bool {
         return same(running) == Some(false);
     }
     let Some(file) = RunFile::read(dir) else { return false };
-    // A scene that has gone from where it was is known by its text.
+    // Moved scenes are identified by text.
     same(&file.scene).map_or_else(|| source::text(scene).is_ok_and(|text| text != file.text), |same| !same)
 }
 
-/// The name of the scene file, or of its folder when the file is just called `scene.toml`.
 fn plain_name(scene: &Path) -> String {
     let stem = scene.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = scene.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
@@ -101,7 +97,7 @@ fn plain_name(scene: &Path) -> String {
     }
 }
 
-/// What the results of a run depend on: scene, overrides, and the files that the scene names.
+/// Returns the origin: scene, overrides, named files.
 pub fn origin(document: &Document, scene: &Scene) -> Origin {
     let mut hash = Hash::default();
     hash.add(document.text().as_bytes());
@@ -112,8 +108,7 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
     let mut files = Vec::new();
     let named = document.included().chain(files_of(scene)).map(Path::to_path_buf);
     for file in named.chain(behind_the_mesh(document, scene)) {
-        // One that is missing or has gone changes the hash, which is what it is for; so does one that is not to be read, which the
-        // model refuses.
+        // Missing files change the hash; the model rejects unreadable ones.
         let content = source::bytes(&document.resolve(&file), source::LARGEST).unwrap_or_default();
         hash.add(&content);
         let mut own = Hash::default();
@@ -130,17 +125,16 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
     }
 }
 
-/// The files that a scene does not name, but its mesh: the lists of a folder, what a file includes.
+/// Files named only in mesh files: lists, includes.
 fn behind_the_mesh(document: &Document, scene: &Scene) -> Vec<PathBuf> {
     let Some(mesh) = scene.solid.as_ref().and_then(|s| s.mesh.as_ref()) else { return Vec::new() };
     let path = document.resolve(mesh);
     let files = mesh_files(&path).into_iter().filter(|file| *file != path);
-    // By the names that a reader of the scene would give them, wherever the run was started.
+    // Independent of the working directory.
     let folder = document.file().parent().unwrap_or(Path::new(""));
     files.map(|file| file.strip_prefix(folder).map_or(file.clone(), Path::to_path_buf)).collect()
 }
 
-/// The files that a scene names.
 fn files_of(scene: &Scene) -> Vec<&Path> {
     let mut files: Vec<&Path> = Vec::new();
     if let Some(s) = &scene.solid {

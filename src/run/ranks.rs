@@ -1,5 +1,4 @@
-//! A run whose steps are shared among several processes: the first leads, with the run, its records and its checkpoints; the others
-//! follow, each with its part of the grains.
+//! Steps shared among processes: the first rank leads, others compute parts of the grains.
 
 use super::device::Place;
 use super::threads::thread_pool;
@@ -12,11 +11,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use trackbed_dem as dem;
 use trackbed_dem::ranks::{self, Link, Lost};
 
-/// The other ranks of a run, if there are any.
+/// Other ranks of a run, if any.
 #[derive(Clone, Default)]
 pub struct Ranked(Option<Arc<Waiting>>);
 
-/// Ranks that wait for a model; without one they are sent home.
+/// Dismissed without a model.
 struct Waiting {
     link: Mutex<Option<Box<dyn Link>>>,
     size: usize,
@@ -37,18 +36,18 @@ impl fmt::Debug for Ranked {
 }
 
 impl Ranked {
-    /// Those that `link` leads to from the first; the others [`follow`].
+    /// Creates the first rank's side of `link`; others [`follow`].
     pub fn first(link: Box<dyn Link>) -> Ranked {
         let size = link.size();
         Ranked(Some(Arc::new(Waiting { link: Mutex::new(Some(link)), size })))
     }
 
-    /// Number of ranks, this one included.
+    /// Returns the number of ranks.
     pub fn size(&self) -> usize {
         self.0.as_ref().map_or(1, |waiting| waiting.size)
     }
 
-    /// The ranks, for a model of these bodies, with planes where packing has left them [m].
+    /// Shares a model, with plane positions after packing [m].
     pub fn share(&self, bodies: &[dem::BodyInput], planes: &[dem::Vec3]) -> Sharing<'_> {
         let description = match &self.0 {
             None => Vec::new(),
@@ -58,28 +57,28 @@ impl Ranked {
     }
 }
 
-/// Ranks, and from what they make the model of a run.
+/// Ranks with the model description.
 pub struct Sharing<'a> {
     ranks: &'a Ranked,
     description: Vec<u8>,
 }
 
 impl Sharing<'_> {
-    /// The way to the ranks, if there are any and they have no model yet.
+    /// Takes the link to ranks without a model.
     pub fn link(&self) -> Option<Box<dyn Link>> {
         self.ranks.0.as_ref()?.link.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// The bodies and the places of planes.
+    /// Returns encoded bodies and plane positions.
     pub fn description(&self) -> &[u8] {
         &self.description
     }
 }
 
-/// Whether ranks can share a scene, before anything is written.
+/// Checks that ranks support a scene.
 ///
 /// # Errors
-/// Bad input: the scene has what they do not share.
+/// Unsupported features.
 pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
     if ranked.0.is_none() {
         return Ok(());
@@ -92,17 +91,17 @@ pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
     if place != Place::Cpu {
         return Err(refused("found --device gpu, expected --device cpu".into()));
     }
-    // A scene whose grains are wrong is refused where they are made, with the keys to blame.
+    // Grain errors are reported where models are built.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
         ranks::check(&model).map_err(|e| refused(e.to_string()))?;
     }
     Ok(())
 }
 
-/// Follows the first rank through its run of the same scene.
+/// Follows the first rank through its run.
 ///
 /// # Errors
-/// A rank is lost. What is wrong with the scene is for the first rank to say.
+/// A lost rank; the first rank reports scene errors.
 pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dyn Link>) -> Result<(), Lost> {
     let resolved = || -> Result<(rayon::ThreadPool, Job), Failure> {
         let mut document = Document::open(scene)?;
@@ -119,7 +118,6 @@ pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dy
     }
 }
 
-/// The model of the run proper, as the first rank describes it.
 fn made(job: &Job, description: &[u8]) -> Result<dem::Model, Failure> {
     let other = || Failure::Input("other scene than on the first rank".into());
     let (bodies, places): (Vec<dem::BodyInput>, Vec<dem::Vec3>) =

@@ -1,4 +1,4 @@
-//! What a history records: things that state their columns once, with name, unit and value.
+//! Recorders of history columns.
 
 use super::flow::Flow;
 use crate::model::Job;
@@ -6,24 +6,24 @@ use crate::write::csv::Row;
 use trackbed_coupling::ledger::Balance;
 use trackbed_coupling::track::Track;
 
-/// One moment of a run, as its histories see it.
+/// State of a run passed to recorders.
 pub struct Now<'a, S> {
     /// Simulated time [s].
     pub time: f64,
     /// Solid and grains.
     pub system: &'a S,
-    /// The scene.
+    /// Scene.
     pub job: &'a Job,
     /// Sleepers and rails.
     pub track: &'a Track<'a>,
     /// Inlets and outlets.
     pub flow: Option<&'a Flow<'a>>,
-    /// Energy account.
+    /// Energy balance.
     pub balance: &'a Balance,
 }
 
-/// Something that has columns in `history.csv`.
+/// Source of columns in `history.csv`.
 pub trait Recorder<S> {
-    /// Adds its columns; none in a run that has nothing for it. Their names must not change within a run.
+    /// Adds the columns, if any. Names must not change within a run.
     fn record(&self, now: &Now<'_, S>, row: &mut Row);
 }

@@ -1,4 +1,4 @@
-//! `run.json`: what a run is of, so that its results can be read without the scene at hand, and while it goes on.
+//! `run.json`: origin of a run.
 
 use crate::failure::Failure;
 use crate::read::source;
@@ -7,39 +7,39 @@ use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Name of the file.
+/// File name.
 pub const FILE: &str = "run.json";
 
-/// The run from whose end another goes on.
+/// Earlier run, source of the initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source<'a> {
-    /// Folder of its results.
+    /// Its results directory.
     pub dir: &'a Path,
-    /// Only its bed is taken, into another model.
+    /// Whether only grains are imported.
     pub bed: bool,
 }
 
-/// The content of `run.json`.
+/// Content of `run.json`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunFile {
-    /// Version of the program.
+    /// Program version.
     pub version: String,
-    /// The scene file, as it was named on the command line.
+    /// Scene file as on the command line.
     pub scene: String,
-    /// Keys overridden on the command line, as key=value, in order.
+    /// Command-line overrides, key=value, in order.
     pub overrides: Vec<String>,
-    /// Folder of the run from whose end this one went on.
+    /// Directory of the earlier run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
-    /// Whether only its bed was taken.
+    /// Whether only its grains were imported.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub bed: bool,
-    /// Text of the scene file, without the overrides.
+    /// Scene text without overrides.
     pub text: String,
 }
 
 impl RunFile {
-    /// Of a scene that is run.
+    /// Describes a run.
     pub fn of(document: &Document, from: Option<Source<'_>>) -> RunFile {
         RunFile {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -51,10 +51,10 @@ impl RunFile {
         }
     }
 
-    /// Writes it in a folder of results.
+    /// Writes the file.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn write(&self, dir: &Path) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
         let file = dir.join(FILE);
@@ -64,12 +64,12 @@ impl RunFile {
         Ok(())
     }
 
-    /// The one in a folder of results; none where there is none that can be read.
+    /// Reads the file; none if unreadable.
     pub fn read(dir: &Path) -> Option<RunFile> {
         serde_json::from_slice(&source::bytes(&dir.join(FILE), source::LARGEST).ok()?).ok()
     }
 
-    /// Whether the results in a folder are of the same scene, with the same overrides.
+    /// Whether results are of the same scene and overrides.
     pub fn is_of(&self, dir: &Path) -> bool {
         RunFile::read(dir).is_some_and(|other| {
             (&other.text, &other.overrides) == (&self.text, &self.overrides)
@@ -77,12 +77,12 @@ impl RunFile {
         })
     }
 
-    /// The run that this one went on from.
+    /// Returns the earlier run.
     pub fn source(&self) -> Option<Source<'_>> {
         self.from.as_deref().map(|dir| Source { dir: Path::new(dir), bed: self.bed })
     }
 
-    /// The scene with its overrides; none where this program does not understand it.
+    /// Returns the scene with overrides; none if not understood.
     pub fn document(&self) -> Option<Document> {
         let mut document = Document::parse(Path::new(&self.scene), self.text.clone()).ok()?;
         self.overrides.iter().try_for_each(|o| document.set(o)).ok()?;

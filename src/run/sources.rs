@@ -1,9 +1,9 @@
-//! Sources of the methods that a run uses, for its summary.
+//! Literature sources of a run.
 
 use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use trackbed_fem::{Method, Regime};
 
-/// Sources of the methods that a solid uses.
+/// Returns the sources of a solid.
 pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     let mut sources = vec![
         "elements: serendipity and linear kinds with mean dilatation, Zienkiewicz & Taylor, The Finite Element Method; Hughes \
@@ -41,12 +41,12 @@ pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {
     sources
 }
 
-/// Of rails with mass.
+/// Sources of rails with mass.
 pub const RAIL: [&str; 2] = [
     "rail: Euler-Bernoulli beam of cubic elements, Przemieniecki, Theory of Matrix Structural Analysis, 1968",
     "rail in time: average acceleration, Newmark, J. Eng. Mech. Div. ASCE 85(3), 1959",
 ];
 
-/// Of bonds.
+/// Sources of bonds.
 pub const BONDS: [&str; 1] =
     ["bonds: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004; Wang, Acta Geotechnica 4, 2009"];

@@ -1,4 +1,4 @@
-//! Loads on structures and the motion of those that move: columns of `history.csv`, and the largest and the mean for the summary.
+//! Loads and motion of structures.
 
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
@@ -9,7 +9,7 @@ use crate::write::csv::{Column, Row};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 
-/// Load on each structure: whole, its moment, by sectors and by height; before it displacement and acceleration of one that moves.
+/// Motion, total load, moment, loads by sector and height.
 pub struct Structures;
 
 impl<S: System> Recorder<S> for Structures {
@@ -54,7 +54,7 @@ fn load(plan: &StructurePlan, GrainsView { model, state }: GrainsView<'_>, row: 
     }
 }
 
-/// Takes a row of the history into the records.
+/// Adds a history row to the records.
 pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>) {
     let [load, motion] = [history::STRUCTURE_LOAD.at(0), history::STRUCTURE_MOTION.at(0)];
     let heads = columns.iter().enumerate().filter_map(|(k, c)| Some((k, load.item_in(&c.name)?)));
@@ -71,7 +71,7 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
         record.mean[0] += (x - record.mean[0]) * share;
         record.mean[1] += (y - record.mean[1]) * share;
         record.rows += 1;
-        // Displacement and acceleration stand before the load.
+        // Displacement and acceleration precede the load.
         if let Some(first) = k.checked_sub(6)
             && motion.item_in(&columns[first].name) == Some(name)
         {
@@ -101,9 +101,9 @@ mod tests {
     use super::*;
     use crate::run::summary::MotionRecord;
 
-    /// Checkpoints hold the records one after the other, without names: each is read as it was written, and what follows it too.
+    /// Checkpoint fields are unnamed and must be read in writing order.
     #[test]
-    fn records_keep_their_place_in_a_checkpoint() {
+    fn records_survive_checkpoint() {
         let still = LoadRecord { name: "pile".into(), largest: 3.0, ..LoadRecord::default() };
         let moved = LoadRecord { motion: Some(MotionRecord::default()), ..still.clone() };
         for record in [still, moved] {

@@ -1,4 +1,4 @@
-//! What is written of a track: its rails in the frames, the curve of a push.
+//! Track output: rails in frames, push curve.
 
 use crate::columns::push;
 use crate::failure::Failure;
@@ -8,10 +8,9 @@ use std::path::Path;
 use trackbed_coupling::track::Track;
 use trackbed_coupling::track::push::PushSummary;
 
-/// Half the width that a rail is drawn with [m].
 const HALF_WIDTH: f64 = 0.035;
 
-/// Adds a ribbon for each rail, from half a spacing before the first sleeper to half a spacing behind the last.
+/// Adds a ribbon per rail, half a spacing beyond end sleepers.
 pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
     let Some((rails, laid, row)) = track.laid_rails() else { return };
     let along = row.axis;
@@ -40,10 +39,10 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
     }
 }
 
-/// Writes the curve of a push as `push.csv` in `dir`; returns its results. Nothing without a push.
+/// Writes `push.csv` and returns its results, if any.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushSummary>, Failure> {
     let Some((rows, summary)) = track.push_curve() else { return Ok(None) };
     let columns: [Field<[f64; 3]>; 3] =

@@ -1,4 +1,4 @@
-//! Walls in the history and in the pictures.
+//! Walls in history and frames.
 
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
@@ -8,10 +8,9 @@ use crate::write::csv::Row;
 use crate::write::{WallFrame, WallKind};
 use trackbed_dem::{Vec3, WallShape};
 
-/// Corners around a ring in a picture.
 const AROUND: u32 = 48;
 
-/// Energies of mounts; force of grains and other walls on each recorded wall, its moment about the wall's centre, and the displacement of that centre.
+/// Support energies; force, moment about the centre and displacement of recorded walls.
 pub struct Walls;
 
 impl<S: System> Recorder<S> for Walls {
@@ -31,8 +30,8 @@ impl<S: System> Recorder<S> for Walls {
     }
 }
 
-/// Adds the walls of patches where they are now, numbered from `id` on; `extent` is the middle of the grains and half
-/// the side of the square that stands for a plane. Returns the next number.
+/// Adds patch walls, numbered from `id`; `extent`: grain centre and half size of plane squares. Returns the
+/// next number.
 pub fn polygons(
     view: GrainsView<'_>,
     part: &GrainsPart,
@@ -54,7 +53,6 @@ pub fn polygons(
     id
 }
 
-/// Points and polygons of a shape that is carried along by `place`.
 fn picture(
     shape: &WallShape,
     place: impl Fn(Vec3) -> Vec3,
@@ -88,7 +86,7 @@ fn picture(
             (points, polygons)
         }
         WallShape::Sphere { centre, radius } => {
-            // Rings of latitude without the poles, whose caps are polygons of their own.
+            // Polar caps are separate polygons.
             let rings = AROUND / 2 - 1;
             let mut points = Vec::new();
             for j in 1..=rings {
@@ -111,14 +109,13 @@ fn picture(
     }
 }
 
-/// Two unit vectors that stand across `k` and on each other.
 fn across(k: &Vec3) -> (Vec3, Vec3) {
     let helper = if k.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
     let u = k.cross(&helper).normalize();
     (u, k.cross(&u))
 }
 
-/// A square of a plane next to the grains.
+/// Returns a square of a plane next to the grains.
 pub fn square(point: &Vec3, normal: &Vec3, (centre, half): (Vec3, f64)) -> (Vec<Vec3>, Vec<Vec<u32>>) {
     let middle = centre - normal * (centre - point).dot(normal);
     let (u, v) = across(normal);

@@ -1,4 +1,4 @@
-//! What goes on about the load cycles: jumps over many of them, and the lateral push at their end, as written in a scene.
+//! Scene tables of load-cycle jumps and the final lateral push.
 
 use super::units::{Force, Length, Quantity, Stiffness, Time, Velocity};
 use schemars::JsonSchema;

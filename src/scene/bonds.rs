@@ -1,4 +1,4 @@
-//! Bonds as written in a scene.
+//! Scene tables of bonds.
 
 use super::units::{Angle, Force, Length, Quantity, Stiffness, Stress};
 use schemars::JsonSchema;

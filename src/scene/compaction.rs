@@ -1,4 +1,4 @@
-//! Compaction of a settled bed and boxes for measures, as written in a scene.
+//! Scene tables of compaction and measuring boxes.
 
 use super::units::{Force, Frequency, Length, Mass, Quantity, Time, Velocity};
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! `[coupling]`: the exchange between grains and solid.
+//! Scene table `[coupling]`.
 
 use super::units::{Angle, Length, Quantity, Time};
 use schemars::JsonSchema;
@@ -55,12 +55,12 @@ fn steep() -> Quantity<Angle> {
     Quantity::new(75.0_f64.to_radians())
 }
 
-/// Steps of the grains per step of the solid.
+/// DEM sub-steps per FEM time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Substeps {
-    /// So many.
+    /// Fixed number.
     Count(i64),
-    /// As many as are stable, 20 at most.
+    /// Largest stable number, at most 20.
     Auto,
 }
 
@@ -107,13 +107,13 @@ pub enum SchemeName {
     Iterated,
 }
 
-/// How contact forces reach the solid.
+/// Transfer of contact forces to the solid.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum TransferTable {
     /// At the mapped contact point.
     #[default]
     Point,
-    /// Spread over discs.
+    /// Distributed over discs.
     Spread(SpreadTable),
 }
 

@@ -1,4 +1,4 @@
-//! Settling of filled grains as written in a scene.
+//! Scene table of the deposition of filled grains.
 
 use super::units::{Length, Quantity, Time, Velocity};
 use schemars::JsonSchema;

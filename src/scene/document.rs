@@ -1,4 +1,4 @@
-//! The scene file as a tree with the line of every key, so that each message can name its place.
+//! Scene file as a tree with the line of every key, for error messages.
 
 use super::include::{self, Included};
 use super::value::Value;
@@ -12,15 +12,15 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-/// A parsed scene file, with the files that it includes.
+/// Parsed scene file.
 #[derive(Clone)]
 pub struct Document {
     file: PathBuf,
     text: String,
     included: Vec<Included>,
-    /// Overrides given on the command line as (key path, value); their values carry spans past the text.
+    /// Command-line overrides; their spans lie past the text.
     overrides: Vec<(String, String)>,
-    /// The same as they were given, with names in place of indices.
+    /// Overrides as given, with names instead of indices.
     given: Vec<String>,
 }
 
@@ -28,7 +28,7 @@ impl Document {
     /// Reads and parses `file`.
     ///
     /// # Errors
-    /// The file is missing or unreadable, or it is not TOML.
+    /// I/O errors; invalid TOML.
     pub fn open(file: &Path) -> Result<Document, SceneError> {
         let text = source::text(file).map_err(|refusal| {
             let (found, expected) = refusal.words(|e| e.to_string());
@@ -40,7 +40,7 @@ impl Document {
     /// Parses `text` as the content of `file`.
     ///
     /// # Errors
-    /// The text is not TOML.
+    /// Invalid TOML.
     pub fn parse(file: &Path, text: String) -> Result<Document, SceneError> {
         syntax(file, &text, 0)?;
         let mut document = Document {
@@ -54,7 +54,6 @@ impl Document {
         Ok(document)
     }
 
-    /// The tree of the text with the overrides applied.
     fn tree(&self) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
         for file in &self.included {
@@ -66,13 +65,12 @@ impl Document {
         tree
     }
 
-    /// Replaces or adds one key, given as `key.path=value` with a TOML value; a value that is not TOML is taken
-    /// as a string, and nothing after the `=` takes the key away. Tables of an array are addressed by index, `solid.material.0.young=2e7`,
-    /// or by the name that they have: `solid.material.clay.young=2e7`. Other files to `include` take the place of those that the scene names,
-    /// also under what was set before.
+    /// Sets one key, given as `key.path=value`. An empty value removes the key; a value that is not TOML is a
+    /// string. Tables of an array are addressed by index or name: `solid.material.clay.young=2e7`. `include`
+    /// replaces the included files.
     ///
     /// # Errors
-    /// No `=`, or a path through something that is not a table or an array; a file to include that cannot be read.
+    /// No `=`, a path through a value, an unreadable file.
     pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(override_error(assignment, assignment, "key.path=value"));
@@ -88,7 +86,7 @@ impl Document {
         Ok(())
     }
 
-    /// Reads the files that an override names, and numbers the others anew: names may stand at other indices in the new files.
+    /// Names are resolved again: their indices may differ in the new files.
     fn include_others(&mut self) -> Result<(), SceneError> {
         self.included = include::read(self)?;
         self.overrides.retain(|(path, _)| path == include::KEY);
@@ -105,7 +103,6 @@ impl Document {
         Ok(())
     }
 
-    /// `path` with the names of tables of arrays replaced by their indices; what is not found stays as it is.
     fn numbered(&self, path: &str) -> String {
         let tree = self.tree();
         let (mut table, mut array) = (Some(tree.get_ref()), None::<&DeArray>);
@@ -118,7 +115,7 @@ impl Document {
                     let name = row.get_ref().as_table().and_then(|t| t.get("name"));
                     name.and_then(|n| n.get_ref().as_str()) == Some(part.as_str())
                 };
-                // An index is an index, whatever the names are.
+                // Indices take precedence over names.
                 let index = part.parse().ok().or_else(|| rows.iter().position(|row| named(&row)));
                 if let Some(index) = index {
                     *part = index.to_string();
@@ -177,10 +174,10 @@ impl Document {
         Ok(())
     }
 
-    /// Reads the tree into `T`, refusing unknown keys with a suggestion.
+    /// Deserialises the tree into `T`; suggests names for unknown keys.
     ///
     /// # Errors
-    /// A key is unknown, missing or of the wrong type or unit.
+    /// Unknown or missing keys, wrong types or units.
     pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, SceneError> {
         let mut root = self.tree();
         root.get_mut().remove(include::KEY);
@@ -192,14 +189,14 @@ impl Document {
         })
     }
 
-    /// An error about the key at `path` (such as `solid.material.0.poisson`), with its line.
+    /// Returns an error with its line for the key at `path`.
     pub fn error(&self, path: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
         self.problem(path, Problem::value(found, expected))
     }
 
-    /// Error about the key at `path`, in one of the forms.
+    /// Returns an error of any form for the key at `path`.
     pub fn problem(&self, path: &str, problem: Problem) -> SceneError {
-        // A table given on the command line answers for all its keys, and a key for the table that it makes.
+        // An override of a table covers its keys, and an overridden key the table that it creates.
         let below = |long: &str, short: &str| {
             long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
@@ -213,12 +210,12 @@ impl Document {
         SceneError { file: file.to_path_buf(), line, key: path.to_string(), problem, remedy: None }
     }
 
-    /// An error about the number of the scene that is farthest from 1, since `quantity` is beyond what a number holds.
+    /// Returns an error for the number farthest from 1: `quantity` would overflow.
     pub fn beyond_range(&self, quantity: &str) -> SceneError {
         let keys = self.keys();
         let extreme = keys.iter().max_by(|a, b| size(a.1).total_cmp(&size(b.1)));
         let (key, value) = extreme.map_or(("scene", "its numbers"), |(key, value)| (key, value));
-        // As a power of ten: the digits of 1e-300 fill lines.
+        // In exponent form: the digits of 1e-300 fill lines.
         let value = value.parse().map_or(value.to_string(), |x: f64| format!("{x:e}"));
         self.error(key, value, format!("a number of usual size, as {quantity} would not be finite"))
     }
@@ -229,32 +226,32 @@ impl Document {
         value_at(self.tree().get_ref(), &parts).is_some()
     }
 
-    /// A value as TOML; none where the scene does not have the key.
+    /// Returns a value as TOML, if present.
     pub fn value(&self, path: &str) -> Option<String> {
         self.keys().remove(path)
     }
 
-    /// File that was read.
+    /// Returns the scene file.
     pub fn file(&self) -> &Path {
         &self.file
     }
 
-    /// Files that it includes, as it names them.
+    /// Returns the included files, as named in the scene.
     pub fn included(&self) -> impl Iterator<Item = &Path> {
         self.included.iter().map(|file| file.named.as_path())
     }
 
-    /// The text of the file, for the hash of a run.
+    /// Returns the text of the file.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Overrides given on the command line, as (key path, value).
+    /// Returns the command-line overrides (key path, value).
     pub fn overrides(&self) -> &[(String, String)] {
         &self.overrides
     }
 
-    /// Every key of the scene with its value as TOML, overrides applied.
+    /// Returns all keys with TOML values, overrides applied.
     pub fn keys(&self) -> BTreeMap<String, String> {
         fn visit(path: &str, value: &toml::Value, out: &mut BTreeMap<String, String>) {
             let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
@@ -269,15 +266,13 @@ impl Document {
             }
         }
         let mut out = BTreeMap::new();
-        // A tree that cannot be read shows no keys; the hash of a run still distinguishes the scenes.
         if let Ok(tree) = self.read::<toml::Table>() {
             visit("", &toml::Value::Table(tree), &mut out);
         }
         out
     }
 
-    /// `path` relative to the folder of the scene file; where nothing is there, to that of the first included file beside which
-    /// something is.
+    /// Resolves `path` relative to the scene file, else to the first included file that has it.
     pub fn resolve(&self, path: &Path) -> PathBuf {
         let beside = |file: &Path| file.parent().unwrap_or(Path::new("")).join(path);
         let own = beside(&self.file);
@@ -288,7 +283,7 @@ impl Document {
         others.into_iter().find(|there| there.exists()).unwrap_or(own)
     }
 
-    /// Where the places of keys end, of the file and of those that it includes.
+    /// End of all spans.
     fn end(&self) -> usize {
         self.included.last().map_or(self.text.len(), Included::end)
     }
@@ -327,7 +322,6 @@ impl Document {
     }
 }
 
-/// Whether a text is TOML; it begins at byte `start`, after blanks.
 pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneError> {
     let wrong = |e: toml::de::Error| {
         let message = e.message().lines().collect::<Vec<_>>().join(", ");
@@ -340,19 +334,17 @@ pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneE
     DeTable::parse(text).map_err(wrong).map(drop)
 }
 
-/// Powers of ten between 1 and the number of a value that is farthest from it; 0 where it has none but zeros.
+/// Powers of ten between 1 and the farthest number of a value; 0 for zeros only.
 fn size(value: &str) -> f64 {
     let numbers = value.split(|c: char| !(c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+')));
     let powers = numbers.filter_map(|word| word.parse().ok()).filter(|x: &f64| *x != 0.0 && !x.is_nan());
     powers.map(|x| libm::log10(x.abs()).abs()).fold(0.0, f64::max)
 }
 
-/// An error in a `--set` argument.
 fn override_error(key: &str, found: &str, expected: &str) -> SceneError {
     SceneError::whole(Path::new("--set"), key, found, expected)
 }
 
-/// The value at the end of `path`, if it is there.
 fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'t>> {
     let (first, rest) = path.split_first()?;
     let mut value = table.get(first.as_str())?.get_ref();
@@ -366,7 +358,7 @@ fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'
     Some(value)
 }
 
-/// Line number (from 1) of byte `offset` of `text`.
+/// Line number (from 1) of a byte.
 pub(super) fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes()[..offset.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1
 }

@@ -1,4 +1,4 @@
-//! Inlets and outlets of grains as written in a scene.
+//! Scene tables of grain inlets and outlets.
 
 use super::units::{Length, MassRate, Quantity, Rate, Time, Velocity};
 use schemars::JsonSchema;

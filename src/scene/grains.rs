@@ -1,4 +1,4 @@
-//! Groups of grains as written in a scene.
+//! Scene tables of grain groups.
 
 use super::units::{Length, Quantity, Spin, Velocity};
 use schemars::JsonSchema;

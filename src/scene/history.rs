@@ -1,4 +1,4 @@
-//! How a load varies in time.
+//! Time histories of loads.
 
 use super::units::{Frequency, Quantity, Time};
 use super::{Problem, setting};
@@ -43,35 +43,35 @@ pub struct History {
     pub start: Option<Quantity<Time>>,
 }
 
-/// A checked history.
+/// Checked time history.
 #[derive(Clone, Debug)]
 pub struct TimeFunction {
     kind: HistoryKind,
     frequency: f64,
     start: f64,
     end: f64,
-    /// (time [s], factor) of a table, times ascending.
+    /// (time [s], factor), times ascending.
     points: Vec<(f64, f64)>,
 }
 
-/// Samples that a period needs at least.
+/// Least number of samples per period.
 const SAMPLES: f64 = 8.0;
-/// Part of the largest factor by which a point of a table may stray from the line between two samples.
+/// Largest relative deviation of a table point from the sampled line.
 const STRAY: f64 = 0.1;
 
-/// What samples miss of a history.
+/// Undersampled feature of a history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missed {
-    /// A period has so many samples.
+    /// Undersampled period.
     Period {
         /// Samples in a period.
         samples: f64,
     },
-    /// A point of a table lies off the line between the samples about it.
+    /// Table point off the sampled line.
     Point {
-        /// Its time [s].
+        /// Time [s].
         time: f64,
-        /// Its factor.
+        /// Factor [1].
         factor: f64,
     },
 }
@@ -88,7 +88,7 @@ impl std::fmt::Display for Missed {
 }
 
 impl TimeFunction {
-    /// The factor 1 at all times.
+    /// Constant factor 1.
     pub const CONSTANT: TimeFunction = TimeFunction {
         kind: HistoryKind::Constant,
         frequency: 0.0,
@@ -97,11 +97,10 @@ impl TimeFunction {
         points: Vec::new(),
     };
 
-    /// Checks the table of a scene; the error names the key and its problem. `rows` are those of
-    /// `history.file`, which the caller has read.
+    /// Checks the scene table; `rows` are the content of `history.file`.
     ///
     /// # Errors
-    /// A key that the kind needs is missing, one it does not use is there, or a value is out of range.
+    /// Missing or unused keys, values out of range.
     pub fn new(
         history: &History,
         rows: Option<Vec<(f64, f64)>>,
@@ -167,7 +166,7 @@ impl TimeFunction {
         Ok(function)
     }
 
-    /// Factor at time `t` [s].
+    /// Returns the factor at time `t` [s].
     pub fn factor(&self, t: f64) -> f64 {
         if t < self.start || t > self.end {
             return 0.0;
@@ -182,7 +181,7 @@ impl TimeFunction {
         }
     }
 
-    /// What samples every `step` [s] up to `end` [s] miss of the course, if anything: a period, or a point of a table.
+    /// Returns the first feature undersampled at `step` [s] up to `end` [s].
     pub fn missed(&self, step: f64, end: f64) -> Option<Missed> {
         let (first, last) = (self.start.max(0.0), self.end.min(end));
         match self.kind {
@@ -205,7 +204,7 @@ impl TimeFunction {
         }
     }
 
-    /// Straight between the points of a table, constant beyond them.
+    /// Piecewise linear, constant beyond the table.
     fn between(&self, t: f64) -> f64 {
         let next = self.points.partition_point(|p| p.0 <= t);
         match (next.checked_sub(1).map(|i| self.points[i]), self.points.get(next)) {
@@ -234,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_is_straight_between_its_points_and_constant_beyond() {
+    fn interpolates_table_linearly() {
         let f = TimeFunction {
             kind: HistoryKind::Table,
             start: 1.0,
@@ -249,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn haversine_is_the_square_of_half_the_phase_and_ends_after_its_cycles() {
+    fn haversine_matches_definition_and_ends() {
         let f = history(HistoryKind::Haversine, 50.0, 1.0);
         for t in [0.0, 0.003, 0.01, 0.0173] {
             let expected = (std::f64::consts::PI * t / 0.02).sin().powi(2);
@@ -259,9 +258,9 @@ mod tests {
         assert_eq!(f.factor(0.0201), 0.0);
     }
 
-    /// A pulse of 1 ms between steps of 10 ms is missed, and so is a sine of four steps; a ramp and slow courses are not.
+    /// A pulse of 1 ms at steps of 10 ms and a sine of four steps are missed.
     #[test]
-    fn samples_that_pass_by_a_pulse_are_known() {
+    fn detects_undersampled_pulse() {
         let table = |points: &[(f64, f64)]| TimeFunction {
             kind: HistoryKind::Table,
             points: points.to_vec(),
@@ -281,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn sine_has_zero_mean_over_its_cycles() {
+    fn sine_cycles_have_zero_mean() {
         let f = history(HistoryKind::Sine, 4.0, 2.0);
         let sum: f64 = (0..1000).map(|i| f.factor((i as f64 + 0.5) * 0.5e-3)).sum();
         assert!(sum.abs() < 1e-9 && f.factor(0.0625) > 0.999);

@@ -1,6 +1,6 @@
-//! `include = ["…"]` at the head of a scene: files whose tables are put under those of the scene.
+//! Included files of a scene: `include = ["…"]`.
 //!
-//! Places of keys in included files go on where those of the file before have ended, so that each names its file.
+//! Spans continue from file to file, so that each identifies its file.
 
 use super::SceneError;
 use super::document::{Document, line_of, syntax};
@@ -9,47 +9,39 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-/// The key.
 pub(super) const KEY: &str = "include";
 
-/// A file that a scene includes.
 #[derive(Clone)]
 pub(super) struct Included {
-    /// Its name in the scene.
     pub named: PathBuf,
-    /// Where it is.
     pub file: PathBuf,
-    /// Its text, after as many blanks as there are places of keys before it.
+    /// Text, after blanks for all spans before.
     text: String,
     start: usize,
 }
 
 impl Included {
-    /// Its tree.
     pub fn tree(&self) -> DeTable<'_> {
         DeTable::parse(&self.text).expect("the text was parsed when the file was read").into_inner()
     }
 
-    /// Where its places end.
     pub fn end(&self) -> usize {
         self.text.len()
     }
 
-    /// Whether a place is one of its own.
     pub fn holds(&self, place: usize) -> bool {
         (self.start..self.end()).contains(&place)
     }
 
-    /// The line of a place.
     pub fn line(&self, place: usize) -> usize {
         line_of(&self.text[self.start..], place - self.start)
     }
 }
 
-/// Reads the files that a scene includes, or those that an override names in their place; their paths are relative to the folder of the scene.
+/// Reads the files of `include` or of its override, relative to the scene's directory.
 ///
 /// # Errors
-/// `include` is no list of names; a file cannot be read, is not TOML, or includes files itself.
+/// `include` is no list of names; I/O errors; invalid TOML; nested includes.
 pub(super) fn read(document: &Document) -> Result<Vec<Included>, SceneError> {
     let expected = "a list of files: include = [\"granite.toml\"]";
     let tree = DeTable::parse(document.text()).expect("the text was parsed before").into_inner();
@@ -90,8 +82,8 @@ pub(super) fn read(document: &Document) -> Result<Vec<Included>, SceneError> {
     Ok(all)
 }
 
-/// Puts the keys of an included file under those of `own`: what is there stays, tables are merged key by key, and to lists of tables
-/// those are added whose `name` is not there yet.
+/// Merges an included file key by key. Existing values of `own` stay; lists of tables are extended by tables
+/// of new `name`.
 pub(super) fn merge<'a>(own: &mut DeTable<'a>, other: DeTable<'a>) {
     for (key, value) in other {
         match (own.get_mut(key.get_ref().as_ref()).map(Spanned::get_mut), value.get_ref()) {
@@ -129,7 +121,6 @@ fn merge_lists<'a>(own: &mut DeArray<'a>, other: DeArray<'a>) {
     }
 }
 
-/// The `name` of a table.
 fn name<'t>(table: &'t DeValue<'_>) -> Option<&'t str> {
     table.as_table()?.get("name")?.get_ref().as_str()
 }

@@ -1,4 +1,4 @@
-//! Contact materials and exceptions for pairs of them, as written in a scene.
+//! Scene tables of contact materials and material pairs.
 
 use super::units::{Adhesion, Angle, Density, Quantity, Stiffness, Stress};
 use schemars::JsonSchema;

@@ -1,8 +1,7 @@
-//! What is written in a scene file: TOML, SI units, unknown keys refused.
+//! Types of a scene file (TOML, SI units), exactly as written; unknown keys are rejected.
 //!
-//! These types hold exactly what the file says; [`crate::model`] resolves them into models. Numbers may carry
-//! units as strings (`"20 MPa"`). Only what is present is modelled: `[solid]` alone is a finite-element program,
-//! `[[grains]]` alone a discrete-element program, both with `[coupling]` the coupled one.
+//! [`crate::model`] resolves them. Numbers may have units (`"20 MPa"`). `[solid]` gives a FEM model,
+//! `[[grains]]` a DEM model, both with `[coupling]` the coupled one.
 
 pub mod after;
 pub mod bonds;
@@ -33,7 +32,7 @@ mod wind;
 mod wording;
 
 pub use crate::read::Problem;
-/// Bad input in a scene: the same kind of sentence as from a mesh reader.
+/// Input error of a scene, of the same form as from mesh readers.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
 pub use output::{Chains, Output};

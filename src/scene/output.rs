@@ -1,4 +1,4 @@
-//! `[output]`: what a run writes.
+//! Scene table `[output]`.
 
 use super::units::{Quantity, Time};
 use schemars::JsonSchema;
@@ -39,7 +39,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Whether a format of frames is switched on or off by its key.
+    /// Whether the key of a frame format enables or disables it.
     pub fn format(&self, key: &str) -> Option<bool> {
         match key {
             "vtk" => self.vtk,

@@ -1,4 +1,4 @@
-//! Periodic axes as written in a scene.
+//! Scene table of periodic axes.
 
 use super::units::{Length, Quantity};
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! Run-out as written in a scene.
+//! Scene table of run-out.
 
 use super::units::{Length, Quantity};
 use schemars::JsonSchema;

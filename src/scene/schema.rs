@@ -1,4 +1,4 @@
-//! The form of scene files as a JSON schema, by which editors complete keys, show what they mean and mark what is wrong.
+//! JSON schema of scene files, for editors.
 
 use super::Scene;
 use super::coupling::{SpreadTable, Substeps, TransferTable};
@@ -8,12 +8,12 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 use std::borrow::Cow;
 
-/// The tables and keys of a scene file on its own, as their types and comments describe them.
+/// Describes tables and keys by their types and comments.
 pub fn keys() -> Value {
     schemars::schema_for!(Scene).to_value()
 }
 
-/// The schema of a scene.
+/// Returns the schema of a scene.
 pub fn schema() -> Value {
     let mut schema = keys();
     schema["title"] = json!("Scene of trackbed");
@@ -22,7 +22,7 @@ pub fn schema() -> Value {
         "type": "array",
         "items": { "type": "string" },
     });
-    // What a file that is taken in has, a material of the same name need not have.
+    // Other keys of a material may come from an included material of that name.
     let required = std::mem::replace(&mut schema["$defs"]["GrainMaterial"]["required"], json!(["name"]));
     schema["if"] = json!({ "not": { "required": [include::KEY] } });
     schema["then"] = json!({ "properties": { "material": { "items": { "required": required } } } });

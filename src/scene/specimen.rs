@@ -1,4 +1,4 @@
-//! A specimen between platens as written in a scene.
+//! Scene table of a specimen between platens.
 
 use super::units::{Length, Quantity};
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! Structures whose loads are recorded, as written in a scene.
+//! Scene tables of structures with recorded loads.
 
 use super::units::{Length, Quantity};
 use schemars::JsonSchema;

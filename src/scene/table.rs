@@ -1,5 +1,4 @@
-//! A table of a scene with its place in the file: what resolves a table names keys of this table alone, and need not know
-//! where in the file the table stands.
+//! Table of a scene that reports errors with full key paths.
 
 use super::units::Quantity;
 use super::{Document, Problem, SceneError};
@@ -7,10 +6,10 @@ use std::fmt;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
-/// A table of a scene, and where it stands. It can be read like the table itself.
+/// Scene table; dereferences to its value.
 pub struct Table<'a, T> {
     document: &'a Document,
-    /// Keys from the root of the file to the table, with points between them; empty for the root.
+    /// Key path from the root, with points.
     place: String,
     value: &'a T,
 }
@@ -24,82 +23,82 @@ impl<T> Deref for Table<'_, T> {
 }
 
 impl<'a, T> Table<'a, T> {
-    /// The whole scene, `value`, as it was read from `document`.
+    /// Creates the root table `value` of `document`.
     pub fn root(document: &'a Document, value: &'a T) -> Table<'a, T> {
         Table { document, place: String::new(), value }
     }
 
-    /// The table under `key` of the whole scene.
+    /// Returns the table under `key` of the root.
     pub fn top(document: &'a Document, key: &str, value: &'a T) -> Table<'a, T> {
         Table { document, place: key.to_string(), value }
     }
 
-    /// The table under `key` of this one.
+    /// Returns the table under `key`.
     pub fn below<'b, U>(&'b self, key: &str, value: &'b U) -> Table<'b, U> {
         Table { document: self.document, place: self.path(key), value }
     }
 
-    /// The table under `key`, where there is one.
+    /// Returns the table under `key`, if present.
     pub fn optional<'b, U>(&'b self, key: &str, value: &'b Option<U>) -> Option<Table<'b, U>> {
         value.as_ref().map(|value| self.below(key, value))
     }
 
-    /// Table `index`, counted from 0, of the list of tables under `key`.
+    /// Returns table `index` (from 0) of the list `key`.
     pub fn row<'b, U>(&'b self, key: &str, list: &'b [U], index: usize) -> Table<'b, U> {
         self.below(&format!("{key}.{index}"), &list[index])
     }
 
-    /// The tables of the list under `key`.
+    /// Returns the tables of the list `key`.
     pub fn rows<'b, U>(&'b self, key: &str, list: &'b [U]) -> impl Iterator<Item = Table<'b, U>> {
         (0..list.len()).map(move |index| self.row(key, list, index))
     }
 
-    /// `key` of this table with all keys on the way to it.
+    /// Returns the full path of `key`.
     pub fn path(&self, key: &str) -> String {
         if self.place.is_empty() { key.to_string() } else { format!("{}.{key}", self.place) }
     }
 
-    /// A file that the scene names; its path there is relative to the folder of the scene file.
+    /// Resolves a path relative to the scene's directory.
     pub fn locate(&self, file: &Path) -> PathBuf {
         self.document.resolve(file)
     }
 
-    /// The scene file.
+    /// Returns the scene file.
     pub fn scene_file(&self) -> &'a Path {
         self.document.file()
     }
 
-    /// An error about `key` of this table, or about a key of a table below: `key.below`.
+    /// Creates an error about `key` or `key.below`.
     pub fn error(&self, key: &str, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
         self.document.error(&self.path(key), found, expected)
     }
 
-    /// An error about the table itself.
+    /// Creates an error about the table.
     pub fn here(&self, found: impl Into<String>, expected: impl Into<String>) -> SceneError {
         self.document.error(&self.place, found, expected)
     }
 
-    /// Error about a missing key: `key: found nothing, expected Y`.
+    /// Creates the error of a missing key.
     pub fn missing(&self, key: &str, expected: impl Into<String>) -> SceneError {
         self.problem(key, Problem::missing(expected))
     }
 
-    /// Error about a key that excludes `with`: `key: found together with Z, expected only one of them`.
+    /// Creates the error of a key that excludes `with`.
     pub fn conflict(&self, key: &str, with: impl Into<String>) -> SceneError {
         self.problem(key, Problem::conflict(with))
     }
 
-    /// Error about a key that needs `without`: `key: found without Z, expected both`.
+    /// Creates the error of a key that requires `without`.
     pub fn requirement(&self, key: &str, without: impl Into<String>) -> SceneError {
         self.problem(key, Problem::requirement(without))
     }
 
-    /// Error about a key without use: `key: found, but it has no effect without Z`.
+    /// Creates the error of a key without effect.
     pub fn no_effect(&self, key: &str, without: impl Into<String>) -> SceneError {
         self.problem(key, Problem::no_effect(without))
     }
 
-    /// Error about two keys of which a scene must have one, where it has both, or neither.
+    /// Creates the error of two exclusive keys, both present or missing.
     pub fn choice(&self, keys: [&str; 2], both: bool) -> SceneError {
         let [first, second] = keys;
         if both {
@@ -109,7 +108,7 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// Error about keys of which a scene must have exactly one; each comes with whether it is present.
+    /// Creates the error of exclusive keys, each with its presence.
     pub fn one_of(&self, keys: &[(&str, bool)]) -> SceneError {
         let mut present = keys.iter().filter(|(_, present)| *present);
         match (present.next(), present.next()) {
@@ -123,23 +122,23 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// Error about `key`, in one of the forms.
+    /// Creates an error about `key`, of any form.
     pub fn problem(&self, key: &str, problem: Problem) -> SceneError {
         self.document.problem(&self.path(key), problem)
     }
 
-    /// The value of `key`.
+    /// Returns the value of `key`.
     ///
     /// # Errors
-    /// It is not there.
+    /// The key is missing.
     pub fn need<V>(&self, key: &str, value: Option<V>, expected: &str) -> Result<V, SceneError> {
         value.ok_or_else(|| self.missing(key, expected))
     }
 
-    /// The value of `key`, where it is there.
+    /// Returns the value of `key`, if present.
     ///
     /// # Errors
-    /// It is not finite, or not `good`.
+    /// Not finite, or not `good`.
     pub fn check<N: Number>(
         &self,
         key: &str,
@@ -153,7 +152,7 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// Rejects the first present key, as it excludes `with`; each key comes with whether it is present.
+    /// Rejects present keys, each with its presence: they exclude `with`.
     ///
     /// # Errors
     /// A key is present.
@@ -168,7 +167,7 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// Rejects the first present key, as it has no effect without `without`; each key comes with whether it is present.
+    /// Rejects present keys, each with its presence: they require `without`.
     ///
     /// # Errors
     /// A key is present.
@@ -184,7 +183,7 @@ impl<'a, T> Table<'a, T> {
     }
 }
 
-/// Values of `key`, as a message lists them: `key = "a"`, `"b"` or `"c"`.
+/// Lists values of `key`: `key = "a"`, `"b"` or `"c"`.
 pub fn setting(key: &str, values: &[impl AsRef<str>]) -> String {
     let quoted = |value: &dyn AsRef<str>| format!("`\"{}\"`", value.as_ref());
     let Some((first, others)) = values.split_first() else { return format!("`{key}`") };
@@ -196,15 +195,15 @@ pub fn setting(key: &str, values: &[impl AsRef<str>]) -> String {
     text
 }
 
-/// Values of `kind`, as a message lists them; variants of one word, which scenes write in lower case.
+/// Lists one-word variants in lower case, as in scenes.
 pub fn kinds(kinds: &[impl fmt::Debug]) -> String {
     let names: Vec<String> = kinds.iter().map(|kind| format!("{kind:?}").to_lowercase()).collect();
     setting("kind", &names)
 }
 
-/// A number of a scene, in SI units, or one that may not be there.
+/// Optional number in SI units.
 pub trait Number: Copy {
-    /// The number; none where it is not there.
+    /// Value, if present.
     fn number(self) -> Option<f64>;
 }
 
@@ -266,7 +265,6 @@ mod tests {
         act(&Table::root(&document, &scene));
     }
 
-    /// Keys and lines of a table in a list, of one below it, and of the root.
     #[test]
     fn errors_name_the_place() {
         with_scene(|scene| {
@@ -295,7 +293,6 @@ mod tests {
         });
     }
 
-    /// A table is read like its value, and a check hands on what it has checked.
     #[test]
     fn values_are_checked() {
         with_scene(|scene| {

@@ -1,4 +1,4 @@
-//! Sleepers, their load and the rail as written in a scene.
+//! Scene tables of sleepers, their load and the rail.
 
 use super::after::{CycleJump, Push};
 use super::units::{
@@ -86,7 +86,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Number of the axis.
+    /// Axis index.
     pub fn axis(self) -> usize {
         match self {
             Along::X => 0,

@@ -1,14 +1,14 @@
-//! Quantities of a scene file: a plain number in SI, or a string with a unit such as `"20 MPa"`.
+//! Scene quantities: SI number, or string with unit such as `"20 MPa"`.
 
 use serde::de::{self, Deserialize, Deserializer, Unexpected, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A physical dimension: the units that a scene may write and the factor of each to SI.
+/// Physical dimension with accepted units.
 pub trait Dimension {
-    /// What the quantity is, with an example, for error messages.
+    /// Noun phrase with an example, for errors.
     const EXPECTED: &'static str;
-    /// Accepted units with their factor to SI.
+    /// Accepted units with factors to SI.
     const UNITS: &'static [(&'static str, f64)];
 }
 
@@ -20,7 +20,7 @@ pub struct Quantity<D> {
 }
 
 impl<D> Quantity<D> {
-    /// A quantity of `si` SI units.
+    /// Creates a quantity of `si` SI units.
     pub const fn new(si: f64) -> Quantity<D> {
         Quantity { si, dimension: PhantomData }
     }
@@ -40,7 +40,7 @@ impl<D> fmt::Debug for Quantity<D> {
     }
 }
 
-/// Values of a triple of quantities.
+/// Returns the values of three quantities.
 pub fn vector<D>(v: &[Quantity<D>; 3]) -> [f64; 3] {
     [v[0].si, v[1].si, v[2].si]
 }
@@ -124,11 +124,10 @@ impl<'de, D: Dimension> Deserialize<'de> for Quantity<D> {
     }
 }
 
-/// Number and unit of `text` in SI, or `None` when either is not understood.
 fn parse<D: Dimension>(text: &str) -> Option<f64> {
     let text = text.trim();
     let number = |text: &str| text.trim_end().parse().ok().filter(|v: &f64| v.is_finite());
-    // A unit may follow without a blank. "5mm" ends in "m" too, but "5m" is no number.
+    // A unit may follow without blank. "5mm" ends in "m" too, but "5m" is no number.
     let with_unit = |(unit, factor): &(&str, f64)| Some(number(text.strip_suffix(unit)?)? * factor);
     number(text).or_else(|| D::UNITS.iter().find_map(with_unit))
 }
@@ -150,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_of_another_dimension_is_refused() {
+    fn rejects_unit_of_other_dimension() {
         assert_eq!(parse::<Stress>("20 kg"), None);
         assert_eq!(parse::<Length>("2 s"), None);
         assert_eq!(parse::<Length>("wide"), None);

@@ -1,5 +1,6 @@
-//! Values of a file on their way into the types of a scene. What is wrong comes with the keys that lead to it. The parser's
-//! own way in would cut a list that is too long, and take a list for a table.
+//! Deserialises scene values with full key paths of errors.
+//!
+//! The parser's own deserialiser would truncate long lists and accept lists for tables.
 
 use serde::de::value::StrDeserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor};
@@ -9,20 +10,16 @@ use std::fmt;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Message about a value that is not one of the words that are to choose from.
 pub(super) const NO_WORD: &str = "no word";
 
-/// What is wrong with a value, in words of the parser.
 #[derive(Debug)]
 pub(super) struct Fault {
-    /// The words.
     pub message: String,
-    /// Keys from the root of the file to the value.
+    /// Keys from the root to the value.
     pub path: Vec<String>,
 }
 
 impl Fault {
-    /// The fault of a value as one of the table or list that holds it under `key`.
     fn below(mut self, key: impl fmt::Display) -> Fault {
         self.path.insert(0, key.to_string());
         self
@@ -43,11 +40,9 @@ impl de::Error for Fault {
     }
 }
 
-/// A value of the file.
 pub(super) struct Value<'i>(Spanned<DeValue<'i>>);
 
 impl<'i> Value<'i> {
-    /// The whole file.
     pub fn root(tree: Spanned<DeTable<'i>>) -> Value<'i> {
         let span = tree.span();
         Value(Spanned::new(span, DeValue::Table(tree.into_inner())))
@@ -134,7 +129,6 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 }
 
-/// The items of a list.
 struct Items<I>(I);
 
 impl<'de, I: Iterator<Item = (usize, Spanned<DeValue<'de>>)>> SeqAccess<'de> for Items<I> {
@@ -150,7 +144,7 @@ impl<'de, I: Iterator<Item = (usize, Spanned<DeValue<'de>>)>> SeqAccess<'de> for
     }
 }
 
-/// The entries of a table, and the one whose key was handed out.
+/// Table entries, and the one whose key was read.
 struct Entries<'de, I>(I, Option<(String, Spanned<DeValue<'de>>)>);
 
 impl<'de, K: AsRef<str>, I: Iterator<Item = (Spanned<K>, Spanned<DeValue<'de>>)>> MapAccess<'de>

@@ -1,4 +1,4 @@
-//! Walls as written in a scene.
+//! Scene tables of walls.
 
 use super::track::HeldMotion;
 use super::units::{

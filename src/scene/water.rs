@@ -1,4 +1,4 @@
-//! Water as written in a scene.
+//! Scene tables of water.
 
 use super::units::{Angle, Density, Length, Quantity, Time, Velocity};
 use schemars::JsonSchema;

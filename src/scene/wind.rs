@@ -1,4 +1,4 @@
-//! Air or another fluid that streams past grains, as written in a scene.
+//! Scene table of air or another fluid flowing past grains.
 
 use super::units::{Density, Quantity, Velocity};
 use schemars::JsonSchema;

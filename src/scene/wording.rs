@@ -1,8 +1,8 @@
-//! What the parser says of a scene, in words of someone who writes one: no names of types, no terms of the parser.
+//! Rewords parser messages without type names.
 
 use toml::de::DeValue;
 
-/// Key, what was found and what was expected, from a message of the parser about the key at `path`, which has this value.
+/// Key, found and expected, from a parser message about `value` at `path`.
 pub(super) fn explain(
     message: &str,
     path: &[String],
@@ -53,7 +53,6 @@ fn unknown_key(rest: &str, path: &[String], here: String) -> (String, String, St
     (key, format!("the unknown key `{unknown}`"), expected)
 }
 
-/// What the parser expected in the place of `found`.
 fn expectation(found: &str, expected: &str) -> String {
     let too_large = |most: u64| {
         let number = found.strip_prefix("integer ").and_then(|n| n.parse::<u64>().ok());
@@ -85,7 +84,6 @@ fn expectation(found: &str, expected: &str) -> String {
     }
 }
 
-/// What a value of the file is.
 fn kind_of(value: Option<&DeValue<'_>>) -> &'static str {
     match value {
         Some(DeValue::String(_)) => "a string",
@@ -98,7 +96,6 @@ fn kind_of(value: Option<&DeValue<'_>>) -> &'static str {
     }
 }
 
-/// The first name between backquotes.
 fn quoted(text: &str) -> &str {
     text.split('`').nth(1).unwrap_or_default()
 }

@@ -1,35 +1,31 @@
-//! `trackbed new`: a folder with a commented scene that runs, to begin one's own work with.
+//! `trackbed new`: directory with a commented, runnable scene.
 //!
-//! The scenes are those of `inputs/`, with the files that they name; the program carries them, so that it needs nothing beside
-//! itself. A template is one entry of [`TEMPLATES`].
+//! Templates ([`TEMPLATES`]) are scenes of `inputs/` with their files, embedded in the program.
 
 use crate::failure::Failure;
 use crate::write::WriteError;
 use crate::write::atomic;
 use std::path::{Path, PathBuf};
 
-/// A scene to begin with.
+/// Template of a scene.
 pub struct Template {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// One-line description.
     pub about: &'static str,
-    /// Its place in `inputs/`.
+    /// Path in `inputs/`.
     pub source: &'static str,
-    /// The scene.
     text: &'static str,
-    /// Files that it names.
+    /// Files of the scene.
     files: &'static [Beside],
 }
 
-/// A file beside a scene.
 struct Beside {
-    /// As the scene in `inputs/` names it.
+    /// Name in the scene of `inputs/`.
     named: &'static str,
     bytes: &'static [u8],
 }
 
-/// A template from the folder `inputs/`: name, line, scene, files beside it.
 macro_rules! template {
     ($name:literal, $about:literal, $folder:literal, $scene:literal, [$($file:literal),*]) => {
         Template {
@@ -111,11 +107,11 @@ pub const TEMPLATES: &[Template] = &[
     ),
 ];
 
-/// Name of the scene in the new folder.
+/// Scene name in the new directory.
 pub const SCENE: &str = "scene.toml";
 
 impl Template {
-    /// The files to write: name and content. Paths in the scene become names beside it.
+    /// Returns file names and contents, with paths in the scene replaced by names.
     pub fn contents(&self) -> Vec<(&'static str, Vec<u8>)> {
         let mut text = self.text.to_string();
         let mut all = Vec::new();
@@ -129,15 +125,14 @@ impl Template {
     }
 }
 
-/// The last part of a path with slashes.
 fn name_of(path: &'static str) -> &'static str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// Writes the template `name` into `folder`; the path of its scene. Nothing is replaced.
+/// Writes template `name` into `folder` without replacing files; returns the scene's path.
 ///
 /// # Errors
-/// No such template; one of the files is there already; what the system refuses.
+/// Unknown template, existing file; I/O errors.
 pub fn make(name: &str, folder: &Path) -> Result<PathBuf, Failure> {
     let Some(template) = TEMPLATES.iter().find(|t| t.name == name) else {
         let names: Vec<&str> = TEMPLATES.iter().map(|t| t.name).collect();
@@ -155,7 +150,7 @@ pub fn make(name: &str, folder: &Path) -> Result<PathBuf, Failure> {
     }
     std::fs::create_dir_all(folder)
         .map_err(|e| Failure::Input(format!("{}: found {e}, expected a directory", folder.display())))?;
-    // The scene comes last: where it is, everything that it names is there.
+    // The scene is last: if it exists, so do its files.
     for (file, bytes) in &contents {
         let file = folder.join(file);
         atomic::write(&file, |out| out.write_all(bytes).map_err(WriteError::io(&file)))?;
@@ -163,7 +158,7 @@ pub fn make(name: &str, folder: &Path) -> Result<PathBuf, Failure> {
     Ok(folder.join(SCENE))
 }
 
-/// The templates, a line each.
+/// Returns one line per template.
 pub fn list() -> String {
     TEMPLATES.iter().map(|t| format!("{:<18}{}\n", t.name, t.about)).collect()
 }
@@ -173,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_path_of_a_scene_leaves_its_folder() {
+    fn scene_paths_stay_in_directory() {
         for template in TEMPLATES {
             let contents = template.contents();
             let (name, scene) = contents.last().unwrap();

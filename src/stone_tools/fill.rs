@@ -1,26 +1,15 @@
-//! A body filled with overlapping spheres, for a rigid clump.
+//! Rigid clumps: fills a body with overlapping spheres that minimise E, the distance error Φ of the theory
+//! manual.
 //!
-//! Sought are n spheres whose union comes closest to the body. With d(p) = min over spheres of |p − c| − r, the distance
-//! of a point from the union, the measure is
+//! 1. Greedy selection: of spheres at lattice points, the one that lowers E most is added repeatedly.
+//! 2. Descent: with each sample point assigned to its nearest sphere, E splits into least squares problems of
+//!    four unknowns. Damped Gauss–Newton steps (Levenberg–Marquardt) are accepted if E falls and the union
+//!    stays connected.
+//! 3. Exchange: the sphere that contributes least is reselected and refitted; kept if E falls.
 //!
-//! ```text
-//! E = mean over the surface of d²  +  mean over the inside of max(0, d)²
-//! ```
-//!
-//! The second term keeps the inside free of holes. Spheres may stand out over the surface by a chosen overhang h: no
-//! radius exceeds the depth of its centre plus h. Three steps:
-//!
-//! 1. Greedy choice: from the points of a lattice inside the body, each with the largest sphere that it may carry, the
-//!    one that lowers E most, again and again; the first is the large one in the middle, the next ones reach into edges
-//!    and corners, all of them on or near the medial axis.
-//! 2. Descent: every point of the sample belongs to the sphere nearest to it, so that E falls apart into one least
-//!    squares problem of four unknowns for each sphere. Damped Gauss–Newton steps (Levenberg–Marquardt) of all spheres
-//!    together, taken only when E falls, limits included, and the union stays in one piece.
-//! 3. Exchange: the sphere that E misses least is taken out and chosen anew by step 1, then step 2; kept when E falls.
-//!
-//! Source: own, after the variational sphere sets of R. Wang et al., The Visual Computer 22, 2006 (assignment and fit in
-//! turn), with distance for volume as measure.
-//! Limits: features smaller than the lattice (a 26th of the longest side) are not seen by step 1.
+//! Source: own, after the variational sphere sets of R. Wang et al., The Visual Computer 22, 2006
+//! (alternating assignment and fit), with distance instead of volume as measure.
+//! Limits: step 1 misses features smaller than the lattice (a 26th of the longest side).
 //!
 //! Theory manual: equation (2.3) of `docs/theory/shapes.md`.
 
@@ -28,35 +17,34 @@ use nalgebra::{Matrix4, Vector3, Vector4};
 use trackbed_dem::distance::SurfaceDistance;
 use trackbed_dem::shape::polyhedron::Polyhedron;
 
-/// A sphere: centre and radius.
+/// Centre and radius.
 pub type Ball = ([f64; 3], f64);
 
-/// How to fill.
+/// Options of the filling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Number of spheres, 1 or more.
+    /// Number of spheres, ≥ 1.
     pub spheres: usize,
-    /// How far spheres may stand out over the surface, as a share of the largest inscribed radius; 0 or more.
+    /// Protrusion over the largest inscribed radius, ≥ 0.
     pub overhang: f64,
 }
 
 /// Lattice cells along the longest side.
 const CELLS: f64 = 26.0;
-/// The lattice is refined while it has fewer points inside, down to this many cells along the longest side.
+/// Least number of inner lattice points, and largest number of cells along the longest side to reach it.
 const FEW: usize = 300;
 const FINEST: f64 = 120.0;
-/// Points on the surface, at least and for each sphere; as many inside at most.
+/// Surface points, at least and per sphere; at most as many inside.
 const POINTS: [usize; 2] = [1200, 40];
-/// About so many of them judge a candidate.
+/// Approximate number of points that rate a candidate.
 const GREEDY_POINTS: usize = 2400;
-/// Places of candidates of the greedy choice at most.
 const CANDIDATES: usize = 1400;
 const DESCENTS: usize = 60;
 const EXCHANGES: usize = 12;
-/// Least radius as a share of the largest inscribed one.
+/// Least radius over the largest inscribed radius.
 const LEAST: f64 = 0.05;
 
-/// Fills a body; `distance` belongs to it. `None` when it is too thin for a lattice point to fall inside.
+/// Fills a body with its `distance`; `None` if no lattice point lies inside.
 pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Option<Vec<Ball>> {
     let problem = Problem::new(body, distance, options);
     if problem.candidates.is_empty() {
@@ -86,10 +74,8 @@ pub fn fill(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) ->
 
 struct Problem<'a> {
     distance: &'a SurfaceDistance,
-    /// Points on the surface, then inside.
     points: Vec<Vector3<f64>>,
     on_surface: usize,
-    /// Weight of each point on the surface and inside.
     weights: [f64; 2],
     candidates: Vec<Ball>,
     /// Overhang and least radius [m].
@@ -102,7 +88,7 @@ impl<'a> Problem<'a> {
         let [lo, hi] = body.surface().bounds();
         let longest = (0..3).map(|k| hi[k] - lo[k]).fold(0.0, f64::max);
         let shortest = (0..3).map(|k| hi[k] - lo[k]).fold(f64::INFINITY, f64::min);
-        // A flat body gets a finer lattice, and one of thin walls too, so that points lie near their middle.
+        // Flat and thin-walled bodies need a finer lattice for points near their middle.
         let mut h = (longest / CELLS).min(shortest / 6.0);
         let mut inside = lattice(distance, [lo, hi], h);
         while inside.len() < FEW && h > longest / FINEST {
@@ -114,7 +100,7 @@ impl<'a> Problem<'a> {
         let points = POINTS[0].max(POINTS[1] * options.spheres);
         let least = LEAST * largest;
         let wide: Vec<&Ball> = inside.iter().filter(|b| b.1 > least).collect();
-        // Each place with and without overhang: where many spheres are asked for, late ones only fit without.
+        // With many spheres, late ones only fit without overhang.
         let sizes = if overhang > 0.0 { &[0.0, 0.5, 1.0][..] } else { &[0.0] };
         let candidates = thinned(wide.len(), CANDIDATES)
             .flat_map(|i| sizes.iter().map(move |s| (i, s * overhang)))
@@ -138,12 +124,11 @@ impl<'a> Problem<'a> {
         self.weights[usize::from(point >= self.on_surface)]
     }
 
-    /// The part of a distance that counts: inside only what is not covered.
+    /// Inside, only uncovered points count.
     fn residual(&self, point: usize, d: f64) -> f64 {
         if point >= self.on_surface { d.max(0.0) } else { d }
     }
 
-    /// Distance of each point from the union, and its sphere.
     fn distances(&self, balls: &[Ball]) -> Vec<(f64, usize)> {
         let nearest = |p: &Vector3<f64>| {
             let mut best = (f64::INFINITY, 0);
@@ -162,10 +147,10 @@ impl<'a> Problem<'a> {
         distances.iter().enumerate().map(|(i, (d, _))| self.weight(i) * self.residual(i, *d).powi(2)).sum()
     }
 
-    /// The candidate that touches the others and lowers E most.
+    /// Connected candidate that lowers E most.
     fn best_candidate(&self, balls: &[Ball]) -> Ball {
         let present: Vec<f64> = self.distances(balls).iter().map(|d| d.0).collect();
-        // Every so many points do for a first choice.
+        // A subset of the points suffices.
         let stride = (self.points.len() / GREEDY_POINTS).max(1);
         let mut best = (f64::INFINITY, self.candidates[0]);
         for &(c, r) in &self.candidates {
@@ -185,9 +170,9 @@ impl<'a> Problem<'a> {
         best.1
     }
 
-    /// The sphere without which E grows least.
+    /// Sphere whose removal raises E least.
     fn least_missed(&self, balls: &[Ball]) -> usize {
-        // Distance from the nearest and from the second nearest sphere tells all removals at once.
+        // The two nearest spheres of each point give all removals.
         let mut growth = vec![0.0; balls.len()];
         for (i, p) in self.points.iter().enumerate() {
             let (mut first, mut second) = ((f64::INFINITY, 0), f64::INFINITY);
@@ -206,7 +191,7 @@ impl<'a> Problem<'a> {
         (0..balls.len()).min_by(|a, b| growth[*a].total_cmp(&growth[*b])).unwrap_or(0)
     }
 
-    /// Moves and sizes the spheres until E falls no more; returns E.
+    /// Fits the spheres until E stops falling; returns E.
     fn descend(&self, balls: &mut Vec<Ball>) -> f64 {
         let mut distances = self.distances(balls);
         let mut error = self.error(&distances);
@@ -232,7 +217,6 @@ impl<'a> Problem<'a> {
         error
     }
 
-    /// One damped step of all spheres.
     fn stepped(&self, balls: &[Ball], distances: &[(f64, usize)], damping: f64) -> Vec<Ball> {
         let mut normal = vec![(Matrix4::<f64>::zeros(), Vector4::<f64>::zeros()); balls.len()];
         for (i, &(d, j)) in distances.iter().enumerate() {
@@ -265,7 +249,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Points of a lattice of about the width `h` [m] that lie inside, with their depths [m].
+/// Inner lattice points of spacing about `h` [m], with depths [m].
 fn lattice(distance: &SurfaceDistance, [lo, hi]: [[f64; 3]; 2], h: f64) -> Vec<Ball> {
     let count: [usize; 3] = std::array::from_fn(|k| ((hi[k] - lo[k]) / h).ceil().max(1.0) as usize);
     let mut inside = Vec::new();
@@ -285,13 +269,13 @@ fn lattice(distance: &SurfaceDistance, [lo, hi]: [[f64; 3]; 2], h: f64) -> Vec<B
     inside
 }
 
-/// `count` indices at most, spread evenly over 0..n.
+/// At most `count` indices, spread evenly over 0..n.
 fn thinned(n: usize, count: usize) -> impl Iterator<Item = usize> {
     let take = n.min(count);
     (0..take).map(move |i| (2 * i + 1) * n / (2 * take))
 }
 
-/// Whether two spheres overlap well enough to be one piece of rock: by a tenth of the smaller radius.
+/// Connected spheres overlap by a tenth of the smaller radius.
 fn joined(a: &Ball, b: &Ball) -> bool {
     (Vector3::from(a.0) - Vector3::from(b.0)).norm() < a.1 + b.1 - 0.1 * a.1.min(b.1)
 }

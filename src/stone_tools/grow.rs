@@ -1,16 +1,10 @@
-//! A body filled with separate spheres that grow until they jam, for a bonded stone.
+//! Bonded stones: fills a body with separate spheres that grow until they jam.
 //!
-//! Spheres of given size ratios start small at random points inside and grow together. After each growth they are moved
-//! apart, pair by pair and away from the surface, by their overlaps, until none is larger than 0.3 % of the mean radius;
-//! where that fails the growth was too large and is halved. When they are jammed, the overlaps left are taken from the
-//! radii, and each sphere grows alone until it meets a neighbour or the surface. So no two spheres overlap, and none
-//! stands out over the surface.
+//! After each growth, overlaps are removed down to 0.3 % of the mean radius; otherwise the growth is halved.
+//! When jammed, remaining overlaps are taken from the radii, and each sphere grows until contact.
 //!
-//! Bonds join spheres whose gap is at most a given share of their mean radius. The spheres leave pores; the density
-//! factor gives them the mass of the solid body.
-//!
-//! Source: growth with relaxation after B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 1990, without
-//! their dynamics: overlaps are removed by projection.
+//! Source: growth with relaxation after B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. 60, 1990,
+//! without dynamics: overlaps are removed by projection.
 //!
 //! Theory manual: equation (2.5) of `docs/theory/shapes.md`.
 
@@ -22,42 +16,41 @@ use trackbed_dem::shape::polyhedron::Polyhedron;
 use super::fill::Ball;
 
 const PURPOSE: u64 = 12;
-/// Largest overlap left by relaxation, as a share of the mean radius.
+/// Largest overlap after relaxation over the mean radius.
 const OVERLAP: f64 = 3e-3;
 const SWEEPS: usize = 1000;
-/// Growth of the radii in one step, at first and at last.
+/// First and last growth per step.
 const GROWTH: [f64; 2] = [0.1, 1e-3];
-/// Neighbours are looked for within this many mean diameters, and again after so many sweeps.
+/// Neighbour search radius in mean diameters, and sweeps between searches.
 const REACH: f64 = 1.6;
 const RENEW: usize = 10;
-/// Largest growth alone after the jam.
 const ALONE: f64 = 1.3;
 
-/// How to grow.
+/// Options of the growth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Number of spheres, 1 or more.
+    /// Number of spheres, ≥ 1.
     pub spheres: usize,
-    /// Starts the random places and sizes.
+    /// Seed of positions and sizes.
     pub seed: u64,
-    /// Radii differ by this share up and down before each grows alone; 0 to below 1.
+    /// Relative deviation of radii before the final growth, 0 to < 1.
     pub spread: f64,
-    /// Largest gap between bonded spheres, as a share of their mean radius.
+    /// Largest gap of bonded spheres over their mean radius.
     pub gap: f64,
 }
 
 /// Spheres grown in a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
-    /// The spheres.
+    /// Spheres.
     pub spheres: Vec<Ball>,
-    /// Pairs of bonded spheres, counted from 0, the lower one first.
+    /// Bonded pairs from 0, lower index first.
     pub bonds: Vec<[u32; 2]>,
-    /// Volume of the body over that of the spheres.
+    /// Body volume over sphere volume.
     pub density_factor: f64,
 }
 
-/// Grows spheres in a body; `distance` belongs to it.
+/// Grows spheres in a body with its `distance`.
 pub fn grow(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) -> Grown {
     let volume = body.moments().volume;
     let [lo, hi] = body.surface().bounds();
@@ -74,7 +67,7 @@ pub fn grow(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) ->
     let ball = 4.0 / 3.0 * std::f64::consts::PI;
     let cubes: f64 = ratio.iter().map(|s| s.powi(3)).sum();
 
-    // From a fifth of the volume on.
+    // Initially a fifth of the volume.
     let mut size = libm::cbrt(0.2 * volume / (ball * cubes));
     let mut jammed = Jam { distance, radii: vec![0.0; n], pairs: Vec::new(), mean: 0.0 };
     while !jammed.relax(&mut centres, &ratio, size) {
@@ -104,12 +97,11 @@ pub fn grow(body: &Polyhedron, distance: &SurfaceDistance, options: &Options) ->
     Grown { spheres, bonds, density_factor: volume / solid }
 }
 
-/// Distance between two spheres [m], negative where they overlap.
+/// Returns the gap of two spheres [m], negative for overlap.
 pub fn gap(a: &Ball, b: &Ball) -> f64 {
     (Vector3::from(a.0) - Vector3::from(b.0)).norm() - a.1 - b.1
 }
 
-/// The relaxation and its scratch.
 struct Jam<'a> {
     distance: &'a SurfaceDistance,
     radii: Vec<f64>,
@@ -118,7 +110,7 @@ struct Jam<'a> {
 }
 
 impl Jam<'_> {
-    /// Moves spheres of radius `ratio` × `size` apart and into the body; whether no overlap is left.
+    /// Separates spheres of radius `ratio` × `size` within the body; whether it succeeded.
     fn relax(&mut self, centres: &mut [Vector3<f64>], ratio: &[f64], size: f64) -> bool {
         self.mean = size;
         self.radii.iter_mut().zip(ratio).for_each(|(r, s)| *r = s * size);
@@ -127,7 +119,7 @@ impl Jam<'_> {
                 self.find_pairs(centres);
             }
             if self.sweep(centres) <= OVERLAP * self.mean {
-                // Neighbours that came in since the last search count as well.
+                // Neighbours may have approached since the last search.
                 self.find_pairs(centres);
                 if self.sweep(centres) <= OVERLAP * self.mean {
                     return true;
@@ -149,7 +141,6 @@ impl Jam<'_> {
         }
     }
 
-    /// Removes each overlap in turn; returns the largest found [m].
     fn sweep(&self, centres: &mut [Vector3<f64>]) -> f64 {
         let mut largest = 0.0_f64;
         for &(i, j) in &self.pairs {
@@ -168,7 +159,7 @@ impl Jam<'_> {
             let (depth, closest) = self.distance.depth_and_closest((*c).into());
             if depth < *r {
                 largest = largest.max(r - depth);
-                // From the surface inwards; a centre outside goes through its closest point.
+                // Inward from the surface; outer centres pass through their closest point.
                 let inward = (*c - Vector3::from(closest.point)) * depth.signum();
                 *c += inward.try_normalize(0.0).unwrap_or_default() * (r - depth);
             }
@@ -177,7 +168,7 @@ impl Jam<'_> {
     }
 }
 
-/// Radii without any overlap, each then as large as its neighbours and the surface allow.
+/// Radii without overlap, each then grown up to contact.
 fn alone(distance: &SurfaceDistance, centres: &[Vector3<f64>], radii: &[f64]) -> Vec<f64> {
     let n = centres.len();
     let depth: Vec<f64> = centres.iter().map(|c| distance.depth((*c).into())).collect();
@@ -185,7 +176,7 @@ fn alone(distance: &SurfaceDistance, centres: &[Vector3<f64>], radii: &[f64]) ->
     for i in 0..n {
         fitted[i] = fitted[i].min(depth[i]);
         for j in (0..n).filter(|j| *j != i) {
-            // Each of a pair gives way by its share.
+            // Each of a pair shrinks by its share.
             fitted[i] = fitted[i].min((centres[i] - centres[j]).norm() * radii[i] / (radii[i] + radii[j]));
         }
     }

@@ -1,17 +1,17 @@
-//! The text of a stone library, one sphere a line, with the measures of each stone as a comment.
+//! Text of a stone library.
 
 use std::fmt::Write;
 
 use trackbed_dem::insert::library::Stone;
 
-/// Spheres with 9 decimals: at sieve size 1 m that is far below any contact's overlap.
+/// At sieve size 1 m, far below contact overlaps.
 const DECIMALS: usize = 9;
 
-/// What the measures of stones made of surfaces are relative to, for [`text`].
+/// Reference of the measures of stones from surfaces, for [`text`].
 pub const OF_SURFACES: &str =
     "Ratios are to the surface that each stone stands for, lengths to its sieve size.";
 
-/// A library as TOML; `source` says where the shapes come from, `note` what the measures beside the stones are.
+/// Returns a library as TOML; `source` is the origin of the shapes, `note` explains the measures.
 pub fn text(name: &str, source: &str, note: &str, stones: &[(&Stone, String)]) -> String {
     let mut out = String::new();
     let mut line = |t: &str| writeln!(out, "{t}").expect("writing to a string does not fail");
@@ -45,7 +45,6 @@ pub fn text(name: &str, source: &str, note: &str, stones: &[(&Stone, String)]) -
     out
 }
 
-/// A TOML string.
 fn quoted(text: &str) -> String {
     toml::Value::String(text.to_string()).to_string()
 }

@@ -1,8 +1,7 @@
-//! How well spheres fit the body they stand for.
+//! Fit of spheres to a body, with lengths over the sieve size.
 //!
-//! Distances go from points spread over the body's surface to the union of the spheres, d = min(|p − c| − r): exact where
-//! the point is outside the union, else the depth under the sphere that covers it most. The largest distance also counts
-//! how far the union's own surface stands out over the body. All lengths are shares of the body's sieve size.
+//! Distances run from surface points to the union of spheres, d = min(|p − c| − r): exact outside, else the
+//! depth below the sphere that covers most. The largest distance includes the overhang.
 
 use std::fmt;
 
@@ -14,41 +13,39 @@ use trackbed_dem::shape::polyhedron::{BodyMoments, Polyhedron, convex_hull, sphe
 
 use super::fill::Ball;
 
-/// Points on the body's surface.
 const POINTS: usize = 4000;
-/// Points on each sphere.
 const SPHERE_POINTS: usize = 500;
 
-/// A stone of spheres against its surface.
+/// Stone of spheres compared with its surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoneReport {
     /// Number of spheres.
     pub spheres: usize,
-    /// Number of bonds; none for a clump.
+    /// Number of bonds; 0 for a clump.
     pub bonds: usize,
-    /// Elongation b/a and flatness c/b of the surface's extents a ≥ b ≥ c in the principal frame.
+    /// Elongation b/a and flatness c/b of the surface's principal extents a ≥ b ≥ c.
     pub form: [f64; 2],
     /// Wadell's sphericity of the surface.
     pub surface_sphericity: f64,
-    /// The same of the union of the spheres; `None` for separate spheres.
+    /// Wadell's sphericity of the union; `None` for separate spheres.
     pub sphericity: Option<f64>,
-    /// Volume of the spheres, overlaps counted once, over that of the surface.
+    /// Volume of the union over the surface's volume.
     pub volume_ratio: f64,
-    /// Principal moments of inertia over those of the surface, both rising; with the density factor of a bonded stone.
+    /// Principal moments of inertia over the surface's, ascending; with density factor if bonded.
     pub inertia_ratio: [f64; 3],
-    /// Distance between the centres of mass over the sieve size.
+    /// Distance of the centres of mass over the sieve size.
     pub centroid_offset: f64,
-    /// Mean distance between surface and spheres over the sieve size.
+    /// Mean distance of surface and spheres over the sieve size.
     pub mean_distance: f64,
-    /// Largest distance over the sieve size, either way.
+    /// Largest distance, either way, over the sieve size.
     pub max_distance: f64,
-    /// How far the spheres stand out over the surface at most, over the sieve size; 0 or more.
+    /// Largest overhang over the sieve size, ≥ 0.
     pub overhang: f64,
-    /// Smallest radius over the sieve size: it sets the time step of a run.
+    /// Smallest radius over the sieve size; it limits the time step.
     pub least_radius: f64,
 }
 
-/// A clump of `spheres`, given where the body is, against the body.
+/// Compares a clump of `spheres`, in the body's frame, with the body.
 pub fn clump(body: &Polyhedron, distance: &SurfaceDistance, spheres: &[Ball], clump: &Clump) -> StoneReport {
     let exposed = exposed(spheres);
     let area: f64 = exposed.iter().map(|e| e.1).sum();
@@ -59,7 +56,7 @@ pub fn clump(body: &Polyhedron, distance: &SurfaceDistance, spheres: &[Ball], cl
     report
 }
 
-/// A bonded stone of `spheres`, given where the body is, against the body.
+/// Compares a bonded stone of `spheres`, in the body's frame, with the body.
 pub fn cluster(
     body: &Polyhedron,
     distance: &SurfaceDistance,
@@ -75,12 +72,12 @@ pub fn cluster(
     report
 }
 
-/// How far a clump is from a sphere and from its convex hull.
+/// Shape measures of a clump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnionShape {
-    /// Wadell's sphericity of the union of the spheres.
+    /// Wadell's sphericity of the union.
     pub sphericity: f64,
-    /// Volume of the union over that of its convex hull.
+    /// Volume of the union over its convex hull's.
     pub convexity: f64,
 }
 
@@ -90,14 +87,14 @@ impl fmt::Display for UnionShape {
     }
 }
 
-/// Sphericity and convexity of a clump, from 500 points on each sphere.
+/// Returns sphericity and convexity, from 500 points per sphere.
 pub fn union_shape(clump: &Clump) -> UnionShape {
     let exposed = exposed(&clump.spheres);
     let points: Vec<[f64; 3]> = exposed.iter().map(|e| e.0).collect();
     let hull = convex_hull(&points).ok().and_then(|s| Polyhedron::new(&s).ok());
     UnionShape {
         sphericity: sphericity(clump.volume, exposed.iter().map(|e| e.1).sum()),
-        // The hull of the points lies inside that of the spheres by up to 1 %.
+        // The hull of the points lies inside the spheres' hull by up to 1 %.
         convexity: hull.map_or(1.0, |h| (clump.volume / h.moments().volume).min(1.0)),
     }
 }
@@ -116,10 +113,9 @@ fn fill_moments(
     report.centroid_offset = (centre - exact.centroid).norm() / body.sieve_size();
 }
 
-/// Centre of mass of the union in the frame of `spheres`: the clump's own frame has it at the origin, so any four
-/// spheres that span space would tell it; the best fit of all does it for any number of them.
+/// Centre of mass in the frame of `spheres` by the best rigid fit.
 fn union_centre(spheres: &[Ball], clump: &Clump) -> Vector3<f64> {
-    // x = R x' + o with the rotation that fits best: o = mean x − R mean x' (W. Kabsch, Acta Cryst. A32, 1976).
+    // x = R x' + o with the best rotation: o = mean x − R mean x' (W. Kabsch, Acta Cryst. A32, 1976).
     let n = spheres.len() as f64;
     let mean = |list: &[Ball]| list.iter().map(|s| Vector3::from(s.0)).sum::<Vector3<f64>>() / n;
     let (here, there) = (mean(spheres), mean(&clump.spheres));
@@ -133,7 +129,7 @@ fn union_centre(spheres: &[Ball], clump: &Clump) -> Vector3<f64> {
     here - rotation * there
 }
 
-/// Points of the spheres' surfaces that no other sphere covers, with the area that each stands for [m²].
+/// Uncovered surface points with their areas [m²].
 fn exposed(spheres: &[Ball]) -> Vec<([f64; 3], f64)> {
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let mut found = Vec::new();

@@ -1,40 +1,39 @@
 //! Random stones: convex hulls of points near an ellipsoid.
 //!
-//! Points spread over a sphere (random, then pushed apart, but stopped before they are regular) are moved in or out by
-//! up to 10 %; their hull is stretched until its extents in the principal frame have the ratios asked for. Few points
-//! make a sharp stone, many a blunt one: n = 8 · 10^(1 − a) for the angularity a, from 80 to 8.
+//! Random points on a sphere are pushed apart and moved radially by up to 10 %; their hull is stretched to
+//! the required extents. Angularity a sets their number n = 8 · 10^(1 − a), from 80 to 8.
 //!
-//! Ratios as T. Zingg (1935): elongation b/a and flatness c/b of the extents a ≥ b ≥ c.
+//! Ratios after T. Zingg (1935): elongation b/a and flatness c/b of the extents a ≥ b ≥ c.
 
 use nalgebra::{Matrix3, Vector3};
 use trackbed_dem::random::Random;
 use trackbed_dem::shape::polyhedron::{Polyhedron, convex_hull};
 
 const PURPOSE: u64 = 11;
-/// Points at angularity 1, and how many times more at 0.
+/// Points at angularity 1, and factor at 0.
 const POINTS: [f64; 2] = [8.0, 10.0];
 const ROUGHNESS: f64 = 0.1;
 const REPULSIONS: usize = 60;
 
-/// Ranges of the shape; each stone draws from them uniformly.
+/// Ranges of the shape, sampled uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Form {
-    /// Intermediate over longest extent, above 0, at most 1.
+    /// Intermediate over longest extent, > 0, ≤ 1.
     pub elongation: [f64; 2],
-    /// Shortest over intermediate extent, above 0, at most 1.
+    /// Shortest over intermediate extent, > 0, ≤ 1.
     pub flatness: [f64; 2],
     /// From 0, blunt, to 1, sharp.
     pub angularity: [f64; 2],
 }
 
-/// Stone `index` of a seed, in its principal frame, of sieve size 1 m. It does not depend on how many are made.
+/// Returns stone `index` of a seed in its principal frame, sieve size 1 m; independent of their number.
 pub fn stone(seed: u64, index: u64, form: &Form) -> Polyhedron {
     let mut random = Random::new(seed, PURPOSE + 0x1_0000 * (index + 1));
     let mut draw = |[lo, hi]: [f64; 2]| lo + (hi - lo) * random.uniform();
     let (elongation, flatness, angularity) =
         (draw(form.elongation), draw(form.flatness), draw(form.angularity));
     let count = (POINTS[0] * libm::pow(POINTS[1], 1.0 - angularity)).round() as usize;
-    // A hull that spans no volume would take chance to the extreme; then the next draw decides.
+    // Redraw if the hull has no volume.
     let body = loop {
         let points = points(&mut random, count, [1.0, elongation, elongation * flatness]);
         if let Ok(body) = convex_hull(&points).map_err(drop).and_then(|s| Polyhedron::new(&s).map_err(drop)) {
@@ -68,8 +67,8 @@ fn points(random: &mut Random, count: usize, axes: [f64; 3]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Stretched in its principal frame until the extents have the ratios; a stretch turns that frame a little, so that it
-/// takes a few rounds. The last one ends in the principal frame, at sieve size 1.
+/// Stretches rotate the principal frame slightly, so a few rounds are needed. Result: principal frame, sieve
+/// size 1.
 fn fitted(body: Polyhedron, elongation: f64, flatness: f64) -> Polyhedron {
     let wanted = [1.0 / elongation, 1.0, flatness];
     let mut body = body.in_principal_frame();

@@ -1,11 +1,11 @@
-//! Rough stones at random: few spheres that hardly overlap, with hollows between them.
+//! Random rough stones: few spheres with small overlap.
 //!
-//! A hull filled with spheres is rounder than crushed rock and has no hollows into which a neighbour's corner fits. Few
-//! spheres that hardly overlap have lower sphericity and interlock; of simple clumps these came nearest to measured
-//! compression and direct shear of ballast (B. Suhr, K. Six, Granular Matter 24:114, 2022, 10.1007/s10035-022-01274-y).
+//! Clumps fitted to convex hulls lack hollows for interlocking. Of simple clumps, these came nearest to
+//! measured compression and direct shear of ballast (B. Suhr, K. Six, Granular Matter 24:114, 2022,
+//! 10.1007/s10035-022-01274-y).
 //!
-//! Centres are drawn at random, pulled to the middle, stronger along the short axes, and pushed apart until no two
-//! spheres overlap by more than asked; what does not have the ratios asked for is drawn again.
+//! Random centres are pulled to the middle and pushed apart up to the allowed overlap; stones without the
+//! required ratios are redrawn.
 
 use std::fmt;
 
@@ -18,40 +18,40 @@ use trackbed_dem::shape::clump::Clump;
 use super::fill::Ball;
 use super::measure;
 
-/// What the measures beside the stones of a library are.
+/// Explanation of the measures in a library.
 pub const MEASURES: &str =
     "Volume and lengths at a sieve size of 1 m; convexity is the volume over that of the convex hull.";
 
 const PURPOSE: u64 = 12;
-/// Draws for one stone before the ratios are said to be out of reach.
+/// Most draws per stone.
 const DRAWS: usize = 20_000;
 const ROUNDS: usize = 400;
-/// Share of the way to the middle that a centre is pulled in a round, along an axis of length 1.
+/// Relative pull to the middle per round, along an axis of length 1.
 const PULL: f64 = 0.02;
-/// Share of the overlap too much that a pair is pushed apart in a round.
+/// Fraction of excess overlap removed per round.
 const PUSH: f64 = 0.5;
 
-/// What the stones are like; ranges are drawn from uniformly.
+/// Shape of the stones; ranges are sampled uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Form {
-    /// Spheres of each stone, at least 2.
+    /// Spheres per stone, ≥ 2.
     pub spheres: usize,
-    /// Largest overlap of two spheres as a share of the sum of their radii, 0 to 0.5.
+    /// Largest overlap over the sum of radii, 0 to 0.5.
     pub overlap: f64,
-    /// Radii differ by this share up and down, 0 to 0.5.
+    /// Relative deviation of radii, 0 to 0.5.
     pub spread: f64,
-    /// Range of the intermediate over the longest extent.
+    /// Range of intermediate over longest extent.
     pub elongation: [f64; 2],
-    /// Range of the shortest over the intermediate extent.
+    /// Range of shortest over intermediate extent.
     pub flatness: [f64; 2],
 }
 
-/// A rough stone and its measures.
+/// Rough stone and its measures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rough {
-    /// As it stands in a library: sieve size 1 m, principal axes.
+    /// Library stone: sieve size 1 m, principal axes.
     pub stone: Stone,
-    /// b/a and c/b of the extents a ≥ b ≥ c in the principal frame.
+    /// b/a and c/b of the principal extents a ≥ b ≥ c.
     pub ratios: [f64; 2],
     /// Sphericity and convexity.
     pub shape: measure::UnionShape,
@@ -74,10 +74,10 @@ impl fmt::Display for Rough {
     }
 }
 
-/// `count` stones of a seed; each depends on its own number alone.
+/// Returns `count` stones of a seed; each depends only on its index.
 ///
 /// # Errors
-/// The number of draws after which no stone had the ratios asked for.
+/// Number of draws without success.
 pub fn stones(seed: u64, count: usize, form: &Form) -> Result<Vec<Rough>, usize> {
     (0..count).into_par_iter().map(|i| stone(seed, i, form).ok_or(DRAWS)).collect()
 }
@@ -101,7 +101,6 @@ fn stone(seed: u64, index: usize, form: &Form) -> Option<Rough> {
     })
 }
 
-/// Spheres at random places, pulled together and pushed apart.
 fn arranged(random: &mut Random, form: &Form) -> Vec<Ball> {
     let mut draw = |[low, high]: [f64; 2]| low + (high - low) * random.uniform();
     let elongation = draw(form.elongation);

@@ -1,12 +1,10 @@
-//! Shapes whose fit is known, limits of overhang and overlap, the same bits every time, and the library's text.
-
 use super::*;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::polyhedron::{Surface, convex_hull};
 
-/// A ball of radius 1 as the hull of 600 points on it.
+/// Hull of 600 points on the unit sphere.
 fn ball() -> Polyhedron {
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     let point = |i: usize| {
@@ -17,7 +15,6 @@ fn ball() -> Polyhedron {
     Polyhedron::new(&convex_hull(&(0..600).map(point).collect::<Vec<_>>()).unwrap()).unwrap()
 }
 
-/// The hull of the corners of a box of the given half sides.
 fn brick(half: [f64; 3]) -> Surface {
     let corner = |i: usize| std::array::from_fn(|k| if i >> k & 1 == 0 { -half[k] } else { half[k] });
     convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).unwrap()
@@ -38,7 +35,6 @@ fn bonded_kind(spheres: usize, seed: u64) -> Kind {
 const FORM: random::Form =
     random::Form { elongation: [0.7, 0.8], flatness: [0.7, 0.8], angularity: [0.6, 0.8] };
 
-/// A long flat stone and a sharp one.
 fn stones() -> Vec<Source> {
     let make = |i| Source { name: format!("random \"{i}\""), body: random::stone(7, i, &FORM) };
     (0..2).map(make).collect()
@@ -50,7 +46,7 @@ fn library_text(name: &str, source: &str, made: &[Made]) -> String {
 }
 
 #[test]
-fn one_sphere_in_a_cube_measures_as_in_the_closed_form() {
+fn sphere_in_cube_matches_closed_form() {
     let body = Polyhedron::new(&brick([0.5; 3])).unwrap();
     let distance = SurfaceDistance::new(&body);
     let spheres = [([0.0; 3], 0.5)];
@@ -69,26 +65,26 @@ fn one_sphere_in_a_cube_measures_as_in_the_closed_form() {
     near(report.surface_sphericity, (PI / 6.0).cbrt(), 1e-9);
     near(report.overhang, 0.0, 1e-12);
     near(report.centroid_offset, 0.0, 1e-9);
-    // Moved by 0.1 it stands out by as much.
+    // Moved by 0.1, it protrudes by 0.1.
     let moved = [([0.1, 0.0, 0.0], 0.5)];
     let report = measure::clump(&body, &distance, &moved, &Clump::from_spheres(&moved).unwrap());
-    // Points of the sphere lie up to a few degrees off its pole.
+    // Sample points lie up to a few degrees off the pole.
     near(report.overhang, 0.1, 3e-3);
     near(report.centroid_offset, 0.1, 1e-9);
 }
 
 #[test]
-fn a_ball_gives_a_clump_of_its_volume_and_inertia() {
+fn ball_gives_exact_volume_and_inertia() {
     let made = make(&source(ball()), clump_kind(1, 0.1)).unwrap();
     let report = &made[0].report;
-    // The hull is 1.0 % smaller than the ball; the sphere lies between its faces and its corners.
+    // The hull is 1.0 % smaller than the ball.
     assert!((report.volume_ratio - 1.0).abs() < 3e-3, "{report}");
     assert!(report.inertia_ratio.iter().all(|i| (i - 1.0).abs() < 5e-3), "{report}");
     assert!(report.mean_distance < 2e-3, "{report}");
 }
 
 #[test]
-fn the_error_falls_with_the_number_of_spheres() {
+fn error_falls_with_sphere_count() {
     let sources = stones();
     let error = |n: usize| -> Vec<StoneReport> {
         make(&sources, clump_kind(n, 0.1)).unwrap().into_iter().map(|m| m.report).collect()
@@ -108,14 +104,14 @@ fn the_error_falls_with_the_number_of_spheres() {
 }
 
 #[test]
-fn spheres_stand_out_no_further_than_allowed() {
+fn spheres_respect_overhang() {
     for source in stones() {
         let body = source.body;
         let distance = SurfaceDistance::new(&body);
         for overhang in [0.0, 0.05, 0.2] {
             let spheres = fill::fill(&body, &distance, &fill::Options { spheres: 8, overhang }).unwrap();
             assert_eq!(spheres.len(), 8);
-            // Half the sieve size bounds the largest inscribed radius from above.
+            // Half the sieve size bounds the largest inscribed radius.
             for (c, r) in &spheres {
                 assert!(r - distance.depth(*c) <= overhang * 0.5 + 1e-12);
             }
@@ -126,8 +122,7 @@ fn spheres_stand_out_no_further_than_allowed() {
 }
 
 #[test]
-fn bonded_spheres_lie_inside_without_overlap_and_hang_together() {
-    // A convex stone, and an L with an inward corner.
+fn bonded_spheres_are_inside_and_connected() {
     let mut l: Vec<[f64; 3]> = Vec::new();
     for z in [0.0, 1.0] {
         l.extend(
@@ -163,14 +158,14 @@ fn bonded_spheres_lie_inside_without_overlap_and_hang_together() {
         let exact = body.moments().volume;
         assert!((volume * grown.density_factor / exact - 1.0).abs() < 1e-12);
         assert!((0.4..0.65).contains(&(volume / exact)), "{}", volume / exact);
-        // One piece by its bonds, or this fails.
+        // Fails unless the bonds connect it.
         let cluster = Cluster::new(&grown.spheres, &grown.bonds, grown.density_factor).unwrap();
         assert!((cluster.volume / exact - 1.0).abs() < 1e-12);
     }
 }
 
 #[test]
-fn the_same_bits_for_any_number_of_threads_and_other_stones_for_another_seed() {
+fn stones_depend_on_seed_only() {
     let sources = stones();
     let with = |threads: usize, kind: Kind| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -201,7 +196,7 @@ fn random_stones_have_the_form_requested() {
         let hull = convex_hull(&body.surface().vertices).unwrap();
         assert_eq!(hull.vertices.len(), body.surface().vertices.len(), "convex");
     }
-    // A stone does not depend on how many are made beside it, nor on the form's other ranges.
+    // Independent of the number of stones.
     assert_eq!(random::stone(11, 2, &FORM), random::stone(11, 2, &FORM));
     assert_ne!(random::stone(11, 2, &FORM), random::stone(12, 2, &FORM));
     let sphericity = |a: f64| {
@@ -213,7 +208,7 @@ fn random_stones_have_the_form_requested() {
 }
 
 #[test]
-fn the_text_of_a_library_comes_back_as_it_was() {
+fn library_text_round_trip() {
     for kind in [clump_kind(5, 0.1), bonded_kind(20, 1)] {
         let made = make(&stones(), kind).unwrap();
         let text = library_text("a \"name\"", "here\\there", &made);
@@ -225,7 +220,6 @@ fn the_text_of_a_library_comes_back_as_it_was() {
                 assert!((0..4).all(|k| (a[k] - b[k]).abs() < 1e-9));
             }
         }
-        // In the frame of the file, at sieve size 1.
         let sieves: Vec<f64> = match kind {
             Kind::Clump(_) => back.clumps().unwrap().iter().map(Clump::sieve_size).collect(),
             Kind::Bonded(_) => back.clusters().unwrap().iter().map(Cluster::sieve_size).collect(),
@@ -235,7 +229,7 @@ fn the_text_of_a_library_comes_back_as_it_was() {
 }
 
 #[test]
-fn several_bodies_and_thin_ones_are_no_stone() {
+fn rejects_several_or_thin_bodies() {
     let one = brick([0.5; 3]);
     let mut two = one.clone();
     two.vertices.extend(one.vertices.iter().map(|v| [v[0] + 3.0, v[1], v[2]]));
@@ -250,17 +244,17 @@ fn several_bodies_and_thin_ones_are_no_stone() {
         let error = make(&source(Polyhedron::new(&shell).unwrap()), kind).unwrap_err();
         assert!(matches!(error, StoneError::Thin { .. }), "{error}");
     }
-    // A plate of 1:40 is fine.
+    // A plate of 1:40 is valid.
     let plate = Polyhedron::new(&brick([2.0, 2.0, 0.05])).unwrap();
     let made = make(&source(plate.mapped(&nalgebra::Matrix3::identity(), &Vector3::x())), clump_kind(6, 0.1))
         .unwrap();
     assert_eq!(made[0].stone.spheres.len(), 6);
 }
 
-/// Two equal spheres at a distance d of their centres: V = 2 (4/3)πr³ − π(4r + d)(2r − d)²/12, S = 2·2πr(r + d/2); the
-/// hull is a cylinder of length d with two half spheres.
+/// Two equal spheres at centre distance d: V = 2 (4/3)πr³ − π(4r + d)(2r − d)²/12, S = 2·2πr(r + d/2); the
+/// hull is a cylinder of length d with two hemispheres.
 #[test]
-fn sphericity_and_convexity_of_two_spheres_are_those_of_the_closed_form() {
+fn two_spheres_match_closed_form() {
     let (r, d) = (1.0, 1.5);
     let clump = Clump::from_spheres(&[([0.0; 3], r), ([d, 0.0, 0.0], r)]).unwrap();
     let shape = measure::union_shape(&clump);
@@ -272,7 +266,7 @@ fn sphericity_and_convexity_of_two_spheres_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn rough_stones_keep_to_their_ratios_overlap_and_seed() {
+fn rough_stones_meet_specification() {
     let form =
         rough::Form { spheres: 5, overlap: 0.2, spread: 0.2, elongation: [0.7, 0.8], flatness: [0.6, 0.8] };
     let made = rough::stones(3, 6, &form).unwrap();
@@ -291,10 +285,10 @@ fn rough_stones_keep_to_their_ratios_overlap_and_seed() {
         assert!(touching >= 4, "hangs together: {touching}");
         assert!(m.shape.convexity < 0.93 && m.shape.sphericity < 0.85, "{m}");
     }
-    // A stone does not depend on how many are made.
+    // Independent of the number of stones.
     assert_eq!(rough::stones(3, 2, &form).unwrap(), made[..2]);
     assert_ne!(rough::stones(4, 1, &form).unwrap()[0], made[0]);
-    // Four equal spheres cannot be a needle.
+    // Four equal spheres cannot form a needle.
     let needle = rough::Form { elongation: [0.05, 0.06], flatness: [0.9, 1.0], ..form };
     assert!(rough::stones(1, 1, &needle).is_err());
 }

@@ -1,37 +1,36 @@
-//! The settings of a study, from its axes.
+//! Parameter sets of a study.
 
 use super::file::{AxisTable, Combine, StudyFile};
 use crate::scene::{Document, SceneError};
 
-/// Most runs of a study.
+/// Most runs.
 pub const MOST_RUNS: usize = 100_000;
-/// Label of the setting that the others depart from one at a time.
+/// Label in one-at-a-time studies.
 const BASE: &str = "base";
 
-/// One value of every option that is varied.
+/// Parameter set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Label in the tables.
+    /// Label.
     pub label: String,
-    /// Label of its value of each axis; empty for a reference that is a run of its own.
+    /// Axis value labels.
     pub levels: Vec<String>,
-    /// Overrides, those of all runs first.
+    /// Overrides, common ones first.
     pub set: Vec<String>,
 }
 
-/// An axis, resolved.
+/// Resolved axis.
 pub struct Axis {
-    /// Name in labels.
+    /// Name.
     pub name: String,
-    /// Label and overrides of each value.
     values: Vec<(String, Vec<String>)>,
 }
 
 impl Axis {
-    /// Resolves the axis `index` of a study file.
+    /// Resolves axis `index`.
     ///
     /// # Errors
-    /// Bad input.
+    /// Input errors.
     pub fn new(document: &Document, index: usize, table: &AxisTable) -> Result<Axis, SceneError> {
         let place = |key: &str| format!("axis.{index}.{key}");
         let of_key = table.key.as_deref().map(|key| key.rsplit('.').next().unwrap_or(key).to_string());
@@ -61,7 +60,6 @@ impl Axis {
     }
 }
 
-/// A value of one key: its own text is the label.
 fn value_of_key(key: &str, value: &toml::Value) -> (String, Vec<String>) {
     let label = match value {
         toml::Value::String(text) => text.clone(),
@@ -70,7 +68,6 @@ fn value_of_key(key: &str, value: &toml::Value) -> (String, Vec<String>) {
     (label, vec![format!("{key}={value}")])
 }
 
-/// A table with `label` and `set`.
 fn labelled(
     document: &Document,
     place: &str,
@@ -106,10 +103,10 @@ fn found(value: Option<&toml::Value>) -> String {
     value.map_or("nothing".into(), ToString::to_string)
 }
 
-/// The settings that the axes make.
+/// Combines the axes.
 ///
 /// # Errors
-/// Bad input: axes that do not go together.
+/// Incompatible axes.
 pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<Vec<Setting>, SceneError> {
     let counts: Vec<usize> = axes.iter().map(|a| a.values.len()).collect();
     let picks: Vec<Vec<usize>> = match file.combine {
@@ -150,7 +147,6 @@ pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<V
     Ok(picks.iter().map(setting).collect())
 }
 
-/// The digits of a number, the last one of the lowest value.
 fn mixed_radix(mut number: usize, counts: &[usize]) -> Vec<usize> {
     let mut digits = vec![0; counts.len()];
     for (digit, count) in digits.iter_mut().zip(counts).rev() {

@@ -1,16 +1,16 @@
-//! Samples of quantities: a number of each run, or a curve; means, scatter and distances.
+//! Samples of quantities: means, scatter, distances.
 
-/// What one run gives for a quantity.
+/// Sample of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
-    /// A number.
+    /// Number.
     Number(f64),
-    /// Points (x, y) with increasing x, straight between them.
+    /// Points (x, y), x ascending, linear between.
     Curve(Vec<[f64; 2]>),
 }
 
 impl Sample {
-    /// A curve of points in any order; of points with the same abscissa the last one counts.
+    /// Creates a curve; the last point per abscissa counts.
     pub fn curve(mut points: Vec<[f64; 2]>) -> Sample {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
@@ -23,7 +23,7 @@ impl Sample {
         Sample::Curve(kept)
     }
 
-    /// The number, or the root mean square of the curve over its abscissa.
+    /// Returns the number, or the RMS of the curve.
     pub fn size(&self) -> f64 {
         match self {
             Sample::Number(value) => value.abs(),
@@ -31,7 +31,7 @@ impl Sample {
         }
     }
 
-    /// What a table shows: the number with its sign, or the size of a curve.
+    /// Returns the signed number, or the RMS of a curve.
     pub fn shown(&self) -> f64 {
         match self {
             Sample::Number(value) => *value,
@@ -40,8 +40,7 @@ impl Sample {
     }
 }
 
-/// Size of the difference of two samples, and size of the second one where the first one is too; none where curves have no common
-/// abscissa, or one is a number.
+/// Returns the size of the difference, and of `b` in the same range; none without common abscissa.
 pub fn difference(a: &Sample, b: &Sample) -> Option<(f64, f64)> {
     match (a, b) {
         (Sample::Number(a), Sample::Number(b)) => Some(((a - b).abs(), b.abs())),
@@ -56,7 +55,7 @@ pub fn difference(a: &Sample, b: &Sample) -> Option<(f64, f64)> {
     }
 }
 
-/// The mean of samples of one kind; none without samples or where curves have no common abscissa.
+/// Returns the mean; none without samples or common abscissa.
 pub fn mean(samples: &[Sample]) -> Option<Sample> {
     let count = samples.len() as f64;
     match samples {
@@ -76,12 +75,11 @@ pub fn mean(samples: &[Sample]) -> Option<Sample> {
     }
 }
 
-/// The points of a curve.
 fn points(sample: &Sample) -> Option<&[[f64; 2]]> {
     if let Sample::Curve(points) = sample { Some(points) } else { None }
 }
 
-/// Standard deviation of samples about their mean, n − 1 in the denominator; none for fewer than two.
+/// Returns the standard deviation (n − 1); none for one sample.
 pub fn deviation(samples: &[Sample], mean: &Sample) -> Option<f64> {
     if samples.len() < 2 {
         return None;
@@ -90,7 +88,6 @@ pub fn deviation(samples: &[Sample], mean: &Sample) -> Option<f64> {
     Some((squares.sum::<Option<f64>>()? / (samples.len() - 1) as f64).sqrt())
 }
 
-/// All abscissae of the curves in the stretch that they share.
 fn common_abscissae(curves: &[&[[f64; 2]]]) -> Option<Vec<f64>> {
     let mut low = f64::NEG_INFINITY;
     let mut high = f64::INFINITY;
@@ -105,7 +102,6 @@ fn common_abscissae(curves: &[&[[f64; 2]]]) -> Option<Vec<f64>> {
     (low <= high).then_some(all)
 }
 
-/// Value of a curve at x, none beyond its ends.
 fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let behind = curve.partition_point(|p| p[0] < x);
     let after = curve.get(behind)?;
@@ -117,13 +113,13 @@ fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     Some(before[1] + share * (after[1] - before[1]))
 }
 
-/// √(∫ y² dx / length) of a curve that is straight between its points, exact for it; |y| of a single point.
+/// √(∫ y² dx / length), exact if piecewise linear; |y| of a single point.
 fn root_mean_square(points: &[[f64; 2]]) -> f64 {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return 0.0 };
     if last[0] <= first[0] {
         return last[1].abs();
     }
-    // The square of a straight line is a parabola.
+    // Squared line: parabola.
     let piece = |w: &[[f64; 2]]| {
         let (a, b) = (w[0][1], w[1][1]);
         (w[1][0] - w[0][0]) * (a * a + a * b + b * b) / 3.0
@@ -137,14 +133,14 @@ mod tests {
     use approx::assert_relative_eq;
 
     #[test]
-    fn norms_of_curves_are_those_of_their_integrals() {
-        // y = x on [0, 1] has the root mean square 1/√3, whatever the points.
+    fn curve_norms_match_integrals() {
+        // y = x on [0, 1] has RMS 1/√3 for any points.
         let line = |n: u32| Sample::curve((0..=n).map(|k| [f64::from(k) / f64::from(n); 2]).collect());
         assert_relative_eq!(line(1).size(), 3.0_f64.sqrt().recip(), max_relative = 1e-14);
         assert_relative_eq!(line(7).size(), 3.0_f64.sqrt().recip(), max_relative = 1e-14);
         let (d, size) = difference(&line(7), &line(5)).unwrap();
         assert!(d < 1e-15 && (size - line(5).size()).abs() < 1e-15);
-        // Against y = 0 from 0.5 on: only the common stretch counts, ∫ x² from 1/2 to 1 is 7/24.
+        // From 0.5: ∫ x² from 1/2 to 1 is 7/24.
         let zero = Sample::curve(vec![[0.5, 0.0], [3.0, 0.0]]);
         assert_relative_eq!(
             difference(&line(3), &zero).unwrap().0,
@@ -157,13 +153,13 @@ mod tests {
     }
 
     #[test]
-    fn mean_and_deviation_of_numbers_and_of_curves() {
+    fn mean_and_deviation() {
         let numbers = [1.0, 2.0, 6.0].map(Sample::Number);
         let middle = mean(&numbers).unwrap();
         assert_eq!(middle, Sample::Number(3.0));
         assert_relative_eq!(deviation(&numbers, &middle).unwrap(), 7.0_f64.sqrt(), max_relative = 1e-14);
         assert_eq!(deviation(&numbers[..1], &middle), None);
-        // The same numbers as constant curves on other points.
+        // The same numbers as constant curves.
         let curves = [
             Sample::curve(vec![[0.0, 1.0], [4.0, 1.0]]),
             Sample::curve(vec![[1.0, 2.0], [2.0, 2.0], [5.0, 2.0]]),

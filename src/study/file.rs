@@ -1,37 +1,37 @@
-//! What is written in a study file: TOML, unknown keys refused, like a scene.
+//! Study file: TOML; unknown keys are errors.
 
 use serde::Deserialize;
 use std::path::PathBuf;
 
-/// A whole study.
+/// Study.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFile {
-    /// One line that says what is studied; it heads the table.
+    /// Title of the study and its table.
     #[serde(default)]
     pub title: String,
-    /// Scene file, relative to the folder of the study file.
+    /// Scene file, relative to the study file.
     pub scene: PathBuf,
-    /// Overrides of all runs, the reference among them.
+    /// Overrides of all runs.
     #[serde(default)]
     pub base: Base,
-    /// What is varied.
+    /// Varied parameters.
     #[serde(default)]
     pub axis: Vec<AxisTable>,
-    /// How the values of several axes make settings.
+    /// Combination of axes.
     #[serde(default)]
     pub combine: Combine,
-    /// Runs of each setting with other random numbers.
+    /// Repetitions with other seeds.
     pub seeds: Option<Seeds>,
-    /// What the settings are compared with; default: the first setting.
+    /// Reference; default: the first set.
     pub reference: Option<Reference>,
-    /// What is compared; default: what load cycles leave.
+    /// Compared quantities; default: results of load cycles.
     #[serde(default)]
     pub quantity: Vec<QuantityTable>,
-    /// Largest error of the recommended setting, 0 to 1, without unit; default 0.05.
+    /// Largest error of the recommended set [-]; default 0.05.
     #[serde(default = "five_percent")]
     pub tolerance: f64,
-    /// Runs at a time; default: as many as there are cores.
+    /// Concurrent runs; default: number of cores.
     pub jobs: Option<usize>,
 }
 
@@ -52,109 +52,109 @@ pub struct Base {
     pub set: Vec<String>,
 }
 
-/// What is varied: either one key with its values, or named groups of overrides.
+/// Varied key with values, or named groups of overrides.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisTable {
-    /// Name in labels; default: the last part of `key`.
+    /// Name; default: last part of `key`.
     pub name: Option<String>,
-    /// Key of the scene that takes each of the values.
+    /// Varied scene key.
     pub key: Option<String>,
-    /// Values of the key; without it tables with `label` and `set`.
+    /// Values, or tables with `label` and `set`.
     pub values: Vec<toml::Value>,
 }
 
-/// How the values of several axes make settings.
+/// Combination of axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Combine {
-    /// Every value with every other.
+    /// All combinations.
     #[default]
     Grid,
-    /// The first values together, the second ones, and so on; all axes have as many.
+    /// First values together, second values, and so on.
     List,
-    /// All first values, and each axis varied about them alone.
+    /// First values, then each axis varied alone.
     OneAtATime,
 }
 
-/// Runs of each setting with other random numbers.
+/// Repetitions with other seeds.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seeds {
-    /// The seeds.
+    /// Seeds.
     pub values: Vec<u64>,
-    /// Keys that they are given to; default: the seed of each group of grains and every other key `seed` of the scene.
+    /// Seed keys; default: all grain groups and every other `seed`.
     pub keys: Option<Vec<String>>,
 }
 
-/// What the settings are compared with: one of them, or a run of its own.
+/// Reference: a set, or a separate run.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {
-    /// Label of a setting.
+    /// Label of a set.
     pub label: Option<String>,
-    /// Overrides of a run of its own, behind those of `[base]`.
+    /// Overrides of a separate run, after `[base]`.
     pub set: Option<Vec<String>>,
 }
 
-/// What is compared: a number of `summary.json` or a column of a table.
+/// Number of `summary.json`, or table column.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuantityTable {
-    /// Name in the tables; default: the column, or the last part of the path.
+    /// Name; default: column or path.
     pub name: Option<String>,
-    /// Unit after the multiplication by `factor`; default: that of the column, where `factor` is 1.
+    /// Unit after scaling; default: of the column.
     pub unit: Option<String>,
-    /// What values are multiplied by, not 0; default 1.
+    /// Scale factor, not 0; default 1.
     #[serde(default = "one")]
     pub factor: f64,
-    /// Path of a number in `summary.json`; an entry of a list by its index, its name or `last`.
+    /// Path in `summary.json`; lists by index, name or `last`.
     pub summary: Option<String>,
-    /// Table that a run leaves, such as `cycles.csv`.
+    /// Results table, such as `cycles.csv`.
     pub file: Option<String>,
-    /// Column of the table, without its unit.
+    /// Column without unit.
     pub column: Option<String>,
-    /// What is made of the column; default: its last value.
+    /// Reduction of the column; default: last value.
     pub take: Option<Take>,
-    /// Abscissa of a curve; default: the first column.
+    /// Abscissa of a curve; default: first column.
     pub against: Option<String>,
-    /// Whether a curve is compared over the logarithm of its abscissa; default false.
+    /// Logarithmic abscissa; default false.
     pub log: Option<bool>,
-    /// What the error is; default relative.
+    /// Error norm; default relative.
     #[serde(default)]
     pub norm: Norm,
-    /// What a relative error is relative to, above 0, in the unit of the quantity; default: the size of the reference.
+    /// Scale of relative errors, above 0; default: the reference.
     pub scale: Option<f64>,
-    /// Known value, in the unit of the quantity, that takes the place of the reference's.
+    /// Exact value instead of the reference.
     pub exact: Option<f64>,
-    /// Largest error of the recommended setting: without unit if relative, else in the unit of the quantity; default: the study's.
+    /// Largest error of the recommended set; default: of the study.
     pub tolerance: Option<f64>,
 }
 
-/// What is made of a column.
+/// Reduction of a column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Take {
-    /// The value in the last row.
+    /// Last row.
     #[default]
     Last,
-    /// The mean of all rows.
+    /// Mean of all rows.
     Mean,
     /// The largest value.
     Max,
     /// The smallest value.
     Min,
-    /// All of it, over another column.
+    /// Curve over another column.
     Curve,
 }
 
-/// What the error of a quantity is.
+/// Error norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Norm {
-    /// The difference over the size of the reference.
+    /// Difference over reference size.
     #[default]
     Relative,
-    /// The difference itself.
+    /// Difference.
     Absolute,
 }

@@ -1,19 +1,18 @@
-//! Names of folders from labels: safe on every file system, distinct, and the same whatever else the study has.
+//! Directory names from labels.
 
 use crate::run::Hash;
 
-/// Longest name [bytes], with room for endings below the 255 of most file systems.
+/// Longest name [bytes]; most file systems allow 255 with extension.
 const LONGEST: usize = 100;
 
-/// The name of the folder of a run.
+/// Returns the directory name of a run.
 ///
-/// Labels of plain characters are their own names, with `_` between their parts; where something had to be replaced or cut
-/// off, a hash of the label keeps them distinct.
+/// Plain labels are kept, with `_` between parts; others get a hash.
 pub fn folder_name(label: &str) -> String {
     let joined = label.replace(", ", "_");
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-=+".contains(c);
     let safe: String = joined.chars().map(|c| if plain(c) { c } else { '-' }).collect();
-    // Not hidden, not a parent folder, and not distinct by capitals alone, which some file systems take for the same.
+    // Not hidden, no parent, distinct on case-insensitive file systems.
     let kept = safe == joined && safe.len() <= LONGEST && !safe.starts_with('.') && !safe.is_empty();
     if kept && !joined.chars().any(|c| c.is_ascii_uppercase()) && !label.contains('_') {
         return safe;
@@ -29,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plain_labels_are_their_own_names_and_others_stay_distinct() {
+    fn names_are_plain_and_distinct() {
         assert_eq!(folder_name("step=0.4, count=300"), "step=0.4_count=300");
         assert_eq!(folder_name("base"), "base");
         let labels =

@@ -1,8 +1,7 @@
-//! Studies: variations of one scene, each run compared with a reference, for the trade of error against cost.
+//! Studies: variations of a scene, compared in error and cost.
 //!
-//! A study file (`file`) is resolved into settings and runs (`plan`), which are carried out as processes of their own (`schedule`) in
-//! the folder of the study (`store`). Tables are made from what is in that folder alone (`outcome`), so it does not matter which
-//! machine has done which run, and when.
+//! A `file` is resolved to a `plan`, run as separate processes (`schedule`) in a directory (`store`). Tables
+//! (`outcome`) depend only on that directory, so several machines may share a study.
 
 mod axis;
 mod curve;
@@ -31,52 +30,49 @@ use schedule::{Schedule, Task};
 use std::path::{Path, PathBuf};
 use store::{Found, Store};
 
-/// Rows of the table that a study prints.
 const PRINTED: usize = 20;
-/// Refused settings that a message spells out.
 const SPELLED_OUT: usize = 3;
-/// Most runs at a time.
 const MOST_JOBS: usize = 1024;
 
-/// How to carry out a study.
+/// Study options.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Folder of the results; default `results/<name of the study file>`.
+    /// Results directory; default `results/<name of the study file>`.
     pub out: Option<PathBuf>,
-    /// Threads of each run.
+    /// Threads per run.
     pub threads: Option<usize>,
-    /// Runs at a time.
+    /// Concurrent runs.
     pub jobs: Option<usize>,
-    /// Only the runs k, k + n, k + 2n, … of all, counted from 1, without tables: k and n.
+    /// Only runs k, k + n, …, from 1, without tables: k and n.
     pub part: Option<(usize, usize)>,
-    /// Make the tables from the runs that are there.
+    /// Write tables from existing runs.
     pub merge: bool,
-    /// Skip what is done, go on with what was interrupted.
+    /// Skip completed runs, resume interrupted ones.
     pub resume: bool,
-    /// Replace what is there.
+    /// Overwrite existing results.
     pub force: bool,
     /// Print nothing.
     pub quiet: bool,
-    /// Request to stop.
+    /// Stop request.
     pub interrupt: Interrupt,
 }
 
-/// Validates a scene with overrides, as `check` does.
+/// Validates a scene with overrides, like `check`.
 pub type Check<'a> = &'a dyn Fn(&Path, &[String]) -> Result<(), Failure>;
 
-/// Number of runs of a study; its scene is not checked.
+/// Returns the number of runs.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn count_runs(file: &Path) -> Result<usize, Failure> {
     let document = Document::open(file)?;
     Ok(Plan::new(&document, &document.read::<StudyFile>()?)?.runs.len())
 }
 
-/// Carries out a study; what it prints at its end.
+/// Runs a study and returns its report.
 ///
 /// # Errors
-/// Bad input, before anything is written; an interrupt; a reference that failed, after the tables were written.
+/// Input errors, interrupts, a failed reference.
 pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<String, Failure> {
     let document = Document::open(file)?;
     let parsed: StudyFile = document.read()?;
@@ -91,7 +87,7 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
         )));
     }
     let hashes = prepare(&document, &plan, options, check)?;
-    // Parts of a study share its folder; each run has a lock of its own.
+    // Each run has a lock.
     let _lock = match options.part {
         None => Some(Lock::take(&dir)?),
         Some(_) => None,
@@ -109,12 +105,10 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
     tables(&plan, &store, &found.collect::<Result<Vec<Found>, Failure>>()?)
 }
 
-/// Whether the run with index `k` is to be carried out by this process.
 fn ours(options: &Options, k: usize) -> bool {
     options.part.is_none_or(|(part, parts)| k % parts == part - 1)
 }
 
-/// Reads and checks the scene of every run that will be carried out; hashes of the scenes of all runs.
 fn prepare(
     document: &Document,
     plan: &Plan,
@@ -126,7 +120,7 @@ fn prepare(
     let mut checked = None;
     for (k, run) in plan.runs.iter().enumerate() {
         let hash = scene_hash(&plan.scene, &run.set);
-        // Of each setting one seed: what is checked does not depend on it.
+        // One seed per set is enough.
         let needed = ours(options, k) && !options.merge && checked != Some(run.setting);
         let verdict = hash.and_then(|hash| {
             if needed {
@@ -144,7 +138,7 @@ fn prepare(
     if refused.is_empty() { Ok(hashes) } else { Err(refusal(document, &refused)) }
 }
 
-/// Bad input of one or several runs in one sentence; a fault that all of them have is stated once.
+/// A common error is stated once.
 fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
     let (label, text) = &refused[0];
     let file = document.file().display();
@@ -163,7 +157,6 @@ fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
     Failure::Input(format!("{file}: {} runs rejected: {}", refused.len(), texts.join("; ")))
 }
 
-/// Hash of a scene with overrides and of the files that it names.
 fn scene_hash(scene: &Path, set: &[String]) -> Result<String, Failure> {
     let mut document = Document::open(scene)?;
     set.iter().try_for_each(|assignment| document.set(assignment))?;
@@ -171,7 +164,6 @@ fn scene_hash(scene: &Path, set: &[String]) -> Result<String, Failure> {
     Ok(run::scene_hash(&document, &parsed))
 }
 
-/// Carries out what is not done.
 fn carry_out(
     file: &Path,
     plan: &Plan,
@@ -221,7 +213,7 @@ fn carry_out(
     })
 }
 
-/// Refuses quantities that the first run which is done has not: all others would be run for nothing.
+/// Rejects missing quantities before other runs start in vain.
 fn first_run(file: &Path, plan: &Plan, store: &Store, run: &Run) -> Result<(), Failure> {
     for (k, quantity) in plan.quantities.iter().enumerate() {
         if let Err(fault) = sample::read(quantity, &store.results(run)) {
@@ -235,7 +227,7 @@ fn first_run(file: &Path, plan: &Plan, store: &Store, run: &Run) -> Result<(), F
     Ok(())
 }
 
-/// Runs at a time and threads of each: together as many as there are cores, unless both are given.
+/// By default their product is the number of cores.
 fn shares(plan: &Plan, options: &Options, runs: usize) -> Result<(usize, usize), Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.or(plan.jobs);
@@ -255,7 +247,6 @@ fn shares(plan: &Plan, options: &Options, runs: usize) -> Result<(usize, usize),
     Ok((jobs, threads))
 }
 
-/// Writes the tables; what is printed at the end.
 fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure> {
     let outcome = Outcome::of(plan, store, found);
     let dir = store.dir();

@@ -1,4 +1,4 @@
-//! The trade that a study measures: error and cost of each setting.
+//! Error and cost of each parameter set.
 
 use super::axis::Setting;
 use super::curve::{self, Sample};
@@ -9,79 +9,78 @@ use super::sample;
 use super::store::{Found, Record, Store};
 use serde::Serialize;
 
-/// Mean cost of the runs of a setting.
+/// Mean cost of a set's runs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Cost {
-    /// Processor time of a run, user and system, all threads [s].
+    /// CPU time, all threads [s].
     pub cpu_seconds: Option<f64>,
-    /// Time of a run by the clock, while the other runs go on beside it [s].
+    /// Wall time with concurrent runs [s].
     pub wall_seconds: f64,
-    /// Steps of the grains and of the solid, in all stages.
+    /// DEM and FEM steps of all stages.
     pub steps: f64,
-    /// Largest resident memory of any run [bytes].
+    /// Peak resident memory of any run [bytes].
     pub peak_memory: Option<u64>,
 }
 
-/// A quantity of a setting.
+/// Quantity of a set.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Cell {
-    /// Mean over the seeds; of a curve its root mean square.
+    /// Mean over seeds; RMS of a curve.
     pub value: Option<f64>,
-    /// Standard deviation over the seeds.
+    /// Standard deviation over seeds.
     pub deviation: Option<f64>,
-    /// Error against the reference or the known value.
+    /// Error against reference or exact value.
     pub error: Option<f64>,
-    /// Standard error of that error by the scatter of the seeds.
+    /// Standard error over seeds.
     pub scatter: Option<f64>,
-    /// Whether the error is below the scatter: more seeds might show another one.
+    /// Whether the error is within the standard error.
     pub below_scatter: bool,
-    /// Why something is missing.
+    /// Reason for missing data.
     pub remark: Option<String>,
 }
 
-/// A setting with what its runs gave.
+/// Parameter set with results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Label of the setting.
+    /// Label.
     pub setting: String,
-    /// Label of its value of each axis.
+    /// Axis value labels.
     pub levels: Vec<String>,
     /// Overrides.
     pub set: Vec<String>,
-    /// Runs planned, one for each seed.
+    /// Planned runs.
     pub runs: usize,
-    /// Runs that are done.
+    /// Completed runs.
     pub done: usize,
-    /// Runs that are not, each with its reason.
+    /// Reasons of incomplete runs.
     pub reasons: Vec<String>,
-    /// Costs; none where no run is done.
+    /// Costs; none without completed runs.
     pub cost: Option<Cost>,
-    /// Processor time of the reference over that of the setting.
+    /// CPU time, reference over set.
     pub speed_up: Option<f64>,
-    /// Its quantities.
+    /// Quantities.
     pub quantities: Vec<Cell>,
-    /// The largest error over its tolerance.
+    /// Largest error over tolerance.
     pub error_over_tolerance: Option<f64>,
-    /// Whether all errors, each with its scatter, are within their tolerances.
+    /// Whether all errors are within tolerance.
     pub within: bool,
 }
 
-/// What a study found.
+/// Results of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The settings, in the order of the plan.
+    /// Sets in plan order.
     pub rows: Vec<Row>,
-    /// Units of the quantities.
+    /// Units.
     pub units: Vec<String>,
-    /// Index of the reference.
+    /// Reference index.
     pub reference: usize,
-    /// Index of the cheapest setting within the tolerances.
+    /// Cheapest set within tolerance.
     pub recommended: Option<usize>,
-    /// Settings that no other one beats in both cost and error, the cheap ones first.
+    /// Pareto front, cheapest first.
     pub front: Vec<usize>,
 }
 
-/// Samples of one setting by quantity, with the mean of each.
 struct Gathered {
     samples: Vec<Vec<Sample>>,
     means: Vec<Option<Sample>>,
@@ -89,7 +88,7 @@ struct Gathered {
 }
 
 impl Outcome {
-    /// Of what is in the folder of a study; `found` has an entry for each run.
+    /// Evaluates a study directory; `found`: one entry per run.
     pub fn of(plan: &Plan, store: &Store, found: &[Found]) -> Outcome {
         let mut units = vec![String::new(); plan.quantities.len()];
         let gathered: Vec<Gathered> =
@@ -118,7 +117,7 @@ impl Outcome {
     }
 }
 
-/// Processor time of a run of a setting [s].
+/// Returns the mean CPU time [s].
 pub fn cpu(row: &Row) -> Option<f64> {
     row.cost.as_ref().and_then(|c| c.cpu_seconds)
 }
@@ -128,7 +127,6 @@ fn cheapest(rows: &[Row]) -> Option<usize> {
     within.min_by(|a, b| cpu(&rows[*a]).partial_cmp(&cpu(&rows[*b])).unwrap_or(std::cmp::Ordering::Equal))
 }
 
-/// The settings that no other one beats in both cost and error.
 fn front(rows: &[Row]) -> Vec<usize> {
     let place = |k: usize| Some((k, cpu(&rows[k])?, rows[k].error_over_tolerance?));
     let mut all: Vec<(usize, f64, f64)> = (0..rows.len()).filter_map(place).collect();
@@ -144,7 +142,6 @@ fn front(rows: &[Row]) -> Vec<usize> {
     front
 }
 
-/// Samples and costs of the setting with index `setting`.
 fn gather(plan: &Plan, store: &Store, found: &[Found], setting: usize, units: &mut [String]) -> Gathered {
     let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); plan.quantities.len()];
     let mut remarks: Vec<Option<String>> = vec![None; plan.quantities.len()];
@@ -167,7 +164,7 @@ fn gather(plan: &Plan, store: &Store, found: &[Found], setting: usize, units: &m
             other => reasons.push(format!("{}: {}", run.label, why(other))),
         }
     }
-    // A mean of some seeds only would be taken for one of all.
+    // A mean over some seeds would mislead.
     let mean = |(samples, remark): (&Vec<Sample>, &Option<String>)| match remark {
         None => curve::mean(samples),
         Some(_) => None,
@@ -190,7 +187,7 @@ fn gather(plan: &Plan, store: &Store, found: &[Found], setting: usize, units: &m
     Gathered { samples, means, row }
 }
 
-/// Why a run gives nothing.
+/// Returns the reason for missing results.
 pub fn why(found: &Found) -> String {
     match found {
         Found::Nothing => "missing".into(),
@@ -226,7 +223,6 @@ fn mean_cost(costs: &[Cost]) -> Option<Cost> {
     })
 }
 
-/// A quantity of a setting against that of the reference.
 fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered) -> Cell {
     let remark = own.row.quantities[index].remark.clone();
     let Some(mean) = &own.means[index] else { return Cell { remark, ..Cell::default() } };
@@ -262,7 +258,7 @@ fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered)
     Cell { error: Some(error), scatter, below_scatter, ..cell }
 }
 
-/// Runs that have not been carried out, by label.
+/// Returns runs not yet completed.
 pub fn missing<'a>(plan: &'a Plan, found: &[Found]) -> Vec<&'a Run> {
     let missing = |found: &Found| matches!(found, Found::Nothing | Found::Unfinished(..));
     plan.runs.iter().zip(found).filter(|(_, found)| missing(found)).map(|(run, _)| run).collect()

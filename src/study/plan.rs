@@ -1,4 +1,4 @@
-//! The runs of a study: settings from the axes, each with every seed.
+//! Runs of a study: parameter sets times seeds.
 
 use super::axis::{Axis, MOST_RUNS, Setting, combine};
 use super::file::StudyFile;
@@ -9,50 +9,49 @@ use crate::scene::{Document, Problem, Scene, SceneError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Label of a reference that is a run of its own.
 const REFERENCE: &str = "reference";
 
-/// One run: a setting with a seed.
+/// Run: set and seed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Label in messages.
+    /// Label.
     pub label: String,
-    /// Name of its folder.
+    /// Directory name.
     pub folder: String,
-    /// Index of its setting.
+    /// Set index.
     pub setting: usize,
     /// Overrides.
     pub set: Vec<String>,
 }
 
-/// A study, resolved.
+/// Resolved study.
 #[derive(Debug)]
 pub struct Plan {
-    /// Title of the tables.
+    /// Title.
     pub title: String,
-    /// The scene.
+    /// Scene.
     pub scene: PathBuf,
-    /// Names of the axes.
+    /// Axis names.
     pub axes: Vec<String>,
-    /// The settings.
+    /// Parameter sets.
     pub settings: Vec<Setting>,
-    /// Index of the setting that the others are compared with.
+    /// Reference index.
     pub reference: usize,
-    /// All runs, those of a setting together.
+    /// Runs, grouped by set.
     pub runs: Vec<Run>,
-    /// What is compared.
+    /// Quantities.
     pub quantities: Vec<Quantity>,
-    /// Largest error of the recommended setting where a quantity has no tolerance of its own.
+    /// Default tolerance of the recommended set.
     pub tolerance: f64,
-    /// Runs at a time that the file states.
+    /// Concurrent runs, if given.
     pub jobs: Option<usize>,
 }
 
 impl Plan {
-    /// Resolves a study file.
+    /// Resolves a study.
     ///
     /// # Errors
-    /// Bad input.
+    /// Input errors.
     pub fn new(document: &Document, file: &StudyFile) -> Result<Plan, Failure> {
         if !(file.tolerance > 0.0 && file.tolerance <= 1.0) {
             return Err(document.error("tolerance", file.tolerance.to_string(), "above 0, at most 1").into());
@@ -89,7 +88,7 @@ impl Plan {
     }
 }
 
-/// Index of the reference, which is put in front where it is a run of its own.
+/// A separate reference is inserted first.
 fn reference(
     document: &Document,
     file: &StudyFile,
@@ -111,7 +110,6 @@ fn reference(
     }
 }
 
-/// Every setting with every seed.
 fn runs(
     document: &Document,
     file: &StudyFile,
@@ -158,7 +156,7 @@ fn runs(
     Ok(runs)
 }
 
-/// The seed of each group of grains and every other key `seed` of a scene.
+/// Seeds of grain groups and every other `seed`.
 fn seed_keys(scene: &Path, setting: &Setting) -> Result<Vec<String>, SceneError> {
     let mut document = Document::open(scene)?;
     setting.set.iter().try_for_each(|assignment| document.set(assignment))?;
@@ -184,12 +182,11 @@ fn gather(path: &str, value: &toml::Value, keys: &mut BTreeSet<String>) {
     }
 }
 
-/// Bad input of the scene of a setting, with the study file and the label of the setting.
+/// Adds study file and label to a scene error.
 pub fn of_setting(document: &Document, label: &str, fault: &impl std::fmt::Display) -> Failure {
     Failure::Input(format!("{}: \"{label}\": {fault}", document.file().display()))
 }
 
-/// Whether a scene has a load whose cycles are recorded.
 fn scene_has_cycles(scene: &Path, set: &[String]) -> Result<bool, SceneError> {
     let mut document = Document::open(scene)?;
     set.iter().try_for_each(|assignment| document.set(assignment))?;

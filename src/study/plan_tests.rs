@@ -1,4 +1,4 @@
-//! Counts, labels and overrides of the settings.
+//! Tests of counts, labels and overrides.
 
 use super::*;
 use crate::write::sample::folder;
@@ -7,7 +7,6 @@ use std::fs;
 const SCENE: &str =
     "[[grains]]\nname = \"a\"\n[[grains]]\nname = \"b\"\nseed = 4\n[[bond]]\nspread = { seed = 3 }\n";
 
-/// The plan of a study of two axes with more text in front.
 fn plan(name: &str, front: &str, behind: &str) -> Result<Plan, Failure> {
     let dir = folder(name);
     fs::write(dir.join("scene.toml"), "title = \"x\"\n").unwrap();
@@ -48,7 +47,7 @@ fn axes_are_combined_in_three_ways() {
 }
 
 #[test]
-fn a_reference_is_a_setting_or_a_run_of_its_own() {
+fn resolves_reference() {
     let own = plan("study_own", "", "[reference]\nset = [\"time.end=0.1\"]").unwrap();
     assert_eq!((own.reference, labels(&own)[0], own.runs.len()), (0, "reference", 5));
     assert_eq!(own.settings[0].set, ["title=y", "time.end=0.1"]);
@@ -59,7 +58,7 @@ fn a_reference_is_a_setting_or_a_run_of_its_own() {
 }
 
 #[test]
-fn seeds_go_to_the_keys_that_a_scene_has() {
+fn assigns_seeds_to_scene_keys() {
     let keys = "[seeds]\nvalues = [7, 8]\nkeys = [\"a.seed\"]";
     let stated = plan("study_keys", "", keys).unwrap();
     assert_eq!(stated.runs.len(), 8);

@@ -1,13 +1,13 @@
-//! The trade as a picture: error against cost, with the front of the settings that no other one beats.
+//! Error over cost with Pareto front.
 
 use super::file::Norm;
 use super::outcome::{Outcome, cpu};
 use super::plan::Plan;
 use crate::write::scatter::{Group, Mark, ScatterPlot};
 
-/// The picture; points have the numbers of their rows in the table.
+/// Draws the plot; points are numbered like table rows.
 pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
-    // One tolerance for relative errors alone: the plain error says more than its share of the tolerance.
+    // Plain errors are clearer than ratios.
     let plain = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
     let unit = if plain { plan.tolerance } else { 1.0 };
     let place = |k: usize| {
@@ -17,7 +17,7 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
     let placed: Vec<(usize, [f64; 2])> =
         (0..outcome.rows.len()).filter_map(|k| Some((k, place(k)?))).collect();
     let least = placed.iter().map(|(_, p)| p[1]).filter(|e| *e > 0.0).fold(unit, f64::min);
-    // A logarithm has no place for no error: such points, the reference first of all, stand below all others.
+    // Zero errors are drawn below the others.
     let shown = |(k, p): &(usize, [f64; 2])| {
         let y = if p[1] > 0.0 { p[1] } else { least / 5.0 };
         ((k + 1).to_string(), [p[0], y])

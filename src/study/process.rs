@@ -1,4 +1,4 @@
-//! Runs as processes of their own: none ends another, whatever becomes of it.
+//! Runs as separate processes.
 
 use crate::message::shown;
 use crate::program;
@@ -8,22 +8,21 @@ use std::io;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-/// Longest reason in a table [characters].
 const LONGEST: usize = 400;
 
-/// How a run begins.
+/// Start mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Beginning {
-    /// Anew, replacing what is there.
+    /// From scratch, overwriting.
     Anew,
-    /// From its checkpoint.
+    /// From checkpoint.
     Resumed,
 }
 
-/// Starts a run of this program. What it says goes to the file `log`.
+/// Starts a run, logging to `log`.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn start(
     scene: &Path,
     out: &Path,
@@ -36,21 +35,20 @@ pub fn start(
     command.arg("run").arg(scene).arg("--out").arg(out);
     command.args(["--quiet", "--threads", &threads.to_string()]);
     command.arg(if beginning == Beginning::Anew { "--force" } else { "--resume" });
-    // Joined, for an override may begin with a dash.
+    // Overrides may begin with a dash.
     command.args(set.iter().map(|assignment| format!("--set={assignment}")));
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(log)?);
     apart(&mut command);
     command.spawn()
 }
 
-/// Puts a process into a group of its own, so that Ctrl-C comes to it through the study alone, once; and lets the system interrupt
-/// it when the study is killed.
+/// Separate process group: Ctrl-C arrives once, through the study. Interrupted if the study is killed.
 #[cfg(unix)]
 fn apart(command: &mut Command) {
     use std::os::unix::process::CommandExt;
     command.process_group(0);
     #[cfg(target_os = "linux")]
-    // SAFETY: between fork and exec only functions that are safe in a signal handler may be called; `prctl` is one.
+    // SAFETY: only async-signal-safe functions after fork; `prctl` is one.
     unsafe {
         command.pre_exec(|| match libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM as libc::c_ulong) {
             0 => Ok(()),
@@ -62,20 +60,20 @@ fn apart(command: &mut Command) {
 #[cfg(not(unix))]
 fn apart(_: &mut Command) {}
 
-/// Requests a run to write its checkpoint and stop.
+/// Requests a checkpoint and stop.
 #[cfg(unix)]
 pub fn interrupt(child: &Child) {
     if let Ok(process) = i32::try_from(child.id()) {
-        // SAFETY: the call reads two numbers. The process is a child that was not waited for, so its number is no other's.
+        // SAFETY: plain integers. The child is not reaped: its id is valid.
         unsafe { libc::kill(process, libc::SIGINT) };
     }
 }
 
-/// Without signals a run goes on to its end, and the study waits for it.
+/// Without signals the study waits for the run.
 #[cfg(not(unix))]
 pub fn interrupt(_: &Child) {}
 
-/// Exit code of a process, 128 and the number of the signal that ended it; and why it did not end well.
+/// Returns exit code (128 + signal) and reason of failure.
 pub fn verdict(status: ExitStatus, log: &Path) -> (i32, String) {
     match (status.code(), signal(status)) {
         (Some(0), _) => (0, String::new()),
@@ -95,7 +93,6 @@ fn signal(_: ExitStatus) -> Option<i32> {
     None
 }
 
-/// The error that a run has said last.
 fn reason(log: &Path) -> String {
     let bytes = source::bytes(log, source::LARGEST_TEXT).unwrap_or_default();
     let text = String::from_utf8_lossy(&bytes);

@@ -1,54 +1,54 @@
-//! What is compared: numbers and curves that runs leave.
+//! Compared quantities of runs.
 
 use super::file::{Norm, QuantityTable, Take};
 use crate::columns::{Definition, cycles};
 use crate::scene::{Document, Problem, SceneError};
 
-/// A quantity, resolved.
+/// Resolved quantity.
 #[derive(Clone, Debug)]
 pub struct Quantity {
-    /// Name in the tables.
+    /// Name.
     pub name: String,
-    /// Unit, where it is not that of the column.
+    /// Unit, if different from the column.
     pub unit: Option<String>,
-    /// What values are multiplied by.
+    /// Scale factor.
     pub factor: f64,
-    /// Where it is found.
+    /// Source.
     pub source: Source,
-    /// What its error is.
+    /// Error norm.
     pub norm: Norm,
-    /// What a relative error is relative to, if not the reference.
+    /// Scale of relative errors.
     pub scale: Option<f64>,
-    /// Known value in place of the reference's.
+    /// Exact value instead of the reference.
     pub exact: Option<f64>,
-    /// Largest error that is accepted.
+    /// Tolerance.
     pub tolerance: f64,
 }
 
-/// Where a quantity is found.
+/// Source of a quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Path of a number in `summary.json`.
+    /// Path in `summary.json`.
     Summary(String),
-    /// Column of a table, and what is made of it.
+    /// Reduced table column.
     Column(String, String, Take),
-    /// Column of a table over another one, or over the first.
+    /// Column over another, default the first.
     Curve {
-        /// The table.
+        /// Table.
         file: String,
-        /// The column.
+        /// Column.
         column: String,
-        /// The abscissa.
+        /// Abscissa.
         against: Option<String>,
-        /// Whether the logarithm of the abscissa counts.
+        /// Logarithmic abscissa.
         log: bool,
     },
 }
 
-/// The quantities of a study; `cycles` says whether its scene has load cycles, whose results are compared by default.
+/// Resolves the quantities; `cycles`: the scene has load cycles.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn resolve(
     document: &Document,
     tables: &[QuantityTable],
@@ -77,7 +77,6 @@ pub fn resolve(
     Ok(all)
 }
 
-/// What load cycles leave, where nothing else is stated.
 fn of_cycles(tolerance: f64) -> Vec<Quantity> {
     let file = "cycles.csv".to_string();
     let of = |name: &str, unit: &str, factor: f64, source: Source| Quantity {

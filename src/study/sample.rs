@@ -1,4 +1,4 @@
-//! Reads what runs have left for the quantities of a study.
+//! Reads quantities from results.
 
 use super::curve::Sample;
 use super::file::Take;
@@ -6,10 +6,10 @@ use super::quantity::{Quantity, Source};
 use crate::read::source;
 use std::path::Path;
 
-/// What the run in `folder` gives for a quantity, in its unit, and that unit; or why there is nothing.
+/// Reads a quantity and its unit.
 ///
 /// # Errors
-/// The file, the column or the number is not there.
+/// Missing file, column or number.
 pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), String> {
     let own = quantity.unit.clone();
     let (sample, unit) = match &quantity.source {
@@ -27,7 +27,7 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
             };
             let points = abscissa.into_iter().zip(values);
             let points = points.map(|(x, y)| [if *log { libm::log10(x) } else { x }, y]);
-            // The logarithm leaves out the row at 0.
+            // The row at 0 has no logarithm.
             let points: Vec<[f64; 2]> = points.filter(|p| p[0].is_finite()).collect();
             if points.is_empty() {
                 return Err(format!("{file}: no row to compare"));
@@ -45,7 +45,6 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
     Ok((sample, unit))
 }
 
-/// The number of a column.
 fn reduce(file: &str, values: &[f64], take: Take) -> Result<f64, String> {
     let Some(last) = values.last() else { return Err(format!("{file} has no rows")) };
     Ok(match take {
@@ -56,7 +55,6 @@ fn reduce(file: &str, values: &[f64], take: Take) -> Result<f64, String> {
     })
 }
 
-/// The number at a path of `summary.json`.
 fn number_at(folder: &Path, path: &str) -> Result<f64, String> {
     let file = "summary.json";
     let bytes = source::bytes(&folder.join(file), source::LARGEST_TEXT)
@@ -78,7 +76,6 @@ fn number_at(folder: &Path, path: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("{file} has no number at `{path}`"))
 }
 
-/// A table that a run has left.
 struct Table<'a> {
     file: &'a str,
     heads: Vec<String>,
@@ -103,7 +100,6 @@ impl Table<'_> {
         Ok(Table { file, heads, rows })
     }
 
-    /// Values and unit of a column.
     fn column(&self, name: &str) -> Result<(Vec<f64>, String), String> {
         let split = |head: &str| {
             let (name, unit) = head.split_once(" [").unwrap_or((head, ""));

@@ -1,4 +1,4 @@
-//! Carries out the runs of a study, several at a time.
+//! Runs the tasks of a study concurrently.
 
 use super::plan::Run;
 use super::process::{self, Beginning};
@@ -12,40 +12,37 @@ use std::path::Path;
 use std::process::{Child, ExitStatus};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at the processes.
 const LOOK: Duration = Duration::from_millis(5);
-/// Exit code of an interrupted run.
 const INTERRUPTED: i32 = 130;
 
-/// A run that is to be carried out.
+/// Pending run.
 #[derive(Debug)]
 pub struct Task<'a> {
-    /// The run.
+    /// Run.
     pub run: &'a Run,
-    /// Hash of its scene.
+    /// Scene hash.
     pub scene_hash: &'a str,
-    /// What is there of it.
+    /// Existing results.
     pub found: Found,
 }
 
-/// How runs are carried out.
+/// Run settings.
 #[derive(Debug)]
 pub struct Schedule<'a> {
-    /// The scene.
+    /// Scene.
     pub scene: &'a Path,
-    /// Where the results go.
+    /// Store.
     pub store: &'a Store,
-    /// Runs at a time.
+    /// Concurrent runs.
     pub jobs: usize,
-    /// Threads of each.
+    /// Threads per run.
     pub threads: usize,
-    /// Request to stop.
+    /// Stop request.
     pub interrupt: &'a Interrupt,
-    /// Whether nothing is printed.
+    /// Suppresses output.
     pub quiet: bool,
 }
 
-/// A run in progress.
 struct Active<'a> {
     run: &'a Run,
     child: Child,
@@ -54,10 +51,10 @@ struct Active<'a> {
 }
 
 impl Schedule<'_> {
-    /// Carries out `tasks`; `first` is called with the first run that is done, and may end the study.
+    /// Runs `tasks`; `first` gets the first completed run and may stop the study.
     ///
     /// # Errors
-    /// An interrupt, after all runs that were under way have stopped; what the system refuses; what `first` says.
+    /// Interrupts; I/O errors; errors of `first`.
     pub fn carry_out(
         &self,
         tasks: Vec<Task<'_>>,
@@ -128,7 +125,7 @@ impl Schedule<'_> {
             message: String::new(),
             ..before
         };
-        // Before it starts: whatever happens now, what is there is known to be unfinished.
+        // A crash then leaves a known unfinished run.
         self.store.record(run, &record)?;
         let (threads, log) = (self.threads, self.store.log(run));
         let child = process::start(self.scene, &out, &run.set, threads, beginning, &log)
@@ -136,10 +133,9 @@ impl Schedule<'_> {
         Ok(Active { run, child, begun: Instant::now(), record })
     }
 
-    /// Writes what became of a run.
     fn end(&self, a: Active<'_>, status: ExitStatus) -> Result<Record, Failure> {
         let (code, message) = process::verdict(status, &self.store.log(a.run));
-        // Others may have left no summary, and the one in the folder is of an earlier attempt.
+        // Else of an earlier attempt.
         let summarized = [0, NUMERICAL, INTERRUPTED].contains(&code);
         let cpu = if summarized { self.store.cpu_seconds(a.run) } else { None };
         let sum = match (a.record.cpu_seconds, cpu) {
@@ -152,7 +148,6 @@ impl Schedule<'_> {
         Ok(record)
     }
 
-    /// A line for each run where no bar is shown.
     fn report(&self, record: &Record, ended: usize, total: usize) {
         if self.quiet || std::io::stderr().is_terminal() {
             return;
@@ -167,7 +162,6 @@ impl Schedule<'_> {
     }
 }
 
-/// Takes the processes that have ended out of a list.
 fn finished<'r>(active: &mut Vec<Active<'r>>) -> Result<Vec<(Active<'r>, ExitStatus)>, Failure> {
     let mut ended = Vec::new();
     let mut k = 0;

@@ -1,9 +1,9 @@
-//! The folder of a study: a folder of results for each run, and beside it a record of what became of it.
+//! Study directory with results and records of runs.
 //!
 //! ```text
-//! DIR/runs/NAME/        results of a run, as `trackbed run` leaves them
+//! DIR/runs/NAME/        results of a run
 //! DIR/runs/NAME.json    its record
-//! DIR/runs/NAME.log     what it said on standard error
+//! DIR/runs/NAME.log     its standard error
 //! DIR/study.csv, study.md, study.json, pareto.svg
 //! ```
 
@@ -14,64 +14,64 @@ use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Exit code of a numerical failure, which the same run would come to again.
+/// Exit code of a numerical failure.
 pub const NUMERICAL: i32 = 3;
 
-/// What became of a run so far.
+/// Record of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Label of the run.
+    /// Label.
     pub label: String,
     /// Overrides.
     pub set: Vec<String>,
-    /// Hash of the scene, its overrides and files.
+    /// Hash of scene, overrides and files.
     pub scene_hash: String,
-    /// Exit code; none while it runs.
+    /// Exit code; none while running.
     pub exit_code: Option<i32>,
-    /// Why it failed.
+    /// Failure message.
     pub message: String,
-    /// Processor time of all attempts that have ended by themselves [s].
+    /// CPU time of completed attempts [s].
     pub cpu_seconds: Option<f64>,
-    /// Time by the clock of all attempts [s].
+    /// Wall time of all attempts [s].
     pub wall_seconds: f64,
 }
 
-/// What is in the folder of a run.
+/// Existing results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Found {
     /// Nothing.
     Nothing,
-    /// A run that is done.
+    /// Completed.
     Done(Record, serde_json::Value),
-    /// A run that failed, and would fail again.
+    /// Failed reproducibly.
     Failed(Record),
-    /// A run that was interrupted or killed, or lacked something of the system, with a checkpoint or without.
+    /// Interrupted or killed; whether with checkpoint.
     Unfinished(Record, bool),
 }
 
-/// The folder of a study.
+/// Study directory.
 #[derive(Clone, Debug)]
 pub struct Store {
     dir: PathBuf,
 }
 
 impl Store {
-    /// The store in `dir`, which need not be there.
+    /// Creates a store in `dir`, which may be missing.
     pub fn new(dir: &Path) -> Store {
         Store { dir: dir.to_path_buf() }
     }
 
-    /// The folder itself.
+    /// Returns the directory.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
 
-    /// Folder of the results of a run.
+    /// Returns the results directory of a run.
     pub fn results(&self, run: &Run) -> PathBuf {
         self.dir.join("runs").join(&run.folder)
     }
 
-    /// File with what a run says.
+    /// Returns the log file of a run.
     pub fn log(&self, run: &Run) -> PathBuf {
         self.dir.join("runs").join(format!("{}.log", run.folder))
     }
@@ -80,24 +80,24 @@ impl Store {
         self.dir.join("runs").join(format!("{}.json", run.folder))
     }
 
-    /// Makes the folder of the runs.
+    /// Creates the runs directory.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn make(&self) -> Result<(), Failure> {
         let runs = self.dir.join("runs");
         std::fs::create_dir_all(&runs).map_err(|e| Failure::Other(format!("{}: {e}", runs.display())))
     }
 
-    /// Whether anything of a run is there.
+    /// Whether anything exists for a run.
     pub fn has(&self, run: &Run) -> bool {
         self.results(run).exists() || self.record_file(run).exists()
     }
 
-    /// What became of a run, whose scene has the hash `scene_hash` now.
+    /// Returns the results of a run.
     ///
     /// # Errors
-    /// Bad input: there are results of another scene.
+    /// Results of another scene.
     pub fn look(&self, run: &Run, scene_hash: &str) -> Result<Found, Failure> {
         let results = self.results(run);
         let summary = json(&results.join("summary.json"));
@@ -119,7 +119,7 @@ impl Store {
         };
         let mut record = record.unwrap_or_else(unseen);
         if done && record.exit_code.is_none() {
-            // The study was killed before the run had ended.
+            // The study was killed before.
             record.cpu_seconds =
                 summary["cpu_seconds"].as_f64().map(|s| s + record.cpu_seconds.unwrap_or(0.0));
         }
@@ -131,25 +131,25 @@ impl Store {
         })
     }
 
-    /// Writes the record of a run.
+    /// Writes a record.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn record(&self, run: &Run, record: &Record) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(record).map_err(|e| Failure::Other(e.to_string()))?;
         write(&self.record_file(run), &text)
     }
 
-    /// Processor time of the last attempt of a run, from the summary that it left [s].
+    /// Returns the CPU time of the last attempt [s].
     pub fn cpu_seconds(&self, run: &Run) -> Option<f64> {
         json(&self.results(run).join("summary.json"))["cpu_seconds"].as_f64()
     }
 }
 
-/// Writes a text as a whole file, with an end of line.
+/// Writes a text file.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
     let end = if text.ends_with('\n') { "" } else { "\n" };
     atomic::write(file, |out| {
@@ -158,7 +158,6 @@ pub fn write(file: &Path, text: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A JSON file; null where there is none.
 fn json(file: &Path) -> serde_json::Value {
     let bytes = source::bytes(file, source::LARGEST_TEXT).unwrap_or_default();
     serde_json::from_slice(&bytes).unwrap_or_default()

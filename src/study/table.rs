@@ -1,4 +1,4 @@
-//! The table of a study for other programs: `study.csv`, and `study.json` with everything.
+//! Machine-readable tables: `study.csv`, `study.json`.
 
 use super::file::Norm;
 use super::outcome::{Outcome, cpu};
@@ -6,15 +6,15 @@ use super::plan::Plan;
 use super::quantity::Quantity;
 use serde_json::json;
 
-/// Name and unit of a quantity as the head of a column.
+/// Returns a column header: name and unit.
 pub fn head(quantity: &Quantity, unit: &str) -> String {
     if unit.is_empty() { quantity.name.clone() } else { format!("{} [{unit}]", quantity.name) }
 }
 
-/// The table as comma-separated values; a cell without a value is empty.
+/// Formats CSV.
 ///
 /// # Errors
-/// Never: memory takes every record.
+/// Never: writing to memory.
 pub fn csv(plan: &Plan, outcome: &Outcome) -> Result<String, csv::Error> {
     let mut out = csv::Writer::from_writer(Vec::new());
     let mut heads = vec!["setting".to_string()];
@@ -54,7 +54,7 @@ pub fn csv(plan: &Plan, outcome: &Outcome) -> Result<String, csv::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Everything that was found, for other programs.
+/// Formats all results as JSON.
 pub fn json(plan: &Plan, outcome: &Outcome) -> String {
     let quantity = |(q, unit): (&Quantity, &String)| {
         json!({

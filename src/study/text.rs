@@ -1,4 +1,4 @@
-//! The table of a study for people: `study.md`, and what is printed.
+//! Readable tables: `study.md`, terminal.
 
 use super::file::Norm;
 use super::outcome::{Cell, Outcome, Row, cpu};
@@ -6,7 +6,7 @@ use super::plan::Plan;
 use super::quantity::Quantity;
 use super::table::head;
 
-/// The table for people.
+/// Formats the Markdown table.
 pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     let mut text = format!("# {}\n\n", plan.title.replace('\n', " "));
     text += &format!(
@@ -43,7 +43,7 @@ fn exact_words(plan: &Plan) -> String {
     if known.is_empty() { String::new() } else { format!(", of {} against known values", known.join(", ")) }
 }
 
-/// The first rows of the table with its heads, for a terminal.
+/// Formats the first rows for a terminal.
 pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
     let rows = cells(plan, outcome, most);
     let columns = rows[0].len();
@@ -65,7 +65,6 @@ pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
     text
 }
 
-/// Heads and rows as texts.
 fn cells(plan: &Plan, outcome: &Outcome, most: usize) -> Vec<Vec<String>> {
     let mut heads = vec!["#".to_string(), "setting".to_string()];
     for (quantity, unit) in plan.quantities.iter().zip(&outcome.units) {
@@ -87,7 +86,6 @@ fn cells(plan: &Plan, outcome: &Outcome, most: usize) -> Vec<Vec<String>> {
     std::iter::once(heads).chain(outcome.rows.iter().enumerate().take(most).map(row)).collect()
 }
 
-/// An error with its scatter.
 fn error_text(cell: &Cell, quantity: &Quantity) -> String {
     let text = |value: f64| match quantity.norm {
         Norm::Relative => percent(value),
@@ -113,13 +111,11 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// A share that somebody has chosen, without zeros at its end.
 fn plain_percent(share: f64) -> String {
     let text = format!("{:.6}", 100.0 * share);
     format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
-/// A number with four digits that count.
 fn four_digits(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
@@ -132,7 +128,7 @@ fn four_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Which setting to take.
+/// Formats the recommendation.
 pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     let uniform = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
     let within = if uniform {
@@ -167,7 +163,7 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     format!("Cheapest setting {within}: \"{}\"{cost}{largest}.", row.setting)
 }
 
-/// What else is to be said of the rows.
+/// Returns notes on the rows.
 pub fn remarks(plan: &Plan, outcome: &Outcome) -> Vec<String> {
     let mut remarks = Vec::new();
     for row in &outcome.rows {

@@ -1,22 +1,20 @@
-//! What the page gets from the program: named arrays in one binary block.
+//! Binary blocks of named arrays for the page.
 //!
-//! `TBV1`, the length of a JSON text as `u32`, the text, and the arrays, each from a multiple of four bytes counted from the
-//! end of the text on; all little-endian. The text has `meta`, and for each array its name, type, components and place.
-//! Compact arrays hold whole numbers `n` of 16 or 24 bits with value = low + n · step per component; their low, middle and high bytes lie
-//! in planes one behind the other, which makes them shorter when they are deflated.
+//! `TBV1`, length of a JSON text as `u32`, text, arrays aligned to four bytes after the text; little-endian.
+//! The text has `meta` and each array's name, type, components and offset. Compact arrays store integers `n`
+//! of 16 or 24 bits (value = low + n · step) in byte planes.
 
 use serde_json::{Value, json};
 
-/// How numbers go out.
+/// Number encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     /// As `f32`.
     Exact,
-    /// In 16 or 24 bits between the smallest and the largest.
+    /// In 16 or 24 bits between minimum and maximum.
     Compact,
 }
 
-/// A block in the making.
 pub struct Chunk {
     coding: Coding,
     meta: Value,
@@ -25,17 +23,14 @@ pub struct Chunk {
 }
 
 impl Chunk {
-    /// A block without arrays.
     pub fn new(coding: Coding) -> Chunk {
         Chunk { coding, meta: json!({}), arrays: Vec::new(), bytes: Vec::new() }
     }
 
-    /// With a value of `meta`.
     pub fn meta(&mut self, key: &str, value: Value) {
         self.meta[key] = value;
     }
 
-    /// Notes an array that begins where the bytes end now.
     fn note(&mut self, name: &str, kind: &str, components: usize, count: usize) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         self.arrays.push(json!({ "name": name, "type": kind, "components": components, "count": count,
@@ -43,17 +38,17 @@ impl Chunk {
         self.arrays.len() - 1
     }
 
-    /// Numbers in single precision, or in 16 bits where the block is compact.
+    /// Adds numbers in single precision, or 16 bits if compact.
     pub fn numbers(&mut self, name: &str, values: &[f64], components: usize) {
         self.put(name, values, components, 2);
     }
 
-    /// Places: as [`Chunk::numbers`], but in 24 bits.
+    /// Adds positions; 24 bits if compact.
     pub fn places(&mut self, name: &str, values: &[f64], components: usize) {
         self.put(name, values, components, 3);
     }
 
-    /// Numbers in single precision in every block.
+    /// Adds numbers in single precision always.
     pub fn exact(&mut self, name: &str, values: &[f64], components: usize) {
         self.note(name, "f32", components, values.len());
         self.bytes.extend(values.iter().flat_map(|v| (*v as f32).to_le_bytes()));
@@ -87,19 +82,16 @@ impl Chunk {
         }
     }
 
-    /// Whole numbers.
     pub fn indices(&mut self, name: &str, values: &[u32], components: usize) {
         self.note(name, "u32", components, values.len());
         self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
     }
 
-    /// Small whole numbers.
     pub fn small(&mut self, name: &str, values: &[u8]) {
         self.note(name, "u8", 1, values.len());
         self.bytes.extend(values);
     }
 
-    /// The block.
     pub fn finish(self) -> Vec<u8> {
         let mut text = json!({ "meta": self.meta, "arrays": self.arrays }).to_string().into_bytes();
         text.resize(text.len().next_multiple_of(4), b' ');

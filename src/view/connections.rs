@@ -1,5 +1,5 @@
-//! Connections of clients to the viewer, each with bounded memory and time: a client that sends or reads nothing, or too much, loses its
-//! connection and does not delay others.
+//! Client connections of the viewer with bounded memory and time: a stalled client is disconnected and delays
+//! no others.
 
 use std::collections::HashMap;
 use std::future::{Future, poll_fn};
@@ -22,51 +22,42 @@ use tokio::net::TcpStream;
 use tokio::sync::Semaphore;
 use tokio::task::AbortHandle;
 
-/// Requests that are computed at a time.
+/// Requests computed in parallel.
 const THREADS: usize = 4;
-/// Open connections; of more, those without progress for the longest time are closed.
+/// Most open connections; the longest stalled are closed.
 const CONNECTIONS: usize = 128;
-/// Responses that are computed but not sent, of all connections [bytes]; of more, the same connections are closed.
+/// Most unsent bytes; beyond, the longest stalled are closed.
 const QUEUED: usize = 512 << 20;
-/// Longest head of a request [bytes].
 const HEAD: usize = 16 << 10;
-/// Most header fields of a request.
 const FIELDS: usize = 64;
-/// Time in which the head of a request must arrive, and in which a client must read some of its response.
+/// Time limit for a request header and for progress of a response.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A response: status, type of its content, and the content.
+/// Status, content type and content.
 pub struct Reply {
     pub status: u16,
     pub kind: &'static str,
     pub content: Bytes,
 }
 
-/// Makes the responses to requests.
 pub trait Respond: Send + Sync + 'static {
-    /// The response to a request whose body is not read.
     fn respond(&self, head: &hyper::http::request::Parts) -> Reply;
 
-    /// Header fields of all responses.
     fn fields(&self) -> &'static [(&'static str, &'static str)];
 }
 
-/// State of a connection.
 struct Connection {
-    /// Milliseconds since the server's start at which bytes went either way.
+    /// Last transfer, in milliseconds since the server's start.
     progress: AtomicU64,
-    /// Whether its response is being computed, or waits for a thread.
     computing: AtomicBool,
-    /// Whether a thread computes its response.
     running: AtomicBool,
-    /// Bytes of its response that are not sent.
+    /// Unsent bytes.
     queued: AtomicUsize,
 }
 
-/// All open connections.
 struct Connections {
     start: Instant,
-    /// Threads for requests: who loses the connection no longer waits for one.
+    /// Semaphore: disconnected clients release their place in the queue.
     threads: Semaphore,
     open: Mutex<HashMap<u64, (Arc<Connection>, AbortHandle)>>,
 }
@@ -80,7 +71,7 @@ impl Connections {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Closes connections without progress for the longest time until at most `most` are left and their responses have room.
+    /// Closes the longest stalled connections beyond `most` or the response limit.
     fn close_stalled(&self, most: usize) {
         let mut open = self.open();
         loop {
@@ -88,7 +79,7 @@ impl Connections {
             if open.len() <= most && (queued <= QUEUED || open.len() <= 1) {
                 return;
             }
-            // Of clients that wait for a thread, the oldest have often gone.
+            // Of queued clients, the oldest have often left.
             let age =
                 |c: &Connection| (c.running.load(Ordering::Relaxed), c.progress.load(Ordering::Relaxed));
             let longest = open.iter().min_by_key(|(_, (c, _))| age(c)).map(|(id, _)| *id);
@@ -102,7 +93,7 @@ impl Connections {
 /// Serves the clients of a listener until the process ends.
 ///
 /// # Errors
-/// The system has no resources for the server.
+/// I/O errors.
 pub fn serve(listener: TcpListener, site: Arc<impl Respond>) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let runtime =
@@ -120,7 +111,7 @@ pub fn serve(listener: TcpListener, site: Arc<impl Respond>) -> io::Result<()> {
                     connections.close_stalled(CONNECTIONS - 1);
                     open(id, stream, &connections, &site);
                 }
-                // The system has no file handles left.
+                // Out of file handles.
                 Err(_) => {
                     connections.close_stalled(CONNECTIONS / 4);
                     tokio::time::sleep(Duration::from_millis(50)).await;
@@ -131,7 +122,6 @@ pub fn serve(listener: TcpListener, site: Arc<impl Respond>) -> io::Result<()> {
     })
 }
 
-/// Starts the task of a connection.
 fn open(id: u64, stream: TcpStream, connections: &Arc<Connections>, site: &Arc<impl Respond>) {
     let connection = Arc::new(Connection {
         progress: AtomicU64::new(connections.now()),
@@ -152,7 +142,7 @@ fn open(id: u64, stream: TcpStream, connections: &Arc<Connections>, site: &Arc<i
             .title_case_headers(true)
             .serve_connection(TokioIo::new(io), service);
         let (mut served, mut stalled) = (pin!(served), pin!(stalled(&own, &all)));
-        // A client that has gone gets no response.
+        // Disconnected clients get no response.
         poll_fn(|context| match served.as_mut().poll(context) {
             Poll::Ready(_) => Poll::Ready(()),
             Poll::Pending => stalled.as_mut().poll(context),
@@ -163,7 +153,7 @@ fn open(id: u64, stream: TcpStream, connections: &Arc<Connections>, site: &Arc<i
     connections.open().insert(id, (connection, task.abort_handle()));
 }
 
-/// Ends once a connection has made no progress for too long, other than by the computation of its response.
+/// Ends once a connection stalls, except while its response is computed.
 async fn stalled(connection: &Connection, connections: &Connections) {
     let patience = PATIENCE.as_millis() as u64;
     loop {
@@ -177,7 +167,6 @@ async fn stalled(connection: &Connection, connections: &Connections) {
     }
 }
 
-/// The response to a request, computed on a thread of its own.
 async fn response(
     request: Request<Incoming>,
     site: Arc<impl Respond>,
@@ -209,13 +198,12 @@ async fn response(
         response = response.header(*name, *value);
     }
     if !empty {
-        // The body that follows is never read.
+        // The request body is never read.
         response = response.header("Connection", "close");
     }
     response.body(Full::new(content))
 }
 
-/// A stream that stores when bytes went either way.
 struct Watched {
     stream: TcpStream,
     connection: Arc<Connection>,
@@ -223,7 +211,6 @@ struct Watched {
 }
 
 impl Watched {
-    /// Stores that bytes have gone, `written` of them to the client.
     fn count(&self, written: usize) {
         self.connection.progress.store(self.connections.now(), Ordering::Relaxed);
         let queued = self.connection.queued.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! The results of a run as one HTML file.
+//! Results of a run as one HTML file.
 
 use std::io::Write;
 use std::path::Path;
@@ -11,17 +11,17 @@ use super::results::Results;
 use crate::failure::Failure;
 use crate::write::{WriteError, atomic};
 
-/// zlib level: above it files shrink by per cents and take twice as long.
+/// zlib level: higher levels take twice as long for a few per cent.
 const LEVEL: u32 = 6;
 
 /// Writes the page with all blocks of a run.
 ///
 /// # Errors
-/// A file of the results is damaged; the disk refuses.
+/// Damaged results; I/O errors.
 pub fn export(file: &Path, title: &str, results: &Results) -> Result<(), Failure> {
     let names = results.names()?;
     let (head, tail) = page::pieces(title, &json!({ "served": false }));
-    // A damaged result ends the writing; it is bad input, not a fault of the disk.
+    // Damaged results are input errors, not I/O errors.
     let mut damaged = None;
     let written = atomic::write(file, |out| {
         out.write_all(head.0.as_bytes()).map_err(WriteError::io(file))?;

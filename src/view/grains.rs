@@ -1,12 +1,11 @@
-//! Grains for the page. What holds for all frames (of which spheres each body consists, in its own axes) goes out once; a frame has
-//! the place and the orientation of each body. Where bodies come, go or change, a frame brings its own list.
+//! Grains for the page: body definitions once, position and orientation per frame. Frames with other bodies
+//! have separate definitions.
 
 use serde_json::json;
 
 use super::chunk::{Chunk, Coding};
 use crate::results::grains::{Bodies, GrainFile};
 
-/// The block of a frame: places relative to `origin`; the list of bodies where it is not `known`.
 pub fn frame(file: &GrainFile, known: Option<&Bodies>, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     let bodies = &file.bodies;
@@ -31,14 +30,13 @@ pub fn frame(file: &GrainFile, known: Option<&Bodies>, origin: [f64; 3], coding:
     chunk.finish()
 }
 
-/// The block that holds for all frames.
+/// Block common to all frames.
 pub fn common(bodies: &Bodies, coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     list(bodies, &mut chunk);
     chunk.finish()
 }
 
-/// Adds the list of bodies to a block.
 fn list(bodies: &Bodies, chunk: &mut Chunk) {
     chunk.indices("start", &bodies.start, 1);
     chunk.indices("id", &bodies.id, 1);

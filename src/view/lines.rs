@@ -3,15 +3,14 @@
 use super::chunk::{Chunk, Coding};
 use crate::results::lines::{Chains, Walls};
 
-/// Places relative to `origin`.
 pub fn relative(places: &[f64], origin: [f64; 3]) -> Vec<f64> {
     places.iter().enumerate().map(|(k, x)| x - origin[k % 3]).collect()
 }
 
-/// The block of a frame of force chains: both ends of each, forces, kinds.
+/// Chain block: both ends, forces, kinds.
 pub fn chains(chains: &Chains, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
-    // Six numbers a line would have the same limits as three.
+    // Both ends share coordinate limits.
     chunk.numbers("ends", &relative(&chains.ends, origin), 3);
     for (name, values) in &chains.forces {
         chunk.numbers(name, values, 1);
@@ -22,7 +21,7 @@ pub fn chains(chains: &Chains, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     chunk.finish()
 }
 
-/// The block of a frame of walls: points, triangles and edges by their points, and for each triangle its wall and kind.
+/// Wall block: points, triangles, edges, wall and kind per triangle.
 pub fn walls(walls: &Walls, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     chunk.places("points", &relative(&walls.points, origin), 3);

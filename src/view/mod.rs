@@ -1,7 +1,7 @@
-//! A viewer of results in a browser: served on this machine, or as one HTML file that holds everything.
+//! Browser viewer of results, served locally or exported as one HTML file.
 //!
-//! The program reads the files of a run and hands the page (`page`) blocks of numbers (`chunk`), frame by frame, as the page
-//! asks for them ([`server`]) or all at once ([`mod@export`]). What is drawn, and how, is up to the page: `web/`.
+//! The program sends blocks of numbers (`chunk`) on request ([`server`]) or all together ([`mod@export`]);
+//! `web/` draws them.
 
 mod chunk;
 mod connections;

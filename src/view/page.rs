@@ -1,14 +1,13 @@
-//! The page: one HTML text with its style, its modules and, in an exported file, its data.
+//! HTML page with style, modules and, if exported, data.
 //!
-//! Modules name each other by bare names, which an import map resolves to `data:` addresses: the same text works from a
-//! server and from a disk, where a browser loads no second file.
+//! An import map resolves bare module names to `data:` addresses: browsers load no second file from disk.
 
 use crate::write::{BODY_FIELDS, MADE_FIELDS};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
-/// Modules by the names that they import each other by. The first two are three.js (licence: `web/three.LICENSE.txt`).
+/// Modules by import name. The first two are three.js (licence: `web/three.LICENSE.txt`).
 const MODULES: [(&str, &str); 24] = [
     ("three", include_str!("web/three.module.min.js")),
     ("orbit", include_str!("web/OrbitControls.js")),
@@ -36,15 +35,14 @@ const MODULES: [(&str, &str); 24] = [
     ("main", include_str!("web/main.js")),
 ];
 
-/// Elements of the page that are the same for all results: the program's own HTML.
 const BODY: &str = include_str!("web/body.html");
 const STYLE: &str = include_str!("web/style.css");
 
-/// What a browser may load for the page: nothing from elsewhere.
+/// Content policy: no external resources.
 pub const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' data:; style-src 'unsafe-inline'; \
                           connect-src 'self'; img-src data: blob:; media-src blob:; base-uri 'none'; form-action 'none'";
 
-/// JSON as the content of a `script` element, in which references such as `&lt;` stay what they are, and only `<` begins an end.
+/// JSON within a `script` element, where only `<` needs escaping.
 struct ScriptJson<'a>(&'a Value);
 
 impl Render for ScriptJson<'_> {
@@ -53,11 +51,9 @@ impl Render for ScriptJson<'_> {
     }
 }
 
-/// The page in two pieces, between which the data of an exported file stand. `settings` are given to the page.
 pub fn pieces(title: &str, settings: &Value) -> (Markup, Markup) {
     let head = html! {
         (DOCTYPE) "\n"
-        // Its end, which HTML does not require, follows the data.
         (PreEscaped("<html lang=\"en\">\n"))
         head {
             "\n"
@@ -66,7 +62,7 @@ pub fn pieces(title: &str, settings: &Value) -> (Markup, Markup) {
             meta http-equiv="Content-Security-Policy" content=(POLICY); "\n"
             link rel="icon" href="data:,"; "\n"
             title { (title) " \u{2013} trackbed" } "\n"
-            // A style sheet has no references: `>` is itself there.
+            // Style sheets have no character references.
             style { (PreEscaped(STYLE)) } "\n"
         }
         "\n"
@@ -77,14 +73,13 @@ pub fn pieces(title: &str, settings: &Value) -> (Markup, Markup) {
         script type="importmap" { (ScriptJson(&imports())) } "\n"
     };
     let tail = html! {
-        // No text of others; a reference for `'` would be no JavaScript.
+        // Trusted text; an escaped `'` would be invalid JavaScript.
         script type="module" { (PreEscaped("import 'main';")) } "\n"
         (PreEscaped("</body>\n</html>\n"))
     };
     (head, tail)
 }
 
-/// What the page says of the program.
 fn about() -> Markup {
     html! {
         dialog id="about" {
@@ -97,7 +92,6 @@ fn about() -> Markup {
     }
 }
 
-/// The import map of the modules; the module `fields` has labels and units of the fields of grains.
 fn imports() -> Value {
     let all = BODY_FIELDS.iter().chain(&MADE_FIELDS);
     let fields: serde_json::Map<String, Value> = all
@@ -111,7 +105,6 @@ fn imports() -> Value {
     json!({ "imports": addresses })
 }
 
-/// A block within the page, deflated.
 pub fn embedded(name: &str, deflated: &[u8]) -> Markup {
     html! { script type="text/plain" data-block=(name) { (BASE64_STANDARD.encode(deflated)) } "\n" }
 }

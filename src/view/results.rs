@@ -1,12 +1,12 @@
-//! The results of one run as blocks for the page, by the names that the page knows them by:
+//! Result blocks of a run by name:
 //!
 //! | name | block |
 //! |---|---|
 //! | `scene` | title, times, parts, fields, origin, size: JSON in `meta` |
-//! | `grains`, `solid` | what holds for all frames |
+//! | `grains`, `solid` | data common to all frames |
 //! | `grains/7`, `chains/7`, `walls/7`, `solid/7` | frame 7 |
-//! | `grains/7/speed`, `walls/7/speed`, `solid/7/stress_zz` | a field of frame 7, of walls that of grains with faces |
-//! | `table/history` | a table |
+//! | `grains/7/speed`, `walls/7/speed`, `solid/7/stress_zz` | field of frame 7 (walls: polyhedral grains) |
+//! | `table/history` | table |
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -21,18 +21,17 @@ use crate::results::lines::{Chains, Walls};
 use crate::results::series::{self, Frame, PARTS, Part};
 use crate::results::solid::{Skin, fields};
 
-/// The results of one run.
+/// Results of a run.
 pub struct Results {
     dir: PathBuf,
     coding: Coding,
-    /// Its frames.
+    /// Frames.
     pub frames: Vec<Frame>,
     common: OnceLock<Common>,
-    /// The grains read last, with their file: fields of a frame are asked for one by one.
+    /// Last grain file: its fields are requested one by one.
     latest: Mutex<Option<(PathBuf, Arc<GrainFile>)>>,
 }
 
-/// What holds for all frames.
 struct Common {
     origin: [f64; 3],
     bounds: [[f64; 3]; 2],
@@ -44,7 +43,7 @@ struct Common {
 }
 
 impl Common {
-    /// From the first frames that have grains and a solid.
+    /// From the first frames with grains and with a solid.
     fn of(frames: &[Frame]) -> Result<Common, Failure> {
         let first = |part: Part| frames.iter().find_map(|frame| frame.file(part));
         let (mut bodies, mut grain_fields, mut bounds) = (None, Vec::new(), Vec::new());
@@ -73,10 +72,10 @@ impl Common {
 }
 
 impl Results {
-    /// Opens a folder.
+    /// Opens a results directory.
     ///
     /// # Errors
-    /// It holds no frames.
+    /// No frames.
     pub fn open(dir: &Path, coding: Coding) -> Result<Results, Failure> {
         let frames = series::read(dir)?;
         Ok(Results {
@@ -88,7 +87,7 @@ impl Results {
         })
     }
 
-    /// The same with every `n`-th frame and the last one.
+    /// Keeps every `n`-th frame and the last.
     #[must_use]
     pub fn every(mut self, n: usize) -> Results {
         let last = self.frames.len().saturating_sub(1);
@@ -108,10 +107,10 @@ impl Results {
         Ok(self.common.get_or_init(|| made))
     }
 
-    /// The block of a name; `None` where there is none.
+    /// Returns a block; `None` if unknown.
     ///
     /// # Errors
-    /// A file is damaged.
+    /// Damaged file.
     pub fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
         let mut words = name.splitn(3, '/');
         let (head, number, field) = (words.next().unwrap_or_default(), words.next(), words.next());
@@ -135,7 +134,6 @@ impl Results {
         self.frame(file, part, field, common).map(Some)
     }
 
-    /// What holds for all frames of a part.
     fn whole(&self, part: Part, common: &Common) -> Option<Vec<u8>> {
         match part {
             Part::Grains => common.bodies.as_ref().map(|bodies| grains::common(bodies, self.coding)),
@@ -169,19 +167,18 @@ impl Results {
         }
     }
 
-    /// The grains of a file, read once for all of their fields.
+    /// Cached grain file.
     fn grains(&self, file: &Path) -> Result<Arc<GrainFile>, Failure> {
         let latest = || self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, grains)) = latest().as_ref().filter(|(of, _)| of == file) {
             return Ok(grains.clone());
         }
-        // The lock is free meanwhile: reading a million grains takes a second.
+        // Lock released: reading a million grains takes a second.
         let grains = Arc::new(GrainFile::open(file)?);
         *latest() = Some((file.to_path_buf(), grains.clone()));
         Ok(grains)
     }
 
-    /// What the page needs first.
     fn scene(&self) -> Result<Vec<u8>, Failure> {
         let common = self.common()?;
         let about = series::About::of(&self.dir);
@@ -207,10 +204,10 @@ impl Results {
         Ok(chunk.finish())
     }
 
-    /// The names of all blocks that there are.
+    /// Returns all block names.
     ///
     /// # Errors
-    /// A file is damaged.
+    /// Damaged file.
     pub fn names(&self) -> Result<Vec<String>, Failure> {
         let common = self.common()?;
         let mut names: Vec<String> = ["scene", "grains", "solid"].map(String::from).into();

@@ -1,7 +1,7 @@
-//! The page and its data over HTTP, for this machine alone.
+//! HTTP server of page and data, for this machine only.
 //!
-//! A page of another site could make a browser send requests here under a name of its own that it lets point to this machine: only
-//! requests under the names of this machine are answered. Nothing is ever written.
+//! Other sites could send requests under a name resolved to this machine (DNS rebinding), so only its own
+//! names are accepted. Nothing is written.
 
 use std::collections::HashMap;
 use std::net::TcpListener;
@@ -20,31 +20,25 @@ use super::results::Results;
 use crate::failure::Failure;
 use crate::results::series;
 
-/// Runs of a folder that are kept open.
+/// Runs kept open.
 const OPEN: usize = 8;
-/// Longest address [bytes].
 const LONGEST: usize = 2000;
 
-/// What is served.
 struct Site {
-    /// The folder, without links.
     root: PathBuf,
     port: u16,
-    /// The page, which all requests share.
     page: Bytes,
     runs: Mutex<HashMap<String, Arc<Results>>>,
 }
 
-/// A refusal: status and one sentence.
 type Refusal = (u16, String);
 
-/// A page or a block with its type.
 struct Content(&'static str, Bytes);
 
-/// Binds the address; port 0 is any that is free. Returns the listener and its port.
+/// Binds the port, 0 for any; returns the listener and its port.
 ///
 /// # Errors
-/// The port is taken or not allowed.
+/// Port in use or not allowed.
 pub fn bind(port: u16) -> Result<(TcpListener, u16), Failure> {
     let bound = TcpListener::bind(("127.0.0.1", port)).and_then(|l| l.local_addr().map(|a| (l, a.port())));
     bound.map_err(|error| {
@@ -52,10 +46,10 @@ pub fn bind(port: u16) -> Result<(TcpListener, u16), Failure> {
     })
 }
 
-/// Serves a folder until the process ends.
+/// Serves a directory until the process ends.
 ///
 /// # Errors
-/// The folder is gone.
+/// Missing directory.
 pub fn serve(listener: TcpListener, port: u16, dir: &Path) -> Result<(), Failure> {
     let root = dir.canonicalize()?;
     let title = root.file_name().map(|n| n.to_string_lossy().into_owned());
@@ -87,9 +81,8 @@ impl Respond for Site {
 }
 
 impl Site {
-    /// Whether a request comes from this machine's own page.
     fn checked(&self, head: &Parts, address: &str) -> Result<(), Refusal> {
-        // A value that is not ASCII is nobody's name.
+        // Non-ASCII values never match.
         let values =
             |name: &'static str| head.headers.get_all(name).iter().map(|v| v.to_str().unwrap_or("?"));
         let own = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
@@ -102,7 +95,7 @@ impl Site {
         if values("Origin").any(|origin| !origin.strip_prefix("http://").is_some_and(is_own)) {
             return Err((403, "requests of other pages are not answered".to_string()));
         }
-        // Browsers name the relation of the page that requests; "none" is an address that the user has typed.
+        // "none" is an address typed by the user.
         if values("Sec-Fetch-Site").any(|site| !matches!(site, "same-origin" | "none")) {
             return Err((403, "requests of other sites are not answered".to_string()));
         }
@@ -119,7 +112,6 @@ impl Site {
         Ok(())
     }
 
-    /// What an address stands for.
     fn content(&self, url: &str) -> Result<Content, Refusal> {
         let (path, query) = url.split_once('?').unwrap_or((url, ""));
         let bad = || (400, "the address is damaged".to_string());
@@ -148,7 +140,7 @@ impl Site {
         }
     }
 
-    /// The run of a folder below the root, read again where `fresh`: it may have gone on.
+    /// Run in a subdirectory, reread if `fresh`: it may have grown.
     fn results(&self, run: &str, fresh: bool) -> Result<Arc<Results>, Refusal> {
         let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(results) = runs.get(run).filter(|_| !fresh) {
@@ -169,7 +161,7 @@ impl Site {
     }
 }
 
-/// A text with its `%41` as letters; `None` where that is no UTF-8 or has control characters.
+/// Decodes `%41` and similar; `None` for invalid UTF-8 or control characters.
 fn decoded(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

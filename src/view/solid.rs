@@ -1,10 +1,10 @@
-//! The solid for the page: its skin once, displacements and fields of the skin per frame.
+//! Solid for the page: skin once, displacements and fields per frame.
 
 use super::chunk::{Chunk, Coding};
 use super::lines::relative;
 use crate::results::solid::Skin;
 
-/// The block that holds for all frames.
+/// Block common to all frames.
 pub fn common(skin: &Skin, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     chunk.places("points", &relative(&skin.points, origin), 3);
@@ -15,14 +15,13 @@ pub fn common(skin: &Skin, origin: [f64; 3], coding: Coding) -> Vec<u8> {
     chunk.finish()
 }
 
-/// The block of a displacement.
 pub fn displacement(values: &[f64], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     chunk.places("displacement", values, 3);
     chunk.finish()
 }
 
-/// The block of a field, of grains too.
+/// Field block, also for grains.
 pub fn field(values: &[f64], coding: Coding) -> Vec<u8> {
     let mut chunk = Chunk::new(coding);
     chunk.numbers("value", values, 1);

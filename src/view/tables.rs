@@ -1,4 +1,4 @@
-//! Histories for the plots of the page: columns of `history.csv`, `cycles.csv` and `push.csv`.
+//! Plot data of `history.csv`, `cycles.csv` and `push.csv`.
 
 use std::path::Path;
 
@@ -8,15 +8,14 @@ use super::chunk::{Chunk, Coding};
 use crate::failure::Failure;
 use crate::results::tables::Table;
 
-/// The tables that are plotted.
 pub const TABLES: [&str; 3] = ["history", "cycles", "push"];
-/// Rows that a plot gets at most: more than it has pixels.
+/// Most rows of a plot: more than its pixels.
 const MOST: usize = 4000;
 
-/// The block of a table: one array per column, rows left out evenly beyond a number that no plot can show.
+/// Table block: one array per column, rows thinned evenly.
 ///
 /// # Errors
-/// The file is not to be read, or has no head.
+/// Unreadable file, no header.
 pub fn table(file: &Path) -> Result<Vec<u8>, Failure> {
     let Table { names, columns, .. } = Table::read(file)?.unwrap_or_default();
     let rows = columns.first().map_or(0, Vec::len);

@@ -1,8 +1,7 @@
-//! Abaqus input files (`.inp`), which CalculiX reads too.
+//! Writer of Abaqus and CalculiX input files (`.inp`).
 //!
-//! Types: C3D20R, C3D15, C3D10, C3D8, C3D6, C3D5, C3D4. Abaqus has no 13-node pyramid: it goes out as a C3D20R with
-//! repeated nodes (see `read::degenerate`). Reals are written without exponents where that is short, since CalculiX
-//! reads 20 columns of a number only.
+//! Types: C3D20R, C3D15, C3D10, C3D8, C3D6, C3D5, C3D4; 13-node pyramids are C3D20R with repeated nodes.
+//! CalculiX reads 20 columns of a number only.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -18,12 +17,9 @@ use super::atomic;
 use super::error::WriteError;
 use super::mesh_file::plain_names;
 
-/// Longest name.
 const NAME: usize = 80;
-/// Fields in a data line.
 const ROW: usize = 16;
 
-/// Writes an input file; returns what was changed.
 pub(super) fn write_inp(path: &Path, file: &MeshFile) -> Result<Vec<String>, WriteError> {
     let mut lost = Vec::new();
     let pyramids = file.mesh.connectivity.kinds().iter().filter(|k| **k == ElementKind::Pyramid13).count();
@@ -47,14 +43,13 @@ fn type_name(kind: ElementKind) -> &'static str {
     }
 }
 
-/// A real in 20 columns that keeps its bits; cut after 20 columns it is still the same number to many digits.
 fn real(value: f64) -> String {
     let plain = format!("{value:?}");
     if !plain.contains('e') {
         return plain;
     }
     let long = format!("{value}");
-    // Numbers below 1e-5: a few zeros more do no harm. Above 1e16 an exponent is needed, and there are few digits.
+    // Truncation to 20 columns would cut an exponent, but only digits of a decimal.
     if value.abs() < 1.0 && plain.len() > 20 { long } else { plain }
 }
 
@@ -65,7 +60,7 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
         let [x, y, z] = x.map(real);
         writeln!(out, "{id}, {x}, {y}, {z}")?;
     }
-    // Neighbours of one type stand under one keyword, so that the order of elements stays.
+    // Consecutive elements of one type share a keyword, to keep the order.
     let elements: Vec<usize> = (0..mesh.element_count()).collect();
     let name = |e: usize| type_name(mesh.connectivity.kind(e));
     for block in elements.chunk_by(|a, b| name(*a) == name(*b)) {
@@ -79,11 +74,10 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
             writeln!(out, "{}", rows.join(",\n"))?;
         }
     }
-    // Sets of the sections, by their materials.
     let sections: BTreeSet<String> = mesh.materials.iter().map(|m| format!("MATERIAL_{m}")).collect();
     let sections: Vec<String> = sections.into_iter().collect();
     let node_sets = plain_names(&file.node_sets, &[], NAME, lost);
-    // A set of faces keeps the name of the set of its nodes.
+    // A face set has the name of its node set.
     let of_nodes: BTreeMap<&String, String> =
         file.node_sets.keys().zip(node_sets.iter().map(|(name, _)| name.clone())).collect();
     for (what, sets, ids) in [

@@ -1,4 +1,4 @@
-//! The three ANSYS lists in our own layout: the form that `read::ansys_lists` documents.
+//! Writer of the ANSYS lists.
 
 use std::path::Path;
 
@@ -8,11 +8,11 @@ use super::atomic;
 use super::error::{WriteError, check_field};
 use crate::read::degenerate::to_brick;
 
-/// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into the folder `dir`; reading them back gives the
-/// same bits. Wedges, pyramids and tetrahedra are bricks with repeated nodes; linear kinds have mid-side nodes of 0.
+/// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into `dir`; they read back exactly. Other kinds are
+/// bricks with repeated nodes; linear kinds have mid-side nodes 0.
 ///
 /// # Errors
-/// A coordinate or value that is not finite, and what the system refuses.
+/// Non-finite coordinates or values; I/O errors.
 pub fn write_lists(mesh: &Mesh, constraints: &[Constraint], dir: &Path) -> Result<(), WriteError> {
     let nodes = dir.join("NODECOORD.DAT");
     check_field(&nodes, "coordinates", mesh.coordinates.as_flattened(), 3, mesh.node_count())?;

@@ -1,7 +1,4 @@
-//! Files that appear whole or not at all.
-//!
-//! The content goes to `NAME.part` in the same folder, is flushed to the disk, and takes the name in one
-//! step, so that a reader never sees half a file and a full disk leaves the last good one.
+//! Atomic replacement of files: `NAME.part` is flushed to disk, then renamed.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -9,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::error::WriteError;
 
-/// Writes `file` with what `fill` puts out; on any error the old file, or none, is left.
+/// Writes `file` by `fill`; on errors the previous file stays.
 ///
 /// # Errors
-/// What the system refuses, and what `fill` returns.
+/// I/O errors, and errors of `fill`.
 pub fn write(
     file: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
@@ -20,7 +17,7 @@ pub fn write(
     write_in_places(file, |out| fill(out))
 }
 
-/// As [`write`]; `fill` may go back in the file, and fail in ways of its own.
+/// As [`write`]; `fill` may seek and has other error types.
 ///
 /// # Errors
 /// As [`write`].
@@ -32,7 +29,7 @@ pub fn write_in_places<E: From<WriteError>>(
     let result = write_part(file, &part, fill)
         .and_then(|()| fs::rename(&part, file).map_err(|error| WriteError::io(file)(error).into()));
     if result.is_err() {
-        // The part file may not even exist; its loss is no second error.
+        // The part file may not exist.
         let _ = fs::remove_file(&part);
     }
     result
@@ -50,7 +47,6 @@ fn write_part<E: From<WriteError>>(
     Ok(raw.sync_data().map_err(WriteError::io(file))?)
 }
 
-/// The name under which a file is written.
 fn part_name(file: &Path) -> PathBuf {
     let mut name = file.as_os_str().to_owned();
     name.push(".part");
@@ -63,7 +59,7 @@ mod tests {
     use crate::write::sample::folder;
 
     #[test]
-    fn a_failed_write_leaves_the_old_file_and_no_part() {
+    fn failed_write_keeps_old_file() {
         let dir = folder("atomic");
         let file = dir.join("a.txt");
         let text = |text: &'static str| {

@@ -1,32 +1,32 @@
-//! The fields of bodies in frames, pictures and the viewer. A new one is a row here, and an arm of `values` in `run/frames.rs`.
+//! Fields of bodies. A new field needs a row here and an arm of `values` in `run/frames.rs`.
 
-/// When a frame has a field.
+/// Condition for writing a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// Always: nothing can be drawn without it.
+    /// Always; required for drawing.
     Always,
-    /// Unless the scene names others.
+    /// Unless the scene selects fields.
     ByDefault,
-    /// Where the scene names it, or has what it shows: bonds, a slide.
+    /// If selected, or for bonds and slides.
     OnRequest,
 }
 
-/// A field of bodies.
+/// Field of bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyField {
     /// Name in files and in `output.fields`.
     pub name: &'static str,
     /// Name in legends.
     pub label: &'static str,
-    /// Unit; empty where there is none.
+    /// Unit.
     pub unit: &'static str,
-    /// When it is written.
+    /// Condition for writing.
     pub written: Written,
 }
 
 use Written::{Always, ByDefault, OnRequest};
 
-/// All of them, in the order of the files.
+/// All fields.
 pub const BODY_FIELDS: [BodyField; 15] = [
     field("radius", "Radius", "m", Always),
     field("velocity", "Velocity", "m/s", ByDefault),
@@ -45,14 +45,14 @@ pub const BODY_FIELDS: [BodyField; 15] = [
     field("broken_by_shear", "Bonds broken by shear", "", OnRequest),
 ];
 
-/// Fields that pictures make of those of the files.
+/// Derived fields.
 pub const MADE_FIELDS: [BodyField; 3] = [
     field("speed", "Speed", "m/s", Always),
     field("diameter", "Diameter", "m", Always),
     field("piece", "Piece", "", Always),
 ];
 
-/// A field of files or pictures by its name.
+/// Finds a field by name.
 pub fn body_field(name: &str) -> Option<&'static BodyField> {
     BODY_FIELDS.iter().chain(&MADE_FIELDS).find(|field| field.name == name)
 }
@@ -61,7 +61,7 @@ const fn field(name: &'static str, label: &'static str, unit: &'static str, writ
     BodyField { name, label, unit, written }
 }
 
-/// Names of the fields that are written so.
+/// Returns the fields with this condition.
 pub fn body_fields(written: Written) -> impl Iterator<Item = &'static str> {
     BODY_FIELDS.iter().filter(move |field| field.written == written).map(|field| field.name)
 }

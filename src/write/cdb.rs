@@ -1,7 +1,7 @@
-//! ANSYS archives (`.cdb`), blocked, as CDWRITE writes them.
+//! Writer of blocked ANSYS archives (`.cdb`), as by CDWRITE.
 //!
-//! Types: 1 SOLID186 (hexahedra, wedges, pyramids as bricks with repeated nodes), 2 SOLID187 (10-node tetrahedra), 3
-//! SOLID185 (linear kinds as bricks). Coordinates have 17 digits, which the format line of the block says.
+//! Types: 1 SOLID186 (also wedges and pyramids), 2 SOLID187 (10-node tetrahedra), 3 SOLID185 (linear kinds).
+//! Coordinates have 17 digits.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -15,10 +15,8 @@ use super::atomic;
 use super::error::WriteError;
 use super::mesh_file::{fortran, no_zero, plain_names};
 
-/// Longest name of a component.
 const NAME: usize = 32;
 
-/// Writes an archive; returns what was changed.
 pub(super) fn write_cdb(path: &Path, file: &MeshFile) -> Result<Vec<String>, WriteError> {
     no_zero(path, file)?;
     let mut lost = Vec::new();
@@ -36,7 +34,6 @@ fn text(file: &MeshFile, node_sets: &Sets, element_sets: &Sets) -> Result<String
     let highest = |ids: &[u32]| ids.iter().copied().max().unwrap_or(0);
     let (most_node, most_element) = (highest(&mesh.node_ids), highest(&mesh.element_ids));
     let most = [most_node, most_element, highest(&mesh.materials)].into_iter().max().unwrap_or(0);
-    // Nine columns as CDWRITE has them; more only for numbers that need them.
     let w = most.to_string().len().max(8) + 1;
     let mut out = String::new();
     writeln!(out, "/COM,ANSYS archive\n/PREP7")?;
@@ -97,7 +94,7 @@ fn element_type(kind: ElementKind) -> u32 {
     }
 }
 
-/// Numbers in ascending order, runs of three and more as first and minus last.
+/// Ascending ids; runs of three or more as first and minus last.
 fn component(out: &mut String, name: &str, what: &str, mut ids: Vec<u32>, w: usize) -> std::fmt::Result {
     ids.sort_unstable();
     let mut entries: Vec<i64> = Vec::new();

@@ -1,16 +1,15 @@
-//! Which fields of solid and grains frames hold.
+//! Selection of frame fields.
 
 use super::body_fields::{Written, body_fields};
 
-/// Fields of the solid that are written unless the scene names others.
+/// Default fields of the solid.
 pub const SOLID_FIELDS: [&str; 5] =
     ["velocity", "stress", "von_mises", "equivalent_plastic_strain", "yield_function"];
 
-/// Fields of the solid that are written where a scene names them.
+/// Optional fields of the solid.
 pub const SOLID_EXTRA: [&str; 2] = ["strain", "plastic_strain"];
 
-/// The fields that are written: all, or those with these names and what every frame needs to be drawn: places, sizes, numbers of
-/// bodies, parts and nodes, displacement.
+/// Written fields: all, or the named ones and those required for drawing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a>(pub Option<&'a [String]>);
 

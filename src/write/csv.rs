@@ -1,7 +1,7 @@
-//! Histories as comma-separated values: a header with units, then rows as the run goes.
+//! Time histories as CSV.
 //!
-//! Numbers are written in Rust's shortest form that reads back to the same bits. The first column is what the
-//! rows are ordered by (time or cycle).
+//! Numbers have the shortest form that reads back exactly. Rows are ordered by the first column (time or
+//! cycle).
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
@@ -13,45 +13,44 @@ use super::atomic;
 use super::error::WriteError;
 use crate::columns::{Definition, Name};
 
-/// A column of a history.
+/// Column of a history.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// What it is, such as `settlement`.
+    /// Quantity, such as `settlement`.
     pub name: String,
-    /// Its SI unit, such as `m`; empty for a count or a ratio without one.
+    /// SI unit, such as `m`; empty for dimensionless quantities.
     pub unit: String,
 }
 
 impl Column {
-    /// A column with its unit.
+    /// Creates a column.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Column { name: name.into(), unit: unit.into() }
     }
 
-    /// A column that is defined.
+    /// Creates a defined column.
     pub fn of<'n>(name: impl Into<Name<'n>>) -> Self {
         let name = name.into();
         Column::new(name.to_string(), name.unit())
     }
 }
 
-/// A row under way. Each column is stated once, with its value.
+/// Row under construction.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    /// The columns, in a row that gathers them.
     columns: Option<Vec<Column>>,
     values: Vec<f64>,
 }
 
 impl Row {
-    /// The columns that `fill` states.
+    /// Collects the columns set by `fill`.
     pub fn columns_of(fill: impl FnOnce(&mut Row)) -> Vec<Column> {
         let mut row = Row { columns: Some(Vec::new()), values: Vec::new() };
         fill(&mut row);
         row.columns.unwrap_or_default()
     }
 
-    /// The values that `fill` states.
+    /// Collects the values set by `fill`.
     pub fn values_of(fill: impl FnOnce(&mut Row)) -> Vec<f64> {
         let mut row = Row::default();
         fill(&mut row);
@@ -75,10 +74,10 @@ impl Row {
     }
 }
 
-/// A column of a table of items, and its value of an item.
+/// Column of a table, and its value for an item.
 pub type Field<T> = (&'static Definition, fn(&T) -> f64);
 
-/// Writes a row for each of `items`.
+/// Writes one row per item.
 ///
 /// # Errors
 /// As [`History::row`].
@@ -98,10 +97,9 @@ pub fn write_table<T>(
     Ok(())
 }
 
-/// Room for a row before it goes to the file [bytes].
 const LINE: usize = 1 << 16;
 
-/// A history file that grows.
+/// Growing history file.
 #[derive(Debug)]
 pub struct History {
     file: PathBuf,
@@ -111,7 +109,7 @@ pub struct History {
     bytes: u64,
 }
 
-/// How far a history has come, for a checkpoint.
+/// Position in a history, for a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mark {
     rows: usize,
@@ -119,20 +117,20 @@ pub struct Mark {
 }
 
 impl History {
-    /// Starts `file` with a header.
+    /// Creates `file` with a header.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn create(file: &Path, columns: Vec<Column>) -> Result<Self, WriteError> {
         let text = header(&columns);
         atomic::write(file, |out| out.write_all(&text).map_err(WriteError::io(file)))?;
         Self::open(file, columns, Mark { rows: 0, bytes: text.len() as u64 })
     }
 
-    /// Takes up the history of an earlier run at a mark; what was written after it is cut off.
+    /// Resumes a history at a mark; later rows are truncated.
     ///
     /// # Errors
-    /// The file has other columns, or less than was there at the mark; what the system refuses.
+    /// Different columns, shorter file; I/O errors.
     pub fn resume(file: &Path, columns: Vec<Column>, mark: Mark) -> Result<Self, WriteError> {
         let head = header(&columns);
         let mut old = OpenOptions::new().read(true).write(true).open(file).map_err(WriteError::io(file))?;
@@ -164,20 +162,19 @@ impl History {
         Ok(History { file: file.to_path_buf(), columns, out, rows: mark.rows, bytes: mark.bytes })
     }
 
-    /// How far the history has come. All of it is on the disk, whatever happens to the machine, when this returns.
+    /// Syncs the history to disk and returns its position.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn mark(&self) -> Result<Mark, WriteError> {
         self.out.get_ref().sync_data().map_err(WriteError::io(&self.file))?;
         Ok(Mark { rows: self.rows, bytes: self.bytes })
     }
 
-    /// Adds a row, which is on disk for other programs to read when this returns.
+    /// Adds a row, visible to other programs on return.
     ///
     /// # Errors
-    /// A row of another width or with a number that is not finite (named by its column; nothing is added),
-    /// and what the system refuses.
+    /// Wrong width or non-finite value (nothing is added); I/O errors.
     pub fn row(&mut self, values: &[f64]) -> Result<(), WriteError> {
         if values.len() != self.columns.len() {
             let (file, field) = (self.file.clone(), format!("row {}", self.rows));
@@ -189,23 +186,20 @@ impl History {
             return Err(WriteError::NotFinite { file, field, index: self.rows, value: values[at] });
         }
         let cells: Vec<String> = values.iter().map(|v| number(*v)).collect();
-        // One call of the system per row: a row is there whole or not at all.
+        // One system call per row: no partial rows.
         let written = self.out.write_record(&cells).map_err(io::Error::from).and_then(|()| self.out.flush());
         written.map_err(WriteError::io(&self.file))?;
         self.rows += 1;
-        // A comma or the end of the line behind each number.
         self.bytes += cells.iter().map(|cell| cell.len() as u64 + 1).sum::<u64>();
         Ok(())
     }
 }
 
-/// The shorter of the two forms that read back to the same bits.
 fn number(value: f64) -> String {
     let (plain, scientific) = (format!("{value}"), format!("{value:e}"));
     if plain.len() <= scientific.len() + 4 { plain } else { scientific }
 }
 
-/// The first line, with its end.
 fn header(columns: &[Column]) -> Vec<u8> {
     let title = |c: &Column| match c.unit.as_str() {
         "" => c.name.clone(),

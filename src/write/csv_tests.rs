@@ -6,7 +6,7 @@ fn columns() -> Vec<Column> {
 }
 
 #[test]
-fn rows_are_on_disk_at_once_and_keep_their_bits() {
+fn rows_read_back_exactly() {
     let dir = folder("csv");
     let file = dir.join("history.csv");
     let mut history = History::create(&file, columns()).unwrap();
@@ -28,7 +28,7 @@ fn rows_are_on_disk_at_once_and_keep_their_bits() {
 }
 
 #[test]
-fn a_value_that_is_not_finite_is_named_and_its_row_left_out() {
+fn rejects_row_with_nan() {
     let dir = folder("csv_nan");
     let file = dir.join("history.csv");
     let mut history = History::create(&file, columns()).unwrap();
@@ -41,7 +41,7 @@ fn a_value_that_is_not_finite_is_named_and_its_row_left_out() {
 }
 
 #[test]
-fn a_resumed_history_is_the_one_of_a_run_without_a_break() {
+fn resumed_history_equals_uninterrupted() {
     let dir = folder("csv_resume");
     let file = dir.join("history.csv");
     let row = |i: u32| [0.1 * f64::from(i), f64::from(i), 0.25];
@@ -51,7 +51,7 @@ fn a_resumed_history_is_the_one_of_a_run_without_a_break() {
     let mark = whole.mark().unwrap();
     (3..6).for_each(|i| whole.row(&row(i)).unwrap());
     let expected = std::fs::read_to_string(&file).unwrap();
-    // Later rows already written, the last cut short; then nothing beyond the mark; then nothing at all.
+    // Later rows, the last truncated; nothing after the mark; nothing at all.
     for (left, mark, first) in [(expected.len() - 4, mark, 3), (mark.bytes as usize, mark, 3), (40, start, 0)]
     {
         std::fs::write(&file, &expected[..left]).unwrap();

@@ -1,6 +1,6 @@
-//! The depth map of a slide: a VTK image (`.vti`) of cells in plan, and a picture of it (`.png`).
+//! Depth map of a slide in plan, as VTK image (`.vti`) and picture (`.png`).
 //!
-//! Sources: VTK's User's Guide, "VTK XML formats", `ImageData`; shading of the ground: Horn, Proc. IEEE 69, 1981.
+//! Sources: VTK's User's Guide, "VTK XML formats", `ImageData`; hillshading: Horn, Proc. IEEE 69, 1981.
 
 use std::path::Path;
 
@@ -8,12 +8,11 @@ use super::atomic;
 use super::error::WriteError;
 use super::vtk::{self, Fields};
 
-/// Pixels of the shorter side of a picture, at least; cells become squares of whole pixels.
+/// Least size of the shorter side [px]; cells are whole pixels.
 const PIXELS: usize = 400;
-/// Most pixels of a cell.
+/// Largest cell [px].
 const LARGEST: usize = 16;
 
-/// Colours of the depth from nothing to the deepest.
 const RAMP: [[f64; 3]; 5] = [
     [255.0, 245.0, 200.0],
     [254.0, 204.0, 92.0],
@@ -22,30 +21,30 @@ const RAMP: [[f64; 3]; 5] = [
     [128.0, 0.0, 38.0],
 ];
 
-/// Cells in plan, x running fastest. Every field has the shape `[cells]`.
+/// Cells in plan, x fastest. All fields have the shape `[cells]`.
 pub struct DepthMap<'a> {
-    /// Lower corner, the height that of the image [m].
+    /// Lower corner; the third coordinate is the height of the image [m].
     pub low: [f64; 3],
     /// Side of a cell [m].
     pub cell: f64,
     /// Cells along x and y.
     pub counts: [usize; 2],
-    /// Height of the ground [m].
+    /// Ground elevation [m].
     pub ground: &'a [f64],
-    /// Depth of the deposit [m].
+    /// Deposit depth [m].
     pub depth: &'a [f64],
-    /// Volume of grains by area [m].
+    /// Grain volume per area [m].
     pub solid: &'a [f64],
-    /// Mean distance that grains have come [m].
+    /// Mean travel distance of grains [m].
     pub travel: &'a [f64],
-    /// Whether the cell belongs to the deposit.
+    /// Whether the cell is part of the deposit.
     pub inside: &'a [bool],
 }
 
 /// Writes a VTK image with cell data `depth`, `solid`, `ground`, `travel`, `deposit`.
 ///
 /// # Errors
-/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+/// Wrong field length, non-finite values; I/O errors.
 pub fn write_vti(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
     let mut fields = Fields::of_cells(file, map.counts[0] * map.counts[1]);
     fields.scalar("depth", map.depth)?;
@@ -64,10 +63,10 @@ pub fn write_vti(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
     vtk::write_with(file, ("ImageData", &image), &[("Extent", extent)], &[fields.finish()])
 }
 
-/// Writes a picture, north up: ground shaded as lit from the north-west, depth in colours up to the deepest.
+/// Writes a picture, north up: shaded ground, coloured depth.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn write_png(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
     let [nx, ny] = map.counts;
     let scale = PIXELS.div_ceil(nx.min(ny).max(1)).clamp(1, LARGEST);
@@ -94,7 +93,6 @@ pub fn write_png(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
     })
 }
 
-/// Brightness of the ground at a cell, 0.35 to 1.
 fn shade(map: &DepthMap<'_>, i: usize, j: usize) -> f64 {
     let [nx, ny] = map.counts;
     let at = |i: usize, j: usize| map.ground[j * nx + i];
@@ -103,13 +101,11 @@ fn shade(map: &DepthMap<'_>, i: usize, j: usize) -> f64 {
     let (below, above) = (j.saturating_sub(1), (j + 1).min(ny - 1));
     let dx = slope(at(left, j), at(right, j), right - left);
     let dy = slope(at(i, below), at(i, above), above - below);
-    // Light from the north-west, 45 degrees high.
     let sun = [-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2];
     let facing = (-dx * sun[0] - dy * sun[1] + sun[2]) / (dx * dx + dy * dy + 1.0).sqrt();
     0.35 + 0.65 * facing.clamp(0.0, 1.0)
 }
 
-/// Colour of a share of the deepest.
 fn ramp(share: f64) -> [f64; 3] {
     let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let below = (at as usize).min(RAMP.len() - 2);
@@ -122,7 +118,6 @@ mod tests {
     use super::*;
     use crate::write::sample::folder;
 
-    /// The picture has the deposit's colours where it lies, north up, and the image its cells.
     #[test]
     fn a_map_of_six_cells() {
         let dir = folder("depth_map");
@@ -151,7 +146,6 @@ mod tests {
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
         let at = |column: usize, row: usize| [0, 1, 2].map(|c| pixels[3 * (row * 3 * LARGEST + column) + c]);
-        // Level ground: as bright all over. Northern row above.
         let light = 0.35 + 0.65 * std::f64::consts::FRAC_1_SQRT_2;
         let lit = |colour: [f64; 3]| colour.map(|c| (c * light) as u8);
         assert_eq!(at(0, 0), lit([190.0; 3]));

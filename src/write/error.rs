@@ -1,67 +1,64 @@
-//! Why a result file was not written.
+//! Errors of result files.
 
 use std::path::{Path, PathBuf};
 
 use crate::machine;
 
-/// A file that could not or must not be written.
+/// Error of writing a result file.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The system refused: no space, no permission, no such folder.
+    /// I/O error.
     #[error("{}: cannot be written: {}", file.display(), machine::words(source))]
     Io {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// A result is not a number: the run is wrong, and the file is not written.
+    /// Non-finite result; the file is not written.
     #[error("{}: {field} at index {index} is {value}: not written", file.display())]
     NotFinite {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Name of the field.
         field: String,
-        /// Index of the node, particle, contact or row.
+        /// Index of the item.
         index: usize,
-        /// The value found: NaN or an infinity.
+        /// NaN or infinity.
         value: f64,
     },
-    /// A field has not one value per item.
+    /// Field of wrong length.
     #[error("{}: {field} has {found} values, expected {expected}", file.display())]
     Length {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Name of the field.
         field: String,
         /// Number of values given.
         found: usize,
-        /// Number of values that the geometry needs.
+        /// Number of values required.
         expected: usize,
     },
-    /// The content cannot be expressed in the format.
+    /// Content not supported by the format.
     #[error("{}: {message}", file.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// Reason.
         message: String,
     },
 }
 
 impl WriteError {
-    /// Wraps a system error with the file's name.
     pub(crate) fn io(file: &Path) -> impl FnOnce(std::io::Error) -> WriteError + '_ {
         |source| WriteError::Io { file: file.to_path_buf(), source }
     }
 
-    /// Content that the format cannot hold.
     pub(crate) fn format(file: &Path, message: impl ToString) -> WriteError {
         WriteError::Format { file: file.to_path_buf(), message: message.to_string() }
     }
 }
 
-/// Refuses a field that has not `count` items of `components` finite values each.
 pub(crate) fn check_field(
     file: &Path,
     field: &str,

@@ -1,8 +1,7 @@
-//! Gmsh meshes (`.msh`), text, formats 4.1 and 2.2.
+//! Writer of Gmsh meshes (`.msh`), text, formats 4.1 and 2.2.
 //!
-//! A material is a physical volume whose number is that of the material (material 0, which Gmsh has not, one of the name
-//! `read::gmsh::MATERIAL_0`); sets of elements are physical volumes with names, sets of faces physical surfaces, other sets of
-//! nodes physical points.
+//! Materials are physical volumes (material 0, invalid in Gmsh, by name `read::gmsh::MATERIAL_0`). Element
+//! sets are named physical volumes, face sets physical surfaces, other node sets physical points.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -18,17 +17,13 @@ use crate::read::gmsh::{MATERIAL_0, TYPES, order};
 use super::atomic;
 use super::error::WriteError;
 
-/// Gmsh's number of a point element.
 const POINT: i32 = 15;
 
-/// Elements of one kind in the same groups: the first group is the material.
 type Group = Vec<u32>;
 
-/// What a file holds beside its volumes.
 struct Sets<'a> {
-    /// Sets of nodes that no set of faces stands for.
+    /// Node sets without face set.
     points: Vec<(&'a String, &'a [u32])>,
-    /// Sets of faces, each face once.
     surfaces: Vec<(&'a String, Vec<Face>)>,
 }
 
@@ -73,21 +68,18 @@ impl<'a> Sets<'a> {
         Sets { points, surfaces }
     }
 
-    /// Elements of points and surfaces.
     fn count(&self) -> usize {
         self.points.iter().map(|(_, nodes)| nodes.len()).sum::<usize>()
             + self.surfaces.iter().map(|(_, faces)| faces.len()).sum::<usize>()
     }
 }
 
-/// Writes a mesh; returns what was changed.
 pub(super) fn write_gmsh(path: &Path, file: &MeshFile, old: bool) -> Result<Vec<String>, WriteError> {
     let mut lost = Vec::new();
     let sets = Sets::of(file, &mut lost);
-    // Numbers above those of the materials: one for material 0, those of the sets of elements.
+    // First id for material 0, then ids of element sets.
     let zero = file.mesh.materials.iter().copied().max().unwrap_or(0).saturating_add(1);
     let first_set = zero.saturating_add(1);
-    // Groups of each element: material, then sets.
     let number_of = |material: &u32| if *material == 0 { zero } else { *material };
     let mut groups: Vec<Group> = file.mesh.materials.iter().map(|m| vec![number_of(m)]).collect();
     for (number, members) in file.element_sets.values().enumerate() {
@@ -119,7 +111,7 @@ pub(super) fn write_gmsh(path: &Path, file: &MeshFile, old: bool) -> Result<Vec<
     Ok(lost)
 }
 
-/// Gmsh's number of a face, and its node numbers: corners, then mid-sides, as here.
+/// Gmsh type and node ids: corners, then mid-sides.
 fn surface_element(file: &MeshFile, face: &Face) -> (i32, String) {
     let number = match face.nodes().len() {
         3 => 2,
@@ -136,7 +128,6 @@ fn number(kind: ElementKind) -> i32 {
     TYPES.iter().find(|(_, k)| *k == kind).map_or(0, |(number, _)| *number)
 }
 
-/// Node numbers of an element in Gmsh's order.
 fn in_order(file: &MeshFile, element: usize) -> Vec<u32> {
     let mesh = &file.mesh;
     let mut nodes = vec![0; mesh.connectivity[element].len()];
@@ -146,7 +137,7 @@ fn in_order(file: &MeshFile, element: usize) -> Vec<u32> {
     nodes
 }
 
-/// A first number for the point elements, above those of the volumes.
+/// First id for point elements.
 fn above(file: &MeshFile) -> u64 {
     u64::from(file.mesh.element_ids.iter().copied().max().unwrap_or(0)) + 1
 }
@@ -158,7 +149,7 @@ fn format2(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std
         writeln!(out, "{id} {x:?} {y:?} {z:?}")?;
     }
     writeln!(out, "$EndNodes\n$Elements")?;
-    // An element stands once for each of its groups.
+    // Elements are repeated for each group.
     let more: usize = groups.iter().map(|g| g.len().saturating_sub(1)).sum();
     writeln!(out, "{}", mesh.element_count() + more + sets.count())?;
     let mut next = above(file);
@@ -193,7 +184,6 @@ fn format2(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std
 
 fn format4(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std::fmt::Error> {
     let mesh = &file.mesh;
-    // A volume for each combination of groups.
     let combinations: BTreeSet<&Group> = groups.iter().collect();
     let volumes: BTreeMap<&Group, usize> =
         combinations.into_iter().enumerate().map(|(n, group)| (group, n + 1)).collect();
@@ -222,11 +212,10 @@ fn format4(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std
         writeln!(out, "{x:?} {y:?} {z:?}")?;
     }
     writeln!(out, "$EndNodes\n$Elements")?;
-    // Blocks of neighbours in the file with the same volume and kind, so that the order of elements stays.
+    // Blocks of consecutive elements of equal volume and kind, to keep the order.
     let key = |e: usize| (volumes[&groups[e]], mesh.connectivity.kind(e));
     let elements: Vec<usize> = (0..mesh.element_count()).collect();
     let blocks: Vec<&[usize]> = elements.chunk_by(|a, b| key(*a) == key(*b)).collect();
-    // Faces of one set and of one kind make a block.
     let kinds = |faces: &[Face]| faces.chunk_by(|a, b| a.nodes().len() == b.nodes().len()).count();
     let of_faces: usize = sets.surfaces.iter().map(|(_, faces)| kinds(faces)).sum();
     let (first, last) = (least(&mesh.element_ids), u64::from(most(&mesh.element_ids)) + sets.count() as u64);

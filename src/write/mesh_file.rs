@@ -1,4 +1,4 @@
-//! A mesh in any of the forms that `read::read_mesh_file` reads.
+//! Writer of meshes in all formats of `read::read_mesh_file`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,27 +8,26 @@ use crate::read::MeshFile;
 use super::error::{WriteError, check_field};
 use super::{abaqus, ansys_lists, cdb, gmsh, vtk_legacy, vtu};
 
-/// Choices of the forms.
+/// Format options.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshOptions {
     /// `.msh` in format 2.2 instead of 4.1.
     pub msh2: bool,
 }
 
-/// Writes a mesh in the form that the ending of `path` names: `.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`; without an ending
-/// a folder with the three ANSYS lists. Returns what the form cannot hold, one sentence each.
+/// Writes a mesh, with its format given by the extension of `path`; without one, a directory with the ANSYS
+/// lists. Returns content lost in the format, one sentence each.
 ///
-/// | form | constraints | sets | sets of faces | elastic constants |
+/// | format | constraints | sets | face sets | elastic constants |
 /// |---|---|---|---|---|
-/// | `.cdb` | yes | yes | as sets of nodes | yes |
+/// | `.cdb` | yes | yes | as node sets | yes |
 /// | `.inp` | yes | yes | yes | yes |
 /// | `.msh` | no | yes | yes | no |
 /// | `.vtu`, `.vtk` | yes | yes | yes | no |
 /// | lists | yes | no | no | no |
 ///
 /// # Errors
-/// Another ending, a number that is not finite, a node number 0 where the form cannot hold it, and what the system
-/// refuses.
+/// Unknown extensions, non-finite numbers, node id 0 if reserved by the format; I/O errors.
 pub fn write_mesh_file(
     path: &Path,
     file: &MeshFile,
@@ -80,7 +79,6 @@ pub fn write_mesh_file(
     Ok(lost)
 }
 
-/// Refuses a node number 0, which means a missing node in ANSYS' forms.
 pub(super) fn no_zero(path: &Path, file: &MeshFile) -> Result<(), WriteError> {
     if file.mesh.node_ids.contains(&0) {
         return Err(WriteError::format(
@@ -91,7 +89,7 @@ pub(super) fn no_zero(path: &Path, file: &MeshFile) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// A number as `1.2345678901234567E+002`: 17 digits, so that the same bits are read back.
+/// Number as `1.2345678901234567E+002`: 17 digits read back exactly.
 pub(super) fn fortran(value: f64) -> String {
     let text = format!("{value:.16E}");
     let (mantissa, exponent) = text.split_once('E').unwrap_or((&text, "0"));
@@ -100,9 +98,8 @@ pub(super) fn fortran(value: f64) -> String {
     format!("{mantissa}E{sign}{:03}", exponent.abs())
 }
 
-/// Names of sets that a form allows: other characters become `_`, a name that does not start with a letter gets an `S`
-/// in front, long ones are cut, and names that are the same then get a number. Changed ones are listed in `lost`.
-/// No set gets a name that is `reserved`.
+/// Valid set names: `_`, a leading `S`, truncation, then suffixes; no `reserved` ones. Changes are listed in
+/// `lost`.
 pub(super) fn plain_names<'a, T>(
     sets: &'a BTreeMap<String, Vec<T>>,
     reserved: &[String],

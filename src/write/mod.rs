@@ -1,8 +1,7 @@
-//! Result files and meshes, one writer per file.
+//! Writers of result files and meshes.
 //!
-//! The frames of a run go through the [`Writers`] of the formats that the scene switches on; [`writer`] says how to add one.
-//! Every file appears whole or not at all ([`atomic`]), except the history ([`csv`]), which grows by whole
-//! rows. No writer writes a number that is not finite: it names the field and the index instead.
+//! Files are replaced atomically ([`atomic`]), except histories ([`csv`]), which grow by rows. Non-finite
+//! values are errors. [`writer`] describes how to add a format.
 
 mod abaqus;
 pub mod ansys_lists;
@@ -41,5 +40,5 @@ pub use frame::{ChainFrame, Frame, GrainFrame, NO_BODY, SolidFrame, Values, Wall
 pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 
-/// Every format of frames, in the order in which a frame is written.
+/// Frame formats, in order of writing.
 pub const FORMATS: [&Format; 3] = [&vtk_frames::FORMAT, &tecplot::FORMAT, &vtkhdf::FORMAT];

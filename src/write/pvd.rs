@@ -1,7 +1,4 @@
-//! A time series for ParaView (`.pvd`): which file shows which part at which time.
-//!
-//! The file is written anew, whole, after each frame, so that a run can be watched, and one that was cut short
-//! keeps what it has shown.
+//! ParaView time series (`.pvd`), rewritten after each frame.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -14,14 +11,13 @@ use crate::read::xml::{Tag, tags};
 use super::atomic;
 use super::error::WriteError;
 
-/// The list of frames of a run.
+/// Frame list of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     file: PathBuf,
     frames: Vec<Frame>,
 }
 
-/// One file of the series.
 #[derive(Clone, Debug, PartialEq)]
 struct Frame {
     time: f64,
@@ -31,16 +27,15 @@ struct Frame {
 }
 
 impl Series {
-    /// An empty series that will be `file`. Nothing is written yet.
+    /// Creates an empty series for `file`; writes nothing.
     pub fn new(file: &Path) -> Self {
         Series { file: file.to_path_buf(), frames: Vec::new() }
     }
 
-    /// Takes up the series of an earlier run with its first `entries` files, so that later ones are written again. A series
-    /// without files need not exist.
+    /// Resumes a series with its first `entries` files; an empty series needs no file.
     ///
     /// # Errors
-    /// The file cannot be read, is not one of ours, or has fewer entries.
+    /// I/O errors, unknown content, too few entries.
     pub fn resume(file: &Path, entries: usize) -> Result<Self, WriteError> {
         let mut series = Series::new(file);
         if entries == 0 {
@@ -61,13 +56,12 @@ impl Series {
         Ok(series)
     }
 
-    /// Number of files in the series.
+    /// Returns the number of files.
     pub fn entries(&self) -> usize {
         self.frames.len()
     }
 
-    /// Adds a file: `part` keeps the parts apart (0 solid, 1 grains, …), `name` is shown for it, `file` is its
-    /// name relative to the series.
+    /// Adds a file relative to the series: `part` (0 solid, 1 grains, …) is shown as `name`.
     pub fn push(&mut self, time: f64, part: u32, name: &str, file: &str) {
         self.frames.push(Frame { time, part, name: name.to_string(), file: file.to_string() });
     }
@@ -75,7 +69,7 @@ impl Series {
     /// Writes the series.
     ///
     /// # Errors
-    /// A time that is not finite, and what the system refuses.
+    /// Non-finite times; I/O errors.
     pub fn write(&self) -> Result<(), WriteError> {
         if let Some((index, frame)) = self.frames.iter().enumerate().find(|(_, f)| !f.time.is_finite()) {
             let (file, field) = (self.file.clone(), "time".to_string());
@@ -127,7 +121,7 @@ mod tests {
     use crate::write::sample::folder;
 
     #[test]
-    fn a_series_is_resumed_after_some_files() {
+    fn resumes_series() {
         let dir = folder("pvd");
         let file = dir.join("results.pvd");
         assert_eq!(Series::resume(&file, 0).unwrap(), Series::new(&file));
@@ -148,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_is_not_finite_is_refused() {
+    fn rejects_nonfinite_time() {
         let dir = folder("pvd_nan");
         let file = dir.join("results.pvd");
         let mut series = Series::new(&file);

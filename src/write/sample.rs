@@ -1,5 +1,3 @@
-//! Meshes and folders for the tests of readers and writers.
-
 use super::body_fields::{BODY_FIELDS, Written};
 use super::frame::{GrainFrame, Values};
 use std::collections::BTreeMap;
@@ -8,7 +6,6 @@ use std::path::PathBuf;
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
-/// A fresh folder for one test.
 pub fn folder(name: &str) -> PathBuf {
     let dir = std::env::temp_dir().join(format!("trackbed_{}_{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&dir);
@@ -16,7 +13,6 @@ pub fn folder(name: &str) -> PathBuf {
     dir
 }
 
-/// Grains with all fields that are written by default, whose vectors are `vector` of their number.
 pub fn grains(count: usize, vector: impl Fn(usize) -> [f64; 3]) -> GrainFrame {
     let vectors = || (0..count).map(&vector).collect::<Vec<_>>();
     let values = |name: &str| match name {
@@ -33,7 +29,6 @@ pub fn grains(count: usize, vector: impl Fn(usize) -> [f64; 3]) -> GrainFrame {
     GrainFrame { position: vectors(), fields }
 }
 
-/// Corners and mid-sides of a hex20 on the lattice of half sides, SOLID186 order.
 const LATTICE: [[usize; 3]; 20] = [
     [0, 0, 0],
     [2, 0, 0],
@@ -57,12 +52,12 @@ const LATTICE: [[usize; 3]; 20] = [
     [0, 2, 1],
 ];
 
-/// A block of `n[0]` x `n[1]` x `n[2]` unit elements in three horizontal layers of material.
+/// Block of `n[0]` x `n[1]` x `n[2]` unit elements in three material layers.
 pub fn straight_block(n: [usize; 3]) -> Mesh {
     mapped_block(n, |p| p)
 }
 
-/// The same with curved edges, and distorted without symmetry.
+/// As `straight_block`, curved and distorted without symmetry.
 pub fn block(n: [usize; 3]) -> Mesh {
     mapped_block(n, |[x, y, z]| {
         [

@@ -1,6 +1,4 @@
-//! Points over two logarithmic axes as SVG, with a line through some of them: for trades of error against cost.
-//!
-//! Text is placed and colours are chosen as in [`super::svg`]; kinds of points differ by their shape as well.
+//! Scatter plots with logarithmic axes as SVG, styled as in [`super::svg`].
 
 use std::path::Path;
 
@@ -11,14 +9,14 @@ use super::svg::{
     text_width,
 };
 
-/// Shape of a point.
+/// Marker shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// A filled circle.
+    /// Filled circle.
     Circle,
-    /// A square without filling.
+    /// Open square.
     Square,
-    /// A filled diamond.
+    /// Filled diamond.
     Diamond,
 }
 
@@ -27,15 +25,15 @@ pub enum Mark {
 pub struct Group {
     /// Name in the legend.
     pub name: String,
-    /// Shape.
+    /// Marker shape.
     pub mark: Mark,
-    /// Whether a line joins them in order.
+    /// Whether a line joins the points in order.
     pub joined: bool,
-    /// Label beside each point, x and y, both above 0, in the units of the axes.
+    /// Label, x and y of each point, both positive, in axis units.
     pub points: Vec<(String, [f64; 2])>,
 }
 
-/// A plot of groups of points over logarithmic axes.
+/// Scatter plot with logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterPlot {
     /// Title above the plot.
@@ -44,20 +42,19 @@ pub struct ScatterPlot {
     pub x_label: String,
     /// Quantity and unit along y.
     pub y_label: String,
-    /// The points.
+    /// Groups of points.
     pub groups: Vec<Group>,
-    /// Name and y of a level line across the plot.
+    /// Name and y of a horizontal line.
     pub level: Option<(String, f64)>,
 }
 
-/// Radius of a point [px].
 const RADIUS: f64 = 4.5;
 
 impl ScatterPlot {
     /// Writes the plot.
     ///
     /// # Errors
-    /// A coordinate that is not above 0 or not finite, and what the system refuses.
+    /// Coordinates not positive or not finite; I/O errors.
     pub fn write(&self, file: &Path) -> Result<(), WriteError> {
         let level = self.level.iter().map(|(name, y)| (name, [1.0, *y]));
         let points = self.groups.iter().flat_map(|g| g.points.iter().map(|(_, p)| (&g.name, *p)));
@@ -68,7 +65,6 @@ impl ScatterPlot {
         atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))
     }
 
-    /// The plot as SVG text.
     fn render(&self) -> String {
         let points = || self.groups.iter().flat_map(|g| g.points.iter().map(|(_, p)| *p));
         let x = LogAxis::over(points().map(|p| p[0]));
@@ -143,14 +139,12 @@ impl ScatterPlot {
     }
 }
 
-/// Stroke of the level line.
 const LEVEL: &str = "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.2\" stroke-dasharray=\"7 4\"";
 
 fn stroke(index: usize) -> String {
     format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"", COLOURS[index % COLOURS.len()])
 }
 
-/// A point of the group `index` at pixels (x, y).
 fn mark(mark: Mark, index: usize, x: f64, y: f64) -> String {
     let (colour, r) = (COLOURS[index % COLOURS.len()], RADIUS);
     match mark {
@@ -184,7 +178,6 @@ fn points_of(group: &Group, index: usize, area: &Area) -> String {
     svg
 }
 
-/// The rectangle that points are drawn in, with its axes.
 struct Area {
     left: f64,
     right: f64,
@@ -203,7 +196,7 @@ impl Area {
     }
 }
 
-/// Values along one side by their logarithms, from a tick to a tick.
+/// Decadic logarithms from tick to tick.
 struct LogAxis {
     low: f64,
     high: f64,
@@ -211,7 +204,7 @@ struct LogAxis {
 }
 
 impl LogAxis {
-    /// An axis over the values: ticks at 1, 2 and 5 of each power of ten where these are few, else at the powers alone.
+    /// Ticks at 1, 2 and 5 of each decade if few, else at decades.
     fn over(values: impl Iterator<Item = f64>) -> LogAxis {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let (low, high) = if low <= high { (low, high) } else { (1.0, 1.0) };
@@ -222,7 +215,7 @@ impl LogAxis {
         let all: Vec<(i32, u32)> =
             decades.filter(|d| d % every == 0).flat_map(|d| digits.iter().map(move |k| (d, *k))).collect();
         let value = |(decade, digit): &(i32, u32)| f64::from(*digit) * 10.0_f64.powi(*decade);
-        // The ticks just outside; a value on a tick would be cut by the frame, so the bounds are strict.
+        // A value on a tick would be cut by the frame.
         let first = all.iter().rposition(|t| value(t) < low).unwrap_or(0);
         let last = all.iter().position(|t| value(t) > high).unwrap_or(all.len() - 1);
         let ticks: Vec<(f64, String)> =
@@ -259,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plot_has_its_points_and_refuses_what_has_no_logarithm() {
+    fn plots_points_and_rejects_nonpositive() {
         let group = |points: &[[f64; 2]]| Group {
             name: "front".into(),
             mark: Mark::Circle,
@@ -279,7 +272,6 @@ mod tests {
         let svg = std::fs::read_to_string(&file).unwrap();
         assert_eq!(svg.matches("<circle").count(), 4, "three points and the legend's");
         assert!(svg.contains("Error &amp; cost") && svg.contains("largest relative error [1]"));
-        // Equal ratios are equal distances.
         let line = svg.split("<polyline points=\"").nth(1).unwrap().split('"').next().unwrap();
         let x: Vec<f64> = line.split(' ').map(|p| p.split(',').next().unwrap().parse().unwrap()).collect();
         assert!(((x[1] - x[0]) - (x[2] - x[1])).abs() < 0.02, "{x:?}");

@@ -1,10 +1,10 @@
-//! Binary STL of a surface, so that other programs can show it.
+//! Binary STL of a surface.
 //!
-//! Source: 3D Systems, StereoLithography Interface Specification, 1989. Coordinates have single precision there.
+//! Source: 3D Systems, StereoLithography Interface Specification, 1989. Coordinates are single precision.
 
 use trackbed_dem::shape::polyhedron::Surface;
 
-/// The bytes of a binary STL file. The title does not begin with `solid`, which some readers take for text.
+/// Returns a binary STL file, whose title must not begin with `solid`, a mark of text.
 pub fn stl_bytes(surface: &Surface) -> Vec<u8> {
     let mut bytes = b"surface written by trackbed".to_vec();
     bytes.resize(80, 0);
@@ -28,7 +28,7 @@ mod tests {
     use trackbed_dem::shape::polyhedron::Polyhedron;
 
     #[test]
-    fn a_stone_comes_back_with_its_volume() {
+    fn stone_reads_back_with_volume() {
         let form = random::Form { elongation: [0.7; 2], flatness: [0.8; 2], angularity: [0.5; 2] };
         let body = random::stone(3, 0, &form);
         let file = std::env::temp_dir().join(format!("trackbed-{}-stone.stl", std::process::id()));

@@ -1,8 +1,7 @@
-//! Line plots as SVG: title, axes with ticks at round numbers, several series, a legend.
+//! Line plots as SVG.
 //!
-//! Text is placed by estimated widths (0.6 of the font size per character, an upper bound for the usual
-//! sans-serif digits and letters), so that labels stay clear of each other and inside the picture. Colours are
-//! those of Okabe and Ito (2008), distinct also for colour-blind readers; series differ by dashes as well.
+//! Text width is at most 0.6 of the font size per character. Colours: Okabe and Ito (2008), distinct for
+//! colour-blind readers.
 
 use std::path::Path;
 
@@ -11,16 +10,16 @@ use quick_xml::escape::escape;
 use super::atomic;
 use super::error::{WriteError, check_field};
 
-/// A curve.
+/// Curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: String,
-    /// Its points (x, y), joined in order, in the units of the axes.
+    /// Points (x, y), joined in order, in axis units.
     pub points: Vec<[f64; 2]>,
 }
 
-/// A plot of curves over common axes.
+/// Plot of curves with common axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinePlot {
     /// Title above the plot.
@@ -29,7 +28,7 @@ pub struct LinePlot {
     pub x_label: String,
     /// Quantity and unit along y, such as `settlement [mm]`.
     pub y_label: String,
-    /// The curves.
+    /// Curves.
     pub series: Vec<Series>,
 }
 
@@ -39,9 +38,7 @@ pub(super) const TOP: f64 = 48.0;
 pub(super) const BOTTOM: f64 = 60.0;
 pub(super) const FONT: f64 = 13.0;
 pub(super) const TITLE_FONT: f64 = 16.0;
-/// Width of a character over its font size.
 const CHARACTER: f64 = 0.6;
-/// Line sample and gap of a legend entry [px].
 pub(super) const SAMPLE: f64 = 34.0;
 
 pub(crate) const COLOURS: [&str; 7] =
@@ -52,7 +49,7 @@ impl LinePlot {
     /// Writes the plot.
     ///
     /// # Errors
-    /// A point that is not finite (named by its series), and what the system refuses.
+    /// Non-finite points; I/O errors.
     pub fn write(&self, file: &Path) -> Result<(), WriteError> {
         for series in &self.series {
             let flat = series.points.as_flattened();
@@ -62,7 +59,6 @@ impl LinePlot {
         atomic::write(file, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(file)))
     }
 
-    /// The plot as SVG text; points are taken to be finite.
     fn render(&self) -> String {
         let x = Axis::over(self.points().map(|p| p[0]), 8);
         let y = Axis::over(self.points().map(|p| p[1]), 6);
@@ -90,7 +86,7 @@ impl LinePlot {
         self.series.iter().flat_map(|s| &s.points)
     }
 
-    /// Space to the right of the plot; one curve needs no legend.
+    /// A single curve has no legend.
     fn legend_width(&self) -> f64 {
         let names = self.series.iter().map(|s| text_width(&s.name, FONT));
         if self.series.len() < 2 { 0.0 } else { names.fold(0.0, f64::max) + SAMPLE + 26.0 }
@@ -137,7 +133,6 @@ impl LinePlot {
     }
 }
 
-/// The rectangle that curves are drawn in [px].
 struct Area {
     left: f64,
     right: f64,
@@ -155,7 +150,6 @@ impl Area {
     }
 }
 
-/// The values along one side, from the first tick to the last.
 struct Axis {
     low: f64,
     step: f64,
@@ -163,11 +157,10 @@ struct Axis {
 }
 
 impl Axis {
-    /// An axis over the values with up to `most` steps of 1, 2 or 5 times a power of ten.
+    /// At most `most` steps of 1, 2 or 5 times a power of ten.
     fn over(values: impl Iterator<Item = f64>, most: usize) -> Axis {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let (low, high) = match high - low {
-            // No values, or all alike: something round about them.
             span if span.is_nan() || span == f64::NEG_INFINITY => (0.0, 1.0),
             span if span <= 1e-12 * high.abs().max(low.abs()) => {
                 let half = if high == 0.0 { 1.0 } else { 0.5 * high.abs() };
@@ -176,7 +169,7 @@ impl Axis {
             _ => (low, high),
         };
         let step = nice_step((high - low) / most as f64);
-        // A value a rounding error above a tick does not deserve a further step.
+        // No further step for rounding errors.
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil();
         Axis { low: first * step, step, steps: ((last - first) as usize).max(1) }
@@ -207,12 +200,12 @@ impl Axis {
     }
 }
 
-/// A typographic minus, as wide as a digit.
+/// Typographic minus, as wide as a digit.
 pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// A digit times a power of ten, in plain form where that is short: the label of a logarithmic tick.
+/// Digit times a power of ten, in plain form if short.
 pub(crate) fn power_of_ten(decade: i32, digit: u32) -> String {
     match decade {
         0..=4 => format!("{digit}{}", "0".repeat(decade as usize)),
@@ -221,7 +214,6 @@ pub(crate) fn power_of_ten(decade: i32, digit: u32) -> String {
     }
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below `least`.
 fn nice_step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(least).floor());
     [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power)
@@ -231,13 +223,12 @@ pub(crate) fn text_width(text: &str, font: f64) -> f64 {
     CHARACTER * font * text.chars().count() as f64
 }
 
-/// The font size, or the smaller one at which the text takes `space` [px].
+/// Font size reduced to fit `space` [px].
 pub(super) fn fitted(text: &str, font: f64, space: f64) -> f64 {
     let scale = space / text_width(text, font).max(1.0);
     if scale >= 1.0 { font } else { (10.0 * font * scale).floor() / 10.0 }
 }
 
-/// Pixels to a hundredth: more digits only lengthen the file.
 pub(crate) fn round(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }
@@ -247,7 +238,7 @@ pub(super) fn text(x: f64, y: f64, anchor: &str, content: &str) -> String {
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{content}</text>\n")
 }
 
-/// The text without control characters, which XML 1.0 cannot hold.
+/// Removes control characters, invalid in XML 1.0.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
@@ -272,8 +263,7 @@ fn curve(series: &Series, index: usize, area: &Area, x: &Axis, y: &Axis) -> Stri
     }
 }
 
-/// Of the points that fall in one column of half a pixel in a row, the first, the lowest, the highest and the
-/// last, in order: a history of millions of steps looks the same and stays small.
+/// Keeps first, lowest, highest and last point of each half-pixel column.
 pub(crate) fn thinned(pixels: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let all: Vec<[f64; 2]> = pixels.collect();
     let column = |p: &[f64; 2]| (2.0 * p[0]).floor();

@@ -1,5 +1,3 @@
-//! Ticks, placement, and well-formed text.
-
 use super::*;
 use crate::write::sample::folder;
 use quick_xml::escape::unescape;
@@ -9,7 +7,7 @@ fn labels(values: &[f64], most: usize) -> Vec<String> {
 }
 
 #[test]
-fn ticks_stand_at_round_numbers_that_enclose_the_values() {
+fn ticks_are_round_and_enclose_values() {
     assert_eq!(labels(&[0.0, 10.0], 5), ["0", "2", "4", "6", "8", "10"]);
     assert_eq!(labels(&[-0.3, 0.71], 6), ["−0.4", "−0.2", "0.0", "0.2", "0.4", "0.6", "0.8"]);
     assert_eq!(labels(&[3.0, 3.0], 4), ["1", "2", "3", "4", "5"]);
@@ -39,7 +37,6 @@ fn settlement() -> LinePlot {
     }
 }
 
-/// Attribute `key` of every element of a kind.
 fn attributes(svg: &str, element: &str, key: &str) -> Vec<String> {
     svg.split(&format!("<{element} "))
         .skip(1)
@@ -62,14 +59,14 @@ fn curves_run_where_their_values_are() {
             [x.parse().unwrap(), y.parse().unwrap()]
         })
         .collect();
-    // All end at cycle 200, the right edge; the larger settlement ends lower down, y growing downwards.
+    // Larger settlement ends lower.
     assert!(ends.iter().all(|e| e[0] == ends[0][0]));
     assert!(ends[1][1] > ends[0][1] && ends[0][1] > ends[2][1]);
     assert!(ends.iter().all(|e| e[1] < HEIGHT - BOTTOM && e[1] > TOP));
 }
 
 #[test]
-fn all_text_stays_inside_the_picture_and_tick_labels_apart() {
+fn text_stays_inside_and_apart() {
     let svg = settlement().render();
     let mut last_tick = f64::NEG_INFINITY;
     for part in svg.split("<text ").skip(1) {
@@ -83,7 +80,7 @@ fn all_text_stays_inside_the_picture_and_tick_labels_apart() {
             _ => (x, x + width),
         };
         if x == 0.0 {
-            continue; // the turned label of the y axis, in its own frame
+            continue; // rotated label of the y axis
         }
         assert!(from >= 0.0 && to <= WIDTH && y <= HEIGHT, "{content} from {from} to {to} at {y}");
         if y == HEIGHT - BOTTOM + 18.0 {
@@ -95,7 +92,7 @@ fn all_text_stays_inside_the_picture_and_tick_labels_apart() {
 }
 
 #[test]
-fn long_titles_and_labels_shrink_to_fit() {
+fn long_titles_shrink_to_fit() {
     assert_eq!(fitted("Settlement", TITLE_FONT, WIDTH), TITLE_FONT);
     let long = "Settlement of the sleeper against the number of load cycles ".repeat(3);
     assert!(text_width(&long, fitted(&long, TITLE_FONT, WIDTH)) <= WIDTH);
@@ -105,7 +102,6 @@ fn long_titles_and_labels_shrink_to_fit() {
 fn the_text_is_well_formed() {
     let svg = settlement().render();
     assert!(svg.contains("sleeper &amp; &lt;bed&gt;") && svg.contains("clean &quot;new&quot;"));
-    // Every tag closes in order.
     let mut open: Vec<&str> = Vec::new();
     for tag in svg.split('<').skip(1).map(|t| t.split('>').next().unwrap()) {
         if let Some(name) = tag.strip_prefix('/') {
@@ -119,7 +115,7 @@ fn the_text_is_well_formed() {
 }
 
 #[test]
-fn control_characters_of_a_title_do_not_break_the_picture() {
+fn removes_control_characters() {
     let plot = LinePlot { title: "bell \u{7} and \u{1b}[31m red".to_string(), ..settlement() };
     let svg = plot.render();
     assert!(svg.contains("bell   and  [31m red"));
@@ -137,7 +133,7 @@ fn empty_and_single_points_are_drawn() {
 }
 
 #[test]
-fn a_long_history_is_thinned_and_keeps_its_peaks() {
+fn thinned_history_keeps_peaks() {
     let points: Vec<[f64; 2]> = (0..500_000)
         .map(|i| [f64::from(i), if i == 123_457 { 7.0 } else { (f64::from(i) * 0.37).sin() }])
         .collect();
@@ -153,7 +149,7 @@ fn a_long_history_is_thinned_and_keeps_its_peaks() {
 }
 
 #[test]
-fn a_point_that_is_not_finite_is_refused() {
+fn rejects_nonfinite_point() {
     let dir = folder("svg_nan");
     let file = dir.join("plot.svg");
     let mut plot = settlement();

@@ -1,15 +1,14 @@
-//! The solid for Tecplot: an ASCII `.dat` file, one zone of eight-node bricks (FEBRICK).
+//! Solid for Tecplot: ASCII `.dat` file, one FEBRICK zone.
 //!
-//! Tecplot has no 20-node brick. Each hex20 is split into eight bricks about its centre; the points that the
-//! serendipity element lacks, one per face and one per body, are interpolated with its own shape functions:
+//! Tecplot has no 20-node brick. Each hex20 becomes eight bricks; missing points follow from its shape
+//! functions:
 //!
 //! - face centre: half the sum of the four mid-sides less a quarter of the sum of the four corners;
-//! - body centre: a quarter of the sum of the twelve mid-sides less a quarter of that of the eight corners.
+//! - body centre: a quarter of the sum of the twelve mid-sides less a quarter of the sum of the eight
+//!   corners.
 //!
-//! `u` and `von_mises` there come from the interpolated displacement and stress; `eps_p`, which the negative
-//! weights of the corners could make negative, is kept at 0 or above.
-//!
-//! Elements of other kinds are written as one brick of their corners, with corners repeated where there are fewer.
+//! `eps_p` is clipped at 0, since corner weights are negative. Other kinds become one brick with repeated
+//! corners.
 //!
 //! Source of the format: Tecplot 360 Data Format Guide, ASCII data, finite-element zones.
 
@@ -28,20 +27,18 @@ use super::writer::{Format, Mark, Part, Writer};
 const VARIABLES: &str = "\"x\" \"y\" \"z\" \"ux\" \"uy\" \"uz\" \"u\" \"sxx\" \"syy\" \"szz\" \"sxy\" \"syz\" \"szx\" \
      \"von_mises\" \"eps_p\"";
 
-/// Independent values of a point: x y z, ux uy uz, six stresses, equivalent plastic strain.
+/// Point values: x y z, ux uy uz, six stresses, equivalent plastic strain.
 type Values = [f64; 13];
 
-/// Local points 0–19 nodes, 20–25 face centres, 26 body centre, of the 3x3x3 lattice; first axis fastest.
+/// 3x3x3 lattice, first axis fastest: 0–19 nodes, 20–25 face centres, 26 body centre.
 const LATTICE: [usize; 27] =
     [0, 8, 1, 11, 20, 9, 3, 10, 2, 16, 21, 17, 24, 26, 22, 19, 23, 18, 4, 12, 5, 15, 25, 13, 7, 14, 6];
 
-/// Corners of a small brick on that lattice, relative to its lowest corner, Tecplot's order.
 const BRICK: [usize; 8] = [0, 1, 4, 3, 9, 10, 13, 12];
 
-/// Lowest corners of the eight small bricks.
 const LOWEST: [usize; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
 
-/// The solid as one file per frame.
+/// Solid, one file per frame.
 pub const FORMAT: Format = Format {
     key: "tecplot",
     default: false,
@@ -68,10 +65,10 @@ impl Writer for Tecplot {
     }
 }
 
-/// Writes the solid at `time` [s] as the zone `zone`; files of one `strand` (1 or more) make a time series.
+/// Writes the solid at `time` [s] as `zone`; files of one `strand` (≥ 1) form a time series.
 ///
 /// # Errors
-/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+/// Wrong field length, non-finite values; I/O errors.
 pub fn write_solid(
     file: &Path,
     frame: &SolidFrame,
@@ -147,8 +144,8 @@ fn von_mises(v: &Values) -> f64 {
     (0.5 * deviatoric + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
 }
 
-/// The small bricks (point indices from 0, nodes first) and the points beyond the nodes. Face centres are
-/// shared by the elements on both sides.
+/// Small bricks (point indices from 0, nodes first) and additional points; adjacent elements share face
+/// centres.
 fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
     let mesh: &Mesh = frame.mesh;
     let n = mesh.node_count();
@@ -182,7 +179,6 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
     (bricks, extra)
 }
 
-/// The corners of another kind as a brick, some of them repeated.
 fn corners_as_brick(kind: ElementKind) -> [usize; 8] {
     match kind.linear() {
         ElementKind::Wedge6 => [0, 1, 2, 2, 3, 4, 5, 5],

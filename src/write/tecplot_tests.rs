@@ -1,7 +1,6 @@
 use super::*;
 use crate::write::sample;
 
-/// Writes a mesh with smooth fields and returns the header, the points and the bricks of the file.
 fn written(mesh: &Mesh) -> (Vec<String>, Vec<Vec<f64>>, Vec<[usize; 8]>) {
     let n = mesh.node_count();
     let u: Vec<f64> = mesh.coordinates.iter().flat_map(|[x, y, z]| [y * z, x * x, x + y]).collect();
@@ -31,7 +30,7 @@ fn written(mesh: &Mesh) -> (Vec<String>, Vec<Vec<f64>>, Vec<[usize; 8]>) {
     (header, rows[..split].to_vec(), bricks)
 }
 
-/// Volume of a brick with straight edges, by the trilinear map at 2x2x2 Gauss points (exact).
+/// Volume of a trilinear brick by 2x2x2 Gauss points (exact).
 fn brick_volume(x: [[f64; 3]; 8]) -> f64 {
     const SIGN: [[f64; 3]; 8] = [
         [-1.0, -1.0, -1.0],
@@ -64,7 +63,7 @@ fn brick_volume(x: [[f64; 3]; 8]) -> f64 {
 }
 
 #[test]
-fn the_header_is_tecplots_and_counts_agree() {
+fn header_counts_match_content() {
     let mesh = sample::block([2, 1, 1]);
     let (header, points, bricks) = written(&mesh);
     // 32 nodes, 11 faces, 2 bodies.
@@ -77,7 +76,7 @@ fn the_header_is_tecplots_and_counts_agree() {
 }
 
 #[test]
-fn the_bricks_of_a_straight_mesh_fill_it_and_none_is_turned_over() {
+fn bricks_fill_straight_mesh() {
     let mesh = sample::straight_block([2, 3, 2]);
     let (_, points, bricks) = written(&mesh);
     for brick in &bricks {
@@ -88,7 +87,7 @@ fn the_bricks_of_a_straight_mesh_fill_it_and_none_is_turned_over() {
 }
 
 #[test]
-fn interpolated_points_reproduce_linear_fields_and_derived_values() {
+fn interpolation_reproduces_linear_fields() {
     let mesh = sample::block([2, 2, 1]);
     let (_, points, _) = written(&mesh);
     for p in &points[mesh.node_count()..] {
@@ -104,7 +103,7 @@ fn interpolated_points_reproduce_linear_fields_and_derived_values() {
 }
 
 #[test]
-fn a_value_that_is_not_finite_is_named() {
+fn rejects_nonfinite_value() {
     let mesh = sample::block([1, 1, 1]);
     let n = mesh.node_count();
     let (u, mut stress, scalar) = (vec![0.0; 3 * n], vec![[0.0; 6]; n], vec![0.0; n]);

@@ -1,7 +1,7 @@
-//! VTK XML files: checked fields, compressed in blocks, in an atomic file.
+//! VTK XML files with checked, compressed fields, written atomically.
 //!
-//! An array goes out as VTK's own writer does it by default: blocks of 32 KiB, each compressed whole by zlib, in base64 behind a header of
-//! their lengths. Source: VTK's User's Guide, "VTK XML formats".
+//! Arrays as by VTK's own writer: zlib blocks of 32 KiB in base64 after a header of lengths. Source: VTK's
+//! User's Guide, "VTK XML formats".
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,13 +16,12 @@ use super::atomic;
 use super::choice::Choice;
 use super::error::{WriteError, check_field};
 
-/// zlib level: result fields are noise in their low bits, so higher levels cost time and gain little.
+/// zlib level: low bits of results are noise, so higher levels gain little.
 const LEVEL: u32 = 1;
 
-/// Bytes of a block before it is compressed.
+/// Uncompressed block size [bytes].
 const BLOCK: usize = 32768;
 
-/// An array as little-endian bytes.
 pub struct Array {
     name: String,
     kind: &'static str,
@@ -31,19 +30,18 @@ pub struct Array {
 }
 
 impl Array {
-    /// Numbers of double precision, `components` per item.
+    /// `components` per item.
     pub fn doubles(name: &str, values: &[f64], components: usize) -> Array {
         let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
         Array { name: name.into(), kind: "Float64", components, bytes }
     }
 
-    /// Identifiers.
     pub fn ids(name: &str, values: &[u32]) -> Array {
         let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
         Array { name: name.into(), kind: "UInt32", components: 1, bytes }
     }
 
-    /// Indices of points or of places in a list of them.
+    /// Point indices or offsets.
     pub fn indices(name: &str, values: impl Iterator<Item = u64>) -> Array {
         Array {
             name: name.into(),
@@ -53,12 +51,10 @@ impl Array {
         }
     }
 
-    /// Small numbers.
     pub fn bytes(name: &str, bytes: Vec<u8>) -> Array {
         Array { name: name.into(), kind: "UInt8", components: 1, bytes }
     }
 
-    /// The text of the array in the file.
     fn encoded(&self) -> std::io::Result<String> {
         let compressed = self.bytes.chunks(BLOCK).map(|block| {
             let mut encoder = ZlibEncoder::new(Vec::with_capacity(BLOCK / 2), Compression::new(LEVEL));
@@ -66,7 +62,7 @@ impl Array {
             encoder.finish()
         });
         let compressed = compressed.collect::<std::io::Result<Vec<_>>>()?;
-        // A last block that is whole counts as no partial one.
+        // A complete last block counts as no partial block.
         let counts = [compressed.len(), BLOCK, self.bytes.len() % BLOCK];
         let lengths = counts.into_iter().chain(compressed.iter().map(Vec::len));
         let header: Vec<u8> = lengths.flat_map(|n| (n as u64).to_le_bytes()).collect();
@@ -76,31 +72,29 @@ impl Array {
     }
 }
 
-/// Arrays of a file that belong together, such as `PointData`.
 pub struct Section {
     name: &'static str,
-    /// Attributes of the tag: which array is the one to show first, as scalars, vectors or tensors.
+    /// Default scalars, vectors or tensors.
     active: Vec<(&'static str, String)>,
     arrays: Vec<Array>,
 }
 
 impl Section {
-    /// A section without arrays to show first.
     pub fn new(name: &'static str, arrays: Vec<Array>) -> Section {
         Section { name, active: Vec::new(), arrays }
     }
 
-    /// Points, checked.
+    /// Checked points.
     ///
     /// # Errors
-    /// A coordinate that is not finite.
+    /// Non-finite coordinates.
     pub fn points(file: &Path, points: &[[f64; 3]]) -> Result<Section, WriteError> {
         let flat = points.as_flattened();
         check_field(file, "points", flat, 3, points.len())?;
         Ok(Section::new("Points", vec![Array::doubles("Points", flat, 3)]))
     }
 
-    /// Cells by the points of all of them, one behind the other, and the end of each in that list.
+    /// Cells by concatenated points and end offsets.
     pub fn cells(
         name: &'static str,
         connectivity: impl Iterator<Item = u64>,
@@ -110,19 +104,18 @@ impl Section {
         Section::new(name, arrays)
     }
 
-    /// Cells of `size` points each, numbered on.
+    /// Cells of `size` consecutive points each.
     pub fn cells_in_order(name: &'static str, cells: usize, size: usize) -> Section {
         Section::cells(name, 0..(cells * size) as u64, (1..=cells as u64).map(|c| c * size as u64))
     }
 
-    /// With one array more.
     pub fn with(mut self, array: Array) -> Section {
         self.arrays.push(array);
         self
     }
 }
 
-/// Named, checked fields of the points or of the cells of one file.
+/// Checked fields of points or cells.
 pub struct Fields<'a> {
     file: PathBuf,
     count: usize,
@@ -131,37 +124,32 @@ pub struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// Fields of the `count` points of `file`.
     pub fn of_points(file: &Path, count: usize) -> Self {
         let section = Section::new("PointData", Vec::new());
         Fields { file: file.to_path_buf(), count, section, choice: Choice::default() }
     }
 
-    /// Fields of the `count` cells of `file`.
     pub fn of_cells(file: &Path, count: usize) -> Self {
         let section = Section::new("CellData", Vec::new());
         Fields { file: file.to_path_buf(), count, section, choice: Choice::default() }
     }
 
-    /// The same; fields that are not chosen are checked and left out.
+    /// Selects fields; others are checked only.
     #[must_use]
     pub fn only(self, choice: Choice<'a>) -> Self {
         Fields { choice, ..self }
     }
 
-    /// One number per item.
     pub fn scalar(&mut self, name: &str, values: &[f64]) -> Result<(), WriteError> {
         self.show_first("Scalars", name);
         self.generic(name, values, 1)
     }
 
-    /// Three numbers per item.
     pub fn vector(&mut self, name: &str, values: &[f64]) -> Result<(), WriteError> {
         self.show_first("Vectors", name);
         self.generic(name, values, 3)
     }
 
-    /// Any number of components per item.
     pub fn generic(&mut self, name: &str, values: &[f64], components: usize) -> Result<(), WriteError> {
         check_field(&self.file, name, values, components, self.count)?;
         if !self.choice.has(name) {
@@ -171,13 +159,12 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// Symmetric tensors xx, yy, zz, xy, yz, zx, written as full 3x3 matrices.
+    /// Adds symmetric tensors xx, yy, zz, xy, yz, zx as 3x3 matrices.
     pub fn tensor(&mut self, name: &str, values: &[[f64; 6]]) -> Result<(), WriteError> {
         self.show_first("Tensors", name);
         self.generic(name, &matrices(values), 9)
     }
 
-    /// One identifier per item.
     pub fn ids(&mut self, name: &str, values: &[u32]) -> Result<(), WriteError> {
         if values.len() != self.count {
             let (file, field) = (self.file.clone(), name.to_string());
@@ -190,28 +177,27 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// The first field of a kind is the one that a viewer shows.
+    /// Viewers show the first field of each kind.
     fn show_first(&mut self, kind: &'static str, name: &str) {
         if self.choice.has(name) && self.section.active.iter().all(|(k, _)| *k != kind) {
             self.section.active.push((kind, name.to_string()));
         }
     }
 
-    /// The fields.
     pub fn finish(self) -> Section {
         self.section
     }
 }
 
-/// Symmetric tensors xx, yy, zz, xy, yz, zx as full 3x3 matrices by rows.
+/// Symmetric tensors xx, yy, zz, xy, yz, zx as 3x3 matrices by rows.
 pub fn matrices(values: &[[f64; 6]]) -> Vec<f64> {
     values.iter().flat_map(|&[xx, yy, zz, xy, yz, zx]| [xx, xy, zx, xy, yy, yz, zx, yz, zz]).collect()
 }
 
-/// Writes a data set of type `kind` with one piece to `file`: its counts, such as `NumberOfPoints`, and its sections.
+/// Writes a one-piece data set with its counts, such as `NumberOfPoints`.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn write(
     file: &Path,
     kind: &str,
@@ -222,10 +208,10 @@ pub fn write(
     write_with(file, (kind, &[]), &counts, sections)
 }
 
-/// Writes a data set with attributes of its own and of its piece, as images have them.
+/// Writes a data set with attributes.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn write_with(
     file: &Path,
     (kind, attributes): (&str, &[(&str, String)]),
@@ -260,7 +246,6 @@ pub fn write_with(
     })
 }
 
-/// Writes a section with the texts of its arrays.
 fn write_section<W: Write>(
     xml: &mut Writer<W>,
     section: &Section,

@@ -1,5 +1,4 @@
-//! Frames for ParaView: `results.pvd`, with a `.vtu` of the solid and `.vtp` files of grains, force chains and walls for
-//! each moment.
+//! ParaView frames: `results.pvd` with `.vtu` (solid) and `.vtp` (grains, force chains, walls) files.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,7 @@ use super::pvd::Series;
 use super::writer::{Format, Mark, Part, Writer};
 use super::{vtp, vtu};
 
-/// VTK XML files, one per part and frame.
+/// VTK XML files per part and frame.
 pub const FORMAT: Format = Format {
     key: "vtk",
     default: true,
@@ -21,7 +20,7 @@ pub const FORMAT: Format = Format {
     begin,
 };
 
-/// A script beside the results that shows them with PyVista.
+/// Script that shows the results with PyVista.
 const LOOK: &str = "look.py";
 
 struct VtkFrames {

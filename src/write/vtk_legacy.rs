@@ -1,4 +1,4 @@
-//! Legacy VTK files (`.vtk`), text, version 3.0: the same arrays as `vtu::write_mesh_file` writes.
+//! Writer of legacy VTK (`.vtk`), text, version 3.0, with the arrays of `vtu::write_mesh_file`.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -10,13 +10,12 @@ use super::atomic;
 use super::error::WriteError;
 use super::vtu::{cell_sets, constraint_arrays, membership};
 
-/// Writes a mesh.
 pub(super) fn write_vtk(path: &Path, file: &MeshFile) -> Result<(), WriteError> {
     let text = text(file).map_err(|e| WriteError::format(path, e))?;
     atomic::write(path, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(path)))
 }
 
-/// A name without blanks and what else ends a word: `%20`.
+/// Blanks become `%20`.
 fn encode(name: &str) -> String {
     let plain = |b: u8| b.is_ascii_graphic() && b != b'%' && b != b'"';
     name.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
@@ -62,7 +61,6 @@ fn text(file: &MeshFile) -> Result<String, std::fmt::Error> {
     Ok(out)
 }
 
-/// An array of one component.
 fn column(out: &mut String, name: &str, kind: &str, values: &[u32]) -> std::fmt::Result {
     writeln!(out, "{name} 1 {} {kind}", values.len())?;
     values.iter().try_for_each(|value| writeln!(out, "{value}"))

@@ -1,7 +1,7 @@
-//! VTK itself opens what the writers write: `tests/vtk_check.py` on files of every kind and awkward size.
+//! Checks written files with VTK itself: `tests/vtk_check.py`.
 //!
-//! Runs where Python with the package `vtk` is: `TRACKBED_PYTHON` names the interpreter and makes the test
-//! binding; without it `python3` is tried, and the test says so when that has no VTK.
+//! Needs Python with package `vtk`: `TRACKBED_PYTHON` makes the test mandatory, otherwise it is skipped
+//! without VTK.
 
 use super::choice::Choice;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,6 @@ use super::{ChainFrame, GrainFrame, SolidFrame, Values, WallFrame, sample, vtp, 
 use crate::mesh_tools;
 use crate::read::MeshFile;
 
-/// The interpreter, or `None` where there is no VTK and none was asked for.
 pub(super) fn python() -> Option<PathBuf> {
     if let Some(given) = std::env::var_os("TRACKBED_PYTHON") {
         return Some(given.into());
@@ -81,14 +80,14 @@ fn chains(count: usize) -> ChainFrame {
 }
 
 #[test]
-fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
+fn vtk_reads_run_with_same_volume() {
     let Some(python) = python() else { return };
     let dir = sample::folder("oracle_run");
     let path = |name: &str| dir.join(name);
     let mesh = sample::block([3, 2, 3]);
     let info = mesh_tools::info(&mesh, &[]);
     let mut series = Series::new(&path("results.pvd"));
-    // No contacts in the first frame; the last arrays are whole blocks of compression, 32768 bytes.
+    // No contacts in the first frame; last arrays of whole 32768-byte blocks.
     for (frame, (grain_count, chain_count)) in
         [(1, 0), (100, 3), (4096, 4096), (8192, 2048)].into_iter().enumerate()
     {
@@ -122,11 +121,10 @@ fn vtk_reads_a_whole_run_and_agrees_on_the_volume() {
     let volume = ["--volume".to_string(), info.volume.to_string()];
     passes(&python, &[&all[..], &volume[..]].concat());
 
-    // The check itself can fail: on the volume, on the node order, on a missing array, on a missing file.
+    // The check must fail for wrong volume, node order, array and file.
     let wrong = ["--volume".to_string(), (info.volume * (1.0 + 1e-8)).to_string()];
     fails(&python, &[&all[1..], &wrong[..]].concat(), "expected");
     let mut turned = mesh.clone();
-    // Uprights before top mid-sides: the order of other programs.
     for element in 0..turned.element_count() {
         turned.connectivity[element][12..20].rotate_left(4);
     }

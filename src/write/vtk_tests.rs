@@ -4,14 +4,14 @@ use crate::write::{SolidFrame, sample, vtu};
 use std::time::Instant;
 
 #[test]
-fn a_symmetric_tensor_becomes_a_matrix_by_rows() {
+fn writes_symmetric_tensor_by_rows() {
     // xx, yy, zz, xy, yz, zx
     let matrix = matrices(&[[11.0, 22.0, 33.0, 12.0, 23.0, 31.0]]);
     assert_eq!(matrix, [11.0, 12.0, 31.0, 12.0, 22.0, 23.0, 31.0, 23.0, 33.0]);
 }
 
 #[test]
-fn the_first_field_of_a_kind_is_the_one_to_show() {
+fn first_field_is_active() {
     let mut fields = Fields::of_points(Path::new("a.vtu"), 1);
     fields.vector("displacement", &[0.0; 3]).unwrap();
     fields.vector("velocity", &[0.0; 3]).unwrap();
@@ -23,11 +23,11 @@ fn the_first_field_of_a_kind_is_the_one_to_show() {
     );
 }
 
-/// Prints what a field of vectors and a whole frame of a solid cost: `cargo test --release -p trackbed --lib write::vtk -- \
+/// Prints times of a vector field and a solid frame: `cargo test --release -p trackbed --lib write::vtk --
 /// --ignored --nocapture`.
 #[test]
 #[ignore = "prints times"]
-fn time_of_a_field_and_of_a_frame() {
+fn time_of_field_and_frame() {
     let noise = |i: usize| (0.37 * i as f64).sin() * 1e-3;
     let field: Vec<f64> = (0..3 * 13_480).map(noise).collect();
     let array = Array::doubles("velocity", &field, 3);

@@ -1,7 +1,6 @@
-//! Frames as VTKHDF: `grains.vtkhdf` (poly data) and `solid.vtkhdf` (an unstructured grid), each with all times.
+//! VTKHDF frames: `grains.vtkhdf` (poly data) and `solid.vtkhdf` (unstructured grid), each with all times.
 //!
-//! The fields are those of the VTK XML files. What does not change is written once: the mesh of the solid, and the vertices of
-//! the grains until their number changes. Coordinates of the solid are those of the undeformed mesh.
+//! Fields as in VTK XML. The undeformed mesh is written once, grain vertices only if their number changes.
 //!
 //! Source: VTK's documentation, "VTKHDF file format", version 2.0, and its part on transient data.
 
@@ -27,12 +26,11 @@ pub const FORMAT: Format = Format {
     begin,
 };
 
-/// Kinds of cells of poly data, in the order of their offsets.
 const TOPOLOGIES: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];
 
 struct VtkHdf {
     dir: PathBuf,
-    /// Solid and grains, once they have a frame.
+    /// Solid and grains, from their first frame.
     series: [Option<Series>; 2],
 }
 
@@ -69,14 +67,12 @@ impl Writer for VtkHdf {
     }
 }
 
-/// Values of the points or the cells of a frame.
 struct Field<'a> {
     name: &'static str,
     values: Values<'a>,
 }
 
 enum Values<'a> {
-    /// So many numbers per item.
     Doubles(u32, Cow<'a, [f64]>),
     Ids(&'a [u32]),
 }
@@ -89,7 +85,6 @@ fn ids<'a>(name: &'static str, values: &'a [u32]) -> Field<'a> {
     Field { name, values: Values::Ids(values) }
 }
 
-/// The fields that are written.
 fn chosen<'a>(fields: impl IntoIterator<Item = Field<'a>>, choice: Choice<'_>) -> Vec<Field<'a>> {
     fields.into_iter().filter(|field| choice.has(field.name)).collect()
 }
@@ -99,7 +94,6 @@ fn points(points: &[[f64; 3]]) -> Field<'_> {
 }
 
 impl Field<'_> {
-    /// Refuses a field that has not one finite value per item.
     fn check(&self, file: &Path, count: usize) -> Result<(), WriteError> {
         match &self.values {
             Values::Doubles(components, values) => {
@@ -114,30 +108,24 @@ impl Field<'_> {
     }
 }
 
-/// Where the parts of a step begin.
 struct Place {
     part: i64,
     points: i64,
-    /// Cells and their list of points, for each topology.
     cells: Vec<i64>,
 }
 
-/// A file with the steps of a part.
 struct Series {
     path: PathBuf,
     file: File,
     steps: i64,
-    /// Points of the last part of poly data.
     points: Option<i64>,
 }
 
-/// Mark of the file, steps, points.
 type SeriesMark = (Vec<u8>, i64, Option<i64>);
 
 const ROOT: GroupId = 1;
 
 impl Series {
-    /// The series of a part, begun if there is none.
     fn at<'a>(series: &'a mut Option<Series>, path: &Path, kind: &str) -> Result<&'a mut Series, WriteError> {
         if series.is_none() {
             let mut file = File::create(path)?;
@@ -158,7 +146,7 @@ impl Series {
         (self.file.mark(), self.steps, self.points)
     }
 
-    /// Adds rows to a dataset; returns how many there were.
+    /// Appends; returns the previous row count.
     fn add(
         &mut self,
         (group, name): (GroupId, &str),
@@ -171,7 +159,7 @@ impl Series {
         Ok(before)
     }
 
-    /// Adds whole numbers to a dataset of one dimension; returns how many there were.
+    /// Appends integers.
     fn whole(
         &mut self,
         group: GroupId,
@@ -182,7 +170,7 @@ impl Series {
         self.add((group, name), (Kind::I64, None), bytes)
     }
 
-    /// Adds a field; returns how many items there were.
+    /// Appends a field.
     fn field(&mut self, group: GroupId, field: &Field) -> Result<i64, WriteError> {
         let (kind, columns, bytes) = match &field.values {
             Values::Doubles(components, values) => {
@@ -194,7 +182,7 @@ impl Series {
         self.add((group, field.name), (kind, columns), bytes)
     }
 
-    /// Adds a step with its fields and those that do not change, and makes it part of the file.
+    /// Commits a step with its fields and unchanged parts.
     fn step(
         &mut self,
         time: f64,
@@ -226,7 +214,6 @@ impl Series {
         self.file.commit()
     }
 
-    /// Adds a step of the solid.
     fn solid(&mut self, time: f64, frame: &SolidFrame<'_>, choice: Choice<'_>) -> Result<(), WriteError> {
         let mesh = frame.mesh;
         let stress = Values::Doubles(9, Cow::Owned(matrices(frame.stress)));
@@ -276,7 +263,6 @@ impl Series {
         self.step(time, &place, &chosen, fixed)
     }
 
-    /// Adds a step of the grains.
     fn grains(&mut self, time: f64, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
         let fields = frame.fields.iter().map(|(name, values)| match values {
             FieldValues::Vectors(values) => doubles(name, 3, values.as_flattened()),
@@ -292,7 +278,7 @@ impl Series {
         let chosen = chosen(fields, choice);
         let count = count as i64;
         if self.points != Some(count) {
-            // A part of other vertices; it serves all steps until their number changes.
+            // New vertices, valid until their number changes.
             self.whole(ROOT, "NumberOfPoints", [count])?;
             for (k, name) in TOPOLOGIES.into_iter().enumerate() {
                 let (group, cells) = (self.file.group(ROOT, name), if k == 0 { count } else { 0 });

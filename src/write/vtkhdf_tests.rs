@@ -1,12 +1,9 @@
-//! VTK's own reader finds what was written, at every time and after a break.
-
 use super::*;
 use crate::write::sample::{self, folder};
 use crate::write::vtk_oracle::python;
 use std::fmt::Write as _;
 use std::process::Command;
 
-/// What `tests/vtkhdf_check.py` prints of a file.
 fn read(python: &Path, file: &Path) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/vtkhdf_check.py");
     let output = Command::new(python).arg(script).arg(file).output().expect("the interpreter starts");
@@ -15,7 +12,6 @@ fn read(python: &Path, file: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The first, the middle and the last of `count` items.
 fn picked(count: usize) -> Vec<usize> {
     if count == 0 { Vec::new() } else { vec![0, count / 2, count - 1] }
 }
@@ -27,7 +23,6 @@ fn array(out: &mut String, name: &str, components: usize, values: &[f64]) {
     writeln!(out, "  {name} {components}{text}").unwrap();
 }
 
-/// Grains whose number changes: each field is a function of item and time.
 fn grains(count: usize, time: f64) -> GrainFrame {
     let v = |i: usize, d: f64| [i as f64 + d, time * d, -(i as f64)];
     let mut frame = sample::grains(count, |i| v(i, 0.25));
@@ -47,7 +42,6 @@ fn grains(count: usize, time: f64) -> GrainFrame {
     frame
 }
 
-/// What VTK should find in them.
 fn expected_grains(count: usize, time: f64) -> String {
     let f = grains(count, time);
     let mut out = format!("t = {time:.17e}: {count} points, {count} cells\n");
@@ -73,7 +67,7 @@ fn write(writer: &mut dyn Writer, number: usize, grains: &GrainFrame) {
 }
 
 #[test]
-fn vtk_finds_the_grains_of_every_time_though_their_number_changes() {
+fn vtk_reads_changing_grain_number() {
     let Some(python) = python() else { return };
     let dir = folder("vtkhdf_grains");
     let counts = [3, 3, 5, 0, 5, 1];
@@ -88,10 +82,10 @@ fn vtk_finds_the_grains_of_every_time_though_their_number_changes() {
 }
 
 #[test]
-fn vtk_finds_rows_behind_an_index_of_three_levels_and_after_a_break() {
+fn vtk_reads_index_of_three_levels() {
     let Some(python) = python() else { return };
     let dir = folder("vtkhdf_long");
-    // Vectors: 682 rows in a chunk, 31 chunks in a node, so that three levels begin at 655,000 rows.
+    // Vectors: 682 rows per chunk, 31 chunks per node, so three levels begin at 655,000 rows.
     let (count, steps) = (9_000, 80);
     let mut writer = begin(&dir, None).unwrap();
     (0..60).for_each(|k| write(&mut *writer, k, &grains(count, 0.5 * k as f64)));
@@ -106,7 +100,7 @@ fn vtk_finds_rows_behind_an_index_of_three_levels_and_after_a_break() {
 }
 
 #[test]
-fn vtk_finds_the_solid_of_every_time() {
+fn vtk_reads_solid_at_all_times() {
     let Some(python) = python() else { return };
     let dir = folder("vtkhdf_solid");
     let mesh = sample::block([2, 1, 1]);
@@ -147,7 +141,7 @@ fn vtk_finds_the_solid_of_every_time() {
 }
 
 #[test]
-fn a_value_that_is_not_finite_is_named_and_its_frame_left_out() {
+fn drops_frame_with_nonfinite_value() {
     let dir = folder("vtkhdf_nan");
     let file = dir.join("grains.vtkhdf");
     let mut writer = begin(&dir, None).unwrap();

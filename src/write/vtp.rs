@@ -1,7 +1,4 @@
 //! Grains, force chains and walls as VTK poly data (`.vtp`).
-//!
-//! Grains are points: a Glyph of spheres scaled by `radius` shows them. Chains are lines between the partners
-//! of a contact: a Tube by `normal_force` shows them. Walls are polygons.
 
 use std::path::Path;
 
@@ -10,10 +7,10 @@ use super::error::WriteError;
 use super::frame::{ChainFrame, GrainFrame, Values, WallFrame};
 use super::vtk::{self, Fields, Section};
 
-/// Writes the grains: point data of their fields, as far as they are chosen.
+/// Writes the selected grain fields as point data.
 ///
 /// # Errors
-/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+/// Wrong field length, non-finite values; I/O errors.
 pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let count = frame.position.len();
     let mut fields = Fields::of_points(file, count).only(choice);
@@ -22,7 +19,6 @@ pub fn write_grains(file: &Path, frame: &GrainFrame, choice: Choice<'_>) -> Resu
     write(file, &frame.position, fields, verts, ("NumberOfVerts", count))
 }
 
-/// Adds fields by name.
 fn add(fields: &mut Fields, all: &[(&'static str, Values)]) -> Result<(), WriteError> {
     for (name, values) in all {
         match values {
@@ -35,8 +31,8 @@ fn add(fields: &mut Fields, all: &[(&'static str, Values)]) -> Result<(), WriteE
     Ok(())
 }
 
-/// Writes the force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`, numbers `a`, `b` of
-/// the partners.
+/// Writes force chains: cell data `normal_force`, `tangential_force`, `magnitude`, `kind`, `strong`, partner
+/// ids `a`, `b`.
 ///
 /// # Errors
 /// As [`write_grains`].
@@ -57,10 +53,10 @@ pub fn write_chains(file: &Path, frame: &ChainFrame) -> Result<(), WriteError> {
     write(file, frame.ends.as_flattened(), fields, lines, ("NumberOfLines", count))
 }
 
-/// Writes the walls: cell data `id`, `kind`, and those of grains with faces, as far as they are chosen.
+/// Writes walls: cell data `id`, `kind`, fields of polyhedral grains.
 ///
 /// # Errors
-/// As [`write_grains`]; a polygon of fewer than three corners or with a corner that does not exist.
+/// As [`write_grains`]; invalid polygons.
 pub fn write_walls(file: &Path, frame: &WallFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     for (at, polygon) in frame.polygons.iter().enumerate() {
         if polygon.len() < 3 {
@@ -85,7 +81,6 @@ pub fn write_walls(file: &Path, frame: &WallFrame, choice: Choice<'_>) -> Result
     write(file, &frame.points, fields, polygons, ("NumberOfPolys", frame.polygons.len()))
 }
 
-/// Writes poly data whose cells are all of one sort, with their number.
 fn write(
     file: &Path,
     points: &[[f64; 3]],
@@ -109,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_value_is_named_by_field_and_grain() {
+    fn error_names_field_and_grain() {
         let dir = folder("vtp_nan");
         let file = dir.join("grains.vtp");
         let mut frame = grains(5);
@@ -157,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn chains_hold_the_magnitude_of_both_forces() {
+    fn chains_contain_total_force() {
         let dir = folder("vtp_chains");
         let file = dir.join("chains.vtp");
         let frame = ChainFrame {

@@ -1,7 +1,7 @@
-//! The solid as a VTK unstructured grid (`.vtu`) with the fields of one moment, and meshes alone.
+//! Solid and meshes as VTK unstructured grid (`.vtu`).
 //!
-//! VTK numbers the nodes of all eight kinds as this program does: VTK_QUADRATIC_HEXAHEDRON as SOLID186, and VTK_WEDGE,
-//! whatever old documentation says, with the first triangle seen from inside. So the connectivity goes out unchanged.
+//! Node order is unchanged: VTK_QUADRATIC_HEXAHEDRON as SOLID186, and VTK_WEDGE, unlike in old documentation,
+//! with the first triangle seen from inside.
 
 use std::path::Path;
 
@@ -16,10 +16,10 @@ use super::frame::SolidFrame;
 use super::vtk::{self, Array, Fields, Section};
 
 /// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
-/// `equivalent_plastic_strain`, `yield_function`, as far as they are chosen, `node_id`; cell data `material`, `element_id`.
+/// `equivalent_plastic_strain`, `yield_function` if selected, `node_id`; cell data `material`, `element_id`.
 ///
 /// # Errors
-/// A field of the wrong length or with a number that is not finite, and what the system refuses.
+/// Wrong field length, non-finite values; I/O errors.
 pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let mut fields = Fields::of_points(file, frame.mesh.node_count()).only(choice);
     fields.vector("displacement", frame.displacement)?;
@@ -35,7 +35,7 @@ pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Resul
     write_grid(file, frame.mesh, fields, &[])
 }
 
-/// Writes the shape of a natural mode: point data `displacement` (largest component 1) and `node_id`.
+/// Writes a natural mode: point data `displacement` (largest component 1) and `node_id`.
 ///
 /// # Errors
 /// As [`write_solid`].
@@ -46,9 +46,9 @@ pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteEr
     write_grid(file, mesh, fields, &[])
 }
 
-/// Writes a mesh alone: point data `node_id`, `constraint` (1 for x, plus 2 for y, plus 4 for z), `constraint_value` [m]
-/// and `node_set:NAME`; cell data `material`, `element_id`, `element_set:NAME` (1 for members of a set, else 0)
-/// and `face_set:NAME` (a bit for each face).
+/// Writes a mesh: point data `node_id`, `constraint` (1 for x, plus 2 for y, plus 4 for z),
+/// `constraint_value` [m] and `node_set:NAME`; cell data `material`, `element_id`, `element_set:NAME` (1 for
+/// members) and `face_set:NAME` (one bit per face).
 ///
 /// # Errors
 /// As [`write_solid`].
@@ -65,7 +65,7 @@ pub fn write_mesh_file(file: &Path, content: &MeshFile) -> Result<(), WriteError
     write_grid(file, mesh, fields, &cell_sets(content))
 }
 
-/// For each node the directions that are constrained, as bits, and the values.
+/// Direction bits and values per node.
 pub(super) fn constraint_arrays(content: &MeshFile) -> (Vec<u32>, Vec<[f64; 3]>) {
     let nodes = content.mesh.node_count();
     let (mut mask, mut values) = (vec![0_u32; nodes], vec![[0.0; 3]; nodes]);
@@ -76,7 +76,6 @@ pub(super) fn constraint_arrays(content: &MeshFile) -> (Vec<u32>, Vec<[f64; 3]>)
     (mask, values)
 }
 
-/// Names and values of the arrays of cells that stand for sets of elements and of faces.
 pub(super) fn cell_sets(content: &MeshFile) -> Vec<(String, Vec<u32>)> {
     let elements = content.mesh.element_count();
     let of_elements = content.element_sets.iter();
@@ -86,7 +85,7 @@ pub(super) fn cell_sets(content: &MeshFile) -> Vec<(String, Vec<u32>)> {
     of_elements.chain(of_faces).collect()
 }
 
-/// For each element the bits of its faces that are members of a set.
+/// One bit per member face.
 fn face_bits(members: &[[u32; 2]], elements: usize) -> Vec<u32> {
     let mut bits = vec![0; elements];
     for [element, side] in members {
@@ -95,7 +94,6 @@ fn face_bits(members: &[[u32; 2]], elements: usize) -> Vec<u32> {
     bits
 }
 
-/// 1 for the members of a set of `count` items, else 0.
 pub(super) fn membership(members: &[u32], count: usize) -> Vec<u32> {
     let mut flags = vec![0; count];
     for member in members {
@@ -137,7 +135,6 @@ fn write_grid(
     )
 }
 
-/// The cell type whose nodes are those of a kind, in the same order.
 pub(super) fn cell_type(kind: ElementKind) -> u8 {
     TYPES.iter().find(|(_, of, _)| *of == kind).expect("every kind has a VTK type").0
 }
@@ -151,7 +148,7 @@ mod tests {
     use crate::write::sample;
 
     #[test]
-    fn a_field_that_is_not_finite_is_named_and_nothing_written() {
+    fn rejects_nonfinite_field() {
         let dir = sample::folder("vtu_nan");
         let file = dir.join("solid.vtu");
         let mesh = sample::block([2, 1, 1]);
@@ -186,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_reads_back_bit_for_bit() {
+    fn file_reads_back_exactly() {
         let dir = sample::folder("vtu_back");
         let file = dir.join("mesh.vtu");
         let mesh = sample::block([3, 2, 2]);

@@ -1,8 +1,6 @@
-//! The formats in which a run writes its frames.
+//! Frame formats of a run.
 //!
-//! A format is one file of this folder, with a [`Format`] that describes it and a type that is its [`Writer`], and one line
-//! in [`FORMATS`](super::FORMATS). From there come the key of the scene that switches it on, the files that are cleared before a run,
-//! and what of a frame is computed at all.
+//! A format is a file here with a [`Format`], its [`Writer`], and a line in [`FORMATS`](super::FORMATS).
 
 use std::path::Path;
 
@@ -10,49 +8,48 @@ use super::choice::Choice;
 use super::error::WriteError;
 use super::frame::Frame;
 
-/// A part of a frame.
+/// Part of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The solid.
+    /// Solid.
     Solid,
-    /// The grains.
+    /// Grains.
     Grains,
-    /// Contacts of the grains.
+    /// Grain contacts.
     Chains,
     /// Walls and sleepers.
     Walls,
 }
 
-/// Begins a format in a folder, or goes on from a mark.
+/// Starts a format in a directory, or resumes at a mark.
 pub type Begin = fn(&Path, Option<&Mark>) -> Result<Box<dyn Writer>, WriteError>;
 
-/// A format of result files.
+/// Format of result files.
 #[derive(Debug)]
 pub struct Format {
-    /// Key of the scene's `[output]` that switches it on or off.
+    /// Key in the scene's `[output]`.
     pub key: &'static str,
-    /// Whether it is on where the scene does not say.
+    /// Whether it is enabled by default.
     pub default: bool,
-    /// What it shows. A format that shows the solid alone is refused in a scene without one.
+    /// Parts written.
     pub parts: &'static [Part],
-    /// Folder of its frames in the folder of the results, and the endings of their names, without the dot. The number
-    /// of the frame stands behind the last underscore of a name.
+    /// Subdirectory of its frames. Their names end with an underscore and the frame index.
     pub folder: &'static str,
-    /// Endings of the frames there.
+    /// Extensions of the frames, without dot.
     pub endings: &'static [&'static str],
-    /// Its files in the folder of the results itself.
+    /// Files in the results directory.
     pub files: &'static [&'static str],
-    /// Begins to write into the folder of the results, or goes on after a [`Writer::mark`].
+    /// Starts writing, or resumes after a [`Writer::mark`].
     pub begin: Begin,
 }
 
 impl Format {
-    /// Whether it shows a part.
+    /// Whether it writes a part.
     pub fn shows(&self, part: Part) -> bool {
         self.parts.contains(&part)
     }
 
-    /// Whether a file of [`Format::folder`] is a frame, or the beginning of one.
+    /// Whether a file of [`Format::folder`] is a (possibly unfinished) frame.
     pub fn is_frame(&self, file: &Path) -> bool {
         let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let name = name.strip_suffix(".part").unwrap_or(&name);
@@ -60,66 +57,66 @@ impl Format {
     }
 }
 
-/// How far a writer has come, in bytes that only the writer itself reads.
+/// Position of a writer.
 pub type Mark = Vec<u8>;
 
-/// Writes the frames of a run in one format. [`Format::begin`] makes it.
+/// Writer of frames in one format.
 pub trait Writer {
-    /// Writes a frame. All of its files are whole when this returns.
+    /// Writes a frame; all files are complete on return.
     ///
     /// # Errors
-    /// A field of the wrong length or with a number that is not finite, and what the system refuses.
+    /// Wrong field length, non-finite values; I/O errors.
     fn frame(&mut self, frame: &Frame<'_>) -> Result<(), WriteError>;
 
-    /// What a run that is resumed goes on from: every frame written so far, and none that comes later.
+    /// Returns the position for a resumed run.
     fn mark(&self) -> Mark {
         Mark::new()
     }
 
-    /// Ends the run's files.
+    /// Completes the files of a run.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     fn end(&mut self) -> Result<(), WriteError> {
         Ok(())
     }
 }
 
-/// The writers of one run.
+/// Writers of a run.
 pub struct Writers {
     formats: Vec<&'static Format>,
     writers: Vec<Box<dyn Writer>>,
-    /// Names of the fields that are written of those that may be chosen; none: all.
+    /// Selected optional fields; `None` for all.
     fields: Option<Vec<String>>,
 }
 
 impl Writers {
-    /// Begins to write into `dir`, in every one of `formats`.
+    /// Starts writing all `formats` into `dir`.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn begin(dir: &Path, formats: &[&'static Format]) -> Result<Self, WriteError> {
         let writers = formats.iter().map(|format| (format.begin)(dir, None)).collect::<Result<_, _>>()?;
         Ok(Writers { formats: formats.to_vec(), writers, fields: None })
     }
 
-    /// The same; of the fields that may be chosen these alone are written.
+    /// Selects optional fields.
     #[must_use]
     pub fn only(self, fields: &Option<Vec<String>>) -> Self {
         Writers { fields: fields.clone(), ..self }
     }
 
-    /// Goes on after the [`Writers::marks`] of an earlier run.
+    /// Resumes after the [`Writers::marks`] of an earlier run.
     ///
     /// # Errors
-    /// Files that are not those of the marks; what the system refuses.
+    /// Files that do not match the marks; I/O errors.
     pub fn resume(dir: &Path, formats: &[&'static Format], marks: &[Mark]) -> Result<Self, WriteError> {
         let resume = |(format, mark): (&&'static Format, &Mark)| (format.begin)(dir, Some(mark));
         let writers = formats.iter().zip(marks).map(resume).collect::<Result<_, _>>()?;
         Ok(Writers { formats: formats.to_vec(), writers, fields: None })
     }
 
-    /// Whether any format shows a part.
+    /// Whether any format writes a part.
     pub fn show(&self, part: Part) -> bool {
         self.formats.iter().any(|format| format.shows(part))
     }
@@ -133,15 +130,15 @@ impl Writers {
         self.writers.iter_mut().try_for_each(|writer| writer.frame(&frame))
     }
 
-    /// How far they have come.
+    /// Returns all positions.
     pub fn marks(&self) -> Vec<Mark> {
         self.writers.iter().map(|writer| writer.mark()).collect()
     }
 
-    /// Ends all files.
+    /// Completes all files.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn end(&mut self) -> Result<(), WriteError> {
         self.writers.iter_mut().try_for_each(|writer| writer.end())
     }

@@ -4,7 +4,6 @@ use crate::write::{ChainFrame, FORMATS, SolidFrame, WallFrame};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// A frame with one item of every part.
 fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
     let mesh = sample::block([1, 1, 1]);
     let n = mesh.node_count();
@@ -42,7 +41,6 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
     });
 }
 
-/// The files under a folder with their content.
 fn files(dir: &Path) -> BTreeSet<(PathBuf, Vec<u8>)> {
     let mut out = BTreeSet::new();
     for entry in std::fs::read_dir(dir).unwrap() {
@@ -63,7 +61,7 @@ fn fresh(name: &str, format: &Format) -> PathBuf {
 }
 
 #[test]
-fn a_format_leaves_only_files_that_a_later_run_clears() {
+fn later_run_clears_all_files() {
     let keys: BTreeSet<&str> = FORMATS.iter().map(|format| format.key).collect();
     assert_eq!(keys.len(), FORMATS.len(), "two formats have the same key");
     for format in FORMATS {
@@ -84,7 +82,7 @@ fn a_format_leaves_only_files_that_a_later_run_clears() {
 }
 
 #[test]
-fn a_resumed_format_writes_the_bytes_of_a_run_without_a_break() {
+fn resumed_format_is_identical() {
     for format in FORMATS {
         let dir = fresh("resumed", format);
         let mut writers = Writers::begin(&dir, &[format]).unwrap();

@@ -1,4 +1,4 @@
-"""Attacks on the server of `trackbed view`: the clients of tests/data/view/clients.toml, each with what it costs the server."""
+"""Attacks on the server of `trackbed view` by the clients of tests/data/view/clients.toml."""
 
 import http.client
 import re
@@ -11,12 +11,12 @@ from .outputs import good_results
 from .scenes import TINY
 from .verdict import ROOT, SOON
 
-# Memory that the server may take [kB]; the test of the suite has the same limit.
+# Server memory limit [kB], as in the test suite.
 MEMORY = 120_000
 
 
 def memory(process):
-    """Largest memory of a process so far [kB]; 0 where the system does not report it."""
+    """Peak memory of a process [kB]; 0 if unknown."""
     try:
         text = open(f"/proc/{process}/status", encoding="utf-8").read()
     except OSError:
@@ -26,7 +26,7 @@ def memory(process):
 
 
 def send(client, port):
-    """Connects and sends all that the server takes."""
+    """Sends all that the server accepts."""
     stream = socket.create_connection(("127.0.0.1", port), timeout=SOON)
     reads = client.get("reads", True)
     stream.settimeout(SOON if reads else 0.2)
@@ -45,7 +45,7 @@ def send(client, port):
 
 
 def status(stream):
-    """Status of the response; 0 where the connection is closed without one."""
+    """Response status; 0 if closed without one."""
     head = b""
     try:
         while len(head) < 13 and (piece := stream.recv(13 - len(head))):
@@ -56,7 +56,7 @@ def status(stream):
 
 
 def clients(bench, rng):
-    """Each client in turn; after it a good request must get its response, and the server must not have grown."""
+    """After each client a good request must succeed, within the memory limit."""
     out = good_results(bench, [TINY[0]])[TINY[0][0]]
     all_clients = tomllib.loads((ROOT / "tests/data/view/clients.toml").read_text())["client"]
     rng.shuffle(all_clients)

@@ -1,4 +1,4 @@
-"""Attacks by meshes and surfaces: files of every form with bytes, numbers and lines changed at random."""
+"""Attacks by randomly changed meshes and surfaces."""
 
 import re
 
@@ -8,7 +8,7 @@ NUMBERS = [b"0", b"-1", b"1", b"7", b"4294967295", b"4294967296", b"999999999999
 
 
 def damaged(rng, content):
-    """The bytes with up to five changes."""
+    """Up to five changes of the bytes."""
     content = bytearray(content)
     for _ in range(1 + rng.randrange(5)):
         at = rng.randrange(len(content) + 1)
@@ -29,7 +29,7 @@ def damaged(rng, content):
 
 
 def meshes(bench, rng):
-    """`mesh info`, `mesh check` and `mesh convert` of damaged meshes."""
+    """`mesh info`, `mesh check`, `mesh convert`."""
     good = sorted(p for p in (ROOT / "tests/data/mesh").iterdir() if p.suffix in (".msh", ".vtu", ".vtk"))
     for ending in ("cdb", "inp", "msh"):
         made = bench.work / f"good.{ending}"
@@ -47,7 +47,7 @@ def meshes(bench, rng):
 
 
 def surfaces(bench, rng):
-    """`stone info` of damaged surfaces and libraries."""
+    """`stone info`."""
     good = [ROOT / "tests/data/surface/stone.stl", ROOT / "inputs/data/hull.obj"]
     good += [ROOT / f"inputs/data/{name}.toml" for name in ("clumps", "polyhedra", "ballast_stones")]
     while True:

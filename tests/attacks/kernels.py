@@ -1,5 +1,4 @@
-"""The kernels of devices under the address and undefined-behaviour sanitizers of the C compiler, in whole runs through the libraries of
-tests/stand_in: what a kernel reads or writes beyond a buffer, and what C leaves undefined, ends the run with a report."""
+"""GPU kernels under the address and undefined-behaviour sanitizers, in whole runs on tests/stand_in."""
 
 import os
 import pathlib
@@ -24,13 +23,13 @@ SCENES = [
 
 
 def sanitizer():
-    """The run-time library of the address sanitizer; None where the C compiler has none."""
+    """Run-time library of the address sanitizer, if any."""
     found = subprocess.run(["cc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=False).stdout.strip()
     return os.path.realpath(found) if os.path.isabs(found) else None
 
 
 def kernels(bench, rng):
-    """Whole runs on the stand-in with kernels that are watched, each with the bytes of the processor's run."""
+    """Instrumented runs must match the CPU byte for byte."""
     library = sanitizer() if shutil.which("cc") else None
     if not library:
         print("kernels: left out, no C compiler (cc) with an address sanitizer")
@@ -40,7 +39,7 @@ def kernels(bench, rng):
     for source, made in (("driver.c", "libcuda.so.1"), ("compiler.c", "libnvrtc.so.13")):
         options = ["-std=gnu11", "-O1", "-shared", "-fPIC", "-o", folder / made, ROOT / "tests/stand_in" / source, "-ldl"]
         subprocess.run(["cc", *options], check=True)
-    # What the stand-in compiles has the sanitizers in; they report by ending the process.
+    # The sanitizers end the process.
     wrapper = folder / "cc"
     watched = "-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -g"
     wrapper.write_text(f'#!/bin/sh\nunset LD_PRELOAD\nexec {shutil.which("cc")} {watched} "$@"\n')

@@ -1,4 +1,4 @@
-"""Attacks on what a run has left: damaged results, damaged checkpoints, kills."""
+"""Attacks on results: damage, damaged checkpoints, kills."""
 
 import shutil
 import signal
@@ -17,7 +17,7 @@ def command(scene, sets, out):
 
 
 def good_results(bench, scenes):
-    """Results of the scenes, by their names."""
+    """Results by scene name."""
     found = {}
     for scene, sets in scenes:
         out = bench.fresh("good_" + scene.replace("/", "_"))
@@ -27,7 +27,7 @@ def good_results(bench, scenes):
 
 
 def results(bench, rng):
-    """Commands that read results, with one file of them damaged."""
+    """Commands on results with one damaged file."""
     sets = ["output.frames=2"]
     scenes = [TINY[0], ("verify/bounce.toml", [*sets, "output.vtkhdf=true"]), TINY[3]]
     good = good_results(bench, [s for s in scenes if s])
@@ -52,12 +52,12 @@ def results(bench, rng):
 
 
 def checkpoints(bench, rng):
-    """Runs that are gone on with from a damaged checkpoint: a clear rejection, or the files of a run without a break."""
+    """Resuming from a damaged checkpoint: an error, or the files of an uninterrupted run."""
     scene, sets = "grains/box.toml", ["grains.0.count=300", "time.end=0.03", "output.frames=3", "output.checkpoint=0.02"]
     whole = good_results(bench, [(scene, sets)])[scene]
     files = scene_hashes.files(whole)
     broken = bench.fresh("broken")
-    # Interrupted once it has kept a checkpoint.
+    # Interrupted after its first checkpoint.
     process = subprocess.Popen([bench.program, *map(str, command(scene, sets, broken))], stderr=subprocess.DEVNULL)
     end = time.monotonic() + 10 * SOON
     while process.poll() is None and time.monotonic() < end and not list((broken / "checkpoint").glob("*.checkpoint")):
@@ -80,7 +80,7 @@ def checkpoints(bench, rng):
 
 
 def kills(bench, rng):
-    """Runs that are killed at a random moment and gone on with have the files of a run without a break."""
+    """Killed and resumed runs equal uninterrupted ones."""
     scenes = [
         ("grains/box.toml", ["grains.0.count=200", "time.end=0.05", "output.frames=3", "output.checkpoint=0.02"]),
         ("verify/bounce.toml", ["output.frames=3", "output.checkpoint=0.01"]),

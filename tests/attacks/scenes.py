@@ -1,4 +1,4 @@
-"""Attacks by what a scene says."""
+"""Attacks by scene values."""
 
 import math
 import tomllib
@@ -6,7 +6,7 @@ import tomllib
 from .verdict import ROOT, SOON
 
 INPUTS = ROOT / "inputs"
-# Scenes that take a moment, with what makes them so.
+# Fast scenes with overrides.
 TINY = [
     ("grains/box.toml", ["grains.0.count=30", "time.end=0.02", "output.frames=2"]),
     ("grains/bonded_stone/scene.toml", ["time.end=0.001", "output.frames=2"]),
@@ -17,14 +17,14 @@ TINY = [
     ("coupled/slab_mixed/scene.toml", ["output.frames=2"]),
     ("ballast/box.toml", ["grains.0.count=20", "deposition.max_time=0.01", "track.load.cycles=1", "output.frames=2"]),
 ]
-# What no key expects, or too large, too small or of no sign for it.
+# Values of wrong type, size or sign.
 VALUES = ["0", "-0.0", "1", "-1", "2", "1e-3", "1e3", "1e-9", "1e9", "-1e9", "1e-300", "1e300", "-1e300", "1e308", "5e-324", "1e-160", "1e160"]
 VALUES += ["nan", "-nan", "inf", "-inf", "4294967296", "9223372036854775807", '""', '"x"', '"1 parsec"', "true", "[]", "[0]", "[1, 2, 3]", "{}"]
 FACTORS = [0.5, 2.0, 0.1, 10.0, 1e-3, 1e3, 1e-6, 1e6, -1.0, 1e12, 1e-12, 1e50, 1e-50]
 
 
 def leaves(path, value):
-    """Paths of all values of a scene, with the values."""
+    """Paths and values of a scene."""
     if isinstance(value, dict):
         for key, item in value.items():
             yield from leaves(f"{path}.{key}" if path else key, item)
@@ -36,7 +36,7 @@ def leaves(path, value):
 
 
 def scaled(value, factor):
-    """A number, also one with a unit, times a factor; None where it is none."""
+    """Scaled number, with its unit if any; else None."""
     if isinstance(value, bool):
         return None
     if isinstance(value, int):
@@ -53,7 +53,7 @@ def scaled(value, factor):
 
 
 def change(rng, all_leaves):
-    """One override at random."""
+    """Random override."""
     path, value = rng.choice(all_leaves)
     kind = rng.randrange(8)
     if kind == 0:
@@ -68,7 +68,7 @@ def change(rng, all_leaves):
 
 
 def both(bench, scene, sets, stop=3.0, faults=None):
-    """Checks a scene and, where that is good, runs it for a while."""
+    """Checks a scene and, if valid, runs it."""
     words = [f"--set={s}" for s in sets]
     faults = faults or max(1, len(sets))
     code, _ = bench.attempt("check", scene, *words, faults=faults, untouched=[scene], codes={0, 2})
@@ -78,7 +78,7 @@ def both(bench, scene, sets, stop=3.0, faults=None):
 
 
 def keys(bench, rng):
-    """One to three keys changed at random."""
+    """Random changes of one to three keys."""
     trees = {name: list(leaves("", tomllib.loads((INPUTS / name).read_text()))) for name, _ in TINY}
     while True:
         name, sets = rng.choice(TINY)
@@ -88,7 +88,7 @@ def keys(bench, rng):
 
 
 def sizes(bench, rng):
-    """Counts, lengths and times beyond reason are answered soon, by finite numbers or by a rejection."""
+    """Huge counts, lengths and times: finite results or an error, soon."""
     box, solid = INPUTS / "grains/box.toml", INPUTS / "solid/footing.toml"
     cases = [(box, f"grains.0.count={n}") for n in (10_000_000, 9_999_999, 100_000_000, 2**32, 2**63 - 1)]
     for key in ("material.0.density", "material.0.stiffness", "time.end", "time.grain_step", "gravity"):
@@ -106,7 +106,7 @@ def sizes(bench, rng):
 
 
 def materials(bench, rng):
-    """Nearly incompressible solids, and flow that softens."""
+    """Nearly incompressible and softening materials."""
     block = (INPUTS / "solid/triaxial_drained.toml", ["output.frames=1"])
     slope = (INPUTS / "solid/footing.toml", ["output.frames=1"])
     cases = []
@@ -134,7 +134,7 @@ def materials(bench, rng):
 
 
 def sleepers(bench, rng):
-    """Sleepers in the ground, in a wall, upside down, of no mass."""
+    """Sleepers in ground or wall, inverted, without mass."""
     scene = INPUTS / "ballast/box.toml"
     tiny = dict(TINY)["ballast/box.toml"]
     tree = tomllib.loads(scene.read_text())
@@ -157,7 +157,7 @@ def sleepers(bench, rng):
 
 
 def borders(bench, rng):
-    """Periodic boxes narrower than two grains, or as wide as nothing."""
+    """Too narrow periodic boxes."""
     scene = INPUTS / "grains/shear.toml"
     tree = tomllib.loads(scene.read_text())
     periodic = [p for p, _ in leaves("", tree) if "periodic" in p] or ["periodic.x", "periodic.y"]

@@ -1,4 +1,4 @@
-"""Attacks by what surrounds a run: a clock that is set back, few resources, outputs that nobody reads."""
+"""Attacks by the environment: clock, resources, closed outputs."""
 
 import os
 import pathlib
@@ -45,7 +45,7 @@ SCENE = ("grains/box.toml", ["grains.0.count=100", "time.end=0.02", "output.fram
 
 
 def clock(bench, rng):
-    """Runs with a clock that is set back, and in folders whose files are of the future."""
+    """Clock set back, files from the future."""
     if not shutil.which("cc"):
         return
     source, library = bench.work / "clock.c", bench.work / "clock.so"
@@ -70,9 +70,9 @@ def clock(bench, rng):
 
 
 def limits(bench, rng):
-    """Little memory, few files and processes, full disks, closed outputs: a message and an exit code, never a signal."""
+    """Limited memory, files and processes, full disks, closed outputs: a message and an exit code, no signal."""
     scene = INPUTS / "grains/box.toml"
-    # Below the size of the program the system ends it before its first instruction; a little above, the system's loader does.
+    # Below the program's size the kernel kills it; slightly above, the loader fails.
     size = bench.program.stat().st_size // 1024
     limits_ = [f"-v {size + more}" for more in (5_000, 8_000, 20_000, 60_000, 110_000, 200_000)] + [f"-n {n}" for n in (4, 5, 6, 8, 16)]
     limits_ += ["-f 1", "-f 16", "-s 256", "-s 1024", "-t 1"]
@@ -83,14 +83,14 @@ def limits(bench, rng):
     commands += [["render", results, "--force", "--out", bench.work / "limited.png"]]
     commands += [["study", INPUTS / "studies/newton_settlement.toml", "--out", bench.work / "limited"]]
     for limit in limits_:
-        # A study takes minutes where its runs are not refused.
+        # Accepted studies take minutes.
         for words in commands if limit.startswith("-n") else commands[:-1]:
             bench.fresh("limited")
             wrap = ["sh", "-c", f'ulimit {limit}; exec "$0" "$@"']
-            # At the limit of processor time the system ends whatever runs.
+            # The kernel kills at the CPU time limit.
             at_limit = {-signal.SIGKILL, -signal.SIGXCPU} if "-t" in limit else set()
             codes = {0, 3, 127} if "-v" in limit else {1} if "-n" in limit else {0, 1, 2, 3, 130} | at_limit
-            # With a backtrace asked for, which takes memory.
+            # Backtraces need memory.
             env = {"RAYON_NUM_THREADS": "2", "RUST_BACKTRACE": "1"}
             code, said = bench.attempt(*words, wrap=wrap, codes=codes, env=env)
             if "-v" in limit and code == 3 and "(ulimit -v" not in said or "-n" in limit and "(ulimit -n" not in said:

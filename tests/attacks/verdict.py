@@ -1,4 +1,4 @@
-"""Runs of the program, and the verdict on each."""
+"""Program runs and their checks."""
 
 import hashlib
 import json
@@ -20,18 +20,18 @@ import scene_hashes  # noqa: E402
 
 CODES = {0, 2, 3, 130}
 NOT_FINITE = re.compile(r"(?<![\w./\"'-])[-+]?(nan|inf|infinity)(?![\w./\"'-])", re.IGNORECASE)
-# Time in which a command that computes nothing must end, with what a busy machine adds [s].
+# Time limit of commands without computation, on a loaded machine [s].
 SOON = 20
 
 
 def digest(folder):
-    """Digests of all files below a folder, or of one file."""
+    """Digests of a file, or of all files below a directory."""
     paths = [folder] if folder.is_file() else sorted(folder.rglob("*"))
     return {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in paths if p.is_file()}
 
 
 def not_finite(path):
-    """The place of a number of a written file that is not finite, if there is any."""
+    """Position of a non-finite number, if any."""
     if path.suffix in (".vtu", ".vtp"):
         root = ElementTree.fromstring(path.read_bytes())
         appended = root.find("AppendedData")
@@ -46,7 +46,7 @@ def not_finite(path):
         text = path.read_text(errors="replace")
         found = NOT_FINITE.search(text)
         if path.suffix == ".json":
-            # A number that is not finite is no JSON; a text may hold such a word.
+            # JSON has no non-finite numbers, but strings may contain the words.
             found = NOT_FINITE.search(re.sub(r'"(\\.|[^"\\])*"', '""', text))
             json.loads(text)
         if found:
@@ -55,7 +55,7 @@ def not_finite(path):
 
 
 class Bench:
-    """Where attempts of one kind are made and counted."""
+    """Directory and counters of one kind."""
 
     def __init__(self, program, work, short, keep=None):
         self.program, self.work, self.short, self.keep = program, work, short, keep
@@ -67,7 +67,7 @@ class Bench:
         return f"{name:12} {self.attempts:8} {cells} {self.longest:7.1f} s {len(self.faults):6}"
 
     def fresh(self, name="out"):
-        """A path in the folder of attempts that is not there."""
+        """Unused path."""
         path = self.work / name
         shutil.rmtree(path, ignore_errors=True)
         return path
@@ -78,11 +78,10 @@ class Bench:
             shutil.copytree(self.work, pathlib.Path(self.keep) / f"{self.work.name}_{len(self.faults)}", dirs_exist_ok=True)
 
     def attempt(self, *words, out=None, untouched=(), faults=1, stop=None, codes=CODES, env=None, wrap=(), soon=SOON, echo=True):
-        """Runs the program; returns its exit code and output, None where it had to be killed.
+        """Runs the program; returns exit code and output, or None after a timeout.
 
-        `out` is its folder of results, in which numbers must be finite; with exit code 2 it must be as it was before, as all of
-        `untouched` always. A run is interrupted after `stop` seconds. `faults`: how many lines of bad input there may be. `echo`: whether
-        messages of bad input may repeat a number that is not finite. `wrap`: words in front of the program.
+        `out`: results directory, must be finite, unchanged after exit code 2; `untouched`: always unchanged. `stop`: interrupt
+        after [s]. `faults`: allowed lines of bad input. `echo`: messages may quote non-finite numbers. `wrap`: command prefix.
         """
         command = [*map(str, wrap), str(self.program), *map(str, words)]
         before = {p: digest(p) for p in [*untouched, *([out] if out and out.exists() else [])]}
@@ -116,7 +115,7 @@ class Bench:
         return code, stdout + stderr
 
     def wrong(self, code, stdout, stderr, faults, codes, echo):
-        """What is wrong with the end and the words of a run."""
+        """Errors in exit code and messages."""
         if code not in codes:
             yield f"exit code {code}: {stderr[-400:]}"
             return
@@ -132,7 +131,7 @@ class Bench:
             yield f"a number that is not finite: {text[max(0, found.start() - 80) : found.end() + 40]!r}"
 
     def compare(self, command, code, before, out, untouched):
-        """Looks for files that differ from what they must be."""
+        """Compares with expected files."""
         for path in untouched:
             if digest(path) != before[path]:
                 self.fault(command, f"{path} differs afterwards")

@@ -1,8 +1,7 @@
-// Looks at reports in a browser: node tests/report/check.mjs PROGRAM DIR…
+// Checks reports in a browser: node tests/report/check.mjs PROGRAM DIR…
 //
-// DIR: folders of results. Of each the report is made and opened from disk without network; every plot has axes named with
-// units, legends that name its curves, no text upon other text or cut off; nothing is wider than the page. The browser and its
-// driver are those of tests/view/check.mjs.
+// DIR: results. Offline, every plot has axes with units and complete legends, no overlapping or clipped text; nothing is
+// wider than the page. Browser as in tests/view/check.mjs.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
@@ -15,7 +14,7 @@ const [program, ...folders] = process.argv.slice(2);
 const dir = fs.mkdtempSync(path.join(os.tmpdir(), 'trackbed_report_'));
 const browser = await launch();
 
-/** Runs in the page: plots with the boxes of their texts, and what is wrong with the page. */
+/** Runs in the page: plots with text boxes, and errors. */
 function look() {
   const box = (element) => {
     const { left, right, top, bottom } = element.getBoundingClientRect();
@@ -25,7 +24,7 @@ function look() {
     const svg = figure.querySelector(':scope > svg');
     const texts = [...svg.querySelectorAll('text')].filter((t) => t.textContent.trim()).map(box);
     const legend = [...figure.querySelectorAll('ul.legend li')].map(box);
-    // Lines of the grid are light grey.
+    // Grid lines are light grey.
     const strokes = [...svg.querySelectorAll('polyline, path')].map((c) => c.getAttribute('stroke'));
     const curves = new Set(strokes.filter((c) => c && !/^#(d8){3}$|^#(ef){3}$/.test(c)));
     return { title: figure.querySelector('figcaption')?.textContent ?? '', frame: box(svg), texts, legend, curves: curves.size };
@@ -40,7 +39,7 @@ function look() {
 const overlap = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
   && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
 
-/** A name of an axis with its unit, or one of a quantity that is counted or has no dimension. */
+/** Axis label with unit, or of a dimensionless quantity. */
 const NAMED = /\[[^\]]+\]$|^load cycle N$|^neighbours$|^(share|fraction) of|ratio D$|^porosity$|^coordination/;
 
 async function report(folder) {

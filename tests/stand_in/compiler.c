@@ -1,4 +1,4 @@
-// Stand-in for CUDA's run-time compiler: the system's C compiler makes a library of the text, and the "code" is its name.
+// Stand-in for NVRTC: the C compiler builds a library, whose name is the "code".
 
 #include <errno.h>
 #include <spawn.h>
@@ -20,7 +20,7 @@ int nvrtcCreateProgram(program **out, const char *text, const char *name, int he
     return 0;
 }
 
-// The exit status of a command. `system` would have the process ignore an interruption while it waits, as no compiler in it does.
+// Exit status of a command. `system` would ignore interrupts while it waits.
 static int run(char *command) {
     extern char **environ;
     char *words[] = {"sh", "-c", command, NULL};

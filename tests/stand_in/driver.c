@@ -1,6 +1,5 @@
-// Stand-in for CUDA's driver where there is no device: device memory is the processor's, and kernels are functions of a library that
-// the stand-in for CUDA's run-time compiler (compiler.c) has made. It has what the program calls, and refuses what a driver would: copies
-// beyond what was allocated, blocks that are too large. STAND_IN_LAUNCHES: how many launches it survives; STAND_IN_MEMORY: bytes that it has.
+// Stand-in for the CUDA driver: host memory, and kernels from the library built by compiler.c. Rejects out-of-bounds copies
+// and oversized blocks. STAND_IN_LAUNCHES: launches before failure; STAND_IN_MEMORY: bytes.
 
 #include <dlfcn.h>
 #include <stdint.h>
@@ -26,7 +25,7 @@ result cuDriverGetVersion(int *version) { return *version = 13000, SUCCESS; }
 result cuDeviceGet(int *device, int number) { return *device = 0, number == 0 ? SUCCESS : INVALID_DEVICE; }
 result cuDeviceGetCount(int *count) { return *count = 1, SUCCESS; }
 result cuDeviceGetName(char *name, int length, int device) { return snprintf(name, length, "stand-in"), SUCCESS; }
-// 75, 76: compute capability 9.0; all else is there.
+// 75, 76: compute capability 9.0; other features exist.
 result cuDeviceGetAttribute(int *value, int which, int device) { return *value = which == 75 ? 9 : which == 76 ? 0 : 1, SUCCESS; }
 result cuDevicePrimaryCtxRetain(void **out, int device) { return *out = &context, SUCCESS; }
 result cuDevicePrimaryCtxRelease_v2(int device) { return SUCCESS; }
@@ -34,19 +33,19 @@ result cuCtxSetCurrent(void *of) { return SUCCESS; }
 result cuCtxGetCurrent(void **out) { return *out = &context, SUCCESS; }
 result cuCtxSynchronize(void) { return SUCCESS; }
 
-// The "code" is the name of a library.
+// The "code" is a library name.
 result cuModuleLoadData(void **module, const void *code) { return (*module = dlopen(code, RTLD_NOW)) ? SUCCESS : INVALID_IMAGE; }
 result cuModuleUnload(void *module) { return SUCCESS; }
 result cuModuleGetFunction(void **function, void *module, const char *name) {
     return (*function = dlsym(module, name)) ? SUCCESS : NOT_FOUND;
 }
 
-// Before each allocation stands its size, and which one there was before it.
+// Header of an allocation: size and previous allocation.
 enum { HEAD = 64 };
 struct allocation { size_t bytes; struct allocation *next, **self; };
 static struct allocation *all;
 static struct allocation *head_of(address of) { return (struct allocation *)(of - HEAD); }
-/// Whether so many bytes from an address on lie in one allocation.
+/// Whether a range lies in one allocation.
 static int inside(address from, size_t bytes) {
     for (struct allocation *one = all; one; one = one->next) {
         const address base = (address)one + HEAD;
@@ -76,7 +75,7 @@ result cuMemFreeAsync(address of, void *stream) {
     return SUCCESS;
 }
 result cuMemsetD8Async(address to, unsigned char value, size_t bytes, void *stream) {
-    // Whatever is read before it is written spoils the result: zeros would not.
+    // Unlike zeros, this reveals reads of uninitialised memory.
     if (!inside(to, bytes)) return INVALID_VALUE;
     return memset((void *)to, 0xff, bytes), SUCCESS;
 }
@@ -102,7 +101,7 @@ result cuLaunchKernel(void *function, unsigned grid_x, unsigned grid_y, unsigned
                       unsigned shared, void *stream, void **arguments, void **extra) {
     if (++launches > setting("STAND_IN_LAUNCHES", (size_t)1 << 60)) return LAUNCH_FAILED;
     if (grid_y * grid_z * block_y * block_z != 1 || block_x > 128 || shared != 0 || !arguments) return INVALID_VALUE;
-    // All threads of all blocks, from the first and from the last by turns.
+    // All threads, in alternating order.
     ((void (*)(const void *, unsigned, int))function)(arguments[0], grid_x * block_x, launches % 4 > 1);
     return SUCCESS;
 }

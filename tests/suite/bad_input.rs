@@ -1,9 +1,8 @@
-//! Broken input is refused: exit code 2, one line on standard error that names file, line (where there is one), key,
-//! what was found and what was expected, and nothing written.
+//! Bad input: exit code 2, one line with file, line, key, found and expected; nothing is written.
 //!
-//! Each test takes a good scene, runs it, breaks one thing, and runs it again: once into a fresh folder, which must
-//! not come into being, and once into the folder of the good run, which must keep every byte. The whole line is
-//! compared. `check` must refuse the scene with the same line, except for what only a solve or a settled bed shows.
+//! Each test breaks one thing of a valid scene and runs it into a new and into a used directory; nothing may
+//! be created or changed. `check` prints the same line, except for errors found only by a solution or a
+//! deposition.
 
 use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;
@@ -24,12 +23,11 @@ const NODES: &str = "NODECOORD.DAT";
 const ELEMENTS: &str = "ELEMENTNUM.DAT";
 const DOF: &str = "DOF.DAT";
 
-/// The sphere list of [`GRAINS`], for tests that fill in grains in another way.
 const SPHERES: &str = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
 const FILL: &str = "fill = { low = [0, 0, 0], high = [0.3, 0.3] }";
 const FACES: &str = "faces = [[5, 6], [6, 6], [7, 6], [8, 6]]";
 
-/// A good scene in its folder, with the results of a run in `earlier`.
+/// Valid scene with earlier results in `earlier`.
 struct Good {
     folder: Folder,
     earlier: std::collections::BTreeMap<String, Vec<u8>>,
@@ -46,25 +44,23 @@ impl Good {
         Good { folder, earlier, set: Vec::new(), check_sees_it: true }
     }
 
-    /// Replaces a part of the scene that is there exactly once.
+    /// Replaces unique text of the scene.
     fn scene(self, old: &str, new: &str) -> Good {
         self.folder.edit(SCENE, old, new);
         self
     }
 
-    /// Replaces or adds a whole file.
     fn file(self, name: &str, text: &str) -> Good {
         self.folder.write(name, text);
         self
     }
 
-    /// Adds a last line to a file.
     fn append(self, name: &str, line: &str) -> Good {
         let text = fs::read_to_string(self.folder.join(name)).unwrap();
         self.file(name, &format!("{text}{line}\n"))
     }
 
-    /// Changes the fields of line `number` (from 1) of a list.
+    /// Changes the fields of line `number` (from 1).
     fn line(self, name: &str, number: usize, change: impl Fn(&mut Vec<String>)) -> Good {
         let text = fs::read_to_string(self.folder.join(name)).unwrap();
         let mut lines: Vec<String> = text.lines().map(String::from).collect();
@@ -74,30 +70,28 @@ impl Good {
         self.file(name, &(lines.join("\n") + "\n"))
     }
 
-    /// Replaces field `column` (from 0) of line `number` (from 1) of a list.
+    /// Replaces field `column` (from 0) of line `number` (from 1).
     fn field(self, name: &str, number: usize, column: usize, value: &str) -> Good {
         self.line(name, number, |fields| fields[column] = value.into())
     }
 
-    /// Removes a file.
     fn without(self, name: &str) -> Good {
         fs::remove_file(self.folder.join(name)).unwrap();
         self
     }
 
-    /// Adds an override on the command line.
     fn set(mut self, assignment: &'static str) -> Good {
         self.set.push(assignment);
         self
     }
 
-    /// Only a run finds this fault.
+    /// `check` does not find this error.
     fn only_run_sees_it(mut self) -> Good {
         self.check_sees_it = false;
         self
     }
 
-    /// The run is refused with this line; files are named relative to the folder.
+    /// Requires this line; paths relative to the directory.
     #[track_caller]
     fn refused(self, line: &str) {
         let scene = self.folder.join(SCENE);
@@ -119,7 +113,6 @@ impl Good {
             let outcome = trackbed(arguments);
             assert_eq!((outcome.code, said(&outcome.stderr).as_str()), (2, expected.as_str()), "by `check`");
         }
-        // `found X, expected Y`, or `found, but it has no effect without Z`.
         let value = line.contains("found ") && line.contains(", expected ");
         assert!(value || line.contains(": found, but it has no effect without "), "{line}");
     }

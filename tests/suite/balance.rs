@@ -1,4 +1,4 @@
-//! The energy balance of a run: it stops no right run, stops a wrong one, and no stage starts with energy of its own.
+//! Energy balance as a stop criterion, and initial energies of stages.
 
 use super::support::{Folder, Outcome, Table, json, run};
 
@@ -26,7 +26,7 @@ fn energy(folder: &Folder, key: &str) -> f64 {
     json(&folder.join("out/summary.json"))["energy"][key].as_f64().unwrap()
 }
 
-/// Three balls that touch within rounding, and a plate that reaches them late: 1683 N as with gaps of 1e-7 m.
+/// Balls in contact to rounding, late platen: 1683 N, as with gaps of 1e-7 m.
 #[test]
 fn rounding_stops_no_run() {
     let text = format!(
@@ -66,7 +66,7 @@ history_interval = \"1 ms\"
     assert!((last("plate_force_x") - 1683.0).abs() < 20.0, "{}", last("plate_force_x"));
 }
 
-/// Bodies that touch within rounding and that nothing moves, also under Hertz's law and far from the origin.
+/// Contact to rounding at rest, also with Hertz's law and far from the origin.
 #[test]
 fn rounding_at_rest_stops_no_run() {
     let two = "spheres = [[0.05, 0, 0, 0.05], [0.15, 0, 0, 0.05]]";
@@ -131,8 +131,8 @@ end = 0.02
 frames = 0
 "#;
 
-/// A ramp of a force from zero: neither the outcome nor the figures of the balance depend on the rows of the history, be they as close
-/// as the windows or whole numbers of them or neither.
+/// Force ramp: results are independent of the history interval, whether close to, a multiple of, or unrelated
+/// to the windows.
 #[test]
 fn outcome_does_not_depend_on_rows() {
     let errors = ["1e-3", "2e-3", "3.7e-3"].map(|interval| {
@@ -146,7 +146,7 @@ fn outcome_does_not_depend_on_rows() {
         let fixed = [set.as_str(), "time.grain_step=2e-6"];
         let (other, outcome) = scene(&format!("balance-rows-{interval}"), CANTILEVER, &fixed);
         outcome.good();
-        // Rows closer than the steps of a window, as 10 µs apart, make other windows; the verdict is the same.
+        // Rows closer than DEM steps (10 µs) change the windows.
         let close = [set.as_str(), "output.history_interval=1e-5"];
         scene(&format!("balance-close-{interval}"), CANTILEVER, &close).1.good();
         [of(&folder), of(&other)]
@@ -154,7 +154,6 @@ fn outcome_does_not_depend_on_rows() {
     assert!(errors[0] == errors[1] && errors[1] == errors[2], "{errors:?}");
 }
 
-/// A plate under a light target comes down on a column of balls: it rests there with its target, and the balance closes.
 #[test]
 fn servo_touches_without_false_stop() {
     for (force, speed, restitution) in
@@ -198,9 +197,9 @@ frames = 0
     }
 }
 
-/// The other side: steps far above the limit make energy, under a moving wall too.
+/// Steps far above the limit add energy, also under a moving wall.
 #[test]
-fn energy_from_long_steps_stops_the_run() {
+fn spurious_energy_stops_run() {
     let text = format!(
         "{MATERIALS}
 [[walls]]
@@ -233,7 +232,7 @@ fn pair(second: &str, more: &str) -> String {
     )
 }
 
-/// Half a radius of overlap shoots two balls apart at 34 m/s each: the scene is rejected, unless it accepts that.
+/// Overlap of half a radius: 34 m/s per ball.
 #[test]
 fn rejects_deep_start_overlap() {
     let deep = [
@@ -261,10 +260,10 @@ fn rejects_deep_start_overlap() {
     outcome.good();
 }
 
-/// A boulder comes to rest on grains a hundredth of its size under strong local damping: the fines lie still, and no energy is booked that
-/// was never there. With a step that forgets the damping 0.68 J were, of 0.001 J turned over.
+/// Boulder on grains a hundredth of its size, strong local damping. Without damping in the step, the spurious
+/// energy is 0.68 J at a reference energy of 0.001 J.
 #[test]
-fn strong_local_damping_keeps_light_grains_at_rest() {
+fn local_damping_keeps_grains_at_rest() {
     let text = r#"
 [[material]]
 name = "stone"

@@ -1,11 +1,10 @@
-//! Ballast under load cycles: laws, jumps over cycles, lateral push, bed stiffness, fouling.
+//! Ballast under load cycles: settlement laws, cycle jumps, lateral resistance, bed stiffness, fouling.
 
 use super::support::{Folder, Outcome, Table, json, repository, results, run};
 use std::path::Path;
 use trackbed::failure::Failure;
 use trackbed::run::{Interrupt, Options, Verbosity};
 
-/// A small bed of spheres in a box under a plate, with 40 load cycles. More lines may follow.
 const BED: &str = r#"title = "bed"
 
 [[material]]
@@ -95,7 +94,7 @@ fn go(folder: &Folder, out: &str, set: &[&str]) -> Outcome {
     run(&folder.join("scene.toml"), &folder.join(out), set)
 }
 
-/// A rigid block on a plane: 100 kg, friction 0.6 against 0.4 of the plane.
+/// Rigid block on a plane: 100 kg, friction coefficients 0.6 and 0.4.
 const BLOCK: &str = r#"title = "block on a plane"
 
 [[material]]
@@ -146,7 +145,7 @@ rest = "200 ms"
 "#;
 
 #[test]
-fn a_block_on_a_plane_resists_with_its_weight_times_friction() {
+fn block_resists_by_coulomb_friction() {
     let folder = Folder::new("push");
     folder.write("scene.toml", BLOCK);
     for (load, set) in [(0.0, vec![]), (500.0, vec!["track.push.load=500"])] {
@@ -154,7 +153,7 @@ fn a_block_on_a_plane_resists_with_its_weight_times_friction() {
         let push = &json(&folder.join("out/summary.json"))["push"];
         let weight = 100.0 * 9.81 + load;
         assert_eq!(push["vertical_force"], weight);
-        // Coulomb: 0.4 W at a steady slide, whatever the direction and the height of the ram.
+        // Steady sliding at 0.4 W (Coulomb), independent of direction and actuator height.
         for key in ["resistance_at_2_mm", "residual"] {
             let found = push[key].as_f64().unwrap();
             assert!((found / (0.4 * weight) - 1.0).abs() < 2e-3, "{key}: {found} against {}", 0.4 * weight);
@@ -165,17 +164,16 @@ fn a_block_on_a_plane_resists_with_its_weight_times_friction() {
         let (way, force) = (curve.column("displacement"), curve.column("force"));
         assert!(way.windows(2).all(|w| w[0] < w[1]), "the block follows the ram");
         assert!((way.last().unwrap() - 5e-3).abs() < 1e-4, "{:?}", way.last());
-        // Before it slides, the block hangs on the springs of its contacts.
         assert!(force[0] < 0.5 * force[100], "{} {}", force[0], force[100]);
         let energy = &json(&folder.join("out/summary.json"))["energy"];
         assert!(energy["relative_error"].as_f64().unwrap() < 1e-3, "{energy}");
     }
 }
 
-/// Up a slope of 1 in 10 the horizontal ram needs W tan(θ + φ), and the block rises by a tenth of its way. Free to pitch, it
-/// leans on the springs of its four corners by the couple of ram and friction, F (h + half the height) over 4 K a².
+/// Slope 1:10: horizontal actuator force W tan(θ + φ), uplift a tenth of the displacement. Pitch: couple of
+/// actuator and friction, F (h + half the height) over 4 K a².
 #[test]
-fn a_push_up_a_slope_and_above_the_base() {
+fn push_on_slope_above_base() {
     let folder = Folder::new("slope");
     let slope = BLOCK
         .replace("point = [0, 0, 0]\nnormal = [0, 0, 1]", "point = [0, 0, -0.0251]\nnormal = [-0.1, 0, 1]")
@@ -189,7 +187,7 @@ fn a_push_up_a_slope_and_above_the_base() {
     assert!((residual / expected - 1.0).abs() < 5e-3, "{residual} {expected}");
     let way = *Table::read(&folder.join("out/push.csv")).column("displacement").last().unwrap();
     let uplift = push["uplift"].as_f64().unwrap();
-    // The push presses the block onto the slope: two corners sink by what the normal force grows by.
+    // Sinking at two corners from the increased normal force.
     let (cos, sin) = (1.0 / 1.01_f64.sqrt(), 0.1 / 1.01_f64.sqrt());
     let sunk = 981.0 * (1.0 / (cos - 0.4 * sin) - cos) / (2.0 * 2e6);
     let expected = 0.1 * way - sunk / cos;
@@ -209,7 +207,7 @@ fn a_push_up_a_slope_and_above_the_base() {
 }
 
 #[test]
-fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
+fn settlement_rates_and_stiffness_match_cycles() {
     let folder = bed("laws", "");
     go(&folder, "out", &[]).good();
     let cycles = Table::read(&folder.join("out/cycles.csv"));
@@ -220,7 +218,7 @@ fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
     let fit =
         settlement["fits"].as_array().unwrap().iter().find(|f| f["law"] == "Alva-Hurtado & Selig").unwrap();
     assert_eq!((fit["range"][0].as_f64(), fit["points"].as_u64()), (Some(10.0), Some(31)));
-    // The line of regression, anew.
+    // Independent regression.
     let used: Vec<(f64, f64)> =
         n.iter().zip(&s).filter(|p| *p.0 >= 10.0).map(|(n, s)| (n.log10(), *s)).collect();
     let count = used.len() as f64;
@@ -232,10 +230,9 @@ fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
     let parameter = |k: usize| fit["parameters"][k][1].as_f64().unwrap();
     assert!((parameter(0) / first - 1.0).abs() < 1e-9, "{fit}");
     assert!((parameter(1) / (slope / first) - 1.0).abs() < 1e-9, "{fit}");
-    // Rates add up to the settlement.
     let sum: f64 = cycles.column("rate").iter().sum();
     assert!((sum - s[39]).abs() < 1e-12);
-    // The modulus is the secant stiffness times height over area.
+    // Modulus: secant stiffness times height over area.
     let (k, e) = (cycles.column("secant_stiffness"), cycles.column("resilient_modulus"));
     let ratio: Vec<f64> = e.iter().zip(&k).map(|(e, k)| e / k).collect();
     assert!(ratio.iter().all(|r| (r / ratio[0] - 1.0).abs() < 1e-9));
@@ -248,7 +245,7 @@ fn laws_rates_and_stiffness_of_a_bed_agree_with_its_cycles() {
     assert!(
         (bed["mean_of_last_ten"].as_f64().unwrap() - stiffness[30..].iter().sum::<f64>() / 10.0).abs() < 1.0
     );
-    // Within a cycle the bed is about as stiff on the loading branch as over the whole.
+    // Loading branch against whole cycle.
     assert!(stiffness[39] > 0.5 * k[39] && stiffness[39] < 3.0 * k[39], "{} {}", stiffness[39], k[39]);
     let printed = std::fs::read_to_string(folder.join("out/log.txt")).unwrap();
     assert!(printed.contains("Alva-Hurtado & Selig: s = s1 (1 + C log10 N)"), "{printed}");
@@ -269,10 +266,10 @@ fn jumps(summary: &Path) -> (serde_json::Value, f64) {
     (summary["settlement"]["jump"].clone(), summary["energy"]["relative_error"].as_f64().unwrap())
 }
 
-/// At most three quarters of the cycles are simulated. (Of 200, beds of eight seeds took 124 to 180 by moving the grains, of 400 six took
-/// 139 to 297.)
+/// Grains are moved; at most 3/4 of the cycles are simulated (eight seeds: 124 to 180 of 200; six: 139 to 297
+/// of 400).
 #[test]
-fn jumps_reach_the_last_cycle_with_fewer_cycles_and_a_closed_account() {
+fn cycle_jumps_conserve_energy() {
     for method in ["account", "grains"] {
         let folder = bed(method, JUMP);
         let set = [&format!("track.jump.method={method:?}")[..], "track.load.cycles=400"];
@@ -302,7 +299,6 @@ fn jumps_reach_the_last_cycle_with_fewer_cycles_and_a_closed_account() {
     }
 }
 
-/// Options of a run within this process.
 fn options(out: &Path, set: &[&str], threads: usize) -> Options {
     let set = set.iter().map(|s| s.to_string()).collect();
     Options {
@@ -315,7 +311,7 @@ fn options(out: &Path, set: &[&str], threads: usize) -> Options {
 }
 
 #[test]
-fn runs_with_jumps_and_a_push_go_on_bit_for_bit() {
+fn jumps_and_push_resume_bitwise() {
     let push = "\n[track.push]\ndirection = [1, 0]\nspeed = 0.1\ndisplacement = 0.002\nrest = 0.01\n";
     for method in ["account", "grains"] {
         let folder = bed("resumed", &format!("{JUMP}{push}"));
@@ -330,7 +326,6 @@ fn runs_with_jumps_and_a_push_go_on_bit_for_bit() {
         assert!(summary["push"]["peak"].as_f64().unwrap() > 0.0);
         let broken = folder.join("broken");
         let (settling, run) = (steps(0), steps(1));
-        // Before the first jump, after it, and amid the push.
         let mut before = 0;
         for (k, share) in [0.3, 0.7, 0.99].iter().enumerate() {
             let at = settling + (share * run as f64) as u64;
@@ -374,7 +369,7 @@ box = [[0.0, 0.0, 0.0], [0.25, 0.25, 2.0]]
     go(&folder, "out", &set).good();
     let summary = json(&folder.join("out/summary.json"));
     let fouling = &summary["packing"]["fouling"];
-    // Uniform sizes in number: mean of d^3 from 6 to 8 mm is 350 mm^3, from 40 to 60 mm 130,000 mm^3.
+    // Mean d³ of uniform sizes by number: 350 mm³ for 6–8 mm, 130,000 mm³ for 40–60 mm.
     let ratio = 300.0 * 350.0 / (60.0 * 130_000.0);
     let found = fouling["relative_fouling_ratio"].as_f64().unwrap();
     assert!((found / ratio - 1.0).abs() < 0.15, "{found} against {ratio}");
@@ -396,8 +391,8 @@ fn the_box_test_settles_as_measured() {
     let settlement = cycles.column("settlement");
     let (tenth, last) = (settlement[9], settlement[99]);
     assert!((5e-3..=20e-3).contains(&last), "{last}");
-    // Large cyclic triaxials: 0.20 to 0.40 over N = 10 to 100. This bed is above it (docs/ballast.md): 0.63, an open
-    // fault of the model, so that this test fails.
+    // Large cyclic triaxial tests: 0.20–0.40 for N = 10 to 100. This bed: 0.63 (docs/ballast.md), an open
+    // model defect; the test fails.
     let exponent = (last / tenth).log10();
     assert!((0.1..=0.5).contains(&exponent), "{exponent}");
     let moduli = &cycles.column("resilient_modulus")[50..];

@@ -1,8 +1,8 @@
-//! Sleepers bedded while the ballast is compacted, and grains poured around them.
+//! Seating of sleepers during compaction, and pouring around them.
 
 use super::support::{Folder, Table, json, run};
 
-/// Spheres in a box with a plate on them; `{stages}` are those of the compaction.
+/// Spheres in a box with a plate; `{stages}`: compaction.
 const SCENE: &str = r#"title = "bedding"
 
 [[material]]
@@ -108,14 +108,12 @@ fn scene(stages: &[String]) -> String {
     SCENE.replace("{stages}", &stages.join("\n"))
 }
 
-/// Heights of the grains' centres at the end, by group.
 fn heights(folder: &Folder, out: &str, group: usize) -> Vec<f64> {
     let file = folder.join(out).join(format!("packing_{group}.csv"));
     Table::read(&file).column("z")
 }
 
-/// A sleeper that was pressed into its bed with more than the load that comes settles by a small share of what one settles that was
-/// set on the highest stones.
+/// Preload above the service load leaves a fraction of the settlement of an unseated sleeper.
 #[test]
 fn a_bedded_sleeper_has_seated() {
     let folder = Folder::new("bedded");
@@ -139,7 +137,7 @@ fn a_bedded_sleeper_has_seated() {
     assert!(loose > 1e-3 && pressed.abs() < 0.1 * loose, "{loose} {pressed}");
 }
 
-/// Poured grains come in around the sleeper and above the bed, none of them is inside the sleeper, and none is left above the level.
+/// Poured grains lie above the bed, outside the sleeper, below the level.
 #[test]
 fn poured_grains_lie_around_the_sleeper() {
     let folder = Folder::new("poured");
@@ -154,8 +152,8 @@ fn poured_grains_lie_around_the_sleeper() {
     assert!(crib.iter().all(|&z| z < 0.17), "{crib:?}");
 }
 
-/// Corners of 50 MPa grains crush under the sleeper, then grains are poured with a tenth of the contact stiffness. Crushed corners stay
-/// crushed, so each stage starts with almost no energy in its springs. With elastic corners the last stage starts with 7.6e-2 J.
+/// Crushed corners of 50 MPa grains, then a tenth of the stiffness: stages start with almost no elastic
+/// energy. Elastic corners leave 7.6e-2 J.
 #[test]
 fn pouring_begins_without_energy() {
     let folder = Folder::new("poured_crushed");
@@ -173,7 +171,6 @@ fn pouring_begins_without_energy() {
     springs.iter().skip(1).for_each(|[start, _]| assert!(*start < 1e-6, "{springs:?}"));
 }
 
-/// What bedding and pouring cannot be used with is refused.
 #[test]
 fn refusals() {
     let folder = Folder::new("bedding_refused");
@@ -216,7 +213,6 @@ fn refusals() {
     );
 }
 
-/// Breaks while the sleeper is bedded, while grains are poured, and in the run proper.
 #[test]
 fn bedding_goes_on_bit_for_bit() {
     let folder = Folder::new("bedding_broken");

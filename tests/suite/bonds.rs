@@ -1,11 +1,11 @@
-//! Bonds through the program: scenes against closed forms, rules, lists, regions, stones that break, restarts.
+//! Bonds: closed forms, bond rules, lists, regions, breakage, restart.
 
 use super::support::{Folder, Table, json, repository, run};
 use std::fs;
 use std::path::Path;
 use trackbed::run::{Interrupt, Options, Verbosity};
 
-/// Two groups of spheres in a row, 2 cm apart, the ends held and pulled; `bond` is the table of bonds.
+/// Row of spheres 2 cm apart with gripped ends pulled apart; `bond`: its table.
 fn row(bond: &str, end: &str) -> String {
     format!(
         r#"gravity = [0, 0, 0]
@@ -67,12 +67,12 @@ fn breaks(folder: &Folder) -> Table {
     Table::read(&folder.join("out/breaks.csv"))
 }
 
-/// Four bonds in a row: E A/L each, broken at σ A = 62.83 N, when the whole row is 4 × 4 µm longer, after 3.2 ms.
+/// Four bonds in series, E A/L each, break at σ A = 62.83 N: elongation 4 × 4 µm, after 3.2 ms.
 #[test]
 fn a_row_is_pulled_apart() {
     let folder = Folder::new("row");
     let (summary, history) = ran(&folder, &row(CEMENT, "6 ms"));
-    // The row is symmetric: two of its bonds may break in the same step.
+    // By symmetry two bonds may break in one step.
     let broken = breaks(&folder).rows.len() as u64;
     assert!((1..=2).contains(&broken) && summary["bonds"]["made"] == 4);
     assert_eq!(summary["bonds"]["fragments"].as_u64(), Some(broken + 1));
@@ -80,13 +80,12 @@ fn a_row_is_pulled_apart() {
     let strength = 2e5 * std::f64::consts::PI * 1e-4;
     let pull = history.column("head_force_z").iter().fold(0.0_f64, |m, f| m.max(-f));
     assert!((pull / strength - 1.0).abs() < 0.02, "{pull} {strength}");
-    // The foot feels the opposite.
     let foot = history.column("foot_force_z").iter().fold(0.0_f64, |m, f| m.max(*f));
     assert!((foot / strength - 1.0).abs() < 0.02, "{foot}");
     let breaks = breaks(&folder);
     let time = breaks.column("time")[0];
     assert!((time - 3.2e-3).abs() < 1e-4, "{time}");
-    // ½ T²/(E A/L), less what the dashpots hold; the same in the summary and in the history.
+    // ½ T²/(E A/L), less the dashpot forces.
     let energy = breaks.column("energy")[0];
     let expected = 0.5 * strength * strength / (1e9 * std::f64::consts::PI * 1e-4 / 0.02);
     assert!((energy / expected - 1.0).abs() < 0.01, "{energy} {expected}");
@@ -97,13 +96,13 @@ fn a_row_is_pulled_apart() {
     assert!(error < 0.01 * 4.0 * expected, "{error}");
     assert_eq!(summary["energy"]["end"]["bonds"].as_f64(), history.column("bond_energy").last().copied());
     let head = history.column("head_z");
-    // The run ends with the window in which its end lies.
+    // The run ends with a full window.
     let end = *history.column("time").last().unwrap();
     assert!((6e-3..6.1e-3).contains(&end), "{end}");
     assert!((head.last().unwrap() - 0.08 - 5e-3 * end).abs() < 1e-7);
 }
 
-/// A weak box decides where it breaks; a list of pairs joins what it names; both groups of `between` are needed.
+/// Weak region, list of pairs, and `between`, which needs both groups.
 #[test]
 fn regions_lists_and_groups() {
     let folder = Folder::new("rules");
@@ -128,13 +127,12 @@ fn regions_lists_and_groups() {
     let within = CEMENT.replace("gap", "between = [\"middle\", \"middle\"]\ngap");
     let (summary, _) = ran(&folder, &row(&within, "0.2 ms"));
     assert_eq!(summary["bonds"]["made"], 2);
-    // What an earlier table has joined a later one leaves alone.
     let both = format!("{within}\n{}", CEMENT.replace("cement", "glue"));
     let (summary, _) = ran(&folder, &row(&both, "0.2 ms"));
     assert_eq!(summary["bonds"]["made"], 4);
 }
 
-/// Spread strengths: the weakest of the row breaks, at another place and load for another seed.
+/// The weakest bond breaks; position and load depend on the seed.
 #[test]
 fn strengths_spread_by_seed() {
     let folder = Folder::new("spread");
@@ -151,7 +149,6 @@ fn strengths_spread_by_seed() {
     assert!(seen.len() > 2, "{seen:?}");
 }
 
-/// The other kinds, through their keys.
 #[test]
 fn kinds_of_bonds() {
     let folder = Folder::new("kinds");
@@ -178,7 +175,7 @@ fn kinds_of_bonds() {
     }
 }
 
-/// The mean place of the swinging tip is its deflection.
+/// Mean position of the oscillating tip.
 #[test]
 fn bonded_beam_sags_as_predicted() {
     let folder = Folder::new("beam");
@@ -212,7 +209,7 @@ fn a_stone_is_crushed() {
     assert!(frame.windows(8).any(|w| w == b"fragment"));
 }
 
-/// The first tenth of the rock test: all bonds made, both grips pressed alike, modulus as in `docs/guide/slopes.md`.
+/// First tenth of the rock test: equal grip forces, modulus as in `docs/guide/slopes.md`.
 #[test]
 fn rock_is_compressed() {
     let folder = Folder::new("rock");
@@ -232,7 +229,6 @@ fn rock_is_compressed() {
     assert!((slope / 7.858e7 - 1.0).abs() < 0.06, "{slope:e}");
 }
 
-/// Interrupted while bonds break, and resumed: the same bytes.
 #[test]
 fn breaking_is_resumed() {
     let folder = Folder::new("resumed");

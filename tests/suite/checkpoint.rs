@@ -1,5 +1,4 @@
-//! A run that is interrupted and resumed leaves the same bytes in every file as one that is not, whatever the moment and the
-//! number of threads; and what is said when there is nothing to go on from.
+//! Resumed runs write the same bytes as uninterrupted ones, at any time and with any number of threads.
 
 use super::support::{
     COUPLED, Folder, PLASTIC, SOLID, json, repository, results, run, scene_folder, shaft, trackbed,
@@ -10,7 +9,6 @@ use std::path::{Path, PathBuf};
 use trackbed::failure::Failure;
 use trackbed::run::{Interrupt, Options, Outcome, Verbosity};
 
-/// A bed of clumps and spheres that settles in a box with a moving flap, then carries a sleeper under two cycles of a load.
 fn bed() -> String {
     let library = repository().join("inputs/track/cyclic/stones.toml");
     let walls = shaft(0.4);
@@ -87,7 +85,6 @@ fn options(out: &Path, set: &[&str], threads: usize) -> Options {
     }
 }
 
-/// Steps of a run in which it can be interrupted.
 fn steps(out: &Path) -> u64 {
     let count = |stage: &serde_json::Value, kind: &str| stage[kind].as_u64().unwrap();
     json(&out.join("summary.json"))["stages"]
@@ -109,14 +106,15 @@ fn same(whole: &Path, broken: &Path) {
     }
 }
 
-/// Runs a scene without a break, and with breaks after these shares of its steps, each with another number of threads.
+/// Runs a scene without and with interruptions at fractions `shares` of its steps, with changing thread
+/// counts.
 pub(super) fn broken(scene: &Path, set: &[&str], shares: &[f64], expected: &[&str]) {
     let folder = Folder::new("broken");
     let (whole, out) = (folder.join("whole"), folder.join("broken"));
     let Ok(Outcome::Done(summary)) = trackbed::run::run(scene, &options(&whole, set, 1)) else {
         panic!("the whole run fails")
     };
-    // A plastic solid must have something to remember.
+    // Plasticity must have occurred, so that there is a state to save.
     assert!(
         summary.solid.newton.is_none_or(|n| n.factorizations_symmetric + n.factorizations_unsymmetric > 2)
     );
@@ -153,7 +151,7 @@ fn clumps_and_spheres_that_settle() {
 }
 
 #[test]
-fn grains_shared_among_threads_on_a_solid() {
+fn threaded_grains_on_solid() {
     let set = [
         "grains.0.count=250",
         "grains.1.count=10",
@@ -172,7 +170,7 @@ fn grains_shared_among_threads_on_a_solid() {
     broken(&scene, &set, &[0.2, 0.992, 0.996, 1.0], &["cycles.csv", "tecplot/solid_00002.dat"]);
 }
 
-/// Breaks while the bed settles in layers, while it settles, within its compaction, and in the run proper.
+/// Interrupted in layered deposition, settling, compaction and main stage.
 #[test]
 fn a_bed_that_is_compacted() {
     let folder = Folder::new("compacted");
@@ -197,9 +195,9 @@ fn spheres_on_an_elastic_block() {
     broken(&folder.join("scene.toml"), &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["cycles.csv", "gauss.csv"]);
 }
 
-/// What the schemes remember from window to window is in the checkpoint.
+/// State of each coupling scheme across windows.
 #[test]
-fn spheres_on_an_elastic_block_by_other_schemes() {
+fn spheres_on_block_by_scheme() {
     let folder = scene_folder("coupled_schemes", COUPLED);
     for (scheme, transfer) in
         [("lagged", "\"point\""), ("stiffened", "{ spread = 0.3 }"), ("iterated", "{ spread_factor = 2 }")]
@@ -227,7 +225,7 @@ fn spheres_on_a_plastic_block() {
 fn plastic_solid_at_rest() {
     let folder = Folder::new("plastic");
     let scene = folder.write("scene.toml", PLASTIC);
-    // Few iterations allowed, so that steps are halved and their length is something to remember.
+    // Few iterations force step halving, whose step length is part of the state.
     let set =
         ["solid.newton.max_iterations=6", "time.solid_step=0.05", "output.tables=true", "solid.gravity=true"];
     broken(&scene, &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["history.csv", "gauss.csv", "frames/solid_00002.vtu"]);
@@ -253,7 +251,6 @@ fn solids_in_motion() {
     broken(&scene, &elastic, &[0.0, 0.3, 0.5, 1.0], &["history.csv"]);
 }
 
-/// A short scene that was interrupted half-way, and its folder of results.
 fn interrupted(name: &str) -> (Folder, PathBuf, PathBuf) {
     let folder = scene_folder(name, COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
@@ -265,7 +262,7 @@ fn interrupted(name: &str) -> (Folder, PathBuf, PathBuf) {
     (folder, scene, out)
 }
 
-/// Resumes and expects bad input with these words in one line, and no file touched.
+/// Bad input on `--resume`: one line, no file changed.
 #[track_caller]
 fn refused(scene: &Path, out: &Path, set: &[&str], words: &[&str]) {
     let before = super::support::snapshot(out);
@@ -289,7 +286,6 @@ fn nothing_to_go_on_from() {
     let nowhere = folder.join("nowhere");
     fs::create_dir(&nowhere).unwrap();
     refused(&scene, &nowhere, &[], &["--resume: no checkpoint in", "nowhere/checkpoint"]);
-    // Another scene: by an override, by a key, by a file, by a comment.
     refused(
         &scene,
         &out,
@@ -305,7 +301,6 @@ fn nothing_to_go_on_from() {
     fs::write(folder.join("DOF.DAT"), format!("{lists}\n")).unwrap();
     refused(&scene, &out, &[], &["DOF.DAT has changed"]);
     fs::write(folder.join("DOF.DAT"), lists).unwrap();
-    // A history that is not the one that the checkpoint knows.
     let history = fs::read(out.join("history.csv")).unwrap();
     fs::write(out.join("history.csv"), &history[..history.len() / 2]).unwrap();
     refused(&scene, &out, &[], &["history.csv: is not the history of the checkpoint"]);
@@ -321,13 +316,12 @@ fn nothing_to_go_on_from() {
     ])
     .good();
     same(&folder.join("whole"), &out);
-    // Now it is done, and says so; for another scene it is not this run.
     let outcome = trackbed_in(folder.path(), ["run", "scene.toml", "--resume", "--out", "out"]).good();
     assert!(outcome.stdout.contains("run completed"), "{outcome:?}");
     refused(&scene, &out, &["coupling.substeps=20"], &["contains the completed run of another scene"]);
 }
 
-/// FNV-1a, by which a checkpoint is checked.
+/// FNV-1a, the checkpoint checksum.
 fn checksum(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
@@ -337,7 +331,7 @@ fn damaged_checkpoints() {
     let (folder, scene, out) = interrupted("damage");
     let [a, b] = ["a", "b"].map(|slot| out.join(format!("checkpoint/{slot}.checkpoint")));
     let whole = [&a, &b].map(|file| fs::read(file).unwrap());
-    // The later one damaged: the run goes on from the other, with a remark.
+    // Newer slot damaged: resumes from the older, with a note.
     let mut bytes = whole[1].clone();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
@@ -351,13 +345,12 @@ fn damaged_checkpoints() {
     run(&scene, &folder.join("whole"), &[]).good();
     same(&folder.join("whole"), &out);
 
-    // Both damaged, or cut short.
     let (folder, scene, out) = interrupted("damage_both");
     let [a, b] = ["a", "b"].map(|slot| out.join(format!("checkpoint/{slot}.checkpoint")));
     fs::write(&a, &whole[0][..100]).unwrap();
     fs::write(&b, "").unwrap();
     refused(&scene, &out, &[], &["a.checkpoint is damaged", "b.checkpoint is damaged"]);
-    // Another version of the program, its checksum right.
+    // Another program version with a valid checksum.
     let text = "\"version\":\"";
     let mut bytes = whole[0][..whole[0].len() - 8].to_vec();
     let at = bytes.windows(text.len()).position(|w| w == text.as_bytes()).unwrap() + text.len();
@@ -370,9 +363,9 @@ fn damaged_checkpoints() {
     drop(folder);
 }
 
-/// A solid that finds no equilibrium: exit code 3, the last checkpoint is kept, and a new try comes to the same end.
+/// Exit code 3; a second attempt fails identically.
 #[test]
-fn a_numerical_failure_keeps_the_last_checkpoint() {
+fn numerical_failure_keeps_last_checkpoint() {
     let folder = Folder::new("failing");
     let scene = folder.write("scene.toml", PLASTIC);
     let set = ["solid.newton.max_iterations=2", "solid.quasi_static.smallest_step=0.5"];
@@ -393,9 +386,8 @@ fn a_numerical_failure_keeps_the_last_checkpoint() {
     same(&whole, &out);
 }
 
-/// A new run in a folder with results of an interrupted one begins anew, and its checkpoints are its own.
 #[test]
-fn a_fresh_run_leaves_nothing_of_the_old_one() {
+fn new_run_removes_old_checkpoints() {
     let (folder, scene, out) = interrupted("fresh");
     run(&scene, &out, &[]).good();
     run(&scene, &folder.join("whole"), &[]).good();

@@ -1,7 +1,7 @@
-//! Runs that are stopped from outside: by Ctrl-C, and without any warning.
+//! Runs stopped by Ctrl-C or killed.
 //!
-//! `TRACKBED_KILL_SCENE` names another scene for the long test, `TRACKBED_KILL_SET` its overrides (separated by blanks), and
-//! `TRACKBED_KILLS` the number of kills:
+//! `TRACKBED_KILL_SCENE`, `TRACKBED_KILL_SET` (overrides, separated by blanks) and `TRACKBED_KILLS` select
+//! another long test:
 //!
 //! ```text
 //! TRACKBED_KILL_SCENE=a.toml cargo test --release --test suite kill_and_resume -- --ignored --nocapture
@@ -15,7 +15,6 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Overrides of the box scene: enough spheres to be shared among threads.
 fn set(time: &str) -> Vec<String> {
     let end = format!("time.end={time}");
     ["grains.0.count=3000", &end, "output.frames=4", "output.checkpoint=0.01"].map(String::from).into()
@@ -41,9 +40,8 @@ fn same(whole: &Path, broken: &Path) {
     }
 }
 
-/// Kills a run so many times at random moments, resumes it every time, and compares what it leaves with a run without a break.
-/// A run is killed up to 15 ms after it has written none to two checkpoints, so while it starts, reads, steps or writes. Returns how
-/// many of the kills found the run further on.
+/// Kills and resumes a run up to 15 ms after none to two checkpoints, and compares with an uninterrupted run.
+/// Returns the kills after progress.
 fn kill(scene: &Path, set: &[String], kills: u32) -> u32 {
     let folder = Folder::new("killed");
     let (whole, out) = (folder.join("whole"), folder.join("out"));
@@ -84,12 +82,10 @@ fn kill(scene: &Path, set: &[String], kills: u32) -> u32 {
     ahead
 }
 
-/// Number of the latest checkpoint.
 fn latest(out: &Path) -> Option<u64> {
     ["a", "b"].iter().filter_map(|slot| step(&out.join(format!("checkpoint/{slot}.checkpoint")))).max()
 }
 
-/// Number in the header of a checkpoint.
 fn step(file: &Path) -> Option<u64> {
     let bytes = fs::read(file).ok()?;
     let header = bytes.split(|b| *b == b'\n').nth(1)?;
@@ -117,10 +113,10 @@ fn kill_and_resume() {
     assert!(ahead > 0, "the run never got ahead");
 }
 
-/// A run that was ended while it wrote its first checkpoint has nothing to go on from: it starts anew, and says so. A folder
-/// where no run was begun is still refused.
+/// Killed before its first checkpoint: the run starts from scratch with a note. An unused directory is
+/// rejected.
 #[test]
-fn a_run_ended_before_its_first_checkpoint_starts_anew() {
+fn run_without_checkpoint_starts_from_scratch() {
     let folder = Folder::new("killed_first");
     let scene = repository().join("inputs/grains/box.toml");
     let set: Vec<String> = ["grains.0.count=300", "time.end=0.02"].map(String::from).into();
@@ -142,17 +138,15 @@ fn a_run_ended_before_its_first_checkpoint_starts_anew() {
     };
     left();
     anew();
-    // Files and the first frames were there already.
     fs::remove_file(out.join("summary.json")).unwrap();
     left();
     anew();
-    // Of a run whose folder was renamed meanwhile no lock is left.
+    // A renamed directory has no lock file.
     fs::remove_file(out.join("summary.json")).unwrap();
     left();
     fs::remove_file(out.join("run.lock")).unwrap();
     fs::write(out.join("frames/grains_0000.vtp.part"), "half of it").unwrap();
     anew();
-    // Those of another scene stay.
     fs::remove_file(out.join("summary.json")).unwrap();
     left();
     let other = ["grains.0.count=301", "time.end=0.02"].map(String::from);
@@ -160,7 +154,7 @@ fn a_run_ended_before_its_first_checkpoint_starts_anew() {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-/// Ctrl-C: one line, exit code 130, and a run that goes on.
+/// One line, exit code 130, resumable.
 #[test]
 fn ctrl_c_and_sigterm() {
     let folder = Folder::new("ctrl_c");
@@ -171,7 +165,7 @@ fn ctrl_c_and_sigterm() {
     run(&scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
     let lines = || fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count());
     for (signal, resume) in [("INT", false), ("TERM", true)] {
-        // Rows that the run before has left do not show that this one runs: before it listens, a signal simply ends it.
+        // Old rows prove nothing: before the handler is installed, a signal kills the run.
         let rows = lines() + 4;
         let mut child = start(&scene, &out, &set, 1, resume);
         let begun = Instant::now();
@@ -190,7 +184,7 @@ fn ctrl_c_and_sigterm() {
         let said = child.wait_with_output().unwrap();
         let text = String::from_utf8(said.stderr).unwrap();
         assert_eq!(said.status.code(), Some(130), "{text}");
-        // A run that stops sooner than the signal is acknowledged says the last line alone.
+        // A run may stop before the acknowledgement is printed.
         let last = text.lines().last().unwrap();
         let first = text.lines().next().unwrap();
         assert!(last.starts_with("interrupted: stage \"run\", step ") && text.lines().count() <= 2, "{text}");
@@ -198,7 +192,6 @@ fn ctrl_c_and_sigterm() {
             first == last || first == "stopping after the current step; press Ctrl-C again to abort",
             "{text}"
         );
-        // What it says is a command that works.
         let command = text.trim().split("resume with: trackbed ").nth(1).unwrap();
         assert!(command.contains("--resume") && command.contains("--set time.end=0.3"), "{command}");
     }

@@ -1,4 +1,4 @@
-//! The command line: what each command prints, where results go, and the exit codes.
+//! Commands, result locations and exit codes.
 
 use super::support::{
     COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, small_block, trackbed,
@@ -24,7 +24,7 @@ fn help_names_every_command_and_option() {
     }
 }
 
-/// `explain` reports what `check` reports, then the stages, the loops, the memory and the time of the run.
+/// `explain` adds stages, kernels, memory and time to the output of `check`.
 #[test]
 fn explain_reports_more_than_check() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
@@ -65,7 +65,6 @@ fn wrong_usage_is_bad_input() {
     assert!(!folder.join("results").exists());
 }
 
-/// All scene files below a folder.
 fn scenes(dir: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(dir).unwrap() {
@@ -79,7 +78,6 @@ fn scenes(dir: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// All scene files below `inputs`, whatever their names: those with a solid or grains.
 fn inputs() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![repository().join("inputs")];
@@ -102,9 +100,9 @@ fn inputs() -> Vec<PathBuf> {
     found
 }
 
-/// Every shipped scene has a list of stages and an estimate of its time, and one with grains a probe of their speed.
+/// Stages and time estimate for each; grain speed if there are grains.
 #[test]
-fn explain_reports_every_scene_that_is_shipped() {
+fn explain_reports_every_shipped_scene() {
     let scenes = inputs();
     assert!(scenes.len() >= 35, "{scenes:?}");
     for scene in scenes {
@@ -121,7 +119,6 @@ fn explain_reports_every_scene_that_is_shipped() {
     }
 }
 
-/// Contacts so soft that no probe can be timed are reported, and the rest is printed.
 #[test]
 fn explain_survives_materials_beyond_reason() {
     let scene = repository().join("inputs/grains/column.toml").display().to_string();
@@ -133,7 +130,7 @@ fn explain_survives_materials_beyond_reason() {
     }
 }
 
-/// A run that is over within the rehearsal is timed whole, and nothing is left of it; without a rehearsal there is no time.
+/// A run shorter than the trial is timed completely, without files; without a trial no time is printed.
 #[test]
 fn a_short_run_is_rehearsed_whole() {
     let scene = repository().join("inputs/verify/bounce.toml").display().to_string();
@@ -161,9 +158,8 @@ fn a_short_run_is_rehearsed_whole() {
     );
 }
 
-/// Of a run that is longer than its rehearsal the time is expected.
 #[test]
-fn a_long_run_is_estimated_from_its_beginning() {
+fn long_run_is_estimated_from_trial() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
     let words =
         ["explain", &scene, "--json", "--threads", "1", "--rehearse", "0.2", "--set", "time.end=1000"];
@@ -174,7 +170,7 @@ fn a_long_run_is_estimated_from_its_beginning() {
 }
 
 #[test]
-fn check_accepts_every_scene_that_is_shipped() {
+fn check_accepts_every_shipped_scene() {
     let shipped = [scenes(&repository().join("inputs")), scenes(&repository().join("tests/data"))].concat();
     assert!(shipped.len() >= 8, "{shipped:?}");
     for scene in shipped {
@@ -215,11 +211,11 @@ fn check_tells_sizes_steps_and_stability() {
 }
 
 #[test]
-fn results_go_to_a_folder_named_after_the_scene() {
+fn results_directory_follows_scene_name() {
     let folder = Folder::new("default");
     folder.write("pair/scene.toml", GRAINS);
     folder.write("two_spheres.toml", GRAINS);
-    // `scene.toml` is named after its folder, any other file after itself.
+    // `scene.toml` takes its directory's name.
     trackbed_in(folder.path(), ["run", "pair/scene.toml"]).good();
     trackbed_in(folder.path(), ["run", "two_spheres.toml"]).good();
     for name in ["pair", "two_spheres"] {
@@ -230,7 +226,7 @@ fn results_go_to_a_folder_named_after_the_scene() {
 }
 
 #[test]
-fn quiet_prints_nothing_and_loud_prints_a_report() {
+fn quiet_is_silent_default_reports() {
     let folder = scene_folder("quiet", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let outcome = run(&scene, &out, &[]).good();
@@ -257,7 +253,7 @@ fn overrides_change_the_scene() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_no_bad_input() {
+fn write_error_is_no_bad_input() {
     let folder = scene_folder("unwritable", SOLID);
     folder.write("taken", "a file");
     let outcome = run(&folder.join("scene.toml"), &folder.join("taken"), &[]);
@@ -283,7 +279,7 @@ fn mesh_info_of_the_main_scene() {
 }
 
 #[test]
-fn mesh_check_of_sound_and_broken_meshes() {
+fn mesh_check_detects_bad_elements() {
     let check = |input: &Path| trackbed([Path::new("mesh"), Path::new("check"), input]);
     let sound = check(&repository().join("inputs/track/cyclic")).good();
     assert!(sound.stdout.contains("no defects found"), "{}", sound.stdout);
@@ -300,13 +296,13 @@ fn mesh_check_of_sound_and_broken_meshes() {
             assert!(outcome.stderr.contains(part), "{part} is missing in {}", outcome.stderr);
         }
     };
-    // Bottom and top changed over: I…L with M…P and Q…T with U…X.
+    // Bottom and top swapped: I…L with M…P, Q…T with U…X.
     let turn = |m: &mut trackbed_fem::Mesh| {
         m.connectivity[1][..8].rotate_left(4);
         m.connectivity[1][8..16].rotate_left(4);
     };
     broken("upside_down", &turn, &["element 2 is inverted"]);
-    // Corners changed over but mid-sides not: positive at all Gauss points of the reduced rule, negative at corners.
+    // Only corners swapped: positive at reduced Gauss points, negative at corners.
     broken("tangled", &|m| m.connectivity[1][..8].rotate_left(4), &["element 2 is inverted at corner"]);
     let apart = |m: &mut trackbed_fem::Mesh| {
         let shift = m.coordinates.len() as u32;
@@ -330,7 +326,7 @@ fn mesh_check_of_sound_and_broken_meshes() {
 }
 
 #[test]
-fn mesh_convert_writes_vtk_and_refuses_other_endings() {
+fn mesh_convert_rejects_unknown_extensions() {
     let folder = Folder::new("convert");
     let lists = repository().join("inputs/track/cyclic");
     let convert = |output: &Path| trackbed([Path::new("mesh"), Path::new("convert"), &lists, output]);
@@ -348,10 +344,10 @@ fn mesh_convert_writes_vtk_and_refuses_other_endings() {
     assert!(outcome.stderr.contains("expected a file .cdb") && !folder.join("mesh.stl").exists());
 }
 
-/// The exchange of the main scene is stable as shipped; both numbers grow with the window. The sleeper, which never
-/// touches the solid, does not count.
+/// The reference coupling is stable, both numbers grow with the window; the sleeper does not contact the
+/// solid.
 #[test]
-fn check_tells_the_stability_of_the_exchange() {
+fn check_reports_coupling_stability() {
     let scene = repository().join("inputs/track/cyclic/scene.toml");
     let numbers = |substeps: &str| {
         let set = format!("coupling.substeps={substeps}");

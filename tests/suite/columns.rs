@@ -1,4 +1,4 @@
-//! Columns of the results: runs write what `src/columns.rs` defines, and the page of results names it.
+//! Result columns: files match `src/columns.rs` and its documentation.
 
 use super::support::{Folder, Table, repository, run, trackbed};
 use std::collections::BTreeSet;
@@ -6,7 +6,6 @@ use std::fs;
 use std::path::Path;
 use trackbed::columns::{Definition, Kind, TABLES, Table as Defined, history};
 
-/// Whether a column with this head, such as `load_1 [N]`, is defined.
 fn is_defined(table: &Defined, head: &str) -> bool {
     let (name, unit) = head.strip_suffix(']').and_then(|h| h.split_once(" [")).unwrap_or((head, ""));
     table.columns.iter().filter(|column| column.unit == unit).any(|column| match column.kind {
@@ -16,7 +15,7 @@ fn is_defined(table: &Defined, head: &str) -> bool {
     })
 }
 
-/// Fails if a table of results, read by any test, has a column that is not defined.
+/// Rejects undefined columns of a table.
 pub fn expect_defined(file: &Path, header: &str) {
     let Some(table) = TABLES.iter().find(|table| file.ends_with(table.file)) else { return };
     for head in header.split(',') {
@@ -74,7 +73,6 @@ fn meanings_are_short_and_listed() {
     }
 }
 
-/// Texts in backquotes, and pairs of them with an ellipsis between.
 fn quoted(page: &str) -> (BTreeSet<&str>, Vec<(&str, &str)>) {
     let spans = page.split('`').skip(1).step_by(2).flat_map(|span| span.split([',', ' ']));
     let sides: Vec<&str> = page.split("` … `").collect();
@@ -82,9 +80,9 @@ fn quoted(page: &str) -> (BTreeSet<&str>, Vec<(&str, &str)>) {
     (spans.filter(|text| !text.is_empty()).collect(), pairs.collect())
 }
 
-/// The page may shorten names: `_bend` for `sleeper_bend`, `runout_…`, `sleeper_x…z`, `grains_kinetic` … `solid_gravity`.
+/// Short forms: `_bend` for `sleeper_bend`, `runout_…`, `sleeper_x…z`, `grains_kinetic` … `solid_gravity`.
 #[test]
-fn the_page_of_results_names_each_column() {
+fn results_page_names_each_column() {
     let page = fs::read_to_string(repository().join("docs/guide/results.md")).unwrap();
     let (texts, ranges) = quoted(&page);
     let shortened = |text: &str, name: &str| match text.split_once('…') {
@@ -93,7 +91,7 @@ fn the_page_of_results_names_each_column() {
         None => text == name || text.starts_with('_') && name.ends_with(text),
     };
     let mut missing = Vec::new();
-    // The files of a slide are on the page of slopes.
+    // Documented with slopes.
     let elsewhere = ["outline.csv", "fragments.csv", "origins.csv"];
     for table in TABLES.iter().filter(|table| !elsewhere.contains(&table.file)) {
         let place = |name: &str| table.columns.iter().position(|column| column.name == name);

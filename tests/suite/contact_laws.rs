@@ -1,4 +1,4 @@
-//! Laws of contact by name: several in one scene, and what the summary says of them.
+//! Contact laws in scenes.
 
 use super::support::{Folder, Table, json, repository, run, trackbed};
 
@@ -7,7 +7,6 @@ fn sources(summary: &serde_json::Value) -> Vec<String> {
     list.iter().map(|s| s.as_str().unwrap().to_string()).collect()
 }
 
-/// Hertz among the balls, the linear law on the mat: the account of energy closes, and both laws are named.
 #[test]
 fn two_laws_meet_in_one_scene() {
     let folder = Folder::new("two_laws");
@@ -28,9 +27,9 @@ fn two_laws_meet_in_one_scene() {
     assert!(text.contains("contact kernels: Hertz-Mindlin and linear spring-dashpot"), "{text}");
 }
 
-/// A law named where it is the implied one changes nothing, and neither does a pair whose parts are the usual ones.
+/// Explicit defaults change nothing.
 #[test]
-fn names_of_the_usual_laws_change_nothing() {
+fn explicit_default_laws_change_nothing() {
     let scene = repository().join("inputs/grains/box.toml");
     let end = "time.end=\"0.12 s\"";
     let named = [
@@ -49,7 +48,6 @@ fn names_of_the_usual_laws_change_nothing() {
     assert_eq!(histories[0], histories[1]);
 }
 
-/// Parts switched off: without dashpot and friction nothing is dissipated.
 #[test]
 fn parts_switched_off_dissipate_nothing() {
     let folder = Folder::new("no_parts");
@@ -69,7 +67,7 @@ fn parts_switched_off_dissipate_nothing() {
     assert!(history.column("contact_springs").iter().any(|e| *e > 0.0));
 }
 
-/// Runs a scene of `inputs/verify` in which a ball hits a wall: its history, and the kinetic energies before and after [J].
+/// Ball impact of `inputs/verify`: history, kinetic energies before and after [J].
 fn impact(scene: &str, folder: &Folder, set: &[String]) -> (Table, [f64; 2]) {
     let set: Vec<&str> = set.iter().map(String::as_str).collect();
     run(&repository().join("inputs/verify").join(scene), &folder.join("out"), &set).good();
@@ -79,18 +77,18 @@ fn impact(scene: &str, folder: &Folder, set: &[String]) -> (Table, [f64; 2]) {
     (history, ends)
 }
 
-/// Walton & Braun 1986: e = √(k₁/k₂) and the plastic work (1 − e²) m v²/2 at any speed. Tolerance 0.5 %.
+/// Walton & Braun 1986: e = √(k₁/k₂), plastic work (1 − e²) m v²/2 at any speed. Tolerance 0.5 %.
 #[test]
-fn plastic_bounce_keeps_the_part_of_the_closed_form() {
+fn plastic_rebound_matches_closed_form() {
     for e in [0.3, 0.6, 0.9] {
         for speed in [0.1, 2.0, 6.0] {
             let folder = Folder::new("bounce");
             let set = [
                 format!("grains.0.velocity=[0, 0, -{speed}]"),
                 format!("material.0.restitution={e}"),
-                // The pair takes the smaller of the two.
+                // The smaller value is used.
                 format!("material.1.restitution={e}"),
-                // Where loading turns into unloading lies within a step: the error falls with the step.
+                // The load reversal lies within a step: first-order error.
                 "time.grain_step=3e-7".to_string(),
                 format!("time.end={}", 0.04 / speed / e + 0.01),
                 "output.vtk=false".to_string(),
@@ -107,10 +105,11 @@ fn plastic_bounce_keeps_the_part_of_the_closed_form() {
     }
 }
 
-/// A corner that crushes (Harkness and others 2016, Suhr & Six 2017): of an impact at any speed above that of first crushing there remains what is
-/// stored at the largest radius of its tip; the rest is work of crushing. Largest force c R². Tolerance 1e-4 (1e-3 where a step skips the peak).
+/// Conical damage model (Harkness and others 2016, Suhr & Six 2017): an impact above first crushing keeps the
+/// energy stored at the largest tip radius. Largest force c R². Tolerance 1e-4 (1e-3 if a step skips the
+/// peak).
 #[test]
-fn a_crushing_corner_keeps_the_part_of_the_closed_form() {
+fn conical_damage_matches_closed_form() {
     let (modulus, strength, angle) = (1e10 / 2.0 / 0.96, 6e7, 85.0_f64.to_radians());
     let h = (0.5 * std::f64::consts::PI * strength / modulus).powi(2);
     let k = (1.0 - angle.sin()) / angle.sin();
@@ -137,10 +136,9 @@ fn a_crushing_corner_keeps_the_part_of_the_closed_form() {
     }
 }
 
-/// A fall through still air: kinetic energy of v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ), within 0.2 %; the drag's work is in
-/// the account.
+/// v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ); kinetic energy to 0.2 %.
 #[test]
-fn a_stone_falls_through_air_as_the_closed_form_says() {
+fn drag_matches_closed_form() {
     let folder = Folder::new("wind");
     run(&repository().join("inputs/verify/wind.toml"), &folder.join("out"), &["output.vtk=false"]).good();
     let history = Table::read(&folder.join("out/history.csv"));
@@ -161,10 +159,10 @@ fn a_stone_falls_through_air_as_the_closed_form_says() {
     assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
 }
 
-/// On rough rock a light frame stays where a heavy one slides, with the acceleration of the closed form: the friction of each foot is
-/// that of its own load, and the moment of friction about the centre loads the lower feet more. Measured 0.01 %.
+/// Pressure-dependent friction: a light frame sticks, a heavy one slides. Each foot has the friction of its
+/// load; the moment of friction loads the lower feet more. Error 0.01 %.
 #[test]
-fn friction_of_rough_rock_falls_with_the_pressure() {
+fn friction_decreases_with_pressure() {
     let folder = Folder::new("asperities");
     let scene = repository().join("inputs/verify/asperities/scene.toml");
     run(&scene, &folder.join("out"), &["output.packing=true", "output.vtk=false"]).good();
@@ -176,7 +174,7 @@ fn friction_of_rough_rock_falls_with_the_pressure() {
     let ([light, _], [heavy, height]) = (place(0), place(1));
     assert!(light < 2e-3 && heavy > 0.4, "{light} {heavy}");
 
-    // Volume of the frame by `trackbed stone info`, friction at the feet, rows 0.2 m apart.
+    // Volume by `trackbed stone info`; feet in rows 0.2 m apart.
     let (mass, angle) = (7850.0 * 0.040550 * 0.24_f64.powi(3), 35.0_f64.to_radians());
     let friction = |load: f64| load * (0.3 + 0.9 / (1.0 + load / (1e4 * 0.02 * 0.02)));
     let (mean, mut more, mut total) = (mass * 9.81 * angle.cos() / 4.0, 0.0, 0.0);
@@ -196,7 +194,6 @@ fn friction_of_rough_rock_falls_with_the_pressure() {
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
 }
 
-/// Constants of asperities come in twos, and belong to the linear law.
 #[test]
 fn asperities_out_of_place_are_refused() {
     let scene = repository().join("inputs/verify/asperities/scene.toml");

@@ -1,4 +1,4 @@
-//! Files of older programs: decks that run, round trips of each form, hostile files.
+//! Files of older programs: decks, round trips, invalid files.
 
 use super::support::{Folder, Outcome, json, repository, run, trackbed_in};
 use std::fs;
@@ -11,7 +11,7 @@ fn convert(folder: &Folder, arguments: &[&str]) -> Outcome {
     trackbed_in(folder.path(), ["convert"].iter().chain(arguments))
 }
 
-/// Keys of a deck in the order of its comments.
+/// Deck keys in the order of its comments.
 const GEOLOGY: &str = "restart pattern BOND_MODEL nstep NFILL NGROWTH CTime NPrint NLast isearch icont IPATTERN DMAX/D DMIN/D \
      cc D dens YoungM PoissonR rns rzs amu eps X0 Y0 Z0 mxnb MAXNB_W GROWTH skin temperature nu_Wall eps_Wall gz ARF RPBN \
      RPBS BSTRENGTH BRATIO NICEX NICEY NICEZ TContact";
@@ -19,7 +19,7 @@ const GENERAL: &str = "restart pattern BOND_MODEL nstep Tstrain CTime NPrint MLa
      YoungM YMSIGMA PoissonR rns rzs amu eps X0 Y0 Z0 mxnb skin temperature Nwall NPOINT nu_Wall eps_Wall gz BONDNS MEANBOND \
      BSIGMA TContact";
 
-/// Every key is named, in its order, as used or with a reason; the scene runs, and means what the deck says.
+/// Every key is listed as used or with a reason; the scene agrees with the deck.
 #[test]
 fn both_decks_run() {
     let folder = Folder::new("decks");
@@ -64,7 +64,7 @@ fn both_decks_run() {
     let scene = fs::read_to_string(folder.join("general.toml")).unwrap();
     assert!(scene.contains("spread = { kind = \"normal\", deviation = 0.15 }"), "{scene}");
     assert!(scene.contains("stiffness_spread = { kind = \"normal\", deviation = 0.2 }"), "{scene}");
-    // Grains at random places do not touch: they settle before they are bonded.
+    // Random positions have no contacts: deposited before bonding.
     let settle = [
         "time.end=0.001",
         "output.frames=1",
@@ -77,7 +77,6 @@ fn both_decks_run() {
     assert!(bonds.as_u64().unwrap() > 500, "{bonds}");
 }
 
-/// A packing of an older program: blanks, numbers in front, a count at the head; and a deck that reads it.
 #[test]
 fn packings_are_read_by_decks() {
     let folder = Folder::new("packing");
@@ -102,7 +101,6 @@ fn packings_are_read_by_decks() {
 const ANIMATION: &str = "3D: 0 2\n0 0 1 0.5 0 0 0 1\n0 0 2 0.5 0 0 -1 2\n3D: 0.25 2\n0 0 1 0.5 0 0 0 1\n0 0 1.75 0.5 0 0 -1.5 2\n";
 const CHAINS: &str = "3DF: 0.25 2\n1 2 45895.55 22947.77\n1 0 12 0\n";
 
-/// Each form comes back as it was, also by way of frames of ours in both formats.
 #[test]
 fn animations_and_chains_come_back() {
     let folder = Folder::new("forms");
@@ -112,7 +110,7 @@ fn animations_and_chains_come_back() {
     assert_eq!(fs::read_to_string(folder.join("same.dat")).unwrap(), ANIMATION);
     convert(&folder, &["a.3df", "same.3df"]).good();
     assert_eq!(fs::read_to_string(folder.join("same.3df")).unwrap(), CHAINS);
-    // Five columns, the first of which counts.
+    // Column 1 of five counts.
     folder.write("five.3df", "3DF: 0.25 2\n2 1 2 45895.55 22947.77\n3 1 0 12 0\n");
     convert(&folder, &["five.3df", "four.3df"]).good();
     assert_eq!(fs::read_to_string(folder.join("four.3df")).unwrap(), CHAINS);
@@ -138,7 +136,7 @@ fn animations_and_chains_come_back() {
     );
 }
 
-/// Frames of a run as animation and chains: places, numbers of partners and forces are those of the run.
+/// Positions, contact counts and forces equal the run's.
 #[test]
 fn a_run_becomes_an_animation() {
     let folder = Folder::new("run");
@@ -191,7 +189,6 @@ frames = 1
     }
 }
 
-/// Whatever is wrong, one sentence and exit code 2.
 #[test]
 fn hostile_files_are_refused() {
     let folder = Folder::new("hostile");

@@ -1,11 +1,9 @@
-//! The same bits for any number of threads: whole runs with 1, 2 and 3 threads leave the same files.
-//!
-//! The summary, which tells threads, seconds and memory, is compared without those.
+//! Bitwise identical files with 1, 2 and 3 threads, except threads, times and memory in the summary.
 
 use super::support::{Folder, SOLID, json, repository, results, scene_folder, trackbed};
 use std::path::Path;
 
-/// Makes the main scene small, yet with more than the 2500 spheres from which on the grains share their work.
+/// Small reference case with more than 2500 spheres, the threshold for threads.
 pub(super) const SMALL: [&str; 12] = [
     "grains.0.count=640",
     "grains.1.count=10",
@@ -21,7 +19,7 @@ pub(super) const SMALL: [&str; 12] = [
     "output.tecplot=true",
 ];
 
-/// Runs a scene with 1, 2 and 3 threads; all files must be the same, and those of `expected` must be there.
+/// Runs with 1, 2 and 3 threads; requires equal files, `expected` among them.
 pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
     let folder = Folder::new("threads");
     let outs = ["1", "2", "3"].map(|threads| {
@@ -62,7 +60,7 @@ fn clumps_and_sleeper_on_an_embankment() {
     let folder = same_bits(&repository().join("inputs/track/cyclic/scene.toml"), &SMALL, &expected);
     let summary = json(&folder.join("2/summary.json"));
     assert!(summary["model"]["spheres"].as_u64().unwrap() >= 2500, "{}", summary["model"]);
-    // Grains did press on the solid, so that its results depend on theirs.
+    // Solid results depend on the grains.
     assert!(summary["energy"]["spent"]["surface_on_grains"].as_f64().unwrap() != 0.0);
     assert!(summary["energy"]["spent"]["dashpot"].as_f64().unwrap() > 0.0);
 }

@@ -1,11 +1,10 @@
-//! `run --device gpu`: what it refuses, in which words, and whole runs through libraries that stand in for CUDA's.
+//! `run --device gpu`: unsupported features, and runs with stand-ins for the CUDA libraries.
 
 use super::support::{COUPLED, Folder, GRAINS, Outcome, repository, results, run, scene_folder, trackbed};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a scene on a device, into a folder beside it; whether the folder is there afterwards.
 fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
     let folder = scene_folder(name, text);
     let (scene, out) = (folder.path().join("scene.toml"), folder.path().join("out"));
@@ -17,7 +16,7 @@ fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
     (trackbed(arguments), out.exists())
 }
 
-/// What a device does not compute is named, with exit code 2, before anything is written.
+/// Unsupported features: exit code 2, nothing is written.
 #[test]
 fn a_device_refuses_by_name() {
     let inputs = repository().join("inputs").display().to_string();
@@ -39,9 +38,9 @@ fn a_device_refuses_by_name() {
     }
 }
 
-/// Without the libraries of CUDA one sentence says which is missing; with them the scene runs.
+/// Without CUDA one sentence names the missing library.
 #[test]
-fn what_a_device_needs_is_named_where_it_is_missing() {
+fn missing_cuda_library_is_named() {
     let (outcome, written) = on_device("device_missing", GRAINS, &[]);
     let missing =
         outcome.stderr.contains("(libcuda) not found") || outcome.stderr.contains("(libnvrtc) not found");
@@ -54,7 +53,7 @@ fn what_a_device_needs_is_named_where_it_is_missing() {
     assert!(outcome.code == 0 || lines == 1, "{outcome:?}");
 }
 
-/// Libraries that stand in for CUDA's, made by the C compiler from `tests/stand_in`; none where there is no such compiler.
+/// Stand-ins for CUDA, compiled from `tests/stand_in`; `None` without a C compiler.
 fn stand_in() -> Option<Folder> {
     let folder = Folder::new("stand_in");
     for (source, library) in [("driver.c", "libcuda.so.1"), ("compiler.c", "libnvrtc.so.13")] {
@@ -70,7 +69,6 @@ fn stand_in() -> Option<Folder> {
     Some(folder)
 }
 
-/// Runs the program where these libraries are found first.
 fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str]) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
     command.args(arguments).env("LD_LIBRARY_PATH", libraries).env("STAND_IN_FOLDER", libraries);
@@ -82,9 +80,9 @@ fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str
     }
 }
 
-/// What the program hands to CUDA's libraries and takes from them: whole runs have the bytes of the processor's.
+/// Bitwise equal to the CPU.
 #[test]
-fn runs_on_a_stand_in_have_the_processors_bytes() {
+fn stand_in_matches_cpu_bitwise() {
     let Some(libraries) = stand_in() else { return };
     let folder = Folder::new("device_runs");
     let scenes: [(&str, &[&str]); 8] = [
@@ -111,10 +109,9 @@ fn runs_on_a_stand_in_have_the_processors_bytes() {
     }
 }
 
-/// Coupled runs have the processor's bytes too, with every scheme of the exchange: spheres and clumps under a sleeper that the processor
-/// moves, on the faces of a solid.
+/// All coupling schemes: spheres and clumps on solid facets, under a sleeper moved by the CPU.
 #[test]
-fn coupled_runs_on_a_stand_in_have_the_processors_bytes() {
+fn coupled_stand_in_matches_cpu_bitwise() {
     let Some(libraries) = stand_in() else { return };
     let folder = scene_folder("device_coupled", COUPLED);
     let scene = folder.join("scene.toml").display().to_string();
@@ -127,7 +124,6 @@ fn coupled_runs_on_a_stand_in_have_the_processors_bytes() {
         let mut arguments = vec!["run", &scene, "--quiet", "--out", &device];
         set.iter().for_each(|s| arguments.extend(["--set", s]));
         let begin = [&arguments[..], &["--device", "gpu"]].concat();
-        // It fails on the way, and goes on from its checkpoint.
         let failed = with_libraries(libraries.path(), &[("STAND_IN_LAUNCHES", "900")], &begin);
         assert_eq!(failed.code, 3, "{failed:?}");
         with_libraries(libraries.path(), &[], &[&begin[..], &["--resume"]].concat()).good();
@@ -137,7 +133,7 @@ fn coupled_runs_on_a_stand_in_have_the_processors_bytes() {
     }
 }
 
-/// A device that fails, and one without memory, end the run with a sentence.
+/// Failing device, and a device without memory.
 #[test]
 fn a_device_that_fails_is_named() {
     let Some(libraries) = stand_in() else { return };
@@ -155,9 +151,9 @@ fn a_device_that_fails_is_named() {
     }
 }
 
-/// A run whose device has failed on the way goes on from its checkpoint, on a device or on the processor, as if nothing had been.
+/// Resumed on a GPU or on the CPU, bitwise equal to an uninterrupted run.
 #[test]
-fn a_run_goes_on_after_its_device_has_failed() {
+fn resumes_after_device_failure() {
     let Some(libraries) = stand_in() else { return };
     let folder = Folder::new("device_goes_on");
     let scene = repository().join("inputs/grains/block.toml").display().to_string();

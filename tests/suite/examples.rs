@@ -1,4 +1,4 @@
-//! The programs in `examples/` do what they say.
+//! Programs in `examples/`.
 
 #[path = "../../examples/mesh.rs"]
 mod mesh;
@@ -10,7 +10,7 @@ use approx::assert_relative_eq;
 #[test]
 fn friction_leaves_fewer_contacts() {
     let [smooth, rough] = parameter_study::study(&[0.1, 0.5]).unwrap()[..] else { panic!("two values") };
-    // Between the 6 contacts of frictionless spheres and the 4 of very rough ones, which have fewer at walls and on top.
+    // Isostatic: 6 contacts without friction, 4 with high friction; fewer at boundaries.
     assert!(smooth < 6.0 && rough < smooth - 0.3 && rough > 3.0, "{smooth}, {rough}");
     parameter_study::main().unwrap();
 }

@@ -1,10 +1,9 @@
-//! The exchange through scenes: schemes and transfers, how long a window may be, and the edges of the domain.
+//! DEM–FEM coupling: schemes, load transfers, window limits, edges of the solid.
 
 use super::support::{COUPLED, Table, json, run, scene_folder, trackbed};
 use serde_json::Value;
 use std::fs;
 
-/// A run of [`COUPLED`] with one load cycle; its summary.
 fn summary(name: &str, text: &str, set: &[&str]) -> Value {
     let folder = scene_folder(name, text);
     run(&folder.join("scene.toml"), &folder.join("out"), &[&["track.load.cycles=1"], set].concat()).good();
@@ -15,9 +14,8 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
 }
 
-/// Every scheme with every transfer runs the scene to its end with the account closed to 1 % of the work (the lagged one,
-/// which is wrong by design, to 20 %), sums of the interface at 1e-12, and a summary that says which they were. Iterated to 1e-6,
-/// both sides agree on the work of the interface a hundred times better than in the predicted scheme.
+/// Energy error at most 0.1 % (lagged scheme 20 %), interface sums 1e-12. Iterated to 1e-6, the interface
+/// work of the two sides agrees a hundred times better than in the predicted scheme.
 #[test]
 fn schemes_and_transfers_close_their_accounts() {
     let mut interface = Vec::new();
@@ -32,7 +30,6 @@ fn schemes_and_transfers_close_their_accounts() {
         ("iterated to 1e-6", "{ spread = \"0.3 m\" }", "distributed over discs"),
     ] {
         let (scheme, tight) = scheme.split_once(" to ").unwrap_or((scheme, "1e-4"));
-        // Windows of ten equal steps, so that the schemes are compared over the same ones.
         let (scheme_set, transfer_set) =
             (format!("coupling.scheme={scheme}"), format!("coupling.transfer={transfer}"));
         let mut set = vec![&scheme_set[..], &transfer_set, "time.grain_step=50 us"];
@@ -50,15 +47,15 @@ fn schemes_and_transfers_close_their_accounts() {
             c["passes"]["windows"],
             c["passes"]["solves"]
         );
-        // The force of the window before does its work a window late.
+        // The lagged scheme applies each force one window late.
         let bound = if scheme == "lagged" { 0.2 } else { 1e-3 };
         assert!(number(&s, "/energy/relative_error") < bound);
         assert!(number(c, "/transfer/force") < 1e-12 && number(c, "/transfer/moment") < 1e-12);
         assert!(c["transfer_kind"].as_str().unwrap().starts_with(kind), "{c:#}");
         let named = c["scheme"].as_str().map_or("iterated".into(), String::from);
         assert_eq!(named, scheme);
-        // Stones that begin to slide or let go make the iterated map jump: some windows stop at the last pass.
-        // A jump may leave nothing that both sides agree on to 1e-6.
+        // Onset of sliding and loss of contact make the fixed-point map discontinuous: some windows reach no
+        // fixed point.
         let most = if tight == "1e-6" { 1.0 } else { 0.5 };
         assert!(number(c, "/passes/unconverged") <= most * number(c, "/passes/windows"), "{c:#}");
         assert!(scheme == "iterated" || number(c, "/passes/unconverged") == 0.0);
@@ -75,7 +72,7 @@ fn schemes_and_transfers_close_their_accounts() {
     );
 }
 
-/// The numbers of a class in the output of `check`: W, its limit, and the sub-steps.
+/// W, its limit, and the sub-steps from the output of `check`.
 fn classes(text: &str) -> (f64, f64, u32) {
     let after = |mark: &str| text.split_once(mark).unwrap_or_else(|| panic!("{mark} in {text}")).1;
     let number = |t: &str| -> f64 {
@@ -89,11 +86,10 @@ fn classes(text: &str) -> (f64, f64, u32) {
     (w, limit, number(count) as u32)
 }
 
-/// Soft ground, E = 1 MPa, ρ = 1000, under stiff stones, K = 1e7, with windows ten times too long: `check` and the run
-/// say so, with what would help, before the run blows up or not. As many sub-steps as the program finds itself are within
-/// its limits and run to the end without a remark; so do iterated windows of the length that is too long otherwise.
+/// E = 1 MPa, ρ = 1000 kg/m³ under K = 1e7 N/m, windows ten times too long: `check` and the run warn, but not
+/// with the suggested sub-steps or iterated windows.
 #[test]
-fn soft_ground_warns_before_it_blows_up() {
+fn unstable_window_on_soft_ground_warns() {
     let soft = [
         "solid.material.0.young=1e6",
         "solid.material.0.density=1000",
@@ -110,13 +106,12 @@ fn soft_ground_warns_before_it_blows_up() {
         trackbed(arguments).good().stdout
     };
     let (per_step, limit, _) = classes(&check(&["coupling.substeps=1"]));
-    // Ten times W's limit.
     let many = format!("coupling.substeps={}", (10.0 * limit / per_step).ceil());
     let text = check(&[&many]);
     println!("{text}");
     assert!(text.contains("warning: stone on "), "{text}");
     assert!(text.contains("coupling.substeps = "), "{text}");
-    // What would do does, and one more does not.
+    // The suggested number is within the limit, one more is not.
     let fitting = text.split_once("coupling.substeps = ").unwrap().1;
     let fitting: u32 = fitting.split_once(' ').unwrap().0.parse().unwrap();
     for (count, bad) in [(fitting, false), (fitting + 1, true)] {
@@ -145,10 +140,9 @@ fn soft_ground_warns_before_it_blows_up() {
     assert!(number(&s, "/energy/relative_error") < 0.01, "{:#}", s["energy"]);
 }
 
-/// Stones of two sizes on light ground: D is that of the heavier one, C Δt/m with C = 2 ζ √(M K), and `"auto"` takes the
-/// whole number of steps that W and D leave room for, here some.
+/// Two grain sizes on light ground: D = C Δt/m with C = 2 ζ √(M K) of the heavier grain limits `"auto"`.
 #[test]
-fn as_many_sub_steps_as_both_limits_leave_room_for() {
+fn automatic_substeps_meet_both_limits() {
     let light = COUPLED.replace("[1.0, 1.0, 0.1, 0.1],", "[1.0, 1.0, 0.06, 0.06],");
     let set = [
         "solid.material.0.young=1e6",
@@ -159,13 +153,13 @@ fn as_many_sub_steps_as_both_limits_leave_room_for() {
     let s = summary("light", &light, &[&set[..], &["coupling.substeps=\"auto\""]].concat());
     let c = &s["coupling"]["classes"][0];
     let found = number(&s, "/coupling/substeps");
-    // The first step of the grains: later ones follow the contacts.
+    // The first DEM step: later ones follow the contacts.
     let (dt, k) = (number(&s, "/model/solid_step") / found, number(c, "/stiffness"));
     let m = number(c, "/masses/corner");
     let heavy = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
     let d = 2.0 * number(c, "/damping_ratio") * (heavy * k).sqrt() / m * dt;
     let w = (k / m).sqrt() * dt;
-    // The limit on W of a damped contact is 1; windows of the program's own choice have half of that, for the account of energy.
+    // Limit of W for a damped contact: 1; `"auto"` uses half of it, for the energy balance.
     assert_eq!(number(c, "/w_limit"), 1.0);
     let room = (1.0 / d).min(0.5 / w);
     println!("{found} sub-steps, room for {room:.2}: W {w:.4}, D {d:.4} in one");
@@ -175,11 +169,10 @@ fn as_many_sub_steps_as_both_limits_leave_room_for() {
     assert!((number(c, "/stones/0") / (heavy * 0.216) - 1.0).abs() < 1e-9);
 }
 
-/// Ground so light that not even one step of the grains makes windows short enough: `"auto"` is refused, before anything is
-/// written by `check`, with W, D and the step that would do, which does; and stones of more than 200 times the mass of the
-/// point are remarked on.
+/// Ground too light for one-step windows: `"auto"` is rejected with W, D and a sufficient step. Mass ratios
+/// above 200 give a warning.
 #[test]
-fn automatic_windows_that_cannot_be_short_enough_are_refused() {
+fn rejects_automatic_window_above_limit() {
     let folder = scene_folder("refused", COUPLED);
     let scene = folder.join("scene.toml").display().to_string();
     let check = |more: &[&str]| {
@@ -199,16 +192,15 @@ fn automatic_windows_that_cannot_be_short_enough_are_refused() {
         !good.contains("unstable") && good.contains(" times the smallest effective nodal mass"),
         "{good}"
     );
-    // With a number the scene's author has the choice, and a note.
     assert!(check(&["coupling.substeps=1"]).good().stdout.contains("may be unstable"));
     let heavier = check(&["solid.material.0.density=2000"]).good().stdout;
     assert!(!heavier.contains("times the smallest effective nodal mass"), "{heavier}");
 }
 
-/// An impact on a window that the lagged scheme's limits allow, and on one of W = 0.29, which is stable there: the energy is
-/// off by 3.5 % at most on the one and by more than on the other, which is remarked on.
+/// Impact at the lagged limit: energy error at most 3.5 %. At W = 0.29 it is larger, though stable, and gives
+/// a warning.
 #[test]
-fn the_lagged_scheme_is_held_to_windows_that_keep_the_energy() {
+fn lagged_scheme_limits_energy_error() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
     let text = format!("{head}{ROLLING}");
     let folder = scene_folder("late", &text);
@@ -237,9 +229,8 @@ fn the_lagged_scheme_is_held_to_windows_that_keep_the_energy() {
     assert!(large > small && remarked, "{large} after {small}");
 }
 
-/// Two masses of stones and two materials of ground make their own classes.
 #[test]
-fn every_class_of_contacts_has_its_own_numbers() {
+fn contact_classes_have_separate_limits() {
     let more = "[[material]]\nname = \"pebble\"\ndensity = 2650\nstiffness = \"4 MN/m\"\nfriction = 0.5\nrestitution = 0.4\n\n\
                 [[grains]]\nname = \"fines\"\nshape = \"sphere\"\nmaterial = \"pebble\"\nspheres = [[1.0, 0.4, 0.03, 0.03]]\n\n\
                 [track.sleeper]";
@@ -261,7 +252,6 @@ fn every_class_of_contacts_has_its_own_numbers() {
     assert!((number(&classes[1], "/stiffness") / number(&classes[0], "/stiffness") - 1.6).abs() < 1e-9);
 }
 
-/// A sphere alone on the block, thrown along its top towards the border.
 const ROLLING: &str = r#"
 [[grains]]
 name = "bed"
@@ -280,7 +270,7 @@ end = 0.6
 frames = 2
 "#;
 
-/// The surface of a solid counts as a wall does: a stone that begins 20 mm within it is rejected.
+/// Initial penetration of 20 mm into the solid surface.
 #[test]
 fn rejects_start_overlap_with_the_solid() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
@@ -294,10 +284,9 @@ fn rejects_start_overlap_with_the_solid() {
     run(&folder.join("scene.toml"), &folder.join("out"), &["time.end=0.001"]).good();
 }
 
-/// A stone that rolls off the border of the mesh falls past it: the run ends well, with the account closed, and the summary
-/// names it.
+/// A grain that rolls off the mesh is only a warning.
 #[test]
-fn a_stone_that_leaves_the_mesh_is_named() {
+fn grain_leaving_mesh_gives_warning() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
     let folder = scene_folder("leaves", &format!("{head}{ROLLING}"));
     run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
@@ -307,14 +296,12 @@ fn a_stone_that_leaves_the_mesh_is_named() {
     assert!(warnings.contains("bodies lost below the surface of the solid: 1, first body 0 at"));
     let start: f64 = s["energy"]["start"].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum();
     assert!(number(&s, "/energy/largest_error") < 5e-3 * start.abs(), "{:#}", s["energy"]);
-    // One that stays is not.
     run(&folder.join("scene.toml"), &folder.join("stays"), &["grains.0.velocity=[0, 0, 0]"]).good();
     let s = json(&folder.join("stays/summary.json"));
     assert!(!s["warnings"].to_string().contains("left the solid"));
 }
 
-/// A load that pushes one node of the top through its neighbours folds the surface: exit code 3, with the element and the
-/// time in one line.
+/// A load that folds the surface: exit code 3, with element and time.
 #[test]
 fn a_surface_that_folds_is_named() {
     let load = "\n[[solid.load]]\nkind = \"point\"\nat = [0.0, 0.0, 0.0]\nforce = [4e8, 4e8, 0]\n\
@@ -330,7 +317,8 @@ fn a_surface_that_folds_is_named() {
     assert!(s.contains("failed: "));
 }
 
-/// Elastic ground, clamped at its base, of `[lines, counts]` by axis, with stones "s" on it as "w"; `contact`: what both have.
+/// Elastic ground with fixed base, `[lines, counts]` by axis; grains "s", material "w"; `contact`: keys of
+/// both materials.
 fn ground(axes: [&str; 3], young: &str, stiffness: &str, contact: &str) -> String {
     let [x, y, z] = axes;
     format!(
@@ -343,7 +331,6 @@ fn ground(axes: [&str; 3], young: &str, stiffness: &str, contact: &str) -> Strin
     )
 }
 
-/// The run of a scene, and kinetic energies [J] of its grains and its solid against time.
 fn at_rest(scene: &str, set: &[&str]) -> (Value, [Vec<f64>; 2]) {
     let folder = scene_folder("rest", scene);
     run(&folder.join("scene.toml"), &folder.join("out"), set).good();
@@ -352,7 +339,7 @@ fn at_rest(scene: &str, set: &[&str]) -> (Value, [Vec<f64>; 2]) {
     (json(&folder.join("out/summary.json")), kinetic)
 }
 
-/// Grains between walls of frictional material in a box of the side `size` [m]: `count` of them between the diameters `sizes`.
+/// Box of side `size` [m] with frictional walls and `count` grains of diameters `sizes`.
 fn box_of_grains(size: f64, count: usize, sizes: &str, seed: usize, end: &str) -> String {
     let walls: String = [([1, 0], 0.0), ([-1, 0], size), ([0, 1], 0.0), ([0, -1], size)]
         .map(|([x, y], at)| {
@@ -367,12 +354,12 @@ fn box_of_grains(size: f64, count: usize, sizes: &str, seed: usize, end: &str) -
     )
 }
 
-/// Stones settled in a box on soft ground, and a ball where discs are cut by the border: they come to rest
-/// with kinetic energies below 1e-6 J. With windows of one contact they shake the ground for ever (1e-4 J); loose stones on ground without any
-/// damping did so while tangential springs did not follow the corrections of the surface (8e-3 J unaccounted for after 0.9 s). Right values:
-/// the same scenes with `substeps = 1`.
+/// Beds on soft ground, and a ball whose smoothing disc is cut by the border: kinetic energies fall below
+/// 1e-6 J. Uncorrected, windows of one contact keep the ground oscillating (1e-4 J). On undamped ground,
+/// springs without the surface corrections lost 8e-3 J in 0.9 s. Reference: the same scenes with `substeps =
+/// 1`.
 #[test]
-fn beds_on_soft_ground_come_to_rest() {
+fn soft_ground_beds_reach_rest() {
     let damping =
         |ratio: f64| format!("solid.rayleigh = {{ damping_ratio = {ratio:.2}, frequencies = [10, 200] }}\n");
     let bed = box_of_grains(0.6, 60, "[\"60 mm\", \"100 mm\"]", 1, "2 s") + &damping(0.03);
@@ -407,7 +394,7 @@ solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
         ),
         ("ball at a corner", ball, [1.0, 0.5], "{ spread = \"50 mm\" }", ["20 MPa", "2 MN/m", &damped], true),
         ("loose stones", &loose, [0.6, 0.5], "\"point\"", ["20 MPa", "2 MN/m", undamped], false),
-        // Without the half step of the dashpots in the correction of tangential springs the energy error stops this run.
+        // Without the half-step damping correction the energy error stops this run.
         (
             "few slippery stones",
             &few,
@@ -437,9 +424,9 @@ solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
     }
 }
 
-/// A ball on an undamped slab rests with the theta that follows its contact; a theta of ½, which does not cover its phase, is warned about.
+/// A ball on an undamped slab needs theta from its contact phase; theta = ½ gives a warning.
 #[test]
-fn undamped_contact_at_rest_needs_its_theta() {
+fn undamped_contact_needs_theta() {
     let axes = [
         "lines = [0.0, 1.6], counts = [4]",
         "lines = [0.0, 0.4], counts = [2]",

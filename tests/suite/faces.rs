@@ -1,4 +1,4 @@
-//! Stones on meshes of other elements than 20-node bricks: shipped scenes, forms of meshes, and a weight that is known.
+//! Grains on tetrahedra, wedges and mixed meshes.
 
 use super::support::{Folder, json, repository, run, trackbed};
 use serde_json::Value;
@@ -11,10 +11,10 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
 }
 
-/// Ballast under a sleeper on tetrahedra that Gmsh has made, and a heap on bricks and wedges out of an Abaqus input, both
-/// shortened: the accounts close to 1 % (of the little that a heap at rest turns over), forces and moments go over to 1e-12, and nothing falls through.
+/// Gmsh tetrahedra under ballast, Abaqus bricks and wedges under a heap: energy error 1 % (little energy at
+/// rest), interface sums 1e-12, no grain lost.
 #[test]
-fn shipped_scenes_on_tetrahedra_and_mixtures_close_their_accounts() {
+fn tetrahedra_and_mixed_meshes_conserve_energy() {
     let folder = Folder::new("faces");
     let short: [(&str, &[&str]); 2] = [
         (
@@ -45,10 +45,10 @@ fn shipped_scenes_on_tetrahedra_and_mixtures_close_their_accounts() {
     }
 }
 
-/// Five spheres of known weight, W = Σ ρ 4/3 π r³ g, at rest on bricks, on wedges, and on the border between the two: in the
-/// end the solid carries their weight within 1e-3, from the mesh in every form that holds it.
+/// Five spheres, W = Σ ρ 4/3 π r³ g, at rest on bricks, wedges and their border: reaction to 1e-3, in every
+/// format.
 #[test]
-fn spheres_rest_with_their_weight_on_a_mixture_in_every_form() {
+fn mixed_mesh_bears_weight_of_spheres() {
     let folder = Folder::new("faces-forms");
     let source = repository().join(MIXTURE);
     fs::copy(source.join("slab.inp"), folder.join("slab.inp")).unwrap();
@@ -83,7 +83,7 @@ fn spheres_rest_with_their_weight_on_a_mixture_in_every_form() {
     }
 }
 
-/// Upward faces can be touched with and without mid-side nodes: the same number of both.
+/// As many contact facets with mid-side nodes as without.
 #[test]
 fn no_upward_face_is_left_out() {
     let scene = repository().join(TETRAHEDRA).join("scene.toml").display().to_string();

@@ -1,8 +1,7 @@
-//! The solid against reference solutions, through the same lists, scenes and result files that a user has.
+//! FEM against reference solutions, through the user's input and result files.
 //!
-//! Source: `tests/data/fem/<case>/case.json`, which describes mesh, loads, reference and tolerances. The references
-//! were computed with 3 × 3 × 3 integration by two independent programs and run through a third; those of the
-//! patch tests are exact fields.
+//! Source: `tests/data/fem/<case>/case.json` with mesh, loads, reference and tolerances. References: two
+//! independent programs with 3 × 3 × 3 integration, checked by a third; patch tests are exact fields.
 //!
 //! | case | quantity | tolerance | source |
 //! |---|---|---|---|
@@ -12,9 +11,9 @@
 //! | E2, E3 load and weight, E6 | stress at centroids and 2×2×2 points | 1e-5 of the largest | case.json |
 //! | E5 | displacement history per node and component | 1e-6 of its largest | case.json |
 //! | E5 | velocity history per node and component | 1e-5 of its largest | case.json |
-//! | all static | displacement of probes with 2×2×2 and 14-point integration | 1e-7 of the largest | 8 printed digits |
-//! | all static | sum of reactions | 1e-9 of the sum of their absolute values | solver of the reference |
-//! | all static | strain energy | 1e-9 | solver of the reference |
+//! | all static | probes with 2×2×2 and 14-point integration | 1e-7 of the largest | 8 printed digits |
+//! | all static | sum of reactions | 1e-9 of the sum of absolute values | reference solver |
+//! | all static | strain energy | 1e-9 | reference solver |
 //! | E6 | radial displacement against Lamé | 1e-4 | case.json: the reference has 8e-5 |
 
 use super::support::{Folder, Table, json, numbers, repository, run};
@@ -26,7 +25,6 @@ use trackbed::model::Job;
 use trackbed::scene::{Document, Scene};
 use trackbed_fem::stress::at_natural;
 
-/// A case and the results of its run.
 struct Case {
     name: &'static str,
     data: PathBuf,
@@ -36,7 +34,6 @@ struct Case {
 }
 
 impl Case {
-    /// Runs the case's scene with overrides.
     fn run(name: &'static str, set: &[&str]) -> Case {
         let data = repository().join("tests/data/fem").join(name);
         let out = Folder::new(name);
@@ -48,14 +45,12 @@ impl Case {
         Case { name, data, case, out, nodes }
     }
 
-    /// Prints a measured figure beside its tolerance and judges it.
     #[track_caller]
     fn within(&self, what: &str, error: f64, tolerance: f64) {
         println!("{}: {what}: {error:.2e}, tolerance {tolerance:.0e}", self.name);
         assert!(error <= tolerance, "{}: {what}: {error:e} is above {tolerance:e}", self.name);
     }
 
-    /// Displacement by node number.
     fn displacement(&self) -> HashMap<u32, [f64; 3]> {
         self.nodes.rows.iter().map(|r| (r[0] as u32, [r[1], r[2], r[3]])).collect()
     }
@@ -64,7 +59,7 @@ impl Case {
         self.case["reference"]["max_abs_u"].as_f64().unwrap()
     }
 
-    /// Largest |u − u_ref| over the nodes relative to the largest |u_ref|, against a file of reference values.
+    /// Largest |u − u_ref| over largest |u_ref|.
     fn displacement_error(&self, file: &str) -> f64 {
         let u = self.displacement();
         let reference = Table::read(&self.data.join(file));
@@ -77,7 +72,6 @@ impl Case {
         error / largest
     }
 
-    /// Stresses `(element, natural point, stress)` that the run wrote.
     fn gauss(&self) -> Vec<(u32, [f64; 3], [f64; 6])> {
         let table = Table::read(&self.out.join("gauss.csv"));
         assert_eq!(table.heads, ["element", "xi", "eta", "zeta", "sxx", "syy", "szz", "sxy", "syz", "szx"]);
@@ -85,7 +79,6 @@ impl Case {
         table.rows.iter().map(part).collect()
     }
 
-    /// Stress at the natural points of `wanted`, from the displacements that the run wrote.
     fn stress_at(&self, wanted: &[(u32, [f64; 3])]) -> Vec<[f64; 6]> {
         let document = Document::open(&self.data.join("scene.toml")).unwrap();
         let job = Job::new(&document, &document.read::<Scene>().unwrap()).unwrap();
@@ -96,8 +89,8 @@ impl Case {
         wanted.iter().map(|&(element, xi)| at_natural(&model, &u, index(element), xi)).collect()
     }
 
-    /// Stress at the centroids of all elements, the middle one of the 27 points that the run wrote, and at the
-    /// 2 × 2 × 2 points of some elements: largest error relative to the largest reference value.
+    /// Stress error at centroids (middle of 27 points) and some 2 × 2 × 2 points, over the largest reference
+    /// value.
     fn check_stress(&self, tolerance: f64) {
         let centroid = Table::read(&self.data.join("reference_stress_centroid.csv"));
         let middle: HashMap<u32, [f64; 6]> =
@@ -115,7 +108,7 @@ impl Case {
         self.within("stress at 2x2x2 points", stress_error(pairs), tolerance);
     }
 
-    /// Sum of the reactions and strain energy; and that the summary says the same as the tables.
+    /// Sum of reactions and strain energy; summary and tables must agree.
     fn check_sums(&self) {
         let summary = json(&self.out.join("summary.json"));
         assert_eq!(summary["status"], "done");
@@ -141,14 +134,14 @@ impl Case {
         self.within("strain energy", error, 1e-9);
     }
 
-    /// With 2 × 2 × 2 integration the displacement of the probes is that of the same rule in the reference, and, where
-    /// the rules differ, not that of the other; with Irons' 14 points likewise.
+    /// Probe displacements with 2 × 2 × 2 and Irons' 14 points; where the rules differ, the full rule must
+    /// not match.
     fn check_reduced(name: &'static str, rules_differ: bool) -> Case {
         Case::check_rule(name, rules_differ, "irons14", "irons14", 14);
         Case::check_rule(name, rules_differ, "reduced", "2x2x2", 8)
     }
 
-    /// The case with the rule `key` of scenes and `probes` of the reference, which has `points` points.
+    /// Rule `key` of scenes with `points` points, `probes` of the reference.
     fn check_rule(name: &'static str, rules_differ: bool, key: &str, probes: &str, points: u64) -> Case {
         let reduced = Case::run(name, &[&format!("solid.integration={key}")]);
         assert_eq!(
@@ -172,12 +165,10 @@ impl Case {
     }
 }
 
-/// Length of a − b.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Largest difference of a component over the largest reference component.
 fn stress_error<'a>(pairs: impl Iterator<Item = ([f64; 6], &'a [f64])>) -> f64 {
     let (mut error, mut largest) = (0.0_f64, 0.0_f64);
     for (found, reference) in pairs {
@@ -189,7 +180,6 @@ fn stress_error<'a>(pairs: impl Iterator<Item = ([f64; 6], &'a [f64])>) -> f64 {
     error / largest
 }
 
-/// Displacement, stress, sums of a case that is compared with printed references, then its probes with 2 × 2 × 2.
 fn check_against_reference(name: &'static str) -> Case {
     let case = Case::run(name, &[]);
     case.within("displacement", case.displacement_error("reference_displacement.csv"), 1e-6);
@@ -199,7 +189,7 @@ fn check_against_reference(name: &'static str) -> Case {
     case
 }
 
-/// The patch test: u = G x on the boundary gives u = G x and the same stress everywhere.
+/// Patch test: u = G x on the boundary gives u = G x and constant stress everywhere.
 fn patch_errors(case: &Case) -> (f64, f64) {
     let gradient: Vec<Vec<f64>> = case.case["exact"]["G"].as_array().unwrap().iter().map(numbers).collect();
     let list = fs::read_to_string(case.data.join("NODECOORD.DAT")).unwrap();
@@ -222,7 +212,7 @@ fn check_patch(name: &'static str) {
     let (displacement, stress) = patch_errors(&case);
     case.within("displacement against G x", displacement, 1e-10);
     case.within("stress at 27 points per element", stress, 1e-9);
-    // The printed references have ten digits, so that they cannot show 1e-9.
+    // Printed references have ten digits, too few for 1e-9.
     case.within(
         "displacement against the printed one",
         case.displacement_error("reference_displacement.csv"),
@@ -235,7 +225,7 @@ fn check_patch(name: &'static str) {
 #[test]
 fn e1_straight_patch() {
     check_patch("E1_patch_straight");
-    // With straight edges 2 × 2 × 2 points integrate exactly enough, too.
+    // With straight edges 2 × 2 × 2 points are sufficient.
     let reduced = Case::check_reduced("E1_patch_straight", false);
     let (displacement, stress) = patch_errors(&reduced);
     reduced.within("displacement against G x with 2x2x2 integration", displacement, 1e-10);
@@ -304,7 +294,7 @@ fn e5_pulse_on_a_layered_column() {
         .map(|n| n.as_u64().unwrap())
         .collect();
     for (kind, tolerance) in [("u", 1e-6), ("v", 1e-5)] {
-        // Column by column; those that hold next to nothing are left out, as case.json says.
+        // By column, without near-zero columns (see case.json).
         let columns: Vec<(String, Vec<f64>, Vec<f64>)> = nodes
             .iter()
             .flat_map(|n| ["x", "y", "z"].map(|d| (*n, d)))

@@ -1,4 +1,4 @@
-//! Ice floes, frusta that are held, and packings of polyhedra, through the program.
+//! Ice floes, fixed frusta, and packings of polyhedra.
 
 use super::support::{Folder, Outcome, Table, json, run, trackbed};
 use std::f64::consts::PI;
@@ -37,13 +37,11 @@ frames = 1
 packing = true
 "#;
 
-/// Rows of numbers of a CSV file below its heading.
 fn rows(file: &Path) -> Vec<Vec<f64>> {
     let text = fs::read_to_string(file).unwrap();
     text.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect()
 }
 
-/// Floes drift against a pile that is held: they push it along their way, and it stays where it is. The frames show them.
 #[test]
 fn floes_drift_against_a_pile() {
     let folder = Folder::new("floes");
@@ -60,7 +58,7 @@ fn floes_drift_against_a_pile() {
     let force = history.column("pile_force_x");
     assert!(force[0] == 0.0 && force.iter().all(|f| *f >= -1.0), "{force:?}");
     assert!(force.iter().any(|f| *f > 100.0), "{force:?}");
-    // Floes stay in their plane.
+    // Floes remain in their plane.
     let floes = rows(&out.join("packing_0.csv"));
     assert_eq!(floes.len() as u64, bodies - 1);
     assert!(floes.iter().all(|f| (f[2] - 1.0).abs() < 1e-3), "{floes:?}");
@@ -69,8 +67,8 @@ fn floes_drift_against_a_pile() {
     assert!(fs::metadata(&picture).unwrap().len() > 5000);
 }
 
-/// A pile on springs of 2 Hz takes the hits of floes: its motion is recorded, in free vibration the acceleration is −ω² of it, and the account of energy
-/// closes with the springs' share. Without the springs it drifts away, and held it stays.
+/// Pile on springs of 2 Hz: in free vibration the acceleration is −ω² times the displacement; the energy
+/// balance includes the springs.
 #[test]
 fn a_pile_on_springs() {
     let folder = Folder::new("springs");
@@ -137,7 +135,6 @@ axis = [0, 0]
     assert_eq!(most(&fixed.column("pile_motion_x")), 0.0);
 }
 
-/// Without `clear` floes lie where the pile is, and with circles over all of it none is left.
 #[test]
 fn circles_are_kept_clear() {
     let folder = Folder::new("clear");
@@ -157,7 +154,6 @@ fn circles_are_kept_clear() {
     );
 }
 
-/// A scene that `check` refuses.
 #[track_caller]
 pub fn refused(text: &str, expected: &str) {
     let folder = Folder::new("refused");
@@ -209,7 +205,7 @@ fn bad_floes_and_frusta_are_refused() {
     }
 }
 
-/// Floes that are too small for their rounding are left out, and the summary says how many.
+/// The summary counts floes smaller than their rounding.
 #[test]
 fn small_floes_are_remarked() {
     let folder = Folder::new("small_floes");
@@ -223,12 +219,11 @@ fn small_floes_are_remarked() {
     assert!(warnings.contains("of 100 floes are left out"), "{warnings}");
 }
 
-/// Blocks that a packing of a library places on a cone that is held: the force on it is their weight, and the packing
-/// that the run leaves is read back.
+/// Blocks on a fixed cone: its force is their weight, and the packing is read back.
 #[test]
 fn a_held_frustum_carries_a_heap() {
     let folder = Folder::new("heap");
-    // 0.14 x 0.12 x 0.10 m with edges rounded by 10 mm; the longest side lies along x of its frame.
+    // 0.14 × 0.12 × 0.10 m, edge radius 10 mm, longest side along x.
     let (half, r) = ([0.06, 0.05, 0.04], 0.01);
     let sign = |k: usize, d: usize| if k >> d & 1 == 1 { 1.0 } else { -1.0 };
     let corners: Vec<[f64; 3]> = (0..8).map(|k| [0, 1, 2].map(|d| sign(k, d) * half[d])).collect();
@@ -259,7 +254,6 @@ fn a_held_frustum_carries_a_heap() {
     fs::copy(folder.join("out/packing_0.csv"), folder.join("heap.csv")).unwrap();
     run(&scene, &folder.join("again"), &["deposition.max_time=1e-5", "time.end=1e-5"]).good();
     let again = rows(&folder.join("again/packing_0.csv"));
-    // The blocks still move a little.
     for (a, b) in heap.iter().flatten().zip(again.iter().flatten()) {
         assert!((a - b).abs() < 1e-5, "{a} {b}");
     }
@@ -272,8 +266,8 @@ fn refused_packing(folder: &Folder, row: &str, expected: &str) {
     assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}");
 }
 
-/// The same pile as a cylinder and as a mesh, between periodic borders: the load on it is that on the wall, it comes from where the floes come from and
-/// lies at their height, and the summary has the largest.
+/// Ice load on a pile as cylinder and as mesh, between periodic borders: equals the wall force, acts upstream
+/// at floe height.
 #[test]
 fn loads_on_structures_are_recorded() {
     let (before, rest) = ICE.split_once("[[grains]]\nname = \"pile\"").unwrap();
@@ -296,13 +290,13 @@ fn loads_on_structures_are_recorded() {
         let folder = Folder::new(&format!("loads_{kind}"));
         let scene = folder.write("scene.toml", &text);
         let out = folder.join("out");
-        // With the default step an impact may begin within one step of a row.
+        // With the default step an impact may start within one step of a row.
         run(&scene, &out, &["time.grain_step_fraction=0.2"]).good();
         let history = Table::read(&out.join("history.csv"));
         let column = |name: &str| history.column(name);
         let (load, force) = (column("tower_load_x"), column("pile_force_x"));
         let most = load.iter().fold(0.0_f64, |m, f| m.max(*f));
-        // The wall has the force of the step before.
+        // Wall force of the preceding step.
         let off: f64 = load.iter().zip(&force).map(|(a, b)| (a - b).abs()).sum::<f64>();
         let all: f64 = load.iter().map(|f| f.abs()).sum();
         assert!(most > 100.0 && off < 0.05 * all, "{kind}: {most} {off} {all}");
@@ -316,7 +310,7 @@ fn loads_on_structures_are_recorded() {
             (largest("tower_layer1") / level - 1.0).abs() < 1e-9 && largest("tower_layer0") == 0.0,
             "{kind}"
         );
-        // Floes lie at the height that moments refer to.
+        // Floe height equals the reference height of moments.
         assert!(largest("tower_load_moment_y") < 0.25 * most, "{kind}");
         let record = &json(&out.join("summary.json"))["structures"][0];
         assert!((record["largest"].as_f64().unwrap() / level - 1.0).abs() < 1e-12, "{record}");
@@ -370,7 +364,7 @@ frames = 1
 packing = true
 "#;
 
-/// Round floes cover what was asked for to half a floe, clear of the circle, and lie flat on a floor; the frames show their rounded rims.
+/// Requested coverage to half a floe, outside the circle, flat on a floor.
 #[test]
 fn round_floes_lie_on_a_floor() {
     let folder = Folder::new("pancakes");
@@ -380,7 +374,7 @@ fn round_floes_lie_on_a_floor() {
     let floes = rows(&out.join("packing.csv"));
     assert_eq!(summary["model"]["bodies"].as_u64(), Some(floes.len() as u64));
     let covered = floes.len() as f64 / (0.6 * (100.0 - PI * 0.64));
-    // Diameters are uniform from 0.5 to 1 m: a mean square of 7/12 m².
+    // Diameters uniform in 0.5–1 m: mean square 7/12 m².
     assert!((covered * 0.25 * PI * 7.0 / 12.0 - 1.0).abs() < 0.02, "{covered}");
     for floe in &floes {
         assert!(floe[0].hypot(floe[1]) > 1.05 && (floe[2] - 0.1).abs() < 1e-3, "{floe:?}");
@@ -390,7 +384,7 @@ fn round_floes_lie_on_a_floor() {
     assert!(warnings.contains("round floes cover 0."), "{warnings}");
 }
 
-/// Disks that are filled into a box with an aspect, at rest after a while, and their packing read back.
+/// Disks with an aspect ratio, read back at rest.
 #[test]
 fn disks_fill_a_box() {
     let folder = Folder::new("disks");
@@ -424,7 +418,6 @@ fn disks_fill_a_box() {
     }
 }
 
-/// What cannot be is named.
 #[test]
 fn bad_disks_are_refused() {
     for (old, new, expected) in [

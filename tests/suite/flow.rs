@@ -1,5 +1,4 @@
-//! Inlets and outlets through the program: what comes, goes and stays adds up, row by row; the flow is the one asked for;
-//! the accounts close; the same bits for any number of threads and after a restart.
+//! Inlets and outlets: balances of grains, mass and energy, flow rate, threads and restart.
 
 use super::checkpoint::broken;
 use super::determinism::same_bits;
@@ -10,7 +9,7 @@ use std::path::Path;
 
 const G: f64 = 9.81;
 
-/// Spheres of 10 mm that rain down a shaft and are taken out at its foot.
+/// Spheres of 10 mm, inserted above a shaft and removed at its foot.
 const RAIN: &str = r#"title = "rain"
 
 [[material]]
@@ -68,7 +67,7 @@ fn float(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// Every row: what is there is what was there, and came, less what went; numbers exact, masses to rounding.
+/// Present = initial + inserted − removed in every row: counts exact, masses to rounding.
 #[track_caller]
 fn adds_up(out: &Path) -> Table {
     let history = Table::read(&out.join("history.csv"));
@@ -83,7 +82,6 @@ fn adds_up(out: &Path) -> Table {
     history
 }
 
-/// Number of points of a frame.
 fn points(frame: &Path) -> usize {
     let bytes = fs::read(frame).unwrap();
     let text = String::from_utf8_lossy(&bytes);
@@ -100,7 +98,7 @@ fn rain_in_steady_flow() {
     let history = adds_up(&out);
     let summary = json(&out.join("summary.json"));
     let flow = &summary["flow"];
-    // What came in follows the rate from below, by less than the largest grain.
+    // Inserted mass lags the rate by less than the largest grain.
     let (time, come) = (history.column("time"), history.column("mass_in"));
     let largest = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.006_f64.powi(3);
     for (t, m) in time.iter().zip(&come) {
@@ -114,22 +112,21 @@ fn rain_in_steady_flow() {
     assert_eq!(flow["came_in"]["grains"], flow["inlets"][0]["amount"]["grains"]);
     assert_eq!(flow["went_out"]["mass"], flow["outlets"][0]["amount"]["mass"]);
     assert_eq!((&flow["at_start"]["grains"], &flow["outlets"][0]["name"]), (&Value::from(0), &"foot".into()));
-    // Large and small ones come mixed: the mean of the first is that of all.
+    // Sizes are mixed: the mean mass is constant over time.
     let grains = history.column("grains_in");
     let half = grains.len() / 2;
     let means = [come[half] / grains[half], come[grains.len() - 1] / grains[grains.len() - 1]];
     assert!((means[0] / means[1] - 1.0).abs() < 0.1, "{means:?}");
-    // The accounts close, in spite of all that comes and goes.
     assert!(float(&summary["energy"]["relative_error"]) < 5e-4, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-11, "{}", summary["momentum"]);
     assert!(float(&summary["momentum"]["angular"]) < 1e-11, "{}", summary["momentum"]);
-    // Potential energy of what came less that of what went, and the kinetic energy, to a per cent or so.
+    // Potential and kinetic energy of the inserted minus the removed grains, to about 1 %.
     let height = 0.95 * G + 0.5 * 1.05;
     let brought = float(&flow["came_in"]["mass"]) * height;
     let removed = float(&flow["went_out"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
     let energy = float(&flow["energy_in"]);
     assert!((energy - (brought - removed)).abs() < 0.05 * brought, "{energy} {brought} {removed}");
-    // Frames show those that are there; one may come or go in the window between a frame and a row.
+    // One grain may be inserted or removed between a frame and a row.
     let rows = history.column("grains_present");
     for frame in 0..=4 {
         let there = rows[frame * (rows.len() - 1) / 4] as usize;
@@ -140,7 +137,7 @@ fn rain_in_steady_flow() {
     assert!(log.contains("flow: ") && log.contains("  foot: ") && !log.contains("warning: "), "{log}");
 }
 
-/// A single drop falls as a body does that has the inlet's velocity when it comes in.
+/// Free fall from the inlet velocity.
 #[test]
 fn a_drop_falls_from_the_inlet() {
     let folder = Folder::new("drop");
@@ -163,17 +160,17 @@ fn a_drop_falls_from_the_inlet() {
     let place = ["drops_x", "drops_y", "drops_z"].map(|c| history.column(c));
     assert_eq!(come.last(), Some(&1.0));
     let first = there.iter().position(|n| *n > 0.0).unwrap();
-    // The first is due a tenth of a second after the start.
+    // Due 0.1 s after the start.
     assert!((time[first] - 0.13).abs() < 2e-3, "{}", time[first]);
     let last = there.iter().rposition(|n| *n > 0.0).unwrap();
-    // Two rows give velocity and place, of which all others follow.
+    // The first two rows give velocity and position.
     let speed = [0.02, 0.01, -1.0];
     let entry = time[first];
     for k in first..last {
         let t = time[k] - entry;
         for d in 0..3 {
             let gravity = if d == 2 { -G } else { 0.0 };
-            // It came in up to an interval before the row.
+            // Inserted up to one interval before the row.
             let slack = 0.5e-3 * 1e-2 + 1e-3 * G * t.max(1e-3);
             let expected = place[d][first] + speed[d] * t + 0.5 * gravity * t * t;
             assert!((place[d][k] - expected).abs() < slack, "{d} {t}: {} {expected}", place[d][k]);
@@ -182,14 +179,12 @@ fn a_drop_falls_from_the_inlet() {
     assert!((0.3..0.306).contains(&place[2][last]) && place[2][first] > 0.9, "{}", place[2][last]);
 }
 
-/// What leaves comes again: few grains make an endless flow. Those that left while the inlet had nothing to give are made up
-/// for at twice the rate, no faster.
+/// Recycling: the inlet makes up its backlog at no more than twice the rate.
 #[test]
-fn grains_come_again_at_twice_the_rate_at_most() {
+fn recycling_limits_backlog_rate() {
     let folder = Folder::new("again");
     let scene = folder.write("scene.toml", RAIN);
     let out = folder.join("out");
-    // Twelve at the same height all arrive at once.
     let set = [
         "grains.0.count=",
         "grains.0.size=",
@@ -207,7 +202,7 @@ fn grains_come_again_at_twice_the_rate_at_most() {
     let left = gone.iter().position(|n| *n > 0.0).unwrap();
     assert!((time[left] - fallen).abs() < 3e-3 && gone[left] == 12.0, "{} {}", time[left], gone[left]);
     let all = come.iter().position(|n| *n == 12.0).unwrap();
-    // Eleven intervals of 5 ms after the first, which comes at once.
+    // Eleven intervals of 5 ms after an immediate first insertion.
     assert!((time[all] - time[left] - 0.055).abs() < 6e-3, "{} {}", time[all], time[left]);
     for k in left..all {
         assert!(come[k] <= 1.0 + 200.0 * (time[k] - time[left] + 2e-3), "{} at {}", come[k], time[k]);
@@ -223,13 +218,13 @@ fn grains_come_again_at_twice_the_rate_at_most() {
     );
 }
 
-/// An inlet without room waits; what it owes is reported.
+/// Insertion fails without a free position; the backlog is reported.
 #[test]
 fn no_room_at_the_inlet() {
     let folder = Folder::new("no_room");
     let scene = folder.write("scene.toml", RAIN);
     let out = folder.join("out");
-    // A box for one grain at a time, which leaves it in free fall from rest.
+    // Box for one grain, which leaves it in free fall from rest.
     let set = [
         "grains.0.inlet.box=[[0.04, 0.04, 0.9], [0.053, 0.053, 0.913]]",
         "grains.0.inlet.velocity=[0, 0, 0]",
@@ -247,7 +242,7 @@ fn no_room_at_the_inlet() {
     assert_eq!(waiting + flow["came_in"]["grains"].as_u64().unwrap(), 600);
 }
 
-/// A thin box that grains fly through between two looks is reported.
+/// Grains that cross a thin outlet between two checks are reported.
 #[test]
 fn a_box_that_is_flown_through() {
     let folder = Folder::new("thin");
@@ -265,7 +260,7 @@ fn a_box_that_is_flown_through() {
     let summary = json(&out.join("summary.json"));
     let outlet = &summary["flow"]["outlets"][0];
     let (seen, missed) = (outlet["amount"]["grains"].as_u64().unwrap(), outlet["missed"].as_u64().unwrap());
-    // At 3 m/s a grain is in it at one look of three.
+    // At 3 m/s every third check finds the grain inside.
     assert!(missed > seen && seen > 5, "{outlet}");
     assert!(summary["warnings"].to_string().contains("Reduce time.flow_interval"), "{}", summary["warnings"]);
     let fine = folder.join("fine");
@@ -273,7 +268,7 @@ fn a_box_that_is_flown_through() {
     assert_eq!(json(&fine.join("summary.json"))["flow"]["outlets"][0]["missed"], 0);
 }
 
-/// An outlet that takes nothing changes no bit of what the grains do.
+/// An outlet out of reach changes no bit.
 #[test]
 fn an_outlet_out_of_reach() {
     let folder = Folder::new("out_of_reach");
@@ -300,7 +295,7 @@ fn an_outlet_out_of_reach() {
 }
 
 #[test]
-fn stones_on_a_chute_with_one_two_and_three_threads() {
+fn chute_is_identical_across_threads() {
     let scene = repository().join("inputs/grains/chute_flow.toml");
     let set = ["time.end=0.2", "grains.0.inlet.rate=16", "output.frames=2", "outlet.0.point=[0.2, 0, 0]"];
     let folder = same_bits(&scene, &set, &["history.csv", "frames/grains_00002.vtp"]);
@@ -327,7 +322,6 @@ fn a_hopper_that_is_interrupted() {
     assert!(flow["came_in"]["grains"].as_u64().unwrap() > 50, "{flow}");
 }
 
-/// The flow of the scene is that of what leaves and comes: a tenth about the same in both halves.
 #[test]
 fn the_hopper_of_the_examples() {
     let scene = repository().join("inputs/grains/hopper_flow.toml");
@@ -345,7 +339,7 @@ fn the_hopper_of_the_examples() {
     assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
 }
 
-/// Grains that rain on a block that bends, roll off its edges and come again.
+/// Grains on a flexible block, recycled after they roll off.
 fn rain_on_a_block() -> String {
     let from = COUPLED.find("[track.sleeper]").unwrap();
     let to = COUPLED.find("[coupling]").unwrap();
@@ -390,7 +384,7 @@ fn rain_on_a_solid() {
 }
 
 #[test]
-fn rain_on_a_solid_that_is_interrupted() {
+fn insertion_over_solid_resumes() {
     let folder = scene_folder("rain_on_a_block", &rain_on_a_block());
     for scheme in ["predicted", "lagged", "stiffened", "iterated"] {
         let scheme = format!("coupling.scheme={scheme}");
@@ -399,16 +393,16 @@ fn rain_on_a_solid_that_is_interrupted() {
     }
 }
 
-/// Across periodic borders, with a group that settles first; those that wait do not fall.
+/// Periodic borders and a deposited group; queued grains do not fall.
 #[test]
-fn in_a_periodic_box_above_a_settled_bed() {
+fn periodic_insertion_above_bed() {
     let folder = Folder::new("periodic");
     let text = RAIN.replace(
         "[[outlet]]",
         "[[grains]]\nname = \"bed\"\nshape = \"sphere\"\nmaterial = \"glass\"\ncount = 60\nsize = [\"12 mm\", \"14 mm\"]\n\
          fill = { low = [0, 0, 0.4], high = [0.1, 0.1] }\n\n[[outlet]]",
     );
-    // The planes across x give way to borders, one of them becomes the floor.
+    // Planes across x become periodic borders, one of them the floor.
     let text = text
         .replace("point = [0, 0, 0]\nnormal = [1, 0, 0]", "point = [0, 0, 0.4]\nnormal = [0, 0, 1]")
         .replace("point = [0.1, 0, 0]\nnormal = [-1, 0, 0]", "point = [0, 0, 0]\nnormal = [0, 1, 0]");
@@ -436,7 +430,6 @@ fn in_a_periodic_box_above_a_settled_bed() {
     assert!(float(&summary["momentum"]["angular"]) < 1e-10, "{}", summary["momentum"]);
     let inside = summary["packing"]["measures"][0]["grains"].as_u64().unwrap();
     assert!((30..=flow["at_end"]["grains"].as_u64().unwrap()).contains(&inside), "{}", summary["packing"]);
-    // Those that are there go to the packings, the others do not.
     let rows = |name: &str| fs::read_to_string(out.join(name)).unwrap().lines().count() - 1;
     let there = flow["at_end"]["grains"].as_u64().unwrap() as usize;
     assert_eq!(rows("packing_0.csv") + rows("packing_1.csv"), there);
@@ -445,7 +438,7 @@ fn in_a_periodic_box_above_a_settled_bed() {
     assert_eq!(counted as usize, there);
 }
 
-/// Beside a sleeper under its load, which is no grain and stays, after a settling in which those that wait do not take part.
+/// Insertion next to a loaded sleeper, after deposition without the queued grains.
 #[test]
 fn rain_beside_a_sleeper() {
     let flow = r#"[[grains]]

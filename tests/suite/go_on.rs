@@ -1,4 +1,4 @@
-//! Runs that go on from the end of another (`--from`).
+//! Restart from the final state of another run (`--from`).
 
 use super::scenes::vtk;
 use super::support::{Folder, Table, json, repository, results, run, trackbed};
@@ -11,7 +11,7 @@ fn from(scene: &Path, out: &Path, before: &Path, set: &[&str]) -> super::support
     trackbed(words)
 }
 
-/// Grains that fall, hit and slide: two runs of 100 windows leave them where one of 200 does, to the last bit, with every contact's memory.
+/// Falling, impacting, sliding grains: 100 + 100 windows end bitwise like 200.
 #[test]
 fn two_halves_are_a_whole() {
     let folder = Folder::new("from_halves");
@@ -26,14 +26,13 @@ fn two_halves_are_a_whole() {
     let packing = |out: &Path| std::fs::read_to_string(out.join("packing.csv")).unwrap();
     assert!(packing(&second) == packing(&whole), "the second half ends elsewhere");
     assert!(packing(&first) != packing(&whole));
-    // Time and accounts begin anew, and close.
     let (half, all) = (json(&second.join("summary.json")), json(&whole.join("summary.json")));
     let error = |s: &serde_json::Value| s["energy"]["largest_relative_error"].as_f64().unwrap();
     assert!(error(&half) < 2.0 * error(&all) + 1e-3, "{} {}", error(&half), error(&all));
     assert!(half["momentum"]["linear"].as_f64().unwrap() < 1e-9, "{half:#}");
     let history = Table::read(&second.join("history.csv"));
     assert_eq!(history.column("time")[0], 0.0);
-    // What a run leaves depends on where it came from, and on nothing else.
+    // The result depends on the earlier run and nothing else.
     assert_ne!(half["scene_hash"], json(&first.join("summary.json"))["scene_hash"]);
     let again = folder.join("again");
     let mut words = vec!["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap(), "--threads", "1"];
@@ -43,7 +42,6 @@ fn two_halves_are_a_whole() {
     trackbed(words).good();
     let (a, b) = (results(&second), results(&again));
     assert!(a.keys().eq(b.keys()) && a.iter().all(|(name, bytes)| *bytes == b[name]));
-    // A run that did not keep its end cannot be gone on from.
     run(&scene, &short, &with("output.state=false")).good();
     let refused = from(&scene, &folder.join("none"), &short, &with("time.end=0.1"));
     assert_eq!((refused.code, refused.stderr.lines().count()), (2, 1), "{refused:?}");
@@ -53,12 +51,10 @@ fn two_halves_are_a_whole() {
     );
 }
 
-/// The main job with more cycles, a higher load and a softer ground: the sleeper goes on from where it was.
 #[test]
-fn a_track_goes_on_with_another_load_and_ground() {
+fn track_restarts_with_changed_load() {
     let folder = Folder::new("from_track");
     let scene = repository().join("inputs/track/cyclic/scene.toml");
-    // A small bed that settles soon.
     let common = [
         "grains.0.count=150",
         "grains.1.count=20",
@@ -80,23 +76,21 @@ fn a_track_goes_on_with_another_load_and_ground() {
     from(&scene, &soft, &first, &next).good();
     let [hard, soft] =
         [&more, &soft].map(|out| Table::read(&out.join("cycles.csv")).column("resilient_deflection"));
-    // More load on softer ground: a larger deflection.
     assert!(soft[1] > 1.1 * hard[1] && hard[1] > 0.0, "{hard:?} {soft:?}");
     let summary = json(&more.join("summary.json"));
     assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 0.01, "{summary:#}");
     let stages: Vec<&str> =
         summary["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
     assert_eq!(stages, ["run"], "nothing is packed again");
-    // The sleeper starts where it stood: heights follow each other without a gap.
+    // Sleeper heights are continuous.
     let height = |out: &Path| Table::read(&out.join("history.csv")).column("sleeper_z");
     let (before, after) = (height(&first), height(&more));
     assert!((before[before.len() - 1] - after[0]).abs() < 1e-12, "{} {}", before[before.len() - 1], after[0]);
-    // The report says how the run comes again, where it came from included.
     let page = folder.join("report.html");
     trackbed(["report", more.to_str().unwrap(), "--out", page.to_str().unwrap()]).good();
     let page = std::fs::read_to_string(&page).unwrap();
     assert!(page.contains(&format!(" --from {}", first.display())), "no --from in the report");
-    // Another model is refused, by its key, and nothing is written.
+    // Another model is rejected by its key; nothing is written.
     for (set, words) in [
         ("grains.0.count=151", "grains.0.count: found 151, expected 150, as in "),
         ("coupling.scheme=lagged", "coupling.scheme: found \"lagged\", expected nothing, as in "),
@@ -109,7 +103,6 @@ fn a_track_goes_on_with_another_load_and_ground() {
         let other = from(&scene, &out, &first, &[&common[..], &[set]].concat());
         assert!(other.code == 2 && other.stderr.contains(words) && !out.exists(), "{set}: {other:?}");
     }
-    // A damaged state is refused.
     let state = first.join("end.state");
     let mut bytes = std::fs::read(&state).unwrap();
     let middle = bytes.len() / 2;
@@ -119,7 +112,6 @@ fn a_track_goes_on_with_another_load_and_ground() {
     assert!(damaged.code == 2 && damaged.stderr.contains("end.state: damaged"), "{damaged:?}");
 }
 
-/// Grains of every kind in a shaft without friction at its walls.
 fn kinds() -> [(&'static str, String); 4] {
     let data = repository().join("inputs/data");
     let stones = repository().join("inputs/grains/bonded_stone/stones.toml");
@@ -139,7 +131,6 @@ fn kinds() -> [(&'static str, String); 4] {
     ]
 }
 
-/// A scene with grains between walls; `more`: other tables, which come before the walls.
 fn shaft(grains: &str, more: &str, floor: bool) -> String {
     let wall = |point: [f64; 3], normal: [f64; 3]| {
         format!(
@@ -160,7 +151,7 @@ fn shaft(grains: &str, more: &str, floor: bool) -> String {
     )
 }
 
-/// Where the grains are at the end: their rows of `packing.csv`; of bonded stones, which it does not hold, the spheres of the last frame.
+/// Final positions from `packing.csv`; for bonded stones, which it lacks, spheres of the last frame.
 fn places(out: &Path) -> Vec<f64> {
     match std::fs::read_to_string(out.join("packing.csv")) {
         Ok(rows) => rows.lines().skip(1).flat_map(|row| row.split(',')).map(|x| x.parse().unwrap()).collect(),
@@ -168,10 +159,9 @@ fn places(out: &Path) -> Vec<f64> {
     }
 }
 
-/// Grains of every kind go on with the memory of their contacts, in the same scene to the last bit; and in another, with a wall more and others'
-/// materials, as they would have gone on in their own.
+/// Contact histories survive, in the same scene and in one with another wall and other materials.
 #[test]
-fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
+fn grain_kinds_restart_bitwise() {
     for (name, grains) in kinds() {
         let folder = Folder::new(&format!("from_{name}"));
         let count = if name == "bonded" { 8 } else { 30 };
@@ -179,7 +169,7 @@ fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
         let rest =
             format!("[time]\ngrain_step = \"2 us\"\nend = 1\n[output]\nframes = 1\npacking = {packing}\n");
         let scene = folder.write("scene.toml", &shaft(&grains, &rest, true));
-        // A plane that nothing touches, before all others.
+        // A distant plane, first in the list.
         let far = "[[walls]]\nkind = \"plane\"\npoint = [0.0, 0.0, -40.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"stone\"\n";
         let next = folder.write("next.toml", &shaft(&grains, &format!("{rest}{far}"), true));
         let [whole, first, same, bed] = ["whole", "first", "same", "bed"].map(|out| folder.join(out));
@@ -188,7 +178,7 @@ fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
         from(&scene, &same, &first, &["time.end=0.001999"]).good();
         let end = places(&whole);
         assert!(end.len() >= 90 && places(&same) == end, "{name}: the second half ends elsewhere");
-        // Another scene is refused, unless it is only the bed that goes on, and that is said.
+        // Another scene needs the option for importing only the bed.
         let refused = from(&next, &bed, &first, &["time.end=0.001999"]);
         assert!(
             refused.code == 2 && refused.stderr.contains("--bed imports grains into another"),
@@ -204,7 +194,6 @@ fn every_kind_of_grains_goes_on_and_its_bed_in_another_scene() {
         let fragments = |out: &Path| json(&out.join("summary.json"))["bonds"]["fragments"].as_u64();
         assert_eq!(fragments(&bed), fragments(&whole), "{name}");
         assert!(name != "bonded" || fragments(&bed) > Some(8), "no bond is broken");
-        // Other grains are refused by their key.
         let other = trackbed(
             [&words_of(&next, &folder.join("other"), &first)[..], &["--set", "grains.0.count=31"]].concat(),
         );
@@ -219,10 +208,10 @@ fn words_of<'a>(scene: &'a Path, out: &'a Path, before: &'a Path) -> Vec<&'a str
     vec!["run", scene, "--out", out, "--bed", "--from", before]
 }
 
-/// A bed that has settled on a plane is put on an elastic block, with a sleeper on it: nothing settles again, the sleeper is set down on the
-/// bed as it lies, and a run that is interrupted goes on.
+/// Bed deposited on a plane, moved to an elastic block: no second deposition, sleeper placed on it, restart
+/// included.
 #[test]
-fn a_bed_is_put_on_a_solid_under_a_sleeper() {
+fn bed_import_onto_solid() {
     let folder = Folder::new("from_bed");
     let (_, grains) = kinds().into_iter().nth(1).unwrap();
     let grains = grains.replace("count = 30", "count = 60");
@@ -248,7 +237,8 @@ fn a_bed_is_put_on_a_solid_under_a_sleeper() {
     let (z, force) = (column("sleeper_z"), column("contact_force_on_solid_z"));
     let highest = places(&first).chunks(3).map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max);
     assert!((z[0] - highest).abs() < 0.06 && z[z.len() - 1] < z[0], "{} {highest}", z[0]);
-    // The bed lies as high as it did, and the ground carries it from the first window on: some 150 N, and not yet the sleeper's 196 N.
+    // Bed height unchanged; the ground carries about 150 N from the first window, without the sleeper's 196
+    // N.
     let heights = column("grains_gravity")[0] - 20.0 * 9.81 * z[0];
     let before = *Table::read(&first.join("history.csv")).column("grains_gravity").last().unwrap();
     assert!((heights - before).abs() < 1e-4 * before, "{heights} J, {before} J before");

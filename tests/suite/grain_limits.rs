@@ -1,9 +1,8 @@
-//! Grains at and beyond what their contacts can follow, through scenes: refused with the key (exit code 2), or stopped
-//! with the names of both partners (exit code 3).
+//! Contacts at their limits: rejected with the key (exit code 2), or stopped with both partners (exit code
+//! 3).
 
 use super::support::{Folder, GRAINS, Table, json, run};
 
-/// Stops with code 3 and `what` on standard error; the summary says the same.
 fn stops(name: &str, text: &str, what: &str) {
     let folder = Folder::new(name);
     let scene = folder.write("scene.toml", text);
@@ -16,9 +15,9 @@ fn stops(name: &str, text: &str, what: &str) {
     assert!(status.starts_with("failed: ") && status.contains(what), "{status}");
 }
 
-/// 1.5 of the limit: refused by the key. Taken all the same, a single pair, for which the bound is wide, still runs.
+/// Rejected; if forced, a single pair still runs, since the bound is conservative.
 #[test]
-fn step_of_one_and_a_half_limits() {
+fn rejects_step_above_limit() {
     let folder = Folder::new("step_limit");
     let scene = folder.write("scene.toml", GRAINS);
     let step = "time.grain_step=2.06e-4";
@@ -29,9 +28,8 @@ fn step_of_one_and_a_half_limits() {
     run(&scene, &folder.join("out"), &[step, "time.accept_step_above_limit=true"]).good();
 }
 
-/// Two grains shot at each other faster than their contact can stop them.
 #[test]
-fn head_on_at_two_hundred_metres_per_second() {
+fn head_on_collision_stops() {
     let pair = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
     let group = |name: &str, x: f64, speed: f64| {
         format!(
@@ -45,21 +43,20 @@ fn head_on_at_two_hundred_metres_per_second() {
     stops("head_on", &text, "overlap of body 0 and body 1");
 }
 
-/// 1000 m/s at a floor that is far too soft for it.
 #[test]
-fn floor_struck_at_a_thousand_metres_per_second() {
+fn fast_impact_on_floor_stops() {
     let spheres = "spheres = [[0.0, 0.0, 0.051, 0.05], [0.01, 0.0, 0.152, 0.05]]";
     let fast = "spheres = [[0.0, 0.0, 0.3, 0.05]]\nvelocity = [0.0, 0.0, -1000.0]";
     assert!(GRAINS.contains(spheres));
     let text = GRAINS.replace(spheres, fast);
-    // Half the radius is passed within a step: stopped by speed, at once. With short steps, by the overlap.
+    // More than half a radius per step: speed limit. Short steps: overlap limit.
     stops("fast_floor", &text, "speed of body 0: 1000");
     let short = text.replace("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"5 us\"");
     stops("fast_floor_short", &short, "overlap of body 0 and plane 0");
 }
 
-/// A light grain in a stream that carries it along within 0.1 µs, on contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m. A
-/// fixed step that passes that time is rejected.
+/// Drag acceleration within 0.1 µs, contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m. Longer
+/// fixed steps are rejected.
 #[test]
 fn stiff_drag_limits_the_step() {
     let text = r#"

@@ -1,5 +1,4 @@
-//! Input and surroundings that mean no good: files that never end, counts that fill the memory, outputs that nobody reads,
-//! signals, two runs in one folder, and scenes and files changed at random.
+//! Hostile input and environment.
 #![cfg(unix)]
 
 mod files;
@@ -15,18 +14,18 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Memory that a refusal may take [kB], address space of the threads' stacks included.
+/// Memory limit of a rejection [kB], with thread stacks.
 const MEMORY: u64 = 2_000_000;
 
-/// Address space that the library of dense products reserves and hardly touches [kB]: twice the last cache for each of the two threads
-/// (private-gemm-x86 0.1.22, `lib.rs`), 1.9 GB on a processor that says it has 480 MiB of it.
+/// Address space reserved by the dense-product library [kB]: twice the last cache per thread
+/// (private-gemm-x86 0.1.22, `lib.rs`), 1.9 GB for 480 MiB.
 fn reserved() -> u64 {
     let size = std::fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
     let number = |unit| size.trim().strip_suffix(unit).and_then(|n| n.parse::<u64>().ok());
     2 * 2 * number('K').or(number('M').map(|n| 1024 * n)).unwrap_or(0)
 }
 
-/// Runs the program with little memory, for at most `seconds`; `None` where it takes longer.
+/// Runs with limited memory; `None` after `seconds`.
 fn within<A: AsRef<OsStr>>(seconds: u64, arguments: impl IntoIterator<Item = A>) -> Option<Outcome> {
     let mut child = Command::new("sh")
         .args([
@@ -41,7 +40,7 @@ fn within<A: AsRef<OsStr>>(seconds: u64, arguments: impl IntoIterator<Item = A>)
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // What it says is short, so that no pipe is full before it ends; a report of a run is.
+    // The output fits the pipe.
     let begun = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if begun.elapsed() > Duration::from_secs(seconds) {
@@ -59,7 +58,6 @@ fn within<A: AsRef<OsStr>>(seconds: u64, arguments: impl IntoIterator<Item = A>)
     })
 }
 
-/// The program refuses these arguments at once, in one line that holds `words`.
 #[track_caller]
 fn refused<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>, words: &str) {
     let outcome = within(20, arguments).expect("a refusal comes at once");

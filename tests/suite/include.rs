@@ -1,4 +1,4 @@
-//! Scenes that include other files.
+//! Scenes that include files.
 
 use super::support::{Folder, results, run};
 use std::fs;
@@ -20,8 +20,7 @@ fn written(name: &str, scene: &str, parts: &[(&str, &str)]) -> Folder {
     folder
 }
 
-/// The results of a scene whose tables come from three files are those of the scene in one file; what a scene says itself counts, and
-/// a material is put together from both.
+/// Three files equal one; the scene overrides, and materials are merged.
 #[test]
 fn the_same_scene_in_pieces() {
     let whole = written("include_whole", &format!("{MATERIAL}\n{GRAINS}\n{WALL}\n{REST}"), &[]);
@@ -32,7 +31,7 @@ fn the_same_scene_in_pieces() {
              [output]\nframes = 2\n"
         ),
         &[
-            // With a byte order mark, as editors on Windows write it.
+            // Byte order mark of Windows editors.
             ("stone.toml", &format!("\u{feff}{}", MATERIAL.replace("friction = 0.5", "friction = 0.1"))),
             ("box.toml", &format!("{WALL}\n{}", REST.replace("frames = 2", "frames = 7"))),
         ],
@@ -42,14 +41,13 @@ fn the_same_scene_in_pieces() {
     }
     let [mut whole, mut pieces] = [&whole, &pieces].map(|folder| results(&folder.join("out")));
     assert!(whole.contains_key("history.csv"));
-    // The hash of the scene, its text and wall times differ.
+    // Hash, text and wall times differ.
     for name in ["summary.json", "log.txt", "run.json", "end.state"] {
         assert!(whole.remove(name).is_some() && pieces.remove(name).is_some());
     }
     assert!(whole == pieces, "{:?} {:?}", whole.keys(), pieces.keys());
 }
 
-/// What is wrong in an included file is said with its name and its line; so is what cannot be included.
 #[test]
 fn faults_name_the_file() {
     let bad = MATERIAL.replace("friction = 0.5", "friction = -1");
@@ -87,7 +85,8 @@ fn faults_name_the_file() {
     }
 }
 
-/// Overrides reach included tables; files that an included file names are found beside it; a run notices when it has changed.
+/// Overrides reach included tables; paths are relative to the included file; changes during a run are
+/// detected.
 #[test]
 fn overrides_paths_and_changes() {
     let grains =
@@ -112,8 +111,7 @@ fn overrides_paths_and_changes() {
     assert!(before != moved && moved != faster);
 }
 
-/// Other files to include may be named on the command line: what was set by name before reaches the new ones, and an empty list takes
-/// all of them away.
+/// Includes by override: named overrides apply, an empty list removes all.
 #[test]
 fn other_files_by_an_override() {
     let scene = format!("include = [\"parts/one.toml\"]\n{GRAINS}\n{WALL}\n{REST}");

@@ -1,4 +1,4 @@
-//! Mesh forms: what is written is read back, real archives, what each reader takes and refuses, the `mesh` commands.
+//! Mesh formats: round trips, real archives, rejected input, `mesh` commands.
 
 use super::mesh_orders::all_kinds;
 use super::support::{Folder, trackbed};
@@ -8,7 +8,7 @@ use trackbed::write::{MeshOptions, write_mesh_file};
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Constraint;
 
-/// All kinds of elements with everything that a file may hold.
+/// All element kinds and all contents.
 pub fn full() -> MeshFile {
     let mesh = all_kinds();
     let constraint = |node, direction, value| Constraint { node, direction, value };
@@ -43,14 +43,14 @@ pub const FORMS: [(&str, bool); 7] = [
     ("lists", false),
 ];
 
-/// In constraints the order of VTK's arrays: by node.
+/// Order of VTK arrays: by node.
 fn sorted(mut constraints: Vec<Constraint>) -> Vec<(u32, u8, f64)> {
     constraints.sort_by_key(|c| (c.node, c.direction));
     constraints.iter().map(|c| (c.node, c.direction, c.value)).collect()
 }
 
 #[test]
-fn every_form_gives_back_what_was_written() {
+fn every_format_round_trips() {
     let folder = Folder::new("forms");
     let file = full();
     for (name, msh2) in FORMS {
@@ -86,7 +86,7 @@ fn every_form_gives_back_what_was_written() {
     }
 }
 
-/// ANSYS' own archives; counts of mapdl-archive 0.4.2 (see the README beside them).
+/// Archives by ANSYS; counts of mapdl-archive 0.4.2 (see their README).
 #[test]
 fn archives_that_ansys_wrote() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -107,7 +107,7 @@ fn archives_that_ansys_wrote() {
         let mut found: Vec<(&str, usize)> =
             file.element_types.iter().map(|(name, count)| (name.as_str(), *count)).collect();
         found.sort_unstable();
-        // Nodes of the lines and surfaces that were meshed first belong to no element.
+        // Nodes of lines and surfaces meshed first are unused.
         let unused = file.warnings.iter().find_map(|w| {
             let (_, rest) = w.split_once(".cdb: ")?;
             rest.split_once(" nodes belong to no element")?.0.parse::<usize>().ok()
@@ -118,7 +118,7 @@ fn archives_that_ansys_wrote() {
             assert!(file.mesh.element_volume(element) > 0.0, "{name} {element}");
         }
         if name == "sector.cdb" {
-            // 384 395-396 438-446 503-515, of which those in elements are left.
+            // 384 395-396 438-446 503-515, if used.
             let refine: Vec<u32> =
                 file.node_sets["REFINE"].iter().map(|n| file.mesh.node_ids[*n as usize]).collect();
             let ranges = [384..=384, 395..=396, 438..=446, 503..=515];
@@ -131,13 +131,12 @@ fn archives_that_ansys_wrote() {
 
 const HEX: &str = "        1        2        3        4        5        6        7        8";
 
-/// The corners of two unit cubes in an archive, as a block of nodes.
 fn archive(body: &str) -> String {
     let mut nodes = String::from("NBLOCK,6,SOLID,12,12\r\n(3i9,6e21.13e3)\r\n");
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     for id in 1..=12_usize {
         let ([x, y], z) = (square[(id - 1) % 4], ((id - 1) / 4) as f64);
-        // Trailing zeros are left out, as ANSYS does.
+        // Without trailing zeros, like ANSYS.
         let all = [x, y, z].map(|v| format!("{v:21.13e}"));
         let kept = if z != 0.0 {
             3
@@ -163,7 +162,7 @@ fn cdb(folder: &Folder, text: &str) -> Result<MeshFile, String> {
 }
 
 #[test]
-fn archives_in_any_order_with_compact_blocks_components_and_constraints() {
+fn archives_with_compact_blocks_and_components() {
     let folder = Folder::new("cdb");
     let body = format!(
         "! elements before nodes\r\nEBLOCK,19,SOLID,1,1\r\n(19i9)\r\n{}       -1\r\nEBLOCK,10,,,1\r\n(15i9)\r\n\
@@ -243,7 +242,6 @@ fn damaged_archives_are_refused_by_name() {
     let folder = Folder::new("cdb_bad");
     let good = format!("ET,1,185\r\nEBLOCK,19,SOLID,1,1\r\n(19i9)\r\n{}       -1", solid(7, 1, HEX));
     assert!(cdb(&folder, &archive(&good)).is_ok());
-    // Node 8 gets an angle behind its coordinates.
     let turned = archive(&format!("{good}\r\nD,8,UX"))
         .replace("e0\r\n        9", &format!("e0{:21.13e}\r\n        9", 30.0));
     for (text, part) in [
@@ -337,7 +335,7 @@ fn gmsh_refusals_name_the_remedy() {
 }
 
 #[test]
-fn wedges_of_old_vtk_files_are_turned() {
+fn legacy_vtk_wedges_are_reordered() {
     let folder = Folder::new("vtk_wedge");
     let text = "# vtk DataFile Version 5.1\nold\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1\n\
                 CELLS 2 6\nOFFSETS vtktypeint64\n0 6\nCONNECTIVITY vtktypeint64\n0 2 1 3 5 4\nCELL_TYPES 1\n13\n\

@@ -1,5 +1,4 @@
-//! Damaged mesh files: truncated at many places, characters changed. Each must give a mesh or one error, never a panic
-//! and never a mesh that points beyond its nodes.
+//! Truncated and changed mesh files: a valid mesh or one error.
 
 use super::mesh_forms::{FORMS, full};
 use super::support::Folder;
@@ -16,7 +15,6 @@ fn sound(file: &MeshFile, what: &str) {
     assert!(file.mesh.coordinates.as_flattened().iter().all(|x| x.is_finite()), "{what}");
 }
 
-/// A small generator of numbers, the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -26,7 +24,6 @@ impl Random {
     }
 }
 
-/// Reads damaged copies of a file; returns how many were refused.
 fn damage(folder: &Folder, file: &Path, read: &Path, random: &mut Random) -> usize {
     let good = std::fs::read(file).unwrap();
     let name = file.display().to_string();
@@ -103,7 +100,7 @@ fn damaged_samples_of_other_programs() {
     }
 }
 
-/// What VTK itself wrote in each of its encodings (tests/data/mesh/make_vtk.py) is the same mesh.
+/// Files written by VTK in each encoding (tests/data/mesh/make_vtk.py).
 #[test]
 fn every_encoding_of_vtk() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");

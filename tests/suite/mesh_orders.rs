@@ -1,9 +1,8 @@
-//! Node orders of every mesh form, against the definitions of the programs, on curved elements.
+//! Node orders of every mesh format against the manuals, on curved elements.
 //!
-//! The elements are natural shapes under the map x = R + a S², y = S + b T², z = T + c R² with R, S, T the natural
-//! coordinates plus ½. Quadratic elements represent it exactly, and its Jacobian determinant is 1 + 8abc RST, so that
-//! the volume of each kind is known in closed form. Files are made here from the edges that the manuals give to each
-//! mid-side node, not from the tables of the readers.
+//! Natural shapes are mapped by x = R + a S², y = S + b T², z = T + c R² (R, S, T: natural coordinates plus
+//! ½). Quadratic elements represent the map exactly; det J = 1 + 8abc RST gives closed-form volumes. Mid-side
+//! nodes follow the edges in the manuals, not the readers' tables.
 
 use super::support::Folder;
 use std::fmt::Write;
@@ -16,15 +15,13 @@ use trackbed_fem::mesh::Mesh;
 
 const A: [f64; 3] = [0.1, 0.12, 0.09];
 
-/// The curved map; elements lie side by side along x.
 pub fn curved([r, s, t]: [f64; 3], place: usize) -> [f64; 3] {
     let [r, s, t] = [r + 0.5, s + 0.5, t + 0.5];
     [r + A[0] * s * s + 4.0 * place as f64, s + A[1] * t * t, t + A[2] * r * r]
 }
 
-/// Volume of a quadratic element under the map: V + 8abc ∫RST dV.
+/// Mapped volume of a quadratic element: V + 8abc ∫RST dV.
 pub fn volume(kind: ElementKind) -> f64 {
-    // ∫RST from the moments of the natural shapes.
     let moment = match kind {
         ElementKind::Hex20 => 1.0,
         ElementKind::Wedge15 => 1.0 / 24.0 + 0.5 * (1.0 / 6.0 + 1.0 / 6.0) + 0.25 * 0.5,
@@ -44,8 +41,7 @@ pub fn volume(kind: ElementKind) -> f64 {
 pub const QUADRATIC: [ElementKind; 4] =
     [ElementKind::Hex20, ElementKind::Wedge15, ElementKind::Pyramid13, ElementKind::Tet10];
 
-/// Why an element of a curved mesh is not numbered as it should be: a mid-side node nearer to another edge than its own,
-/// or another volume.
+/// Wrong node order: a mid-side node closer to another edge, or a wrong volume.
 fn fault(mesh: &Mesh, element: usize, volume: f64) -> Option<String> {
     let (kind, nodes) = (mesh.connectivity.kind(element), &mesh.connectivity[element]);
     let x = |n: usize| mesh.coordinates[nodes[n] as usize];
@@ -64,7 +60,7 @@ fn fault(mesh: &Mesh, element: usize, volume: f64) -> Option<String> {
     wrong.then(|| format!("{}: volume {found}, expected {volume}", kind.name()))
 }
 
-/// All elements are as they should be, and none would be with two of its nodes exchanged.
+/// Correct as read, detected as wrong after any exchange of two nodes.
 fn proves(mesh: &Mesh) {
     for element in 0..mesh.element_count() {
         let kind = mesh.connectivity.kind(element);
@@ -79,7 +75,7 @@ fn proves(mesh: &Mesh) {
     }
 }
 
-/// Coordinates of corners and of the middles of edges, one node for each place; positions of the element's nodes.
+/// Corner and mid-edge coordinates without duplicates; indices of the element's nodes.
 fn nodes(corners: &[[f64; 3]], edges: &[[usize; 2]]) -> (Vec<[f64; 3]>, Vec<usize>) {
     let mids = edges.iter().map(|[a, b]| [0, 1, 2].map(|k| 0.5 * (corners[a - 1][k] + corners[b - 1][k])));
     let mut places: Vec<[f64; 3]> = Vec::new();
@@ -94,12 +90,13 @@ fn nodes(corners: &[[f64; 3]], edges: &[[usize; 2]]) -> (Vec<[f64; 3]>, Vec<usiz
     (places, element)
 }
 
-/// Edges of SOLID186, corners I…P as 1…8: Q = IJ, R = JK, S = KL, T = LI, U = MN, V = NO, W = OP, X = PM, Y = IM, Z = JN,
-/// A = KO, B = LP (Element Reference). Abaqus gives the same edges to nodes 9 to 20 of C3D20 (Analysis User's Guide).
+/// SOLID186 edges, corners I…P as 1…8: Q = IJ, R = JK, S = KL, T = LI, U = MN, V = NO, W = OP, X = PM, Y =
+/// IM, Z = JN, A = KO, B = LP (Element Reference). Equal to nodes 9–20 of C3D20 (Abaqus Analysis User's
+/// Guide).
 const BRICK: [[usize; 2]; 12] =
     [[1, 2], [2, 3], [3, 4], [4, 1], [5, 6], [6, 7], [7, 8], [8, 5], [1, 5], [2, 6], [3, 7], [4, 8]];
 
-/// Corners I…P of each kind as a brick whose corners fall together.
+/// Corners I…P of each kind as a degenerate brick.
 fn folded(kind: ElementKind) -> [[f64; 3]; 8] {
     let square = |t: f64| [[-1.0, -1.0, t], [1.0, -1.0, t], [1.0, 1.0, t], [-1.0, 1.0, t]];
     let triangle = |t: f64| [[0.0, 0.0, t], [1.0, 0.0, t], [0.0, 1.0, t], [0.0, 1.0, t]];
@@ -160,7 +157,7 @@ fn ansys_bricks_folded_by_their_letters() {
     }
 }
 
-/// Element types of Abaqus with the edges of their mid-side nodes (Analysis User's Guide, "Node ordering").
+/// Abaqus element types and mid-side edges (Analysis User's Guide, "Node ordering").
 #[test]
 fn abaqus_elements_by_their_edges() {
     let wedge = [[1, 2], [2, 3], [3, 1], [4, 5], [5, 6], [6, 4], [1, 4], [2, 5], [3, 6]];
@@ -195,13 +192,11 @@ fn abaqus_elements_by_their_edges() {
     proves(&file.mesh);
 }
 
-/// One curved element of each kind; linear ones on their corners.
 pub fn all_kinds() -> Mesh {
     let mut mesh = Mesh::default();
     for (place, kind) in ElementKind::ALL.into_iter().enumerate() {
         let first = mesh.node_count() as u32;
         for natural in kind.natural() {
-            // Numbers with gaps and in no order.
             mesh.node_ids.push(5000 - 7 * mesh.node_count() as u32);
             mesh.coordinates.push(curved(*natural, place));
         }
@@ -211,9 +206,9 @@ pub fn all_kinds() -> Mesh {
     mesh
 }
 
-/// Gmsh's own files, with volumes by Gmsh's own shape functions (tests/data/mesh/make_gmsh.py).
+/// Gmsh files with volumes by Gmsh's shape functions (tests/data/mesh/make_gmsh.py).
 #[test]
-fn gmsh_files_have_the_volumes_that_gmsh_finds() {
+fn gmsh_volumes_match_gmsh() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
     let volumes: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(data.join("gmsh_volumes.json")).unwrap()).unwrap();
@@ -223,7 +218,7 @@ fn gmsh_files_have_the_volumes_that_gmsh_finds() {
         {
             let file = read_mesh_file(&data.join(name.replace("ORDER", order))).unwrap();
             let mesh = &file.mesh;
-            // Gmsh numbers elements anew when it saves: volumes are compared by kind, in ascending order.
+            // Gmsh renumbers elements on saving: compared by kind, sorted.
             for kind in ElementKind::ALL {
                 let of_kind = || (0..mesh.element_count()).filter(|e| mesh.connectivity.kind(*e) == kind);
                 let mut found: Vec<f64> = of_kind().map(|e| mesh.element_volume(e)).collect();
@@ -242,7 +237,6 @@ fn gmsh_files_have_the_volumes_that_gmsh_finds() {
             let expected =
                 if order == "order1" { [0, 0, 0, 0, 4, 14, 4, 27] } else { [4, 14, 4, 27, 0, 0, 0, 0] };
             assert_eq!(counts, expected);
-            // Physical volumes 7, 4 and 3; the third has no name.
             assert_eq!(mesh.materials.iter().filter(|m| **m == 7).count(), 4);
             assert_eq!(mesh.materials.iter().filter(|m| **m == 4).count(), 14);
             let sets: Vec<&String> = file.element_sets.keys().collect();
@@ -252,7 +246,7 @@ fn gmsh_files_have_the_volumes_that_gmsh_finds() {
                 file.node_sets.iter().map(|(name, set)| (name.as_str(), set.len())).collect();
             let on_face = if order == "order1" { [9, 6] } else { [21, 13] };
             assert_eq!(sets, [("apex", 1), ("base", on_face[0]), ("physical_surface_12", on_face[1])]);
-            // The formats order elements differently.
+            // Element order depends on the format.
             let mut elements: Vec<(ElementKind, Vec<u32>)> = (0..mesh.element_count())
                 .map(|e| (mesh.connectivity.kind(e), mesh.connectivity[e].to_vec()))
                 .collect();
@@ -265,14 +259,12 @@ fn gmsh_files_have_the_volumes_that_gmsh_finds() {
     }
 }
 
-/// A mid-side node that lies nearer to another edge than its own.
 fn own_edges(mesh: &Mesh, element: usize) -> Option<String> {
     fault(mesh, element, mesh.element_volume(element))
 }
 
-/// Every exchange of two mid-side nodes in Gmsh's file is found.
 #[test]
-fn a_gmsh_file_with_two_nodes_exchanged_is_found() {
+fn exchanged_gmsh_nodes_are_detected() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/mesh");
     let mesh = read_mesh_file(&data.join("gmsh4_order2.msh")).unwrap().mesh;
     for kind in QUADRATIC {
@@ -287,10 +279,10 @@ fn a_gmsh_file_with_two_nodes_exchanged_is_found() {
     }
 }
 
-/// CalculiX finds the volumes of closed form in the file that is written for it.
+/// CalculiX computes the closed-form volumes from the written file.
 ///
-/// Runs where `ccx` is; CalculiX has no pyramids. Its volumes are sums over its integration points, which are exact for
-/// the cubic determinant of the map but for C3D10 (4 points, degree 2): there to 1e-3.
+/// Needs `ccx`; no pyramids. Its integration is exact for the cubic determinant except C3D10 (4 points,
+/// degree 2): 1e-3.
 #[test]
 fn calculix_reads_what_is_written() {
     let ccx = std::env::var_os("TRACKBED_CCX").map_or_else(|| PathBuf::from("ccx"), PathBuf::from);
@@ -344,7 +336,7 @@ fn calculix_reads_what_is_written() {
     }
 }
 
-/// VTK finds the same volume in `.vtu` and `.vtk` of all kinds, and sees a wrong order.
+/// VTK computes the same volumes from `.vtu` and `.vtk` and detects a wrong order.
 #[test]
 fn vtk_reads_what_is_written() {
     let named = std::env::var_os("TRACKBED_PYTHON");
@@ -380,7 +372,7 @@ fn vtk_reads_what_is_written() {
         let (good, text) = check(&wrong, total, "wrong.vtu");
         assert!(!good, "{text}");
     }
-    // A wedge with its first triangle seen from outside is inside out for VTK.
+    // A wedge with its first triangle facing outwards is inverted for VTK.
     let mut wrong = mesh.clone();
     wrong.connectivity[5].swap(1, 2);
     wrong.connectivity[5].swap(4, 5);

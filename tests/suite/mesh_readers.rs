@@ -1,11 +1,10 @@
-//! What a mesh file says is read as it stands, or refused: forms that were dropped, taken for something else, or refused though
-//! good. Values of other programs are named with each.
+//! Mesh files are read exactly or rejected. Reference values of other programs are cited in place.
 
 use super::support::{Folder, trackbed};
 use std::path::Path;
 use trackbed::read::{MeshFile, read_mesh_file, read_surface};
 
-/// A brick of 2 m x 0.5 m x 0.25 m by its corners.
+/// Brick of 2 m × 0.5 m × 0.25 m.
 const CORNERS: [[f64; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [2.0, 0.0, 0.0],
@@ -58,7 +57,7 @@ fn names_in_quotes_are_one_name() {
 
 /// CalculiX manual, *BOUNDARY: with OP=NEW "previously prescribed displacements are removed".
 #[test]
-fn op_new_of_the_first_step_removes_constraints_of_the_model() {
+fn op_new_removes_model_constraints() {
     let folder = Folder::new("op_new");
     let model = "*NSET,NSET=BED\n1,2,3,4\n*BOUNDARY\nBED,1,3\n";
     let step = |rows: &str| inp(&format!("{model}*STEP\n*STATIC\n{rows}*END STEP\n"));
@@ -87,9 +86,9 @@ fn op_new_of_the_first_step_removes_constraints_of_the_model() {
     assert!(file.warnings.iter().any(|w| w.contains("AMPLITUDE=RAMP")), "{:?}", file.warnings);
 }
 
-/// Two elements on one volume have twice its weight, and none of its faces is a boundary.
+/// Coincident elements would double the weight and hide all faces.
 #[test]
-fn elements_that_cannot_lie_side_by_side_are_refused() {
+fn rejects_overlapping_elements() {
     let folder = Folder::new("twins");
     let twin = |nodes: &str| inp(&format!("*ELEMENT, TYPE=C3D8\n2, {nodes}\n"));
     for text in [twin("1,2,3,4,5,6,7,8"), twin("2,3,4,1,6,7,8,5"), twin("5,6,7,8,1,2,3,4")] {
@@ -109,7 +108,6 @@ fn elements_that_cannot_lie_side_by_side_are_refused() {
     assert!(read(&folder, "one.vtk", &cells(&format!("1 9\n{brick}"), "1\n12\n")).is_ok());
     let error = read(&folder, "two.vtk", &cells(&format!("2 18\n{brick}{brick}"), "2\n12 12\n")).unwrap_err();
     assert!(error.contains("elements 1, 2: found the same corners"), "{error}");
-    // Three tetrahedra on one triangle.
     let three = "3 15\n4 0 1 2 4\n4 0 2 1 5\n4 0 1 2 6\n";
     let error = read(&folder, "three.vtk", &cells(three, "3\n10 10 10\n")).unwrap_err();
     assert!(error.contains("elements 1, 2, 3: found the face of nodes 1, 2, 3 in all of them"), "{error}");
@@ -144,9 +142,9 @@ fn rows(widths: [usize; 3]) -> String {
     CORNERS.iter().enumerate().map(row).collect()
 }
 
-/// Formats of blocks as mapdl-archive 0.4.2 reads them.
+/// Block formats as read by mapdl-archive 0.4.2.
 #[test]
-fn node_blocks_with_several_groups_of_whole_numbers() {
+fn node_blocks_with_several_integer_groups() {
     let folder = Folder::new("nblock");
     for (format, widths) in [
         ("(1i7,2i9,6e21.13)", [7, 9, 9]),
@@ -161,7 +159,7 @@ fn node_blocks_with_several_groups_of_whole_numbers() {
 }
 
 #[test]
-fn components_of_geometry_are_left_out_and_ranges_go_on_in_the_next_row() {
+fn component_ranges_continue_across_rows() {
     let folder = Folder::new("components");
     let plain = |body: &str| archive("(3i9,6e21.13)", &rows([9; 3]), body);
     for kind in ["KP", "LINE", "AREA", "VOLU"] {
@@ -178,17 +176,17 @@ fn components_of_geometry_are_left_out_and_ranges_go_on_in_the_next_row() {
             file.warnings
         );
     }
-    // Rows of one number: each range ends in the row below.
+    // One number per row: ranges span rows.
     let body = format!("CMBLOCK,FACE,NODE,3\n(1i10)\n{:10}\n{:10}\n{:10}\n", 2, -5, 8);
     assert_eq!(read(&folder, "row.cdb", &plain(&body)).unwrap().node_sets["FACE"], [1, 2, 3, 4, 7]);
     let error = read(&folder, "row.cdb", &plain("CMBLOCK,FACE,NODE,1\n(8i10)\n        -5\n")).unwrap_err();
     assert!(error.contains("expected a range after its first number"), "{error}");
 }
 
-/// A tetrahedron folded from SOLID186 whose mid-side S, on an edge without length, is M; so archives of ANSYS have it
-/// (pymapdl-reader, all_solid_cells).
+/// Tetrahedron from SOLID186, mid-side S of a collapsed edge equal to M, as ANSYS writes it (pymapdl-reader,
+/// all_solid_cells).
 #[test]
-fn mid_sides_of_collapsed_edges_may_be_any_corner() {
+fn mid_sides_on_collapsed_edges() {
     let folder = Folder::new("folded");
     let nodes: String = [
         [0., 0., 0.],
@@ -218,7 +216,7 @@ fn mid_sides_of_collapsed_edges_may_be_any_corner() {
 }
 
 #[test]
-fn vtk_files_with_empty_sections_and_numbers_of_faces() {
+fn vtk_empty_sections_and_face_ids() {
     let folder = Folder::new("vtk");
     let grid = |cells: &str, types: &str, data: &str| {
         format!(
@@ -256,8 +254,8 @@ fn vtk_files_with_empty_sections_and_numbers_of_faces() {
     assert!(error.unwrap_err().contains("expected a count that"));
 }
 
-/// A column of 1 m x 1 m, one element wide and two high, whose sides are one physical surface: top and bottom have only nodes of
-/// that surface, and are none of its faces.
+/// Column of 1 m × 1 m, two elements high, sides one physical surface: top and bottom have all nodes in it
+/// but are no faces of it.
 fn column(binary_names: &str) -> String {
     let mut nodes = String::new();
     for (level, z) in [0.0, 1.0, 2.0].iter().enumerate() {
@@ -330,9 +328,9 @@ at = [1.0, 1.0, 2.0]
 tables = true
 "#;
 
-/// Closed form: u = p L / E = 0.5 mm along x and along y, nothing along z (nu = 0). With the top pressed it comes down by 1 mm.
+/// u = p L / E = 0.5 mm along x and y, zero along z (nu = 0); 1 mm downwards with pressure on top.
 #[test]
-fn sets_of_faces_stay_sets_of_faces_in_every_form() {
+fn face_sets_survive_every_format() {
     let folder = Folder::new("face_set");
     let msh = folder.write("column.msh", &column("jacket"));
     let read = read_mesh_file(&msh).unwrap();
@@ -357,15 +355,15 @@ fn sets_of_faces_stay_sets_of_faces_in_every_form() {
                 heads.iter().position(|h| h.trim().starts_with(start)).unwrap_or_else(|| panic!("{heads:?}"));
             row[at]
         };
-        // Node 11 at the upper corner (1, 1, 2) is the last but one; the last row is node 12 at (0, 1, 2).
+        // Last row: node 12 at (0, 1, 2); before it node 11 at (1, 1, 2).
         assert!((value("uz")).abs() < 1e-12, "{name}: {last}");
         assert!((value("uy") + 0.5e-3).abs() < 1e-9, "{name}: {last}");
     }
 }
 
-/// *SURFACE of Abaqus: S1 to S6 of elements and of sets of them, free faces, surfaces of nodes passed over.
+/// *SURFACE of Abaqus: S1 to S6 of elements and element sets, free faces; node surfaces are skipped.
 #[test]
-fn surfaces_of_abaqus_are_sets_of_faces() {
+fn abaqus_surfaces_become_face_sets() {
     let folder = Folder::new("surface");
     let top = [[0.0, 0.0, 0.25], [2.0, 0.0, 0.25], [2.0, 0.5, 0.25], [0.0, 0.5, 0.25]];
     let corners = |file: &MeshFile, name: &str| -> Vec<Vec<[f64; 3]>> {
@@ -403,7 +401,7 @@ fn surfaces_of_abaqus_are_sets_of_faces() {
         let error = read(&folder, "b.inp", &inp(body)).unwrap_err();
         assert!(error.contains(part), "{body}: {error}");
     }
-    // A wedge written as a folded brick: its third face S5 has no area.
+    // Wedge as degenerate brick: its third face, S5, has zero area.
     let folded = format!(
         "*NODE\n{}*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,5,6,7,7\n*SURFACE, NAME=A\n1, ",
         points(", ", true)
@@ -414,7 +412,7 @@ fn surfaces_of_abaqus_are_sets_of_faces() {
 }
 
 #[test]
-fn gmsh_files_with_comments_first_and_checks_without_constraints() {
+fn gmsh_comments_and_unconstrained_checks() {
     let folder = Folder::new("gmsh");
     let text = column("jacket");
     for before in
@@ -435,12 +433,11 @@ fn gmsh_files_with_comments_first_and_checks_without_constraints() {
     let foreign = "# vtk DataFile Version 3.0\nb\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
     let vtk = format!("{foreign}{}CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n", points(" ", false));
     trackbed([Path::new("mesh"), Path::new("check"), &folder.write("b.vtk", &vtk)]).good();
-    // A form that holds constraints, without any.
     let outcome = trackbed([Path::new("mesh"), Path::new("check"), &folder.write("b.inp", &inp(""))]);
     assert!(outcome.code == 2 && outcome.stderr.contains("no constraint in"), "{outcome:?}");
 }
 
-/// Corners of faces with empty fields, as trimesh 5.2.0 reads them.
+/// OBJ faces with empty fields, as trimesh 5.2.0 reads them.
 #[test]
 fn faces_of_obj_with_empty_fields() {
     let folder = Folder::new("obj");
@@ -454,7 +451,7 @@ fn faces_of_obj_with_empty_fields() {
     }
 }
 
-/// Of material 0 there is no physical volume in Gmsh: it came back as 1.
+/// Gmsh has no physical volume 0.
 #[test]
 fn material_0_stays_0_in_gmsh() {
     use trackbed::write::{MeshOptions, write_mesh_file};
@@ -478,7 +475,7 @@ fn material_0_stays_0_in_gmsh() {
 }
 
 #[test]
-fn meshes_inside_out_are_said_to_be() {
+fn inverted_meshes_are_reported() {
     let folder = Folder::new("inside_out");
     let mirrored = inp("").replace("1, 1,2,3,4,5,6,7,8", "1, 5,6,7,8,1,2,3,4");
     let path = folder.write("b.inp", &format!("{mirrored}*BOUNDARY\n1,1,3\n2,1,3\n3,1,3\n4,1,3\n"));
@@ -493,9 +490,9 @@ fn meshes_inside_out_are_said_to_be() {
     assert!(outcome.code == 2 && outcome.stderr.contains(&format!("mesh: found {sentence}")), "{outcome:?}");
 }
 
-/// Headings give the units of a course; a load that lasts 1 s in milliseconds.
+/// Units in the header of a time history; 1 s given in milliseconds.
 #[test]
-fn units_of_a_course_are_those_of_its_heading() {
+fn time_history_uses_header_units() {
     let folder = Folder::new("course");
     let scene = "[solid]\ngravity = false\n[solid.block]\nx = { lines = [0, 1], counts = [2] }\ny = { lines = [0, 1], counts = [2] }\n\
                  z = { lines = [0, 1], counts = [2] }\n[[solid.material]]\nid = 1\nyoung = \"60 MPa\"\npoisson = 0.3\ndensity = 2000\n\
@@ -537,7 +534,7 @@ fn units_of_a_course_are_those_of_its_heading() {
     }
 }
 
-/// Coordinates that overflow are refused, so that no volume is NaN.
+/// Overflow would give NaN volumes.
 #[test]
 fn coordinates_have_volumes_that_are_numbers() {
     let folder = Folder::new("overflow");

@@ -1,5 +1,4 @@
-//! Round trips: meshes of `inputs` and generated ones through every pair of forms that are written and read keep counts, order,
-//! coordinates, sets, materials and constraints, as far as both forms hold them.
+//! Round trips of shipped and generated meshes through all pairs of formats.
 
 use super::mesh_forms::FORMS;
 use super::support::{Folder, repository};
@@ -9,7 +8,6 @@ use trackbed::write::{MeshOptions, write_mesh_file};
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// Generated meshes.
 const MESHES: u64 = 200;
 
 struct Random(u64);
@@ -24,7 +22,6 @@ impl Random {
         (self.next() * count as f64) as usize
     }
 
-    /// Different numbers in no order, with gaps.
     fn ids(&mut self, count: usize) -> Vec<u32> {
         let mut ids = Vec::with_capacity(count);
         let mut last = 0;
@@ -41,7 +38,7 @@ impl Random {
     }
 }
 
-/// What a form holds: constraints, sets of nodes and elements, sets of faces, elastic constants.
+/// Supported: constraints, node and element sets, face sets, elastic constants.
 fn holds(name: &str) -> [bool; 4] {
     match name {
         "mesh.cdb" => [true, true, false, true],
@@ -52,7 +49,7 @@ fn holds(name: &str) -> [bool; 4] {
     }
 }
 
-/// Cells of a lattice as a brick, two wedges, six pyramids or six tetrahedra; straight or quadratic, or both.
+/// Lattice cells as brick, two wedges, six pyramids or six tetrahedra; linear, quadratic, or mixed.
 fn mesh(random: &mut Random) -> Mesh {
     let counts = [1 + random.below(3), 1 + random.below(2), 1 + random.below(3)];
     let place = |i: usize, j: usize, k: usize| (i + (counts[0] + 1) * (j + (counts[1] + 1) * k)) as u32;
@@ -122,7 +119,6 @@ fn mesh_middle(mesh: &mut Mesh, n: [u32; 8]) -> u32 {
     mesh.node_count() as u32 - 1
 }
 
-/// Some elements without their mid-side nodes; nodes of no element are dropped.
 fn mixed(mesh: &Mesh, random: &mut Random) -> Mesh {
     let mut mixed = Mesh { coordinates: Vec::new(), ..Mesh::default() };
     let mut index: BTreeMap<u32, u32> = BTreeMap::new();
@@ -162,7 +158,7 @@ fn generated(seed: u64) -> MeshFile {
     let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
     (0..3).for_each(|_| _ = random.next());
     let mut mesh = mesh(&mut random);
-    // Without nodes of no element, which readers leave out.
+    // Readers drop unused nodes.
     let mut used = vec![false; mesh.node_count()];
     mesh.connectivity.nodes().iter().for_each(|n| used[*n as usize] = true);
     if used.contains(&false) {
@@ -172,7 +168,7 @@ fn generated(seed: u64) -> MeshFile {
     let mut file = MeshFile { mesh, ..MeshFile::default() };
     for name in NAMES {
         let mut members = |count: usize, share: f64| {
-            // Runs, so that archives have ranges that end in another row.
+            // Consecutive ids, so that ranges span rows.
             let start = random.below(count);
             let mut set: Vec<u32> =
                 (start..count).filter(|_| random.next() < share).map(|n| n as u32).collect();
@@ -206,7 +202,6 @@ fn generated(seed: u64) -> MeshFile {
     file
 }
 
-/// A set of faces, and that of its nodes, as every reader makes it.
 fn faces(file: &mut MeshFile, name: &str, random: &mut Random) {
     let boundary = file.mesh.boundary_faces();
     let chosen = boundary.iter().filter(|_| random.next() < 0.4);
@@ -237,7 +232,7 @@ fn compact(mesh: &Mesh, used: &[bool]) -> Mesh {
     kept
 }
 
-/// Sets without their names, which some forms change and say so.
+/// Some formats change set names.
 fn contents<T: Clone + Ord>(sets: &BTreeMap<String, Vec<T>>) -> Vec<Vec<T>> {
     let mut all: Vec<Vec<T>> = sets.values().cloned().collect();
     all.sort();
@@ -265,7 +260,6 @@ fn compare(name: &str, file: &MeshFile, back: &MeshFile, [constraints, sets, fac
     }
 }
 
-/// Writes and reads a mesh in the form `first`, and what was read in each of the forms `then`.
 fn round(folder: &Folder, label: &str, file: &MeshFile, first: usize, then: &[usize]) {
     let pass = |file: &MeshFile, form: usize| {
         let (name, msh2) = FORMS[form];
@@ -284,7 +278,7 @@ fn round(folder: &Folder, label: &str, file: &MeshFile, first: usize, then: &[us
 }
 
 #[test]
-fn generated_meshes_pass_every_pair_of_forms() {
+fn generated_meshes_round_trip() {
     let folder = Folder::new("round");
     let mut kinds = std::collections::BTreeSet::new();
     for seed in 0..MESHES {

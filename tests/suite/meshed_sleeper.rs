@@ -1,4 +1,4 @@
-//! Sleepers of elements that lie free on the grains.
+//! Meshed sleepers, free on the grains.
 
 use super::determinism::{SMALL, same_bits};
 use super::support::{Folder, Table, json, run};
@@ -6,16 +6,15 @@ use nalgebra::{Matrix4, RowVector4, Vector4};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Length, width, height of the long sleeper [m].
+/// Length, width, height [m].
 const SIZE: [f64; 3] = [2.6, 0.28, 0.2];
-/// Its mass [kg].
+/// Mass [kg].
 const MASS: f64 = 360.0;
-/// Stiffness of a ball between ground and sleeper [N/m]: two contacts in a row.
+/// Stiffness of a ball with its two contacts in series [N/m].
 const BALL: f64 = 0.6e6;
-/// Balls along the sleeper, in two rows.
 const ALONG: usize = 26;
 
-/// A long sleeper on balls in two rows on ground that does not give: a bed of springs. `more` follows the sleeper.
+/// Long sleeper on two rows of balls on rigid ground, a Winkler bed; `more` follows the sleeper table.
 fn on_balls(mesh: &str, load: &str, more: &str) -> String {
     let mut balls = String::new();
     for i in 0..ALONG {
@@ -68,10 +67,9 @@ material = "steel"
     )
 }
 
-/// A step that is the same whatever the sleeper, where two runs are compared or a bed is to come to rest.
+/// Fixed step, to compare two runs or to let a bed come to rest.
 const STEP: &str = "time.grain_step=20 us";
 
-/// Elements of concrete.
 const CONCRETE: &str = "[track.sleeper.mesh]\nelements = [16, 2, 2]\nyoung = \"30 GPa\"\npoisson = 0.2\n";
 
 fn ran(text: &str, set: &[&str]) -> (Folder, Table) {
@@ -93,13 +91,12 @@ fn last(table: &Table, name: &str) -> f64 {
     *column(table, name).last().unwrap()
 }
 
-/// Energy not accounted for over what was turned over.
 fn energy_error(out: &Path) -> f64 {
     json(&out.join("summary.json"))["energy"]["relative_error"].as_f64().unwrap()
 }
 
 #[test]
-fn at_rest_it_weighs_what_it_weighs() {
+fn contact_force_at_rest_equals_weight() {
     let (folder, table) = ran(&on_balls(CONCRETE, "", "[time]\nend = \"0.5 s\"\n"), &[STEP]);
     let weight = MASS * 9.81;
     let contact = last(&table, "sleeper_contact_z");
@@ -116,15 +113,15 @@ fn at_rest_it_weighs_what_it_weighs() {
     assert!(energy_error(&folder.join("out")) < 3e-4);
 }
 
-/// Balls feel the material of the sleeper above, and that of the formation below: their springs in a row.
+/// Contacts use the sleeper material above and the formation material below, in series.
 #[test]
-fn it_has_a_material_of_its_own() {
+fn contacts_use_sleeper_material() {
     let soft = "\n[[material]]\nname = \"soft\"\nstiffness = 0.4e6\nfriction = 0.5\nrestitution = 0.2\n\n[time]\nend = \"0.6 s\"\n";
     let (folder, table) = ran(&on_balls(CONCRETE, "", soft), &["coupling.material=soft"]);
     let z = column(&table, "sleeper_z");
     let (sleeper, count) = (MASS * 9.81, 2.0 * ALONG as f64);
     let ball = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(3) * 9.81;
-    // A contact of two materials has 2 k₁ k₂/(k₁ + k₂).
+    // Combined stiffness 2 k₁ k₂/(k₁ + k₂).
     let own = 2.0 * BALL;
     let pair = 2.0 * own * 0.4e6 / (own + 0.4e6);
     let expected = sleeper / count / own + (sleeper / count + ball) / pair;
@@ -139,14 +136,14 @@ fn it_has_a_material_of_its_own() {
     );
 }
 
-/// Deflection and its derivatives of a Timoshenko beam on a Winkler foundation under a force at its middle, half of it from
-/// 0 to `half`: EI w'''' − EI k/(κGA) w'' + k w = 0, φ = w' + EI/(κGA) (w''' − k/(κGA) w'), with κGA (w' − φ) = −P/2 and φ
-/// = 0 in the middle, φ' = 0 and w' = φ at the end (Hetényi, Beams on Elastic Foundation, 1946, with the shear of
-/// Timoshenko). Comes back with w in the middle and at the end.
+/// Deflection w at middle and end of a Timoshenko beam on a Winkler foundation under a central force, on half
+/// the length. EI w'''' − EI k/(κGA) w'' + k w = 0, φ = w' + EI/(κGA) (w''' − k/(κGA) w'). Middle: κGA (w' −
+/// φ) = −P/2, φ = 0; end: φ' = 0, w' = φ (Hetényi, Beams on Elastic Foundation, 1946, with Timoshenko's
+/// shear).
 fn beam(force: f64, half: f64, bending: f64, shear: f64, foundation: f64) -> [f64; 2] {
     let (size, real) = ((foundation / bending).sqrt(), 0.5 * foundation / shear);
     let (a, b) = ((0.5 * (size + real)).sqrt(), (0.5 * (size - real)).sqrt());
-    // ch c, sh s, ch s, sh c of ax, bx; and what their derivatives are of these.
+    // ch c, sh s, ch s, sh c of ax, bx, and the matrix of their derivatives.
     let at = |x: f64| {
         let (sh, ch, (s, c)) = ((a * x).sinh(), (a * x).cosh(), (b * x).sin_cos());
         RowVector4::new(ch * c, sh * s, ch * s, sh * c)
@@ -168,15 +165,14 @@ fn beam(force: f64, half: f64, bending: f64, shear: f64, foundation: f64) -> [f6
     [0.0, half].map(|x| (at(x) * c)[0])
 }
 
-/// A force in the middle of the long sleeper bends it as a beam on an elastic foundation.
 #[test]
-fn it_bends_as_a_beam_on_an_elastic_foundation() {
+fn deflection_matches_beam_on_foundation() {
     let (low, high) = (1e3, 21e3);
     let load = format!(
         "[track.load]\nkind = \"ramp\"\nminimum = {low}\nmaximum = {high}\nrise = 0.2\nhold = 0.5\nrest = 0.3\nramp = 0.2\n"
     );
     let mesh = format!("{CONCRETE}foot = [0.02, 0.28]\n");
-    // Nodes of the base on the middle line: at the end, and in the middle. The ground has 6 × 1 × 1 elements.
+    // Base nodes on the centre line, at end and middle, after those of the ground (6 × 1 × 1 elements).
     let ground = trackbed_fem::mesh::Mesh::block([6, 1, 1], [1.0; 3]).node_count();
     let block = trackbed_fem::mesh::Mesh::block([16, 2, 2], SIZE);
     let node = |x: f64| {
@@ -190,7 +186,6 @@ fn it_bends_as_a_beam_on_an_elastic_foundation() {
     );
     let (folder, table) = ran(&(on_balls(&mesh, &load, "") + &probes), &[]);
     let (time, force) = (column(&table, "time"), column(&table, "load"));
-    // Before the cycle at the lower load, after it at the higher.
     let before = time.iter().rposition(|t| *t <= 0.5).unwrap();
     assert!((force[before] / low - 1.0).abs() < 1e-3 && (force.last().unwrap() / high - 1.0).abs() < 1e-9);
     let share = force.last().unwrap() - force[before];
@@ -220,7 +215,7 @@ fn it_bends_as_a_beam_on_an_elastic_foundation() {
         1e3 * bend,
         energy_error(&folder.join("out"))
     );
-    // The force is in equilibrium with the bed, and the beam is far from rigid.
+    // Equilibrium with the bed, and clearly flexible.
     assert!(expected[0] > 1.8 * expected[1] && expected[1] > 0.0);
     for k in 0..2 {
         assert!((found[k] / expected[k] - 1.0).abs() < 0.03, "{found:?} {expected:?}");
@@ -229,21 +224,22 @@ fn it_bends_as_a_beam_on_an_elastic_foundation() {
     assert!(energy_error(&folder.join("out")) < 1e-3);
 }
 
-/// The closed form without shear is that of the handbook: a free beam with a force in the middle, λL = 3.
+/// Without shear: handbook solution of a free beam, central force, λL = 3.
 #[test]
-fn the_closed_form_is_that_of_the_handbook() {
+fn closed_form_matches_handbook() {
     let (half, foundation) = (1.5, 4.0);
     let [middle, end] = beam(1.0, half, 1.0, 1e9, foundation);
-    // λ = 1: w₀ = Pλ/2k · (cosh λL + cos λL + 2)/(sinh λL + sin λL); w_end = 2Pλ/k · cosh(λL/2) cos(λL/2)/(sinh λL + sin λL).
+    // λ = 1: w₀ = Pλ/2k · (cosh λL + cos λL + 2)/(sinh λL + sin λL); w_end = 2Pλ/k · cosh(λL/2)
+    // cos(λL/2)/(sinh λL + sin λL).
     let l = 2.0 * half;
     let base = l.sinh() + l.sin();
     assert!((middle / ((l.cosh() + l.cos() + 2.0) / (2.0 * foundation * base)) - 1.0).abs() < 1e-6);
     assert!((end / (2.0 / foundation * half.cosh() * half.cos() / base) - 1.0).abs() < 1e-6);
 }
 
-/// As stiff as can be, it goes down as the rigid box does, on springs: under its weight and under a load.
+/// Very stiff mesh against rigid box, on springs, under weight and load.
 #[test]
-fn a_stiff_one_on_springs_is_a_rigid_one() {
+fn stiff_mesh_on_springs_is_rigid() {
     let load = "[track.load]\nkind = \"ramp\"\nminimum = 1e3\nmaximum = 21e3\nrise = 0.2\nhold = 0.4\nrest = 0.3\nramp = 0.2\n\
                 seats = [[-0.75, 0], [0.75, 0]]\n";
     let stiff = CONCRETE.replace("30 GPa", "2000 GPa");
@@ -261,7 +257,7 @@ fn a_stiff_one_on_springs_is_a_rigid_one() {
     }
 }
 
-/// Spheres between walls at ±`half` in x and y on soft ground, and what lies on them.
+/// Spheres between walls at ±`half` in x and y on soft ground, with a track.
 fn on_ground(half: [f64; 2], grains: &str, track: &str) -> String {
     let wall = |d: usize, sign: f64| {
         let (mut point, mut normal) = ([0.0; 3], [0.0; 3]);
@@ -311,7 +307,7 @@ frames = 2
     )
 }
 
-/// Two layers of spheres, the upper in the hollows of the lower, under a sleeper that all of the upper carry.
+/// Two layers of spheres, the upper in the hollows of the lower, all bearing the sleeper.
 fn on_layers(mesh: &str) -> String {
     let mut spheres = String::new();
     for (nx, ny, z) in [(7, 5, 0.05), (6, 4, 0.05 + 0.1 * 0.5_f64.sqrt())] {
@@ -326,14 +322,13 @@ fn on_layers(mesh: &str) -> String {
          kind = \"haversine\"\nminimum = \"500 N\"\nmaximum = \"10 kN\"\nfrequency = 10\ncycles = 3\nrest = 0.08\n\
          ramp = 0.02\nseats = [[-0.2, 0], [0.2, 0]]\n"
     );
-    // Rayleigh's part in the mass would damp the sleeper's own motion, which a rigid box does not have.
+    // Mass-proportional Rayleigh damping would act on the meshed sleeper but not on the rigid box.
     on_ground([0.35, 0.25], &format!("spheres = [{spheres}]\n"), &track)
         .replace("rayleigh = { damping_ratio = 0.03, frequencies = [20, 200] }\n", "")
 }
 
-/// On stones, too, in an order that leaves nothing to chance.
 #[test]
-fn a_stiff_one_on_stones_is_a_rigid_one() {
+fn stiff_mesh_on_grains_is_rigid() {
     let gone = |mesh: &str| {
         let (folder, _) = ran(&on_layers(mesh), &[STEP]);
         let out = folder.join("out");
@@ -359,10 +354,10 @@ fn a_stiff_one_on_stones_is_a_rigid_one() {
     assert!(rigid.1 < 1e-3 && meshed.1 < 1e-3);
 }
 
-/// Windows too long for the dashpots on the ground are remarked on before the run, and after it with what they did; ten times
-/// too long, the run stops.
+/// Windows too long for the interface dashpots: warnings before and after the run; ten times too long, the
+/// run stops.
 #[test]
-fn dashpots_that_act_late_are_remarked_on() {
+fn late_interface_dashpots_give_warning() {
     let (folder, _) = ran(&on_layers(""), &["coupling.substeps=20"]);
     let summary = json(&folder.join("out/summary.json"));
     let remarked = |summary: &serde_json::Value| {
@@ -381,7 +376,6 @@ fn dashpots_that_act_late_are_remarked_on() {
     remarked(&json(&folder.join("out/summary.json")));
 }
 
-/// Two short sleepers on a bed that settles.
 fn on_a_bed() -> String {
     let grains = "count = 220\nsize = [\"80 mm\", \"100 mm\"]\nfill = { low = [-0.5, -0.3, 0.0], high = [0.5, 0.3] }\nseed = 5\n";
     let track = "[deposition]\nmax_time = 0.1\nlocal_damping = 0.2\n\n[track.sleeper]\nsize = [0.36, 0.4, 0.15]\nmass = 60\n\
@@ -401,9 +395,9 @@ fn the_same_bits_on_any_threads() {
     assert!(column(&table, "sleeper_contact_z").iter().any(|f| *f > 100.0), "stones do carry it");
 }
 
-/// Stopped while the bed settles, and in the run; on elastic ground by several schemes, and on ground that yields.
+/// Interrupted while packing and in the main stage; elastic ground with several schemes, and plastic ground.
 #[test]
-fn stopped_and_continued_it_leaves_the_same_bytes() {
+fn resumes_bitwise() {
     let folder = Folder::new("meshed_broken");
     let scene = folder.write("scene.toml", &on_a_bed());
     let plastic = [
@@ -424,9 +418,9 @@ fn stopped_and_continued_it_leaves_the_same_bytes() {
     }
 }
 
-/// A step that conserves the oscillations of a stiff body is not silently taken.
+/// A time integration without numerical damping keeps the oscillations of a stiff body: warning.
 #[test]
-fn a_step_without_numerical_damping_is_remarked_on() {
+fn missing_numerical_damping_gives_warning() {
     let text = on_balls(CONCRETE, "", "[time]\nend = \"1 ms\"\n");
     for (theta, remarks) in [("0.5", 1), ("0.6", 0)] {
         let (folder, _) = ran(&text, &[&format!("coupling.theta={theta}")]);
@@ -438,7 +432,6 @@ fn a_step_without_numerical_damping_is_remarked_on() {
     }
 }
 
-/// A ground without weight leaves the sleepers theirs.
 #[test]
 fn ground_without_weight() {
     let text = on_balls(CONCRETE, "", "[time]\nend = \"0.4 s\"\n");
@@ -447,7 +440,6 @@ fn ground_without_weight() {
     assert!((contact / (MASS * 9.81) - 1.0).abs() < 1e-5, "{contact}");
 }
 
-/// The shipped scene, with few stones and one cycle.
 #[test]
 fn the_scene_of_the_guide() {
     let folder = Folder::new("meshed_scene");

@@ -1,4 +1,4 @@
-//! What the program says beside its results: all faults of a scene at once, colours, lines of progress.
+//! Messages: several errors together, colours, progress.
 
 use super::support::{Folder, GRAINS, Outcome, SOLID, scene_folder, trackbed};
 use std::process::Command;
@@ -9,9 +9,8 @@ fn faults(outcome: &Outcome) -> Vec<&str> {
     lines.iter().map(|l| l.strip_prefix("error: ").unwrap_or_else(|| panic!("{outcome:?}"))).collect()
 }
 
-/// Every fault of the form of a scene is named, each once with its line; `check` and `run` say the same.
 #[test]
-fn all_faults_of_form_are_named_at_once() {
+fn reports_all_syntax_errors() {
     let folder = Folder::new("faults_of_form");
     let text = GRAINS
         .replace("friction = 0.5", "fricton = 0.5")
@@ -37,9 +36,9 @@ fn all_faults_of_form_are_named_at_once() {
     assert!(run.stderr == checked.stderr && !out.exists(), "{run:?}");
 }
 
-/// Values out of range in tables apart are named together; what only follows from a fault is not.
+/// Errors in separate tables appear together, consequential errors do not.
 #[test]
-fn values_of_tables_apart_are_named_at_once() {
+fn reports_errors_of_separate_tables() {
     let folder = scene_folder("faults_of_values", SOLID);
     let scene = folder.join("scene.toml");
     let check = |set: &[&str]| {
@@ -51,17 +50,16 @@ fn values_of_tables_apart_are_named_at_once() {
     let keys = ["material.0.young", "probe.0", "output.frames"];
     let named = |key: &&str| found.iter().filter(|line| line.contains(*key)).count() == 1;
     assert!(found.len() == keys.len() && keys.iter().all(named), "{found:#?}");
-    // Poisson's ratio may be judged by what is given beside it: the first alone.
+    // Poisson's ratio depends on the given modulus: first error only.
     let outcome = check(&["solid.material.0.young=-5", "solid.material.0.poisson=0.7"]);
     assert_eq!(faults(&outcome).len(), 1, "{outcome:?}");
-    // A material that has no name any more is not missed by others.
     let folder = Folder::new("faults_of_names");
     let scene = folder.write("scene.toml", &GRAINS.replace("name = \"stone\"", "name = \"\""));
     let outcome = trackbed(["check", scene.to_str().unwrap()]);
     assert_eq!(faults(&outcome).len(), 1, "{outcome:?}");
 }
 
-/// Colours are for terminals, and for those who force them; `NO_COLOR` has the last word.
+/// Terminals, or forced; `NO_COLOR` wins.
 #[test]
 fn colours_are_for_terminals() {
     let folder = Folder::new("colours");
@@ -80,7 +78,7 @@ fn colours_are_for_terminals() {
     assert_eq!(said(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]), plain);
 }
 
-/// `--verbose`: a line each second with where the run is; `--quiet` nothing; both are refused.
+/// `--verbose`: a line per second; not with `--quiet`.
 #[test]
 fn lines_of_a_verbose_run() {
     let folder = Folder::new("verbose");

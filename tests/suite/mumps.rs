@@ -1,11 +1,9 @@
-//! `method = "mumps"` of `[solid.equations]`: what a program without the library says, the keys, and with it runs beside those with the
-//! program's own factor.
+//! `[solid.equations] method = "mumps"`: missing library, keys, comparison with the built-in direct solver.
 
 use super::support::{repository, trackbed};
 
 const SCENE: &str = "inputs/solid/large.toml";
 
-/// What `check` says of the shipped scene with other equations.
 fn checked(equations: &str) -> (i32, String) {
     let scene = repository().join(SCENE);
     let mut arguments: Vec<String> = ["check", &scene.display().to_string()].map(String::from).into();
@@ -44,7 +42,7 @@ fn keys_of_it_need_it() {
 
 #[cfg(not(feature = "mumps"))]
 #[test]
-fn a_program_without_it_says_how_to_build_one() {
+fn missing_library_gives_build_advice() {
     use super::support::Folder;
     let folder = Folder::new("mumps");
     let text = std::fs::read_to_string(repository().join(SCENE)).unwrap();
@@ -66,7 +64,6 @@ mod library {
     use super::checked;
     use crate::suite::support::{Folder, Table, repository, run};
 
-    /// The columns of a table of a run of a scene of the repository, by each of the methods.
     fn tables(scene: &str, set: &[&str], file: &str, methods: &[&str]) -> Vec<Table> {
         let folder = Folder::new("mumps");
         let out = folder.join("out");
@@ -79,7 +76,6 @@ mod library {
         methods.iter().map(by).collect()
     }
 
-    /// Largest difference of a column over its largest value.
     fn miss(a: &Table, b: &Table, column: &str) -> f64 {
         let (a, b) = (a.column(column), b.column(column));
         let size = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -92,7 +88,7 @@ mod library {
     const IN_FILES: &str = "{ method = \"mumps\", out_of_core = true }";
 
     #[test]
-    fn an_embankment_stands_as_by_the_own_factor() {
+    fn embankment_matches_built_in_solver() {
         let methods = [DIRECT, MUMPS, IN_FILES];
         let found = tables("inputs/solid/embankment.toml", &[], "nodes.csv", &methods);
         for (other, method) in found[1..].iter().zip(&methods[1..]) {
@@ -103,7 +99,7 @@ mod library {
     }
 
     #[test]
-    fn a_pulse_moves_an_embankment_as_by_the_own_factor() {
+    fn pulse_matches_built_in_solver() {
         let set = [
             "solid.block.x.counts=[20]",
             "solid.block.y.counts=[12]",
@@ -121,7 +117,7 @@ mod library {
     }
 
     #[test]
-    fn a_bed_settles_as_by_the_own_factor() {
+    fn settlement_matches_built_in_solver() {
         let set = [
             "track.sleeper.mesh=",
             "grains.0.count=100",

@@ -1,4 +1,4 @@
-//! What a run shows beside its main results: probes on grains, a denser last part, strain tensors, how far a solid yields.
+//! Additional output: grain probes, fine intervals, strains, plastic state.
 
 use super::support::{Folder, Table, json, run, trackbed};
 use std::fs;
@@ -32,7 +32,6 @@ last = { time = 0.05, frames = 5 }
 fields = ["acceleration", "displacement"]
 "#;
 
-/// Two spheres fall freely: probes follow them, the last quarter of the run has its own frames, and accelerations are gravity.
 #[test]
 fn falling_spheres_are_observed() {
     let folder = Folder::new("observed");
@@ -43,9 +42,9 @@ fn falling_spheres_are_observed() {
     let time = last("time");
     let fall = 5.0 * time * time;
     assert!((last("grain1_x_z") - (2.0 - fall)).abs() < 1e-9, "{}", last("grain1_x_z"));
-    // Velocities are those between two steps.
+    // Mid-step velocities.
     assert!((last("grain1_v_z") + 10.0 * time).abs() < 10.0 * 2e-3, "{}", last("grain1_v_z"));
-    // Masses are as 1 to 8.
+    // Mass ratio 1:8.
     assert!((last("pair_x_z") - (17.0 / 9.0 - fall)).abs() < 1e-9, "{}", last("pair_x_z"));
     assert_eq!((last("pair_grains"), last("low_grains")), (2.0, 1.0));
     assert!((last("low_x_z") - (1.0 - fall)).abs() < 1e-9);
@@ -78,7 +77,6 @@ fn falling_spheres_are_observed() {
     }
 }
 
-/// An array of the points of a file.
 fn points(file: &Path, name: &str) -> Vec<f64> {
     let data = match vtkio::Vtk::import(file).unwrap().data {
         DataSet::PolyData { mut pieces, .. } => pieces.remove(0).into_loaded_piece_data(None).unwrap().data,
@@ -128,8 +126,8 @@ frames = 1
 fields = ["strain", "plastic_strain"]
 "#;
 
-/// A bar drawn out by 1 %: with E = 1 MPa, yield stress 1 kPa and hardening H = 0.1 MPa of the cohesion-like yield stress, the
-/// plastic strain is (E ε − σ_y)/(E + H), the total one across −ν σ/E − ε_p/2.
+/// 1 % elongation, E = 1 MPa, yield stress 1 kPa, H = 0.1 MPa: plastic strain (E ε − σ_y)/(E + H), total
+/// lateral strain −ν σ/E − ε_p/2.
 #[test]
 fn strains_of_a_bar_that_yields() {
     let folder = Folder::new("bar");
@@ -152,7 +150,6 @@ fn strains_of_a_bar_that_yields() {
     assert!((solid["largest_plastic_strain"].as_f64().unwrap() - expected).abs() < 1e-7, "{solid}");
 }
 
-/// A run of so many steps, with frames and rows after so many: of grains, and of a solid alone.
 #[test]
 fn steps_are_counted() {
     let folder = Folder::new("steps");
@@ -169,7 +166,7 @@ fn steps_are_counted() {
     }
     let frames = |out: &str| fs::read_dir(folder.join(out).join("frames")).unwrap().count();
     assert!(frames("g") == 5 || frames("g") == 10, "{}", frames("g"));
-    // Steps of no fixed length are no time, and two keys for one thing are one too many.
+    // Not with variable steps, not with both keys.
     let refused = |set: &[&str], sentence: &str| {
         let outcome = run(&grains, &folder.join("bad"), set);
         assert!(outcome.code == 2 && outcome.stderr.contains(sentence), "{outcome:?}");

@@ -1,11 +1,10 @@
-//! Packings through the program: lattices, growth, containers, gradations, layers, compaction, and packings read back.
+//! Lattices, radius expansion, containers, gradations, layers, compaction, saved packings.
 
 use super::support::{Folder, json, numbers, repository, run, scene_folder};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-/// A weightless scene of one group; `group` tells where the grains come from.
 fn scene(group: &str, rest: &str) -> String {
     format!(
         "gravity = [0, 0, 0]\n\n[[material]]\nname = \"stone\"\ndensity = 2650\nstiffness = \"1 MN/m\"\nfriction = 0.5\n\
@@ -20,15 +19,14 @@ fn ran(folder: &Folder, text: &str, out: &str) -> serde_json::Value {
     json(&folder.join(out).join("summary.json"))
 }
 
-/// Rows of numbers of a CSV file below its heading.
 fn rows(file: &Path) -> Vec<Vec<f64>> {
     let text = fs::read_to_string(file).unwrap();
     text.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect()
 }
 
-/// Porosity of whole periods amid a lattice: 1 − π/6 and 1 − π/(3√2). Read back, a packing is the same to the byte.
+/// Porosities 1 − π/6 and 1 − π/(3√2) over whole periods; a saved packing is read byte for byte.
 #[test]
-fn lattices_have_their_porosity_and_are_read_back() {
+fn lattice_porosity_and_round_trip() {
     let d = 0.02;
     let (r3, rise) = (3.0_f64.sqrt(), (2.0_f64 / 3.0).sqrt());
     let close = 1.0 - PI / (3.0 * 2.0_f64.sqrt());
@@ -54,7 +52,7 @@ fn lattices_have_their_porosity_and_are_read_back() {
         let table = rows(&folder.join("first/radial.csv"));
         assert_eq!(table.len(), 15);
         if kind == "loose" {
-            // Neighbours of a simple cubic lattice at d, d√2, d√3, 2 d and d√5, nothing between.
+            // Simple cubic neighbour distances: d, d√2, d√3, 2 d, d√5.
             let shell = |r: f64| 4.0 / 3.0 * PI * ((r + 0.0015).powi(3) - (r - 0.0015).powi(3)) / d.powi(3);
             let found: Vec<f64> = table.iter().filter(|r| r[2] > 0.0).map(|r| r[2] * shell(r[1])).collect();
             assert_eq!(found.len(), 5, "{table:?}");
@@ -71,7 +69,7 @@ fn lattices_have_their_porosity_and_are_read_back() {
     }
 }
 
-/// Clumps scattered at a share of the volume: it is met, all are inside, and the packing is read back to rounding.
+/// Clumps at a target volume fraction, all inside; read back to rounding.
 #[test]
 fn scattered_clumps_are_read_back() {
     let folder = Folder::new("clumps");
@@ -90,7 +88,7 @@ fn scattered_clumps_are_read_back() {
     folder.write("bed.csv", &fs::read_to_string(&first).unwrap());
     let group = format!("shape = \"clump\"\nlibrary = \"{library}\"\npacking = \"bed.csv\"");
     ran(&folder, &scene(&group, measure), "second");
-    // Orientations are normalised in every step, which costs a bit now and then.
+    // Quaternions are normalised every step.
     let again = rows(&folder.join("second/packing.csv"));
     assert_eq!(again.len(), stones.len());
     for (a, b) in stones.iter().flatten().zip(again.iter().flatten()) {
@@ -98,7 +96,6 @@ fn scattered_clumps_are_read_back() {
     }
 }
 
-/// The inside of a closed surface from a file, turned over triangles and all, and that of a cone.
 #[test]
 fn containers_hold_their_grains() {
     let folder = Folder::new("containers");
@@ -116,7 +113,7 @@ fn containers_hold_their_grains() {
     let volume: f64 = grains.iter().map(|g| 4.0 / 3.0 * PI * g[3].powi(3)).sum();
     assert!((volume / (4.0 / 3.0 * 0.008) - 0.2).abs() < 2e-3, "{volume}");
     for g in &grains {
-        // Distance to the sides |x| + |y| + |z| = 0.2.
+        // Distance to the faces |x| + |y| + |z| = 0.2.
         let inside = (0.2 - (g[0] - 1.0).abs() - g[1].abs() - g[2].abs()) / 3.0_f64.sqrt();
         assert!(inside >= g[3] - 1e-12, "{g:?}");
     }
@@ -128,7 +125,7 @@ fn containers_hold_their_grains() {
     assert!(grains.iter().all(|g| g[0].hypot(g[1]) + g[3] <= 0.05 + 0.25 * g[2] && g[2] >= g[3]));
 }
 
-/// Growth meets the porosity within half a per cent; the packing that comes out is jammed between its walls.
+/// Porosity within 0.5 %, jammed between walls.
 #[test]
 fn growth_meets_the_porosity() {
     let folder = Folder::new("growth");
@@ -140,13 +137,11 @@ fn growth_meets_the_porosity() {
     assert!((grown - 0.41).abs() < 0.005, "{grown}");
     assert_eq!(summary["stages"][0]["name"], "growing g");
     let grains = rows(&folder.join("out/packing.csv"));
-    // The number follows from the size, which is kept but for the rest of a grain.
     let expected = 0.59 * 0.2 * 0.2 * 0.16 / (PI / 6.0 * 8e-6);
     assert_eq!(grains.len(), expected.round() as usize);
     assert!(grains.iter().all(|g| (g[3] / 0.01 - 1.0).abs() < 1e-3 && g[3] == grains[0][3]));
 }
 
-/// The scenes that are shipped, made smaller.
 fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     let text = fs::read_to_string(repository().join("inputs/grains").join(name)).unwrap();
     let folder = scene_folder("shipped", &text);
@@ -162,8 +157,8 @@ fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     (folder, summary)
 }
 
-/// Stones drawn to EN 13450 A: within 1 % passing of the curve at the sieves, and within the share of the largest stone
-/// (2.5 % of the mass of 250) at every size; the table has the limits of the standard.
+/// EN 13450 A: within 1 % passing at the sieves, and within the largest stone (2.5 % of the mass of 250) at
+/// every size.
 #[test]
 fn gradation_of_the_shipped_bed() {
     let (folder, summary) = shipped(
@@ -196,7 +191,6 @@ fn gradation_of_the_shipped_bed() {
     assert_eq!(rows(&folder.join("out/packing.csv")).len(), 250);
 }
 
-/// The bed settles in layers, and every stage of the compaction leaves it denser than the one before.
 #[test]
 fn compaction_of_the_shipped_bed() {
     let region = "region = [[0.0, 0.0, 0.0], [0.2, 0.2, 0.12]]";
@@ -222,12 +216,11 @@ fn compaction_of_the_shipped_bed() {
     let names: Vec<&str> =
         summary["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
     assert_eq!(names[..3], ["layers", "settling", "compaction 1: vibration"]);
-    // The wall stays where the squeeze has left it: its force at the end of the run is of the size that it had there.
+    // The wall keeps its position and force.
     assert!(stages[3]["wall_force"].as_f64().unwrap() > 1.0);
 }
 
-/// A wall is meant by its number whatever stands before it: with a recorded plane far below in the first place, the same bed is
-/// squeezed in the same way.
+/// The compacting wall is identified by its index, also after an additional recorded plane.
 #[test]
 fn walls_before_the_one_that_squeezes() {
     let fewer = [
@@ -256,7 +249,6 @@ fn walls_before_the_one_that_squeezes() {
     assert_eq!(positions(&plain), positions(&other));
 }
 
-/// The funnel of the shipped scene, with fewer spheres.
 #[test]
 fn growth_of_the_shipped_funnel() {
     let (_, summary) =

@@ -1,4 +1,4 @@
-//! Values that are not plausible are named with their key, and no shipped scene is blamed.
+//! Plausibility warnings name the key; shipped scenes have none.
 
 use super::support::{Folder, repository, trackbed};
 use std::collections::BTreeSet;
@@ -7,7 +7,6 @@ use trackbed::model::Job;
 use trackbed::plausible::{Finding, near_mode, weigh};
 use trackbed::scene::{Document, Scene};
 
-/// What is found in a scene with an override.
 fn found(scene: &str, set: &[&str]) -> Vec<Finding> {
     let mut document = Document::open(&repository().join(scene)).unwrap();
     set.iter().for_each(|s| document.set(s).unwrap());
@@ -28,9 +27,8 @@ const SHAKEN: &str = "inputs/ice/vibration.toml";
 const SCARRED: &str = "inputs/geo/chant-sura/scene.toml";
 const WIND: &str = "inputs/verify/wind.toml";
 
-/// Scene, override, key that must be named, whether it cannot be meant.
+/// Scene, override, key, whether certainly wrong.
 const CASES: &[(&str, &str, &str, bool)] = &[
-    // Moduli, stiffnesses, densities.
     (CYCLIC, "solid.material.0.young=80", "solid.material.0.young", true),
     (CYCLIC, "solid.material.1.young=\"110e6 MPa\"", "solid.material.1.young", true),
     (CYCLIC, "solid.material.0.density=1.9", "solid.material.0.density", false),
@@ -48,14 +46,12 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (BOX, "material.0.restitution=0.001", "material.0.restitution", false),
     (BOX, "material.0.rolling_friction=5", "material.0.rolling_friction", false),
     (GRAINS, "material.0.tangential_ratio=0.01", "material.0.tangential_ratio", false),
-    // Sizes.
     (SERVO, "grains.0.size=[0.000001, 0.0000012]", "grains.0.size", false),
     (SERVO, "grains.0.size=[0.0001, 0.01]", "grains.0.size", false),
     (BOX, "grains.0.gradation.scale=0.001", "grains.0.gradation.scale", false),
     (GRAINS, "grains.0.velocity=[0.0, 0.0, -500.0]", "grains.0.velocity", false),
     (WIND, "wind.velocity=[\"600 m/s\", 0, 0]", "wind.velocity", false),
     (WIND, "wind.density=12000", "wind.density", false),
-    // Walls.
     (SHAKEN, "walls.0.body.mount.frequency=[1500, 1.5, 0]", "walls.0.body.mount.frequency", false),
     (SHAKEN, "walls.0.body.mount.damping_ratio=[0.03, 300, 0]", "walls.0.body.mount.damping_ratio", true),
     (SHAKEN, "walls.0.body.mount={ stiffness = [\"20 N/m\", 0, 0] }", "walls.0.body.mount.stiffness", false),
@@ -69,23 +65,20 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (BOX, "walls.2.point=[-0.5, 0.0, 0.0]", "walls.2", true),
     (BOX, "walls.1.normal=[-1.0, 0.0, 0.0]", "walls.1", true),
     (DRUM, "grains.0.fill.low=[-0.05, 0.005, -0.06]", "walls.0", true),
-    // Gravity and what holds the bed.
     (BOX, "gravity=[0.0, 0.0, 9.81]", "gravity", true),
     (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", false),
     (BOX, "gravity=[0.0, -9.81, 0.0]", "gravity", true),
     (CYCLIC, "gravity=[9.81, 0.0, 0.0]", "gravity", true),
     (CYCLIC, "gravity=[0.0, -9.0, -3.0]", "gravity", true),
-    // Meshes in millimetres: by their length, their elements, or their weight on soft ground.
+    // Millimetre meshes: size, elements, or weight on soft ground.
     (CYCLIC, "solid.scale=1000", "solid", true),
     (FOOTING, "solid.block.z.lines=[-4000.0, 0.0]", "solid", true),
     (GRAINS, "walls=", "walls", true),
-    // Settling.
     (BOX, "deposition.max_time=\"1 ms\"", "deposition.max_time", true),
     (BOX, "deposition.settled_speed=2e-8", "deposition.settled_speed", true),
     (BOX, "gravity=[0.0, 0.0, 0.0]", "deposition", true),
     (BOX, "deposition.level=220", "deposition.level", true),
     (BOX, "deposition.level=-0.1", "deposition.level", true),
-    // Places.
     (BOX, "track.sleeper.centre=[30.0, 0.15]", "track.sleeper.centre", true),
     (CYCLIC, "track.sleeper.centre=[0.3, 0.3]", "track.sleeper.centre", true),
     (CYCLIC, "track.sleeper.centre=[0.0, 0.0]", "track.sleeper.centre", true),
@@ -94,18 +87,16 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (CYCLIC, "walls.1.normal=[0.5, -1.0, 0.0]", "track.sleeper.centre", true),
     (CYCLIC, "grains.0.fill={ low = [-1.5, 0.0, -2.0], high = [1.5, 0.6] }", "grains.0", true),
     (CYCLIC, "grains.0.fill={ low = [50.0, 0.0, 0.0], high = [53.0, 0.6] }", "grains.0", true),
-    // Sleepers and loads.
     (BOX, "track.sleeper.mass=\"85 t\"", "track.sleeper.mass", true),
     (BOX, "track.sleeper.size=[780.0, 290.0, 150.0]", "track.sleeper.size", true),
     (BOX, "track.load.maximum=\"40 MN\"", "track.load.maximum", false),
     (BOX, "track.load.frequency=\"30 kHz\"", "track.load.frequency", true),
-    // The fourth mode of the ground, at 33.1 Hz, has 44 % of its mass in the vertical.
+    // Fourth ground mode: 33.1 Hz, 44 % of the mass vertical.
     (CYCLIC, "track.load.frequency=\"33 Hz\"", "track.load", false),
     (BOX, "track.load.ramp=\"100 h\"", "track.load.ramp", true),
     (TRAIN, "track.rail.bending_stiffness=6.4", "track.rail.bending_stiffness", true),
     (TRAIN, "track.load.speed=\"2000 m/s\"", "track.load.speed", false),
     (TRAIN, "track.load.axle_load=140", "track.load.axle_load", false),
-    // Loads and supports of the solid, time, output.
     (FOOTING, "solid.support.6.displacement=-60", "solid.support.6.displacement", true),
     (CLAY, "solid.load.0.pressure=\"207 GPa\"", "solid.load.0.pressure", true),
     (CYCLIC, "output.frames=100000", "output.frames", false),
@@ -116,7 +107,7 @@ const CASES: &[(&str, &str, &str, bool)] = &[
 ];
 
 #[test]
-fn what_is_not_plausible_is_named_with_its_key() {
+fn implausible_values_name_their_key() {
     let keys: BTreeSet<&str> = CASES.iter().map(|c| c.2).collect();
     assert!(CASES.len() >= 50 && keys.len() >= 40, "{} cases, {} keys", CASES.len(), keys.len());
     let mut wrong = Vec::new();
@@ -138,9 +129,9 @@ fn what_is_not_plausible_is_named_with_its_key() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A ground whose weight makes it a tenth lower: soft ground 800 m high, not with a stiff one, nor without weight.
+/// Soft ground 800 m high, compressed by a tenth; not if stiff or weightless.
 #[test]
-fn a_solid_that_its_weight_flattens_is_in_millimetres() {
+fn weight_reveals_millimetre_mesh() {
     let high = ["solid.block.z.lines=[-800.0, 0.0]", "solid.gravity=true"];
     let found = |more: &str| found(FOOTING, &[high[0], high[1], more]);
     let all = found("title=\"soft\"");
@@ -151,7 +142,6 @@ fn a_solid_that_its_weight_flattens_is_in_millimetres() {
     }
 }
 
-/// Every scene below `inputs`.
 fn scenes(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -159,7 +149,7 @@ fn scenes(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
             scenes(&path, out);
         } else if path.extension().is_some_and(|e| e == "toml") {
             let text = std::fs::read_to_string(&path).unwrap();
-            // Studies and libraries of stones are no scenes.
+            // Skips studies and stone libraries.
             if text.contains("[[grains]]") || text.contains("[solid]") {
                 out.push(path);
             }
@@ -175,7 +165,7 @@ fn no_shipped_scene_is_blamed() {
     let mut blamed = Vec::new();
     for scene in &all {
         let name = scene.strip_prefix(repository()).unwrap().display().to_string();
-        // For `modal` alone: a body that nothing holds is no scene of `run`.
+        // Unconstrained, for `modal` only.
         if name.ends_with("verify/free_beam.toml") {
             continue;
         }
@@ -185,7 +175,7 @@ fn no_shipped_scene_is_blamed() {
 }
 
 #[test]
-fn check_and_run_say_it_and_strict_refuses() {
+fn strict_rejects_implausible_values() {
     let folder = Folder::new("implausible");
     let scene = repository().join(CLAY);
     let scene = scene.to_str().unwrap();

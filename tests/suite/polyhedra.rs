@@ -1,11 +1,10 @@
-//! Polyhedra through the program: poured and tamped, through inlets and outlets, on a solid under a sleeper, and what is refused.
+//! Polyhedra: pouring, tamping, flow, track, rejected input.
 
 use super::determinism::same_bits;
 use super::scenes::vtk;
 use super::support::{Folder, json, repository, run, trackbed};
 use std::path::PathBuf;
 
-/// A few stones that settle, some more that are poured on them, and a plate that presses.
 const POURED: &str = r#"title = "Polyhedra poured and tamped"
 
 [[material]]
@@ -96,7 +95,6 @@ end = "10 ms"
 frames = 1
 "#;
 
-/// A folder with a scene of stones of the shipped library.
 fn written(name: &str, text: &str) -> (Folder, PathBuf) {
     let folder = Folder::new(name);
     let library = repository().join("inputs/data/polyhedra.toml");
@@ -104,8 +102,7 @@ fn written(name: &str, text: &str) -> (Folder, PathBuf) {
     (folder, scene)
 }
 
-/// Polyhedra wait for a stage of pouring, come to rest on others, and are pressed by a plate: the accounts close, and each stage leaves the bed
-/// denser.
+/// Each stage densifies the bed; energy balance closes.
 #[test]
 fn polyhedra_are_poured_and_tamped() {
     let (folder, scene) = written("polyhedra_poured", POURED);
@@ -122,7 +119,6 @@ fn polyhedra_are_poured_and_tamped() {
     assert!(summary["energy"]["relative_error"].as_f64().unwrap().abs() < 1e-3);
 }
 
-/// Two stones that fly past a plane, in two groups.
 const FLYING: &str = r#"title = "Two stones fly"
 gravity = [0, 0, 0]
 
@@ -163,7 +159,7 @@ end = "1 ms"
 frames = 1
 "#;
 
-/// Frames have the fields of grains with faces on their polygons, zero on those of walls; pictures are coloured by them; a choice of fields holds for them.
+/// Grain fields on polyhedra, zero on walls; colours and field selection follow.
 #[test]
 fn frames_have_the_fields_of_polyhedra() {
     let (folder, scene) = written("polyhedra_fields", FLYING);
@@ -194,7 +190,7 @@ fn frames_have_the_fields_of_polyhedra() {
         assert!(apart(&velocity, expected.0) < 1e-12 && apart(&spin, expected.1) < 1e-9, "polygon {k}");
     }
     assert!(seen[0] > 8 && seen[1] > 8 && seen[2] == 1, "{seen:?}");
-    // Speeds of 3 and 9 m/s are the ends of the colours: dark violet and yellow.
+    // 3 and 9 m/s are the limits of the colour scale: dark violet and yellow.
     let picture = |more: &[&str]| {
         let file = folder.join("picture.bmp");
         let view = [
@@ -215,7 +211,7 @@ fn frames_have_the_fields_of_polyhedra() {
                 .filter(|(x, y)| like(pixels.at(*x, *y)))
                 .count()
         };
-        // Violet has hardly any green, yellow hardly any blue.
+        // Violet: hardly any green; yellow: hardly any blue.
         [of(&|[r, g, b]| g < r / 2 && g < b / 2), of(&|[r, g, b]| b < r / 2 && b < g / 2)]
     };
     let [plain, coloured] = [picture(&[]), picture(&["--field", "grains=speed"])];
@@ -231,7 +227,7 @@ fn frames_have_the_fields_of_polyhedra() {
     assert_eq!(names, ["id", "kind", "part", "spin"]);
 }
 
-/// The spheres of a spinning clump move as points of one rigid body: v − v' = ω × (x − x').
+/// Rigid-body motion: v − v' = ω × (x − x').
 #[test]
 fn spheres_of_clumps_rotate() {
     let library = repository().join("inputs/data/clumps_six.toml").display().to_string();
@@ -257,8 +253,7 @@ fn spheres_of_clumps_rotate() {
     assert!(pairs > 2, "{} spheres, {pairs} of them apart", spheres.len());
 }
 
-/// A small bed of polyhedra on the main job's mesh, pressed by its sleeper, under one quick cycle: the accounts
-/// close (energy within 0.5 %, force and moment across the interface within 1e-11).
+/// Reference mesh, one short cycle: energy error 0.5 %, interface force and moment 1e-11.
 #[test]
 fn a_small_track_of_polyhedra() {
     let scene = repository().join("inputs/track/polyhedra/scene.toml");
@@ -287,7 +282,6 @@ fn a_small_track_of_polyhedra() {
     assert_eq!(summary["verdict"]["outcome"], "passed");
 }
 
-/// Stones with faces and flat disks that come in over a belt, which takes them to an outlet; from there they come in again.
 const BELT: &str = r#"title = "Stones on a belt"
 
 [[material]]
@@ -344,8 +338,7 @@ frames = 2
 history_interval = "0.1 s"
 "#;
 
-/// Polyhedra and disks come in where they touch nothing, go, and come in again: more of them come in than there are, none is put into another (that would
-/// show in the account of energy), and the same bits come out on three threads.
+/// Insertion without overlap, recycling, three threads bitwise identical.
 #[test]
 fn polyhedra_and_disks_come_and_go() {
     let (_folder, scene) = written("polyhedra_belt", BELT);
@@ -363,7 +356,7 @@ fn polyhedra_and_disks_come_and_go() {
     assert_eq!(summary["verdict"]["outcome"], "passed");
 }
 
-/// Polyhedra touch flat faces only, the stiffened exchange knows spheres only.
+/// Polyhedra need flat facets; stiffened coupling needs spheres.
 #[test]
 fn refusals() {
     let scene = repository().join("inputs/track/polyhedra/scene.toml");

@@ -3,7 +3,7 @@
 use super::support::{COUPLED, Folder, Table, json, repository, run, scene_folder, trackbed};
 use super::track::{BED, goes_on_bit_for_bit, options, springs, written};
 
-/// A rail like UIC 60 in one line over the middle of the sleepers, with soft pads, over a bed like that of the model.
+/// Beam like UIC 60 on soft pads, on the centre line.
 pub const BEAM: &str = r#"
 [track.rail]
 kind = "beam"
@@ -30,13 +30,11 @@ ramp = "100 ms"
     )
 }
 
-/// Largest and smallest value of a column.
 fn extremes(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)])
 }
 
-/// Slow wheels over sleepers on springs load the seats as Winkler's formula says, with the pad and the bed in series;
-/// the account closes. At 200 km/h the sleepers get more.
+/// Slow wheels: rail seat loads by Winkler's formula, pad and bed in series. Loads increase at 200 km/h.
 #[test]
 fn a_bogie_on_a_beam() {
     let mut peaks = Vec::new();
@@ -49,11 +47,11 @@ fn a_bogie_on_a_beam() {
         let series = BED * 120e6 / (BED + 120e6);
         let beta = (series / 0.6 / (4.0 * 12.8e6_f64)).powf(0.25);
         let shape = |x: f64| (-beta * x).exp() * ((beta * x).cos() + (beta * x).sin());
-        // Under an axle, the other one 2.5 m away, and the rail's weight.
+        // One axle, the other 2.5 m away, and the rail's weight.
         let formula = 140e3 * 0.5 * beta * 0.6 * (1.0 + shape(2.5)) + 120.0 * 9.81 * 0.6;
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         assert!(energy < 1e-5, "{energy} at {speed}");
-        // Both sides of the pads book one work.
+        // Pad work is equal on both sides.
         let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
         let (seats, pads) = (spent("applied_work"), spent("pads_on_sleepers"));
         assert!((seats - pads).abs() < 1e-10 * seats.abs(), "{seats} {pads}");
@@ -73,7 +71,6 @@ fn a_bogie_on_a_beam() {
             assert!((number("static_force") / formula - 1.0).abs() < 0.02);
             assert!((number("load_share") - number("largest_force") / 140e3).abs() < 1e-12);
             assert!(number("rail_deflection") > number("lowering"));
-            // Before the wheels are near a sleeper carries its part of the rail.
             let load = history.column(&format!("load_{k}"))[begun];
             assert!((load / (120.0 * 9.81 * 0.6) - 1.0).abs() < 0.03, "{load} N before the wheels");
             let z = history.column(&format!("sleeper_{k}_z"));
@@ -84,7 +81,6 @@ fn a_bogie_on_a_beam() {
             }
             peaks.push(most);
         }
-        // The wheels reach the sleepers one after the other.
         let when = |k: usize| {
             let force = history.column(&format!("load_{k}"));
             let most = extremes(&force)[1];
@@ -99,10 +95,9 @@ fn a_bogie_on_a_beam() {
     assert!((1.0..1.5).contains(&amplification), "{amplification}");
 }
 
-/// Two rails with half of everything each, one on either side, are the one rail in the middle: the same forces on the sleepers
-/// at all times, and the same static ones, to rounding.
+/// Two half rails equal one central rail of their sum, to rounding.
 #[test]
-fn two_rails_do_what_one_of_their_sum_does() {
+fn two_rails_equal_combined_rail() {
     let one = springs(3, &(bogie("200 km/h") + BEAM));
     let mut two = one.replace("ramp = \"100 ms\"", "ramp = \"100 ms\"\nseats = [[-0.75, 0], [0.75, 0]]");
     for (whole, half) in [
@@ -133,10 +128,9 @@ fn two_rails_do_what_one_of_their_sum_does() {
     }
 }
 
-/// Rails on a sleeper on stones on a solid, in windows that are made again: the account closes as in windows made once, and
-/// the forces are theirs.
+/// Iterated windows give the energy balance and the forces of single-pass windows.
 #[test]
-fn rails_go_back_with_a_window_that_is_made_again() {
+fn rails_restore_state_in_iterations() {
     let head = COUPLED.split_once("[track.load]").unwrap();
     let tail = head.1.split_once("[coupling]").unwrap().1;
     let sleeper = format!("{}spacing = 1.2\nalong = \"y\"\n", head.0.trim_end().to_string() + "\n");
@@ -146,7 +140,7 @@ fn rails_go_back_with_a_window_that_is_made_again() {
     let mut peaks = Vec::new();
     for scheme in ["predicted", "iterated"] {
         let out = folder.join(scheme);
-        // Both sides of a pad book the same work to rounding where all steps are alike.
+        // Pad work agrees to rounding only with equal steps.
         let set = [&format!("coupling.scheme={scheme:?}")[..], "time.grain_step=20 us"];
         run(&folder.join("scene.toml"), &out, &set).good();
         let summary = json(&out.join("summary.json"));
@@ -162,7 +156,7 @@ fn rails_go_back_with_a_window_that_is_made_again() {
     assert!((peaks[1] / peaks[0] - 1.0).abs() < 0.01, "{peaks:?}");
 }
 
-/// The quasi-static rail hands each sleeper its share, at the same times as the beam.
+/// Quasi-static rail: axle load shares at the beam's times.
 #[test]
 fn a_train_by_winklers_formula() {
     let file = repository().join("inputs/data/trains.toml");
@@ -208,9 +202,9 @@ foundation = "15 MN/m"
     );
 }
 
-/// Waves of the rail under an unsprung mass add M a w² sin(2πx/L), w = 2πv/L, to each axle where it is.
+/// Rail irregularity under an unsprung mass adds M a w² sin(2πx/L), w = 2πv/L, to each axle.
 #[test]
-fn an_uneven_rail_swings_the_load_of_a_scene() {
+fn rail_irregularity_varies_axle_load() {
     let load = r#"
 [track.load]
 kind = "bogie"
@@ -249,7 +243,7 @@ foundation = "15 MN/m"
     assert!(swing > 7e3, "{swing}");
 }
 
-/// A measured force that pulls harder than the sleeper weighs lifts it off, and it comes down again.
+/// A pull above the weight lifts a sleeper off, and it lands again.
 #[test]
 fn a_lifted_sleeper_comes_down_again() {
     let load = r#"
@@ -262,7 +256,6 @@ rest = "20 ms"
 ramp = "0 s"
 "#;
     let (folder, scene) = written(&springs(2, load).replace("[time]", "[time]\nend = 0.4"));
-    // Up with 6 kN, against a weight of 2.9 kN, for 50 ms.
     folder.write("force.csv", "time, force\n0, 0\n0.01, -3000\n0.06, -3000\n0.07, 0\n");
     let out = folder.join("out");
     trackbed::run::run(&scene, &options(&out, 1)).unwrap();
@@ -280,7 +273,6 @@ ramp = "0 s"
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 2e-2);
 }
 
-/// Number of a sleeper's record in the summary.
 fn recorded(summary: &serde_json::Value, k: usize, key: &str) -> f64 {
     let path = format!("/track/sleepers/{k}/{key}");
     summary
@@ -289,12 +281,11 @@ fn recorded(summary: &serde_json::Value, k: usize, key: &str) -> f64 {
         .unwrap_or_else(|| panic!("{path}: {summary:#}"))
 }
 
-/// A pull of twice the weight takes a sleeper off its bed, then lets go; the other one is pulled with half its weight and stays.
-/// In the air it goes by the closed form, z'' = F/m − g, under the pull and without it, to rounding: the second difference
-/// of its height over equal times is that of a parabola, with no contact in between. No contact holds energy then, and the
-/// summary tells when it rose, how long it was off and how high it came, which are those of the parabolas.
+/// Pulled with twice and with half the weight. In the air z'' = F/m − g: second differences of height are
+/// those of parabolas to rounding, contacts store no energy. The summary gives time, duration and height of
+/// lift-off.
 #[test]
-fn a_sleeper_in_the_air_flies_by_the_closed_form() {
+fn lifted_sleeper_matches_free_flight() {
     let load = r#"
 [track.load]
 kind = "history"
@@ -317,7 +308,7 @@ ramp = "0 s"
     let springs = history.column("contact_springs");
     let (mut pulled, mut free) = (0, 0);
     for k in 1..t.len() - 1 {
-        // Force of the whole stretch between the rows before and after, and no contact there.
+        // Force constant between adjacent rows, no contact.
         let force = match t[k] {
             x if x > 0.0711 && x < 0.1089 => PULL,
             x if x > 0.1121 && x < 0.2 => 0.0,
@@ -332,11 +323,11 @@ ramp = "0 s"
     }
     assert!(pulled > 30 && free > 80, "{pulled} {free}");
     let summary = json(&out.join("summary.json"));
-    // The pull is that of the weight 4.9 ms after it begins; the springs need a part of their period of 17 ms to let go.
+    // Pull equals weight after 4.9 ms; unloading needs part of the springs' period of 17 ms.
     let (first, seconds) =
         (recorded(&summary, 0, "lifted_off/first"), recorded(&summary, 0, "lifted_off/seconds"));
     assert!((0.0549..0.062).contains(&first), "{first}");
-    // It hardly touches at 0.2 m; from the top it falls to there, and bounces with a fifth of its speed.
+    // Free fall from the top to first contact at about 0.2 m, rebound at a fifth of the speed.
     let highest = extremes(&z)[1];
     let top = t.iter().zip(&z).find(|(_, z)| **z == highest).map(|(t, _)| *t).unwrap();
     let fall = (2.0 * (highest - 0.2) / 9.81).sqrt();
@@ -349,7 +340,6 @@ ramp = "0 s"
     assert!(warnings.contains(&format!("first at t = {first:.6} s")), "{warnings}");
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 2e-3, "{}", summary["energy"]);
 
-    // Half the weight.
     folder.write("force.csv", "time, force\n0, 0\n0.01, -1470\n0.06, -1470\n0.0601, 0\n");
     trackbed::run::run(&scene, &options(&folder.join("stays"), 1)).unwrap();
     let summary = json(&folder.join("stays/summary.json"));
@@ -357,10 +347,9 @@ ramp = "0 s"
     assert!(!summary["warnings"].to_string().contains("without contact"));
 }
 
-/// On stones on a solid as well, in each cycle of a wave that pulls, and in windows that are made again as in those that are
-/// made once.
+/// On grains on a solid: uplift in each cycle, equal in iterated and single-pass windows.
 #[test]
-fn a_wave_that_pulls_lifts_a_sleeper_off_stones() {
+fn uplift_wave_lifts_sleeper_off_grains() {
     let folder = scene_folder("wave", COUPLED);
     let scene = folder.join("scene.toml");
     let mut seconds = Vec::new();
@@ -391,7 +380,7 @@ fn rails_go_on_bit_for_bit() {
     goes_on_bit_for_bit(&scene, &folder, &[300, 900, 2000]);
     let walls = std::fs::read_to_string(folder.join("whole/frames/walls_00001.vtp")).unwrap();
     assert!(walls.contains("NumberOfPolys"), "a picture with sleepers and rail");
-    // Another run cannot go on with a bent rail.
+    // No restart with a deflected rail.
     let from = Some(folder.join("whole"));
     let next = trackbed::run::Options { from, ..options(&folder.join("next"), 1) };
     let refused = trackbed::run::run(&scene, &next).expect_err("a rail is refused");
@@ -399,7 +388,6 @@ fn rails_go_on_bit_for_bit() {
     assert!(refused.code() == 2 && !folder.join("next").exists());
 }
 
-/// A line on standard error for a scene with one thing broken; nothing is written.
 #[track_caller]
 fn refused(scene: &str, old: &str, new: &str, line: &str) {
     assert_eq!(scene.matches(old).count(), 1, "{old}");

@@ -1,6 +1,6 @@
-//! Runs of random scenes: whatever is in them, the energy account closes to 2 %, or the run says that it does not.
+//! Random scenes: energy error at most 2 %, or a warning.
 //!
-//! `TRACKBED_RANDOM=400` runs so many of each kind in place of the few of an ordinary test:
+//! `TRACKBED_RANDOM` sets the number of each kind:
 //!
 //! ```text
 //! TRACKBED_RANDOM=400 cargo test --workspace --release --test suite random_runs -- --nocapture
@@ -10,10 +10,9 @@ use super::support::{Folder, json, trackbed};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Error of the energy account, relative to what was turned over, above which a run has to say so.
+/// Relative energy error that requires a warning.
 const BOUND: f64 = 0.02;
 
-/// Numbers that look random and are the same on every machine.
 struct Random(u64);
 
 impl Random {
@@ -26,7 +25,6 @@ impl Random {
         low + (high - low) * self.next()
     }
 
-    /// Evenly spread on a logarithmic scale.
     fn decade(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.next())
     }
@@ -51,7 +49,6 @@ fn material(random: &mut Random, name: &str) -> String {
     )
 }
 
-/// A few spheres that strike a block of random stiffness from random directions.
 fn impact(random: &mut Random) -> String {
     let mut text = material(random, "stone");
     let mut spheres = String::new();
@@ -85,10 +82,9 @@ fn impact(random: &mut Random) -> String {
     )
 }
 
-/// A bed that falls into a box, of spheres of random sizes or of clumps.
 fn bed(random: &mut Random) -> String {
     let mut text = material(random, "stone") + &material(random, "box");
-    // The law follows from the constants: both materials have one.
+    // Both materials need constants of the same law.
     if text.matches("young").count() == 1 {
         text = material(&mut Random(1), "stone") + &material(&mut Random(1), "box");
     }
@@ -119,7 +115,7 @@ fn bed(random: &mut Random) -> String {
     text + &format!("[time]\nend = {}\n[output]\nframes = 0\n", 6.0 * (size / 9.81).sqrt())
 }
 
-/// Runs scenes; what became of them, by kind, and the largest error without a warning.
+/// Runs scenes; outcomes by kind and the largest error without warning.
 fn run_all(name: &str, scene: impl Fn(&mut Random) -> String, count: u64) {
     let folder = Folder::new(name);
     let mut ends: BTreeMap<String, u32> = BTreeMap::new();
@@ -134,7 +130,6 @@ fn run_all(name: &str, scene: impl Fn(&mut Random) -> String, count: u64) {
         let done =
             trackbed(["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--threads", "1"]);
         if done.code != 0 {
-            // Refused or stopped, each with its one sentence.
             let said = done.stderr.lines().last().unwrap_or_default();
             let known =
                 [2, 3].contains(&done.code) && said.starts_with("error: ") && !said.contains("has failed");
@@ -162,7 +157,7 @@ fn run_all(name: &str, scene: impl Fn(&mut Random) -> String, count: u64) {
     }
     println!("{name}: {ends:?}, largest error of those that passed {worst:.1e}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // A test of refusals alone would show nothing.
+    // Most runs must pass.
     assert!(ends.get("passed").copied().unwrap_or(0) as u64 * 2 > count, "{ends:?}");
 }
 

@@ -1,5 +1,5 @@
-//! A run whose steps are shared among ranks, here threads that send each other messages: the same files, whatever the number of
-//! ranks, and checkpoints that any number of them goes on from. By MPI: `tests/ranks_check.sh`.
+//! Runs partitioned among ranks (threads with messages): identical files and checkpoints for any number. With
+//! MPI: `tests/ranks_check.sh`.
 
 use super::support::{COUPLED, Folder, repository, results, scene_folder, shaft};
 use std::path::Path;
@@ -7,7 +7,6 @@ use trackbed::failure::Failure;
 use trackbed::run::{Interrupt, Options, Outcome, Ranked, Verbosity, follow, run};
 use trackbed_dem::ranks::{Lost, local};
 
-/// Marbles and a few clumps fall on a slope that moves, in a box with an outlet; enough for some blocks.
 fn scene() -> String {
     let library = repository().join("inputs/track/cyclic/stones.toml");
     let walls = shaft(0.3);
@@ -59,7 +58,7 @@ history_interval = "2 ms"
     )
 }
 
-/// A run of so many ranks; how it ended, and how the others did.
+/// Runs on `ranks`; outcomes of the first and the others.
 fn shared(scene: &Path, options: Options, ranks: usize) -> (Result<Outcome, Failure>, Vec<Result<(), Lost>>) {
     let mut links = local(ranks);
     let first = links.remove(0);
@@ -83,7 +82,7 @@ fn options(out: &Path) -> Options {
 }
 
 #[test]
-fn any_number_of_ranks_leaves_the_same_files() {
+fn ranks_write_identical_files() {
     let folder = Folder::new("ranks");
     let scene = folder.write("scene.toml", &scene());
     let alone = folder.join("alone");
@@ -111,7 +110,7 @@ fn any_number_of_ranks_leaves_the_same_files() {
         same(&out, &format!("{ranks} ranks"));
     }
 
-    // Three ranks are stopped, two go on and are stopped, one process alone goes on, four end it.
+    // Interrupted on three and two ranks, resumed on one, completed on four.
     let out = folder.join("broken");
     for (k, ranks) in [3, 2, 1].into_iter().enumerate() {
         let interrupt = Interrupt::after(windows / 4 - k as u64);
@@ -126,7 +125,6 @@ fn any_number_of_ranks_leaves_the_same_files() {
     same(&out, "with breaks");
 }
 
-/// What ranks do not share is named before anything is written, and the others end.
 #[test]
 fn ranks_refuse_by_name() {
     let folder = scene_folder("ranks_solid", COUPLED);
@@ -145,7 +143,6 @@ fn ranks_refuse_by_name() {
     assert!(text.starts_with("2 ranks: not supported with several ranks: boxes and polyhedra"), "{text}");
 }
 
-/// A scene that is wrong is refused once, in the words of any run, and all end.
 #[test]
 fn what_is_wrong_is_said_once() {
     let folder = Folder::new("ranks_wrong");

@@ -1,10 +1,10 @@
-//! The reference of scenes: `docs/scene.md` has the tables that the comments of the keys make.
+//! `docs/scene.md` against the doc comments of keys.
 
 use super::support::{Folder, repository, trackbed};
 use std::fs;
 use trackbed::scene::{reference, schema};
 
-/// The command that renews the page.
+/// Updates the page.
 const RENEW: &str = "trackbed schema --markdown docs/scene.md";
 
 fn page() -> String {
@@ -28,12 +28,11 @@ fn page_agrees_with_comments() {
     );
 }
 
-/// Words of a text as the pages count them.
 fn words(text: &str) -> usize {
     text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
 }
 
-/// Each key has a noun phrase of at most 15 words, and says whether it must be given.
+/// At most 15 words, with required or optional.
 #[test]
 fn descriptions_are_short_and_complete() {
     let keys = schema::keys();

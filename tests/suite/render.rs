@@ -1,4 +1,4 @@
-//! `trackbed render`: pixels of scenes whose picture is known, the same bytes on any number of threads, videos, refusals.
+//! `trackbed render`: pixels of known pictures, threads, videos, rejected input.
 
 pub(super) mod files;
 
@@ -7,7 +7,6 @@ use files::{Pixels, chains, grains, series, solid};
 use std::fs;
 use std::path::Path;
 
-/// Draws a picture as a bitmap with nothing around the scene, and reads it.
 #[track_caller]
 fn picture(folder: &Folder, arguments: &[&str]) -> Pixels {
     let mut all = vec!["--hide", "caption,axes,scale,legends,edges"];
@@ -27,11 +26,11 @@ fn drawn(folder: &Folder, arguments: &[&str]) -> Pixels {
     Pixels::read(&file)
 }
 
-/// A picture is 0.2 m across, less 11 pixels at each side, from the middle of 200 × 200 pixels.
+/// 0.2 m across 200 pixels less 11 at each side.
 const SQUARE: [&str; 2] = ["--size", "200x200"];
 
 #[test]
-fn a_sphere_covers_its_circle_within_a_pixel() {
+fn sphere_covers_its_circle() {
     let folder = Folder::new("render_sphere");
     grains(&folder, 0, &[[5.0, 2.0, 1.0, 0.1]], &[0]);
     series(&folder, 1);
@@ -45,22 +44,20 @@ fn a_sphere_covers_its_circle_within_a_pixel() {
             assert!(white || far < radius + 1.0, "{x}, {y}: {:?} outside", seen.at(x, y));
         }
     }
-    // In perspective it stays round, and in the middle.
     let seen =
         picture(&folder, &[&SQUARE[..], &["--projection", "perspective", "--view", "-70:20"]].concat());
     let [x0, y0, x1, y1] = seen.covered().expect("a sphere");
     assert!((x1 - x0).abs_diff(y1 - y0) <= 1 && x1 - x0 > 80, "{x0} {y0} {x1} {y1}");
     let area = seen.count() as f64 / (0.25 * std::f64::consts::PI * ((x1 - x0 + 1) as f64).powi(2));
     assert!((area - 1.0).abs() < 0.03, "{area}");
-    // Light comes from the upper left.
     let light = |x, y| seen.at(x, y).iter().map(|c| u32::from(*c)).sum::<u32>();
     assert!(light(80, 80) > light(125, 125) + 40);
 }
 
 #[test]
-fn the_nearer_of_two_spheres_is_seen() {
+fn nearer_sphere_is_visible() {
     let folder = Folder::new("render_depth");
-    // Groups 0, orange, and 1, blue; the blue one is small and before the other.
+    // Group 0 orange; group 1 blue, small, in front.
     grains(&folder, 0, &[[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.0, 0.04]], &[0, 1]);
     series(&folder, 1);
     let blue = |pixel: [u8; 3]| pixel[2] > pixel[0];
@@ -70,7 +67,6 @@ fn the_nearer_of_two_spheres_is_seen() {
         assert!(blue(front.at(100, 100)) && !blue(front.at(100, 170)), "{projection}");
         let back = picture(&folder, &[&all[..], &["--view", "back"]].concat());
         assert!(!blue(back.at(100, 100)), "{projection}");
-        // A clip takes the orange one away, as glass it lets it through.
         let cut = picture(&folder, &[&all[..], &["--clip", "grains:y=:0.1"]].concat());
         assert!(blue(cut.at(100, 30)), "{projection}: the blue one fills the picture");
     }
@@ -78,7 +74,7 @@ fn the_nearer_of_two_spheres_is_seen() {
     assert_eq!(hidden.covered(), None);
 }
 
-/// Colours of viridis at its ends and in the middle.
+/// Ends and middle of viridis.
 const VIRIDIS: [[u8; 3]; 3] = [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]];
 
 #[track_caller]
@@ -88,7 +84,7 @@ fn close(found: [u8; 3], expected: [u8; 3], most: u8, what: &str) {
 }
 
 #[test]
-fn contours_have_the_colours_of_their_values_and_of_the_legend() {
+fn contour_colours_match_legend() {
     let folder = Folder::new("render_contours");
     solid(&folder, 0, |x| x[0], |_| [0.0; 3]);
     series(&folder, 1);
@@ -98,17 +94,16 @@ fn contours_have_the_colours_of_their_values_and_of_the_legend() {
             close(seen.at(x, y), colour, 16, &format!("{x}, {y}"));
         }
     }
-    // Cut in the middle it shows the value there, the same all over.
+    // Uniform value on the cut.
     let cut = ["--field", "heat", "--clip", "x=:0.5", "--view", "right"];
     let seen = picture(&folder, &[&SQUARE[..], &cut].concat());
     for place in [20, 100, 180] {
         close(seen.at(place, 200 - place), VIRIDIS[1], 16, "in the section");
     }
-    // Beyond given limits colours end.
     let seen = picture(&folder, &[&SQUARE[..], &["--field", "heat", "--range", "solid=0.4:0.6"]].concat());
     close(seen.at(60, 100), VIRIDIS[0], 16, "below the range");
     close(seen.at(140, 100), VIRIDIS[2], 16, "above the range");
-    // The bar of the legend: 18 × 150 pixels at the upper right of 1280 × 720.
+    // Legend bar: 18 × 150 pixels, upper right of 1280 × 720.
     let all = drawn(&folder, &["--field", "heat"]);
     for (y, colour) in [(42, VIRIDIS[2]), (115, VIRIDIS[1]), (187, VIRIDIS[0])] {
         close(all.at(1102, y), colour, 12, "legend");
@@ -120,7 +115,7 @@ fn contours_have_the_colours_of_their_values_and_of_the_legend() {
 }
 
 #[test]
-fn the_solid_is_drawn_deformed_by_the_factor() {
+fn solid_is_drawn_with_scaled_deformation() {
     let folder = Folder::new("render_deformed");
     solid(&folder, 0, |x| x[0], |x| [0.0, 0.0, 0.5 * x[2]]);
     solid(&folder, 1, |x| 3.0 * x[0], |x| [0.0, 0.0, x[2]]);
@@ -134,22 +129,21 @@ fn the_solid_is_drawn_deformed_by_the_factor() {
         let found = shape(&["--frame", frame, "--deform", factor]);
         assert!((found - expected).abs() < 0.03, "frame {frame}, factor {factor}: {found}");
     }
-    // Since frame 0: displacement and field are changes.
+    // `--since 0`: changes of displacement and field.
     assert!((shape(&["--frame", "1", "--since", "0"]) - 1.5).abs() < 0.03);
     let change = ["--frame", "1", "--since", "0", "--deform", "0", "--field", "heat", "--range", "0:4"];
     let seen = picture(&folder, &[&SQUARE[..], &change].concat());
     close(seen.at(187, 100), VIRIDIS[1], 16, "3 - 1 of 4");
-    // A time picks the nearest frame.
     assert!((shape(&["--frame", "0.9s"]) - 2.0).abs() < 0.03);
 }
 
 #[test]
-fn a_chain_is_as_thick_as_its_force_is_large() {
+fn chain_thickness_follows_force() {
     let folder = Folder::new("render_chains");
     let line = |z: f64| [0.0, 0.0, z, 1.0, 0.0, z];
     chains(&folder, 0, &[line(0.0), line(0.2)], &[40.0, 10.0]);
     series(&folder, 1);
-    // A metre over 1280 pixels less 11 at each side: sizes are of 0.04 m where there are no stones.
+    // One metre across 1280 pixels less 11 at each side; without stones the size unit is 0.04 m.
     let size = ["--size", "1280x360", "--thickness", "2"];
     let seen = picture(&folder, &size);
     let scale = 1280.0 - 22.0;
@@ -160,7 +154,6 @@ fn a_chain_is_as_thick_as_its_force_is_large() {
         assert!((*wide as f64 - expected).abs() <= 1.5, "{wide} pixels, expected {expected}");
     }
     assert!((runs[1].0.abs_diff(runs[0].0) as f64 - 0.2 * scale).abs() <= 1.5);
-    // The strong one has the last colour of its map.
     let [r, g, b] = seen.at(640, runs[1].0);
     assert!(r > 180 && g > 150 && b < 130, "{r} {g} {b}");
     let strong = picture(&folder, &[&size[..], &["--least", "0.5"]].concat());
@@ -168,7 +161,7 @@ fn a_chain_is_as_thick_as_its_force_is_large() {
     assert_eq!(picture(&folder, &[&size[..], &["--hide", "chains"]].concat()).covered(), None);
 }
 
-/// 400 spheres of 100 clumps, chains between some, a solid: two frames.
+/// Two frames of 400 spheres in 100 clumps, chains, a solid.
 fn crowd(folder: &Folder) {
     let mut seed = 7_u32;
     let mut random = || {
@@ -190,7 +183,7 @@ fn crowd(folder: &Folder) {
 }
 
 #[test]
-fn pictures_are_the_same_bytes_on_any_number_of_threads() {
+fn pictures_are_identical_across_threads() {
     let folder = Folder::new("render_threads");
     crowd(&folder);
     for ending in ["png", "jpg", "bmp", "avi"] {
@@ -208,7 +201,7 @@ fn pictures_are_the_same_bytes_on_any_number_of_threads() {
             assert!(of(threads, run) == first, "{ending} on {threads} threads");
         }
     }
-    // What is exact is the same picture.
+    // PNG is lossless.
     let png = fs::read(folder.join("1_0.png")).unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
@@ -219,7 +212,7 @@ fn pictures_are_the_same_bytes_on_any_number_of_threads() {
 }
 
 #[test]
-fn a_video_has_a_frame_for_each_entry_of_its_index() {
+fn video_frames_match_index() {
     let folder = Folder::new("render_video");
     crowd(&folder);
     let file = folder.join("a.avi");
@@ -231,7 +224,6 @@ fn a_video_has_a_frame_for_each_entry_of_its_index() {
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     assert_eq!((&bytes[..4], &bytes[8..12]), (&b"RIFF"[..], &b"AVI "[..]));
     assert_eq!(word(4) + 8, bytes.len());
-    // Chunks of the file: the head, the frames, the index.
     let (head, movie) = (12, 12 + 8 + word(16));
     assert_eq!((&bytes[head + 8..head + 12], &bytes[movie + 8..movie + 12]), (&b"hdrl"[..], &b"movi"[..]));
     let main = head + 12 + 8;
@@ -263,7 +255,7 @@ fn refused(folder: &Path, arguments: &[&str], expected: &str) {
 }
 
 #[test]
-fn bad_input_is_one_clear_error_and_writes_nothing() {
+fn bad_input_writes_nothing() {
     let folder = Folder::new("render_bad");
     crowd(&folder);
     let dir = folder.path();
@@ -307,7 +299,7 @@ fn bad_input_is_one_clear_error_and_writes_nothing() {
         "{}",
         outcome.stderr
     );
-    // A file is replaced by force alone; a damaged result leaves it as it was.
+    // Overwritten only with `--force`, unchanged after an error.
     let there = folder.write("there.png", "mine");
     let out = ["--out", there.to_str().unwrap()];
     refused(dir, &out, "or --force to overwrite it");

@@ -1,4 +1,4 @@
-//! `trackbed report`: pages that any program can read, with the numbers of the files.
+//! `trackbed report`: well-formed pages with the numbers of the result files.
 
 use super::support::{
     COUPLED, Folder, GRAINS, Outcome, PLASTIC, Table, json, repository, run, scene_folder, trackbed,
@@ -7,21 +7,17 @@ use quick_xml::events::Event;
 use std::fs;
 use std::path::Path;
 
-/// A page as a reader finds it.
 struct Page {
-    /// Names of the sections.
     sections: Vec<String>,
-    /// Text without tags.
     text: String,
-    /// Numbers that stand behind the pointer.
+    /// Full-precision numbers of tooltips.
     numbers: Vec<f64>,
-    /// Plots.
     figures: usize,
     source: String,
 }
 
 impl Page {
-    /// Reads a page; it must be well-formed, reach for nothing outside itself, and hold no number that is none.
+    /// Reads a page; requires well-formed, self-contained, finite content.
     #[track_caller]
     fn read(file: &Path) -> Page {
         let source = fs::read_to_string(file).unwrap();
@@ -106,7 +102,6 @@ fn report(arguments: &[&Path]) -> Outcome {
     trackbed(std::iter::once(Path::new("report")).chain(arguments.iter().copied()))
 }
 
-/// Runs a scene of the repository and reports it.
 #[track_caller]
 fn reported(folder: &Folder, scene: &str, set: &[&str]) -> (Page, serde_json::Value) {
     let out = folder.join("out");
@@ -194,13 +189,13 @@ fn settlement_laws_of_many_cycles() {
     }
     page.says(summary["packing"]["measures"][0]["porosity"].as_f64().unwrap());
     page.contains("cycle 24");
-    // Dashed for the laws, on the linear and on the logarithmic plot.
+    // Dashed laws on both plots.
     assert!(page.source.matches("Alva-Hurtado").count() >= 3);
     page.lacks(&["pressure", "solid"]);
 }
 
 #[test]
-fn a_solid_alone_and_its_factor_of_safety() {
+fn solid_with_factor_of_safety() {
     let folder = Folder::new("report_solid");
     let set = ["output.frames=1", "output.tables=true", "time.solid_step=0.1"];
     let (page, summary) = reported(&folder, "inputs/solid/footing.toml", &set);
@@ -257,7 +252,6 @@ fn modes_and_several_runs() {
     both.has(&["compare", "settlement", "overview", "reproduce"]);
     both.contains("Two loads");
     both.contains("track.load.maximum");
-    // Folders of one name are shown with the way there.
     both.contains(&one.display().to_string());
     for dir in [&one, &two] {
         both.says(json(&dir.join("summary.json"))["energy"]["work"].as_f64().unwrap());
@@ -299,7 +293,6 @@ fn hostile_names_are_escaped() {
     }
     report(&[&outs[0], Path::new("--title"), Path::new("<b>\"own\"</b>")]).good();
     Page::read(&outs[0].join("report.html")).contains("<b>\"own\"</b>");
-    // The names of several runs stand in legends and heads as well.
     let html = folder.join("all.html");
     report(&[&outs[1], &outs[2], &outs[3], Path::new("--out"), &html]).good();
     let page = Page::read(&html);
@@ -307,9 +300,8 @@ fn hostile_names_are_escaped() {
     names[1..].iter().for_each(|name| page.contains(&format!("{name}: {wall}, z")));
 }
 
-/// Runs that have no good end: interrupted, failed, killed, and still going on.
 #[test]
-fn what_is_not_done_is_reported_and_says_so() {
+fn unfinished_runs_are_reported() {
     let folder = Folder::new("report_open");
     let scene = folder.write("scene.toml", PLASTIC);
     let out = folder.join("out");
@@ -333,7 +325,7 @@ fn what_is_not_done_is_reported_and_says_so() {
     let failed = page(&out);
     failed.contains("Failed.");
     failed.contains("at t = 0.5 s: no equilibrium <here>");
-    // A run that is killed leaves no summary, and a row without its end.
+    // Killed: no summary, truncated row.
     fs::remove_file(out.join("summary.json")).unwrap();
     let history = fs::read_to_string(out.join("history.csv")).unwrap();
     fs::write(out.join("history.csv"), &history[..history.len() - 7]).unwrap();
@@ -344,7 +336,7 @@ fn what_is_not_done_is_reported_and_says_so() {
     fs::write(out.join("run.lock"), format!("{}\n", std::process::id())).unwrap();
     page(&out).contains("Still running.");
     assert!(out.join("run.lock").exists());
-    // Rows that are not whole are counted and left out; without run.json the scene is not known.
+    // Invalid rows are counted; without run.json the scene is unknown.
     fs::write(out.join("history.csv"), history.replacen('\n', "\n1,2\nx\n", 1)).unwrap();
     fs::remove_file(out.join("run.json")).unwrap();
     let damaged = page(&out);
@@ -354,7 +346,7 @@ fn what_is_not_done_is_reported_and_says_so() {
 }
 
 #[test]
-fn what_is_no_result_is_refused_with_one_sentence() {
+fn rejects_directories_without_results() {
     let folder = Folder::new("report_refused");
     let scene = folder.write("scene.toml", GRAINS);
     let out = folder.join("out");

@@ -1,4 +1,4 @@
-//! Slides: closed forms, terrain from every form of surface, what their files hold, what is refused.
+//! Slides: closed forms, terrain formats, runout results, rejected input.
 
 use super::support::{Folder, Table, json, repository, run, trackbed};
 use std::f64::consts::PI;
@@ -7,7 +7,7 @@ use std::fs;
 
 const DIP: f64 = 30.0;
 
-/// Heights of a plane that falls along x by [`DIP`], from 0 at x = 0, on a grid of 1 m.
+/// Grid of 1 m of a plane falling along x by [`DIP`].
 fn incline() -> String {
     let mut text = String::from("ncols 42\nnrows 11\nxllcenter -2\nyllcenter -5\ncellsize 1\n");
     for _ in 0..11 {
@@ -19,7 +19,6 @@ fn incline() -> String {
     text
 }
 
-/// A block of 4 x 4 x 2 bonded spheres that rests on the incline.
 fn block(radius: f64) -> String {
     let (sin, cos) = (DIP * PI / 180.0).sin_cos();
     let mut rows = String::from("x,y,z,r\n");
@@ -66,9 +65,9 @@ frames = 2
     )
 }
 
-/// s = g (sin a - mu cos a) t²/2 along the slope, within 0.5 %; the angle of the centre's way is that of the slope.
+/// s = g (sin a - mu cos a) t²/2 within 0.5 %; travel angle equals slope angle.
 #[test]
-fn a_block_slides_as_the_closed_form_says() {
+fn sliding_block_matches_closed_form() {
     let folder = Folder::new("slide");
     folder.write("incline.asc", &incline());
     folder.write("block.csv", &block(0.25));
@@ -87,7 +86,7 @@ fn a_block_slides_as_the_closed_form_says() {
     assert!((of("advance") / cos / way - 1.0).abs() < 5e-3, "{runout}");
     assert_eq!((of("largest_share"), of("moved_share"), of("below_ground")), (1.0, 1.0, 0.0));
     assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
-    // Two layers: between four radii and, at an edge of a cell, the slope of a cell more.
+    // Two layers: four radii, plus the slope across a cell at a cell edge.
     assert!(of("deepest") > 0.9 && of("deepest") < 1.0 / cos + 0.5, "{runout}");
     let front = Table::read(&folder.join("r/history.csv")).column("runout_front");
     assert!((front[front.len() - 1] - of("front")).abs() < 1e-12);
@@ -100,7 +99,7 @@ fn a_block_slides_as_the_closed_form_says() {
     assert!(frame.contains("Name=\"displacement\"") && frame.contains("Name=\"initial_position\""));
 }
 
-/// The same slope as a closed body of numbers in any order, as older programs exchange it, and as a mesh of elements.
+/// The slope as closed body with any vertex order (older programs), and as mesh.
 #[test]
 fn terrain_comes_in_every_form() {
     let folder = Folder::new("terrain");
@@ -115,7 +114,7 @@ fn terrain_comes_in_every_form() {
     for [x, y, z] in &corners {
         writeln!(list, "{x:e} {y:e} {z:e}").unwrap();
     }
-    // Numbers ascend in each row, so the winding says nothing; two triangles inside are joined to three others by an edge.
+    // Ascending indices carry no orientation; two inner triangles share an edge with three others.
     for t in [
         "1 3 5", "3 5 7", "2 4 6", "4 6 8", "1 2 3", "2 3 4", "5 6 7", "6 7 8", "1 2 5", "2 5 6", "3 4 7",
         "4 7 8", "1 2 7", "2 7 8",
@@ -134,7 +133,6 @@ fn terrain_comes_in_every_form() {
     assert_eq!((runout["below_ground"].as_u64(), runout["beyond_ground"].as_u64()), (Some(0), Some(0)));
 }
 
-/// A container is the skin of a mesh of elements.
 #[test]
 fn a_mesh_of_elements_is_filled() {
     let folder = Folder::new("skin");
@@ -188,7 +186,7 @@ fn what_is_no_slide_is_refused() {
     }
 }
 
-/// Stiffness of a chain of bonds whose moduli differ: the scatter softens it as the mean of the compliances says.
+/// Chain of bonds with scattered moduli: mean compliance.
 #[test]
 fn stiffnesses_spread() {
     let folder = Folder::new("spread");
@@ -210,13 +208,13 @@ fn stiffnesses_spread() {
     );
     let force = |set: &[&str], out: &str| {
         run(&file, &folder.join(out), set).good();
-        // Over the second half of the pull: waves along the chain average out.
+        // Second half only: waves average out.
         let force = Table::read(&folder.join(out).join("history.csv")).column("head_force_z");
         -force[force.len() / 2..].iter().sum::<f64>()
     };
     let alike = force(&[], "a");
     let spread = force(&["bond.0.stiffness_spread={ kind = \"normal\", deviation = 0.2 }"], "b");
-    // E[1/x] of a normal law about 1 with a deviation of 0.2 is 1.0456; 201 bonds leave a scatter of 1.6 %.
+    // E[1/x] = 1.0456 for a normal law with mean 1 and deviation 0.2; 201 bonds scatter by 1.6 %.
     println!("softer by {:.4}, expected 1.0456", alike / spread);
     assert!((alike / spread - 1.0456).abs() < 0.05, "{alike} {spread}");
     assert!((alike / spread - 1.0).abs() > 5e-3);

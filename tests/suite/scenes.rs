@@ -1,5 +1,5 @@
-//! What runs leave on disk: the fields that every file must hold, no number that is not finite, and an honest end
-//! when a run blows up (exit code 3: what, where, when; the summary says that it failed).
+//! Result files: required fields, finite values, and numerical failures (exit code 3 with cause, place and
+//! time).
 
 use super::support::{
     COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot, trackbed,
@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use vtkio::model::{Attribute, DataSet};
 
-/// Arrays of a VTK file: name → (components, values).
+/// Name → (components, values).
 pub(super) type Arrays = BTreeMap<String, (usize, Vec<f64>)>;
 
-/// Points, point data and cell data of a file; everything must be finite.
+/// Points, point data and cell data of a VTK file; all finite.
 pub(super) fn vtk(file: &Path) -> (Vec<f64>, Arrays, Arrays) {
     let arrays = |list: Vec<Attribute>| -> Arrays {
         let one = |attribute: Attribute| match attribute {
@@ -49,7 +49,6 @@ fn expect_arrays(arrays: &Arrays, items: usize, expected: &[(&str, usize)]) {
     }
 }
 
-/// Files that `results.pvd` lists, with their times.
 fn series(dir: &Path) -> Vec<(f64, PathBuf)> {
     let text = fs::read_to_string(dir.join("results.pvd")).unwrap();
     let attribute = |row: &str, name: &str| {
@@ -61,7 +60,6 @@ fn series(dir: &Path) -> Vec<(f64, PathBuf)> {
         .collect()
 }
 
-/// A finished run of the coupled scene.
 fn coupled(name: &str) -> Folder {
     let folder = scene_folder(name, COUPLED);
     run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
@@ -69,11 +67,10 @@ fn coupled(name: &str) -> Folder {
 }
 
 #[test]
-fn frames_of_the_solid_hold_every_field() {
+fn solid_frames_contain_every_field() {
     let folder = coupled("fields");
     let out = folder.join("out");
     let frames = series(&out);
-    // The start and two frames of solid, grains, force chains, walls.
     assert_eq!(frames.len(), 12);
     assert!(frames.iter().all(|(_, file)| file.is_file()));
     assert_eq!(frames[0].0, 0.0);
@@ -92,7 +89,7 @@ fn frames_of_the_solid_hold_every_field() {
     ];
     expect_arrays(&point, nodes, &solid);
     expect_arrays(&cell, 8, &[("material", 1), ("element_id", 1)]);
-    // The picture and the history agree: the probe stands on the middle of the top.
+    // The probe lies in the middle of the top: frame and history agree.
     let history = Table::read(&out.join("history.csv"));
     let probe = (0..nodes).find(|n| points[3 * n..3 * n + 3] == [1.0, 1.0, 0.0]).unwrap();
     for (d, axis) in ["x", "y", "z"].iter().enumerate() {
@@ -104,7 +101,7 @@ fn frames_of_the_solid_hold_every_field() {
 }
 
 #[test]
-fn frames_of_a_coupled_run_hold_grains_chains_and_walls() {
+fn coupled_frames_contain_every_part() {
     let folder = coupled("frames");
     let out = folder.join("out");
     let history = Table::read(&out.join("history.csv"));
@@ -143,7 +140,7 @@ fn frames_of_a_coupled_run_hold_grains_chains_and_walls() {
 }
 
 #[test]
-fn tables_of_a_coupled_run_have_their_columns() {
+fn coupled_tables_have_their_columns() {
     let folder = coupled("tables");
     let out = folder.join("out");
     let history = Table::read(&out.join("history.csv"));
@@ -197,7 +194,7 @@ fn tables_of_a_coupled_run_have_their_columns() {
 }
 
 #[test]
-fn tecplot_file_holds_its_variables_points_and_bricks() {
+fn tecplot_file_is_complete() {
     let folder = coupled("tecplot");
     let text = fs::read_to_string(folder.join("out/tecplot/solid_00002.dat")).unwrap();
     let variables = text.lines().find_map(|l| l.strip_prefix("VARIABLES = ")).unwrap();
@@ -223,7 +220,7 @@ fn tecplot_file_holds_its_variables_points_and_bricks() {
     let count =
         |key: &str| -> usize { zone.split(key).nth(1).unwrap().split(',').next().unwrap().parse().unwrap() };
     let (points, bricks) = (count("N="), count("E="));
-    // 81 nodes, a centre per face (36) and per element (8); eight bricks per element.
+    // 81 nodes, 36 face centres, 8 element centres; eight bricks per element.
     assert_eq!((points, bricks), (81 + 36 + 8, 64));
     assert!(text.contains("ZONETYPE=FEBRICK"));
     let numbers: Vec<Vec<f64>> = text
@@ -256,7 +253,7 @@ fn vtk_itself_opens_the_results() {
     assert!(output.status.success() && text.contains("13 passed, 0 failed"), "{text}");
 }
 
-/// An interpreter with the package `vtk`: the one that `TRACKBED_PYTHON` names, or else `python3` if it has it.
+/// Python with `vtk`: `TRACKBED_PYTHON`, or `python3`.
 fn python() -> Option<PathBuf> {
     if let Some(path) = std::env::var_os("TRACKBED_PYTHON") {
         return Some(path.into());
@@ -271,7 +268,7 @@ fn python() -> Option<PathBuf> {
 }
 
 #[test]
-fn output_that_is_not_wanted_is_not_written() {
+fn disabled_output_is_not_written() {
     let folder = scene_folder("no_output", COUPLED);
     let out = folder.join("out");
     let set = ["output.vtk=false", "output.tecplot=false", "output.frames=0", "output.state=false"];
@@ -285,9 +282,9 @@ fn output_that_is_not_wanted_is_not_written() {
     );
 }
 
-/// Of the fields that may be left out those that are named are written, in every format; all others always.
+/// Optional fields only if chosen, in all formats.
 #[test]
-fn frames_hold_the_fields_that_are_chosen() {
+fn frames_contain_selected_fields() {
     let folder = scene_folder("fields", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let names = |file: &str| -> Vec<String> {
@@ -317,14 +314,13 @@ fn frames_hold_the_fields_that_are_chosen() {
         refused.stderr.contains("output.fields.1: found \"colour\", expected one of coordination,"),
         "{refused:?}"
     );
-    // Pictures and pages are made of them as they are.
     trackbed(["render", out.to_str().unwrap(), "--out", folder.join("one.png").to_str().unwrap()]).good();
     trackbed(["view", out.to_str().unwrap(), "--export", folder.join("one.html").to_str().unwrap()]).good();
 }
 
 #[test]
 fn files_that_are_no_results_stay() {
-    // Results beside the input, in a folder that no run has written to: the input has names of result files.
+    // Results next to input files with result names, in an unused directory.
     let folder = scene_folder("beside", SOLID);
     fs::rename(folder.join("NODECOORD.DAT"), folder.join("nodes.csv")).unwrap();
     folder.edit("scene.toml", "NODECOORD.DAT", "nodes.csv");
@@ -334,7 +330,7 @@ fn files_that_are_no_results_stay() {
 }
 
 #[test]
-fn results_of_an_earlier_run_are_gone() {
+fn earlier_results_are_removed() {
     let folder = scene_folder("stale", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     run(&scene, &out, &["output.frames=5"]).good();
@@ -345,7 +341,6 @@ fn results_of_an_earlier_run_are_gone() {
     assert_eq!(fs::read_dir(out.join("frames")).unwrap().count(), listed.len());
     assert_eq!(fs::read_dir(out.join("tecplot")).unwrap().count(), 2);
 
-    // A scene of another kind has no cycles and no solid.
     folder.write("scene.toml", GRAINS);
     run(&scene, &out, &[]).good();
     for name in
@@ -354,7 +349,7 @@ fn results_of_an_earlier_run_are_gone() {
         assert!(!out.join(name).exists(), "{name} is of another run");
     }
 
-    // A run that fails before its first file leaves no result but its summary and log.
+    // A failure before the first frame leaves summary and log only.
     folder.write("scene.toml", &one_in_the_other());
     fails(&folder, &["overlap"]);
     assert_eq!(
@@ -363,8 +358,8 @@ fn results_of_an_earlier_run_are_gone() {
     );
 }
 
-/// A run that fails numerically: code 3, one line on standard error with `what` and a time, and a summary that says the
-/// same. Returns the folder of the results.
+/// Numerical failure: code 3, one line with `what` and a time, the same in the summary. Returns the results
+/// directory.
 fn fails(folder: &Folder, what: &[&str]) -> PathBuf {
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let outcome = run(&scene, &out, &[]);
@@ -381,7 +376,7 @@ fn fails(folder: &Folder, what: &[&str]) -> PathBuf {
     out
 }
 
-/// A run that fails on its way, and leaves what it had until then without any number that is not finite.
+/// Failure during the run: earlier results are kept and finite.
 fn blows_up(folder: &Folder, what: &[&str]) {
     let out = fails(folder, what);
     let history = Table::read(&out.join("history.csv"));
@@ -390,7 +385,7 @@ fn blows_up(folder: &Folder, what: &[&str]) {
     assert!(!frames.is_empty());
     for (_, file) in &frames {
         let text = String::from_utf8_lossy(&fs::read(file).unwrap()).into_owned();
-        // Files of no contacts hold no array to look into.
+        // Without contacts there are no arrays.
         if !text.contains("NumberOfPoints=\"0\"") {
             vtk(file);
         }
@@ -402,7 +397,7 @@ fn blows_up(folder: &Folder, what: &[&str]) {
 }
 
 #[test]
-fn grains_blow_up_with_a_step_far_above_the_limit() {
+fn grain_step_above_limit_diverges() {
     let step = "[time]\nend = \"0.5\"\ngrain_step = \"5 ms\"\naccept_step_above_limit = true\n";
     let folder = Folder::new("blow_up_grains");
     folder.write("scene.toml", &GRAINS.replace("[time]\nend = \"20 ms\"\n", step));
@@ -410,13 +405,12 @@ fn grains_blow_up_with_a_step_far_above_the_limit() {
 }
 
 #[test]
-fn coupled_scene_blows_up_with_a_step_far_above_the_limit() {
+fn coupled_step_above_limit_diverges() {
     let step = "[time]\ngrain_step = \"10 ms\"\naccept_step_above_limit = true\n\n[output]";
     let folder = scene_folder("blow_up_coupled", &COUPLED.replace("[output]", step));
     blows_up(&folder, &["speed of body ", "(limit "]);
 }
 
-/// [`GRAINS`] with the upper sphere deep inside the lower one.
 fn one_in_the_other() -> String {
     GRAINS.replace("[0.01, 0.0, 0.152, 0.05]", "[0.001, 0.0, 0.06, 0.05]")
 }
@@ -446,7 +440,7 @@ fn unstable_newmark_constants_blow_up() {
 }
 
 #[test]
-fn a_run_after_a_failed_one_is_as_in_a_fresh_folder() {
+fn failed_run_leaves_no_trace() {
     let folder = Folder::new("after_failure");
     let scene = folder.write("scene.toml", GRAINS);
     let steps = ["time.grain_step=5 ms", "time.end=0.5", "time.accept_step_above_limit=true"];
@@ -463,7 +457,7 @@ fn a_run_after_a_failed_one_is_as_in_a_fresh_folder() {
 }
 
 #[test]
-fn a_scene_of_one_side_runs_alone() {
+fn single_domain_scenes_run() {
     let folder = scene_folder("alone", SOLID);
     run(&folder.join("scene.toml"), &folder.join("solid"), &[]).good();
     let names = |dir: &str| {
@@ -478,7 +472,6 @@ fn a_scene_of_one_side_runs_alone() {
     assert!(!folder.join("grains/cycles.csv").exists(), "no load, no cycles");
 }
 
-/// Two groups filled into one box: the second starts above the first, and the run goes on without an overlap.
 #[test]
 fn groups_filled_into_one_box_stack() {
     let group = |name: &str| {
@@ -503,7 +496,6 @@ fn groups_filled_into_one_box_stack() {
     assert!(height(1.0).0 > height(0.0).1, "the second group starts above the first");
 }
 
-/// A wall that moves in the run proper stands still while the grains settle.
 #[test]
 fn moving_walls_wait_for_the_run() {
     let folder = scene_folder("moving_wall", GRAINS);
@@ -517,7 +509,6 @@ fn moving_walls_wait_for_the_run() {
     assert!(last[2] > first[2] + 0.005, "lifted by the wall: {}", last[2]);
 }
 
-/// The small scenes of `inputs/` run, the long ones cut short, and their accounts close.
 #[test]
 fn small_scenes_run() {
     let out = scene_folder("small_scenes", SOLID);

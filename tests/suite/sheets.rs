@@ -1,9 +1,8 @@
-//! Sheets of bonded floes, through the program.
+//! Bonded ice sheets.
 
 use super::floes::refused;
 use super::support::{Folder, Table, json, run};
 
-/// A sheet of 30 floes that meets a held pile at its front, in the plane.
 const SHEET: &str = r#"gravity = [0, 0, 0]
 
 [[material]]
@@ -41,7 +40,6 @@ end = "0.3 s"
 frames = 1
 "#;
 
-/// A weak sheet is broken by the pile, and energy is accounted for; without strengths given it holds and is thrown back as one piece.
 #[test]
 fn a_sheet_breaks_or_holds() {
     let folder = Folder::new("sheets");
@@ -54,7 +52,7 @@ fn a_sheet_breaks_or_holds() {
     let (weak, _) = of("weak", &[]);
     let bonds = &weak["bonds"];
     let made = bonds["made"].as_u64().unwrap();
-    // Some three for each cell, fewer at the border (Euler).
+    // About three bonds per cell, fewer at borders (Euler).
     assert!((60..90).contains(&made), "{made}");
     let broken = bonds["broken_by_tension"].as_u64().unwrap() + bonds["broken_by_shear"].as_u64().unwrap();
     assert!(broken > 2 && broken < made, "{broken} of {made}");

@@ -1,10 +1,8 @@
-//! The solid at its edges, through the program: what locks, what is beyond small strains, what a step passes by, and what no
-//! number holds is refused, stopped or remarked on.
+//! Limits of the solid: locking, small strains, skipped loads, overflow.
 
 use super::support::{COUPLED, Folder, json, run, write_lists};
 use serde_json::Value;
 
-/// A column of 0.5 m × 0.5 m × 2 m on smooth walls, pressed from above.
 const COLUMN: &str = r#"title = "column"
 
 [solid]
@@ -41,7 +39,6 @@ pressure = "10 kPa"
 vtk = false
 "#;
 
-/// Exit code, standard error and warnings of a run of the column.
 fn column(change: &[(&str, &str)], set: &[&str]) -> (i32, String, Vec<String>) {
     let folder = Folder::new("edges");
     let mut text = COLUMN.to_string();
@@ -63,7 +60,7 @@ fn remarked(warnings: &[String], part: &str) {
 }
 
 #[test]
-fn elements_that_lock_are_named_with_the_key_that_helps() {
+fn locking_elements_name_remedy() {
     let soft = [("poisson = 0.25", "poisson = 0.4999")];
     for rule in ["full", "irons14"] {
         let rule = format!("solid.integration={rule}");
@@ -77,15 +74,15 @@ fn elements_that_lock_are_named_with_the_key_that_helps() {
         assert_eq!((code, warnings), (0, Vec::new()));
     }
     assert_eq!(column(&soft, &[]).2, Vec::<String>::new());
-    // Linear hexahedra do not lock; theirs are too deep at the clamped base.
+    // Linear hexahedra do not lock, but are too deep at the clamped base.
     let warnings = column(&soft, &["solid.order=linear"]).2;
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     remarked(&warnings, "deep at a clamped face");
 }
 
-/// A cantilever of hex8 elements as deep at the clamped face as it is high (6 % too stiff at ν = 0.4999), and thinner there.
+/// Cantilever of hex8, one element deep at the clamp (6 % too stiff at ν = 0.4999).
 #[test]
-fn deep_elements_at_a_clamped_face_are_named() {
+fn deep_clamped_elements_give_warning() {
     let beam = |counts: &str, set: &[&str]| {
         let change = [
             ("x = { lines = [0.0, 0.5], counts = [2] }", "x = { lines = [0.0, 5.0], counts = COUNTS }"),
@@ -119,7 +116,7 @@ fn deep_elements_at_a_clamped_face_are_named() {
 }
 
 #[test]
-fn keys_against_locking_without_an_element_to_act_on_are_refused() {
+fn rejects_locking_keys_without_effect() {
     let (code, error, _) = column(&[], &["solid.order=linear", "solid.dilatation=mean"]);
     assert_eq!(code, 2);
     assert!(
@@ -134,9 +131,9 @@ fn keys_against_locking_without_an_element_to_act_on_are_refused() {
     );
 }
 
-/// A slender cantilever of 4 linear elements over its height: modes on by default, off by the key, and the full rule's dilatation.
+/// Slender cantilever, 4 linear elements over its height: default, without modes, and with the full rule.
 #[test]
-fn incompatible_modes_act_unless_they_are_turned_off() {
+fn incompatible_modes_are_default() {
     let tip = |set: &[&str]| {
         let folder = Folder::new("beam");
         let beam = COLUMN
@@ -149,7 +146,7 @@ fn incompatible_modes_act_unless_they_are_turned_off() {
         run(&scene, &folder.join("out"), set).good();
         json(&folder.join("out/summary.json"))["statics"]["largest_displacement"][0].as_f64().unwrap()
     };
-    // F l³/(3 E I) + 1.2 F l/(G A), clamped end: a little less.
+    // F l³/(3 E I) + 1.2 F l/(G A), slightly less for the clamp.
     let (force, area, inertia) = (1000.0 * 0.25, 0.25, 0.5_f64.powi(4) / 12.0);
     let beam = force * 125.0 / (3.0 * 20e6 * inertia) + 1.2 * force * 5.0 / (8e6 * area);
     let (with, without) = (
@@ -161,7 +158,7 @@ fn incompatible_modes_act_unless_they_are_turned_off() {
 }
 
 #[test]
-fn strains_and_displacements_that_are_not_small_are_remarked_on() {
+fn large_strains_give_warning() {
     let (code, _, warnings) = column(&[("10 kPa", "2 MPa")], &[]);
     assert_eq!(code, 0);
     remarked(&warnings, "solid: strain ");
@@ -172,7 +169,7 @@ fn strains_and_displacements_that_are_not_small_are_remarked_on() {
 }
 
 #[test]
-fn a_load_beyond_all_numbers_stops_the_run() {
+fn overflowing_load_stops_run() {
     let (code, error, _) = column(&[("10 kPa", "1e200 Pa")], &[]);
     assert_eq!(code, 3, "{error}");
     assert!(error.contains("strain energy"), "{error}");
@@ -187,7 +184,7 @@ const MOVING: [(&str, &str); 2] = [
 ];
 
 #[test]
-fn a_pulse_between_two_steps_is_remarked_on() {
+fn skipped_pulse_gives_warning() {
     let (code, _, warnings) = column(&MOVING, &[]);
     assert_eq!(code, 0);
     remarked(
@@ -208,7 +205,7 @@ fn a_pulse_between_two_steps_is_remarked_on() {
 }
 
 #[test]
-fn layers_of_different_density_need_their_weights_for_k0() {
+fn layered_k0_needs_unit_weights() {
     let k0 = [
         ("density = 2000", "density = 1000"),
         ("gravity = false", "gravity = true"),
@@ -229,7 +226,7 @@ fn layers_of_different_density_need_their_weights_for_k0() {
     assert_eq!(code, 0, "{error}");
 }
 
-/// A body that is held, of moduli that differ by 1e13, is not called one that is not held.
+/// A modulus contrast of 1e13 is not reported as insufficient constraint.
 #[test]
 fn unlike_stiffnesses_are_named() {
     let (code, error, _) = column(&[("young = \"20 MPa\"", "young = 1e-6")], &[]);
@@ -238,9 +235,9 @@ fn unlike_stiffnesses_are_named() {
     assert!(error.contains("ratio of Young's moduli 2.0e13") && !error.contains("insufficiently"), "{error}");
 }
 
-/// On a plate of 8 × 8 × 2 elements the 675 dofs of the surface read four times what the full solid does; ten modes read less.
+/// Plate of 8 × 8 × 2: 675 surface dofs read four times the data of the full solid, ten modes less.
 #[test]
-fn a_reduction_that_makes_steps_dearer_is_remarked_on() {
+fn slower_reduction_gives_warning() {
     let folder = Folder::new("reduction");
     let mut mesh = trackbed_fem::Mesh::block([8, 8, 2], [2.0, 2.0, 1.0]);
     mesh.coordinates.iter_mut().for_each(|x| x[2] -= 1.0);

@@ -1,8 +1,8 @@
-//! Scene keys of the solid whose effect is known in closed form, each through the program.
+//! Keys of the solid with closed-form effects.
 
 use super::support::{Folder, SOLID, Table, run, scene_folder, small_block, trackbed, write_lists};
 
-/// One cubic metre between smooth plates, pressed by 10 mm.
+/// 1 m³ between smooth platens, compressed by 10 mm.
 const CUBE: &str = r#"title = "cube"
 
 [solid]
@@ -52,7 +52,7 @@ tecplot = false
 tables = true
 "#;
 
-/// Stress of the plate at the end [Pa].
+/// Final platen stress [Pa].
 fn pressed(yielding: &str, set: &[&str]) -> f64 {
     let folder = Folder::new("cube");
     let scene = folder.write("scene.toml", &CUBE.replace("YIELD", yielding));
@@ -61,7 +61,7 @@ fn pressed(yielding: &str, set: &[&str]) -> f64 {
     *history.column("plate_reaction_z").last().unwrap()
 }
 
-/// Uniaxial stress with linear hardening: E (Y + H ε)/(E + H), by slope and by table, for both criteria, and on linear elements.
+/// Linear hardening: E (Y + H ε)/(E + H), by slope and table, both criteria, also on linear elements.
 #[test]
 fn hardening_in_uniaxial_stress() {
     let exact = -20e6 * (50e3 + 2e6 * 0.01) / (20e6 + 2e6);
@@ -75,8 +75,7 @@ fn hardening_in_uniaxial_stress() {
     }
 }
 
-/// The strength of a frictional cube, 2 c cos φ/(1 − sin φ); the friction angle by a table that is level at 30 degrees; and by
-/// GMRES in place of L U.
+/// 2 c cos φ/(1 − sin φ); friction angle also by a table constant at 30 degrees, and GMRES instead of LU.
 #[test]
 fn strength_of_a_frictional_cube() {
     let phi = 30.0_f64.to_radians();
@@ -92,7 +91,6 @@ fn strength_of_a_frictional_cube() {
     }
 }
 
-/// Two layers, each with a K₀ of its own.
 const GROUND: &str = r#"title = "ground"
 
 [solid]
@@ -158,15 +156,13 @@ tecplot = false
 tables = true
 "#;
 
-/// Level ground of two densities under K₀: the stress is γ z and K₀ γ z at every Gauss point and nothing moves (taking the
-/// weight off and on again would make ground of so little cohesion yield); gravity turned on
-/// gives ν/(1 − ν) in place of K₀.
+/// Layered K₀ ground: γ z and K₀ γ z at every Gauss point, no motion; low cohesion would reveal any
+/// unloading. Gravity loading gives ν/(1 − ν).
 #[test]
 fn initial_stress_of_level_ground() {
     let gravity = GROUND
         .replace("method = \"k0\"\nk0 = 1.5\nlayers = [[4.0, 1000], [2.0, 2000]]", "method = \"gravity\"")
         .replace("k0 = 0.7\n", "");
-    // Horizontal over vertical stress of the lower and of the upper layer.
     for (scene, ratios) in [(GROUND, [1.5, 0.7]), (gravity.as_str(), [1.0 / 3.0; 2])] {
         let folder = Folder::new("ground");
         let file = folder.write("scene.toml", scene);
@@ -189,7 +185,6 @@ fn initial_stress_of_level_ground() {
     }
 }
 
-/// A mesh in millimetres is, with `scale`, the one in metres.
 #[test]
 fn a_mesh_in_millimetres() {
     let metres = scene_folder("metres", SOLID);

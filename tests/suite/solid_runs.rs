@@ -1,10 +1,9 @@
-//! Plastic solids as whole runs: accounts that close, an honest end where there is no equilibrium, the same bits on any
-//! number of threads, grains on plastic ground, and one mesh in all its forms.
+//! Plastic solids: energy balance, loss of equilibrium, threads, grains on plastic ground, mesh formats.
 
 use super::determinism::same_bits;
 use super::support::{COUPLED, Folder, PLASTIC, Table, json, repository, run, scene_folder, trackbed_in};
 
-/// A column of soil, 1 m × 1 m × 4 m, pressed from above; its strength is 2 c cos φ/(1 − sin φ) = 62.787 kPa.
+/// Soil column 1 m × 1 m × 4 m, strength 2 c cos φ/(1 − sin φ) = 62.787 kPa.
 const COLUMN: &str = r#"title = "column"
 
 [solid]
@@ -61,10 +60,10 @@ history_interval = 0.1
 tables = true
 "#;
 
-/// Force control beyond the strength: exit code 3, the place named, and everything up to the last equilibrium kept. The
-/// load found must be the strength to 0.1 % (steps are halved down to 1e-4 of the ramp).
+/// Force control beyond the strength: exit code 3 with location, results up to the last equilibrium. Limit
+/// load to 0.1 % (steps are halved down to 1e-4 of the ramp).
 #[test]
-fn a_load_beyond_the_strength_leaves_the_last_equilibrium() {
+fn limit_load_keeps_last_equilibrium() {
     let folder = Folder::new("beyond");
     let scene = folder.write("scene.toml", COLUMN);
     let out = folder.join("out");
@@ -84,7 +83,6 @@ fn a_load_beyond_the_strength_leaves_the_last_equilibrium() {
     assert!(std::fs::read_to_string(out.join("log.txt")).unwrap().contains(status));
     assert!(summary["newton"]["halvings"].as_u64().unwrap() > 0);
 
-    // History, summary and tables tell of one and the same state.
     let history = Table::read(&out.join("history.csv"));
     let (time, base) = (history.column("time"), history.column("base_reaction_z"));
     let [reached, carried] = [&time, &base].map(|column| *column.last().unwrap());
@@ -105,14 +103,13 @@ fn a_load_beyond_the_strength_leaves_the_last_equilibrium() {
     assert!(out.join("frames/solid_00007.vtu").is_file() && !out.join("frames/solid_00008.vtu").exists());
 }
 
-/// Corners, then mid-sides of the column's top.
 const TOP: [[f64; 2]; 8] =
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
 
-/// A pulse of more than twice the strength. With the average acceleration nothing may be lost to the time integration, so
-/// work = stored + plastic + damping, to 0.5 %; what is left over is booked as `numerical` and must be small itself.
+/// Pulse of more than twice the strength, average acceleration: work = stored + plastic + damping to 0.5 %;
+/// the remainder is `numerical`.
 #[test]
-fn the_account_of_a_plastic_column_in_motion_closes() {
+fn dynamic_plastic_column_conserves_energy() {
     let folder = Folder::new("pulse");
     let probes: String = TOP
         .iter()
@@ -150,15 +147,14 @@ fn the_account_of_a_plastic_column_in_motion_closes() {
     assert!(open.abs() < 5e-3 && (spent("numerical") / work).abs() < 5e-3);
     assert!(energy["relative_error"].as_f64().unwrap() < 5e-3);
     assert!(spent("plastic") > 0.5 * work && spent("rayleigh") > 0.0);
-    // What flowed stays: the column ends shorter.
     let history = Table::read(&folder.join("out/history.csv"));
     let tops: Vec<Vec<f64>> = (0..TOP.len()).map(|i| history.column(&format!("top{i}_u_z"))).collect();
     assert!(tops.iter().all(|top| top[top.len() - 20..].iter().all(|u| *u < -1e-2)));
-    // Nodes of a face share a pressure as -1/12 (corners) and 1/3 (mid-sides).
+    // Consistent nodal loads: -1/12 (corners), 1/3 (mid-sides).
     let top: Vec<f64> = (0..tops[0].len())
         .map(|row| (0..8).map(|i| tops[i][row] * if i < 4 { -1.0 / 12.0 } else { 1.0 / 3.0 }).sum())
         .collect();
-    // The work of the load by the trapezoidal rule over the history's rows, without the program's account.
+    // Work of the load by the trapezoidal rule over history rows.
     let pressure =
         |t: f64| 150e3 * (std::f64::consts::PI * 20.0 * t).sin().powi(2) * f64::from(u8::from(t <= 0.05));
     let time = history.column("time");
@@ -169,9 +165,9 @@ fn the_account_of_a_plastic_column_in_motion_closes() {
     assert!((by_hand / work - 1.0).abs() < 5e-3, "{by_hand} J against {work} J");
 }
 
-/// A plastic footing without associated flow, so that tangents are unsymmetric.
+/// Non-associated flow: unsymmetric tangents.
 #[test]
-fn a_plastic_footing_has_the_same_bits_on_any_number_of_threads() {
+fn plastic_footing_is_identical_across_threads() {
     let set = [
         "time.end=0.2",
         "solid.material.0.dilation=\"10 deg\"",
@@ -189,21 +185,18 @@ fn a_plastic_footing_has_the_same_bits_on_any_number_of_threads() {
     assert!(kappa.iter().any(|k| *k > 0.0));
 }
 
-/// The sleeper settles on dissipative grains, then three load cycles.
 const SETTLED: [&str; 3] = ["track.load.rest=0.3", "track.load.cycles=3", "material.0.restitution=0.1"];
 
-/// The block of the coupled scene made of soil.
 fn soil(cohesion: &str) -> Vec<String> {
     ["model=\"mohr_coulomb\"", &format!("cohesion={cohesion}"), "friction=\"20 deg\"", "dilation=\"6 deg\""]
         .map(|key| format!("solid.material.0.{key}"))
         .into()
 }
 
-/// Ground too strong to yield moves as elastic ground does: place of the sleeper, forces and deflections to 1e-6 of their largest
-/// values, energies to 1e-6 of the strain energy, velocity to 1e-5. Sideways the scene stands in balance, so that motion starts
-/// from rounding there, and is not compared.
+/// Strong soil equals elastic ground: positions, forces, deflections to 1e-6 of the largest, energies to 1e-6
+/// of the strain energy, velocity to 1e-5. Lateral motion is only rounding.
 #[test]
-fn grains_on_strong_soil_move_as_on_elastic_ground() {
+fn strong_soil_matches_elastic_ground() {
     let folder = scene_folder("strong", COUPLED);
     let scene = folder.join("scene.toml");
     run(&scene, &folder.join("elastic"), &[]).good();
@@ -235,8 +228,7 @@ fn grains_on_strong_soil_move_as_on_elastic_ground() {
     assert_eq!(summary["newton"]["factorizations_unsymmetric"], 0, "nothing yields");
 }
 
-/// Ground that yields: the account closes as that of elastic ground does (1 %), force and moment cross the interface to
-/// rounding, and the ground settles more.
+/// Plastic ground: energy error 1 %, interface sums to rounding, more settlement than elastic ground.
 #[test]
 fn grains_press_into_weak_soil() {
     let folder = scene_folder("weak", COUPLED);
@@ -265,16 +257,14 @@ fn grains_press_into_weak_soil() {
     assert!(settlement[1] > settlement[0] + 1e-4, "{settlement:?}");
 }
 
-/// One mesh as bricks of the scene, lists, ANSYS archive, Gmsh, Abaqus and VTK: the same bits, since all forms keep
-/// nodes, elements and coordinates as they are.
+/// One mesh as scene bricks, lists, ANSYS, Gmsh, Abaqus, VTK: bitwise identical.
 #[test]
-fn one_mesh_in_all_its_forms_gives_one_result() {
+fn mesh_formats_give_identical_results() {
     let folder = Folder::new("forms");
     let start = PLASTIC.find("[solid.block]").unwrap();
     let end = PLASTIC.find("[[solid.material]]").unwrap();
     let scene = format!("{PLASTIC}tables = true\n");
     folder.write("scene.toml", &scene);
-    // The mesh alone: without supports, which the scenes bring along.
     let bare = format!(
         "{}\n[solid.quasi_static]\n\n[time]\nend = 1.0\nsolid_step = 0.1\n",
         &PLASTIC[..PLASTIC.find("[[solid.support]]").unwrap()]

@@ -1,16 +1,14 @@
-//! The shipped scenes of the solid, against closed forms and published values. Each test states the source and the
-//! tolerance; what is left below the tolerance is the mesh's.
+//! Shipped solid scenes against closed forms and published values. Residual differences are discretisation
+//! errors.
 
 use super::support::{Folder, Table, json, repository, run, trackbed};
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-/// A shipped scene.
 fn shipped(name: &str) -> PathBuf {
     repository().join("inputs").join(name)
 }
 
-/// Runs a shipped scene; its folder and its history.
 fn finished(name: &str, set: &[&str]) -> (Folder, Table) {
     let folder = Folder::new("shipped");
     run(&shipped(name), &folder.join("out"), set).good();
@@ -18,7 +16,7 @@ fn finished(name: &str, set: &[&str]) -> (Folder, Table) {
     (folder, history)
 }
 
-/// Frequencies [Hz] that `trackbed modal` finds in a shipped scene; effective masses must not exceed the mass [kg].
+/// Frequencies [Hz] from `trackbed modal`; effective masses must not exceed `mass` [kg].
 fn frequencies(name: &str, count: usize, mass: f64) -> Vec<f64> {
     let folder = Folder::new("modal");
     let out = folder.join("out").display().to_string();
@@ -42,20 +40,21 @@ fn near(what: &str, found: f64, exact: f64, tolerance: f64) {
     assert!((found / exact - 1.0).abs() <= tolerance, "{what}: {found} against {exact}");
 }
 
-/// Frequency of a beam of steel in bending, Euler–Bernoulli: `square` is (βL)², `depth` [m] that of the section.
+/// Bending frequency [Hz] of an Euler–Bernoulli steel beam with (βL)² = `square` and section depth `depth`
+/// [m].
 fn beam(square: f64, depth: f64) -> f64 {
     let (length, young, density): (f64, f64, f64) = (2.0, 210e9, 7850.0);
     square / (2.0 * PI * length * length) * (young / density).sqrt() * depth / 12.0_f64.sqrt()
 }
 
-/// Prandtl: N_c = (N_q − 1) cot φ. Displacement elements come from above; the shipped mesh by 8 %.
+/// Prandtl: N_c = (N_q − 1) cot φ. Displacement elements give an upper bound; the shipped mesh is 8 % high.
 #[test]
 fn footing_reaches_prandtls_load() {
     let (folder, history) = finished("solid/footing.toml", &[]);
     let phi = 20.0_f64.to_radians();
     let nq = (PI * phi.tan()).exp() * (PI / 4.0 + phi / 2.0).tan().powi(2);
     let exact = (nq - 1.0) / phi.tan();
-    // Half a metre by a quarter, cohesion 20 kPa.
+    // Area 0.5 m × 0.25 m, cohesion 20 kPa.
     let factor: Vec<f64> =
         history.column("footing_reaction_z").iter().map(|r| -r / (0.5 * 0.25 * 20e3)).collect();
     let (last, before) = (factor[factor.len() - 1], factor[factor.len() * 4 / 5]);
@@ -69,10 +68,10 @@ fn footing_reaches_prandtls_load() {
     assert_eq!(reaction, *history.column("footing_reaction_z").last().unwrap());
 }
 
-/// Griffiths and Lane 1999, example 1: 1.4; Bishop and Morgenstern: 1.380. On a quarter of the shipped mesh's elements, to
-/// 5 % of the latter.
+/// Griffiths and Lane 1999, example 1: 1.4; Bishop and Morgenstern: 1.380, here to 5 % on a quarter of the
+/// shipped elements.
 #[test]
-fn slope_has_the_published_factor_of_safety() {
+fn slope_matches_published_factor() {
     let folder = Folder::new("slope");
     let set = [
         "solid.block.x.counts=[10]",
@@ -88,7 +87,7 @@ fn slope_has_the_published_factor_of_safety() {
     near("factor of safety", 0.5 * (stands + fails), 1.380, 0.05);
     let table = Table::read(&folder.join("out/safety.csv"));
     assert_eq!(table.rows.len(), safety["trials"].as_array().unwrap().len());
-    // The trials that stand move the further the weaker they are.
+    // Displacements of stable trials grow with the reduction factor.
     let mut standing: Vec<[f64; 2]> = table
         .rows
         .iter()
@@ -100,9 +99,9 @@ fn slope_has_the_published_factor_of_safety() {
     assert!(folder.join("out/frames/solid_00000.vtu").is_file());
 }
 
-/// Hill 1950, Yu 1992: displacement of the bore when the plastic zone reaches 0.6, 0.8 and 1.0 m. Tolerance 1 %.
+/// Hill 1950, Yu 1992: bore displacement at plastic radii of 0.6, 0.8 and 1.0 m. Tolerance 1 %.
 #[test]
-fn thick_cylinder_opens_as_the_closed_form_says() {
+fn thick_cylinder_matches_closed_form() {
     for (dilation, exact) in [
         ("25 deg", [2.652713650909448e-4, 4.371477541776971e-4, 6.193686171384218e-4]),
         ("5 deg", [2.6825e-4, 4.6462e-4, 6.9498e-4]),
@@ -117,19 +116,19 @@ fn thick_cylinder_opens_as_the_closed_form_says() {
     }
 }
 
-/// Pressure [Pa] in the cavity and displacement of its wall [m] at the plastic radius `c` [m], after Yu and Houlsby 1991 in
-/// small strain; the shipped scene's constants. Tension positive inside, `s_r` and `s_t` being the stresses.
+/// Cavity pressure [Pa] and wall displacement [m] at plastic radius `c` [m], small strain (Yu and Houlsby
+/// 1991). Tension positive; `s_r`, `s_t`: radial and hoop stress.
 fn cavity(c: f64) -> (f64, f64) {
     let (young, nu, cohesion, b): (f64, f64, f64, f64) = (50e6, 0.3, 20e3, 8.0);
     let ratio = |angle: f64| (1.0 + angle.to_radians().sin()) / (1.0 - angle.to_radians().sin());
     let (al, be) = (ratio(25.0), ratio(10.0));
     let y = 2.0 * cohesion * al.sqrt();
-    // Elastic outside c: s_r = -s (1/r³ - 1/b³), s_t = s (1/(2 r³) + 1/b³), at yield al s_t - s_r = y in c.
+    // Elastic outside c: s_r = -s (1/r³ - 1/b³), s_t = s (1/(2 r³) + 1/b³), with yield al s_t - s_r = y at c.
     let s = y / ((0.5 * al + 1.0) / c.powi(3) + (al - 1.0) / b.powi(3));
     let border = [-s * (c.powi(-3) - b.powi(-3)), s * (0.5 * c.powi(-3) + b.powi(-3))];
     let power = 2.0 * (al - 1.0) / al;
     let radial = |r: f64| y / (al - 1.0) + (border[0] - y / (al - 1.0)) * (r / c).powf(-power);
-    // u' + (2/be) u/r is that of the elastic strains: integrated inwards by Simpson's rule.
+    // u' + (2/be) u/r equals its elastic part: integrated inwards by Simpson's rule.
     let q = 2.0 / be;
     let source = |r: f64| {
         let (s_r, s_t) = (radial(r), (radial(r) + y) / al);
@@ -142,9 +141,9 @@ fn cavity(c: f64) -> (f64, f64) {
     (-radial(1.0), at_border * c.powf(q) - integral)
 }
 
-/// Tolerance 1 %: the mesh is coarse.
+/// Tolerance 1 %: coarse mesh.
 #[test]
-fn cavity_expands_as_the_closed_form_says() {
+fn cavity_expansion_matches_closed_form() {
     let (pressure, exact) = cavity(2.0);
     let (_folder, history) = finished("verify/cavity/scene.toml", &[]);
     let text = std::fs::read_to_string(shipped("verify/cavity/scene.toml")).unwrap();
@@ -153,7 +152,8 @@ fn cavity_expands_as_the_closed_form_says() {
     near("wall", *history.column("wall_u_x").last().unwrap(), exact, 0.01);
 }
 
-/// Mohr–Coulomb: axial stress −(k p0 + 2 c √k) and dilatancy k_ψ − 1. Tolerance 1e-6 of the stress, the iteration's.
+/// Mohr–Coulomb: axial stress −(k p0 + 2 c √k), dilatancy k_ψ − 1. Tolerance 1e-6 of the stress, from
+/// Newton's iteration.
 #[test]
 fn triaxial_test_ends_on_its_plateau() {
     let (folder, history) = finished("verify/triaxial.toml", &[]);
@@ -173,24 +173,22 @@ fn triaxial_test_ends_on_its_plateau() {
     };
     let [x, y, z] = ["corner_u_x", "corner_u_y", "corner_u_z"].map(rate);
     near("dilatancy", (x + y + z) / z.abs(), flow - 1.0, 1e-4);
-    // The base carries what the plate puts on: the sums of the reactions are equal and opposite.
     let base = history.column("base_reaction_z");
     assert!(axial.iter().zip(base).all(|(a, b)| (a + b).abs() <= 1e-9 * plateau.abs()));
 }
 
-/// Values at the Gauss points of a triaxial test of clay: `p`, `q` and the preconsolidation pressure [Pa].
 fn clay_points(folder: &Folder) -> Vec<[f64; 3]> {
     let gauss = Table::read(&folder.join("out/gauss.csv"));
     let [x, y, z, pc] = ["sxx", "syy", "szz", "preconsolidation_pressure"].map(|name| gauss.column(name));
     (0..x.len()).map(|i| [-(x[i] + y[i] + z[i]) / 3.0, x[i] - z[i], pc[i]]).collect()
 }
 
-/// Undrained path of modified Cam clay, p/p0 = (R M²/(M² + η²))^Λ, normally and heavily overconsolidated (Wood 1990,
-/// chapter 5). Tolerance 1e-6: the path does not depend on the steps, equilibrium is found to 1e-6.
+/// Undrained modified Cam clay, p/p0 = (R M²/(M² + η²))^Λ (Wood 1990, chapter 5). Tolerance 1e-6, from the
+/// equilibrium iteration; the path is independent of the step size.
 #[test]
-fn undrained_triaxial_test_of_clay_follows_the_closed_form() {
+fn undrained_clay_matches_closed_form() {
     let (m, exponent, p0) = (0.95, (0.093 - 0.035) / 0.093, 207e3);
-    // How near the critical state 10 % of strain comes: the stiff clay is still softening.
+    // Distance to the critical state at 10 % strain: the overconsolidated clay still softens.
     for (ratio, end) in [(1.0, 2e-3), (8.0, 4e-2)] {
         let set = [format!("solid.material.0.overconsolidation={ratio}")];
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
@@ -202,16 +200,15 @@ fn undrained_triaxial_test_of_clay_follows_the_closed_form() {
             near("pc", *pc, p * (1.0 + eta * eta / (m * m)), 1e-6);
             near("critical state", eta, m, end);
         }
-        // The base carries the axial stress of one square metre.
         let base = *history.column("base_reaction_z").last().unwrap();
         near("base", base, points[0][0] + 2.0 / 3.0 * points[0][1], 1e-6);
     }
 }
 
-/// Drained path: q = 3 (p - p0), volume strain κ/v ln(p/p0) + (λ - κ)/v ln(pc/p0). Tolerance 1e-5: the pressure is
-/// exponential in the volume strain, and equilibrium is found to 1e-6 of the forces.
+/// Drained path: q = 3 (p - p0), volumetric strain κ/v ln(p/p0) + (λ - κ)/v ln(pc/p0). Tolerance 1e-5:
+/// pressure is exponential in volumetric strain, equilibrium holds to 1e-6.
 #[test]
-fn drained_triaxial_test_of_clay_follows_the_closed_form() {
+fn drained_clay_matches_closed_form() {
     let (m, v, lambda, kappa, p0) = (0.95, 1.6, 0.093, 0.035, 207e3_f64);
     let (folder, history) = finished("solid/triaxial_drained.toml", &[]);
     let strain: f64 =
@@ -229,10 +226,10 @@ fn drained_triaxial_test_of_clay_follows_the_closed_form() {
     }
 }
 
-/// The tolerance of Newton's iteration by default, against 1e-11: displacement of the cavity's wall and reactions of the drained test
-/// within 1e-6 at all times (1e-4 leaves 4.8e-6 and 3.0e-6).
+/// Default Newton tolerance against 1e-11: wall displacement and reactions within 1e-6 (a tolerance of 1e-4
+/// gives 4.8e-6 and 3.0e-6).
 #[test]
-fn default_tolerance_keeps_paths_within_1e_6() {
+fn default_tolerance_is_sufficient() {
     for (name, column) in
         [("verify/cavity/scene.toml", "wall_u_x"), ("solid/triaxial_drained.toml", "plate_reaction_z")]
     {
@@ -245,8 +242,7 @@ fn default_tolerance_keeps_paths_within_1e_6() {
     }
 }
 
-/// A wave in one dimension: below 1 % of the energy may stay behind, and every point ends lower by ∫ p dt/(ρ c_p), to
-/// 0.5 %.
+/// One-dimensional wave: residual energy below 1 %, final displacement −∫ p dt/(ρ c_p) to 0.5 %.
 #[test]
 fn wave_leaves_through_the_absorbing_base() {
     let (folder, history) = finished("verify/wave_column.toml", &[]);
@@ -263,9 +259,9 @@ fn wave_leaves_through_the_absorbing_base() {
     }
 }
 
-/// Clamped beam: (βL)² = 3.51602 and 22.0345. Tolerance 1 %: the clamp, shear and rotary inertia.
+/// Clamped beam: (βL)² = 3.51602 and 22.0345. Tolerance 1 %: clamp, shear, rotary inertia.
 #[test]
-fn clamped_beam_has_the_frequencies_of_euler_and_bernoulli() {
+fn clamped_beam_matches_euler_bernoulli() {
     let found = frequencies("verify/beam_modes.toml", 4, 78.5);
     let exact = [beam(3.51602, 0.05), beam(3.51602, 0.1), beam(22.0345, 0.05), beam(22.0345, 0.1)];
     for ((i, found), (exact, tolerance)) in
@@ -275,7 +271,7 @@ fn clamped_beam_has_the_frequencies_of_euler_and_bernoulli() {
     }
 }
 
-/// Free beam: six rigid motions, then (βL)² = 22.3733. Tolerance 1 %.
+/// Free beam: six rigid-body modes, then (βL)² = 22.3733. Tolerance 1 %.
 #[test]
 fn free_beam_has_six_rigid_motions() {
     let found = frequencies("verify/free_beam.toml", 8, 78.5);
@@ -284,10 +280,10 @@ fn free_beam_has_six_rigid_motions() {
     near("mode 8", found[7], beam(22.3733, 0.1), 0.01);
 }
 
-/// d'Alembert: the surface of a layer moves by 2 [u(t − H/c) − u(t − 3H/c) + …] when its base moves by u. Tolerance 1 %
-/// of the largest motion, at every row.
+/// d'Alembert: surface motion 2 [u(t − H/c) − u(t − 3H/c) + …] for base motion u. Tolerance 1 % of the
+/// largest motion.
 #[test]
-fn layer_responds_to_the_motion_of_its_base() {
+fn layer_response_matches_dalembert() {
     let (_folder, history) = finished("solid/base_motion/scene.toml", &["output.vtk=false"]);
     let pulse = |t: f64| if (0.0..0.1).contains(&t) { 0.01 * (PI * t / 0.1).sin().powi(4) } else { 0.0 };
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
@@ -303,8 +299,7 @@ fn layer_responds_to_the_motion_of_its_base() {
     assert!(worst < 0.01 * 0.02 && largest > 0.0198);
 }
 
-/// The trough runs along with the axle, at 50 m/s; it is deeper than that of a load that stands, since the axle
-/// runs at a third of the speed of shear waves, but not by more than a quarter.
+/// Axle at 50 m/s, a third of the shear wave speed: deflection exceeds the static one by at most a quarter.
 #[test]
 fn deflection_runs_along_with_the_axle() {
     let (folder, history) = finished("solid/moving_load.toml", &["output.vtk=false"]);
@@ -325,7 +320,6 @@ fn deflection_runs_along_with_the_axle() {
     for sink in ["absorbed", "rayleigh"] {
         assert!(energy["spent"][sink].as_f64().unwrap() > 0.0, "{sink}");
     }
-    // The same loads, each in turn at rest.
     let text = std::fs::read_to_string(shipped("solid/moving_load.toml")).unwrap();
     let line = |start: &str| text.lines().find(|l| l.starts_with(start)).unwrap();
     let slow = text
@@ -340,19 +334,19 @@ fn deflection_runs_along_with_the_axle() {
     assert!(factor > 1.0 && factor < 1.25, "{factor}");
 }
 
-/// Weight and load are carried by the base at every step (1e-5 of them, ten times the iteration's tolerance), the
-/// embankment keeps its tension below the cut-off, the ground stays inside its cone, and a settlement is left.
+/// Base reactions balance weight and load to 1e-5 (ten times the iteration tolerance); stresses stay within
+/// tension cut-off and cone; a permanent settlement remains.
 #[test]
 fn plastic_embankment_carries_and_settles() {
     let (folder, history) = finished("solid/embankment_plastic.toml", &[]);
     let (time, base) = (history.column("time"), history.column("base_reaction_z"));
-    // Four elements of 4/14 m each lie under the load.
+    // Four elements of 4/14 m under the load.
     let (weight, load) = (base[0], 100e3 * 4.0 * 4.0 / 14.0);
     for (t, carried) in time.iter().zip(&base) {
         let share = if *t <= 1.0 { *t } else { 2.0 - t };
         near("base", *carried, weight + share * load, 1e-5);
     }
-    // Width 28 m at the base, 8 m on top, over 7 m: areas of the two layers of this half, by the heights of the layers.
+    // Width 28 m at the base, 8 m on top, height 7 m: half areas of the two layers.
     let width = |z: f64| 14.0 - 10.0 * (z + 4.0) / 7.0;
     let ground = 0.5 * (width(-4.0) + width(0.0)) * 4.0 * 1800.0;
     let embankment = 0.5 * (width(0.0) + width(3.0)) * 3.0 * 2000.0;

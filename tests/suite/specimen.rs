@@ -1,10 +1,10 @@
-//! Specimens between platens: constants of a lattice in closed form, cracks and events of one that breaks, what is refused.
+//! Specimens between platens: elastic lattice, cracks and events, rejected input.
 
 use super::support::{Folder, Table, json, run, trackbed};
 use std::f64::consts::PI;
 use std::fs;
 
-/// A column of 3 x 3 x 10 spheres of 1 cm radius, the layers at both ends gripped, bonds of E = 1 GPa.
+/// Column of 3 x 3 x 10 spheres, radius 1 cm, gripped end layers, bonds of E = 1 GPa.
 fn column(bond: &str) -> String {
     let layer = |name: &str, low: f64, layers: u32, motion: &str| {
         format!(
@@ -23,9 +23,9 @@ fn column(bond: &str) -> String {
     )
 }
 
-/// Bonds of the section π r² stand in cells of (2 r)²: E π/4, and no lateral strain.
+/// Bond area π r² per cell of (2 r)²: E π/4, no lateral strain.
 #[test]
-fn a_lattice_has_the_modulus_of_its_bonds() {
+fn lattice_modulus_matches_bonds() {
     let folder = Folder::new("lattice");
     let file = folder.write("scene.toml", &column(""));
     run(&file, &folder.join("r"), &[]).good();
@@ -49,7 +49,6 @@ fn a_lattice_has_the_modulus_of_its_bonds() {
     assert!(frame.contains("Name=\"broken_bonds\""));
 }
 
-/// Drawn apart, a weak bond gives way at its strength; breaks become events, and a resumed account has the same curve.
 #[test]
 fn a_column_that_breaks_has_events() {
     let folder = Folder::new("breaks");
@@ -72,7 +71,7 @@ fn a_column_that_breaks_has_events() {
         breaks,
         bonds["broken_by_tension"].as_f64().unwrap() + bonds["broken_by_shear"].as_f64().unwrap()
     );
-    // Pulled: the stress is negative, so that there is no strength in compression but what rings back.
+    // Tensile stress is negative; compression only from waves.
     let stress = Table::read(&folder.join("r/history.csv")).column("specimen_stress");
     let least = stress.iter().copied().fold(0.0, f64::min);
     assert!((least / (-2e5 * PI / 4.0) - 1.0).abs() < 0.1, "{least}");

@@ -1,4 +1,4 @@
-//! What a newcomer begins with: `new`, the schema of scenes, completions, `check --json`, overrides by name.
+//! First steps: `new`, scene schema, completions, `check --json`, overrides by name.
 
 use super::support::{Folder, repository, trackbed};
 use boon::{Compiler, SchemaIndex, Schemas};
@@ -7,9 +7,8 @@ use std::path::PathBuf;
 use trackbed::scene::schema;
 use trackbed::start::TEMPLATES;
 
-/// Each template makes a folder whose scene is, to the program, the one in `inputs/`; a second time nothing is replaced.
 #[test]
-fn templates_are_scenes_that_can_be_run() {
+fn templates_are_valid_scenes() {
     let folder = Folder::new("templates");
     assert!(TEMPLATES.len() >= 6, "{}", TEMPLATES.len());
     let all = trackbed(["new"]).good().stdout;
@@ -21,7 +20,7 @@ fn templates_are_scenes_that_can_be_run() {
         let scene = own.join("scene.toml");
         assert!(made.stdout.starts_with(&format!("{} written; next: ", scene.display())), "{made:?}");
         let shipped = repository().join("inputs").join(template.source);
-        // What the program itself takes varies.
+        // Memory use varies.
         let check = |scene: &PathBuf| {
             let text = trackbed(["check", scene.to_str().unwrap(), "--strict"]).good().stdout;
             text.lines().filter(|line| !line.contains("memory: ")).map(String::from).collect::<Vec<_>>()
@@ -39,7 +38,6 @@ fn templates_are_scenes_that_can_be_run() {
     assert!(!folder.join("bridge").exists());
 }
 
-/// A scene file as JSON.
 fn as_json(text: &str) -> Value {
     serde_json::to_value(toml::from_str::<toml::Table>(text).unwrap()).unwrap()
 }
@@ -50,9 +48,8 @@ fn compiled(schemas: &mut Schemas) -> SchemaIndex {
     compiler.compile("scene.json", schemas).unwrap()
 }
 
-/// The schema takes every scene that is shipped, and refuses what the program refuses by its form.
 #[test]
-fn the_schema_takes_every_shipped_scene_and_no_slip() {
+fn schema_accepts_shipped_scenes_only() {
     let mut schemas = Schemas::new();
     let index = compiled(&mut schemas);
     let mut folders = vec![repository().join("inputs")];
@@ -69,7 +66,7 @@ fn the_schema_takes_every_shipped_scene_and_no_slip() {
                 _ => continue,
             };
             let scene = as_json(&text);
-            // Studies and libraries of stones are no scenes.
+            // Skips studies and stone libraries.
             if scene.get("title").is_some() && scene.get("scene").is_none() {
                 count += 1;
                 let result = schemas.validate(&scene, index);
@@ -78,7 +75,7 @@ fn the_schema_takes_every_shipped_scene_and_no_slip() {
         }
     }
     assert!(count >= 40, "{count} scenes");
-    // A material of a file that is taken in may be named alone; without such a file it has all of its keys.
+    // With an include, a material may be only a name.
     let named = |include: Value| {
         let mut scene = as_json(
             "[[material]]\nname = \"stone\"\n[[material]]\nname = \"box\"\nfriction = 0.3\nrestitution = 0.3\n",
@@ -108,7 +105,7 @@ fn the_schema_takes_every_shipped_scene_and_no_slip() {
     }
 }
 
-/// Keys of the schema say what they mean, in the words of the program's own documentation.
+/// Key descriptions equal the documentation.
 #[test]
 fn the_schema_explains_keys() {
     let printed = trackbed(["schema"]).good().stdout;
@@ -153,7 +150,7 @@ fn check_prints_numbers_for_programs() {
     ]);
     let report: Value = serde_json::from_str(&done.good().stdout).unwrap();
     let finding = &report["findings"][0];
-    // Tables were named, and are reported by their place.
+    // Named tables are reported by index.
     assert_eq!(finding["key"], "solid.material.0.young", "{report:#}");
     assert_eq!((&finding["serious"], &finding["found"]), (&json!(true), &json!("80 Pa")));
     assert_eq!(report["solid"]["elements"], 684);

@@ -1,4 +1,4 @@
-//! `trackbed stone`: from a surface to a scene, what is refused, and the libraries that are shipped.
+//! `trackbed stone`: surfaces, libraries, rejected input.
 
 use super::support::{Folder, GRAINS, repository, trackbed, trackbed_in};
 use std::fs;
@@ -7,7 +7,6 @@ fn surface(name: &str) -> String {
     repository().join("tests/data/surface").join(name).display().to_string()
 }
 
-/// A scene that fills stones of a library.
 fn scene(library: &str) -> String {
     let (head, tail) = GRAINS.split_once("[[grains]]").unwrap();
     let tail = &tail[tail.find("[[walls]]").unwrap()..];
@@ -19,7 +18,7 @@ fn scene(library: &str) -> String {
 }
 
 #[test]
-fn a_surface_becomes_a_library_that_a_scene_runs_with() {
+fn library_from_surface_runs() {
     let folder = Folder::new("stone_make");
     let stone = surface("stone.stl");
     let make = ["stone", "make", stone.as_str(), "--spheres", "6", "--out", "stones.toml"];
@@ -34,7 +33,6 @@ fn a_surface_becomes_a_library_that_a_scene_runs_with() {
     let ran = trackbed_in(folder.path(), ["run", "scene.toml", "--quiet"]).good();
     assert!(ran.stderr.is_empty(), "{ran:?}");
 
-    // Nothing is overwritten unless that is asked for.
     let before = fs::read_to_string(folder.join("stones.toml")).unwrap();
     let again = trackbed_in(folder.path(), make);
     assert_eq!(
@@ -82,7 +80,7 @@ fn random_stones_and_their_surfaces() {
 }
 
 #[test]
-fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
+fn rejects_bad_input_in_one_line() {
     let folder = Folder::new("stone_bad");
     folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.write("cut.stl", "solid x\nfacet normal 0 0 0\nouter loop\nvertex 0 0\n");
@@ -151,7 +149,7 @@ fn bad_input_is_refused_in_one_line_and_nothing_is_written() {
 }
 
 #[test]
-fn a_file_that_cannot_be_written_or_read_is_refused() {
+fn rejects_unreadable_and_unwritable_files() {
     let folder = Folder::new("stone_files");
     folder.write("nothing.toml", "name = \"a\"\nsource = \"b\"\nstones = []\n");
     let stone = surface("stone.stl");
@@ -172,9 +170,9 @@ fn a_file_that_cannot_be_written_or_read_is_refused() {
     assert!(outcome.code == 2 && outcome.stderr.contains("expected at least one stone"), "{outcome:?}");
 }
 
-/// The libraries in `inputs/data` are what their README's commands make, to the last digits that compilers may change.
+/// Libraries in `inputs/data` equal the output of their commands, except last digits (compiler).
 #[test]
-fn the_shipped_libraries_are_what_their_commands_make() {
+fn shipped_libraries_match_their_commands() {
     let data = repository().join("inputs/data");
     let readme = fs::read_to_string(data.join("README.md")).unwrap();
     let folder = Folder::new("stone_shipped");
@@ -195,11 +193,10 @@ fn the_shipped_libraries_are_what_their_commands_make() {
     assert_eq!(found, 4);
 }
 
-/// `stone info` reads libraries of polyhedra.
 #[test]
 fn a_library_of_polyhedra_is_measured() {
     let folder = Folder::new("stone_polyhedra");
-    // A cube of 0.2 m of which a sphere of 0.1 m makes one of 0.4 m.
+    // Cube of 0.2 m dilated by 0.1 m: 0.4 m.
     let corners = (0..8).map(|k| {
         format!("[{}, {}, {}]", 0.2 * f64::from(k & 1), 0.1 * f64::from(k & 2), 0.05 * f64::from(k & 4))
     });

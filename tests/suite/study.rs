@@ -1,4 +1,4 @@
-//! Studies: errors against closed forms, what is run and what is not, tables, and what is refused.
+//! Studies: errors, resumed runs, tables, rejected input.
 
 use super::support::{Folder, json, snapshot, trackbed};
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ mod parts;
 mod refused;
 mod shipped;
 
-/// A sphere meets a wall at 1 m/s: half a swing of a mass on a spring, which this scene leaves in its middle.
+/// Sphere against a wall at 1 m/s: half a period of a mass on a spring, stopped midway.
 const SWING: &str = r#"title = "sphere on a spring"
 gravity = [0.0, 0.0, 0.0]
 
@@ -43,14 +43,13 @@ frames = 0
 vtk = false
 "#;
 
-/// Height of the sphere after 1 ms [m]: r - v/w sin(w t), w^2 = k/m.
+/// Height after 1 ms [m]: r - v/w sin(w t), w^2 = k/m.
 fn height() -> f64 {
     let mass = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(3);
     let frequency = (1e6 / mass).sqrt();
     0.05 - (frequency * 1e-3).sin() / frequency
 }
 
-/// A study of steps with the known height, errors as shares of a millimetre; the reference is a run of its own.
 fn steps() -> String {
     format!(
         r#"title = "Step of a swing"
@@ -90,7 +89,6 @@ fn folder(name: &str, study: &str) -> Folder {
     folder
 }
 
-/// Arguments of the study of a folder with its results in `out`.
 fn arguments(folder: &Folder, out: &str, more: &[&str]) -> Vec<String> {
     let (study, out) = (folder.join("study.toml"), folder.join(out));
     let mut all =
@@ -99,7 +97,6 @@ fn arguments(folder: &Folder, out: &str, more: &[&str]) -> Vec<String> {
     all
 }
 
-/// A table by rows, each with its cells by the head of the column.
 fn table(file: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     let heads: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
@@ -113,7 +110,6 @@ fn numbers(rows: &[BTreeMap<String, String>], head: &str) -> Vec<f64> {
     rows.iter().map(|r| r[head].parse().unwrap_or_else(|_| panic!("{head}: {:?}", r[head]))).collect()
 }
 
-/// The tables without what the clock says.
 fn without_times(dir: &Path) -> (Vec<BTreeMap<String, String>>, serde_json::Value) {
     let mut rows = table(&dir.join("study.csv"));
     for row in &mut rows {
@@ -133,7 +129,7 @@ fn without_times(dir: &Path) -> (Vec<BTreeMap<String, String>>, serde_json::Valu
     (rows, all)
 }
 
-/// Velocity Verlet is of second order: half the step, a quarter of the error.
+/// Velocity Verlet is second order.
 #[test]
 fn errors_are_those_of_the_method() {
     let folder = folder("study_order", &steps());
@@ -148,7 +144,7 @@ fn errors_are_those_of_the_method() {
             assert!((3.7..4.3).contains(&(pair[0] / pair[1])), "{head}: {errors:?}");
         }
     }
-    // The known height is that of the reference, whose own error is not zero by definition.
+    // The exact height gives the reference run a nonzero error.
     let values = numbers(&rows, "height [m]");
     let of_reference = numbers(&rows, "height error")[0];
     assert!((values[0] / height() - 1.0).abs() < 1e-6 && of_reference > 0.0, "{values:?} {of_reference}");
@@ -157,7 +153,6 @@ fn errors_are_those_of_the_method() {
     assert_eq!(numbers(&rows, "path error")[0], 0.0);
     assert_eq!(numbers(&rows, "steps")[1..], [10.0, 20.0, 40.0]);
     assert!(numbers(&rows, "cpu [s]").iter().all(|s| *s > 0.0));
-    // What is printed and what is written say the same.
     let page = fs::read_to_string(folder.join("out/study.md")).unwrap();
     let line = page.lines().find(|l| l.starts_with("Cheapest setting within 0.05 %")).expect("one is within");
     assert!(said.stdout.contains(line), "{}", said.stdout);
@@ -174,9 +169,8 @@ fn errors_are_those_of_the_method() {
     }
 }
 
-/// A value that only the reference meets, and one that none meets.
 #[test]
-fn no_setting_is_recommended_beyond_the_tolerance() {
+fn no_recommendation_beyond_tolerance() {
     let folder = folder("study_none", &steps().replace("tolerance = 0.0005", "tolerance = 0.00002"));
     let said = trackbed(arguments(&folder, "out", &[])).good().stdout;
     assert!(
@@ -188,9 +182,8 @@ fn no_setting_is_recommended_beyond_the_tolerance() {
     assert!(said.contains("No setting is within 0.002 % for all quantities."), "{said}");
 }
 
-/// What is done is not run again; what is new is; what the scene has changed under is refused.
 #[test]
-fn resume_runs_only_what_is_not_done() {
+fn resume_runs_only_missing_cases() {
     let folder = folder("study_resume", &steps());
     trackbed(arguments(&folder, "out", &[])).good();
     let runs = folder.join("out/runs");
@@ -199,7 +192,6 @@ fn resume_runs_only_what_is_not_done() {
     let expected =
         "found the run \"reference\", expected --resume, --force to start from scratch, or another --out";
     assert_eq!((again.code, again.stderr.trim_end().ends_with(expected)), (2, true), "{}", again.stderr);
-    // A mark in a finished run stays, and times by the clock too.
     fs::write(runs.join("reference/mark"), "").unwrap();
     let added = steps().replace("\"0.025 ms\"]", "\"0.025 ms\", \"0.0125 ms\"]");
     folder.write("study.toml", &added);
@@ -212,7 +204,6 @@ fn resume_runs_only_what_is_not_done() {
     assert_eq!(rows.len(), 5);
     let errors = numbers(&rows, "height error");
     assert!((3.7..4.3).contains(&(errors[3] / errors[4])), "{errors:?}");
-    // Another scene under the same overrides.
     folder.edit("scene.toml", "density = 2650", "density = 2660");
     for option in ["--resume", "--merge"] {
         let refused = trackbed(arguments(&folder, "out", &[option]));
@@ -226,9 +217,8 @@ fn resume_runs_only_what_is_not_done() {
     );
 }
 
-/// A run whose scene was changed between its start and that of the study is no result of the study, and says why.
 #[test]
-fn a_scene_that_changes_meanwhile_is_named() {
+fn scene_changed_during_study() {
     let folder = folder("study_changed", &steps());
     trackbed(arguments(&folder, "out", &[])).good();
     let summary = "out/runs/reference/summary.json";
@@ -240,7 +230,6 @@ fn a_scene_that_changes_meanwhile_is_named() {
     assert!(shown.contains("scene changed during the study"), "{shown}");
 }
 
-/// A run that fails is a row with its reason; the others go on, and it is not run again.
 #[test]
 fn a_failed_run_is_a_row() {
     let unstable = r#", { label = "unstable", set = ["time.grain_step=0.0026", "time.accept_step_above_limit=true", "time.end=0.2"] }]"#;
@@ -260,7 +249,7 @@ fn a_failed_run_is_a_row() {
     let record = fs::read(folder.join("out/runs/step=unstable.json")).unwrap();
     trackbed(arguments(&folder, "out", &["--resume"])).good();
     assert_eq!(fs::read(folder.join("out/runs/step=unstable.json")).unwrap(), record);
-    // Nothing can be compared with a reference that has failed.
+    // No comparison with a failed reference.
     folder.edit("study.toml", "set = [\"time.grain_step=3.125e-6\"]", "label = \"step=unstable\"");
     let said = trackbed(arguments(&folder, "out", &["--resume"]));
     assert_eq!(said.code, 3);
@@ -268,7 +257,7 @@ fn a_failed_run_is_a_row() {
     assert!(table(&folder.join("out/study.csv")).iter().all(|r| r["path error"].is_empty()));
 }
 
-/// Seeds: mean, deviation and scatter are those of the runs.
+/// Mean, standard deviation and standard error over seeds.
 #[test]
 fn scatter_is_that_of_the_seeds() {
     let folder = Folder::new("study_seeds");

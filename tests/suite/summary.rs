@@ -1,15 +1,14 @@
-//! `summary.json`: everything that it must tell is there, and the accounts of a coupled run close.
+//! `summary.json`: completeness and balance errors.
 //!
-//! | account | bound | source |
+//! | balance | bound | source |
 //! |---|---|---|
-//! | momentum and angular momentum of the grains, over the impulses | 1e-9 | rounding; measured 1e-14 |
-//! | force and moment across the interface, relative | 1e-12 | shape functions sum to 1: rounding |
-//! | energy, over the work of the load | 1 % | explicit steps of the grains; falls with their length |
+//! | grain momentum and angular momentum, over impulses | 1e-9 | rounding; measured 1e-14 |
+//! | interface force and moment, relative | 1e-12 | shape functions sum to 1: rounding |
+//! | energy, over load work | 1 % | explicit DEM steps; decreases with step length |
 
 use super::support::{COUPLED, GRAINS, SOLID, Table, json, numbers, run, scene_folder};
 use serde_json::Value;
 
-/// The sleeper settles on dissipative grains, then three load cycles: a scene in which the load does work.
 const SETTLED: [&str; 3] = ["track.load.rest=0.3", "track.load.cycles=3", "material.0.restitution=0.1"];
 
 #[track_caller]
@@ -20,7 +19,7 @@ fn expect_keys(value: &Value, keys: &[&str]) {
 }
 
 #[test]
-fn the_summary_of_a_coupled_run_has_every_part() {
+fn coupled_summary_is_complete() {
     let folder = scene_folder("summary", COUPLED);
     run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
     let summary = json(&folder.join("out/summary.json"));
@@ -96,9 +95,8 @@ fn the_summary_of_a_coupled_run_has_every_part() {
     assert!(coupling["transfer"]["exchanges"].as_u64().unwrap() > 0);
 }
 
-/// The account of energy closes, adds up from its own entries, and agrees with the tables.
 #[test]
-fn the_energy_of_a_coupled_run_adds_up() {
+fn coupled_energy_adds_up() {
     let folder = scene_folder("summary_energy", COUPLED);
     run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
     let summary = json(&folder.join("out/summary.json"));
@@ -109,7 +107,6 @@ fn the_energy_of_a_coupled_run_adds_up() {
     println!("energy error {:.3} % of the work of {} J", 100.0 * relative, energy["work"]);
     assert!(relative < 0.01, "{energy:#}");
 
-    // The account can be added up from its own entries, and the history's last row says the same.
     let total = |k: &str| energy[k].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum::<f64>();
     let spent = |k: &str| energy["spent"][k].as_f64().unwrap();
     let dissipated: f64 =
@@ -117,7 +114,7 @@ fn the_energy_of_a_coupled_run_adds_up() {
     let work: f64 = ["applied_work", "wall_work", "solid_load_work"].map(spent).iter().sum();
     let error = total("end") - total("start") + dissipated - work;
     assert!((error - energy["error"].as_f64().unwrap()).abs() < 1e-9);
-    // The reader of JSON may lose the last bit of a number.
+    // JSON parsing may lose the last bit.
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-15 * a.abs();
     let history = Table::read(&folder.join("out/history.csv"));
     for (column, key) in [("energy_error", "error"), ("work", "work")] {
@@ -134,8 +131,8 @@ fn the_energy_of_a_coupled_run_adds_up() {
 }
 
 #[test]
-fn the_load_is_carried_down_to_the_solid() {
-    // Mean of the contact force over the second half of the rest: weight of five spheres and the sleeper.
+fn contact_force_on_solid_equals_weight() {
+    // Mean contact force in the second half: weight of five spheres and sleeper.
     let folder = scene_folder("carried", COUPLED);
     run(
         &folder.join("scene.toml"),
@@ -154,7 +151,7 @@ fn the_load_is_carried_down_to_the_solid() {
 }
 
 #[test]
-fn the_hash_follows_scene_overrides_and_files() {
+fn hash_covers_scene_overrides_and_files() {
     let folder = scene_folder("hash", SOLID);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let hash = |set: &[&str]| {
@@ -177,7 +174,7 @@ fn the_hash_follows_scene_overrides_and_files() {
 }
 
 #[test]
-fn each_kind_of_run_has_its_own_accounts() {
+fn balances_follow_kind_of_run() {
     let folder = scene_folder("kinds", SOLID);
     run(&folder.join("scene.toml"), &folder.join("solid"), &[]).good();
     let solid = json(&folder.join("solid/summary.json"));
@@ -185,7 +182,7 @@ fn each_kind_of_run_has_its_own_accounts() {
         &solid["statics"],
         &["load", "reaction", "equilibrium_error", "largest_displacement", "strain_energy"],
     );
-    // 10 kPa on 4 m² and 8 t of soil.
+    // 10 kPa on 4 m², and 8 t of soil.
     let load = numbers(&solid["statics"]["load"])[2];
     assert!((load + 40e3 + 8e3 * 9.81).abs() < 1e-6, "{load}");
     assert!(solid["statics"]["equilibrium_error"].as_f64().unwrap() < 1e-12);

@@ -1,4 +1,4 @@
-//! What the tests share: fresh folders, runs of the binary, small scenes, readers of what a run leaves.
+//! Shared test helpers: directories, program runs, small scenes, result readers.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,11 +7,11 @@ use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// A fresh folder, removed when the test passes and kept for inspection when it fails.
+/// Temporary directory, removed if the test passes.
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// A folder whose name starts with `name`.
+    /// Creates a directory with the prefix `name`.
     pub fn new(name: &str) -> Folder {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -22,17 +22,17 @@ impl Folder {
         Folder(path)
     }
 
-    /// The folder itself.
+    /// Path of the directory.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// A path in the folder.
+    /// Path in the directory.
     pub fn join(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
-    /// Writes a file of the folder.
+    /// Writes a file.
     pub fn write(&self, name: &str, text: &str) -> PathBuf {
         let file = self.join(name);
         fs::create_dir_all(file.parent().unwrap()).unwrap();
@@ -40,7 +40,7 @@ impl Folder {
         file
     }
 
-    /// Replaces `old`, which must be there once, in a file of the folder.
+    /// Replaces `old`, which must occur once.
     pub fn edit(&self, name: &str, old: &str, new: &str) {
         let text = fs::read_to_string(self.join(name)).unwrap();
         assert_eq!(text.matches(old).count(), 1, "{name} should hold exactly one {old:?}:\n{text}");
@@ -56,10 +56,10 @@ impl Drop for Folder {
     }
 }
 
-/// What a run of the program said.
+/// Exit code and output.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Exit code; -1 when a signal ended it.
+    /// Exit code; -1 after a signal.
     pub code: i32,
     /// Standard output.
     pub stdout: String,
@@ -68,7 +68,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Fails the test unless the program ended with exit code 0.
+    /// Requires exit code 0.
     #[track_caller]
     pub fn good(self) -> Outcome {
         assert_eq!(self.code, 0, "stdout: {}\nstderr: {}", self.stdout, self.stderr);
@@ -76,7 +76,7 @@ impl Outcome {
     }
 }
 
-/// Runs the program in the folder `dir`.
+/// Runs the program in `dir`.
 pub fn trackbed_in<A: AsRef<std::ffi::OsStr>>(dir: &Path, arguments: impl IntoIterator<Item = A>) -> Outcome {
     let output =
         Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).current_dir(dir).output().unwrap();
@@ -92,7 +92,7 @@ pub fn trackbed<A: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = A
     trackbed_in(&std::env::temp_dir(), arguments)
 }
 
-/// Runs a scene quietly into `out` with overrides `key.path=value`, whatever is there.
+/// Runs a scene into `out` with overrides, `--force` and `--quiet`.
 pub fn run(scene: &Path, out: &Path, set: &[&str]) -> Outcome {
     let mut arguments: Vec<String> =
         ["run", &scene.display().to_string(), "--out", &out.display().to_string(), "--quiet", "--force"]
@@ -104,12 +104,12 @@ pub fn run(scene: &Path, out: &Path, set: &[&str]) -> Outcome {
     trackbed(arguments)
 }
 
-/// The folder of the repository.
+/// Repository root.
 pub fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file below `dir` with its bytes, by relative name.
+/// Contents of all files below `dir`.
 pub fn snapshot(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     fn visit(root: &Path, dir: &Path, files: &mut BTreeMap<String, Vec<u8>>) {
         for entry in fs::read_dir(dir).unwrap() {
@@ -127,7 +127,7 @@ pub fn snapshot(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Every result of a run with its bytes, without what no run repeats: seconds by the clock, memory, and the number of threads.
+/// Contents of all results without wall time, memory and thread count.
 pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = snapshot(out);
     let log = String::from_utf8(files.remove("log.txt").expect("a log")).unwrap();
@@ -159,7 +159,7 @@ pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// A JSON file.
+/// Reads JSON.
 pub fn json(file: &Path) -> serde_json::Value {
     let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     serde_json::from_str(&text).unwrap()
@@ -170,16 +170,16 @@ pub fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
 
-/// A CSV file of numbers; units `[…]` are taken off the heads.
+/// Numeric CSV file, headers without units.
 pub struct Table {
-    /// Names of the columns.
+    /// Headers.
     pub heads: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// Reads a file; every row must be as wide as the head and all numbers finite.
+    /// Reads a file; requires full rows of finite numbers.
     pub fn read(file: &Path) -> Table {
         let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
         let mut lines = text.lines();
@@ -219,7 +219,7 @@ impl Table {
     }
 }
 
-/// A block of 2 × 2 × 2 elements of material 1, 2 m × 2 m × 1 m, its top at z = 0.
+/// Block of 2 × 2 × 2 elements, 2 m × 2 m × 1 m, top at z = 0.
 pub fn small_block() -> Mesh {
     let mut mesh = Mesh::block([2, 2, 2], [2.0, 2.0, 1.0]);
     for point in &mut mesh.coordinates {
@@ -228,7 +228,7 @@ pub fn small_block() -> Mesh {
     mesh
 }
 
-/// Writes `mesh` as three lists into `dir`, its lowest nodes held in all directions.
+/// Writes `mesh` as lists with a fixed base.
 pub fn write_lists(mesh: &Mesh, dir: &Path) {
     let bottom = mesh.coordinates.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     let constraints: Vec<Constraint> = (0..mesh.node_count() as u32)
@@ -238,7 +238,7 @@ pub fn write_lists(mesh: &Mesh, dir: &Path) {
     trackbed::write::ansys_lists::write_lists(mesh, &constraints, dir).unwrap();
 }
 
-/// A static scene: the small block under pressure on its top.
+/// Small block under static pressure.
 pub const SOLID: &str = r#"title = "block"
 
 [solid]
@@ -265,7 +265,7 @@ node = 1
 tables = true
 "#;
 
-/// A scene of a plastic block that is pressed together between rough plates.
+/// Plastic block between rough platens.
 pub const PLASTIC: &str = r#"title = "pressed block"
 
 [solid]
@@ -317,7 +317,7 @@ solid_step = 0.1
 frames = 2
 "#;
 
-/// A scene of two spheres above a plane.
+/// Two spheres above a plane.
 pub const GRAINS: &str = r#"title = "two spheres"
 
 [[material]]
@@ -346,7 +346,7 @@ end = "20 ms"
 frames = 2
 "#;
 
-/// A scene of five spheres and a sleeper on the small block, with a cyclic load.
+/// Five spheres and a cyclically loaded sleeper on the small block.
 pub const COUPLED: &str = r#"title = "spheres on a block"
 
 [solid]
@@ -404,7 +404,7 @@ frames = 2
 tecplot = true
 "#;
 
-/// Planes of a material "stone" around a square shaft with its floor at the origin [m].
+/// Planes of material "stone" around a square shaft, floor at z = 0 [m].
 pub fn shaft(width: f64) -> String {
     let plane = |point: [f64; 3], normal: [f64; 3]| {
         format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")
@@ -419,7 +419,7 @@ pub fn shaft(width: f64) -> String {
     .concat()
 }
 
-/// A folder with the small block's lists and `text` as `scene.toml`.
+/// Directory with the small block's lists and `text` as `scene.toml`.
 pub fn scene_folder(name: &str, text: &str) -> Folder {
     let folder = Folder::new(name);
     write_lists(&small_block(), folder.path());

@@ -1,13 +1,13 @@
-//! Sleepers in a row.
+//! Rows of sleepers.
 
 use super::support::{Folder, Table, json, results};
 use std::path::Path;
 use trackbed::run::{Interrupt, Options, Verbosity};
 
-/// Stiffness of the bed under a sleeper [N/m]: four held balls, each a spring.
+/// Bed stiffness per sleeper [N/m]: four fixed balls.
 pub const BED: f64 = 40e6;
 
-/// Sleepers 0.6 m apart, each on four balls that do not move: a bed of springs. `more` follows the sleepers.
+/// Sleepers 0.6 m apart on four fixed balls each; `more` follows the sleepers.
 pub fn springs(sleepers: usize, more: &str) -> String {
     let balls: Vec<String> = (0..4 * sleepers)
         .map(|k| {
@@ -57,7 +57,7 @@ vtk = false
     )
 }
 
-/// A scene of this text in a folder of its own.
+/// Writes the scene into a directory.
 pub fn written(text: &str) -> (Folder, std::path::PathBuf) {
     let folder = Folder::new("track");
     let scene = folder.write("scene.toml", text);
@@ -86,7 +86,6 @@ ramp = "50 ms"
 seats = [[-0.75, 0], [0.75, 0]]
 "#;
 
-/// Three sleepers under the same load go down by F/k at once, one after the other in the files.
 #[test]
 fn sleepers_in_a_row_sink_alike() {
     let (folder, scene) = written(&springs(3, HAVERSINE));
@@ -102,7 +101,7 @@ fn sleepers_in_a_row_sink_alike() {
         let most = load.iter().copied().fold(0.0, f64::max);
         let lowest = z.iter().copied().fold(f64::INFINITY, f64::min);
         assert!((most - 45e3).abs() < 50.0, "{most}");
-        // Quasi-static within the square of the ratio of the periods: (10 Hz/58 Hz)² is 3 %.
+        // Quasi-static to (10 Hz/58 Hz)² = 3 %.
         let sunk = z[0] - lowest;
         let expected = rest + 45e3 / BED;
         assert!((sunk / expected - 1.0).abs() < 0.04, "{sunk} m, static {expected} m");
@@ -116,7 +115,6 @@ fn sleepers_in_a_row_sink_alike() {
     assert!(energy < 2e-3, "{energy}");
 }
 
-/// One sleeper keeps the names of its columns.
 #[test]
 fn a_single_sleeper_has_no_number() {
     let text = springs(1, HAVERSINE).replace("count = 1\nspacing = \"0.6 m\"\nalong = \"y\"\n", "");
@@ -126,7 +124,7 @@ fn a_single_sleeper_has_no_number() {
     assert_eq!(heads[1..6], ["load", "sleeper_x", "sleeper_y", "sleeper_z", "sleeper_tilt"]);
 }
 
-/// Runs a scene without a break on one thread, and with breaks after these numbers of steps on two and three.
+/// Compares an uninterrupted run with runs interrupted at `breaks`, on up to three threads.
 pub fn goes_on_bit_for_bit(scene: &Path, folder: &Folder, breaks: &[u64]) {
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     trackbed::run::run(scene, &options(&whole, 1)).unwrap();
@@ -145,16 +143,16 @@ pub fn goes_on_bit_for_bit(scene: &Path, folder: &Folder, breaks: &[u64]) {
 }
 
 #[test]
-fn a_row_goes_on_bit_for_bit() {
+fn sleeper_row_resumes_bitwise() {
     let text = springs(2, HAVERSINE).replace("vtk = false", "vtk = true");
     let (folder, scene) = written(&text);
     goes_on_bit_for_bit(&scene, &folder, &[700, 2900]);
 }
 
-/// Balls that keep deformation (Walton and Braun, e = 0.5: K₂ = 4 K₁): pulses from F₀ to F₁ leave (F₁ − F₀)(1/K₁ − 1/K₂), and
-/// cycles that stay below F₁ add nothing. 3 %, for the sleeper's inertia at (4 Hz over 58 Hz)².
+/// Walton and Braun, e = 0.5, K₂ = 4 K₁: pulses from F₀ to F₁ leave (F₁ − F₀)(1/K₁ − 1/K₂), smaller cycles
+/// nothing. 3 % for inertia, (4 Hz/58 Hz)².
 #[test]
-fn seating_takes_the_first_settlement_out_of_the_count() {
+fn seating_removes_initial_settlement() {
     let text = springs(1, HAVERSINE).replace("cycles = 2", "cycles = 3").replace("10 Hz", "4 Hz");
     let text = text.replace("restitution = 0.2", "restitution = 0.5\nnormal = \"walton_braun\"");
     let run = |seating: &str| {
@@ -180,9 +178,8 @@ fn seating_takes_the_first_settlement_out_of_the_count() {
     assert!(own.iter().zip(&total).all(|(s, t)| (t - s - found).abs() < 1e-12), "{own:?} {total:?}");
 }
 
-/// A seating load that presses no more than the load it begins with.
 #[test]
-fn a_seating_load_below_the_first_instant_is_refused() {
+fn rejects_seating_load_below_initial_load() {
     let seating = "[track.load.seating]\ncycles = 2\nmaximum = \"4 kN\"\nfrequency = \"4 Hz\"\n";
     let (_folder, scene) = written(&format!("{}\n{seating}", springs(1, HAVERSINE)));
     let error = trackbed::run::run(&scene, &options(Path::new("nowhere"), 1)).unwrap_err().to_string();

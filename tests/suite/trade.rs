@@ -1,12 +1,12 @@
-//! Keys of the trade of speed against accuracy: masses, search, faces; and the breakage of bonded stones.
+//! Speed–accuracy keys: mass factor, search skin, facets; breakage of bonded stones.
 
 use super::support::{
     COUPLED, Folder, GRAINS, Table, json, repository, run, small_block, trackbed, write_lists,
 };
 use std::fs;
 
-/// A factor of four on the masses is a scene of four times the density under a quarter of the gravity, bit for bit: weights are
-/// kept, and so are all accounts. The settling before has the true masses; the steps of the run are twice as long.
+/// Mass factor 4 equals density × 4 and gravity / 4, bitwise. Deposition uses true masses; main-stage steps
+/// double.
 #[test]
 fn mass_factor_keeps_weights_and_settling() {
     let folder = Folder::new("mass_factor");
@@ -24,7 +24,6 @@ fn mass_factor_keeps_weights_and_settling() {
     let error = |s: &serde_json::Value| s["energy"]["relative_error"].as_f64().unwrap();
     assert!(error(&summary) < 5e-3 && error(&before) < 5e-3, "{} {}", error(&summary), error(&before));
 
-    // With a sleeper of a mass of its own and a bed that settles first.
     let bed = repository().join("inputs/ballast/box.toml");
     let short = [
         "grains.0.count=60",
@@ -52,12 +51,10 @@ fn mass_factor_keeps_weights_and_settling() {
     println!("steps of the run {light}, with 16 times the mass {heavy}");
     assert!(settling == same && heavy < 0.4 * light, "{settling} {same}, {light} {heavy}");
     assert!(error(&after) < 0.01, "{}", error(&after));
-    // The plate is pressed by the same force: its weight is kept.
     let force = |s: &serde_json::Value| s["track"]["sleepers"][0]["largest_force"].as_f64().unwrap();
     assert!((force(&after) / force(&before) - 1.0).abs() < 1e-3);
 }
 
-/// What the factor is not for, and numbers out of range.
 #[test]
 fn refusals() {
     let folder = Folder::new("trade_refusals");
@@ -79,7 +76,7 @@ fn refusals() {
     assert!(outcome.code == 2 && outcome.stderr.contains("coupling.faces"), "{}", outcome.stderr);
 }
 
-/// `check` weighs the factor by the inertial number of the load: 16 is fine on the box test, 1,000 is not.
+/// `check` uses the inertial number of the load: 16 is accepted on the box test, 1,000 is not.
 #[test]
 fn inertial_number_is_weighed() {
     let scene = repository().join("inputs/ballast/box.toml").display().to_string();
@@ -91,8 +88,8 @@ fn inertial_number_is_weighed() {
     assert!(text.contains("warning: time.mass_factor: found 1000, at which the inertial number"), "{text}");
 }
 
-/// The skin of the search changes how often it searches, never the motion: kinetic energy and that of the springs have the same
-/// bits; what is summed up over the run has other last digits, for pairs that do not touch share lanes with those that do.
+/// Kinetic and spring energies are bitwise equal; running totals differ in last digits, since non-contacting
+/// pairs share SIMD lanes.
 #[test]
 fn search_skin_changes_no_motion() {
     let folder = Folder::new("search_skin");
@@ -110,9 +107,9 @@ fn search_skin_changes_no_motion() {
     );
 }
 
-/// Flat facets: six for each face of the ground, a motion close to that on curved faces and not the same, exact sums.
+/// Six facets per ground face; motion close to curved faces.
 #[test]
-fn flat_faces_are_close_to_curved_ones() {
+fn flat_facets_approximate_curved_faces() {
     let folder = Folder::new("flat_faces");
     let scene = folder.write("scene.toml", COUPLED);
     write_lists(&small_block(), folder.path());
@@ -139,7 +136,6 @@ fn flat_faces_are_close_to_curved_ones() {
     assert_eq!(faces("coupling.faces=\"flat\""), 6 * faces("coupling.faces=\"curved\""));
 }
 
-/// A stone that is crushed has a breakage, one whose bonds hold has none.
 #[test]
 fn breakage_of_a_crushed_stone() {
     let folder = Folder::new("breakage");
@@ -161,7 +157,7 @@ fn breakage_of_a_crushed_stone() {
     println!("{broken}");
     assert_eq!(whole["marsal"].as_f64(), Some(0.0));
     assert_eq!(whole["ballast_index"].as_f64(), Some(0.0));
-    // A single stone of 40 mm: all of its mass is held back by other sieves once it is broken.
+    // One 40 mm stone: its whole mass moves to other sieves.
     assert!(
         broken["marsal"].as_f64().unwrap() > 0.5 && broken["ballast_index"].as_f64().unwrap() > 0.1,
         "{broken}"

@@ -1,4 +1,4 @@
-//! The scene `inputs/track/train`, made small: fewer and larger stones, a coarser mesh, a faster and shorter pass.
+//! Scene `inputs/track/train`, small: fewer, larger stones, coarser mesh, shorter and faster pass.
 
 use super::support::{Folder, json, repository, results};
 use super::track::options;
@@ -25,7 +25,6 @@ const SMALL: [&str; 20] = [
     "output.frames=2",
     "output.tecplot=false",
     "output.history_interval=0.0005",
-    // Weak enough to yield under the few stones that carry the sleepers.
     "solid.material.1.cohesion=2000",
 ];
 
@@ -42,7 +41,6 @@ fn scene(name: &str) -> PathBuf {
     repository().join("inputs/track/train").join(name)
 }
 
-/// The account closes, every sleeper is loaded, and the embankment yields.
 #[test]
 fn a_small_train_on_an_embankment() {
     let folder = Folder::new("train");
@@ -64,9 +62,8 @@ fn a_small_train_on_an_embankment() {
     assert!(energy["spent"]["wheels"].as_f64().unwrap() > 0.0);
 }
 
-/// The same with an elastic embankment, which `--set` makes of it.
 #[test]
-fn a_small_train_on_an_elastic_embankment() {
+fn train_on_elastic_embankment() {
     let folder = Folder::new("train");
     let out = folder.join("out");
     let set = SMALL[..19].iter().chain(&[ELASTIC, "solid.newton="]).map(|s| s.to_string()).collect();
@@ -76,10 +73,9 @@ fn a_small_train_on_an_elastic_embankment() {
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 0.02, "{}", summary["energy"]);
 }
 
-/// Stones break, the ground yields, rails swing: stopped three times, on other numbers of threads, the run leaves the
-/// bytes of one that was not.
+/// Breakage, plasticity and rails, interrupted three times with varying threads.
 #[test]
-fn breaking_and_yielding_goes_on_bit_for_bit() {
+fn breakage_and_plasticity_resume_bitwise() {
     let folder = Folder::new("train");
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     let weak = [
@@ -98,7 +94,6 @@ fn breaking_and_yielding_goes_on_bit_for_bit() {
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 0.02, "{}", summary["energy"]);
     let windows = summary["stages"].as_array().unwrap().last().unwrap()["solid_steps"].as_u64().unwrap();
     let [settled, tamped] = [0, 1].map(|k| summary["stages"][k]["grain_steps"].as_u64().unwrap());
-    // Amid the settling, then twice amid the run.
     let breaks = [settled / 2, settled - settled / 2 + tamped + windows / 3, windows / 3];
     for (k, &steps) in breaks.iter().enumerate() {
         let interrupt = Interrupt::after(steps);

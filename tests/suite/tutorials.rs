@@ -1,13 +1,11 @@
-//! The tutorials are true: their commands run as written, one after the other, in an empty folder, and print what stands there.
+//! Tutorials: commands run in order in an empty directory and print the shown output.
 //!
-//! A block of `sh` is run, the block of `text` behind it is what it prints. A line of that block must be found in the output; a part
-//! `…` stands for anything.
+//! `sh` blocks are run; each line of the following `text` block must occur in the output (`…`: any text).
 
 use super::support::{Folder, repository};
 use std::path::Path;
 use std::process::Command;
 
-/// A block of a page: its language and its lines.
 struct Block {
     language: String,
     text: String,
@@ -32,7 +30,7 @@ fn blocks(page: &str) -> Vec<Block> {
     all
 }
 
-/// Whether a line of a page is in a line of the output: its parts between `…` in order.
+/// Whether the parts between `…` occur in order.
 fn is_in(line: &str, output: &str) -> bool {
     output.lines().any(|found| {
         let mut rest = found;
@@ -46,7 +44,6 @@ fn is_in(line: &str, output: &str) -> bool {
     })
 }
 
-/// Runs a page in an empty folder.
 fn run_page(name: &str) {
     let page = std::fs::read_to_string(repository().join("docs/tutorials").join(name)).unwrap();
     let folder = Folder::new(&format!("tutorial_{}", name.trim_end_matches(".md")));
@@ -73,7 +70,6 @@ fn run_page(name: &str) {
                     shown += 1;
                 }
             }
-            // Parts of scenes.
             "toml" => {}
             other => panic!("{name}:{line}: a block of {other:?}"),
         }
@@ -97,7 +93,7 @@ fn a_footing() {
 }
 
 #[test]
-fn a_line_with_a_gap_is_found_in_order() {
+fn line_with_gap_matches_in_order() {
     assert!(is_in("a … c", "x\na b c"));
     assert!(!is_in("c … a", "a b c"));
     assert!(!is_in("a d", "a b c d"));

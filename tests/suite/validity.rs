@@ -1,10 +1,10 @@
-//! Runs whose balances close and whose results lie outside of their theory: the second part of the verdict names them.
+//! Validity checks: balances close, but the theory does not apply.
 
 use super::support::{Folder, json, repository, run, trackbed};
 use serde_json::Value;
 use std::fs;
 
-/// A block of soil under a pressure ten times beyond its collapse, with its inertia: it flows away.
+/// Soil block with inertia, pressure ten times the collapse load.
 const COLLAPSE: &str = r#"
 [solid]
 gravity = false
@@ -38,7 +38,6 @@ solid_step = 0.005
 vtk = false
 "#;
 
-/// A sphere 0.09 m above a floor.
 const DROP: &str = r#"
 [[material]]
 name = "m"
@@ -63,7 +62,6 @@ end = 0.1
 vtk = false
 "#;
 
-/// Spheres that settle in a box of walls, and a box above them that is measured.
 const BED: &str = r#"
 [[material]]
 name = "m"
@@ -136,18 +134,17 @@ fn warned(summary: &Value, part: &str) -> bool {
 }
 
 #[test]
-fn soil_that_flows_away_has_no_result() {
+fn flowing_soil_is_invalid() {
     let (far, log) = summary("validity-collapse", COLLAPSE, &[]);
     assert_eq!(far["verdict"]["outcome"], "failed", "{far:#}");
     assert_eq!(status(&far, "largest strain of the solid"), "failed");
     assert!(log.contains("validity: failed, 3 checks") && warned(&far, "solid: strain "), "{log}");
-    // A fiftieth of the load is borne.
     let (near, log) = summary("validity-stands", COLLAPSE, &["solid.load.0.pressure=2e4"]);
     assert_eq!(near["verdict"]["outcome"], "passed", "{near:#}");
     assert!(log.contains("validity: passed, 3 checks"), "{log}");
 }
 
-/// A collapse load in equilibrium is what small strains are for: 70 % of strain at the corner of the footing are no remark.
+/// Strains of 70 % at the footing corner give no warning.
 #[test]
 fn footing_at_its_collapse_load_passes() {
     let folder = Folder::new("validity-footing");
@@ -157,9 +154,9 @@ fn footing_at_its_collapse_load_passes() {
     assert!(s["warnings"].as_array().is_none_or(Vec::is_empty), "{}", s["warnings"]);
 }
 
-/// Free fall of 0.05 m becomes one of 0.5 mm with a hundred times the mass.
+/// Mass × 100: free fall of 0.05 m becomes 0.5 mm.
 #[test]
-fn scaled_masses_that_fall_are_not_valid() {
+fn falling_scaled_masses_are_invalid() {
     for (factor, end, outcome) in [(100, 0.3, "failed"), (4, 0.1, "failed"), (2, 0.3, "failed")] {
         let set = [format!("time.mass_factor={factor}"), format!("time.end={end}")];
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
@@ -173,7 +170,7 @@ fn scaled_masses_that_fall_are_not_valid() {
 }
 
 #[test]
-fn boxes_above_the_bed_are_warned_about() {
+fn measurement_box_above_bed_warns() {
     let (good, _) = summary("validity-box", BED, &[]);
     assert_eq!(status(&good, "measure core"), "passed", "{good:#}");
     for top in ["0.15", "0.3"] {
@@ -185,13 +182,11 @@ fn boxes_above_the_bed_are_warned_about() {
         );
         assert_eq!(high["verdict"]["outcome"], "warned");
     }
-    // No stone reaches the box.
     let (none, _) =
         summary("validity-box-none", BED, &["measure.0.box=[[0.02, 0.02, 0.2], [0.18, 0.18, 0.3]]"]);
     assert_eq!(status(&none, "measure core"), "warned");
 }
 
-/// A fill up to a border of the solid, with and without the wall that holds it.
 #[test]
 fn open_borders_are_named() {
     let folder = Folder::new("validity-border");
@@ -231,9 +226,8 @@ substeps = "auto"
     assert!(none.contains("at y = 0 m, y = 0.2 m, without a wall there"), "{none}");
 }
 
-/// A chain of three spheres at a wall hangs down on soft bonds, turned by a right angle.
 #[test]
-fn bonds_turned_by_a_right_angle_are_warned_about() {
+fn large_bond_rotations_warn() {
     let chain = r#"
 gravity = [0, 0, -9.81]
 [[material]]

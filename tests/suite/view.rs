@@ -1,5 +1,4 @@
-//! `trackbed view`: what the program hands to a browser, and whom it refuses. What the page draws is checked in a browser by
-//! `tests/view/check.mjs`.
+//! Server of `trackbed view`: data and access. The page is tested in a browser by `tests/view/check.mjs`.
 
 use super::scenes::vtk;
 use super::support::{Folder, repository, run, trackbed};
@@ -9,7 +8,6 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-/// Four clumps and three spheres that fall on a plane; four frames.
 const BED: &str = r#"title = "LIBRARY"
 
 [[material]]
@@ -49,7 +47,6 @@ end = "0.5 s"
 frames = 3
 "#;
 
-/// The results of the bed in `folder/results`, with a title.
 fn bed(folder: &Folder, title: &str) -> PathBuf {
     let stones = repository().join("inputs/track/cyclic/stones.toml");
     let text = BED.replace("LIBRARY", title).replace("STONES", &stones.display().to_string());
@@ -59,7 +56,7 @@ fn bed(folder: &Folder, title: &str) -> PathBuf {
     out
 }
 
-/// The program as a server; it ends with the test.
+/// Server process, ended with the test.
 pub struct Server {
     pub program: Child,
     pub port: u16,
@@ -79,7 +76,6 @@ impl Server {
         Server { port: port.parse().unwrap(), program }
     }
 
-    /// Status and body of the response to a request line with headers.
     fn raw(&self, request: &str) -> (u16, Vec<u8>) {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
         stream.write_all(format!("{request}\r\nConnection: close\r\n\r\n").as_bytes()).unwrap();
@@ -96,7 +92,7 @@ impl Server {
         (status, body)
     }
 
-    /// Status and body of the response to an address.
+    /// Status and body for an address.
     pub fn get(&self, address: &str) -> (u16, Vec<u8>) {
         self.raw(&format!("GET {address} HTTP/1.1\r\nHost: 127.0.0.1:{}", self.port))
     }
@@ -116,7 +112,6 @@ impl Drop for Server {
     }
 }
 
-/// A body that came in pieces.
 fn joined(mut body: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     loop {
@@ -130,7 +125,6 @@ fn joined(mut body: &[u8]) -> Vec<u8> {
     }
 }
 
-/// A block of numbers as the page reads it.
 struct Block {
     text: serde_json::Value,
     bytes: Vec<u8>,
@@ -172,7 +166,7 @@ fn cell_values(file: &Path, name: &str) -> Vec<f64> {
     vtk(file).2.remove(name).unwrap_or_else(|| panic!("no {name}")).1
 }
 
-/// A vector turned by a quaternion w, x, y, z.
+/// Vector rotated by the quaternion w, x, y, z.
 fn turned(q: &[f64], v: &[f64]) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
@@ -184,7 +178,7 @@ fn turned(q: &[f64], v: &[f64]) -> [f64; 3] {
 }
 
 #[test]
-fn blocks_of_grains_hold_the_values_of_the_files() {
+fn grain_blocks_match_files() {
     let folder = Folder::new("view_grains");
     let out = bed(&folder, "bed");
     let server = Server::start(&out);
@@ -211,7 +205,7 @@ fn blocks_of_grains_hold_the_values_of_the_files() {
             for s in spheres.clone() {
                 let way = turned(&orientation[4 * body..4 * body + 4], &offset[3 * s..3 * s + 3]);
                 for k in 0..3 {
-                    // Single precision of places up to a metre from the origin of the picture.
+                    // Single precision, up to 1 m from the origin.
                     let place = origin[k] + position[3 * body + k] + way[k];
                     assert!((place - places[3 * s + k]).abs() < 1e-7, "{place} and {}", places[3 * s + k]);
                 }
@@ -228,7 +222,7 @@ fn blocks_of_grains_hold_the_values_of_the_files() {
         assert_eq!(walls.array("kind"), [0.0, 0.0], "a plane");
         let chains = server.block(&format!("chains/{frame}"));
         let file = out.join(format!("frames/chains_{frame:05}.vtp"));
-        // The reader of the tests takes no file without lines: the first frame, in which nothing touches yet.
+        // The first frame has no contacts, hence no lines to read.
         if fs::read_to_string(&file).unwrap().contains("NumberOfLines=\"0\"") {
             assert!(chains.array("ends").is_empty());
             continue;
@@ -246,7 +240,7 @@ fn blocks_of_grains_hold_the_values_of_the_files() {
 }
 
 #[test]
-fn blocks_of_a_solid_hold_the_values_of_the_file() {
+fn solid_blocks_match_file() {
     let folder = Folder::new("view_solid");
     let out = folder.join("results");
     run(&repository().join("tests/data/fem/E1_patch_curved/scene.toml"), &out, &[]).good();
@@ -279,7 +273,7 @@ fn blocks_of_a_solid_hold_the_values_of_the_file() {
 }
 
 #[test]
-fn other_hosts_pages_and_methods_are_refused() {
+fn rejects_other_hosts_pages_and_methods() {
     let folder = Folder::new("view_hosts");
     let out = bed(&folder, "bed");
     let server = Server::start(&out);
@@ -308,11 +302,10 @@ fn other_hosts_pages_and_methods_are_refused() {
     refused(format!("POST /data/scene HTTP/1.1\r\n{own}\r\nContent-Length: 0"), 405);
     refused(format!("GET /{} HTTP/1.1\r\n{own}", "a".repeat(3000)), 414);
     assert_eq!(server.raw(&format!("GET / HTTP/1.1\r\nHost: localhost:{port}")).0, 200);
-    // Nobody else's address is bound.
     assert!(TcpStream::connect(("127.0.0.2", port)).is_err() || cfg!(not(target_os = "linux")));
 }
 
-/// A browser says whose page makes it send a request; an address that a user types has no such page.
+/// Cross-site requests carry their origin; typed addresses have none.
 #[test]
 fn requests_of_other_sites_are_refused() {
     let folder = Folder::new("view_sites");
@@ -331,7 +324,7 @@ fn requests_of_other_sites_are_refused() {
     }
 }
 
-/// Folders with the names of places of a frame, and of elements; with them a title, a material, a group and a wall.
+/// Hostile directory, title, material, group and wall names.
 #[test]
 fn hostile_names_stay_text() {
     let folder = Folder::new("view_names");
@@ -346,7 +339,6 @@ fn hostile_names_stay_text() {
         );
     let mut dir = folder.join("results");
     run(&folder.write("scene.toml", &text), &dir, &[]).good();
-    // Names of the blocks, whose content has the name of the folder, and numbers of the elements.
     let parts = |page: &str| {
         let names = page.split("data-block=\"").skip(1).map(|b| b[..b.find('"').unwrap()].to_string());
         let count = |element: &str| page.matches(element).count();
@@ -415,7 +407,7 @@ fn nothing_outside_the_folder_is_read() {
         let text = String::from_utf8_lossy(&body);
         assert!(!text.contains("secret") && body.len() < 400, "{address}: {text}");
     }
-    // Nor do tables and the summary of a run that is there.
+    // Links in the results are not followed.
     #[cfg(unix)]
     for name in ["summary.json", "history.csv"] {
         fs::remove_file(inner.join("run").join(name)).unwrap();
@@ -424,7 +416,7 @@ fn nothing_outside_the_folder_is_read() {
     let scene = server.get("/data/scene?run=run").1;
     assert!(!String::from_utf8_lossy(&scene).contains("secret"));
     assert_eq!(server.get("/data/table/history?run=run").0, 404);
-    // Nor does a list of frames lead out, by itself or by a link.
+    // Frame lists do not lead outside, directly or by a link.
     let pvd = |file: &str| {
         let text = format!(
             "<VTKFile><Collection><DataSet timestep=\"0\" part=\"1\" file=\"{file}\"/></Collection></VTKFile>"
@@ -444,7 +436,7 @@ fn nothing_outside_the_folder_is_read() {
 }
 
 #[test]
-fn folders_without_results_are_one_clear_error() {
+fn directory_without_results_is_error() {
     let folder = Folder::new("view_nothing");
     let empty = folder.join("empty");
     fs::create_dir(&empty).unwrap();
@@ -469,7 +461,7 @@ fn folders_without_results_are_one_clear_error() {
 }
 
 #[test]
-fn an_exported_page_has_all_frames_and_hostile_titles_as_text() {
+fn exported_page_escapes_hostile_titles() {
     let folder = Folder::new("view_export");
     let evil = "</script><script>alert(1)</script>";
     let out = bed(&folder, evil);
@@ -483,7 +475,6 @@ fn an_exported_page_has_all_frames_and_hostile_titles_as_text() {
     for name in ["scene", "grains", "grains/3", "grains/0/speed", "chains/3", "walls/3", "table/history"] {
         assert_eq!(page.matches(&format!("data-block=\"{name}\"")).count(), 1, "{name}");
     }
-    // It is not replaced unless this is wanted.
     let again = trackbed(arguments);
     assert_eq!(again.code, 2, "{}", again.stderr);
     assert!(again.stderr.contains("or --force to overwrite it"), "{}", again.stderr);
@@ -492,7 +483,6 @@ fn an_exported_page_has_all_frames_and_hostile_titles_as_text() {
     let thin = fs::read_to_string(&html).unwrap();
     assert!(thin.len() < page.len() && thin.contains("data-block=\"grains/2\""));
     assert!(!thin.contains("data-block=\"grains/3\""));
-    // A damaged result leaves the page as it was.
     let frame = out.join("frames/grains_00002.vtp");
     let text = fs::read(&frame).unwrap();
     fs::write(&frame, &text[..text.len() / 2]).unwrap();
@@ -503,12 +493,12 @@ fn an_exported_page_has_all_frames_and_hostile_titles_as_text() {
 }
 
 #[test]
-fn an_interrupted_run_is_shown_as_far_as_it_came() {
+fn interrupted_run_is_shown() {
     let folder = Folder::new("view_interrupted");
     let out = bed(&folder, "bed");
     fs::remove_file(out.join("summary.json")).unwrap();
     fs::remove_file(out.join("frames/grains_00003.vtp")).unwrap();
-    // The last row is being written.
+    // Incomplete last row.
     let history = fs::read_to_string(out.join("history.csv")).unwrap();
     fs::write(out.join("history.csv"), &history[..history.trim_end().rfind(',').unwrap()]).unwrap();
     let server = Server::start(&out);
@@ -520,7 +510,6 @@ fn an_interrupted_run_is_shown_as_far_as_it_came() {
     assert!(!frames[3]["parts"].to_string().contains("grains"));
     let rows = server.block("table/history").array("0").len();
     assert_eq!(rows, history.lines().count() - 2);
-    // What comes later is seen when the page is loaded again.
     fs::write(
         out.join("results.pvd"),
         fs::read_to_string(out.join("results.pvd")).unwrap().replace("_00003", "_00001"),

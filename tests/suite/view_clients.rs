@@ -1,5 +1,4 @@
-//! `trackbed view` with hostile clients, those of `tests/data/view/clients.toml`: each gets its refusal, the next good request its
-//! response, and the memory of the server stays as it was.
+//! Hostile clients (`tests/data/view/clients.toml`): errors for them, service for others, bounded memory.
 
 use super::support::{Folder, repository, run};
 use super::view::Server;
@@ -9,9 +8,9 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
-/// Memory that the server may take [kB]: four responses of the small results below, and what hyper and the system keep.
+/// Server memory limit [kB]: four responses, hyper, system.
 const MEMORY: u64 = 120_000;
-/// Time after which a server that does not respond is taken for dead; longer than the patience of the server.
+/// Response time limit, above the server's own timeout.
 const DEAD: Duration = Duration::from_secs(60);
 
 #[derive(Deserialize)]
@@ -48,11 +47,10 @@ fn yes() -> bool {
 }
 
 impl Client {
-    /// Connects and sends all that the server takes.
     fn send(&self, port: u16) -> TcpStream {
         let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
         stream.set_read_timeout(Some(DEAD)).unwrap();
-        // A client that reads nothing fills the buffers of the system, and then must not wait for the server.
+        // A client that never reads must not wait for the server.
         let patience = if self.reads { DEAD } else { Duration::from_millis(200) };
         stream.set_write_timeout(Some(patience)).unwrap();
         let [head, fill, tail] =
@@ -71,7 +69,6 @@ impl Client {
         stream
     }
 
-    /// Status of the response; 0 where the connection is closed without one.
     fn status(&self, stream: &mut TcpStream) -> u16 {
         let mut head = Vec::new();
         let mut byte = [0];
@@ -83,7 +80,7 @@ impl Client {
     }
 }
 
-/// Largest memory of a process so far [kB]; 0 where the system does not report it.
+/// Peak memory of a process [kB]; 0 if unknown.
 fn memory(process: u32) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status.lines().find(|l| l.starts_with("VmHWM:"));
@@ -91,7 +88,7 @@ fn memory(process: u32) -> u64 {
 }
 
 #[test]
-fn hostile_clients_neither_stop_nor_fill_it() {
+fn hostile_clients_do_not_block_server() {
     let text = fs::read_to_string(repository().join("tests/data/view/clients.toml")).unwrap();
     let Clients { client: clients } = toml::from_str(&text).unwrap();
     assert!(clients.len() >= 30);

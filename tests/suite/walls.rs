@@ -1,4 +1,4 @@
-//! Scenes with walls of all kinds, through the program.
+//! Scenes with all wall kinds.
 
 use super::support::{Folder, Table, json, repository, run};
 use std::fs;
@@ -15,8 +15,7 @@ fn good_energy(dir: &std::path::Path, bound: f64) {
     assert!(error < bound && momentum < 1e-11, "{error:e} {momentum:e}");
 }
 
-/// The grains stay in the bin until the shutter goes, then fall on the scale: what it carries at the end is what was
-/// put on it, and less than all.
+/// Grains stay until the shutter opens; the scale finally bears less than all of them.
 #[test]
 fn hopper_discharges() {
     let out = Folder::new("hopper");
@@ -31,7 +30,6 @@ fn hopper_discharges() {
     run(&scene("hopper"), out.path(), &set).good();
     good_energy(out.path(), 0.02);
     let history = Table::read(&out.join("history.csv"));
-    // Force on the scale points down.
     let scale = history.column("scale_force_z");
     let time = history.column("time");
     let early = time.iter().zip(&scale).filter(|(t, _)| **t < 0.12).all(|(_, f)| *f == 0.0);
@@ -43,7 +41,7 @@ fn hopper_discharges() {
     assert!(frame.contains("Polys"));
 }
 
-/// The moment on the drum holds the bed on its slope: it is against the turning, and its work is that of the walls.
+/// The drum moment opposes the rotation.
 #[test]
 fn drum_lifts_its_bed() {
     let out = Folder::new("drum");
@@ -60,7 +58,7 @@ fn drum_lifts_its_bed() {
     assert!((work / (-all * 2.0 * 0.6) - 1.0).abs() < 0.2, "{work} against {all} N m times 1.2 rad");
 }
 
-/// The plate of the oedometer carries what is prescribed, within one per cent where the target rests.
+/// Platen force within 1 % at constant target.
 #[test]
 fn oedometer_follows_its_programme() {
     let out = Folder::new("servo");
@@ -92,8 +90,7 @@ fn oedometer_follows_its_programme() {
     assert!(history.column("plate_displacement_z")[last] < -1e-4);
 }
 
-/// A plate on a bed follows pulses of its force: at rest and at the peak within 3 %, half-way up within 10 %, where the servo lags
-/// behind.
+/// Pulsed platen: within 3 % at rest and peak, 10 % half-way, where the servo lags.
 #[test]
 fn a_servo_follows_pulses() {
     let out = Folder::new("servo_pulses");
@@ -128,7 +125,6 @@ fn a_servo_follows_pulses() {
     }
 }
 
-/// The block comes down on the bed, which carries its weight in the end.
 #[test]
 fn block_comes_to_rest() {
     let out = Folder::new("block");
@@ -149,7 +145,7 @@ fn block_comes_to_rest() {
     assert!(fall[0] == 0.0 && *fall.last().unwrap() < -0.01, "{fall:?}");
 }
 
-/// A surface file as a wall: a square plate from STL, scaled and shifted, carries a ball at the height it is put.
+/// Square plate from STL, scaled and shifted, bears a ball at its height.
 #[test]
 fn mesh_from_a_file() {
     let folder = Folder::new("mesh_wall");
@@ -197,7 +193,7 @@ frames = 1
     }
 }
 
-/// A turntable with a recorded moment, a shaking plane and a spherical bowl: all keys reach the engine.
+/// Turntable with recorded moment, shaking plane, spherical bowl.
 #[test]
 fn keys_of_motion_reach_the_engine() {
     let folder = Folder::new("wall_keys");
@@ -251,8 +247,7 @@ history_interval = "5 ms"
     assert!(history.column("bowl_force_z").iter().any(|f| *f < -0.05));
 }
 
-/// A flow down an incline that is periodic downhill and across: it keeps going, its grains stay between the borders in
-/// every file, and energy and momentum close.
+/// Incline, periodic downstream and across: grains stay between the borders in all files.
 #[test]
 fn flow_goes_round_a_periodic_box() {
     let out = Folder::new("shear");
@@ -268,9 +263,9 @@ fn flow_goes_round_a_periodic_box() {
     }
 }
 
-/// A ball on a ceiling stays there where the pair adheres with more than its weight, and falls where with less.
+/// A ball sticks to a ceiling if adhesion exceeds its weight.
 #[test]
-fn adhesion_holds_a_ball_to_the_ceiling() {
+fn adhesion_holds_ball_on_ceiling() {
     let folder = Folder::new("adhesion");
     let weight = 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6 * 9.81;
     for (share, holds) in [(1.02, true), (0.98, false)] {

@@ -1,11 +1,11 @@
-// A browser without a window, the program as a server, and looks at pictures: shared by the checks of the viewer.
+// Headless browser, server and pixel access for the viewer checks.
 import { spawn } from 'node:child_process';
 import { createRequire } from 'node:module';
 
-// Where it was installed: below the folder in which this is run.
+// Installed below the working directory.
 const { chromium } = createRequire(`${process.cwd()}/`)('playwright-core');
 
-/** Software drawing, and none of the browser's own traffic. */
+/** Software rendering, no background traffic. */
 const FLAGS = [
   '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
@@ -15,7 +15,7 @@ export function launch() {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true, args: FLAGS });
 }
 
-/** A page of the viewer that is ready; `faults` collects errors of scripts and requests that leave this machine. */
+/** Loaded viewer page; `faults` collects script errors and external requests. */
 export async function open(browser, address, faults, size = { width: 900, height: 600 }) {
   const context = await browser.newContext({ viewport: size, acceptDownloads: true });
   const page = await context.newPage();
@@ -34,7 +34,7 @@ export async function open(browser, address, faults, size = { width: 900, height
   return page;
 }
 
-/** Serves a folder; `address` is where, `stop` ends it as Ctrl-C does and gives the exit code. */
+/** Serves a directory at `address`; `stop` sends Ctrl-C and returns the exit code. */
 export async function serve(program, dir) {
   const server = spawn(program, ['view', dir, '--no-open'], { stdio: ['ignore', 'pipe', 'inherit'] });
   const ended = new Promise((done) => server.on('exit', (code, signal) => done(signal ?? code)));
@@ -46,7 +46,7 @@ export async function serve(program, dir) {
   return { address, line, pid: server.pid, stop: () => { server.kill('SIGINT'); return ended; } };
 }
 
-/** Helpers within the page: state, pixels of the picture as it is now, places of stones. */
+/** Page helpers: state, pixels, grain positions. */
 export class View {
   constructor(page) {
     this.page = page;
@@ -65,7 +65,7 @@ export class View {
     await this.idle();
   }
 
-  /** Opens the part of the panel that a control is in. */
+  /** Opens the panel section of a control. */
   async control(id) {
     await this.run((name) => { const part = document.getElementById(name).closest('details');
       if (part) part.open = true; }, id);
@@ -89,7 +89,7 @@ export class View {
     await this.idle();
   }
 
-  /** Drags a slider's thumb to a share of its way. */
+  /** Drags a slider to a fraction. */
   async slide(id, share) {
     const input = await this.control(id);
     await input.scrollIntoViewIfNeeded();
@@ -109,7 +109,7 @@ export class View {
     await this.idle();
   }
 
-  /** Number of pixels of the picture, without legends, for which `test`, a text of an expression in r, g, b, holds. */
+  /** Pixels without legends that satisfy `test`, an expression in r, g, b. */
   count(test) {
     return this.run((text) => {
       const from = trackbed.app.stage.canvas;
@@ -126,7 +126,7 @@ export class View {
     }, test);
   }
 
-  /** Colour of the picture at a place of the canvas, in CSS pixels. */
+  /** Colour at a canvas position [CSS pixels]. */
   pixel(x, y) {
     return this.run(([px, py]) => {
       const from = trackbed.app.stage.canvas;
@@ -138,7 +138,7 @@ export class View {
     }, [x, y]);
   }
 
-  /** A number that changes with the picture. */
+  /** Hash of the picture. */
   hash() {
     return this.run(() => {
       const from = trackbed.app.stage.canvas;
@@ -152,24 +152,22 @@ export class View {
     });
   }
 
-  /** Place of a body in the canvas. */
+  /** Canvas position of a body. */
   bodyAt(body) {
     return this.run((b) => trackbed.histories.picker.project(Array.from(trackbed.app.grains.position.slice(3 * b, 3 * b + 3))), body);
   }
 
-  /** Where the canvas begins in the page. */
+  /** Canvas origin in the page. */
   async corner() {
     const { x, y } = await this.page.locator('#canvas').boundingBox();
     return [x, y];
   }
 
-  /** Clicks into the picture. */
   async clickAt([x, y]) {
     const [left, top] = await this.corner();
     await this.page.mouse.click(left + x, top + y);
   }
 
-  /** Drags in the picture. */
   async drag(from, to, button = 'left') {
     const [left, top] = await this.corner();
     await this.page.mouse.move(left + from[0], top + from[1]);

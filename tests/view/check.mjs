@@ -1,7 +1,7 @@
-// Checks the viewer in a browser by acting and looking: node tests/view/check.mjs PROGRAM TRACK STONE [PICTURE.png]
+// Checks the viewer in a browser: node tests/view/check.mjs PROGRAM TRACK STONE [PICTURE.png]
 //
-// TRACK: results of a short run of inputs/track/cyclic, STONE: of inputs/grains/bonded_stone. The browser is Chromium
-// (variable CHROMIUM, default /usr/bin/chromium), driven by playwright-core, found from the folder in which this is run.
+// TRACK: short run of inputs/track/cyclic, STONE: of inputs/grains/bonded_stone. Needs Chromium (CHROMIUM, default
+// /usr/bin/chromium) and playwright-core below the working directory.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
@@ -68,7 +68,7 @@ try {
     const plain = await view.hash();
     await view.select('grains-colour', 'speed');
     const [legend] = (await view.state()).legends;
-    // The four groups fly at 17.0 to 19.3 m/s at the start.
+    // Initial speeds of the groups: 17.0 to 19.3 m/s.
     expect(legend?.title === 'Grains: Speed' && legend.range[0] > 16.9 && legend.range[1] < 19.4, JSON.stringify(legend));
     const speed = await view.hash();
     await view.select('grains-colour', 'part');
@@ -83,7 +83,7 @@ try {
   });
   await check('faces picked', 'grains with faces are picked, and removed by the section', async () => {
     const view = new View(await open(browser, third.address, faults));
-    // Those that are seen are picked where they are drawn; each moved as its speed says.
+    // Visible grains are picked where drawn; displacements match speeds.
     const found = await view.run(async () => {
       const { app, histories } = trackbed;
       const out = [];
@@ -100,7 +100,7 @@ try {
     const seen = found.filter((p) => p);
     expect(seen.length === 4 && seen.every((p) => p.title === `Grain ${p.id}`), JSON.stringify(found));
     expect(seen.every((p) => Math.abs(p.way / (0.01 * p.speed) - 1) < 0.02 && p.extent > 1 && p.extent < 3), JSON.stringify(found));
-    // They start where the packings put them.
+    // Initial positions of the packings.
     const rows = [1, 2, 3, 4].flatMap((k) => fs.readFileSync(path.join(path.dirname(plates), `impact${k}.csv`), 'utf8').trim().split('\n'));
     const starts = rows.map((row) => row.split(',').slice(0, 3).map(Number));
     const off = seen.map((p) => Math.min(...starts.map((at) => Math.hypot(...at.map((x, k) => x - p.place[k])))));
@@ -121,7 +121,7 @@ try {
     expect(picked.some((id, k) => id !== seen[k].id), `what is removed is not picked: ${picked}`);
     await view.set({ 'section.front': 0 });
     expect(await view.hash() === whole, 'they are back');
-    // The middle of the volume of a pyramid, which is not that of its corners or of its surface.
+    // Centroid of a pyramid, different from the mean of its corners.
     const middle = await view.run(() => {
       const points = [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 1];
       const triangles = [0, 1, 2, 0, 2, 3, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
@@ -143,7 +143,7 @@ try {
 }
 process.exitCode = sum() ? 0 : 1;
 
-/** The picture of the guide. */
+/** Picture for the guide. */
 async function shoot(view, file) {
   const size = view.page.viewportSize();
   await view.page.setViewportSize({ width: 1000, height: 640 });

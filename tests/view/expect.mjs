@@ -1,8 +1,8 @@
-// Checks with names: each is carried out even if others fail.
+// Named checks; all run even if some fail.
 
 const results = [];
 
-/** Carries out a check and prints how it went. */
+/** Runs a check and prints its result. */
 export async function check(id, what, act) {
   const begun = Date.now();
   try {
@@ -15,12 +15,12 @@ export async function check(id, what, act) {
   }
 }
 
-/** Fails unless `holds`. */
+/** Throws unless `holds`. */
 export function expect(holds, message) {
   if (!holds) throw new Error(message);
 }
 
-/** Prints the sum; true if all went well. */
+/** Prints the total; true if all passed. */
 export function sum() {
   const bad = results.filter((r) => !r.good);
   console.log(`${results.length} checks, ${bad.length} failed${bad.length ? `: ${bad.map((r) => r.id).join(', ')}` : ''}`);

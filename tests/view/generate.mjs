@@ -1,6 +1,6 @@
-// Makes results as large runs leave them: node tests/view/generate.mjs FOLDER clumps|spheres [BODIES] [FRAMES]
+// Writes large results: node tests/view/generate.mjs FOLDER clumps|spheres [BODIES] [FRAMES]
 //
-// clumps: 20,000 clumps of ten spheres that sink and turn, 200 frames, with force chains; spheres: a million, one frame.
+// clumps: 20,000 moving clumps of ten spheres, 200 frames, with force chains; spheres: a million, one frame.
 import fs from 'node:fs';
 import path from 'node:path';
 import zlib from 'node:zlib';
@@ -11,7 +11,7 @@ const bodies = Number(given ?? (clumps ? 20000 : 1e6));
 const frames = Number(frameCount ?? (clumps ? 200 : 1));
 const BLOCK = 32768;
 
-/** An array as VTK writes it: blocks of zlib in base64 behind their lengths. */
+/** VTK array: lengths, then zlib blocks, in base64. */
 function encoded(array) {
   const bytes = Buffer.from(array.buffer, array.byteOffset, array.byteLength);
   const packed = [];
@@ -38,7 +38,7 @@ function file(name, count, cells, sections) {
   fs.closeSync(out);
 }
 
-/** The same numbers on every machine. */
+/** Reproducible random numbers. */
 let seed = 1;
 const random = () => {
   seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;

@@ -1,4 +1,4 @@
-// First picture and memory of large results: node tests/view/measure.mjs PROGRAM FOLDER…  (see generate.mjs)
+// Time to first picture and memory of large results: node tests/view/measure.mjs PROGRAM FOLDER…  (see generate.mjs)
 import fs from 'node:fs';
 import { View, launch, open, serve } from './browser.mjs';
 

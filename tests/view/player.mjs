@@ -1,4 +1,4 @@
-// Checks of playing, saving, printing, keys and the layout.
+// Checks of playback, saving, printing, keys and layout.
 import fs from 'node:fs';
 import { check, expect } from './expect.mjs';
 
@@ -22,7 +22,7 @@ export async function onPlayer(view, keep) {
       await view.idle();
       return took;
     };
-    // Frames are read before, so that the clock is that of playing.
+    // Preloads the frames, so that only playback is timed.
     for (let k = 0; k < 8; k++) await go(k);
     const slow = await played(3);
     let fast = Infinity;
@@ -40,7 +40,7 @@ export async function onPlayer(view, keep) {
     const paused = await frame();
     await page.waitForTimeout(400);
     expect(await frame() - paused <= 1 && (await view.state()).playing === 0, 'pause holds the frame');
-    // Read at once: on a slow machine it may have come to the end.
+    // Read immediately: playback may end soon.
     const rate = await view.run(() => { document.getElementById('play-fast').click(); return trackbed.state.playing; });
     expect(rate === 4, 'fast forward');
     await page.waitForFunction(() => trackbed.state.frame === trackbed.state.frames - 1 && !trackbed.state.playing);
@@ -96,7 +96,7 @@ export async function onPlayer(view, keep) {
     const text = (at, n) => bytes.subarray(at, at + n).toString('latin1');
     expect(text(0, 4) === 'RIFF' && text(8, 4) === 'AVI ' && bytes.readUInt32LE(4) === bytes.length - 8, 'RIFF of the right length');
     expect(bytes.readUInt32LE(48) === frames, `${bytes.readUInt32LE(48)} frames`);
-    // Every entry of the index points to a JPEG picture.
+    // Every index entry points to a JPEG.
     const movi = bytes.indexOf('movi');
     const index = bytes.lastIndexOf('idx1');
     let count = 0;

@@ -1,4 +1,4 @@
-// Checks on a bonded stone that is crushed: pieces, walls.
+// Checks on a crushed bonded stone: fragments, walls.
 import { check, expect } from './expect.mjs';
 
 export async function onStone(view) {
@@ -26,7 +26,7 @@ export async function onStone(view) {
       return { count, pieces: new Set(values).size, sizes: trackbed.app.pieces.map((p) => p.bodies) };
     });
     expect(bodies.count === bodies.sizes[0] && bodies.pieces > 1, JSON.stringify(bodies));
-    // Of the spheres that nothing hides, each has the colour of its piece.
+    // Visible spheres have the colour of their fragment.
     const seen = await view.run(async () => {
       const { app, histories } = trackbed;
       const out = { red: 0, green: 0, wrong: 0 };

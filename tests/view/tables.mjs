@@ -1,4 +1,4 @@
-// Checks on small tables of particles that are opened in the page, where colours of single spheres are known.
+// Checks on small particle tables with known colours.
 import fs from 'node:fs';
 import path from 'node:path';
 import { check, expect } from './expect.mjs';
@@ -78,7 +78,7 @@ export async function onTables(view, dir, frames) {
   });
 
   await check('S0-62', 'light along x, y, z', async () => {
-    // At 0.7 of the radius to the sides.
+    // At 0.7 radii from the centre.
     const bright = async (dx, dy) => {
       const [[x, y], [end]] = [await view.bodyAt(2), await view.run(() => {
         const [px, py, pz] = trackbed.app.grains.position.slice(6, 9);

@@ -1,10 +1,10 @@
-// Checks on a short run of the main job: forces, solid, pictures, videos, history.
+// Checks on a short run of the reference case: forces, solid, pictures, videos, history.
 import fs from 'node:fs';
 import { check as named, expect } from './expect.mjs';
 
 const bytesOf = async (download) => fs.readFileSync(await download.path());
 
-/** All checks, or those that are named. */
+/** All checks, or those in `only`. */
 export async function onTrack(view, only) {
   const { page } = view;
   const check = (id, ...rest) => (!only || only.includes(id) ? named(id, ...rest) : null);
@@ -103,7 +103,7 @@ export async function onTrack(view, only) {
     const rear = (await view.state()).section.removed;
     expect(front > 0 && rear > 0 && front < all && rear < all, `${front} and ${rear} of ${all} removed`);
     expect(cut !== whole && await view.hash() !== cut, 'the picture changes');
-    // Those that are left are nearer than those removed.
+    // The remaining ones are nearer than the removed ones.
     const order = await view.run(() => {
       const { app } = trackbed;
       const d = app.stage.sight().toArray();
@@ -138,7 +138,7 @@ export async function onTrack(view, only) {
     await view.slide('chains-thickness', 1);
     const thick = await view.count('coloured');
     expect(thick > 1.5 * thin, `${thin} and ${thick} coloured pixels`);
-    // Below a sleeper few contacts come near the largest force: the range ends at a tenth of it.
+    // Few contacts approach the largest force: the range ends at a tenth of it.
     await view.set({ 'chains.auto': false, 'chains.min': 0, 'chains.max': 0.1 * legend.range[1] });
     const [red, blue] = [await view.count('red'), await view.count('blue')];
     expect(red > 20 && blue > 20, `${red} red and ${blue} blue pixels`);
@@ -244,7 +244,7 @@ export async function onTrack(view, only) {
   });
 }
 
-/** A stone that nothing hides: its place in the picture and its number. */
+/** Picture position and index of a visible stone. */
 async function visibleStone(view) {
   return view.run(() => {
     const { app, histories } = trackbed;

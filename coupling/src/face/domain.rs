@@ -1,44 +1,40 @@
-//! Where the natural coordinates of a face run: the square [−1, 1]² or the triangle ξ, η ≥ 0, ξ + η ≤ 1.
+//! Natural domains of faces: the square [−1, 1]² and the triangle ξ, η ≥ 0, ξ + η ≤ 1.
 //!
-//! Newton's steps are kept in the square by holding coordinates at a bound where the descent direction points outward
-//! (projected Newton; Bertsekas, SIAM J. Control Optim. 20(2), 1982). In the triangle, whose third side couples both
-//! coordinates, a step goes to where the quadratic model of the distance is least over the triangle: to its free minimum,
-//! or where that lies outside to the best point on the sides that it violates (Nocedal and Wright, Numerical Optimization,
-//! 2nd ed. 2006, chapter 16).
+//! Square: projected Newton (Bertsekas, SIAM J. Control Optim. 20(2), 1982). Triangle: minimum of the
+//! quadratic model (Nocedal and Wright, Numerical Optimization, 2nd ed. 2006, chapter 16).
 
 use super::newton::Local;
 use trackbed_fem::element::{quad8, tri6};
 
-/// Distance from the border of the domain within which a point counts as lying on the border.
+/// Tolerance of points on the border.
 const BORDER: f64 = 1e-9;
 
-/// Where the closest point of a face lies.
+/// Location of a point on a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
-    /// Inside the face.
+    /// Interior.
     Inside,
-    /// On a side: k goes from corner k to corner k + 1.
+    /// Side k, from corner k to corner k + 1.
     Side(u8),
-    /// On a corner.
+    /// Corner.
     Corner(u8),
 }
 
-/// Where the natural coordinates of a face run.
+/// Natural domain of a face.
 pub(super) trait Domain {
-    /// Corners, then middles of the sides, in the order of nodes.
+    /// Corners, then mid-sides, in nodal order.
     const LANDMARKS: &'static [[f64; 2]];
 
-    /// The point of the domain that takes the place of one outside.
+    /// Maps an outside point into the domain.
     fn clamp(xi: [f64; 2]) -> [f64; 2];
 
-    /// A Newton step that lowers the distance within the domain.
+    /// Newton step that lowers the distance within the domain.
     fn step(here: &Local, xi: [f64; 2]) -> [f64; 2];
 
-    /// Side or corner on which a natural point lies; sides and corners are counted as the nodes are.
+    /// Side or corner of a natural point, in nodal order.
     fn locate(xi: [f64; 2]) -> Location;
 }
 
-/// [−1, 1]².
 pub(super) struct Square;
 
 impl Domain for Square {
@@ -81,10 +77,9 @@ impl Domain for Square {
     }
 }
 
-/// ξ, η ≥ 0, ξ + η ≤ 1.
 pub(super) struct Triangle;
 
-/// Start and direction of the sides of [`Triangle`].
+/// Start and direction of each side of [`Triangle`].
 const SIDES: [([f64; 2], [f64; 2]); 3] =
     [([0.0, 0.0], [1.0, 0.0]), ([1.0, 0.0], [-1.0, 1.0]), ([0.0, 1.0], [0.0, -1.0])];
 

@@ -1,14 +1,12 @@
-//! The field of a face in powers of its natural coordinates.
+//! Polynomial form of a face field.
 
-/// A face in powers of its natural coordinates,
-/// x(ξ, η) = c₀ + c₁ ξ + c₂ η + c₃ ξ² + c₄ η² + c₅ ξη + c₆ ξ²η + c₇ ξη²: the same field as Σ Nᵢ xᵢ with an eighth of the
-/// work per evaluation. All of it is that of the 8-node quadrilateral; the 6-node triangle has no cubic terms, the 4-node
-/// quadrilateral none but ξη, the 3-node triangle linear ones alone.
+/// x(ξ, η) = c₀ + c₁ ξ + c₂ η + c₃ ξ² + c₄ η² + c₅ ξη + c₆ ξ²η + c₇ ξη²: an eighth of the work of Σ Nᵢ xᵢ.
+/// Complete for 8 nodes; no cubic terms for 6, only ξη for 4, linear for 3.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Form(pub(super) [[f64; 3]; 8]);
 
 impl Form {
-    /// This field plus `factor` times another.
+    /// This field plus `factor` times `other`.
     #[inline]
     pub fn plus(&self, factor: f64, other: &Form) -> Form {
         let mut c = self.0;
@@ -20,7 +18,7 @@ impl Form {
         Form(c)
     }
 
-    /// The field at a natural point.
+    /// Field at a natural point.
     #[inline]
     pub fn at(&self, [a, b]: [f64; 2]) -> [f64; 3] {
         let c = &self.0;
@@ -31,8 +29,7 @@ impl Form {
         })
     }
 
-    /// ∂x/∂ξ × ∂x/∂η at a natural point: the normal, outward for faces ordered as [`trackbed_fem::mesh::Face`], not of
-    /// unit length.
+    /// Area vector ∂x/∂ξ × ∂x/∂η, outward for faces ordered as [`trackbed_fem::mesh::Face`], not normalised.
     pub fn area(&self, natural: [f64; 2]) -> [f64; 3] {
         let tangent = self.tangents(natural);
         cross(tangent[0], tangent[1])
@@ -49,7 +46,7 @@ impl Form {
         ]
     }
 
-    /// ∂²x/∂ξ², ∂²x/∂η², ∂²x/∂ξ∂η at a natural point.
+    /// ∂²x/∂ξ², ∂²x/∂η², ∂²x/∂ξ∂η.
     #[inline]
     pub(super) fn second(&self, xi: [f64; 2]) -> [[f64; 3]; 3] {
         let c = &self.0;

@@ -1,9 +1,6 @@
-//! Closest points on the curved faces of elements.
+//! Closest points on curved element faces x(ξ, η) = Σ Nᵢ(ξ, η) xᵢ.
 //!
-//! A face is x(ξ, η) = Σ Nᵢ(ξ, η) xᵢ with the shape functions of its kind. Each kind is a file here with one line in
-//! `with_kind!`: it says what its field is in powers of the natural coordinates ([`Form`]), which points have a convex hull
-//! that holds it, and over which domain they run. The search for the closest point is then common to all (`newton.rs`); only
-//! the flat 3-node triangle has its result at once.
+//! A new face kind is one file and one line of `with_kind!`.
 
 mod domain;
 mod form;
@@ -22,10 +19,10 @@ use kind::FaceKind;
 pub use newton::Closest;
 use trackbed_fem::FaceShape;
 
-/// Values at the nodes of a face; those beyond the nodes of its kind are not read.
+/// Nodal values of a face; entries beyond its nodes are ignored.
 pub type NodalValues = [[f64; 3]; 8];
 
-/// Code that knows the kind of a face when it is compiled. The list is that of all kinds.
+/// Dispatches on the face kind at compile time.
 macro_rules! with_kind {
     ($shape:expr, $name:ident => $body:expr) => {
         with_kind! { @ $shape, $name => $body;
@@ -45,7 +42,7 @@ macro_rules! with_kind {
     };
 }
 
-/// Σ Nᵢ(ξ, η) qᵢ of a nodal vector quantity on a face.
+/// Interpolates nodal vectors: Σ Nᵢ(ξ, η) qᵢ.
 pub fn interpolate(shape: FaceShape, values: &NodalValues, natural: [f64; 2]) -> [f64; 3] {
     let n = shape.shape_functions(natural);
     let mut out = [0.0; 3];
@@ -57,18 +54,17 @@ pub fn interpolate(shape: FaceShape, values: &NodalValues, natural: [f64; 2]) ->
     out
 }
 
-/// Closest point of the face with node coordinates `x` [m] to `centre`, starting from the natural coordinates `start`
-/// (last step's result converges in one or two iterations).
+/// Closest point of the face with nodes `x` [m] to `centre`; the last step's `start` saves iterations.
 pub fn closest_point(shape: FaceShape, x: &NodalValues, centre: [f64; 3], start: [f64; 2]) -> Closest {
     Form::new(shape, x).closest_point(shape, centre, start)
 }
 
-/// Natural coordinates of the corners of a face, then of the middles of its sides. Side k goes from corner k to the next.
+/// Natural coordinates of corners, then mid-sides. Side k joins corners k and k + 1.
 pub fn landmarks(shape: FaceShape) -> &'static [[f64; 2]] {
     with_kind!(shape, K => <<K as FaceKind>::Domain as Domain>::LANDMARKS)
 }
 
-/// Box that holds a face with the node coordinates `x` [m]: it may bulge beyond its nodes.
+/// Bounding box of a face, which may bulge beyond its nodes.
 pub(crate) fn bounds(shape: FaceShape, x: &NodalValues) -> ([f64; 3], [f64; 3]) {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
@@ -84,7 +80,7 @@ pub(crate) fn bounds(shape: FaceShape, x: &NodalValues) -> ([f64; 3], [f64; 3]) 
 }
 
 impl Form {
-    /// The field with the nodal values `q`.
+    /// Field with the nodal values `q`.
     pub fn new(shape: FaceShape, q: &NodalValues) -> Form {
         let mut c = [[0.0; 3]; 8];
         for d in 0..3 {
@@ -96,7 +92,7 @@ impl Form {
         Form(c)
     }
 
-    /// Closest point of a face of this shape to `centre`, starting from the natural coordinates `start`.
+    /// Closest point to `centre`, from the natural coordinates `start`.
     #[inline]
     pub fn closest_point(&self, shape: FaceShape, centre: [f64; 3], start: [f64; 2]) -> Closest {
         with_kind!(shape, K => K::closest_point(self, centre, start))

@@ -1,40 +1,32 @@
-//! Closest point by Newton in the two natural coordinates.
+//! Closest point by Newton's method in two natural coordinates.
 //!
-//! The closest point to `c` minimises g(ξ) = ½ |x(ξ) − c|² over the domain of the face. Newton uses
-//! ∂g/∂ξₐ = (x − c)·x,ₐ and ∂²g/∂ξₐ∂ξᵦ = x,ₐ·x,ᵦ + (x − c)·x,ₐᵦ; where that matrix is not positive definite
-//! the Gauss–Newton part x,ₐ·x,ᵦ takes its place. Steps stay in the domain of the face (`domain.rs`), and a step that
-//! does not lower g is halved, so a point outside the face ends on the border: this is the fallback that a
-//! three-dimensional inverse map lacks for a point above the surface.
-//!
-//! Limit: a face folded so strongly that several local minima lie within reach yields the one nearest to the
-//! start.
-//!
-//! Theory manual: equation (5.1) of `docs/theory/coupling.md`.
+//! Minimises g(ξ) = ½ |x(ξ) − c|²; an indefinite Hessian is replaced by its Gauss–Newton part. Steps stay in
+//! the domain and are halved until g decreases, so outside points end on the border. Strongly folded faces
+//! give the local minimum nearest to the start. Theory manual: eq. (5.1).
 
 use super::domain::{Domain, Location};
 use super::form::{Form, cross, dot};
 
-/// Newton stops when the step in natural coordinates is below this: convergence is quadratic, so the error left is
-/// about its square.
+/// Tolerance in natural coordinates; the error is about its square.
 const STEP: f64 = 1e-8;
 const MAX_ITERATIONS: usize = 50;
 
-/// Closest point of a face to a given centre.
+/// Closest point of a face.
 #[derive(Clone, Copy, Debug)]
 pub struct Closest {
-    /// Natural coordinates (ξ, η): in [−1, 1]² on a quadrilateral; 0 or more with a sum of at most 1 on a triangle.
+    /// Natural coordinates (ξ, η).
     pub natural: [f64; 2],
-    /// The point itself [m].
+    /// Position [m].
     pub point: [f64; 3],
-    /// Unit normal of the face there, outward for faces ordered as [`trackbed_fem::mesh::Face`].
+    /// Unit normal, outward for faces ordered as [`trackbed_fem::mesh::Face`].
     pub normal: [f64; 3],
-    /// Inside, on a side or on a corner.
+    /// Interior, side or corner.
     pub location: Location,
-    /// Newton iterations used.
+    /// Newton iterations.
     pub iterations: usize,
 }
 
-/// The face and the distance function at one natural point.
+/// Face and distance function at one natural point.
 pub(super) struct Local {
     pub point: [f64; 3],
     pub distance2: f64,
@@ -61,14 +53,14 @@ impl Local {
         }
     }
 
-    /// Second derivatives of g, and whether they are positive definite.
+    /// Hessian of g, and whether it is positive definite.
     #[inline]
     pub fn hessian(&self) -> ([f64; 3], bool) {
         let full = [0, 1, 2].map(|k| self.metric[k] + self.curvature[k]);
         (full, full[0] > 0.0 && full[0] * full[1] - full[2] * full[2] > 0.0)
     }
 
-    /// The step to where the quadratic with the second derivatives `h` and this gradient is least.
+    /// Minimiser of the quadratic model with Hessian `h`.
     #[inline]
     pub fn free_step(&self, h: [f64; 3]) -> [f64; 2] {
         let g = self.gradient;
@@ -77,7 +69,6 @@ impl Local {
     }
 }
 
-/// Closest point of the face to `centre`, starting from the natural coordinates `start`.
 #[inline]
 pub(super) fn closest_point<D: Domain>(form: &Form, centre: [f64; 3], start: [f64; 2]) -> Closest {
     let mut xi = D::clamp(start);
@@ -91,7 +82,7 @@ pub(super) fn closest_point<D: Domain>(form: &Form, centre: [f64; 3], start: [f6
         loop {
             let next = D::clamp([xi[0] + scale * step[0], xi[1] + scale * step[1]]);
             let there = Local::at(form, centre, next);
-            // Rounding may raise g by a few ulps at the minimum itself: that still counts as no worse.
+            // Rounding may raise g by a few ulps at the minimum.
             if there.distance2 <= here.distance2 * (1.0 + 1e-14) {
                 moved = [next[0] - xi[0], next[1] - xi[1]];
                 xi = next;
@@ -110,7 +101,6 @@ pub(super) fn closest_point<D: Domain>(form: &Form, centre: [f64; 3], start: [f6
     result::<D>(&here, xi, iterations)
 }
 
-/// The point that was found.
 #[inline]
 pub(super) fn result<D: Domain>(here: &Local, xi: [f64; 2], iterations: usize) -> Closest {
     let n = cross(here.tangent[0], here.tangent[1]);

@@ -1,9 +1,8 @@
-//! The 4-node quadrilateral: face of the hex8, and of the wedge6 and the pyramid5. Bilinear: flat or twisted.
+//! 4-node quadrilateral (hex8, wedge6, pyramid5), bilinear.
 
 use super::domain::Square;
 use super::kind::FaceKind;
 
-/// Kind of face, see the head of the file.
 pub(super) struct Quad4;
 
 impl FaceKind for Quad4 {
@@ -16,7 +15,7 @@ impl FaceKind for Quad4 {
         [part(q0 + q1 + q2 + q3), linear[0], linear[1], 0.0, 0.0, part(q0 - q1 + q2 - q3), 0.0, 0.0]
     }
 
-    /// The corners: each shape function is between 0 and 1.
+    /// Corners, since 0 ≤ Nᵢ ≤ 1.
     #[inline]
     fn hull(q: [f64; 8], add: impl FnMut(f64)) {
         q[..4].iter().copied().for_each(add);

@@ -1,9 +1,8 @@
-//! The 8-node quadrilateral: face of the hex20, and of the wedge15 and the pyramid13.
+//! 8-node quadrilateral (hex20, wedge15, pyramid13).
 
 use super::domain::Square;
 use super::kind::FaceKind;
 
-/// Kind of face, see the head of the file.
 pub(super) struct Quad8;
 
 impl FaceKind for Quad8 {
@@ -24,8 +23,7 @@ impl FaceKind for Quad8 {
         ]
     }
 
-    /// The Bernstein control points: the eight-node field is biquadratic, and a biquadratic patch lies within the hull of
-    /// its nine control points.
+    /// Nine Bernstein control points: the field is biquadratic.
     #[inline]
     fn hull(q: [f64; 8], mut add: impl FnMut(f64)) {
         let corner = [q[0], q[1], q[2], q[3]];

@@ -4,18 +4,18 @@ use trackbed_fem::element;
 
 const SHAPES: [FaceShape; 4] = [FaceShape::Quad8, FaceShape::Tri6, FaceShape::Quad4, FaceShape::Tri3];
 
-/// A face of this kind with every node moved about by up to 15 % of a half-edge.
+/// Nodes displaced by up to 15 % of a half-edge.
 fn curved_face(shape: FaceShape, random: &mut Random) -> NodalValues {
     let mut x = [[0.0; 3]; 8];
     for (x, p) in x.iter_mut().zip(landmarks(shape)).take(shape.node_count()) {
-        // Triangles in the size of the squares.
+        // Triangles of the size of the squares.
         let scale = if shape.corner_count() == 3 { 2.0 } else { 1.0 };
         *x = [scale * p[0], scale * p[1], 0.0].map(|c| c + 0.15 * random.symmetric());
     }
     x
 }
 
-/// A natural point from the middle of a face to `reach` times its border.
+/// Natural point within `reach` times the border.
 fn natural(shape: FaceShape, random: &mut Random, reach: f64) -> [f64; 2] {
     let [a, b] = [random.symmetric(), random.symmetric()];
     match shape.corner_count() {
@@ -33,8 +33,6 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     dot(r, r).sqrt()
 }
 
-/// The powers of the natural coordinates are the field of the shape functions, and their derivatives its derivatives;
-/// the box holds it.
 #[test]
 fn powers_give_the_field_of_the_shape_functions() {
     let mut random = Random::new(29);
@@ -68,7 +66,7 @@ fn powers_give_the_field_of_the_shape_functions() {
     }
 }
 
-/// V0.4: points 0.02 edges off the face, some beyond its border, against a fine scan with local refinement.
+/// Points 0.02 edges off the face, some beyond its border, against a fine scan with refinement.
 #[test]
 fn closest_point_matches_a_fine_scan() {
     let mut random = Random::new(11);
@@ -110,7 +108,7 @@ fn a_warm_start_gives_the_same_point_in_two_iterations() {
             let on = interpolate(shape, &x, natural(shape, &mut random, 0.8));
             let centre = [on[0], on[1], on[2] + 0.05];
             let cold = closest_point(shape, &x, centre, [0.0, 0.0]);
-            // A stone at 1 m/s moves so far in a step of 5 µs on a face with half-edges of 1 m.
+            // Grain at 1 m/s, step 5 µs, half-edges of 1 m.
             let near = [cold.natural[0] + 5e-6, cold.natural[1] - 5e-6];
             let warm = closest_point(shape, &x, centre, near);
             assert!(warm.iterations <= 2, "{shape:?}: {} iterations", warm.iterations);
@@ -120,7 +118,7 @@ fn a_warm_start_gives_the_same_point_in_two_iterations() {
 }
 
 #[test]
-fn normal_points_out_and_residual_is_along_it() {
+fn normal_is_outward_and_along_residual() {
     let mut random = Random::new(17);
     for shape in SHAPES {
         for _ in 0..100 {
@@ -136,7 +134,7 @@ fn normal_points_out_and_residual_is_along_it() {
 }
 
 #[test]
-fn borders_are_named_as_the_nodes_are() {
+fn borders_follow_nodal_order() {
     let flat = |shape: FaceShape| {
         let mut x = [[0.0; 3]; 8];
         x.iter_mut().zip(landmarks(shape)).for_each(|(x, p)| *x = [p[0], p[1], 0.0]);
@@ -163,18 +161,18 @@ fn borders_are_named_as_the_nodes_are() {
             assert_eq!(at([0.499, 0.5, 0.1]), Location::Inside);
         }
     }
-    // Landmarks are the nodes, as the shape functions have them.
+    // Landmarks are the nodes.
     assert_eq!(
         (landmarks(FaceShape::Quad4), landmarks(FaceShape::Tri3)),
         (&element::quad8::NATURAL[..], &element::tri6::NATURAL[..])
     );
 }
 
-/// A saddle with its corners at heights h and −h, seen from a height Z above: the squared distance along the diagonal is
-/// 2 t² + (h t² − Z)², at a corner 2 + (h − Z)². Where Z is large the second derivatives are indefinite although both on their
-/// diagonal are above zero, and a Newton step leads uphill.
+/// Corners at heights h and −h, seen from height Z. Squared distance: 2 t² + (h t² − Z)² along the diagonal,
+/// 2 + (h − Z)² at a corner. For large Z the Hessian is indefinite with a positive diagonal, so Newton steps
+/// uphill.
 #[test]
-fn the_far_side_of_a_saddle_is_found_at_its_corner() {
+fn finds_far_corner_of_saddle() {
     let (h, z) = (1.0, 3.0);
     let mut x = [[0.0; 3]; 8];
     for (x, [a, b]) in x.iter_mut().zip([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) {
@@ -188,7 +186,6 @@ fn the_far_side_of_a_saddle_is_found_at_its_corner() {
     }
 }
 
-/// Each border by its name, from outside and from either side of a corner: a corner from each of the two sides that end there.
 #[test]
 fn corners_are_named_by_both_sides() {
     for shape in SHAPES {
@@ -207,9 +204,8 @@ fn corners_are_named_by_both_sides() {
     }
 }
 
-/// A face that rises beyond all its nodes and the control points of its sides: with corners at 0, 1, 1, 1 and sides whose
-/// control points are all at 1, the field is 1 − (1 − u)(1 − v)(1 − u − v) over the unit square, 1 + 1/27 at u = v = 2/3. Only the
-/// middle control point, at 5/4, holds it. The other way up, too.
+/// Corners at 0, 1, 1, 1 and side control points at 1: the field 1 − (1 − u)(1 − v)(1 − u − v) reaches 1 +
+/// 1/27 at u = v = 2/3. Only the middle control point, 5/4, bounds it.
 #[test]
 fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
     for sign in [1.0, -1.0] {
@@ -222,14 +218,12 @@ fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
         assert!((top - sign * (1.0 + 1.0 / 27.0)).abs() < 1e-14, "{top}");
         let (low, high) = bounds(FaceShape::Quad8, &x);
         assert!(low[2] <= top && top <= high[2], "{top} in {} to {}", low[2], high[2]);
-        // No wider than the hull of its control points.
         assert!(low[2] >= -1.25 && high[2] <= 1.25 && low[0] == -1.0 && high[1] == 1.0);
     }
 }
 
-/// Whatever the start, the search begins and ends on the face.
 #[test]
-fn points_outside_the_domain_are_brought_back() {
+fn clamps_points_outside_domain() {
     let mut random = Random::new(23);
     for shape in SHAPES {
         for _ in 0..200 {
@@ -243,8 +237,7 @@ fn points_outside_the_domain_are_brought_back() {
     }
 }
 
-/// Flat triangles of any shape, slender and obtuse ones among them, against elementary geometry: the foot of the perpendicular
-/// where that lies within, else the closest of the three sides, each a segment.
+/// Against perpendicular foot or closest side, with slender and obtuse triangles.
 #[test]
 fn flat_triangles_agree_with_elementary_geometry() {
     let mut random = Random::new(31);

@@ -1,12 +1,10 @@
-//! The 3-node triangle: face of the tet4, and of the wedge6 and the pyramid5. Flat, so ½ |x(ξ) − c|² is quadratic in the
-//! natural coordinates and its least value over the triangle is found without iterations.
+//! 3-node triangle (tet4, wedge6, pyramid5): flat, so ½ |x(ξ) − c|² is minimised in closed form.
 
 use super::domain::{Domain, Triangle};
 use super::form::Form;
 use super::kind::FaceKind;
 use super::newton::{self, Closest};
 
-/// Kind of face, see the head of the file.
 pub(super) struct Tri3;
 
 impl FaceKind for Tri3 {
@@ -17,7 +15,6 @@ impl FaceKind for Tri3 {
         [q0, q1 - q0, q2 - q0, 0.0, 0.0, 0.0, 0.0, 0.0]
     }
 
-    /// The corners.
     #[inline]
     fn hull(q: [f64; 8], add: impl FnMut(f64)) {
         q[..3].iter().copied().for_each(add);
@@ -25,7 +22,7 @@ impl FaceKind for Tri3 {
 
     #[inline]
     fn closest_point(form: &Form, centre: [f64; 3], _: [f64; 2]) -> Closest {
-        // From the middle, where rounding of the coordinates found is least.
+        // From the middle, where rounding is least.
         let from = [1.0 / 3.0; 2];
         let step = Triangle::step(&newton::Local::at(form, centre, from), from);
         let natural = Triangle::clamp([from[0] + step[0], from[1] + step[1]]);

@@ -1,15 +1,14 @@
-//! The 6-node triangle: face of the tet10, and of the wedge15 and the pyramid13.
+//! 6-node triangle (tet10, wedge15, pyramid13).
 
 use super::domain::Triangle;
 use super::kind::FaceKind;
 
-/// Kind of face, see the head of the file.
 pub(super) struct Tri6;
 
 impl FaceKind for Tri6 {
     type Domain = Triangle;
 
-    /// N = L (2 L − 1) at corners and 4 Lᵢ Lⱼ at mid-sides, with L = (1 − ξ − η, ξ, η), sorted by powers.
+    /// N = L (2 L − 1) at corners and 4 Lᵢ Lⱼ at mid-sides, L = (1 − ξ − η, ξ, η).
     #[inline]
     fn powers([q0, q1, q2, m3, m4, m5, ..]: [f64; 8]) -> [f64; 8] {
         [
@@ -24,7 +23,7 @@ impl FaceKind for Tri6 {
         ]
     }
 
-    /// The Bernstein control points of the quadratic triangle.
+    /// Bernstein control points.
     #[inline]
     fn hull(q: [f64; 8], mut add: impl FnMut(f64)) {
         for k in 0..3 {

@@ -1,4 +1,4 @@
-//! The account of energy of the coupled step.
+//! Energy balance of the coupled step.
 
 use super::model::Model;
 use super::state::{State, Work};
@@ -8,7 +8,7 @@ use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
-/// Work of each kind of load on the window's displacement, which the solver does not split, and what was dissipated.
+/// Splits the work of the loads, which the solver does not.
 pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step: &StepAudit) {
     for (i, u) in state.solid.u.iter().enumerate() {
         let du = u - work.before.u[i];
@@ -21,7 +21,7 @@ pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step
     let last = |i: usize| if state.rate.is_empty() { work.rate[i] } else { state.rate[i] };
     state.spent.dashpot_lag += work.transfer.dashpot_lag(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
-        // The lagged scheme shows a velocity that does not jump.
+        // The lagged surface velocity has no jump.
         state.rate.clear();
         state.rate.extend_from_slice(&work.rate);
     }
@@ -31,7 +31,7 @@ pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step
     state.spent.numerical += step.numerical_dissipation;
 }
 
-/// Energy stored in the system now.
+/// Returns the stored energy.
 pub fn stored(model: &Model<'_>, state: &State) -> Stored {
     let grains = dem::measure::energies(&model.grains, &state.grains);
     Stored {
@@ -47,7 +47,7 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
     }
 }
 
-/// Work and dissipation of both sides since the start.
+/// Returns work and dissipation of both sides since the start.
 pub fn spent(state: &State) -> Spent {
     let solid = &state.spent;
     let grains = spent_by_grains(&state.grains);
@@ -64,13 +64,12 @@ pub fn spent(state: &State) -> Spent {
     }
 }
 
-/// The grains' share of [`spent`].
+/// Returns the grains' part of [`spent`].
 pub fn spent_by_grains(grains: &dem::State) -> Spent {
     let ledger = &grains.ledger;
     Spent {
         applied_work: ledger.work_applied + ledger.work_body_forces,
-        // Grains put back at the upper end of a periodic slope have their potential energy anew, and those that come in
-        // bring all of theirs.
+        // Includes gravity potential of wrapped and inserted grains.
         wall_work: ledger.work_walls
             + ledger.work_servo
             + ledger.work_constraints
@@ -91,7 +90,6 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
 mod tests {
     use super::*;
 
-    /// Every work and loss of the grains' ledger goes into the account once, those of the surface apart.
     #[test]
     fn the_ledger_of_grains_goes_into_the_account_whole() {
         let model = dem::Model::new(dem::ModelInput::default()).expect("no grains at all");
@@ -113,7 +111,7 @@ mod tests {
             &mut ledger.dissipated_local_damping,
             &mut ledger.dissipated_mounts,
         ];
-        // Powers of two: sums are exact, and no two of them alike.
+        // Powers of two: exact and distinct.
         all.into_iter().zip(0..).for_each(|(part, k)| *part = f64::from(1 << k));
         let spent = spent_by_grains(&grains);
         assert_eq!(spent.work() + spent.surface_on_grains, grains.ledger.work());

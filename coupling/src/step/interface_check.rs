@@ -1,4 +1,4 @@
-//! Checks of the coupling windows during a run, by the [numbers of the interface](crate::interface).
+//! Run-time checks of the coupling window by [interface numbers](crate::interface).
 
 use super::model::Model;
 use super::state::{State, Work};
@@ -8,22 +8,22 @@ use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 use trackbed_fem::SolveError;
 
-/// Most windows between two checks.
+/// Maximum windows between checks.
 const MOST: u64 = 2048;
-/// Growth of the number of contacts that calls for a check before its time, and fewest windows between two.
+/// Growth of the contact count that triggers an early check, and minimum windows before it.
 const MORE: f64 = 1.25;
 const FEWEST: u64 = 16;
-/// Most parts of a window.
+/// Maximum divisions of a window.
 const PARTS: u32 = 64;
 
-/// Results of the interface checks; part of the state of a run.
+/// Results of the interface checks.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct InterfaceCheck {
-    /// Largest numbers of the interface at the windows they were found in.
+    /// Largest interface numbers so far.
     pub largest: InterfaceNumbers,
-    /// Sum of the bounds of growth over all windows: amplitudes grow by no more than its exponential. Zero where the interface is stable.
+    /// Sum of growth bounds; its exponential bounds the amplitude growth.
     pub growth: f64,
-    /// Parts that a window is divided into.
+    /// Divisions of a window.
     pub division: u32,
     /// Numbers of the last check for windows of 1 s.
     last: InterfaceNumbers,
@@ -42,8 +42,7 @@ impl InterfaceCheck {
     }
 }
 
-/// Checks the interface after a window, if a check is due. With `automatic`, the following windows become as short as required, with a new
-/// factorization.
+/// Checks the interface after a window, if due; `automatic` shortens further windows as required.
 ///
 /// # Errors
 /// The matrix of shorter windows cannot be factored.
@@ -74,7 +73,7 @@ pub fn check_interface<B: dem::BackEnd>(
         let possible = model.grains.measured().is_some() || model.substeps.is_multiple_of(*parts);
         possible && interface_excess(model.scheme, model.theta, &own.last.at(window)) <= 1.0
     };
-    // The shortest windows, where none suits.
+    // Shortest windows if none is stable.
     let most = if model.grains.measured().is_some() { PARTS } else { model.substeps };
     let parts = (model.division + 1..=most).find(suits).unwrap_or(most.max(model.division));
     if parts != model.division {

@@ -1,35 +1,35 @@
-//! Both models of a coupled run and how they are joined.
+//! Models of a coupled run.
 
 use crate::scheme::Scheme;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::nonlinear::NewtonOptions;
 
-/// The two models and how they are joined.
+/// Coupled models.
 pub struct Model<'a> {
-    /// The solid.
+    /// Solid.
     pub solid: &'a fem::model::Model,
-    /// The grains.
+    /// Grains.
     pub grains: dem::Model,
-    /// Steps of the grains per window, of the length that the run begins with; where steps follow the contacts
-    /// ([`dem::stability`]) fewer, longer ones make up the same window.
+    /// DEM sub-steps per window at the initial step; variable steps ([`dem::stability`]) fill the same
+    /// window.
     pub substeps: u32,
-    /// Parts of equal length that a window of `substeps` is divided into, 1 unless the interface asks for shorter ones.
+    /// Divisions of a window of `substeps`; above 1 only for interface stability.
     pub division: u32,
-    /// Order of the exchange.
+    /// Coupling scheme.
     pub scheme: Scheme,
-    /// Implicitness of the solid's step, ½–1.
+    /// Implicitness θ, ½–1.
     pub theta: f64,
-    /// How a plastic solid finds the end of its step; not used for an elastic one.
+    /// Newton options of a plastic solid.
     pub newton: NewtonOptions,
-    /// Constant load on the solid (gravity) [N]. Shape `[3·nodes]`.
+    /// Constant load (gravity) [N]. Shape `[3·nodes]`.
     pub dead_load: Vec<f64>,
-    /// Displacement of the solid in the shape that the mesh file describes [m]. Shape `[3·nodes]`.
+    /// Displacement of the meshed shape [m]. Shape `[3·nodes]`.
     pub reference: Vec<f64>,
 }
 
 impl Model<'_> {
-    /// Length of a window [s].
+    /// Window length [s].
     pub fn window(&self) -> f64 {
         self.grains.dt() * f64::from(self.substeps) / f64::from(self.division)
     }

@@ -1,12 +1,12 @@
-//! What the solid carries when a run begins.
+//! Initial contact load on the solid.
 
 use crate::surface::SolidSurface;
 use crate::transfer::{Transfer, TransferAudit};
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
-/// What the solid carries when a run begins with `state`: the nodal load of grains that lie on its undeformed surface [N], shape
-/// `[3·nodes]`, and the state with its contacts found.
+/// Returns the nodal load [N], shape `[3·nodes]`, of grains on the undeformed surface, and the state with
+/// contacts.
 ///
 /// # Errors
 /// The grains cannot make a step.

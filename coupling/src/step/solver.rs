@@ -1,4 +1,4 @@
-//! The solver of the solid's step over a window, and why a coupled step fails.
+//! FEM solver over a window, and errors of the coupled step.
 
 use super::model::Model;
 use crate::scheme::Scheme;
@@ -6,11 +6,10 @@ use trackbed_dem as dem;
 use trackbed_fem::SolveError;
 use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 
-/// The solver for a solid with stresses at its Gauss points or without: one factor that is kept for a linear solid without, else
-/// Newton's iteration.
+/// One stored factor for a linear solid without initial stress, else Newton's method.
 ///
 /// # Errors
-/// The matrix cannot be factored, or the stiffened scheme, which needs a constant one, has a plastic solid.
+/// Singular matrix, or a plastic solid with the stiffened scheme.
 pub(super) fn solver(model: &Model<'_>, without_stresses: bool) -> Result<Box<dyn ThetaMethod>, SolveError> {
     let (solid, theta, window) = (model.solid, model.theta, model.window());
     if solid.is_linear() && without_stresses {
@@ -22,26 +21,26 @@ pub(super) fn solver(model: &Model<'_>, without_stresses: bool) -> Result<Box<dy
     Ok(Box::new(NonlinearTheta::new(solid, theta, window, model.newton)?))
 }
 
-/// Why a coupled step failed.
+/// Errors of a coupled step.
 #[derive(Debug, thiserror::Error)]
 pub enum StepError {
-    /// The grains failed.
+    /// DEM.
     #[error(transparent)]
     Grains(#[from] dem::StepError),
-    /// The solid failed.
+    /// FEM.
     #[error("at t = {time:.6e} s: solid: {source}")]
     Solid {
-        /// Time of the failure [s].
+        /// Time [s].
         time: f64,
-        /// What failed.
+        /// Cause.
         source: SolveError,
     },
-    /// The surface turned over.
+    /// Inverted surface face.
     #[error(
         "at t = {time:.6e} s: inverted face of the solid surface at element {element}. Reduce the load (small strains only) or coupling.substeps."
     )]
     Folded {
-        /// Number of the element in the mesh's file.
+        /// Element number in the mesh file.
         element: u32,
         /// Time [s].
         time: f64,

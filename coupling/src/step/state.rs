@@ -20,40 +20,40 @@ use trackbed_fem::nonlinear::{Memory, Statistics};
 use trackbed_fem::reduction::{Estimate, Reduced};
 use trackbed_fem::theta::{ReducedTheta, ThetaMethod};
 
-/// All that a continuation of the run needs.
+/// State of a run.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct State {
-    /// Displacement, velocity of the solid.
+    /// Solid.
     pub solid: fem::state::State,
-    /// Grains and their contact memory.
+    /// Grains with contact history.
     pub grains: dem::State,
-    /// Largest errors of force and moment across the interface so far.
+    /// Largest transfer errors.
     pub audit: TransferAudit,
-    /// Work and dissipation on the solid's side; the grains keep their own account.
+    /// Work and dissipation of the solid.
     pub(super) spent: Spent,
-    /// Velocity that the surface went on with in the last window [m/s], shape `[3·nodes]`; empty before the first.
+    /// Last surface velocity [m/s], shape `[3·nodes]`; empty at the start.
     pub(super) rate: Vec<f64>,
-    /// Displacement at the end of the last window less the one that its rate predicted [m], shape `[3·nodes]`; empty before the first.
+    /// Computed minus predicted displacement [m], shape `[3·nodes]`; empty at the start.
     pub(super) correction: Vec<f64>,
     /// Repeated windows.
     pub passes: Passes,
-    /// Mean contact load of the last window and of the one before [N], shape `[3·nodes]`; empty but for the lagged scheme.
+    /// Mean contact loads of the last two windows [N], shape `[3·nodes]`; lagged scheme only.
     pub(super) lagged: [Vec<f64>; 2],
-    /// Contacts of the last grain step, for the stiffened scheme.
+    /// Last contacts; stiffened scheme only.
     pub(super) held: Vec<Held>,
-    /// Results of the interface checks.
+    /// Interface checks.
     pub interface_check: InterfaceCheck,
 }
 
-/// Scratch memory and factors; `B` computes the steps of the grains.
+/// Scratch memory and factors; `B` computes the DEM steps.
 pub struct Work<B = dem::Work> {
-    /// What computes the steps of the grains.
+    /// DEM back end.
     pub grains: B,
-    /// The surface that grains touch.
+    /// Contact surface.
     pub surface: SolidSurface,
     pub(super) transfer: Transfer,
     pub(super) solver: Box<dyn ThetaMethod>,
-    /// Shapes that the steps of the solid are reduced to, if any.
+    /// Basis of a reduced solid.
     reduced: Option<Arc<Reduced>>,
     pub(super) load: Vec<f64>,
     pub(super) contact_load: Vec<f64>,
@@ -68,7 +68,7 @@ pub struct Work<B = dem::Work> {
 }
 
 impl State {
-    /// The start of a run: solid and grains as given.
+    /// Initial state.
     pub fn new(solid: fem::state::State, grains: dem::State) -> State {
         State {
             solid,
@@ -84,7 +84,7 @@ impl State {
         }
     }
 
-    /// Lets time, steps and accounts begin anew where everything is.
+    /// Resets time, step counts and balances.
     pub fn begin_anew(&mut self) {
         self.grains.begin_anew();
         self.solid.time = 0.0;
@@ -94,15 +94,14 @@ impl State {
         self.interface_check = InterfaceCheck::default();
     }
 
-    /// The same with a contact load [N], shape `[3·nodes]`, that the solid carries from the start: the lagged scheme begins
-    /// with it.
+    /// Adds an initial contact load [N], shape `[3·nodes]`, for the lagged scheme.
     pub fn carrying(self, load: Vec<f64>) -> State {
         State { lagged: [load.clone(), load], ..self }
     }
 }
 
 impl Work {
-    /// Scratch memory and the factor of the solid's window matrix; the grains' steps are computed by [`dem::Work`].
+    /// Allocates memory and factors.
     ///
     /// # Errors
     /// As [`Work::with_back_end`].
@@ -113,10 +112,10 @@ impl Work {
 }
 
 impl<B: dem::BackEnd> Work<B> {
-    /// Scratch memory, the factor of the solid's window matrix, and what computes the grains' steps, which has taken their state over.
+    /// Allocates memory and factors; `grains` already has the DEM state.
     ///
     /// # Errors
-    /// The matrix cannot be factored, or the solid is plastic and the scheme needs a constant matrix.
+    /// Singular matrix, or a plastic solid with a scheme that needs a constant matrix.
     pub fn with_back_end(
         model: &Model<'_>,
         state: &State,
@@ -143,17 +142,16 @@ impl<B: dem::BackEnd> Work<B> {
         })
     }
 
-    /// Takes the steps of the solid in the span of a reduction from now on.
+    /// Switches the solid to a reduced basis.
     ///
     /// # Errors
-    /// A solid with plasticity or stresses at its Gauss points, or another one than was reduced.
+    /// Plastic solid, initial stress, or another solid than the reduced one.
     pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<Reduced>) -> Result<(), SolveError> {
         self.solver = Box::new(ReducedTheta::new(model.solid, reduced.clone(), model.theta, model.window())?);
         self.reduced = Some(reduced);
         Ok(())
     }
 
-    /// Makes the solver of the solid anew, for windows of another length.
     pub(super) fn refactor(&mut self, model: &Model<'_>, without_stresses: bool) -> Result<(), SolveError> {
         match self.reduced.clone() {
             Some(reduced) => self.reduce(model, reduced),
@@ -164,50 +162,50 @@ impl<B: dem::BackEnd> Work<B> {
         }
     }
 
-    /// What the reduction of the solid costs in accuracy; none without one.
+    /// Accuracy estimate of the reduction, if any.
     pub fn reduction(&self) -> Option<Estimate> {
         self.reduced.as_ref().map(|reduced| *reduced.estimate())
     }
 
-    /// Counts of the iteration of a plastic solid.
+    /// Newton statistics of a plastic solid.
     pub fn newton(&self) -> Option<Statistics> {
         self.memory().map(|memory| memory.statistics())
     }
 
-    /// What the solver of a plastic solid remembers beside the state, for a checkpoint.
+    /// Solver memory of a plastic solid, for a checkpoint.
     pub fn memory(&self) -> Option<Memory> {
         self.solver.memory()
     }
 
-    /// Goes on with the memory of scratch that was made for the same model.
+    /// Restores solver memory of the same model.
     ///
     /// # Errors
-    /// A matrix cannot be factored.
+    /// Singular matrix.
     pub fn recall(&mut self, model: &Model<'_>, memory: Option<&Memory>) -> Result<(), SolveError> {
         memory.map_or(Ok(()), |memory| self.solver.recall(model.solid, memory))
     }
 
-    /// Largest pressure on one face in the last window: normal force over area, mean over the window [Pa].
+    /// Largest mean pressure on a face in the last window [Pa].
     pub fn peak_face_pressure(&self, window: f64) -> f64 {
         self.transfer.peak_face_pressure(&self.surface, window)
     }
 
-    /// Load on the solid in the last window, weight and contacts included [N]. Shape `[3·nodes]`.
+    /// Last load on the solid, with gravity and contacts [N]. Shape `[3·nodes]`.
     pub fn load(&self) -> &[f64] {
         &self.load
     }
 
-    /// Force of the grains on the solid, mean over the last window [N].
+    /// Mean force of the grains on the solid [N].
     pub fn mean_contact_force(&self, window: f64) -> [f64; 3] {
         self.transfer.total_impulse().map(|i| i / window)
     }
 
-    /// The same on some faces of the surface [N].
+    /// Mean force on `faces` [N].
     pub fn contact_force_on(&self, faces: Range<usize>, window: f64) -> [f64; 3] {
         self.transfer.impulse_on(faces).map(|i| i / window)
     }
 
-    /// Largest pressure on one of some faces in the last window, as [`Work::peak_face_pressure`] [Pa].
+    /// Largest mean pressure on one of `faces` [Pa].
     pub fn peak_pressure_on(&self, faces: Range<usize>, window: f64) -> f64 {
         self.transfer.peak_pressure_on(faces, &self.surface, window)
     }

@@ -1,16 +1,7 @@
-//! The prediction of the stiffened scheme: contacts of the last grain step, linearized for the window that comes.
+//! Predictor of the stiffened scheme: contacts of the last sub-step, linearised over the next window.
 //!
-//! A contact with the normal n (out of the solid), the stiffness Kₙ, Kₜ, the dashpot C, and the velocity w of the stone
-//! against v of the surface, has the force F now: spring and dashpot at the overlap with the surface where it is, and the
-//! last step's tangential force. Its mean over a window of length Δt will be
-//!
-//! F − (Δt/2) K (v − w) − (Δt/2 K + C n nᵀ) (v̄ − v),   K = Kₙ n nᵀ + Kₜ (1 − n nᵀ),
-//!
-//! v̄ being the surface's mean velocity in the window: the last term goes into the solid's matrix. Stones are taken to keep
-//! their velocity. Contacts that would pull are left out; those that slide count as sticking, which only makes the
-//! prediction a little stiffer. The forces that act in the end are those of the grains' own steps.
-//!
-//! Theory manual: equation (5.8) of `docs/theory/coupling.md`.
+//! Theory manual: eq. (5.8). Grains keep their velocity, sliding contacts count as sticking, tensile contacts
+//! are omitted. Sub-steps then apply the actual forces.
 
 use super::model::Model;
 use crate::face::dot;
@@ -23,7 +14,7 @@ use trackbed_fem as fem;
 use trackbed_fem::SolveError;
 use trackbed_fem::theta::ThetaMethod;
 
-/// A contact of the last grain step of a window.
+/// Contact of the last sub-step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Held {
     body: u32,
@@ -34,7 +25,6 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// The grain.
     pub fn body(&self) -> usize {
         self.body as usize
     }
@@ -46,9 +36,8 @@ impl From<&SurfaceContact> for Held {
     }
 }
 
-/// Contacts linearized for the next window.
 impl PointMatrix {
-    /// A contact linearized for the next window, and its force on the solid; none where it is open or would pull.
+    /// Linearised contact and its force on the solid; `None` if open or tensile.
     fn of(
         model: &Model<'_>,
         grains: &dem::State,
@@ -57,7 +46,7 @@ impl PointMatrix {
     ) -> Option<(PointMatrix, [f64; 3])> {
         let body = c.body as usize;
         let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
-        // Where the surface is now, not where the last window left it.
+        // Current surface, not the end of the last window.
         let &(centre, radius) = grains.spheres(&model.grains, body).get(c.sphere as usize)?;
         let near = surface.closest_point(c.patch, centre.into(), c.local);
         let offset = centre - dem::Vec3::from(near.point);
@@ -91,7 +80,6 @@ impl PointMatrix {
     }
 }
 
-/// Scratch of the prediction.
 #[derive(Default)]
 pub(crate) struct Stiffened {
     contacts: PointMatrices,
@@ -99,9 +87,8 @@ pub(crate) struct Stiffened {
 }
 
 impl Stiffened {
-    /// The mean velocity of all nodes [m/s] in the window that comes, into `rate`, shape `[3·nodes]`. `surface` has begun
-    /// the window with the present velocity; `load` holds the loads other than contact, and takes the predicted contact
-    /// forces. Returns the iterations of the solve.
+    /// Computes the mean nodal velocity of the next window [m/s] in `rate`, shape `[3·nodes]`. Adds predicted
+    /// contact forces to `load`, which holds all others. Returns the solver iterations.
     pub fn predict(
         &mut self,
         model: &Model<'_>,

@@ -1,6 +1,6 @@
-//! One window of the coupled step, in the order of its scheme.
+//! One window of the coupled step.
 //!
-//! Theory manual: equations (5.6), (5.7) of `docs/theory/coupling.md`.
+//! Theory manual: eqs. (5.6), (5.7).
 
 use super::account::book;
 use super::model::Model;
@@ -14,15 +14,16 @@ use trackbed_dem::{BackEnd, stability};
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
-/// Speed below which changes of the surface's motion are rounding [m/s].
+/// Velocity changes below this are rounding [m/s].
 const STILL: f64 = 1e-12;
 
-/// Advances the system by one window. `applied` fills in the forces on bodies at a given time; `solid_load` adds
-/// loads on the solid other than gravity and contact at a given time, which are taken at the middle of the window.
-/// Both may be evaluated more than once for the same time.
+/// Advances the system by one window.
+///
+/// `applied` sets the forces on bodies at a given time, `solid_load` other solid loads at mid-window. Both
+/// may be called repeatedly for one time.
 ///
 /// # Errors
-/// The grains or the solid cannot make the step; `state` is then not fit to go on from.
+/// The grains or the solid cannot make the step; `state` is then invalid.
 pub fn step<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -49,7 +50,7 @@ pub fn step<B: BackEnd>(
     state.passes.windows += 1;
     state.passes.passes += u64::from(passes);
     book(model, state, work, &audit);
-    // The surface of the next window begins where the solid is, not where this window left it.
+    // The next window begins at the computed surface.
     state.correction.clear();
     let motion = state.solid.u.iter().zip(&work.before.u).zip(&work.rate);
     state.correction.extend(motion.map(|((u, before), rate)| u - before - rate * window));
@@ -59,14 +60,13 @@ pub fn step<B: BackEnd>(
     Ok(())
 }
 
-/// A window of the stiffened scheme.
 fn stiffened<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
     work: &mut Work<B>,
     applied: &mut impl FnMut(f64, &dem::State, &mut Vec<dem::AppliedForce>),
 ) -> Result<StepAudit, StepError> {
-    // The contacts of the start are not known: the first window goes on with the present velocity.
+    // Initial contacts are unknown.
     if state.passes.windows > 0 {
         begin(model, state, work)?;
         state.passes.solves += u64::from(predict(model, state, work)?);
@@ -77,7 +77,6 @@ fn stiffened<B: BackEnd>(
     solid(model, state, work)
 }
 
-/// A window of the lagged scheme, with its account.
 fn lagged<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -91,7 +90,7 @@ fn lagged<B: BackEnd>(
     }
     let audit = solid(model, state, work)?;
     mean_velocity(&state.solid, work, model.window());
-    // What the grains do in this window loads the solid in the next; what did so now is still in the account.
+    // This window's contact load acts on the solid in the next.
     book(model, state, work, &audit);
     grains(model, state, work, applied)?;
     state.lagged.swap(0, 1);
@@ -101,8 +100,7 @@ fn lagged<B: BackEnd>(
     Ok(())
 }
 
-/// A window of the iterated scheme: passes until the velocity of the surface is that of the solid, `most` at most. A window
-/// that does not come there ends with the motion of the pass that came nearest. Returns the passes made.
+/// Repeats passes until the surface velocity converges, else takes the best. Returns the passes made.
 fn iterated<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -127,7 +125,7 @@ fn iterated<B: BackEnd>(
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let change = found.iter().zip(&at).fold(0.0_f64, |m, (f, a)| m.max((f - a).abs()));
         let there = change <= tolerance * largest(&found).max(largest(&at)) + STILL;
-        // The last pass allowed, or one that repeats the best of them.
+        // Last allowed pass, or a repetition of the best.
         let last = there || passes > most || (passes == most && change <= best.0);
         if last {
             state.passes.unconverged += u64::from(!there);
@@ -151,8 +149,7 @@ fn iterated<B: BackEnd>(
     }
 }
 
-/// Copies displacement and motion without new memory. The stresses at Gauss points are many, and only a window that may be
-/// made again needs them.
+/// Motion only: stresses are large, and only repeated windows need them.
 fn copy(from: &fem::state::State, to: &mut fem::state::State) {
     to.time = from.time;
     to.u.copy_from_slice(&from.u);
@@ -160,14 +157,13 @@ fn copy(from: &fem::state::State, to: &mut fem::state::State) {
     to.a.copy_from_slice(&from.a);
 }
 
-/// The mean velocity of the window just made by the solid.
 fn mean_velocity<B>(solid: &fem::state::State, work: &mut Work<B>, window: f64) {
     for ((rate, u), before) in work.rate.iter_mut().zip(&solid.u).zip(&work.before.u) {
         *rate = (u - before) / window;
     }
 }
 
-/// Puts the surface at the start of the window, to move with [`Work::rate`].
+/// Starts the surface motion with [`Work::rate`].
 fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), StepError> {
     let velocity =
         (model.scheme == Scheme::Lagged).then_some([work.before.v.as_slice(), state.solid.v.as_slice()]);
@@ -190,9 +186,8 @@ fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), 
     }
 }
 
-/// What tangential springs feel at the first step beside the rate of this window. Between the middles of the last step and of the first one the
-/// surface moves half a step with the old rate, by the correction, and half a step with the new one; the spring of that step takes
-/// the new rate for all of it.
+/// First-step displacement of tangential springs in excess of the rate: half a step with the old rate, the
+/// correction, half a step with the new rate, less a full step with the new rate.
 fn correct<B>(state: &State, work: &mut Work<B>) {
     work.correction.clear();
     let half = state.grains.kick() - 0.5 * state.grains.dt();
@@ -203,7 +198,7 @@ fn correct<B>(state: &State, work: &mut Work<B>) {
     }
 }
 
-/// The grains' steps of a window; their mean load on the solid is then in [`Work::contact_load`].
+/// The mean load is then in [`Work::contact_load`].
 fn grains<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -222,7 +217,7 @@ fn grains<B: BackEnd>(
         work.surface.advance((f64::from(k) + 0.5) * dt);
         work.applied.clear();
         applied(state.grains.time, &state.grains, &mut work.applied);
-        // The solid gets what the grains get, also in the step in which their length changes.
+        // Both sides get the same impulse, also if the step changes.
         let kick = state.grains.kick();
         work.grains.step(&model.grains, &mut state.grains, &work.surface, &work.applied)?;
         work.transfer.add(&work.surface, work.grains.surface_contacts(), kick, &mut state.audit);
@@ -235,7 +230,6 @@ fn grains<B: BackEnd>(
     Ok(())
 }
 
-/// The solid's step of a window, under [`Work::contact_load`], the other loads and its weight.
 fn solid<B>(model: &Model<'_>, state: &mut State, work: &mut Work<B>) -> Result<StepAudit, StepError> {
     let loads = work.contact_load.iter().zip(&work.other_load).zip(&model.dead_load);
     for (load, ((contact, other), dead)) in work.load.iter_mut().zip(loads) {
@@ -247,7 +241,7 @@ fn solid<B>(model: &Model<'_>, state: &mut State, work: &mut Work<B>) -> Result<
         .map_err(|source| StepError::Solid { time, source })
 }
 
-/// The velocity that the surface goes on with in the stiffened scheme.
+/// Predicted surface velocity of the stiffened scheme.
 fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u32, StepError> {
     let time = state.solid.time;
     for ((load, other), dead) in work.load.iter_mut().zip(&work.other_load).zip(&model.dead_load) {
@@ -267,10 +261,10 @@ fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u3
         .map_err(|source| StepError::Solid { time, source })
 }
 
-/// Takes grains out and puts grains in between two windows, as [`dem::flow::exchange`] does.
+/// Removes and inserts grains between two windows, see [`dem::flow::exchange`].
 ///
 /// # Errors
-/// A grain that cannot leave or come.
+/// A grain cannot be removed or inserted.
 pub fn exchange<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -279,7 +273,6 @@ pub fn exchange<B: BackEnd>(
     arrive: &[dem::flow::Arrival],
 ) -> Result<(), dem::flow::FlowError> {
     dem::flow::exchange(&model.grains, &mut state.grains, &mut work.grains, leave, arrive)?;
-    // Contacts of grains that have left load the solid no more, not even in a prediction.
     state.held.retain(|c| !leave.contains(&c.body()));
     Ok(())
 }

@@ -1,9 +1,7 @@
-//! The solid's surface as the grains see it: curved faces of all kinds moving with the nodes.
+//! Moving contact surface of the solid.
 //!
-//! Within one exchange window the nodes move on straight lines, x(τ) = x₀ + v τ, from where the solid is at the start of
-//! the window, with a velocity that the scheme of the exchange tells ([`crate::scheme`]): displacement **and** velocity
-//! go to the grains, so that damping and friction see the surface move. With a [`Spread`] it is the discs' mean motion
-//! that they see.
+//! Nodes move linearly within a window, x(τ) = x₀ + v τ, v from the coupling [scheme](crate::scheme); with a
+//! [`Spread`] by disc means.
 
 mod facets;
 mod sides;
@@ -19,34 +17,33 @@ use trackbed_dem::surface::{Feature, PatchPoint, Surface};
 use trackbed_fem::FaceShape;
 use trackbed_fem::mesh::{Face, Mesh};
 
-/// Where a face is looked at to see whether it has folded: its middle and its corners. A triangle's last one is there twice.
+/// Sample points for inversion: centre and corners; a triangle repeats its last corner.
 fn places(shape: FaceShape) -> [[f64; 2]; 5] {
     let (corners, middle) = (face::landmarks(shape), shape.natural_centre());
     [0, 1, 2, 3, 4].map(|k| if k == 0 { middle } else { corners[(k - 1).min(shape.corner_count() - 1)] })
 }
 
-/// Cosine between the normals of two faces below which their common side is an edge, which may close a little.
+/// Cosine between face normals below which the common side is an edge.
 const SHARP: f64 = 0.1;
 
-/// Part of the solid's boundary that grains may touch.
+/// Contact surface of the solid.
 pub struct SolidSurface {
     faces: Vec<Face>,
     /// Solid node of each surface node, ascending.
     nodes: Vec<u32>,
-    /// Kind of each face.
     shapes: Vec<FaceShape>,
-    /// Surface nodes of each face; those beyond the nodes of its kind repeat the first. Shape `[faces][8]`.
+    /// Padded with the first node. Shape `[faces][8]`.
     face_nodes: Vec<[u32; 8]>,
-    /// The nodes in the mesh's own shape.
+    /// Undeformed.
     shape: Vec<[f64; 3]>,
     start: Vec<[f64; 3]>,
-    /// Rate of the positions over the window.
+    /// Over the window.
     rate: Vec<[f64; 3]>,
-    /// Velocity at the start of the window and its change over it, where it is not the rate.
+    /// Initial velocity and its change, if not the rate.
     velocity: Option<[Vec<[f64; 3]>; 2]>,
-    /// Displacement of the nodes at the start of the window that no velocity contains [m]; empty where there is none or it has been applied.
+    /// Displacement without velocity [m]; empty if none or applied.
     correction: Vec<[f64; 3]>,
-    /// The faces at the start of the window, and their rates.
+    /// Faces and their rates.
     forms: Vec<[Form; 2]>,
     moving: bool,
     tau: f64,
@@ -56,30 +53,30 @@ pub struct SolidSurface {
     boxes: Vec<([f64; 3], [f64; 3])>,
     pub(crate) spread: Option<Spread>,
     sides: Sides,
-    /// Normals of the faces in the mesh's own shape at their [`places`].
+    /// Undeformed normals at [`places`].
     areas: Vec<[[f64; 3]; 5]>,
     scratch: Vec<[f64; 3]>,
 }
 
-/// How the nodes of the solid move over a window. All arrays have shape `[3·nodes]` of the solid.
+/// Motion of the solid's nodes over a window. Shapes `[3·nodes]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<'a> {
-    /// Displacement at the start [m].
+    /// Initial displacement [m].
     pub start: &'a [f64],
-    /// Displacement in the shape that the mesh file describes [m].
+    /// Displacement of the meshed shape [m].
     pub reference: &'a [f64],
-    /// Rate of the displacement over the window [m/s].
+    /// Displacement rate [m/s].
     pub rate: &'a [f64],
-    /// Velocity at the start and at the end that damping and friction see [m/s]; the rate where it is none.
+    /// Initial and final velocity for damping and friction [m/s]; `None`: the rate.
     pub velocity: Option<[&'a [f64]; 2]>,
-    /// Displacement that tangential springs feel in the first step beside its rate [m].
+    /// Extra displacement of tangential springs in the first step [m].
     pub correction: Option<&'a [f64]>,
-    /// Length of the window [s].
+    /// Duration [s].
     pub duration: f64,
 }
 
 impl SolidSurface {
-    /// The surface made of `faces` of `mesh`, at rest in the mesh's own shape.
+    /// Undeformed surface of `faces` of `mesh`.
     pub fn new(mesh: &Mesh, faces: Vec<Face>) -> SolidSurface {
         let mut nodes: Vec<u32> = faces.iter().flat_map(|f| f.nodes()).copied().collect();
         nodes.sort_unstable();
@@ -117,13 +114,13 @@ impl SolidSurface {
         }
     }
 
-    /// How contact forces are spread, if they are.
+    /// Distributed load transfer, if any.
     pub fn spread(&self) -> Option<&Spread> {
         self.spread.as_ref()
     }
 
-    /// The boundary faces of `mesh` whose outward area vector makes an angle of at most `max_angle` [rad] with
-    /// `direction`: the default choice of a surface for ballast is "upward, up to 75 degrees".
+    /// Returns boundary faces with normals within `max_angle` [rad] of `direction`; for ballast usually
+    /// upward, 75 degrees.
     pub fn facing(mesh: &Mesh, direction: [f64; 3], max_angle: f64) -> Vec<Face> {
         let length = face::dot(direction, direction).sqrt();
         mesh.boundary_faces()
@@ -136,12 +133,12 @@ impl SolidSurface {
             .collect()
     }
 
-    /// Faces of the surface, in patch order.
+    /// Faces, in patch order.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }
 
-    /// Solid node (index) of each surface node, ascending.
+    /// Solid node of each surface node, ascending.
     pub fn nodes(&self) -> &[u32] {
         &self.nodes
     }
@@ -152,31 +149,30 @@ impl SolidSurface {
         self.shapes[patch as usize]
     }
 
-    /// Surface nodes of face `patch`: corners, then mid-sides where its kind has some.
+    /// Surface nodes of face `patch`: corners, then mid-sides.
     #[inline]
     pub fn face_nodes(&self, patch: u32) -> &[u32] {
         &self.face_nodes[patch as usize][..self.shape(patch).node_count()]
     }
 
-    /// The same, with the first node in the places beyond those of its kind.
+    /// Padded with the first node.
     pub(crate) fn padded_nodes(&self, patch: u32) -> [u32; 8] {
         self.face_nodes[patch as usize]
     }
 
-    /// Values of the shape functions at a point of face `patch`; zero beyond the nodes of its kind.
+    /// Shape functions on face `patch`; zero beyond its nodes.
     #[inline]
     pub fn shape_functions(&self, patch: u32, natural: [f64; 2]) -> [f64; 8] {
         self.shape(patch).shape_functions(natural)
     }
 
-    /// Present place of a point of face `patch` [m].
+    /// Current position on face `patch` [m].
     pub fn place(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
         let x = self.face_nodes[patch as usize].map(|n| self.position(n));
         face::interpolate(self.shape(patch), &x, natural)
     }
 
-    /// The surface in the mesh's own shape as triangles between its nodes, which bodies with faces touch; `None` where not all of its
-    /// faces are flat triangles ([`facets`]).
+    /// Undeformed triangles, for polyhedra; `None` with other faces ([`facets`]).
     pub fn triangles(&self) -> Option<SurfaceMesh> {
         let flat = self.shapes.iter().all(|s| *s == FaceShape::Tri3);
         flat.then(|| SurfaceMesh {
@@ -185,7 +181,7 @@ impl SolidSurface {
         })
     }
 
-    /// Velocity of surface node `node` that damping and friction see [m/s].
+    /// For damping and friction [m/s].
     fn node_velocity(&self, node: u32) -> [f64; 3] {
         let n = node as usize;
         match &self.velocity {
@@ -197,28 +193,28 @@ impl SolidSurface {
         }
     }
 
-    /// Present position of surface node `node` [m].
+    /// Current position of surface node `node` [m].
     pub fn position(&self, node: u32) -> [f64; 3] {
         let (x, v) = (self.start[node as usize], self.rate[node as usize]);
         [x[0] + v[0] * self.tau, x[1] + v[1] * self.tau, x[2] + v[2] * self.tau]
     }
 
-    /// Position of surface node `node` in the mesh's own shape [m].
+    /// Undeformed position [m].
     pub fn mesh_position(&self, node: u32) -> [f64; 3] {
         self.shape[node as usize]
     }
 
-    /// Height of the highest node [m].
+    /// Highest node [m].
     pub fn highest(&self) -> f64 {
         (0..self.nodes.len() as u32).map(|n| self.position(n)[2]).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Height of the lowest node [m].
+    /// Lowest node [m].
     pub fn lowest(&self) -> f64 {
         (0..self.nodes.len() as u32).map(|n| self.position(n)[2]).fold(f64::INFINITY, f64::min)
     }
 
-    /// Distance of the farthest node of face `patch` from the origin of coordinates [m].
+    /// Distance of the farthest node of face `patch` from the origin [m].
     pub fn reach(&self, patch: u32) -> f64 {
         let square = |n: &u32| {
             let x = self.position(*n);
@@ -227,25 +223,25 @@ impl SolidSurface {
         self.face_nodes(patch).iter().map(square).fold(0.0, f64::max).sqrt()
     }
 
-    /// Area vector of face `patch` in its present shape, by its corners: outward normal times area [m²].
+    /// Outward normal times area [m²], from the corners of face `patch`.
     pub fn area_vector(&self, patch: u32) -> [f64; 3] {
         let corner = |k: usize| self.position(self.face_nodes[patch as usize][k]);
         twice_the_area(self.shape(patch), corner).map(|c| 0.5 * c)
     }
 
-    /// Outward unit normal at a point of face `patch` at the start of the window.
+    /// Outward unit normal at the start of the window.
     pub fn normal(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
         let n = self.forms[patch as usize][0].area(natural);
         n.map(|c| c / face::dot(n, n).sqrt())
     }
 
-    /// Rate of the position of a point of face `patch` over the window [m/s].
+    /// Displacement rate on face `patch` [m/s].
     pub fn velocity(&self, patch: u32, natural: [f64; 2]) -> [f64; 3] {
         self.forms[patch as usize][1].at(natural)
     }
 
-    /// Begins a window of `duration` [s]: nodes at X + (u − reference), moving with `v`. All arrays have shape
-    /// `[3·nodes]` of the solid; `reference` is the displacement in the shape that the mesh file describes.
+    /// Begins a window of `duration` [s]: nodes at X + (u − reference), moving with `v`. Shapes `[3·nodes]`;
+    /// `reference` is the displacement of the meshed shape.
     pub fn begin_window(&mut self, mesh: &Mesh, u: &[f64], reference: &[f64], v: &[f64], duration: f64) {
         self.begin(
             mesh,
@@ -253,7 +249,7 @@ impl SolidSurface {
         );
     }
 
-    /// Begins a window in which the nodes of the solid move as given.
+    /// Begins a window with the given motion.
     pub fn begin(&mut self, mesh: &Mesh, motion: &Motion<'_>) {
         debug_assert_eq!(mesh.node_count() * 3, motion.start.len());
         let at = |values: &[f64], node: u32| [0, 1, 2].map(|d| values[3 * node as usize + d]);
@@ -285,11 +281,11 @@ impl SolidSurface {
             self.correction.resize(self.nodes.len(), [0.0; 3]);
             smooth(self.spread.as_ref(), &self.scratch, &mut self.correction);
         }
-        // The absolute sum of the shape functions is at most 3 (8 nodes, at the centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
+        // Absolute sum of shape functions: at most 3 (8 nodes, centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
         self.max_speed = 3.0 * speed;
         self.moving = speed > 0.0;
         (self.tau, self.duration) = (0.0, motion.duration);
-        // The boxes hold the faces over the whole window: motion is linear in time, so both ends suffice.
+        // Motion is linear in time: both ends bound the faces over the window.
         let kinds = self.face_nodes.iter().zip(&self.shapes);
         for ((b, (f, &shape)), form) in self.boxes.iter_mut().zip(kinds).zip(&mut self.forms) {
             let start = f.map(|n| self.start[n as usize]);
@@ -307,29 +303,27 @@ impl SolidSurface {
         self.tree.refit(&self.boxes);
     }
 
-    /// Ends the correction of the start: springs have felt it.
     pub(crate) fn end_correction(&mut self) {
         self.correction.clear();
     }
 
-    /// Moves the nodes to time `tau` [s] after the start of the window.
+    /// Moves the nodes to `tau` [s].
     pub fn advance(&mut self, tau: f64) {
         self.tau = tau;
     }
 
-    /// A bound on the way [m] that any point of the surface makes when the nodes of the solid move by at most `way` [m].
+    /// Bounds the displacement [m] of surface points for nodal displacements up to `way` [m].
     pub fn reach_of(&self, way: f64) -> f64 {
-        // Both the disc's points and the contact point are sums with weights of absolute sum 3 at most.
+        // Disc and contact points: weights of absolute sum 3 at most.
         if self.spread.is_some() { 18.0 * way } else { 3.0 * way }
     }
 
-    /// The face that has folded since the mesh's own shape, if there is one: its normal at a corner or in the middle has
-    /// turned by 90 degrees or its area there is a twentieth, or two faces that share a side look away from each other
-    /// and looked the same way. Looks at the start of the window.
+    /// Returns an inverted face at the start of the window: normal rotated by 90 degrees, area down to a
+    /// twentieth, or neighbours facing away from each other.
     pub fn folded(&self) -> Option<usize> {
         let bad = (0..self.faces.len()).find(|&k| {
             places(self.shapes[k]).iter().zip(&self.areas[k]).any(|(&place, before)| {
-                // A number that is none is bad, too.
+                // NaN counts as inverted.
                 let part = face::dot(*before, self.forms[k][0].area(place)) / face::dot(*before, *before);
                 part.is_nan() || part < 0.05
             })
@@ -344,17 +338,16 @@ impl SolidSurface {
         bad.or_else(|| self.sides.seams.iter().find(|s| turned(s)).map(|s| s[0] as usize))
     }
 
-    /// Whether corner `corner` of face `patch` lies on the border of the surface.
+    /// Whether corner `corner` of face `patch` lies on the border.
     pub fn corner_on_border(&self, patch: u32, corner: usize) -> bool {
         self.sides.rim[self.face_nodes[patch as usize][corner] as usize]
     }
 
-    /// Whether side `side` of face `patch` belongs to that face alone.
     pub(crate) fn on_border(&self, patch: u32, side: usize) -> bool {
         self.sides.border[patch as usize][side]
     }
 
-    /// The patch nearest to a point and the closest point on it, among those whose boxes come within `reach` [m] of it.
+    /// Nearest patch and point; boxes within `reach` [m].
     pub(crate) fn nearest(&self, point: [f64; 3], reach: f64) -> Option<(u32, face::Closest)> {
         let mut patches = Vec::new();
         self.tree.query(point.map(|c| c - reach), point.map(|c| c + reach), &mut patches);
@@ -373,7 +366,6 @@ impl SolidSurface {
     }
 }
 
-/// What the surface shows of a nodal field: the field itself, or its mean over discs.
 fn smooth(spread: Option<&Spread>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
     match spread {
         None => out.copy_from_slice(field),
@@ -381,12 +373,10 @@ fn smooth(spread: Option<&Spread>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
     }
 }
 
-/// Outward normal times twice the area of a face, by its corners.
 fn twice_the_area(shape: FaceShape, x: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
     let way = |a: [f64; 3], b: [f64; 3]| [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
     match shape.corner_count() {
         3 => face::cross(way(x(0), x(1)), way(x(0), x(2))),
-        // By the diagonals.
         _ => face::cross(way(x(0), x(2)), way(x(1), x(3))),
     }
 }
@@ -408,7 +398,7 @@ impl Surface for SolidSurface {
                 face::interpolate(shape, &nodes.map(at), closest.natural)
             }
         };
-        // Sides have the same number from both faces, and so have corners.
+        // Same index from all faces.
         let feature = match closest.location {
             Location::Inside => Feature::Face,
             Location::Side(s) => Feature::Edge(self.sides.number[patch as usize][s as usize]),
@@ -436,7 +426,7 @@ impl Surface for SolidSurface {
         self.max_speed
     }
 
-    /// The distance from the box that holds the face over the whole window.
+    /// Distance from the box over the whole window.
     fn clearance(&self, patch: u32, centre: [f64; 3]) -> f64 {
         let (low, high) = &self.boxes[patch as usize];
         let beyond = [0, 1, 2].map(|d| (low[d] - centre[d]).max(centre[d] - high[d]).max(0.0));

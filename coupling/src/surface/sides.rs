@@ -1,23 +1,20 @@
-//! How the faces of a surface join at their sides, whatever their kinds: a side is known by its two corners, so that the
-//! side of a triangle meets that of a quadrilateral, and one with a mid-side node one without.
+//! Connectivity of faces of any kind by the corners of their sides.
 
 use trackbed_fem::FaceShape;
 
-/// Sides of the faces of a surface.
 pub(super) struct Sides {
-    /// Number of each side, the same for the faces that share it; triangles have three. Shape `[faces][4]`.
+    /// Index of each side, shared by its faces. Shape `[faces][4]`.
     pub number: Vec<[u32; 4]>,
-    /// Whether each side is that face's alone. Shape `[faces][4]`.
+    /// Whether each side is free. Shape `[faces][4]`.
     pub border: Vec<[bool; 4]>,
-    /// Pairs of faces that share a side.
+    /// Pairs of faces with a common side.
     pub seams: Vec<[u32; 2]>,
-    /// Whether each surface node ends a side that belongs to one face alone; a triangle may touch the border with a
-    /// corner and none of its sides. Shape `[surface nodes]`.
+    /// Whether each node ends a free side; a triangle may have only a corner on the border. Shape
+    /// `[surface nodes]`.
     pub rim: Vec<bool>,
 }
 
 impl Sides {
-    /// The sides of faces with these shapes and nodes.
     pub fn new(shapes: &[FaceShape], nodes: &[[u32; 8]]) -> Sides {
         let mut all: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(4 * shapes.len());
         for ((shape, nodes), face) in shapes.iter().zip(nodes).zip(0..) {
@@ -52,9 +49,8 @@ impl Sides {
 mod tests {
     use super::*;
 
-    /// A square, a triangle beside it and one beside that: two seams, of which the first joins kinds.
     #[test]
-    fn sides_join_whatever_their_kinds() {
+    fn joins_sides_of_different_kinds() {
         let shapes = [FaceShape::Quad8, FaceShape::Tri3, FaceShape::Tri6];
         // 3─2
         // │ │╲4   5 is beyond 4.
@@ -69,7 +65,7 @@ mod tests {
         assert_eq!(sides.number[1][1], sides.number[2][2]);
         assert_ne!(sides.number[0][0], sides.number[1][0]);
         assert!(sides.rim[..6].iter().all(|r| *r));
-        // A fourth triangle about node 2 closes the ring: the node is then within, which the sides of no face tell.
+        // The fourth triangle closes the ring about node 2.
         let around = [[0, 1, 2, 0, 0, 0, 0, 0], [1, 3, 2, 1, 1, 1, 1, 1], [3, 0, 2, 3, 3, 3, 3, 3]];
         assert_eq!(Sides::new(&[FaceShape::Tri3; 3], &around).rim, [true, true, false, true]);
     }

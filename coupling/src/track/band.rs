@@ -1,9 +1,8 @@
-//! Symmetric band matrices and their Cholesky factor.
+//! Symmetric band matrices with Cholesky factorisation, without pivoting.
 //!
-//! Source: Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 4.3.5. Limits: no pivoting, so the matrix
-//! must be positive definite.
+//! Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 4.3.5.
 
-/// A symmetric matrix with `width` diagonals below the main one, stored by rows of its lower half.
+/// Symmetric band matrix, lower half by rows.
 #[derive(Clone, Debug)]
 pub struct Band {
     size: usize,
@@ -13,7 +12,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// The null matrix.
+    /// Zero matrix.
     pub fn zeros(size: usize, width: usize) -> Band {
         Band { size, width, values: vec![0.0; size * (width + 1)] }
     }
@@ -28,20 +27,20 @@ impl Band {
         row * (self.width + 1) + self.width + column - row
     }
 
-    /// Adds to an entry of the lower half, and so to its mirror image.
+    /// Adds to an entry and its mirror image.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         let k = self.place(row.max(column), row.min(column));
         self.values[k] += value;
     }
 
-    /// Adds a spring, dashpot or mass between two unknowns.
+    /// Adds a spring, dashpot or mass.
     pub fn add_between(&mut self, a: usize, b: usize, value: f64) {
         self.add(a, a, value);
         self.add(b, b, value);
         self.add(a, b, -value);
     }
 
-    /// Adds `factor` times another matrix of the same shape.
+    /// Adds `factor` times `other`.
     pub fn add_scaled(&mut self, factor: f64, other: &Band) {
         self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += factor * b);
     }
@@ -73,7 +72,7 @@ impl Band {
         sum
     }
 
-    /// The factor L of A = L Lᵀ; `None` where A is not positive definite.
+    /// Cholesky factor L of A = L Lᵀ; `None` unless A is positive definite.
     pub fn factor(mut self) -> Option<BandFactor> {
         for i in 0..self.size {
             let first = i.saturating_sub(self.width);
@@ -97,7 +96,7 @@ impl Band {
     }
 }
 
-/// A factor that equations are solved with.
+/// Cholesky factor.
 #[derive(Clone, Debug)]
 pub struct BandFactor {
     factor: Band,
@@ -130,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_factor_solves_what_the_matrix_multiplies() {
+    fn factor_inverts_multiplication() {
         let (n, width) = (40, 4);
         let mut a = Band::zeros(n, width);
         for i in 0..n {

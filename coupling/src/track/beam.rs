@@ -1,13 +1,11 @@
-//! A straight Euler–Bernoulli beam in bending: stiffness, consistent mass and loads of cubic elements.
+//! Cubic Euler–Bernoulli beam elements: stiffness, consistent mass, loads.
 //!
-//! Source: Przemieniecki, Theory of Matrix Structural Analysis, 1968, equations 5.116 and 11.24 (without shear).
-//! Limits: small deflections, no shear deformation, no rotatory inertia.
-//!
-//! Theory manual: equation (6.7) of `docs/theory/track.md`.
+//! Przemieniecki, Theory of Matrix Structural Analysis, 1968, eqs 5.116 and 11.24 (without shear and rotatory
+//! inertia). Theory manual: eq. (6.7).
 
 use super::band::Band;
 
-/// Element matrices on (w₁, θ₁, w₂, θ₂), θ = dw/dx.
+/// Element with unknowns (w₁, θ₁, w₂, θ₂), θ = dw/dx.
 #[derive(Clone, Copy, Debug)]
 pub struct Element {
     /// Length [m].
@@ -45,19 +43,19 @@ impl Element {
         m.map(|row| row.map(|v| c * v))
     }
 
-    /// Shape functions at `s` = 0…1 along the element: deflection there is their product with the unknowns.
+    /// Shape functions at `s` = 0…1.
     pub fn shape(&self, s: f64) -> [f64; 4] {
         let (l, r) = (self.length, 1.0 - s);
         [r * r * (1.0 + 2.0 * s), l * s * r * r, s * s * (3.0 - 2.0 * s), -l * s * s * r]
     }
 
-    /// Nodal loads of a load of 1 N/m along the element.
+    /// Nodal loads of 1 N/m.
     pub fn line_load(&self) -> [f64; 4] {
         let l = self.length;
         [0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0]
     }
 
-    /// Adds an element's matrix to a band, `dofs` being its unknowns.
+    /// Adds an element matrix with unknowns `dofs` to a band.
     pub fn scatter(matrix: &[[f64; 4]; 4], dofs: [usize; 4], band: &mut Band) {
         for (i, &row) in dofs.iter().enumerate() {
             for (j, &column) in dofs.iter().enumerate().take(i + 1) {
@@ -72,10 +70,10 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// Smallest ω² of a beam on two pins, by inverse iteration.
+    /// By inverse iteration.
     fn first_frequency(elements: usize) -> f64 {
         let e = Element { length: 1.0 / elements as f64, bending: 1.0, mass: 1.0 };
-        // Unknowns θ₀, w₁, θ₁, …, θₙ: the ends do not move. The pins' deflections go to a last, unused pair.
+        // Unknowns θ₀, w₁, θ₁, …, θₙ; pinned deflections are omitted.
         let size = 2 * elements;
         let dof = |node: usize, rotation: usize| match (node, rotation) {
             (0, 1) => Some(0),
@@ -109,9 +107,9 @@ mod tests {
         (k.half_square(&x) / m.half_square(&x)).sqrt()
     }
 
-    /// ω = π² √(EI/(m L⁴)) of a beam on two pins (Timoshenko 1937); cubic elements converge with the fourth power.
+    /// ω = π² √(EI/(m L⁴)) (Timoshenko 1937); cubic elements: fourth order.
     #[test]
-    fn frequencies_of_a_pinned_beam_converge_with_the_fourth_power() {
+    fn frequencies_of_a_pinned_beam_converge() {
         let errors = [2, 4, 8].map(|n| first_frequency(n) / (PI * PI) - 1.0);
         println!("errors of the first frequency with 2, 4, 8 elements: {errors:?}");
         let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
@@ -120,12 +118,11 @@ mod tests {
     }
 
     #[test]
-    fn shapes_and_loads_keep_force_and_moment() {
+    fn shapes_conserve_force_and_moment() {
         let e = Element { length: 0.3, bending: 1.0, mass: 60.0 };
         for s in [0.0, 0.2, 0.7, 1.0] {
             let n = e.shape(s);
             assert!((n[0] + n[2] - 1.0).abs() < 1e-15);
-            // A rotation about the first node moves the point by its distance.
             assert!((n[1] + n[3] + n[2] * e.length - s * e.length).abs() < 1e-15);
         }
         let q = e.line_load();

@@ -1,9 +1,7 @@
-//! Results per load cycle: settlement, resilience, stiffness, dissipation, formation pressure.
+//! Results per load cycle. Theory manual: eqs. (6.14), (6.15), (6.16).
 //!
-//! A cycle that was simulated has a row. Its number counts the cycles that were jumped over too; where only the account
-//! jumps, the bed is younger than that number, and the settlement of the row is the measured one plus slope × ln(number/age).
-//!
-//! Theory manual: equations (6.14), (6.15), (6.16) of `docs/theory/track.md`.
+//! Cycle numbers include jumped cycles. With extrapolation only, the bed is younger: settlement is the
+//! measured value plus slope × ln(number/age).
 
 use super::load::CyclicLoad;
 use serde::{Deserialize, Serialize};
@@ -11,82 +9,81 @@ use serde::{Deserialize, Serialize};
 /// Results of one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Cycle number, from 1, jumped cycles included.
+    /// From 1, with jumped cycles.
     pub number: u32,
-    /// Cycles simulated so far, this one included.
+    /// Simulated cycles.
     pub simulated: u32,
-    /// Lowering of the sleeper since the first cycle began, at the end of this cycle [m].
+    /// Settlement since the start of the first cycle [m].
     pub settlement: f64,
-    /// The same since seating began [m].
+    /// Settlement since the start of seating [m].
     pub total_settlement: f64,
-    /// Increase of settlement per cycle since the last row [m].
+    /// Settlement per cycle since the last row [m].
     pub rate: f64,
-    /// Rise of the sleeper from its lowest place in this cycle to the cycle's end [m].
+    /// Resilient deflection [m].
     pub resilient_deflection: f64,
-    /// Range of the load over the resilient deflection [N/m].
+    /// Secant stiffness [N/m].
     pub secant_stiffness: f64,
-    /// Slope between two loads on the loading branch [N/m]; 0 when it was not passed.
+    /// Bed stiffness on the loading branch [N/m]; 0 if not reached.
     pub bed_stiffness: f64,
-    /// Range of the pressure under the sleeper over the resilient strain of the bed below it [Pa].
+    /// Resilient modulus [Pa].
     pub resilient_modulus: f64,
-    /// Work of the load over the cycle [J].
+    /// Work of the load [J].
     pub dissipated_energy: f64,
-    /// Largest pressure on a face of the formation, as the mean over one exchange [Pa]; 0 without a solid.
+    /// Largest formation pressure per face and window [Pa]; 0 without a solid.
     pub peak_formation_pressure: f64,
-    /// Estimated error of the settlement by cycle jumps so far [m].
+    /// Settlement error of jumps [m].
     pub jump_error: f64,
 }
 
-/// The bed under the sleeper, as a column.
+/// Ballast column under the sleeper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BedColumn {
-    /// Area of the sleeper's base [m²].
+    /// Base area of the sleeper [m²].
     pub area: f64,
-    /// Height of the bed when the first cycle begins, less the height of the sleeper's centre [m].
+    /// Initial bed height minus height of the sleeper centre [m].
     pub below: f64,
 }
 
-/// Follows the sleeper through the cycles.
+/// Records cycles of the observed sleeper.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleRecorder {
     begin: f64,
-    /// When the pulses that seat the sleeper begin [s], and its height then [m].
+    /// Start of seating [s] and height then [m].
     seating_begins: f64,
     unseated: f64,
     period: f64,
     total: u32,
-    /// Loads between which the stiffness of the bed is evaluated [N].
+    /// For the bed stiffness [N].
     between: [f64; 2],
     column: BedColumn,
-    /// Height of the sleeper when the first cycle began [m].
+    /// Initial height [m].
     datum: f64,
     lowest: f64,
     load_range: (f64, f64),
     work_before: f64,
     pressure: f64,
-    /// Load [N] and height [m] one window ago; height where the rising load passed the lower of `between`.
+    /// Load [N] and height [m] one window ago; height at the lower of `between`.
     last: (f64, f64),
     passed: Option<f64>,
     stiffness: f64,
-    /// Cycles simulated and cycles jumped over.
     simulated: u32,
     skipped: u32,
-    /// Slope of the account beyond the simulated cycles [m].
+    /// Slope of the extrapolation [m].
     slope: f64,
-    /// Estimated error of the settlement by jumps [m].
+    /// Settlement error of jumps [m].
     pub jump_error: f64,
-    /// Age of the bed in cycles and settlement as measured [m] after the last cycle.
+    /// Bed age in cycles and measured settlement [m].
     pub latest: [f64; 2],
-    /// Whether cycles count for the laws: not those in which the bed recovers from a jump.
+    /// Whether cycles count for fits.
     pub counting: bool,
-    /// Finished cycles.
+    /// Completed cycles.
     pub done: Vec<Cycle>,
-    /// `latest` of all cycles that count: what laws are fitted to.
+    /// `latest` of all counting cycles.
     pub measured: Vec<[f64; 2]>,
 }
 
 impl CycleRecorder {
-    /// A recorder of all cycles of `load`, with the stiffness of the bed between two loads [N].
+    /// Recorder of `load`; bed stiffness between two loads [N].
     pub fn new(load: &CyclicLoad, between: [f64; 2], column: BedColumn) -> CycleRecorder {
         CycleRecorder {
             begin: load.cycles_begin(),
@@ -115,40 +112,40 @@ impl CycleRecorder {
         }
     }
 
-    /// Cycles of the load, jumped ones included.
+    /// Cycles of the load.
     pub fn total(&self) -> u32 {
         self.total
     }
 
-    /// Number of the last finished cycle.
+    /// Last completed cycle.
     pub fn number(&self) -> u32 {
         self.simulated + self.skipped
     }
 
-    /// Cycles simulated.
+    /// Simulated cycles.
     pub fn simulated(&self) -> u32 {
         self.simulated
     }
 
-    /// Lowering of the sleeper by the pulses before the first cycle [m].
+    /// Settlement by seating pulses [m].
     pub fn seating(&self) -> f64 {
         self.unseated - self.datum
     }
 
-    /// Whether the last cycle is over.
+    /// Whether the last cycle is complete.
     pub fn over(&self) -> bool {
         self.number() >= self.total
     }
 
-    /// Jumps over some cycles. `slope` is that of the account, ds/d(ln N) [m]; 0 when the grains themselves are moved.
+    /// Skips cycles; `slope` ds/d(ln N) [m], 0 if grains are displaced.
     pub fn skip(&mut self, cycles: u32, slope: f64) {
         self.skipped += cycles;
         self.slope = slope;
     }
 
-    /// Records the state at time `t` [s] after a step of length `dt` [s]: height of the sleeper's centre [m], load
-    /// [N], work of the load so far [J], largest formation pressure of the step [Pa]. Returns the cycle that has
-    /// just ended, if one has.
+    /// Records the state at `t` [s] after a step of `dt` [s]; returns a cycle just completed.
+    ///
+    /// Arguments: sleeper height [m], load [N], work so far [J], largest formation pressure of the step [Pa].
     pub fn record(
         &mut self,
         t: f64,
@@ -158,7 +155,7 @@ impl CycleRecorder {
         work: f64,
         pressure: f64,
     ) -> Option<Cycle> {
-        // A step belongs to the cycle that holds its middle, so that rounding of t does not matter.
+        // A step belongs to the cycle of its middle, so rounding of t is harmless.
         if t - 0.5 * dt < self.begin {
             if t - 0.5 * dt < self.seating_begins {
                 self.unseated = height;
@@ -185,7 +182,7 @@ impl CycleRecorder {
         let (range, resilient) = (self.load_range.1 - self.load_range.0, height - self.lowest);
         let over = |x: f64| if resilient > 0.0 { x / resilient } else { 0.0 };
         let measured = self.datum - height;
-        // Grains that are moved are as old as the account says; those that are not, only as old as they are.
+        // Displaced grains have the age of the cycle number.
         let moved = self.slope == 0.0;
         let settlement = measured + if moved { 0.0 } else { self.slope * libm::log(f64::from(number) / age) };
         let before = self.done.last().map_or((0, 0.0), |c| (c.number, c.settlement));
@@ -220,7 +217,6 @@ impl CycleRecorder {
         Some(cycle)
     }
 
-    /// Notes where the rising load passes the two loads, straight between two windows.
     fn follow_loading(&mut self, load: f64, height: f64) {
         let (load_before, height_before) = self.last;
         let [low, high] = self.between;
@@ -248,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spring_with_drift_yields_its_own_stiffness_and_settlement() {
+    fn recovers_stiffness_and_drift() {
         let load = load(false);
         let column = BedColumn { area: 0.5, below: -0.8 };
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], column);
@@ -268,7 +264,7 @@ mod tests {
             assert!((c.secant_stiffness - 100.0 / 0.0095).abs() < 10.0, "{c:?}");
             // 200 Pa over the strain of a bed 0.2 m high.
             assert!((c.resilient_modulus - 200.0 / (0.0095 / 0.2)).abs() < 4.0, "{c:?}");
-            // From 25 to 75 N takes a sixth of the cycle: 5 mm by the spring, a sixth of a millimetre by the drift.
+            // 25 to 75 N takes a sixth of a cycle: 5 mm of spring, 1/6 mm of drift.
             let expected = 50.0 / (0.005 + 0.001 / 6.0);
             assert!((c.bed_stiffness / expected - 1.0).abs() < 1e-3, "{c:?} {expected}");
             assert!((c.dissipated_energy - 0.2).abs() < 1e-3, "{c:?}");
@@ -277,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sine_that_starts_at_the_mean_has_a_loading_branch_as_well() {
+    fn sine_has_loading_branch() {
         let load = load(true);
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], BedColumn::default());
         for step in 1..=5000 {
@@ -285,12 +281,12 @@ mod tests {
             let f = load.on(0, t);
             recorder.record(t, 1e-4, 1.0 - f / 1e4, f, 0.0, 0.0);
         }
-        // The first cycle passes the lower load only at its end; on a spring every branch has its stiffness.
+        // Not in the first cycle.
         assert!(recorder.done[1..].iter().all(|c| (c.bed_stiffness / 1e4 - 1.0).abs() < 1e-6));
     }
 
     #[test]
-    fn an_account_that_jumps_goes_on_along_the_logarithm() {
+    fn extrapolates_along_logarithm() {
         let load = load(false);
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], BedColumn::default());
         recorder.total = 1000;
@@ -315,7 +311,7 @@ mod tests {
         assert!((jump.rate - (jump.settlement - before.settlement) / 501.0).abs() < 1e-15);
     }
 
-    /// Two pulses of three times the load, in which the sleeper sinks 5 mm, do not count.
+    /// Two seating pulses of three times the load settle 5 mm.
     #[test]
     fn seating_is_stated_apart() {
         let seating = Seating { cycles: 2, maximum: 300.0, frequency: 20.0 };

@@ -1,44 +1,41 @@
-//! Extremes of sleepers while the load cycles last: forces, lowering, loss of contact, bending.
+//! Extremes of sleepers during the load cycles.
 //!
-//! Theory manual: equation (6.5) of `docs/theory/track.md`.
+//! Theory manual: eq. (6.5).
 
 use serde::{Deserialize, Serialize};
 
-/// Share of a sleeper's weight below which a contact force is rounding.
+/// Rounding, over sleeper weight.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// A sleeper at the end of a window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Observation {
-    /// Downward force on its seats [N].
+    /// Downward seat force [N].
     pub force: f64,
     /// Height [m].
     pub height: f64,
-    /// Deflection of the rail over it, upwards [m].
+    /// Upward rail deflection [m].
     pub rail: f64,
-    /// Rise of the ends of a meshed sleeper's base over its middle [m].
+    /// Base ends above the middle [m].
     pub bend: f64,
 }
 
-/// Extremes of a sleeper while the load cycles last.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Extremes {
     force: [f64; 2],
-    /// Height when the cycles began, and the least since [m].
+    /// Initial and smallest height [m].
     height: [f64; 2],
-    /// Greatest height since [m].
+    /// Largest height [m].
     highest: f64,
-    /// Time without any contact force, and when that first began [s].
+    /// Time without contact, first start [s].
     lifted_time: f64,
     lifted: Option<f64>,
-    /// Least deflection of the rail over it [m].
+    /// Smallest rail deflection [m].
     rail: f64,
-    /// Least and largest rise of a meshed sleeper's ends over its middle [m].
+    /// Base ends above the middle [m].
     bend: [f64; 2],
 }
 
 impl Extremes {
-    /// At the beginning of the cycles.
     pub fn start(now: &Observation) -> Extremes {
         Extremes {
             force: [now.force; 2],
@@ -51,7 +48,7 @@ impl Extremes {
         }
     }
 
-    /// A window from `begin` of length `duration` [s], in which no contact carried the sleeper where it was `lifted`.
+    /// Adds a window from `begin` of `duration` [s]; `lifted`: without contact.
     pub fn update(&mut self, now: &Observation, lifted: bool, begin: f64, duration: f64) {
         self.highest = self.highest.max(now.height);
         if lifted {
@@ -64,8 +61,7 @@ impl Extremes {
         self.bend = [self.bend[0].min(now.bend), self.bend[1].max(now.bend)];
     }
 
-    /// For the summary. `axle` is the load of the heaviest axle [N], `static_force` the largest force of wheels that stand still
-    /// [N]; `rail` and `meshed` whether there is a rail with mass and whether the sleeper consists of elements.
+    /// Summary record. `axle`: heaviest axle load [N]; `static_force`: largest force of standing wheels [N].
     pub fn record(
         &self,
         axle: Option<f64>,
@@ -91,27 +87,24 @@ impl Extremes {
     }
 }
 
-/// What shows whether contacts carry a sleeper in the present window: what its momentum would be without contacts.
+/// Detects windows in which seat forces and weight explain the momentum.
 #[derive(Default)]
 pub(super) struct MomentumCheck {
-    /// Step at which the window began.
     from: Option<u64>,
-    /// Upward speed of each sleeper then [m/s].
+    /// Initial upward speeds [m/s].
     speed: Vec<f64>,
-    /// Upward impulse of its seats since [N s].
+    /// Upward seat impulses [N s].
     impulse: Vec<f64>,
-    /// Time by which velocities have advanced [s].
+    /// Velocity time increment so far [s].
     duration: f64,
 }
 
 impl MomentumCheck {
-    /// A new window begins.
     pub fn reset(&mut self) {
         self.from = None;
     }
 
-    /// Notes the speeds at the first step of a window, and the time `kick` by which velocities advance in every step [s]; a
-    /// window that is repeated begins at the same step.
+    /// Stores speeds at the first step of a (possibly repeated) window; `kick`: velocity time increment [s].
     pub fn begin(&mut self, step: u64, kick: f64, speeds: impl Iterator<Item = f64>) {
         if self.from.is_none_or(|from| step <= from) {
             self.from = Some(step);
@@ -124,13 +117,12 @@ impl MomentumCheck {
         self.duration += kick;
     }
 
-    /// Adds an upward impulse on the seats of sleeper `k` [N s].
+    /// Adds an upward seat impulse [N s].
     pub fn add(&mut self, k: usize, impulse: f64) {
         self.impulse[k] += impulse;
     }
 
-    /// Whether the momentum of sleeper `k` has changed by no more than what its seats and its weight gave it. `force` is its
-    /// weight, upwards positive [N], `speed` its upward speed now [m/s].
+    /// Whether sleeper `k` had no contact; upward weight `force` [N], upward `speed` [m/s].
     pub fn is_free(&self, k: usize, mass: f64, force: f64, speed: f64) -> bool {
         if self.from.is_none() {
             return false;
@@ -141,55 +133,55 @@ impl MomentumCheck {
     }
 }
 
-/// Sleepers while the load cycles last.
+/// Sleeper extremes.
 #[derive(Clone, Debug, Serialize)]
 pub struct TrackRecord {
-    /// In their order along the track.
+    /// In order along the track.
     pub sleepers: Vec<SleeperRecord>,
 }
 
-/// One sleeper while the load cycles last.
+/// Extremes of one sleeper.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct SleeperRecord {
-    /// Largest downward force on its seats together [N], at the end of any window.
+    /// Largest downward seat force [N].
     pub largest_force: f64,
-    /// Smallest one; negative where it was lifted.
+    /// Smallest seat force [N], negative in uplift.
     pub smallest_force: f64,
-    /// Largest lowering since the cycles began [m].
+    /// Largest settlement since the first cycle [m].
     pub lowering: f64,
-    /// That no contact carried it for a while; absent where there always was one.
+    /// Loss of contact, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lifted_off: Option<LiftOff>,
-    /// Largest force over the load of one axle, where there are axles.
+    /// Largest force over one axle load, with axles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_share: Option<f64>,
-    /// Largest downward deflection of the rail over it since the rail was laid [m].
+    /// Largest downward rail deflection [m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rail_deflection: Option<f64>,
-    /// Largest force when the wheels stand still, on a bed of the rail's `foundation` under every sleeper [N].
+    /// Largest force of standing wheels on springs `foundation` [N].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub static_force: Option<f64>,
-    /// Largest force over that.
+    /// Largest force over the static one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dynamic_amplification: Option<f64>,
-    /// Least and largest rise of the ends of a meshed sleeper's base over its middle [m].
+    /// Base ends above the middle, meshed sleeper [m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bend: Option<[f64; 2]>,
 }
 
-/// A sleeper that no contact carried for a while.
+/// Loss of contact of a sleeper.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct LiftOff {
-    /// When that first began [s].
+    /// First start [s].
     pub first: f64,
-    /// How long that was, all in all [s].
+    /// Total time [s].
     pub seconds: f64,
-    /// How far it rose above its place when the cycles began [m].
+    /// Largest uplift since the first cycle [m].
     pub rise: f64,
 }
 
 impl TrackRecord {
-    /// Warnings about sleepers that were lifted off.
+    /// Warnings about loss of contact.
     pub fn remarks(&self) -> impl Iterator<Item = String> + '_ {
         self.sleepers.iter().enumerate().filter_map(|(k, s)| {
             let LiftOff { first, seconds, rise } = s.lifted_off?;
@@ -206,8 +198,7 @@ impl TrackRecord {
 mod tests {
     use super::*;
 
-    /// 100 kg that fall freely for ten steps under their weight and a push of the seats are free; with 1 mN of a contact
-    /// they are not.
+    /// 100 kg in free flight for ten steps under weight and seat forces; 1 mN of contact is detected.
     #[test]
     fn a_contact_shows_in_the_momentum() {
         let (mass, gravity, dt, steps) = (100.0, -9.81, 1e-3, 10);
@@ -225,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lifted_sleeper_is_reported_with_time_and_rise() {
+    fn reports_uplift_of_sleeper() {
         let at = |height: f64, force: f64| Observation { force, height, rail: 0.0, bend: 0.0 };
         let mut e = Extremes::start(&at(1.0, 5.0));
         e.update(&at(0.998, 9.0), false, 0.0, 0.1);

@@ -1,45 +1,42 @@
-//! Influence lines: the force on a sleeper against its distance from an axle, in closed form.
+//! Influence lines: force on a sleeper against axle distance, in closed form.
 //!
-//! Sources: Winkler, Die Lehre von der Elasticität und Festigkeit, 1867; Zimmermann, Die Berechnung des
-//! Eisenbahnoberbaues, 1888 (beam on a continuous elastic foundation); Hetényi, Beams on Elastic Foundation, 1946,
-//! section 3. Limits: quasi-static, the foundation pulls as well as it pushes.
-//!
-//! Theory manual: equations (6.3), (6.6) of `docs/theory/track.md`.
+//! Winkler, Die Lehre von der Elasticität und Festigkeit, 1867; Zimmermann, Die Berechnung des
+//! Eisenbahnoberbaues, 1888; Hetényi, Beams on Elastic Foundation, 1946, section 3. Theory manual: eqs.
+//! (6.3), (6.6). Quasi-static; the foundation also pulls.
 
-/// A beam on a continuous elastic foundation.
+/// Beam on a continuous elastic foundation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Winkler {
     /// β = (k/(4 EI))^¼ [1/m].
     pub beta: f64,
-    /// Distance of the sleepers s [m].
+    /// Sleeper spacing s [m].
     pub spacing: f64,
 }
 
 impl Winkler {
-    /// Of a rail with bending stiffness `ei` [N m²] on sleepers `spacing` apart [m], each a spring `foundation` [N/m]
-    /// under the rail: k = foundation/spacing per length.
+    /// Rail of `ei` [N m²] on springs `foundation` [N/m] at `spacing` [m].
     pub fn new(ei: f64, foundation: f64, spacing: f64) -> Winkler {
         Winkler { beta: libm::pow(foundation / spacing / (4.0 * ei), 0.25), spacing }
     }
 
-    /// Shape of the deflection under a unit force, 1 at the force: e^(−β|x|) (cos β|x| + sin β|x|).
+    /// Normalised deflection e^(−β|x|) (cos β|x| + sin β|x|).
     pub fn shape(&self, x: f64) -> f64 {
         let b = self.beta * x.abs();
         libm::exp(-b) * (libm::cos(b) + libm::sin(b))
     }
 
-    /// Share of an axle's load on a sleeper at distance `x` [m]: k s w(x)/P = β s/2 · shape.
+    /// Axle load share at distance `x` [m]: β s/2 · shape.
     pub fn share(&self, x: f64) -> f64 {
         0.5 * self.beta * self.spacing * self.shape(x)
     }
 
-    /// Distance beyond which the shape stays below 1e-4 [m].
+    /// Distance beyond which the shape is below 1e-4 [m].
     pub fn reach(&self) -> f64 {
         3.0 * std::f64::consts::PI / self.beta
     }
 }
 
-/// Gaussian pulse, 1 at the load: exp(−(x/ℓ)²).
+/// Gaussian pulse exp(−(x/ℓ)²).
 pub fn gauss(x: f64, width: f64) -> f64 {
     libm::exp(-(x / width).powi(2))
 }
@@ -58,8 +55,7 @@ mod tests {
         (0..n).map(|i| h * f(from + (f64::from(i) + 0.5) * h)).sum()
     }
 
-    /// Hetényi (1946): the foundation carries the whole load, the deflection is zero at βx = 3π/4 and least at π, where
-    /// it is −e^(−π).
+    /// Hetényi (1946): zero deflection at βx = 3π/4, minimum −e^(−π) at π.
     #[test]
     fn the_foundation_carries_the_load() {
         let w = Winkler::new(6.4e6, 40e6, 0.6);
@@ -70,7 +66,7 @@ mod tests {
         assert!(w.shape(0.75 * PI / w.beta).abs() < 1e-15);
         assert!((w.shape(PI / w.beta) + (-PI).exp()).abs() < 1e-15);
         assert!(w.shape(w.reach()).abs() < 1e-4);
-        // Sleepers of a track share one axle: the sum over them is the load, whatever its place between two.
+        // Shares of one axle sum to 1.
         for x in [0.0, 0.13, 0.3] {
             let sum: f64 = (-60..=60).map(|i| w.share(0.6 * f64::from(i) - x)).sum();
             assert!((sum - 1.0).abs() < 2e-3, "{sum}");
@@ -78,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gaussian_pulse_has_area_root_pi_times_its_width() {
+    fn gaussian_pulse_area_matches_closed_form() {
         let all = area(|x| gauss(x, 0.7), -10.0, 10.0);
         assert!((all - 0.7 * PI.sqrt()).abs() < 1e-9);
         assert!(gauss(GAUSS_REACH, 1.0) < 2e-4);

@@ -1,22 +1,16 @@
-//! Cycle jumps: most cycles of a long load are not simulated one by one.
+//! Cycle jumps: settlement extrapolated with the logarithm of the number of cycles.
 //!
-//! Settlement grows with the logarithm of the number of cycles, so the rate of N cycles predicts that of the next ΔN:
-//! together they settle b ln(1 + ΔN/N), b the slope ds/d(ln N) of the last simulated cycles. The controller runs in rounds. A
-//! *stretch* of cycles is simulated and its slope compared with the one predicted before the last jump; then follows the next
-//! jump, relative to N twice as long if the error of the last one is within the tolerance, half as long if not.
+//! Rounds of a simulated *stretch*, comparison with the predicted slope b = ds/d(ln N), and a jump. Relative
+//! to N it doubles if the last error is within the tolerance, else halves.
 //!
-//! * `account`: the grains stay, and the settlement of the row is the measured one plus b ln(N/n), n the age of the bed. Each
-//!   stretch makes the bed older and b new. Its error is estimated as ln(N/n) times two standard errors of b and that of b by
-//!   the stretches that were predicted.
-//! * `grains`: every body is moved on along its drift through the last stretch, scaled to the settlement b ln(1 + ΔN/N), as
-//!   far as the overlaps change by a given share of their mean; then some cycles run whose rate does not count. The error of
-//!   a jump is the difference of the settlement after the next stretch from the logarithm; errors add up. Contact springs stay:
-//!   the next step turns them into their new planes and cuts them at the friction limit. The energy that a jump brings
-//!   in has a term of its own in the account.
+//! * `account`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error:
+//!   ln(N/n) times two standard errors of b plus the error of earlier predictions.
+//! * `grains`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles do
+//!   not count. Errors after each stretch are summed. Contact springs are kept; the next step rotates and
+//!   caps them.
 //!
-//! Limits: a bed that breaks, or whose load changes, has no such logarithm. Driven walls are not moved.
-//!
-//! Theory manual: equations (6.24), (6.25), (6.26), (6.27) of `docs/theory/track.md`.
+//! Not supported: collapsing beds, changing loads; servo-controlled walls stay. Theory manual: eqs. (6.24),
+//! (6.25), (6.26), (6.27).
 
 use super::cycles::CycleRecorder;
 use super::settlement;
@@ -30,44 +24,44 @@ use trackbed_dem::integrate::rotation;
 
 /// First jump over the largest one.
 const START: f64 = 0.25;
-/// Share of all simulated cycles that a stretch of `account` has at least.
+/// Smallest stretch of `account` over simulated cycles.
 const STRETCH: f64 = 0.1;
-/// The slope is that of the cycles from this share of the last one on.
+/// First cycle of the slope over the last.
 const WINDOW: f64 = 0.25;
 
-/// Cycles that are not simulated one by one.
+/// Parameters of cycle jumps.
 #[derive(Clone, Copy, Debug)]
 pub struct JumpPlan {
-    /// Whether the grains are moved; otherwise only the account goes on.
+    /// Displace the grains.
     pub grains: bool,
-    /// Cycles simulated before the first jump.
+    /// Simulated cycles before the first jump.
     pub first: u32,
-    /// Cycles of a stretch whose rate is measured.
+    /// Cycles of a measured stretch.
     pub measure: u32,
-    /// Cycles after a jump whose rate does not count.
+    /// Recovery cycles after a jump.
     pub settle: u32,
-    /// Error of a jump over the settlement up to which the next jump is longer.
+    /// Relative error up to which jumps grow.
     pub tolerance: f64,
     /// Largest jump over the cycles before it.
     pub largest: f64,
-    /// Share by which a jump may change the overlaps in the mean.
+    /// Largest mean relative change of overlaps.
     pub overlap: f64,
 }
 
-/// One jump, for the summary.
+/// One jump.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpRecord {
     /// Last cycle before it.
     pub from: u32,
-    /// Cycles jumped over.
+    /// Skipped cycles.
     pub cycles: u32,
-    /// Slope predicted, ds/d(ln N) [m].
+    /// Predicted slope ds/d(ln N) [m].
     pub predicted_slope: f64,
-    /// Slope of the stretch after it [m]; none when the run ended first.
+    /// Slope of the next stretch [m].
     pub measured_slope: Option<f64>,
-    /// Estimated error of the settlement: by this jump (`grains`), or of all so far (`account`) [m].
+    /// Estimated settlement error [m]: of this jump (`grains`), or of all so far (`account`).
     pub error: f64,
-    /// Share by which the jump was to change the overlaps in the mean; `grains` only.
+    /// Mean relative change of overlaps; `grains` only.
     pub overlap_change: Option<f64>,
 }
 
@@ -76,51 +70,50 @@ pub struct JumpRecord {
 pub struct JumpSummary {
     /// `"account"` or `"grains"`.
     pub method: &'static str,
-    /// Cycles simulated.
+    /// Simulated cycles.
     pub simulated: u32,
-    /// Cycles jumped over.
+    /// Skipped cycles.
     pub skipped: u32,
     /// Estimated error of the last settlement [m].
     pub error_estimate: f64,
-    /// The same over that settlement.
+    /// The same, relative.
     pub relative_error_estimate: f64,
-    /// Energy that the jumps brought in [J].
+    /// Energy added by jumps [J].
     pub energy: f64,
-    /// The jumps.
+    /// Jumps.
     pub jumps: Vec<JumpRecord>,
 }
 
-/// Purpose of the present cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
-    /// Cycles before the first stretch, and those after a jump whose rate does not count.
+    /// Before the first stretch, or recovery.
     Wait(u32),
-    /// Cycles whose rate is measured.
+    /// Measured cycles.
     Stretch(u32),
-    /// No jump is left.
+    /// No further jump.
     Over,
 }
 
-/// Body by body: centre and orientation.
+/// Centre and orientation per body.
 type Places = Vec<(dem::Vec3, UnitQuaternion<f64>)>;
 
-/// The controller of a run with jumps; all of it goes into a checkpoint.
+/// Jump controller, part of checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Jumper {
     phase: Phase,
     /// Next jump over the cycles before it.
     growth: f64,
-    /// Places of the bodies, age of the bed and settlement when the stretch began.
+    /// At the start of the stretch; `begun`: age, settlement.
     places: Places,
     begun: [f64; 2],
-    /// Age and settlement when the last jump was made, and the slope predicted.
+    /// Age, settlement and predicted slope at the last jump.
     predicted: Option<[f64; 3]>,
-    /// The jumps so far.
+    /// Jumps so far.
     pub jumps: Vec<JumpRecord>,
 }
 
 impl Jumper {
-    /// The controller at the start of a run.
+    /// Controller at the start of a run.
     pub fn new(plan: &JumpPlan) -> Jumper {
         Jumper {
             phase: Phase::Wait(plan.first - plan.measure),
@@ -132,7 +125,7 @@ impl Jumper {
         }
     }
 
-    /// After a simulated cycle: goes on in the round, and jumps when it is time. Returns whether bodies were moved.
+    /// Continues after a cycle; returns whether bodies were displaced.
     pub fn after_cycle<S: TrackSystem>(
         &mut self,
         plan: &JumpPlan,
@@ -166,7 +159,6 @@ impl Jumper {
         }
     }
 
-    /// Begins a stretch.
     fn begin<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &S) {
         if let (true, Some(g)) = (plan.grains, system.grains()) {
             self.places = (0..g.model.body_count())
@@ -177,18 +169,16 @@ impl Jumper {
         cycles.counting = true;
         let share = if plan.grains { 0.0 } else { STRETCH * f64::from(cycles.simulated()) };
         let left = plan.measure.max(share as u32);
-        // The last cycles are simulated without another jump.
         let room = cycles.total() - cycles.number();
         self.phase = if room < left { Phase::Over } else { Phase::Stretch(left) };
     }
 
-    /// Compares a stretch with the prediction.
     fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
         let (now, Some([age, settlement, slope])) = (cycles.latest, self.predicted) else { return };
         let measured = (now[1] - self.begun[1]) / libm::log(now[0] / self.begun[0]);
         let Some(last) = self.jumps.last_mut() else { return };
         last.measured_slope = Some(measured);
-        // Error of the jump: in settlement where the grains were moved, by the slope where they were not.
+        // Error in settlement (grains displaced) or by the slope.
         let found = if plan.grains {
             last.error = (now[1] - settlement - slope * libm::log(now[0] / age)).abs();
             cycles.jump_error += last.error;
@@ -201,7 +191,7 @@ impl Jumper {
         self.predicted = None;
     }
 
-    /// Jumps, if the last cycles determine a slope; whether bodies were moved.
+    /// Returns whether bodies were displaced.
     fn jump<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &mut S) -> bool {
         let [age, settlement] = cycles.latest;
         let number = f64::from(cycles.number());
@@ -216,7 +206,7 @@ impl Jumper {
         if plan.grains {
             let Some(drift) = Drift::of(&self.places, system) else { return false };
             let own = (settlement - self.begun[1]) / libm::log(age / self.begun[0]);
-            // Drift of a stretch that went up, or hardly down, has no reliable direction.
+            // Uplift or small settlement gives no reliable drift direction.
             if own < 0.25 * fit.slope {
                 return false;
             }
@@ -250,20 +240,19 @@ impl Jumper {
             error,
             overlap_change: change,
         });
-        // The age goes on from here: with the number where the grains were moved, as before where they were not.
+        // Displaced grains age with the cycle number.
         self.predicted = Some([age, settlement, fit.slope]);
         plan.grains
     }
 
-    /// Standard error of the slope by the stretches that were predicted: root of the sum of squared misses over their
-    /// number [m].
+    /// Standard error of the slope from earlier predictions [m].
     fn slope_error(&self) -> f64 {
         let miss = |j: &JumpRecord| j.measured_slope.map(|m| (m - j.predicted_slope).powi(2));
         let misses: Vec<f64> = self.jumps.iter().filter_map(miss).collect();
         misses.iter().sum::<f64>().sqrt() / misses.len().max(1) as f64
     }
 
-    /// For the summary.
+    /// Summary.
     pub fn summary(&self, plan: &JumpPlan, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
         JumpSummary {
@@ -282,11 +271,11 @@ impl Jumper {
     }
 }
 
-/// How the bodies moved through a stretch.
+/// Body motion through a stretch.
 struct Drift {
-    /// Shift [m] and turn [rad] of each body.
+    /// Displacement [m] and rotation [rad] per body.
     motion: Vec<(dem::Vec3, dem::Vec3)>,
-    /// Mean change of the overlaps over their mean, if the bodies moved on as far again.
+    /// Mean relative change of overlaps for a repeated drift.
     overlap_change: f64,
 }
 
@@ -309,7 +298,7 @@ impl Drift {
                 Partner::Body(b) => at(b, &c.point),
                 _ => dem::Vec3::zeros(),
             };
-            // Summed in the order of the contacts, which does not depend on the threads.
+            // The order of contacts is thread-independent.
             change += (at(c.a, &c.point) - other).dot(&c.normal).abs();
             overlap += c.overlap;
             *known.entry(c.a).or_insert(0_u32) += 1;
@@ -320,7 +309,7 @@ impl Drift {
         if overlap <= 0.0 {
             return None;
         }
-        // A stone that is held by too few contacts rattles: it goes nowhere.
+        // Rattlers have no drift.
         let motion = motion
             .into_iter()
             .enumerate()
@@ -329,7 +318,6 @@ impl Drift {
         Some(Drift { motion, overlap_change: change / overlap })
     }
 
-    /// Each body moved on by so many times the stretch.
     fn moves(&self, factor: f64) -> Vec<(usize, dem::Vec3, UnitQuaternion<f64>)> {
         let on = |(b, (shift, turn)): (usize, &(dem::Vec3, dem::Vec3))| {
             (b, shift * factor, rotation::by(&(turn * factor)))

@@ -7,7 +7,7 @@ use dem::Vec3;
 const PLAN: JumpPlan =
     JumpPlan { grains: true, first: 12, measure: 5, settle: 3, tolerance: 1e-3, largest: 1.0, overlap: 2.0 };
 
-/// Grains that are only moved by jumps.
+/// Grains displaced by jumps only.
 struct Grains {
     model: dem::Model,
     state: dem::State,
@@ -28,7 +28,7 @@ impl TrackSystem for Grains {
     }
 }
 
-/// A sphere pressed into a corner by 1 mm, and one that touches nothing.
+/// A sphere indenting a corner by 1 mm, and a rattler.
 fn corner() -> Grains {
     let wall =
         |normal: Vec3| dem::Plane { point: Vec3::zeros(), normal, material: 0, velocity: Vec3::zeros() };
@@ -49,8 +49,8 @@ fn corner() -> Grains {
     Grains { model, state }
 }
 
-/// A bed of which both spheres follow a sleeper whose settlement after N cycles is `law`; of each jump the cycles before and
-/// jumped over, and how far sphere and rattler were moved.
+/// Both spheres follow a sleeper with settlement `law`. Per jump: cycles before and skipped, displacements of
+/// sphere and rattler.
 fn jumps_of(plan: &JumpPlan, cycles: u32, law: impl Fn(f64) -> f64) -> (Jumper, Vec<[f64; 4]>) {
     let wave = Waveform::Wave { sine: false, minimum: 0.0, maximum: 1.0, frequency: 1.0 };
     let load =
@@ -70,15 +70,14 @@ fn jumps_of(plan: &JumpPlan, cycles: u32, law: impl Fn(f64) -> f64) -> (Jumper, 
         if jumper.after_cycle(plan, &mut recorder, &mut system) {
             let way = [0, 1].map(|b| before[b] - system.state.position(b).z);
             jumps.push([number.into(), (recorder.number() - number).into(), way[0], way[1]]);
-            // What was moved has settled.
             settled += way[0];
         }
     }
     (jumper, jumps)
 }
 
-/// On a bed that follows the logarithm, s = b ln N, each jump moves the sphere by b ln(1 + ΔN/N) and leaves the rattler; nothing
-/// goes wrong, so that each jump is twice as long as the last, from a quarter of the largest on, relative to N.
+/// For s = b ln N each jump displaces the sphere by b ln(1 + ΔN/N), not the rattler, and doubles relative to
+/// N.
 #[test]
 fn jumps_of_grains_follow_the_logarithm() {
     let b = 1e-6;
@@ -93,10 +92,9 @@ fn jumps_of_grains_follow_the_logarithm() {
     assert!(jumper.jumps.iter().all(|j| j.error < 1e-6 * b), "{:?}", jumper.jumps);
 }
 
-/// A bed that goes on three times as fast after the first jump: the jump is wrong by 2 b ln(n/N) at the end of the next
-/// stretch, and the next one is half as long.
+/// Triple slope after the first jump: error 2 b ln(n/N), next jump halved.
 #[test]
-fn a_jump_with_a_large_error_is_followed_by_a_shorter_one() {
+fn large_error_shortens_next_jump() {
     let b = 1e-6;
     let first = 12.0 + 3.0;
     let law = |n: f64| if n <= first { b * n.ln() } else { b * first.ln() + 3.0 * b * (n / first).ln() };
@@ -109,16 +107,15 @@ fn a_jump_with_a_large_error_is_followed_by_a_shorter_one() {
     assert_eq!(jumps[1][1], (0.125 * jumps[1][0]).floor(), "{jumps:?}");
 }
 
-/// No jump changes the overlaps in the mean by more than the plan says: here by a two-thousandth of 1 mm over three planes, of
-/// which one is moved towards.
+/// Limit: 1/2000 of 1 mm over three planes, with motion towards one.
 #[test]
-fn jumps_stop_at_the_change_of_overlaps() {
+fn overlap_change_limits_jumps() {
     let plan = JumpPlan { overlap: 1e-4, largest: 10.0, ..PLAN };
     let b = 1e-6;
     let (jumper, jumps) = jumps_of(&plan, 20, |n| b * n.ln());
     let [number, skipped, way, _] = jumps[0];
     let reported = jumper.jumps[0].overlap_change.unwrap();
-    // The sphere has sunk a little into one of three planes by then.
+    // The sphere indents one plane slightly.
     let change = way / (3e-3 + b * number.ln());
     assert!((reported / change - 1.0).abs() < 1e-3, "{reported} {change}");
     assert!(reported <= 1e-4 && reported > 0.8e-4, "{reported}");

@@ -1,15 +1,10 @@
-//! The load on a row of sleepers as a function of time.
+//! Load on a row of sleepers: rest, ramp, seating pulses, cycles.
 //!
-//! Rest without load, a smooth ramp to the load of the first instant, pulses that seat the sleepers where a scene has them, then
-//! whole cycles. A cycle is a period of a force
-//! that acts on all sleepers at once, or a pass of wheels or pulses that reach one sleeper after the other.
+//! A cycle is a period of a common force, or a pass of wheels or pulses. Axles act through
+//! [`influence`](super::influence) lines or a [rail with mass](super::rail); an uneven rail adds the inertia
+//! force M a w² sin wt of the unsprung mass (Newton's law, without suspension).
 //!
-//! Sources: an axle is shared among the sleepers by the laws of [`influence`](super::influence) or by a [rail with
-//! mass](super::rail). A wheel that follows a rail of the shape a sin wt without losing contact needs the inertia force
-//! M a w² of its unsprung mass (Newton's law), so that its force is F = P + Σ M a w² sin wt; the vehicle's own suspension is left
-//! out.
-//!
-//! Theory manual: equations (6.1), (6.2), (6.4) of `docs/theory/track.md`.
+//! Theory manual: eqs. (6.1), (6.2), (6.4).
 
 use super::influence::{GAUSS_REACH, Winkler, gauss};
 use super::rail::Wheel;
@@ -18,117 +13,115 @@ use std::f64::consts::{PI, TAU};
 /// Downward forces on the sleepers.
 #[derive(Clone, Debug)]
 pub struct CyclicLoad {
-    /// What happens in a cycle.
+    /// Waveform of a cycle.
     pub waveform: Waveform,
     /// Number of cycles.
     pub cycles: u32,
     /// Time without load [s].
     pub rest: f64,
-    /// Time of the ramp [s].
+    /// Ramp time [s].
     pub ramp: f64,
-    /// Pulses before the first cycle, which do not count.
+    /// Seating pulses before the first cycle.
     pub seating: Option<Seating>,
-    /// Places of the sleepers along the track, the first at 0 [m].
+    /// Sleeper positions along the track, the first at 0 [m].
     pub places: Vec<f64>,
 }
 
-/// Pulses that press the sleepers into the bed before the cycles: each from the load of the first instant to `maximum` and back,
-/// a whole cosine, on all sleepers at once. What settles meanwhile is a result of its own.
+/// Seating pulses (haversines) from the initial load to `maximum`, on all sleepers.
 #[derive(Clone, Copy, Debug)]
 pub struct Seating {
     /// Number of pulses.
     pub cycles: u32,
-    /// Largest force on a sleeper [N].
+    /// Largest sleeper force [N].
     pub maximum: f64,
-    /// Pulses per second [Hz].
+    /// Frequency [Hz].
     pub frequency: f64,
 }
 
 impl Seating {
-    /// Time that all pulses take [s].
+    /// Total duration [s].
     pub fn duration(&self) -> f64 {
         f64::from(self.cycles) / self.frequency
     }
 
-    /// Force at a time since the first pulse began, from `base` up [N].
     fn force(&self, base: f64, since: f64) -> f64 {
         base + 0.5 * (self.maximum - base) * (1.0 - libm::cos(TAU * since * self.frequency))
     }
 }
 
-/// What happens in a cycle.
+/// Waveform of a cycle.
 #[derive(Clone, Debug)]
 pub enum Waveform {
-    /// Mean plus amplitude times sin 2πft, or minimum plus range times (1 − cos 2πft)/2.
+    /// Sine about the mean, or haversine from the minimum.
     Wave {
-        /// Whether it starts at the mean.
+        /// Whether it is a sine.
         sine: bool,
         /// Smallest force [N].
         minimum: f64,
         /// Largest force [N].
         maximum: f64,
-        /// Cycles per second [Hz].
+        /// Frequency [Hz].
         frequency: f64,
     },
-    /// Rise from the smallest to the largest force, hold, fall, each flank half a cosine.
+    /// Half-cosine rise, hold, half-cosine fall.
     Ramp {
         /// Smallest force [N].
         minimum: f64,
         /// Largest force [N].
         maximum: f64,
-        /// Time of the rise [s].
+        /// Rise time [s].
         rise: f64,
-        /// Time at the largest force [s].
+        /// Hold time [s].
         hold: f64,
-        /// Time of the fall, where there is one [s].
+        /// Fall time, if any [s].
         fall: Option<f64>,
     },
-    /// A measured force; the first row is at the start of the cycle.
+    /// Measured force.
     Measured {
-        /// (Time [s], force [N]), times ascending from 0.
+        /// (Time [s], force [N]), from 0.
         points: Vec<(f64, f64)>,
-        /// Speed at which it runs along the sleepers [m/s]; without it all have it at once.
+        /// Speed along the sleepers [m/s]; `None`: simultaneous.
         speed: Option<f64>,
     },
-    /// Wheels or pulses that run along the track.
+    /// Moving wheels or pulses.
     Pass(Pass),
 }
 
-/// Wheels or pulses that run along the track.
+/// Moving wheels or pulses.
 #[derive(Clone, Debug)]
 pub struct Pass {
     /// Speed [m/s].
     pub speed: f64,
-    /// Distance behind the first axle [m] and force [N] of each axle.
+    /// Distance behind the first [m] and force [N] per axle.
     pub axles: Vec<[f64; 2]>,
-    /// Place of the first axle when a pass begins [m].
+    /// Initial position of the first axle [m].
     pub begin: f64,
-    /// Distance that the first axle travels in a pass [m].
+    /// Travel of the first axle [m].
     pub distance: f64,
-    /// How the force of an axle is shared among the sleepers.
+    /// Load distribution to the sleepers.
     pub spread: AxleSpread,
-    /// Waves of an uneven rail: force amplitude [N] and wave length [m].
+    /// Rail irregularity: force amplitude [N] and wavelength [m].
     pub waves: Vec<[f64; 2]>,
 }
 
-/// How the force of an axle is shared among the sleepers.
+/// Load distribution of an axle.
 #[derive(Clone, Copy, Debug)]
 pub enum AxleSpread {
-    /// As a Gaussian pulse of this width ℓ [m].
+    /// Gaussian pulse of width ℓ [m].
     Gauss(f64),
-    /// By the formula of a beam on an elastic foundation.
+    /// Beam on elastic foundation.
     Winkler(Winkler),
-    /// Through a rail with mass from `ends[0]` to `ends[1]` [m], onto which wheels roll within `taper` [m].
+    /// Rail with mass.
     Beam {
-        /// Ends of the rail [m].
+        /// Rail ends [m].
         ends: [f64; 2],
-        /// Length at each end over which the load of a wheel grows from zero.
+        /// End length over which wheel loads ramp [m].
         taper: f64,
     },
 }
 
 impl AxleSpread {
-    /// Distance from an axle beyond which its force is negligible [m].
+    /// Distance beyond which axle forces are negligible [m].
     pub fn reach(&self) -> f64 {
         match self {
             AxleSpread::Gauss(width) => GAUSS_REACH * width,
@@ -139,8 +132,7 @@ impl AxleSpread {
 }
 
 impl Pass {
-    /// Axles of these distances behind the first [m] and forces [N] over sleepers at `places` [m], from beyond the reach of
-    /// the first sleeper to beyond that of the last.
+    /// Pass of axles over sleepers at `places` [m], with the reach at both ends.
     pub fn over(
         places: &[f64],
         speed: f64,
@@ -157,17 +149,16 @@ impl Pass {
         Pass { speed, axles, begin: from, distance: to - from + behind, spread, waves }
     }
 
-    /// Place of an axle at time `t` of a pass.
     fn place(&self, behind: f64, t: f64) -> f64 {
         self.begin + self.speed * t - behind
     }
 
-    /// Whether the pulses are Gaussian, and not those of axles on a rail.
+    /// Whether pulses are Gaussian.
     pub fn gaussian(&self) -> bool {
         matches!(self.spread, AxleSpread::Gauss(_))
     }
 
-    /// Force of an axle at a place: F = P + Σ M a w² sin wt, with wt = 2πx/L.
+    /// Axle force with irregularity.
     fn axle(&self, force: f64, place: f64) -> f64 {
         force
             + self
@@ -177,7 +168,6 @@ impl Pass {
                 .sum::<f64>()
     }
 
-    /// Force on a sleeper at `place`.
     fn on(&self, place: f64, t: f64) -> f64 {
         let each = |[behind, force]: &[f64; 2]| {
             let x = self.place(*behind, t);
@@ -193,8 +183,7 @@ impl Pass {
 }
 
 impl CyclicLoad {
-    /// Frequencies that the load excites the ground with for many periods [Hz]: of waves, of flanks without a pause, of an uneven rail.
-    /// Of measured forces none are known.
+    /// Excitation frequencies [Hz]; none for measured forces.
     pub fn frequencies(&self) -> Vec<f64> {
         match &self.waveform {
             Waveform::Wave { frequency, .. } => vec![*frequency],
@@ -204,7 +193,7 @@ impl CyclicLoad {
         }
     }
 
-    /// Downward force on sleeper `k` at time `t` [N], that of a rail with mass excepted.
+    /// Downward force on sleeper `k` at `t` [N], without rails with mass.
     pub fn on(&self, k: usize, t: f64) -> f64 {
         let since = t - self.rest;
         if since <= 0.0 {
@@ -219,7 +208,7 @@ impl CyclicLoad {
         }
     }
 
-    /// Share of the load of the first instant, and of the rail's weight, that acts at time `t`.
+    /// Ramp factor of the initial load and the rail weight at `t`.
     pub fn applied_share(&self, t: f64) -> f64 {
         let since = t - self.rest;
         if since <= 0.0 {
@@ -231,12 +220,12 @@ impl CyclicLoad {
         }
     }
 
-    /// Wheels on the rail at time `t`, their loads divided among `rails`; `out` is emptied first.
+    /// Sets `out` to the wheels at `t`, loads divided among `rails`.
     pub fn wheels(&self, t: f64, rails: usize, out: &mut Vec<Wheel>) {
         self.wheels_with(t, rails, Pass::axle, out);
     }
 
-    /// The same without the waves of an uneven rail.
+    /// The same without rail irregularity.
     pub fn steady_wheels(&self, t: f64, rails: usize, out: &mut Vec<Wheel>) {
         self.wheels_with(t, rails, |_, force, _| force, out);
     }
@@ -259,7 +248,6 @@ impl CyclicLoad {
         }
     }
 
-    /// Force on sleeper `k` at a time after the cycles began.
     fn in_cycles(&self, k: usize, since: f64) -> f64 {
         let place = self.places.get(k).copied().unwrap_or(0.0);
         match &self.waveform {
@@ -290,31 +278,30 @@ impl CyclicLoad {
         }
     }
 
-    /// Time since the present cycle began, the end of the last cycle going on for ever.
+    /// The end of the last cycle persists.
     fn in_cycle(&self, since: f64) -> f64 {
         let period = self.period();
-        // A time that rounding has put just before the end of a cycle is its end.
+        // Rounding of cycle ends.
         let number = (since / period + 1e-9).floor().clamp(0.0, f64::from(self.cycles - 1));
         (since - number * period).max(0.0)
     }
 
-    /// Time at which the load of the first instant is there, and seating begins [s].
+    /// Start of seating [s].
     pub fn seating_begins(&self) -> f64 {
         self.rest + self.ramp
     }
 
-    /// Time at which the first cycle begins [s].
+    /// Start of the first cycle [s].
     pub fn cycles_begin(&self) -> f64 {
         self.seating_begins() + self.seating.map_or(0.0, |s| s.duration())
     }
 
-    /// Time at which the last cycle ends [s].
+    /// End of the last cycle [s].
     pub fn end(&self) -> f64 {
         self.cycles_begin() + f64::from(self.cycles) * self.period()
     }
 
-    /// Smallest and largest force on the middle sleeper in a cycle [N]. The share of an axle that a rail with mass passes on is a
-    /// result of the run: half of the heaviest axle is assumed.
+    /// Smallest and largest force on the middle sleeper [N]; half of the heaviest axle for a rail with mass.
     pub fn range(&self) -> [f64; 2] {
         let ends = |forces: &mut dyn Iterator<Item = f64>| {
             forces.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)])
@@ -339,7 +326,7 @@ impl CyclicLoad {
         self.cycles
     }
 
-    /// Length of a cycle [s].
+    /// Cycle duration [s].
     pub fn period(&self) -> f64 {
         match &self.waveform {
             Waveform::Wave { frequency, .. } => 1.0 / frequency,
@@ -353,7 +340,6 @@ impl CyclicLoad {
     }
 }
 
-/// Straight between points, constant beyond them.
 fn between(points: &[(f64, f64)], t: f64) -> f64 {
     let k = points.partition_point(|p| p.0 <= t);
     match (k.checked_sub(1).map(|k| points[k]), points.get(k)) {

@@ -8,7 +8,7 @@ fn wave(sine: bool) -> CyclicLoad {
     load(Waveform::Wave { sine, minimum: 5.0, maximum: 65.0, frequency: 10.0 })
 }
 
-/// Largest value of f on [from, to], and where.
+/// Largest value of f and its position.
 fn peak(f: impl Fn(f64) -> f64, from: f64, to: f64) -> [f64; 2] {
     let n = 200_000;
     let at = |i: i32| from + (to - from) * f64::from(i) / f64::from(n);
@@ -22,7 +22,7 @@ fn area(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 }
 
 #[test]
-fn haversine_starts_at_the_minimum_and_peaks_at_half_a_cycle() {
+fn haversine_peaks_at_half_cycle() {
     let f = wave(false);
     assert_eq!(f.on(0, 0.05), 0.0);
     assert!((f.on(0, 0.2) - 2.5).abs() < 1e-12, "half way up the ramp to the minimum");
@@ -32,14 +32,14 @@ fn haversine_starts_at_the_minimum_and_peaks_at_half_a_cycle() {
 }
 
 #[test]
-fn sine_starts_at_the_mean_and_reaches_both_ends() {
+fn sine_starts_at_mean() {
     let f = wave(true);
     assert!((f.on(0, 0.3) - 35.0).abs() < 1e-9);
     assert!((f.on(0, 0.325) - 65.0).abs() < 1e-9);
     assert!((f.on(0, 0.375) - 5.0).abs() < 1e-9);
 }
 
-/// Area of a cycle with half-cosine flanks: minimum · T + range · (rise/2 + hold + fall/2).
+/// Area: minimum · T + range · (rise/2 + hold + fall/2).
 #[test]
 fn ramp_hold_and_unload() {
     let ramp = |fall| Waveform::Ramp { minimum: 2.0, maximum: 10.0, rise: 0.2, hold: 0.3, fall };
@@ -53,7 +53,7 @@ fn ramp_hold_and_unload() {
     assert_eq!(stays.on(0, 10.0), 10.0);
 }
 
-/// A measured force comes to the second sleeper 0.6 m/v later, and is repeated after the last has had it.
+/// The second sleeper is loaded 0.6 m/v later.
 #[test]
 fn measured_forces_run_along() {
     let points = vec![(0.0, 0.0), (0.1, 50.0), (0.2, -10.0), (0.3, 0.0)];
@@ -83,7 +83,7 @@ fn pass(spread: AxleSpread, axles: Vec<[f64; 2]>, speed: f64) -> CyclicLoad {
     }))
 }
 
-/// Pulses A exp(−(vt/ℓ)²): peak A, area A √π ℓ/v, and 0.6/v from sleeper to sleeper.
+/// Pulses A exp(−(vt/ℓ)²): peak A, area A √π ℓ/v, delay 0.6/v.
 #[test]
 fn gaussian_pulses() {
     let f = pass(AxleSpread::Gauss(0.7), vec![[0.0, 40.0], [7.5, 40.0]], 20.0);
@@ -96,8 +96,7 @@ fn gaussian_pulses() {
     }
 }
 
-/// A bogie by Winkler's formula: M-shaped where β times half the wheelbase is above about 1.2. Its area is that of the
-/// axles: 2 P s/v; the peaks are a wheelbase apart.
+/// M-shaped if β times half the wheelbase exceeds about 1.2; area 2 P s/v, peaks a wheelbase apart.
 #[test]
 fn a_bogie_is_m_shaped() {
     let w = Winkler::new(6.4e6, 40e6, 0.6);
@@ -133,7 +132,7 @@ fn an_uneven_rail_swings_the_load() {
         assert!((wheels[0].at - x).abs() < 1e-9);
         assert!((wheels[0].force - 70e3 - 0.5 * 3198.5 * sine).abs() < 1.0, "{wheels:?}");
     }
-    // On the first 1.2 m the wheel comes on; before and after the pass there is none.
+    // Ramp over the first 1.2 m; no wheels before and after the pass.
     f.wheels(0.3 + 0.6 / v, 1, &mut wheels);
     assert!((wheels[0].force / 70e3 - 1.0).abs() < 0.06, "{wheels:?}");
     f.wheels(0.2, 1, &mut wheels);

@@ -1,53 +1,48 @@
-//! Lateral push of a sleeper: a ram with a spring and a dashpot moves sideways at a steady speed; the result is its force against
-//! the way of the sleeper.
+//! Lateral push test of a sleeper by an actuator of constant speed with spring and dashpot.
 //!
-//! Source: single-tie push test, as in Zakeri, Lateral resistance of railway track, 2012. The resistance is the force of the
-//! ram, mean over one row: less the inertia of the sleeper, which at a steady speed is none.
-//!
-//! Limits: a single sleeper, without a rail.
-//!
-//! Theory manual: equation (6.28) of `docs/theory/track.md`.
+//! Single-tie push test, as in Zakeri, Lateral resistance of railway track, 2012. Resistance: mean actuator
+//! force per row; inertia vanishes at constant speed. Single sleeper without rail. Theory manual: eq. (6.28).
 
 use super::row::SleeperRow;
 use super::system::GrainsView;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 
-/// Share of its time at full speed in which the ram of a push accelerates.
+/// Acceleration time over full-speed time.
 const START: f64 = 0.05;
 /// Rows of the curve.
 const ROWS: f64 = 200.0;
-/// Share of critical damping of the ram against the sleeper's mass.
+/// Damping ratio of the actuator.
 const DAMPING: f64 = 0.7;
-/// Largest step of the grains times the frequency of the sleeper on the ram.
+/// Largest Δt ω of sleeper and actuator.
 const LARGEST_STEP: f64 = 0.1;
 
-/// A lateral push.
+/// Lateral push test.
 #[derive(Clone, Copy, Debug)]
 pub struct PushPlan {
     /// Unit vector.
     pub direction: dem::Vec3,
-    /// Speed of the ram [m/s].
+    /// Actuator speed [m/s].
     pub speed: f64,
-    /// How far it goes [m].
+    /// Actuator displacement [m].
     pub displacement: f64,
-    /// Vertical force on the sleeper meanwhile [N].
+    /// Vertical force on the sleeper [N].
     pub load: f64,
     /// Time from the last cycle to the push [s].
     pub rest: f64,
-    /// Height of the ram above the sleeper's centre [m].
+    /// Height above the sleeper centre [m].
     pub height: f64,
-    /// Stiffness of the ram [N/m].
+    /// Actuator stiffness [N/m].
     pub stiffness: f64,
 }
 
 impl PushPlan {
-    /// Time that the push takes with the rest before it [s].
+    /// Duration with the preceding rest [s].
     pub fn duration(&self) -> f64 {
         self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
     }
 
-    /// Way [m] and speed [m/s] of the ram a time after it started [s]: it accelerates evenly to its speed.
+    /// Actuator displacement [m] and speed [m/s] `since` its start [s].
     pub fn ram(&self, since: f64) -> (f64, f64) {
         let start = START * self.displacement / self.speed;
         if since < start {
@@ -58,50 +53,49 @@ impl PushPlan {
         }
     }
 
-    /// Longest step [s] that can follow a ram of `stiffness` [N/m] against a sleeper of `mass` [kg].
+    /// Longest step [s] for `stiffness` [N/m] and sleeper `mass` [kg].
     pub fn longest_step(stiffness: f64, mass: f64) -> f64 {
         LARGEST_STEP * (mass / stiffness).sqrt()
     }
 
-    /// Largest stiffness of a ram against a sleeper of `mass` [kg] that steps of `dt` [s] can follow [N/m]:
-    /// dt √(k/m) is a tenth.
+    /// Largest stiffness [N/m] for steps of `dt` [s] and sleeper `mass` [kg]: dt √(k/m) = 0.1.
     pub fn largest_stiffness(mass: f64, dt: f64) -> f64 {
         mass * (LARGEST_STEP / dt).powi(2)
     }
 }
 
-/// Results of a push.
+/// Results of a push test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PushSummary {
-    /// Force at a way of 2 mm [N]; none when the sleeper did not get there.
+    /// Force at 2 mm [N]; `None` if not reached.
     pub resistance_at_2_mm: Option<f64>,
     /// Largest force [N].
     pub peak: f64,
-    /// Way at the largest force [m].
+    /// Displacement at the largest force [m].
     pub displacement_at_peak: f64,
-    /// Mean force over the last quarter of the curve [N].
+    /// Mean force over the last quarter [N].
     pub residual: f64,
-    /// Weight of the sleeper and vertical load on it [N].
+    /// Sleeper weight plus vertical load [N].
     pub vertical_force: f64,
-    /// Rise of the sleeper at the end [m].
+    /// Final uplift [m].
     pub uplift: f64,
 }
 
-/// State of a push; goes into checkpoints.
+/// State of a push test, part of checkpoints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PushState {
-    /// Time when the rest before the push began, and the vertical load then [s, N].
+    /// Start of rest [s] and load then [N].
     begun: Option<(f64, f64)>,
-    /// Place of the sleeper when the ram started [m].
+    /// Initial position [m].
     origin: Option<dem::Vec3>,
-    /// Windows in the present row, and sums of way, force and rise.
+    /// Windows and sums of the current row.
     count: u32,
     sums: [f64; 3],
-    /// Way [m], force [N], rise [m].
+    /// Displacement [m], force [N], uplift [m].
     rows: Vec<[f64; 3]>,
 }
 
-/// A push of a run.
+/// Running push test.
 pub struct Push<'a> {
     plan: &'a PushPlan,
     mass: f64,
@@ -111,17 +105,17 @@ pub struct Push<'a> {
 }
 
 impl<'a> Push<'a> {
-    /// The push of the sleeper `body`, one of `row`, under gravity along z [m/s²].
+    /// Push of sleeper `body` of `row`, gravity along z [m/s²].
     pub fn new(plan: &'a PushPlan, row: &'a SleeperRow, gravity: f64, body: usize) -> Push<'a> {
         Push { plan, mass: row.mass, weight: -row.mass * gravity, seats: &row.seats, body }
     }
 
-    /// Ends the cycles at time `t` [s], under the load of that moment [N].
+    /// Ends the cycles at `t` [s] with the current load [N].
     pub fn begin(&self, state: &mut PushState, t: f64, load: f64) {
         state.begun.get_or_insert((t, load));
     }
 
-    /// Vertical load on the sleeper [N] and time since the ram started [s] at time `t`; none before the cycles are over.
+    /// Load [N] and actuator time [s]; `None` during the cycles.
     fn at(&self, state: &PushState, t: f64) -> Option<(f64, f64)> {
         let (begun, before) = state.begun?;
         let since = t - begun;
@@ -129,23 +123,23 @@ impl<'a> Push<'a> {
         Some((before + share * (self.plan.load - before), since - self.plan.rest))
     }
 
-    /// Vertical load on the sleeper at time `t` [N]; none before the cycles are over.
+    /// Vertical load at `t` [N]; `None` during the cycles.
     pub fn load(&self, state: &PushState, t: f64) -> Option<f64> {
         self.at(state, t).map(|(load, _)| load)
     }
 
-    /// Force of the ram on the sleeper [N], and how far that has come [m].
+    /// Actuator force [N] and sleeper displacement [m].
     fn ram(&self, state: &PushState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
         let (ram, ram_speed) = self.plan.ram(self.at(state, t)?.1);
         let way = (grains.position(self.body) - state.origin?).dot(&self.plan.direction);
         let speed = grains.velocity(self.body).dot(&self.plan.direction);
         let dashpot = 2.0 * DAMPING * (self.plan.stiffness * self.mass).sqrt();
         let force = self.plan.stiffness * (ram - way) + dashpot * (ram_speed - speed);
-        // A ram does not pull.
+        // No tension.
         Some((force.max(0.0), way))
     }
 
-    /// Adds the forces at time `t` [s]; whether the cycles are over, so that there are any.
+    /// Adds the forces at `t` [s]; returns whether the cycles are over.
     pub fn apply(
         &self,
         state: &PushState,
@@ -168,7 +162,7 @@ impl<'a> Push<'a> {
         true
     }
 
-    /// After a window that ended at time `t` [s]: adds the force to the curve.
+    /// Adds a window to the curve.
     pub fn follow(&self, state: &mut PushState, t: f64, g: GrainsView<'_>) {
         let Some((_, since)) = self.at(state, t) else { return };
         let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
@@ -189,7 +183,7 @@ impl<'a> Push<'a> {
         }
     }
 
-    /// The curve, rows of way [m], force [N] and rise [m], and its results; none before the ram has moved.
+    /// Displacement [m], force [N], uplift [m] per row, and results; `None` before the start.
     pub fn curve<'b>(&self, state: &'b PushState) -> Option<(&'b [[f64; 3]], PushSummary)> {
         (!state.rows.is_empty()).then(|| (&state.rows[..], self.summary(&state.rows)))
     }

@@ -1,93 +1,84 @@
-//! A rail on pads: a beam over the sleepers of the model and beyond, stepped with Newmark's rule.
+//! Rail on pads: a [beam](super::beam) over sleepers inside and outside the model, by Newmark's method.
 //!
-//! The rail is a row of cubic elements (see [`beam`](super::beam)). At each modelled sleeper a pad, a spring and a
-//! dashpot side by side, joins it to the seat, whose height is given from outside; at each sleeper beyond, a pad joins
-//! it to a mass on a spring and a dashpot. Everything is linear: with the step fixed, one factor serves the whole run.
-//!
-//! A step goes from t to t + Δt with average acceleration (Newmark 1959, α = ¼, δ = ½), which conserves the energy
-//! of a linear system to rounding: with M a + C v + K u = f at both ends,
+//! Pads (spring and dashpot) join the rail to prescribed seats of modelled sleepers, outside to masses on
+//! springs and dashpots. Average acceleration (Newmark 1959, α = ¼, δ = ½) conserves energy:
 //!
 //! Δ(½ vᵀMv + ½ uᵀKu) = ½ (f₀ + f₁)ᵀ Δu − ½ (C v₀ + C v₁)ᵀ Δu.
 //!
-//! [`RailEnergy`] splits the right side into the work of wheels and weight, the work of the pads on the seats, and the
-//! dissipation of the dashpots. Grains move by a leapfrog whose work belongs to half steps;
-//! [`RailState::energy_at_half_step`] gives the account at the same instant.
-//!
-//! Limits: vertical motion only; pads pull as well as they push, as clips do; no shear deformation.
-//!
-//! Theory manual: equations (6.8), (6.9), (6.10), (6.11) of `docs/theory/track.md`.
+//! Leapfrog work belongs to half steps, hence [`RailState::energy_at_half_step`]. Vertical motion only; pads
+//! transmit tension. Theory manual: eqs. (6.8), (6.9), (6.10), (6.11).
 
 use super::band::{Band, BandFactor};
 use super::beam::Element;
 use serde::{Deserialize, Serialize};
 
-/// Dimensions, stiffness and mass of a rail and its supports.
+/// Rail and supports.
 #[derive(Clone, Copy, Debug)]
 pub struct RailInput {
-    /// Beam elements between two sleepers, 1 or more.
+    /// Beam elements per bay, at least 1.
     pub elements: usize,
-    /// Distance of the sleepers [m].
+    /// Sleeper spacing [m].
     pub spacing: f64,
     /// Bending stiffness EI [N m²].
     pub bending: f64,
     /// Mass per length [kg/m].
     pub mass: f64,
-    /// Stiffness [N/m] and damping [N s/m] of a pad.
+    /// Pad stiffness [N/m] and damping [N s/m].
     pub pad: [f64; 2],
-    /// Acceleration of gravity, downwards [m/s²].
+    /// Downward gravity [m/s²].
     pub gravity: f64,
-    /// Sleepers of the model.
+    /// Modelled sleepers.
     pub sleepers: usize,
-    /// Sleepers beyond them on each side.
+    /// Sleepers outside the model on each side.
     pub beyond: usize,
-    /// Mass of a sleeper beyond under this rail [kg].
+    /// Mass of an outside sleeper per rail [kg].
     pub sleeper_mass: f64,
-    /// Stiffness [N/m] and damping [N s/m] under it.
+    /// Foundation stiffness [N/m] and damping [N s/m].
     pub foundation: [f64; 2],
 }
 
-/// A wheel: place along the rail from the first modelled sleeper [m], downward force [N].
+/// Wheel on the rail.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wheel {
-    /// Place [m].
+    /// Position from the first modelled sleeper [m].
     pub at: f64,
-    /// Force [N].
+    /// Downward force [N].
     pub force: f64,
 }
 
-/// The rail and its matrices.
+/// Rail matrices.
 #[derive(Clone, Debug)]
 pub struct Rail {
     input: RailInput,
-    /// Unknown of the deflection of each node; its rotation comes next.
+    /// Deflection of each node; its rotation follows.
     dofs: Vec<usize>,
-    /// Unknowns of the rail over each modelled sleeper.
+    /// Over modelled sleepers.
     seats: Vec<usize>,
     mass: Band,
-    /// Dashpots, and those of them that are not in the pads of modelled sleepers.
+    /// All dashpots; `beyond`: without modelled pads.
     damping: Band,
     beyond: Band,
     stiffness: Band,
-    /// Nodal loads of the rail's weight [N].
+    /// Nodal loads [N].
     weight: Vec<f64>,
     factor: BandFactor,
     dt: f64,
 }
 
-/// Energy and work since the rail was laid [J].
+/// Energy and work since placement [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RailEnergy {
-    /// Kinetic energy of rail and sleepers beyond.
+    /// Kinetic, with outside sleepers.
     pub kinetic: f64,
-    /// Energy of bending, pads and the springs under the sleepers beyond.
+    /// Bending, pads and foundation springs.
     pub elastic: f64,
-    /// Work of wheels and of the rail's weight.
+    /// Work of wheels and rail weight.
     pub wheels: f64,
-    /// Work of the pads on the seats of the modelled sleepers.
+    /// Work of pads on modelled sleepers.
     pub on_seats: f64,
-    /// Dissipated in the pads of the modelled sleepers.
+    /// Dissipation of pads on modelled sleepers.
     pub pads: f64,
-    /// Dissipated in the other pads and under the sleepers beyond.
+    /// Dissipation outside the model.
     pub beyond: f64,
 }
 
@@ -109,27 +100,27 @@ impl RailEnergy {
         self.combined(1.0, other, 1.0)
     }
 
-    /// Stored + dissipated − work: zero up to rounding.
+    /// Stored + dissipated − work [J].
     pub fn error(&self) -> f64 {
         self.kinetic + self.elastic + self.pads + self.beyond + self.on_seats - self.wheels
     }
 }
 
-/// Where a rail is.
+/// Motion of a rail.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RailState {
     u: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
-    /// Wheels and weight at the present time [N].
+    /// Wheels and weight [N].
     load: Vec<f64>,
-    /// Rise of the seats since the rail was laid, now and one and two steps ago [m].
+    /// Seat displacements: current, one and two steps ago [m].
     seats: [Vec<f64>; 3],
-    /// Spring and dashpot force of each modelled pad, upwards on the seat [N].
+    /// Per modelled pad, upwards on the seat [N].
     spring: Vec<f64>,
     dashpot: Vec<f64>,
     energy: RailEnergy,
-    /// RailEnergy one step ago.
+    /// Energy one step ago.
     before: RailEnergy,
 }
 
@@ -141,7 +132,6 @@ pub struct RailScratch {
     moved: Vec<f64>,
 }
 
-/// Factor of Newmark's matrix (mean acceleration) for steps of `dt` [s].
 fn factor(mass: &Band, damping: &Band, stiffness: &Band, dt: f64) -> Option<BandFactor> {
     let mut effective = mass.clone();
     effective.add_scaled(0.5 * dt, damping);
@@ -150,8 +140,7 @@ fn factor(mass: &Band, damping: &Band, stiffness: &Band, dt: f64) -> Option<Band
 }
 
 impl Rail {
-    /// The rail with the factor for steps of `dt` [s]; `None` where its matrix is not positive definite, which takes
-    /// input that is not finite or positive.
+    /// Factorises for steps of `dt` [s]; `None` unless positive definite (non-finite or non-positive input).
     pub fn new(input: RailInput, dt: f64) -> Option<Rail> {
         let supports = input.sleepers + 2 * input.beyond;
         let nodes = (supports - 1) * input.elements + 1;
@@ -163,7 +152,7 @@ impl Rail {
             dofs.push(size);
             size += if support_of(node).is_some_and(|s| !modelled.contains(&s)) { 3 } else { 2 };
         }
-        // Furthest apart in an element: the deflection of its first node and the rotation of its second.
+        // First deflection to second rotation.
         let width = 4;
         let mut mass = Band::zeros(size, width);
         let mut beyond = mass.clone();
@@ -201,28 +190,27 @@ impl Rail {
         Some(Rail { input, dofs, seats, mass, damping, beyond, stiffness, weight, factor, dt })
     }
 
-    /// Step [s].
+    /// Time step [s].
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Gives the steps from now on another length [s].
+    /// Changes the time step [s].
     pub fn set_dt(&mut self, dt: f64) {
         if dt != self.dt {
-            // With one step it was positive definite, so it is with any.
+            // Positive definite with one step, so with any.
             if let Some(factor) = factor(&self.mass, &self.damping, &self.stiffness, dt) {
                 (self.factor, self.dt) = (factor, dt);
             }
         }
     }
 
-    /// Where the rail begins and ends, from the first modelled sleeper [m].
+    /// Rail ends from the first modelled sleeper [m].
     pub fn ends(&self) -> [f64; 2] {
         let before = self.input.beyond as f64 * self.input.spacing;
         [-before, before + (self.input.sleepers - 1) as f64 * self.input.spacing]
     }
 
-    /// Adds wheels to nodal loads; those beside the rail carry nothing.
     fn add_wheels(&self, wheels: &[Wheel], load: &mut [f64]) {
         let e = Element {
             length: self.input.spacing / self.input.elements as f64,
@@ -238,7 +226,7 @@ impl Rail {
         }
     }
 
-    /// The rail as it is laid: straight, at rest, without force.
+    /// Straight, at rest, without force.
     pub fn laid(&self) -> RailState {
         let (n, m) = (self.mass.size(), self.seats.len());
         let none = vec![0.0; m];
@@ -255,11 +243,10 @@ impl Rail {
         }
     }
 
-    /// Advances by a step, at whose end the seats are `seats` higher than when the rail was laid [m], the wheels are
-    /// `wheels` and the rail has this share of its weight.
+    /// Advances by a step to seat displacements `seats` [m], `wheels` and fraction `weight` of the rail
+    /// weight.
     ///
-    /// The dashpots of the pads take the velocity that the seats had over the last two steps, continued to the end
-    /// of this one.
+    /// Pad dashpots use the seat velocity extrapolated from two steps.
     pub fn step(
         &self,
         state: &mut RailState,
@@ -279,7 +266,6 @@ impl Rail {
         let [now, last, earlier] = &state.seats;
         let speed = |k: usize| (1.5 * (now[k] - last[k]) - 0.5 * (last[k] - earlier[k])) / dt;
 
-        // Predict with the old acceleration, then solve for the new one.
         moved.clear();
         moved.extend((0..n).map(|i| dt * state.v[i] + 0.25 * dt * dt * state.a[i]));
         for i in 0..n {
@@ -302,7 +288,7 @@ impl Rail {
             moved[i] += more;
         }
 
-        // RailEnergy. `moved` is Δu now.
+        // Energy; `moved` is Δu here.
         state.before = state.energy;
         let mut energy = state.energy;
         energy.wheels += (0..n).map(|i| 0.5 * (state.load[i] + load[i]) * moved[i]).sum::<f64>();
@@ -313,12 +299,11 @@ impl Rail {
             let mean = 0.5 * (dashpot + state.dashpot[k]);
             energy.on_seats += (0.5 * (spring + state.spring[k]) + mean) * lift;
             energy.pads += mean * (moved[d] - lift);
-            // The stiffness matrix holds the pads as if the seats stood still.
+            // The stiffness matrix contains pads on fixed seats.
             springs += 0.5 * stiff * (state.u[d] - now[k]).powi(2);
             squares += 0.5 * stiff * state.u[d].powi(2);
             (state.spring[k], state.dashpot[k]) = (spring, dashpot);
         }
-        // The mean velocity of the step is Δu/Δt.
         energy.beyond += 2.0 / dt * self.beyond.half_square(moved);
         energy.kinetic = self.mass.half_square(&state.v);
         energy.elastic = self.stiffness.half_square(&state.u) - squares + springs;
@@ -326,9 +311,8 @@ impl Rail {
         state.load.copy_from_slice(load);
     }
 
-    /// Forces at rest of the pads of all modelled sleepers [N, downwards on the seat] under wheels, where each of these
-    /// sleepers too has the foundation's spring, and the rail has its weight. For a row of wheel
-    /// places; `None` as in [`Rail::new`].
+    /// Static pad forces [N, downwards on the seat] per wheel position, with rail weight and foundation
+    /// springs under all sleepers. `None` as in [`Rail::new`].
     pub fn static_seats(&self, passes: impl Iterator<Item = Vec<Wheel>>) -> Option<Vec<Vec<f64>>> {
         let [pad, foundation] = [self.input.pad[0], self.input.foundation[0]];
         let series = pad * foundation / (pad + foundation);
@@ -347,29 +331,29 @@ impl Rail {
 }
 
 impl RailState {
-    /// Force of the pad on the seat of modelled sleeper `k`, downwards [N].
+    /// Downward pad force on modelled sleeper `k` [N].
     pub fn force(&self, k: usize) -> f64 {
         -(self.spring[k] + self.dashpot[k])
     }
 
-    /// Deflection of the rail over modelled sleeper `k`, upwards [m].
+    /// Upward rail deflection over modelled sleeper `k` [m].
     pub fn deflection(&self, rail: &Rail, k: usize) -> f64 {
         self.u[rail.seats[k]]
     }
 
-    /// Height of the rail at its nodes [m] and their places along it [m].
+    /// Position along the rail and height of its nodes [m].
     pub fn line<'a>(&'a self, rail: &'a Rail) -> impl Iterator<Item = [f64; 2]> + 'a {
         let [begin, _] = rail.ends();
         let step = rail.input.spacing / rail.input.elements as f64;
         rail.dofs.iter().enumerate().map(move |(i, &d)| [begin + i as f64 * step, self.u[d]])
     }
 
-    /// Account of energy now.
+    /// Current energy.
     pub fn energy(&self) -> &RailEnergy {
         &self.energy
     }
 
-    /// Account of energy in the middle of the last step, where the account of grains is.
+    /// Energy at mid-step, as for grains.
     pub fn energy_at_half_step(&self) -> RailEnergy {
         self.energy.combined(0.5, &self.before, 0.5)
     }

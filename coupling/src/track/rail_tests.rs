@@ -2,7 +2,7 @@ use super::*;
 use crate::track::influence::Winkler;
 use std::f64::consts::PI;
 
-/// A 60 kg rail on pads and a bed, one sleeper modelled amid 40.
+/// 60 kg rail on pads and a bed, one sleeper modelled among 40.
 fn input() -> RailInput {
     RailInput {
         elements: 4,
@@ -18,7 +18,7 @@ fn input() -> RailInput {
     }
 }
 
-/// The rail on discrete sleepers tends to the beam on a continuous foundation as the sleepers move together.
+/// Tends to a continuous foundation with decreasing spacing.
 #[test]
 fn discrete_pads_tend_to_winklers_foundation() {
     let mut errors = Vec::new();
@@ -42,7 +42,7 @@ fn discrete_pads_tend_to_winklers_foundation() {
     assert!(errors[1].abs() < 0.5 * errors[0].abs() && errors[2].abs() < 0.5 * errors[1].abs(), "{errors:?}");
 }
 
-/// Forces of all sleepers add up to the wheel's, wherever it stands; so they do amid an element.
+/// Sleeper forces sum to the wheel load at any position.
 #[test]
 fn sleepers_carry_the_wheel_together() {
     let rail = Rail::new(RailInput { sleepers: 9, beyond: 16, ..input() }, 1e-4).unwrap();
@@ -57,9 +57,9 @@ fn sleepers_carry_the_wheel_together() {
     }
 }
 
-/// A wheel that comes on at once on an undamped, free track: the account of energy balances at every step.
+/// Sudden wheel on an undamped, free track.
 #[test]
-fn energy_balances_while_a_wheel_rolls_over_moving_seats() {
+fn energy_balances_while_wheel_rolls() {
     let rail = Rail::new(RailInput { sleepers: 3, beyond: 6, gravity: 9.81, ..input() }, 5e-5).unwrap();
     let mut state = rail.laid();
     let mut scratch = RailScratch::default();
@@ -77,9 +77,9 @@ fn energy_balances_while_a_wheel_rolls_over_moving_seats() {
     assert!(turnover > 10.0 && state.energy().pads > 1.0, "{turnover} {:?}", state.energy());
 }
 
-/// A sudden force on a still track comes to rest at the static force, and twice that is never passed.
+/// Tends to the static force, never above twice.
 #[test]
-fn a_sudden_wheel_comes_to_rest_at_the_static_force() {
+fn sudden_wheel_tends_to_static_force() {
     let rail = Rail::new(RailInput { beyond: 12, ..input() }, 1e-4).unwrap();
     let wheels = [Wheel { at: 0.0, force: 70e3 }];
     let mut state = rail.laid();
@@ -88,7 +88,7 @@ fn a_sudden_wheel_comes_to_rest_at_the_static_force() {
     let (mass, bed) = (160.0, [40e6, 60e3]);
     let mut peak = 0.0_f64;
     for _ in 0..20_000 {
-        // The sleeper as grains would move it: a leapfrog on its own bed.
+        // Sleeper by leapfrog on its own bed.
         let push = -state.force(0) - bed[0] * seat[0] - bed[1] * seat[1];
         seat[1] += 1e-4 * push / mass;
         seat[0] += 1e-4 * seat[1];
@@ -100,10 +100,10 @@ fn a_sudden_wheel_comes_to_rest_at_the_static_force() {
     assert!(peak > 1.2 * expected && peak < 2.0 * expected, "{peak} {expected}");
 }
 
-/// Free, undamped vibration of a rail without bending on springs alone: ω = √(k/(m s)), and Newmark's rule lengthens
-/// the period by (ωΔt)²/12 (Bathe 1996, section 9.4).
+/// Rigid rail on springs: ω = √(k/(m s)); Newmark lengthens the period by (ωΔt)²/12 (Bathe 1996, section
+/// 9.4).
 #[test]
-fn a_rail_on_springs_swings_at_their_frequency() {
+fn rail_on_springs_matches_frequency() {
     let stiff = RailInput {
         pad: [30e6, 0.0],
         sleeper_mass: 1e-9,
@@ -114,7 +114,7 @@ fn a_rail_on_springs_swings_at_their_frequency() {
         gravity: 9.81,
         ..input()
     };
-    // A stiff rail of 20 bays on 21 pads.
+    // Stiff rail of 20 bays on 21 pads.
     let (mass, k): (f64, f64) = (60.0 * 0.6 * 20.0, 21.0 * 30e6);
     let period = 2.0 * PI * (mass / k).sqrt();
     let dt = period / 40.0;
@@ -137,19 +137,18 @@ fn a_rail_on_springs_swings_at_their_frequency() {
     assert!((found / expected - 1.0).abs() < 2e-4, "{found} {expected}");
 }
 
-/// A long track under nothing but the rail's weight: each sleeper carries m g s.
+/// m g s per sleeper.
 #[test]
-fn sleepers_share_the_weight_of_the_rail() {
+fn sleepers_support_rail_weight() {
     let rail = Rail::new(RailInput { sleepers: 3, beyond: 40, gravity: 9.81, ..input() }, 1e-4).unwrap();
     let seats = &rail.static_seats([Vec::new()].into_iter()).unwrap()[0];
     let expected = 60.0 * 9.81 * 0.6;
     assert!(seats.iter().all(|f| (f / expected - 1.0).abs() < 1e-9), "{seats:?} {expected}");
 }
 
-/// Under a rail too heavy to move, a seat that rises by ½ a t²: the dashpot of its pad has the speed a t of the end of the
-/// step, to rounding, and the force is C a t + k a t²/2.
+/// Immovable rail, seat displacement ½ a t²: force C a t + k a t²/2 to rounding.
 #[test]
-fn dashpots_have_the_speed_of_their_seat_at_the_end_of_a_step() {
+fn dashpots_use_final_seat_velocity() {
     let rail = Rail::new(RailInput { mass: 1e15, pad: [1e6, 40e3], ..input() }, 1e-4).unwrap();
     let mut state = rail.laid();
     let mut scratch = RailScratch::default();
@@ -157,7 +156,7 @@ fn dashpots_have_the_speed_of_their_seat_at_the_end_of_a_step() {
         let t = 1e-4 * f64::from(n);
         rail.step(&mut state, std::iter::once(t * t), &[], 0.0, &mut scratch);
         let expected = 40e3 * 2.0 * t + 1e6 * t * t;
-        // The first two steps do not know the motion before.
+        // The first two steps lack earlier motion.
         assert!(
             n < 3 || (state.force(0) / expected - 1.0).abs() < 1e-9,
             "{n}: {} {expected}",
@@ -166,10 +165,10 @@ fn dashpots_have_the_speed_of_their_seat_at_the_end_of_a_step() {
     }
 }
 
-/// A limp rail on stiff pads under a sudden wheel over a sleeper beyond the model: mass and spring of that sleeper swing by
-/// w = P/k (1 − cos ωt), ω = √(k/m): once down to P/k in a quarter of the period, twice that in half of it.
+/// Limp rail on stiff pads, sudden wheel over an outside sleeper: w = P/k (1 − cos ωt), ω = √(k/m): P/k after
+/// a quarter period, twice that after a half.
 #[test]
-fn a_sleeper_beyond_swings_at_its_own_frequency() {
+fn outside_sleeper_matches_frequency() {
     let limp = RailInput {
         bending: 1e-3,
         mass: 1e-3,

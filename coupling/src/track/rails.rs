@@ -1,21 +1,19 @@
-//! Rails over sleepers that move: one [rail](super::rail) on each seat.
+//! [Rails](super::rail) over moving sleepers, one per seat.
 //!
-//! Sleepers move by the leapfrog of the grains, rails by Newmark's rule with the same step. At the start of a step the
-//! sleepers are known where they are; the rails are brought to that time with the seats there, and their pads push on
-//! the sleepers during the step. Both sides of a pad account for the same work (see [`rail`](super::rail)).
+//! Rails (Newmark) are advanced to the current sleepers (leapfrog) at the start of each DEM step; pads then
+//! act during it.
 
 use super::load::{CyclicLoad, Waveform};
 use super::rail::{Rail, RailEnergy, RailInput, RailScratch, RailState, Wheel};
 use serde::{Deserialize, Serialize};
 
-/// Places of the train for which its static effect is computed, per sleeper spacing.
+/// Static wheel positions per bay.
 const PLACES: f64 = 20.0;
 
-/// One rail on each seat.
+/// One rail per seat.
 pub struct Rails {
     rail: Rail,
     spacing: f64,
-    /// Rails, as many as a sleeper has seats.
     count: usize,
     load: CyclicLoad,
     scratch: RailScratch,
@@ -23,30 +21,30 @@ pub struct Rails {
     seats: Vec<f64>,
 }
 
-/// Rails in place, with their motion.
+/// State of the placed rails.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LaidRails {
-    /// Steps of the grains when they were here.
+    /// Current DEM step.
     step: u64,
-    /// Heights of the seats when the rails were laid [m]. Shape `[sleepers × rails]`.
+    /// Seat heights at placement [m]. Shape `[sleepers × rails]`.
     heights: Vec<f64>,
     rails: Vec<RailState>,
 }
 
 impl Rails {
-    /// `count` rails for steps of `dt` [s]; `None` where the input makes no rail.
+    /// `count` rails for steps of `dt` [s]; `None` for invalid input.
     pub fn new(input: RailInput, count: usize, load: CyclicLoad, dt: f64) -> Option<Rails> {
         let (spacing, rail) = (input.spacing, Rail::new(input, dt)?);
         let (scratch, wheels, seats) = Default::default();
         Some(Rails { rail, spacing, count, load, scratch, wheels, seats })
     }
 
-    /// Distance of the sleepers [m].
+    /// Sleeper spacing [m].
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
 
-    /// Lays the rails, straight and without force, on the sleepers as they lie, once their time of rest is over.
+    /// Places straight, force-free rails on the sleepers after the rest.
     pub fn lay(&self, time: f64, step: u64, heights: impl Iterator<Item = f64>) -> Option<LaidRails> {
         if time < self.load.rest {
             return None;
@@ -55,7 +53,7 @@ impl Rails {
         Some(LaidRails { step, heights: heights.collect(), rails })
     }
 
-    /// Advances the rails to the time of the grains, a step of `dt` [s] later; does nothing where they are there already.
+    /// Advances the rails to the grains' time.
     pub fn advance(
         &mut self,
         laid: &mut LaidRails,
@@ -79,8 +77,8 @@ impl Rails {
         }
     }
 
-    /// Largest force of each sleeper's pads [N] while the wheels stand still at one place after the other, on a bed of
-    /// the rail's `foundation` everywhere; with the rail's weight. None without wheels.
+    /// Largest static pad force per sleeper [N] for standing wheels, with rail weight and springs
+    /// `foundation`; `None` without wheels.
     pub fn static_peaks(&self) -> Option<Vec<f64>> {
         let Waveform::Pass(pass) = &self.load.waveform else { return None };
         let period = self.load.period();
@@ -99,7 +97,7 @@ impl Rails {
 }
 
 impl LaidRails {
-    /// Steps of the grains when the rails were here.
+    /// DEM step of the rails.
     pub fn step(&self) -> u64 {
         self.step
     }
@@ -109,12 +107,12 @@ impl LaidRails {
         self.rails[r].force(k)
     }
 
-    /// Deflection over sleeper `k`, upwards, mean of all rails [m].
+    /// Upward deflection over sleeper `k`, mean of all rails [m].
     pub fn deflection(&self, rails: &Rails, k: usize) -> f64 {
         self.rails.iter().map(|s| s.deflection(&rails.rail, k)).sum::<f64>() / self.rails.len() as f64
     }
 
-    /// Account of energy of all rails at the instant of the grains' account.
+    /// Energy of all rails at the grains' half step.
     pub fn energy(&self) -> RailEnergy {
         self.rails.iter().fold(RailEnergy::default(), |sum, s| sum.plus(&s.energy_at_half_step()))
     }
@@ -124,13 +122,13 @@ impl LaidRails {
         self.rails.len()
     }
 
-    /// Mean height of rail `r` when it was laid [m].
+    /// Mean initial height of rail `r` [m].
     pub fn mean_height(&self, r: usize) -> f64 {
         let own = self.heights.iter().skip(r).step_by(self.count());
         own.sum::<f64>() / (self.heights.len() / self.count()) as f64
     }
 
-    /// Nodes of rail `r`: distance along the track from the first sleeper, deflection upwards [m].
+    /// Nodes of rail `r`: distance from the first sleeper, upward deflection [m].
     pub fn line<'a>(&'a self, rails: &'a Rails, r: usize) -> impl Iterator<Item = [f64; 2]> + 'a {
         self.rails[r].line(&rails.rail)
     }

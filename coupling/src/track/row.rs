@@ -1,20 +1,20 @@
-//! A row of equal sleepers.
+//! Row of equal sleepers.
 
-/// Equal sleepers in a row.
+/// Row of equal sleepers.
 #[derive(Clone, Debug)]
 pub struct SleeperRow {
-    /// Whether they consist of elements of the solid, and are no bodies among the grains.
+    /// Elements of the solid instead of rigid bodies.
     pub meshed: bool,
     /// Mass of a sleeper [kg].
     pub mass: f64,
-    /// Motions that are held: along x, y, z, about x, y, z.
+    /// Constrained motions: along x, y, z, about x, y, z.
     pub held: [bool; 6],
     /// Half edge lengths [m].
     pub half: [f64; 3],
-    /// Direction of the track: 0 or 1.
+    /// Track direction: 0 or 1.
     pub axis: usize,
-    /// Places of the centres in x and y [m], along the track.
+    /// Centres in x and y along the track [m].
     pub centres: Vec<[f64; 2]>,
-    /// Points of the top that share the load, in the sleeper's frame [m].
+    /// Rail seats in the sleeper frame [m].
     pub seats: Vec<[f64; 3]>,
 }

@@ -1,56 +1,53 @@
-//! Settlement laws fitted to the settlement per load cycle.
+//! Settlement laws fitted to the settlement per load cycle, by least squares. Theory manual: eqs. (6.17) to
+//! (6.23).
 //!
-//! Source: Alva-Hurtado & Selig, 10th ICSMFE, Stockholm 1981 (1 + C log10 N); ORE D71, 1970 (the same with C = 0.2);
-//! Hettler 1984 (1 + C ln N, amplitude r F^1.6); Selig & Waters 1994 (a N^b); Indraratna et al. 1997–2010 (quadratic in
-//! log10 N); Shenton 1985 (N^0.2 and a linear term); Sato 1995 (γ (1 − exp(−α N)) + β N); after the review of Dahlberg,
-//! Proc. IMechE F 215, 2001. All are least squares in the settlement itself.
+//! Alva-Hurtado & Selig, 10th ICSMFE, Stockholm 1981; ORE D71, 1970; Hettler 1984; Selig & Waters 1994;
+//! Indraratna et al. 1997–2010; Shenton 1985; Sato 1995; after the review of Dahlberg, Proc. IMechE F 215,
+//! 2001.
 //!
-//! Limits: the laws are of whole tests; cycles before [`FIRST`], in which the sleeper finds its seat, are left out.
-//! Alva-Hurtado & Selig and Hettler are one curve written in two ways. Errors of neighbouring cycles are alike, so no
-//! confidence interval of a parameter is given.
-//!
-//! Theory manual: equations (6.17) to (6.23) of `docs/theory/track.md`.
+//! Residuals of neighbouring cycles are correlated, hence no confidence intervals.
 
 use serde::Serialize;
 
-/// First cycle that fits use.
+/// First cycle of fits; earlier ones seat the sleeper.
 pub const FIRST: f64 = 10.0;
-/// Fewest cycles of a fit.
+/// Smallest number of cycles of a fit.
 pub const FEWEST: usize = 10;
 
-/// A law with its parameters.
+/// Fitted law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// Name of the law.
+    /// Name.
     pub law: &'static str,
-    /// s(N), with the names of the parameters.
+    /// s(N).
     pub form: &'static str,
     /// Names and values of the parameters; settlements [m].
     pub parameters: Vec<(&'static str, f64)>,
-    /// 1 − (sum of squared residuals)/(sum of squares about the mean).
+    /// Coefficient of determination.
     pub r2: f64,
     /// Root-mean-square residual [m].
     pub rms_error: f64,
-    /// First and last cycle used.
+    /// First and last cycle.
     pub range: [f64; 2],
-    /// Number of cycles used.
+    /// Number of cycles.
     pub points: usize,
 }
 
 impl Fit {
-    /// A parameter by its name.
+    /// Parameter by name.
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.parameters.iter().find(|p| p.0 == name).map(|p| p.1)
     }
 }
 
-/// All laws, fitted to settlements [m] after cycles N, from cycle [`FIRST`] on; `load` is the largest load [N]. Empty when
-/// fewer than [`FEWEST`] cycles are there, or when the settlement does not change.
+/// Fits all laws to settlements [m] from [`FIRST`] on; `load` is the largest load [N].
+///
+/// Empty with fewer than [`FEWEST`] cycles or constant settlement.
 pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     let used: Vec<[f64; 2]> = cycles.iter().copied().filter(|c| c[0] >= FIRST).collect();
     let mean = used.iter().map(|c| c[1]).sum::<f64>() / used.len().max(1) as f64;
     let spread = used.iter().map(|c| (c[1] - mean).powi(2)).sum::<f64>();
-    // Below rounding there is nothing to fit.
+    // Rounding only.
     if used.len() < FEWEST || spread <= 1e-24 * used.len() as f64 * mean * mean || !spread.is_finite() {
         return Vec::new();
     }
@@ -60,7 +57,7 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     if let Some((c, rest)) = data.linear(&[one, log]) {
         let form = "s1 (1 + C log10 N)";
         out.push(data.fit("Alva-Hurtado & Selig", form, vec![("s1", c[0]), ("C", c[1] / c[0])], rest));
-        // r in millimetres per kN^1.6, as the author has it.
+        // Hettler's unit: mm per kN^1.6.
         let r = 1e3 * c[0] / libm::pow(1e-3 * load, 1.6);
         let parameters = vec![("r [mm/kN^1.6]", r), ("C", c[1] / c[0] / std::f64::consts::LN_10)];
         out.push(data.fit("Hettler", "r F^1.6 (1 + C ln N)", parameters, rest));
@@ -79,7 +76,7 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     if let Some((c, rest)) = data.linear(&[&|n| libm::pow(n, 0.2), &|n| n]) {
         out.push(data.fit("Shenton", "a N^0.2 + b N", vec![("a", c[0]), ("b", c[1])], rest));
     }
-    // alpha in a range in which the exponential is neither straight nor over.
+    // Range in which the exponential is neither linear nor constant.
     let range = [libm::log(0.05 / used[used.len() - 1][0]), libm::log(5.0 / used[0][0])];
     let sato = |ln: f64| data.linear(&[&|n| -libm::expm1(-libm::exp(ln) * n), &|n| n]);
     if let Some((ln, c, rest)) = search(range[0], range[1], sato) {
@@ -90,16 +87,16 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     out
 }
 
-/// Straight line of s against ln N through the last cycles.
+/// Regression of s on ln N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope {
     /// ds/d(ln N) [m].
     pub slope: f64,
-    /// Its standard error, were the residuals independent [m].
+    /// Standard error [m].
     pub error: f64,
 }
 
-/// The slope of the cycles from `from` on; none when they are fewer than three.
+/// Slope of the cycles from `from` on; `None` for fewer than three.
 pub fn slope(cycles: &[[f64; 2]], from: f64) -> Option<Slope> {
     let used: Vec<[f64; 2]> =
         cycles.iter().filter(|c| c[0] >= from).map(|c| [libm::log(c[0]), c[1]]).collect();
@@ -116,7 +113,6 @@ pub fn slope(cycles: &[[f64; 2]], from: f64) -> Option<Slope> {
     (fit.slope.is_finite() && fit.error.is_finite()).then_some(fit)
 }
 
-/// A function of N, one term of a law.
 type Term<'a> = &'a dyn Fn(f64) -> f64;
 
 struct Data<'a> {
@@ -126,13 +122,12 @@ struct Data<'a> {
 }
 
 impl Data<'_> {
-    /// Coefficients of the sum of terms that is nearest in the mean square, and the sum of squares left [m²]; none when the
-    /// terms are linearly dependent.
+    /// Least-squares coefficients and sum of squared residuals [m²]; `None` for dependent terms.
     fn linear(&self, terms: &[Term<'_>]) -> Option<(Vec<f64>, f64)> {
         let rows = self.used.len();
         let mut matrix = nalgebra::DMatrix::from_fn(rows, terms.len(), |i, k| terms[k](self.used[i][0]));
         let values = nalgebra::DVector::from_iterator(rows, self.used.iter().map(|c| c[1]));
-        // Columns of one size, so that the rank is judged by their directions.
+        // Normalised columns, for the rank.
         let sizes: Vec<f64> = matrix.column_iter().map(|c| c.norm()).collect();
         if sizes.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
             return None;
@@ -171,11 +166,11 @@ impl Data<'_> {
     }
 }
 
-/// Points of the grid of [`search`].
+/// Grid points of [`search`].
 const GRID: usize = 120;
 
-/// The number between two bounds whose linear fit leaves least, with that fit: the best of a grid, narrowed down by golden
-/// sections. None when the best lies at a bound: the data do not determine it.
+/// Minimises the residual of a linear fit over one parameter: grid, then golden sections. `None` at a bound
+/// (undetermined).
 fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> Option<(f64, Vec<f64>, f64)> {
     let at = |k: usize| low + (high - low) * k as f64 / GRID as f64;
     let rest = |x: f64| fit(x).map_or(f64::INFINITY, |f| f.1);

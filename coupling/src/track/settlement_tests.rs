@@ -1,6 +1,6 @@
 use super::*;
 
-/// A curve over cycles 1 to 400 with noise of 1 % of its last value, of a linear congruence (Knuth).
+/// Cycles 1 to 400 with 1 % noise, linear congruential generator (Knuth).
 fn noisy(law: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     let mut seed = 12345_u64;
     let mut random = || {
@@ -26,17 +26,17 @@ fn near(fit: &Fit, name: &str, expected: f64, share: f64) {
 }
 
 #[test]
-fn parameters_of_curves_with_noise_are_found_again() {
+fn parameters_of_curves_are_recovered() {
     let curve = noisy(|n| 0.005 * (1.0 + 0.3 * n.log10()));
     let fit = fitted(&curve, "Alva-Hurtado & Selig");
     near(&fit, "s1", 0.005, 0.01);
     near(&fit, "C", 0.3, 0.03);
-    // Uniform noise of this width has the deviation 0.02 s / sqrt 12.
+    // Standard deviation of uniform noise: 0.02 s / sqrt 12.
     let deviation = 0.02 * curve[399][1] / 12.0_f64.sqrt();
     assert!((fit.rms_error / deviation - 1.0).abs() < 0.1, "{} against {deviation}", fit.rms_error);
     assert!(fit.r2 > 0.98 && fit.r2 < 0.999, "{}", fit.r2);
     assert_eq!((fit.range, fit.points), ([10.0, 400.0], 391));
-    // The same curve in natural logarithms; r F^1.6 = 5 mm with F in kN.
+    // The same in natural logarithms; r F^1.6 = 5 mm with F in kN.
     let hettler = fitted(&curve, "Hettler");
     near(&hettler, "C", 0.3 / std::f64::consts::LN_10, 0.03);
     near(&hettler, "r [mm/kN^1.6]", 5.0 / 40.0_f64.powf(1.6), 0.01);
@@ -64,16 +64,16 @@ fn parameters_of_curves_with_noise_are_found_again() {
 }
 
 #[test]
-fn the_law_that_a_curve_obeys_leaves_least() {
+fn true_law_has_smallest_residual() {
     let curve = noisy(|n| 0.004 * n.powf(0.35));
     let best = fits(&curve, 1.0).into_iter().min_by(|a, b| a.rms_error.total_cmp(&b.rms_error)).unwrap();
-    // Three free parameters may follow the noise a little closer than two.
+    // Three parameters may follow noise slightly better than two.
     assert!(best.rms_error > 0.97 * fitted(&curve, "power").rms_error, "{best:?}");
     assert!(fitted(&curve, "ORE D71").rms_error > 5.0 * fitted(&curve, "power").rms_error);
 }
 
 #[test]
-fn too_little_to_fit_gives_no_fit_instead_of_invalid_numbers() {
+fn insufficient_data_gives_no_fit() {
     let curve = |n: u32, s: f64| (1..=n).map(|k| [f64::from(k), s]).collect::<Vec<_>>();
     assert!(fits(&[], 1.0).is_empty());
     assert!(fits(&curve(18, 1.0), 1.0).is_empty(), "nine cycles from the tenth on");
@@ -90,7 +90,7 @@ fn too_little_to_fit_gives_no_fit_instead_of_invalid_numbers() {
 }
 
 #[test]
-fn the_slope_is_that_of_the_logarithm_from_a_cycle_on() {
+fn slope_matches_logarithm() {
     let curve: Vec<[f64; 2]> =
         (1..=100).map(f64::from).map(|n| [n, if n < 20.0 { 7.0 } else { 2.0 + 0.5 * n.ln() }]).collect();
     let found = slope(&curve, 20.0).unwrap();

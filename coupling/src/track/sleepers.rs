@@ -1,4 +1,4 @@
-//! Sleepers of a running system and their loads: forces on their seats, rails on pads, a push when the cycles are over.
+//! Sleepers of a running system with their loads, rails and push test.
 
 use super::extremes::{Extremes, MomentumCheck, Observation, TrackRecord};
 use super::load::{CyclicLoad, Waveform};
@@ -11,62 +11,60 @@ use crate::ledger::{Spent, Stored};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 
-/// What a track consists of.
+/// Parts of a track.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TrackInput<'a> {
-    /// The sleepers.
+    /// Sleepers.
     pub sleepers: Option<&'a SleeperRow>,
-    /// The load on them.
+    /// Load.
     pub load: Option<&'a CyclicLoad>,
-    /// The rail on each row of seats, where it is a beam.
+    /// Rail with mass on each row of seats.
     pub rail: Option<RailInput>,
-    /// Lateral push when the cycles are over.
+    /// Lateral push after the cycles.
     pub push: Option<&'a PushPlan>,
 }
 
-/// The sleepers of a run, the last bodies of the grains or bodies of the solid, and their loads.
+/// Track of a run; rigid sleepers are the last bodies.
 pub struct Track<'a> {
     row: Option<&'a SleeperRow>,
     load: Option<&'a CyclicLoad>,
-    /// Body of the first sleeper, of rigid ones.
+    /// First rigid sleeper.
     first: usize,
     rails: Option<Rails>,
     push: Option<Push<'a>>,
     state: TrackState,
-    /// The rails as they were when the present window began, for a window that is repeated.
+    /// At the start of a (possibly repeated) window.
     before: Option<LaidRails>,
     momentum: MomentumCheck,
 }
 
-/// State of a track; goes into checkpoints.
+/// State of a track, part of checkpoints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TrackState {
-    /// The rails, once they are laid.
+    /// Placed rails.
     laid: Option<LaidRails>,
     extremes: Vec<Extremes>,
     push: PushState,
 }
 
-/// Place and load of a sleeper at one moment.
+/// Position and load of a sleeper.
 #[derive(Clone, Copy, Debug)]
 pub struct SleeperSample {
     /// Centre [m].
     pub place: [f64; 3],
-    /// Angle between its axis and the vertical [rad].
+    /// Tilt from the vertical [rad].
     pub tilt: f64,
-    /// Height that settlements refer to [m]: of the centre; of a meshed sleeper of the seats, less their distance
-    /// from the centre.
+    /// Reference height of settlement [m]: centre, or seats (meshed) less their distance from it.
     pub height: f64,
     /// Downward load [N].
     pub load: f64,
-    /// More of a meshed sleeper.
+    /// Meshed sleeper.
     pub meshed: Option<MeshedSleeper>,
 }
 
-/// A seat where it is: number of sleeper and of seat, body, point [m].
+/// Sleeper, seat, body, point [m].
 type Seat = (usize, usize, usize, dem::Vec3);
 
-/// Seats of rigid sleepers, `first` being the body of the first one.
 fn seats<'a>(
     row: Option<&'a SleeperRow>,
     first: usize,
@@ -82,7 +80,7 @@ fn seats<'a>(
 }
 
 impl<'a> Track<'a> {
-    /// The track of a system; one without sleepers where there are none.
+    /// Track of a system.
     pub fn new(input: TrackInput<'a>, view: Option<GrainsView<'_>>) -> Track<'a> {
         let TrackInput { sleepers: row, load, rail, push } = input;
         let count = row.filter(|r| !r.meshed).map_or(0, |r| r.centres.len());
@@ -107,17 +105,17 @@ impl<'a> Track<'a> {
         track
     }
 
-    /// The state, for a checkpoint.
+    /// State, for a checkpoint.
     pub fn state(&self) -> &TrackState {
         &self.state
     }
 
-    /// The same track continued from a state of a checkpoint.
+    /// Continues from a checkpoint state.
     pub fn resume(self, state: TrackState) -> Track<'a> {
         Track { state, ..self }
     }
 
-    /// The cycles are over at time `t` [s]: a push, if there is one, begins.
+    /// Ends the cycles at `t` [s]; a push test may start.
     pub fn end_cycles(&mut self, t: f64) {
         let load = self.load.map_or(0.0, |l| l.on(self.count() / 2, t));
         if let Some(push) = &self.push {
@@ -125,12 +123,12 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Curve and results of a push, if there was one (see [`Push::curve`]).
+    /// Curve and results of a push test (see [`Push::curve`]).
     pub fn push_curve(&self) -> Option<(&[[f64; 3]], PushSummary)> {
         self.push.as_ref()?.curve(&self.state.push)
     }
 
-    /// Begins a window of steps.
+    /// Begins a window.
     pub fn begin_window(&mut self) {
         self.momentum.reset();
         if self.rails.is_some() {
@@ -138,7 +136,6 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Advances the rails to the time of the grains.
     fn advance_rails(&mut self, model: &dem::Model, state: &dem::State) {
         let Some(rails) = &mut self.rails else { return };
         let laid = &mut self.state.laid;
@@ -152,7 +149,7 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Adds the forces that act on the sleepers at time `t` [s].
+    /// Adds the sleeper forces at `t` [s].
     pub fn apply(
         &mut self,
         t: f64,
@@ -163,7 +160,7 @@ impl<'a> Track<'a> {
         if self.push.as_ref().is_some_and(|p| p.apply(&self.state.push, t, model, state, out)) {
             return;
         }
-        // The load of meshed sleepers acts on the solid.
+        // Loads of meshed sleepers act on the solid.
         let (Some(load), Some(row)) = (self.load, self.row.filter(|r| !r.meshed)) else { return };
         self.advance_rails(model, state);
         let speeds = (0..row.centres.len()).map(|k| state.velocity(self.first + k).z);
@@ -180,7 +177,7 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Whether no contact has carried sleeper `k` in the window that is over.
+    /// Whether sleeper `k` had no contact in the last window.
     fn is_lifted(&self, k: usize, view: GrainsView<'_>) -> bool {
         let Some(row) = self.row.filter(|r| !r.held[2]) else { return false };
         let weight = row.mass * view.model.gravity().z;
@@ -221,7 +218,6 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Downward force on a sleeper.
     fn force(&self, k: usize, t: f64) -> f64 {
         if let Some(load) = self.push.as_ref().and_then(|p| p.load(&self.state.push, t)) {
             return load;
@@ -243,12 +239,12 @@ impl<'a> Track<'a> {
         self.rails.is_some()
     }
 
-    /// Body of sleeper `k`, of rigid ones.
+    /// Body of rigid sleeper `k`.
     pub fn body(&self, k: usize) -> usize {
         self.first + k
     }
 
-    /// Sleeper `k` with its load at time `t` [s].
+    /// Sleeper `k` with its load at `t` [s].
     pub fn sleeper<S: TrackSystem>(&self, k: usize, t: f64, system: &S) -> Option<SleeperSample> {
         let load = self.force(k, t);
         if let Some(meshed) = system.meshed_sleeper(k) {
@@ -267,7 +263,7 @@ impl<'a> Track<'a> {
         self.row.is_some_and(|r| r.meshed)
     }
 
-    /// Deflection of the rail over sleeper `k` since it was laid, upwards, mean of all rails [m].
+    /// Upward rail deflection over sleeper `k`, mean of all rails [m].
     pub fn rail_deflection(&self, k: usize) -> f64 {
         self.state
             .laid
@@ -276,12 +272,12 @@ impl<'a> Track<'a> {
             .map_or(0.0, |(laid, rails)| laid.deflection(rails, k))
     }
 
-    /// The sleeper whose settlement is followed: the one in the middle.
+    /// Observed sleeper: the middle one.
     pub fn observed(&self) -> Option<usize> {
         (self.count() > 0).then(|| self.count() / 2)
     }
 
-    /// Adds what rails and pads store and the work that passes through them [J].
+    /// Adds energy and work of rails and pads [J].
     pub fn account(&self, stored: &mut Stored, spent: &mut Spent) {
         if let Some(laid) = &self.state.laid {
             let energy = laid.energy();
@@ -293,12 +289,12 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// The rails once they are laid, with their state and the sleepers below.
+    /// Placed rails with state and sleepers.
     pub fn laid_rails(&self) -> Option<(&Rails, &LaidRails, &SleeperRow)> {
         Some((self.rails.as_ref()?, self.state.laid.as_ref()?, self.row?))
     }
 
-    /// Extremes of the run; none before the first cycle.
+    /// Extremes of the run; `None` before the first cycle.
     pub fn record(&self) -> Option<TrackRecord> {
         let extremes = &self.state.extremes;
         let load = self.load.filter(|_| !extremes.is_empty())?;

@@ -1,21 +1,20 @@
-//! Trains: axles of cars, bogies, the forces of axles on uneven rails.
+//! Axle layouts of trains and forces of uneven rails.
 
 use std::f64::consts::TAU;
 
-/// Axle layout of a car with two bogies of two axles.
+/// Car with two bogies of two axles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarLayout {
-    /// Distance of the axles of a bogie [m].
+    /// Axle spacing of a bogie [m].
     pub wheelbase: f64,
-    /// Distance of the bogies' centres [m].
+    /// Bogie spacing [m].
     pub bogie_spacing: f64,
-    /// Length over couplers, which is the distance from car to car [m].
+    /// Length over couplers [m].
     pub car_length: f64,
 }
 
 impl CarLayout {
-    /// Distances of all axles of `cars` cars behind the first one [m], ascending where the bogies of a car and its
-    /// neighbours do not overlap.
+    /// Axle distances of `cars` cars behind the first axle [m], ascending unless bogies overlap.
     pub fn axles(&self, cars: u32) -> Vec<f64> {
         let (base, bogies) = (self.wheelbase, self.bogie_spacing);
         let car = [0.0, base, bogies, bogies + base];
@@ -23,8 +22,8 @@ impl CarLayout {
     }
 }
 
-/// Force amplitude [N] and length [m] of a wave of the rail's surface of the given `length` and `amplitude` [m] under an unsprung
-/// mass [kg] at a speed [m/s]: M a w² with w = 2πv/L (see [`load`](super::load)).
+/// Force amplitude [N], M a w² with w = 2πv/L, and `length` [m] of a rail wave under an unsprung `mass` [kg].
+/// `amplitude` [m], `speed` [m/s].
 pub fn excitation(mass: f64, amplitude: f64, length: f64, speed: f64) -> [f64; 2] {
     let turn = TAU * speed / length;
     [mass * amplitude * turn * turn, length]
@@ -43,7 +42,7 @@ mod tests {
 
     /// 750 kg on waves of 3.5 mm and 10 m at 200 km/h: 750 × 0.0035 × (2π × 55.56/10)² = 3198.5 N.
     #[test]
-    fn an_uneven_rail_excites_the_unsprung_mass() {
+    fn uneven_rail_excites_unsprung_mass() {
         let [force, length] = excitation(750.0, 3.5e-3, 10.0, 200.0 / 3.6);
         assert!((force - 3198.5).abs() < 1.0 && length == 10.0, "{force}");
     }

@@ -1,17 +1,17 @@
-//! (v)b and c: n × n point forces as a pressure; a bed of spheres in a box on block B.
+//! Point forces as a pressure; bed of spheres in a box on block B.
 
 use crate::support::*;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_fem as fem;
 
-/// E (1 − ν)/((1 + ν)(1 − 2ν)) of block B [Pa].
+/// Oedometric modulus E (1 − ν)/((1 + ν)(1 − 2ν)) of block B [Pa].
 const OEDOMETRIC: f64 = 20e6 * 0.7 / (1.3 * 0.4);
 
-/// (v)b: rollers on the sides, m = 8, 1000 N in n × n equal forces: the work mean of the settlement over p H/E_oed is
-/// 1.0969, 1.0212, 1.0061, 1.0020, 1.0002 for n = 8, 10, 16, 20, 40. Pass 0.1 %.
+/// Rollers on the sides, m = 8, 1000 N in n × n forces: work mean of the settlement over p H/E_oed 1.0969,
+/// 1.0212, 1.0061, 1.0020, 1.0002 for n = 8, 10, 16, 20, 40. Tolerance 0.1 %.
 #[test]
-fn equal_point_forces_tend_to_a_pressure() {
+fn point_forces_converge_to_pressure() {
     let solid = block_b(8, Held::BaseAndSides, fem::Rayleigh::default());
     let surface = top(&solid);
     let mut solver = fem::statics::StaticSolver::new(&solid).unwrap();
@@ -30,7 +30,6 @@ fn equal_point_forces_tend_to_a_pressure() {
     }
 }
 
-/// A rectangle of two triangles.
 fn wall(corner: [f64; 3], along: [f64; 3], up: f64) -> dem::TriangleSurface {
     let (a, d) = (Vec3::from(corner), Vec3::from(along));
     let h = Vec3::new(0.0, 0.0, up);
@@ -42,9 +41,8 @@ fn wall(corner: [f64; 3], along: [f64; 3], up: f64) -> dem::TriangleSurface {
     }
 }
 
-/// (v)c: `counts` equal spheres in a box as wide as block B, at rest: the contact forces on the block are the weight of the
-/// bed less what the walls carry by friction, within 1e-4 of the weight; the mean settlement of the top is Σ F H/(A E_oed)
-/// within 1e-6.
+/// Contact forces equal bed weight minus wall friction within 1e-4 of the weight; mean settlement Σ F H/(A
+/// E_oed) within 1e-6.
 fn bed_at_rest(counts: [usize; 3], time: f64) {
     let rayleigh = fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 };
     let solid = block_b(4, Held::BaseAndSides, rayleigh);
@@ -107,12 +105,12 @@ fn bed_at_rest(counts: [usize; 3], time: f64) {
 
 #[test]
 #[ignore = "2,000 spheres come to rest, about 20 s"]
-fn a_bed_in_a_box_rests_with_its_weight_on_block_and_walls() {
+fn a_bed_in_a_box_rests() {
     bed_at_rest([20, 20, 5], 6.0);
 }
 
-/// The same with 6 × 6 × 3 spheres.
+/// 6 × 6 × 3 spheres.
 #[test]
-fn a_small_bed_rests_with_its_weight_on_block_and_walls() {
+fn small_bed_in_a_box_rests() {
     bed_at_rest([6, 6, 3], 4.0);
 }

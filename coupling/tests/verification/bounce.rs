@@ -1,4 +1,4 @@
-//! (i)c: a sphere dropped 0.05 m on a block that is nearly rigid, contact after Hertz.
+//! Sphere dropped 0.05 m on a nearly rigid block, Hertz contact.
 
 use crate::support::*;
 use trackbed_dem as dem;
@@ -8,8 +8,7 @@ use trackbed_fem as fem;
 
 const RADIUS: f64 = 0.05;
 const DENSITY: f64 = 2650.0;
-/// Modulus of the contact: it gives way 200 times as much as the block under a corner of its elements, so that the block
-/// (20 GPa) is nearly rigid for it.
+/// Contact deflection is 200 times the block's (20 GPa) under an element corner.
 const YOUNG: f64 = 1e9;
 const POISSON: f64 = 0.25;
 const STEP: f64 = 4e-6;
@@ -26,7 +25,7 @@ fn sphere(restitution: f64, planes: Vec<dem::Plane>, surface: Option<usize>) -> 
     dem::ModelInput {
         materials: vec![stone],
         shapes: vec![dem::Shape::Sphere { radius: RADIUS }],
-        // After the fall of 0.05 m: at the surface with the speed of it.
+        // At the surface with the speed of the fall.
         bodies: vec![dem::BodyInput {
             position: Vec3::new(0.37, 0.61, RADIUS),
             velocity: Vec3::new(0.0, 0.0, -speed()),
@@ -50,7 +49,6 @@ struct Bounce {
     time: f64,
 }
 
-/// Follows the force on the ground until the contact is over.
 fn follow(mut step: impl FnMut() -> (f64, f64)) -> Bounce {
     let (mut peak, mut steps, mut last) = (0.0_f64, 0, 0.0);
     for k in 0..2000 {
@@ -85,16 +83,16 @@ fn on_a_rigid_plane(restitution: f64) -> Bounce {
         let before = state.velocity(0).z;
         dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a step");
         let after = state.velocity(0).z;
-        // Mass times acceleration less gravity; what rounding leaves is no contact.
+        // Mass times acceleration less gravity; the threshold excludes rounding.
         let force = model.mass(0) * ((after - before) / STEP + 9.81);
         (if force > 1e-6 { force } else { 0.0 }, after)
     })
 }
 
-/// Restitution within 1 % of that on a rigid wall, for an elastic and a damped contact; for the elastic one the peak
-/// force is K^(2/5) (5/4 m v²)^(3/5) and the contact time 2.94 δ/v, both within 2 %.
+/// Restitution within 1 % of a rigid wall, elastic and damped; elastic peak force K^(2/5) (5/4 m v²)^(3/5)
+/// and contact time 2.94 δ/v within 2 %.
 #[test]
-fn a_bounce_on_a_stiff_block_is_that_on_a_rigid_wall() {
+fn stiff_block_acts_as_rigid_wall() {
     for restitution in [1.0, 0.5] {
         let (block, wall) = (on_the_block(restitution), on_a_rigid_plane(restitution));
         println!(

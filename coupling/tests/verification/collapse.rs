@@ -1,8 +1,8 @@
-//! (vii), plastic: a rigid row of spheres pushed into weightless ground, coupled, against Prandtl's collapse load.
+//! Rigid row of spheres pushed into weightless plastic ground, against Prandtl's collapse load.
 //!
-//! Prandtl (1920), Reissner (1924): q = Nc c, Nc = 2 + π for φ = 0 and 14.83 for φ = 20° (associated flow). By symmetry half of a
-//! strip of width B = 2 m, in plane strain; elements of B/8 under the row. The row is one clump of 16 × 4 spheres, four to
-//! an element each way, which moves down at a steady speed; each sphere carries its share of the strip.
+//! Prandtl (1920), Reissner (1924): q = Nc c, Nc = 2 + π for φ = 0 and 14.83 for φ = 20° (associated flow).
+//! Half of a strip of width B = 2 m in plane strain, elements of B/8. The row is a clump of 16 × 4 spheres,
+//! four per element and direction.
 
 use crate::support::*;
 use trackbed_coupling::step::Work;
@@ -13,14 +13,14 @@ use trackbed_fem::nonlinear::{NewtonOptions, Variant};
 use trackbed_fem::{Cone, Constraint, DruckerPrager, Elastic, Material, Mesh, MohrCoulomb};
 
 const COHESION: f64 = 10e3;
-/// Half of the loaded width, and the edge of the elements under it [m].
+/// Half of the loaded width and element edge below [m].
 const HALF: f64 = 1.0;
 const EDGE: f64 = 0.25;
 const ROW: [usize; 2] = [16, 4];
-/// Of the row [m/s]: the ground follows nearly at rest.
+/// Quasi-static speed of the row [m/s].
 const SPEED: f64 = 0.0375;
 
-/// Lines every 0.25 m to `fine`, then growing by 1.35 to `end`.
+/// Spacing 0.25 m to `fine`, then growing by 1.35 to `end`.
 fn lines(fine: f64, end: f64) -> Vec<f64> {
     let mut x: Vec<f64> = (0..=(fine / EDGE).round() as usize).map(|i| i as f64 * EDGE).collect();
     let mut step = EDGE;
@@ -32,7 +32,7 @@ fn lines(fine: f64, end: f64) -> Vec<f64> {
     x
 }
 
-/// Ground of `width` × `depth`, its top at z = 0, sides on rollers, base clamped.
+/// Top at z = 0, rollers on the sides, clamped base.
 fn ground([width, depth]: [f64; 2], material: Material) -> fem::Model {
     let z: Vec<f64> = lines(1.0, depth).iter().rev().map(|z| -z).collect();
     let mesh = Mesh::grid(&[lines(2.0, width), vec![0.0, EDGE], z]);
@@ -78,7 +78,7 @@ fn drucker_prager(phi: f64, cone: Cone) -> Material {
     Material::plastic(SOIL, law)
 }
 
-/// Pushes the row in and gives the mean pressure over c in the last tenth of the way, and its growth over that tenth.
+/// Mean pressure over c in the last tenth of the path, and its growth.
 fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::Material) -> f64 {
     let solid = ground(extent, material);
     let spacing = HALF / ROW[0] as f64;
@@ -99,7 +99,7 @@ fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::
             bodies: vec![dem::BodyInput {
                 position: Vec3::new(0.5 * HALF, 0.5 * EDGE, radius),
                 velocity: Vec3::new(0.0, 0.0, -SPEED),
-                // So heavy that nothing slows it (a body held in all six motions meets nothing), and without dashpots,
+                // Heavy, so unaffected by forces (fully constrained bodies have no contact); no dashpots,
                 // which grow with the mass.
                 fixed: [true, true, false, true, true, true],
                 mass: Some(1e9),
@@ -112,7 +112,7 @@ fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::
         },
         1,
     );
-    // The quasi-static course is wanted: the solid's step damps what it cannot follow.
+    // θ = 1 damps unresolved vibration: a quasi-static path.
     c.model.theta = 1.0;
     c.model.newton = NewtonOptions { force_tolerance: 1e-4, ..NewtonOptions::new(Variant::Full) };
     c.work = Work::new(&c.model, &c.state, top(&solid)).expect("a solid that can be factored");
@@ -142,32 +142,32 @@ fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::
     mean(&last)
 }
 
-/// Of the row's spheres: stiffness [N/m] and friction; without dashpots.
+/// Stiffness [N/m] and friction, without dashpots.
 fn spheres(stiffness: f64, friction: f64) -> dem::Material {
     material(2000.0, stiffness, friction, 1.0)
 }
 
-/// φ = 0 (Tresca): (2 + π) c within +8/−2 %.
+/// (2 + π) c within +8/−2 % (Tresca).
 #[test]
 #[ignore = "1,200 windows of plastic ground, about 30 s"]
-fn a_rigid_row_reaches_the_collapse_load_of_clay() {
+fn row_reaches_collapse_load_of_clay() {
     let exact = 2.0 + std::f64::consts::PI;
     let found = push("Tresca", [5.0, 3.0], mohr_coulomb(0.0), 0.045, spheres(2e4, 0.0));
     println!("Tresca: {:+.2} % of {exact:.4}", 100.0 * (found / exact - 1.0));
     assert!((0.98..1.08).contains(&(found / exact)));
 }
 
-/// φ = 20°: Nc = 14.83 within 10 %. A rough row: below a smooth one the ground, which dilates, slides outward from under the
-/// spheres, and the load falls as fewer of its elements bear.
+/// Nc = 14.83 within 10 %. The row is rough: below a smooth row the dilating ground slides outward, and the
+/// load falls.
 #[test]
 #[ignore = "4,000 windows of plastic ground, about a minute"]
-fn a_rigid_row_reaches_the_collapse_load_with_friction() {
+fn row_reaches_collapse_load_with_friction() {
     let found = push("phi 20", [8.0, 4.0], mohr_coulomb(20.0), 0.15, spheres(4e4, 1.0));
     println!("phi 20: {:+.2} % of 14.83", 100.0 * (found / 14.83 - 1.0));
     assert!((found / 14.83 - 1.0).abs() < 0.10);
 }
 
-/// Friction angle [rad] and cohesion over c of the Mohr–Coulomb material with the limit load in plane strain of a cone.
+/// Friction angle [rad] and cohesion over c of the equivalent Mohr–Coulomb material in plane strain.
 fn in_plane_strain(cone: Cone, phi: f64) -> (f64, f64) {
     let [eta, xi, ..] = cone.coefficients(phi);
     let tan = (9.0 * eta * eta / (9.0 - 12.0 * eta * eta)).sqrt();
@@ -182,9 +182,8 @@ fn prandtl(phi: f64) -> f64 {
     (half * half * (std::f64::consts::PI * tan).exp() - 1.0) / tan
 }
 
-/// What the matching of Drucker–Prager to Mohr–Coulomb does to the collapse load of the strip, exactly: the cone matched in
-/// plane strain keeps Nc; the one matched in triaxial compression acts in plane strain as a material with a larger
-/// φ and c. For φ = 0 it is 2/√3 = 1.155 times as strong, for φ = 20° it stands for φ = 27.5° and 1.43 c: 2.4 times the load.
+/// A cone matched in plane strain keeps Nc. Matched in triaxial compression, it is stronger: 2/√3 = 1.155 for
+/// φ = 0, and φ = 27.5° with 1.43 c for φ = 20°, 2.4 times the load.
 #[test]
 fn cones_differ_in_plane_strain() {
     let degrees = |phi: f64| phi.to_radians();
@@ -206,8 +205,8 @@ fn cones_differ_in_plane_strain() {
     assert!((in_plane_strain(Cone::Compression, 0.0).1 - 2.0 / 3.0_f64.sqrt()).abs() < 1e-12);
 }
 
-/// The same, measured: the row on von Mises ground, matched in compression and in plane strain; the ratio of the two collapse
-/// loads is 2/√3 within 2 %, and the second is (2 + π) c within +8/−2 %.
+/// Von Mises ground: ratio of the collapse loads 2/√3 within 2 %; plane-strain match (2 + π) c within +8/−2
+/// %.
 #[test]
 #[ignore = "two runs of 1,600 windows of plastic ground, about a minute"]
 fn matched_cones_collapse_in_their_ratio() {

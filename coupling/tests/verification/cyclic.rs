@@ -1,4 +1,4 @@
-//! (viii): half-sine cycles of a rigid sleeper on a bed on block B; restart; unloading; ratio of the time steps.
+//! Half-sine cycles of a rigid sleeper on a bed on block B: restart, unloading, ratio of time steps.
 
 use crate::support::*;
 use trackbed_coupling::step::State;
@@ -6,10 +6,9 @@ use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_fem as fem;
 
-/// Body number of the sleeper.
 const SLEEPER: usize = 0;
 const PEAK: f64 = 2000.0;
-/// Length of a cycle [s].
+/// Cycle duration [s].
 const CYCLE: f64 = 0.05;
 const SETTLING: f64 = 0.6;
 
@@ -17,20 +16,19 @@ fn ground() -> fem::Model {
     block_b(4, Held::Base, fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 })
 }
 
-/// Three layers of spheres in a box, a sleeper above.
 fn bed(dt: f64) -> dem::ModelInput {
     sleeper_on_a_bed(3, dt)
 }
 
-/// Load on the sleeper: half-sine pulses after the settling.
+/// Half-sine pulses after deposition.
 fn load(time: f64) -> f64 {
     if time < SETTLING { 0.0 } else { PEAK * (std::f64::consts::PI * (time - SETTLING) / CYCLE).sin().abs() }
 }
 
-/// What is kept of each window: the sleeper's height and the force of the nodal loads.
+/// Sleeper height and total nodal load per window.
 type Record = Vec<[f64; 2]>;
 
-/// Goes on to `end` and checks in every window that the block's nodal loads add up to the contact forces.
+/// Checks nodal loads against contact forces in every window.
 fn advance(c: &mut Coupled, end: f64, worst: &mut f64) -> Record {
     let window = c.model.window();
     let steps = ((end - c.state.solid.time) / window).round() as usize;
@@ -49,9 +47,8 @@ fn deepest(solid: &fem::State) -> f64 {
     solid.u.iter().fold(0.0, |m, u| m.max(u.abs()))
 }
 
-/// `cycles` cycles: force history of the block = sum of the grains' contact forces within 1e-10 in each step; stopped half
-/// way, written, read and gone on, the record of the rest has the same bits; with the bed lifted off the block comes
-/// back to its start within 1e-9 of its largest displacement.
+/// Block force equals grain forces within 1e-10 per step; a restart is bitwise identical; the unloaded block
+/// returns within 1e-9 of its largest displacement.
 fn cycles(cycles: u32) {
     let solid = ground();
     let mut c = Coupled::new(&solid, bed(5e-5), 5);
@@ -78,7 +75,7 @@ fn cycles(cycles: u32) {
     let bits = |r: &Record| r.iter().map(|x| x.map(f64::to_bits)).collect::<Vec<_>>();
     assert!(!record.is_empty() && bits(&record) == bits(&repeated), "the record after a restart differs");
 
-    // Largest displacement under the last peak, and after the bed has gone.
+    // Under the last peak, and without bed.
     let peak = deepest(&c.state.solid);
     let away = dem::ModelInput {
         bodies: vec![dem::BodyInput {
@@ -104,20 +101,19 @@ fn on_one_thread(run: impl FnOnce() + Send) {
 
 #[test]
 #[ignore = "20 cycles, about 15 s"]
-fn twenty_cycles_of_a_sleeper_and_a_restart() {
+fn twenty_cycles_with_restart() {
     on_one_thread(|| cycles(20));
 }
 
 #[test]
-fn four_cycles_of_a_sleeper_and_a_restart() {
+fn four_cycles_with_restart() {
     on_one_thread(|| cycles(4));
 }
 
-/// Solid steps of 1, 10 and 100 grain steps from one settled state over one cycle: the largest settlement of the sleeper at 10
-/// within 1 % of that at 1; that at 100 is printed.
+/// FEM steps of 1, 10 and 100 DEM steps over one cycle: largest settlement at 10 within 1 % of that at 1.
 #[test]
 #[ignore = "2,500 solid steps at ratio 1, about 5 s"]
-fn the_ratio_of_time_steps_hardly_matters() {
+fn the_ratio_of_time_steps() {
     let solid = ground();
     let mut c = Coupled::new(&solid, bed(2e-5), 10);
     advance(&mut c, SETTLING, &mut 0.0);

@@ -1,4 +1,4 @@
-//! (iv): a sphere hits a free block. Momentum, angular momentum and energy of both.
+//! Impact of a sphere on a free block: momentum, angular momentum, energy.
 
 use crate::support::*;
 use trackbed_coupling::scheme::Scheme;
@@ -11,15 +11,15 @@ use trackbed_fem as fem;
 const SPHERE_MASS: f64 = 1.0;
 const BLOCK_MASS: f64 = 20.0;
 const SIDE: f64 = 0.2;
-/// Soft enough that the impact lasts about 50 periods of the block's lowest vibration.
+/// Impact of about 50 periods of the block's lowest mode.
 const STIFFNESS: f64 = 1e6;
 
 struct Impact<'a> {
     coupled: Coupled<'a>,
-    /// Linear and angular momentum of both, about the origin.
+    /// Linear and angular momentum about the origin.
     momentum: (Vec3, Vec3),
     energy: f64,
-    /// ∫ u × F dt of the contact point's displacement u: see [`angular`].
+    /// ∫ u × F dt, see [`angular`].
     geometric: Vec3,
 }
 
@@ -28,7 +28,7 @@ fn cube() -> fem::Model {
     block([4, 4, 4], [SIDE; 3], 200e9, 0.3, BLOCK_MASS / SIDE.powi(3), Held::Free, fem::Rayleigh::default())
 }
 
-/// Spheres of 3 cm that meet the cube, without gravity, in windows of `substeps` steps of `dt` [s].
+/// Spheres of 3 cm without gravity, windows of `substeps` steps of `dt` [s].
 fn on_cube(
     solid: &fem::Model,
     friction: f64,
@@ -47,7 +47,7 @@ fn on_cube(
     Coupled::new(solid, grains, substeps)
 }
 
-/// Makes a window in which the whole cube is accelerated upwards [m/s²].
+/// Window with uniform upward acceleration [m/s²].
 fn push(c: &mut Coupled, acceleration: f64) {
     let solid = c.model.solid;
     let (mut unit, mut force) = (vec![0.0; solid.dof_count()], vec![0.0; solid.dof_count()]);
@@ -76,7 +76,7 @@ impl<'a> Impact<'a> {
         Impact { coupled, momentum, energy, geometric: Vec3::zeros() }
     }
 
-    /// Advances until the sphere has left and 20 % longer.
+    /// Until 20 % after separation.
     fn run(&mut self) {
         let window = self.coupled.model.window();
         let contact_time =
@@ -100,7 +100,7 @@ impl<'a> Impact<'a> {
         self.coupled.state.grains.velocity(0)
     }
 
-    /// Relative drift of linear momentum, of angular momentum, and of angular momentum with the geometric term.
+    /// Relative drift of momentum, angular momentum, and angular momentum with the geometric term.
     fn drift(&self) -> (f64, f64, f64) {
         let now = momentum(&self.coupled);
         let scale = self.momentum.0.norm();
@@ -113,14 +113,14 @@ impl<'a> Impact<'a> {
         )
     }
 
-    /// Relative energy error, interface work included as an error.
+    /// With the interface work error.
     fn energy_error(&self) -> f64 {
         let spent = step::spent(&self.coupled.state);
         let now = step::stored(&self.coupled.model, &self.coupled.state).total();
         (now + spent.dissipated() - self.energy).abs() / self.energy
     }
 
-    /// Energy of the block beyond that of a rigid body with its momentum, over the energy of the impact.
+    /// Vibration energy of the block over the impact energy.
     fn vibration(&self) -> f64 {
         let stored = step::stored(&self.coupled.model, &self.coupled.state);
         let (p, _) = fem::energy::momentum(self.coupled.model.solid, &self.coupled.state.solid);
@@ -129,8 +129,8 @@ impl<'a> Impact<'a> {
     }
 }
 
-/// Central impact: momentum to 1e-10; sphere's speed after within 0.5 % of (m − M)/(m + M), the rigid
-/// limit of an elastic contact; less than 1 % of the energy stays in the block as vibration; energy to 1e-5.
+/// Momentum to 1e-10; rebound within 0.5 % of (m − M)/(m + M), rigid elastic; vibration below 1 %; energy to
+/// 1e-5.
 #[test]
 fn central_impact_keeps_momentum_and_energy() {
     let solid = cube();
@@ -150,11 +150,10 @@ fn central_impact_keeps_momentum_and_energy() {
     assert!(impact.energy_error() < 1e-5);
 }
 
-/// Off centre by d = 0.06 m: impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
+/// Offset d = 0.06 m: impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
 ///
-/// Angular momentum: a solid of small strains carries its momentum at the *undeformed* positions, so a force at a
-/// contact point that has moved by u gives it the moment of the undeformed point. What is missing, ∫ u × F dt, is
-/// known and is checked to 1e-8 at v = 1 m/s; at 1 µm/s, where u vanishes, the plain sum holds to 1e-8.
+/// Small strains: forces act at undeformed positions. The missing moment ∫ u × F dt is checked to 1e-8 at v =
+/// 1 m/s; at 1 µm/s the plain balance holds to 1e-8.
 #[test]
 fn off_centre_impact_keeps_angular_momentum() {
     let solid = cube();
@@ -175,10 +174,9 @@ fn off_centre_impact_keeps_angular_momentum() {
     }
 }
 
-/// Sub-stepping: drift of energy for 1, 10 and 100 grain steps per solid step of the same grain step; less than 2e-6
-/// at 1 and 10 and 1e-4 at 100, interface work (grains against solid) counted as an error. That part is printed by itself.
+/// Energy drift below 2e-6 at ratios 1 and 10, 1e-4 at 100, interface work error included.
 #[test]
-fn energy_drift_with_sub_stepping_is_small() {
+fn energy_drift_of_subcycling_is_small() {
     let solid = cube();
     for (substeps, bound) in [(1, 2e-6), (10, 2e-6), (100, 1e-4)] {
         let mut impact = Impact::new(&solid, 0.0, 1.0, substeps, 2e-6);
@@ -191,11 +189,10 @@ fn energy_drift_with_sub_stepping_is_small() {
     }
 }
 
-/// Negative test of the exchange order: a quiet packing on a soft block gains no energy. 36 spheres settle on a block
-/// of 1 MPa and are watched for ten seconds: the largest kinetic energy of each half second is below that of the one
-/// before, and at the end it is below 1e-6 of the potential energy at the start. W = 0.3 and C Δt/m = 0.5 here.
+/// 36 spheres on a block of 1 MPa for ten seconds, W = 0.3, C Δt/m = 0.5: maximum kinetic energy falls every
+/// half second, to 1e-6 of the initial potential energy.
 #[test]
-fn a_quiet_packing_on_soft_ground_gains_no_energy() {
+fn quiet_packing_gains_no_energy() {
     let rayleigh = fem::Rayleigh { alpha_m: 2.0, beta_k: 1e-4 };
     let solid = block([4, 4, 2], [1.0, 1.0, 0.5], 1e6, 0.3, 2000.0, Held::Base, rayleigh);
     let wall = |at: f64, normal: Vec3| dem::Plane {
@@ -246,18 +243,18 @@ fn a_quiet_packing_on_soft_ground_gains_no_energy() {
     assert!(largest[19] < 1e-6 * potential);
 }
 
-/// Within a window the surface goes on with the velocity it had at the start: a sphere that moves along with the block,
-/// pressed in by δ, feels K δ in all of its ten sub-steps. On a surface that stood still it would have left after one.
+/// A sphere moving with the block at overlap δ has force K δ in all ten sub-steps; on a fixed surface it
+/// would separate after one.
 #[test]
 fn the_surface_moves_within_a_window() {
     let solid = cube();
     let speed = 1.0;
     let (overlap, dt) = (1e-6, 2e-6);
     let sphere = dem::BodyInput {
-        // Velocities, and with them the block, are those of half a step before the sphere's place.
+        // Velocities lag by half a step.
         position: Vec3::new(0.53 * SIDE, 0.48 * SIDE, 0.03 - overlap + 0.5 * dt * speed),
         velocity: Vec3::new(0.0, 0.0, speed),
-        // So heavy that the force does not move it.
+        // Heavy, so unaffected by the force.
         mass: Some(1e9),
         ..Default::default()
     };
@@ -269,11 +266,9 @@ fn the_surface_moves_within_a_window() {
     assert!((force / (STIFFNESS * overlap) - 1.0).abs() < 1e-6);
 }
 
-/// In the lagged scheme the solid goes first, and the surface's velocity runs straight from that at the start of the window to
-/// that at the end: in a free cube under a steady force, from v₀ to v₀ + a Δt, of which the last of ten sub-steps has its
-/// middle at 0.95.
+/// Velocity linear from v₀ to v₀ + a Δt; the last of ten sub-steps is at 0.95.
 #[test]
-fn the_surface_speeds_up_within_a_lagged_window() {
+fn lagged_surface_velocity_is_linear() {
     let solid = cube();
     let (speed, dt) = (1.0, 2e-6);
     let position = Vec3::new(0.5 * SIDE, 0.5 * SIDE, 1.0);
@@ -281,7 +276,7 @@ fn the_surface_speeds_up_within_a_lagged_window() {
     let mut c = on_cube(&solid, 0.0, vec![far], (10, dt));
     c.model.scheme = Scheme::Lagged;
     c.state.solid.v.iter_mut().skip(2).step_by(3).for_each(|v| *v = speed);
-    // Its weight at 10,000 g: the same acceleration everywhere.
+    // 10,000 g: uniform acceleration.
     let acceleration = 1e5;
     push(&mut c, acceleration);
     let at = [0.5 * SIDE, 0.5 * SIDE, 0.0];
@@ -291,8 +286,7 @@ fn the_surface_speeds_up_within_a_lagged_window() {
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 
-/// A block that is struck from below leaps within its window, further than its velocity predicts: a sphere just above its top is touched
-/// from the first sub-step of the next window on.
+/// Contact in the first sub-step of the next window, although the prediction misses the motion.
 #[test]
 fn a_surface_that_leaps_is_touched_at_once() {
     let solid = cube();
@@ -304,7 +298,7 @@ fn a_surface_that_leaps_is_touched_at_once() {
     let mut c = on_cube(&solid, 0.0, vec![above], (substeps, dt));
     push(&mut c, 2.0 * leap / (window * window));
     assert!((c.state.solid.u[2] / leap - 1.0).abs() < 1e-6 && c.work.grains.surface_contacts().is_empty());
-    // It goes on no further: what touches the sphere is the leap alone.
+    // Only the jump causes contact.
     c.state.solid.v.fill(0.0);
     c.step(&[]);
     let mean = -c.work.mean_contact_force(window)[2];
@@ -313,10 +307,9 @@ fn a_surface_that_leaps_is_touched_at_once() {
     assert!(mean > 0.95 * all, "{mean} {all}");
 }
 
-/// The prediction of the stiffened scheme knows how a stone slides and spins: a block under a sphere that turns on it, or is dragged
-/// over it, goes where it was predicted to, a thousand times closer than with its present velocity.
+/// Under a rotating or sliding sphere the prediction is a thousand times better than the current velocity.
 #[test]
-fn the_stiffened_prediction_knows_slip_and_spin() {
+fn stiffened_prediction_includes_slip_and_spin() {
     let solid = cube();
     let overlap = 1e-4;
     for (velocity, spin) in [(Vec3::x(), Vec3::zeros()), (Vec3::zeros(), 30.0 * Vec3::y())] {
@@ -330,7 +323,7 @@ fn the_stiffened_prediction_knows_slip_and_spin() {
             };
             let mut c = on_cube(&solid, 1e3, vec![sphere], (10, 2e-6));
             c.model.scheme = scheme;
-            // The first window predicts nothing.
+            // No prediction in the first window.
             c.step(&[]);
             let before = step::spent(&c.state).interface();
             c.step(&[]);
@@ -344,8 +337,7 @@ fn the_stiffened_prediction_knows_slip_and_spin() {
     }
 }
 
-/// A grain that is taken out while it touches the solid loads it no more, under any scheme: one of two like spheres that are
-/// pressed in leaves half of the force.
+/// Two equal indenting spheres: removal halves the force, in every scheme.
 #[test]
 fn a_removed_grain_loads_the_solid_no_more() {
     let solid = cube();

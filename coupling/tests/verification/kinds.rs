@@ -1,5 +1,4 @@
-//! Faces of all kinds: nodal loads, borders between kinds, ripple, and a sphere at rest, on blocks of bricks, wedges,
-//! tetrahedra and pyramids.
+//! All face kinds: nodal loads, borders, ripple, and a sphere at rest.
 
 use crate::support::*;
 use trackbed_coupling::step;
@@ -11,17 +10,17 @@ use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem as fem;
 use trackbed_fem::{ElementKind, FaceShape, Mesh};
 
-/// What a cell of a block is cut into.
+/// Subdivision of a block cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cut {
     Hexes,
-    /// Two wedges: triangles on top.
+    /// Two wedges.
     Wedges,
-    /// Six tetrahedra about the diagonal of the cell (Kuhn 1960): triangles on top.
+    /// Six tetrahedra around the cell diagonal (Kuhn 1960).
     Tets,
-    /// Six pyramids with their tips in the middle of the cell: quadrilaterals on top.
+    /// Six pyramids with apex at the cell centre.
     Pyramids,
-    /// Three pyramids with their tips in one corner of the top, which is cut in two triangles. Fits no neighbour.
+    /// Three pyramids with apex in one top corner; non-conforming.
     Tips,
 }
 
@@ -38,7 +37,7 @@ const PYRAMIDS: [&[usize]; 6] = [
 ];
 const TIPS: [&[usize]; 3] = [&[0, 1, 2, 3, 6], &[0, 4, 5, 1, 6], &[0, 3, 7, 4, 6]];
 
-/// A block with its top at z = 0, of cells that are cut as `cut` says by their place along x.
+/// Block with its top at z = 0, subdivided by cell index along x.
 fn cut_block(counts: [usize; 3], size: [f64; 3], quadratic: bool, cut: impl Fn(usize) -> Cut) -> Mesh {
     let hexes = Mesh::block(counts, size).to_linear();
     let mut mesh = Mesh { node_ids: hexes.node_ids.clone(), ..Mesh::default() };
@@ -68,12 +67,11 @@ fn cut_block(counts: [usize; 3], size: [f64; 3], quadratic: bool, cut: impl Fn(u
     if quadratic { mesh.to_quadratic() } else { mesh }
 }
 
-/// The top of a mesh as a surface.
 fn top_of(mesh: &Mesh) -> SolidSurface {
     SolidSurface::new(mesh, SolidSurface::facing(mesh, [0.0, 0.0, 1.0], 0.5))
 }
 
-/// Every kind of element under every kind of face, and mixtures.
+/// All element kinds, single and mixed.
 fn all() -> Vec<(String, Mesh)> {
     let mut meshes = Vec::new();
     for quadratic in [true, false] {
@@ -89,7 +87,7 @@ fn all() -> Vec<(String, Mesh)> {
     meshes
 }
 
-/// Moves the nodes of the top about by up to 8 % of its elements' edges.
+/// Moves top nodes by up to 8 % of an edge.
 fn roughen(mesh: &mut Mesh) {
     let mut random = Scatter::new(3);
     for x in mesh.coordinates.iter_mut().filter(|x| x[2] > -1e-9) {
@@ -97,11 +95,10 @@ fn roughen(mesh: &mut Mesh) {
     }
 }
 
-/// Forces at 400 points of rough faces of every kind: the nodal loads have their sum and their moment about three points to
-/// 1e-12, and their power in any motion of the nodes is that of the force at the point, with the velocity that the surface
-/// shows the stones. Only nodes of the touched face are loaded.
+/// 400 points on rough faces: force, and moment about three points, to 1e-12; nodal power equals the contact
+/// power at the surface velocity. Only nodes of the face are loaded.
 #[test]
-fn loads_on_every_kind_keep_force_moment_and_power() {
+fn loads_on_every_kind_are_consistent() {
     let mut seen = Vec::new();
     for (name, mut mesh) in all() {
         roughen(&mut mesh);
@@ -169,15 +166,15 @@ fn loads_on_every_kind_keep_force_moment_and_power() {
     }
 }
 
-/// The same pressure by stones at the points of an exact rule on each face: nodal loads are those of a uniform pressure,
-/// in closed form −1/12 and 1/3 of p A (8 nodes), 0 and 1/3 (6), 1/4 (4), 1/3 (3).
+/// Contacts at the points of an exact rule: uniform pressure p A times −1/12 and 1/3 (8 nodes), 0 and 1/3
+/// (6), 1/4 (4), 1/3 (3).
 #[test]
-fn stones_under_a_uniform_pressure_load_the_nodes_as_the_pressure_does() {
+fn pressure_contacts_give_consistent_loads() {
     for (name, mesh) in all() {
         let surface = top_of(&mesh);
         for (k, face) in surface.faces().iter().enumerate() {
             let area = surface.area_vector(k as u32)[2];
-            // On flat faces with straight sides the area is the same everywhere.
+            // Constant area on flat faces with straight sides.
             let natural: f64 = face.shape.points().iter().map(|p| p.1).sum();
             let contacts: Vec<SurfaceContact> = face
                 .shape
@@ -214,8 +211,8 @@ fn stones_under_a_uniform_pressure_load_the_nodes_as_the_pressure_does() {
     }
 }
 
-/// A sphere of radius 0.05 m, so heavy that nothing stops it or lifts it, goes with `velocity` [m/s] over `surface` for
-/// `time` [s]; the contacts of each step go to `each`.
+/// Drags a heavy sphere, radius 0.05 m, over `surface` with `velocity` [m/s] for `time` [s]; contacts go to
+/// `each`.
 fn dragged(
     surface: &SolidSurface,
     start: [f64; 3],
@@ -248,15 +245,13 @@ fn dragged(
     }
 }
 
-/// A sphere held 0.1 mm deep goes over a flat top of every kind, and of two kinds and two orders side by side, obliquely to
-/// all sides: there is one contact at every instant with the normal force K δ = 10 N to 1e-11; and with friction, once
-/// it slides, the force along the surface is μ N to 1e-9 over every border, so the contact's memory goes on from face to
-/// face (a contact that began anew would have to build it up from 0 over 60 steps).
+/// At 0.1 mm overlap, obliquely over every kind and combination: one contact with K δ = 10 N to 1e-11;
+/// sliding force μ N to 1e-9 across borders, so contact history persists (a new contact needs 60 steps).
 #[test]
-fn a_sphere_over_a_flat_top_feels_neither_faces_nor_borders() {
+fn flat_borders_do_not_disturb_sphere() {
     let mut meshes: Vec<(String, Mesh)> =
         all().into_iter().filter(|(name, _)| !name.contains("Tips")).collect();
-    // An 8-node face beside a 4-node one: two blocks that share the corners of their border.
+    // 8-node next to 4-node faces with common border corners.
     let linear = cut_block([4, 3, 2], [0.6, 0.6, 0.3], false, |_| Cut::Hexes);
     let quadratic = linear.to_quadratic();
     let mut both = Mesh {
@@ -277,7 +272,7 @@ fn a_sphere_over_a_flat_top_feels_neither_faces_nor_borders() {
         let surface = top_of(&mesh);
         let (mut worst, mut slide, mut faces) = (0.0_f64, 0.0_f64, Vec::new());
         for friction in [0.0, 0.5] {
-            // A sphere that begins at a border touches on both sides at once: that is inside.
+            // At a border both faces count as inside.
             dragged(&surface, [0.11, 0.13, 0.0499], [1.0, 0.83], (friction, 0.38), |x, contacts| {
                 assert_eq!(contacts.len(), 1, "{name}: {contacts:?}");
                 let [fx, fy, fz] = contacts[0].force;
@@ -297,7 +292,6 @@ fn a_sphere_over_a_flat_top_feels_neither_faces_nor_borders() {
     }
 }
 
-/// Block B of every kind of element, with the faces of its top.
 fn kinds_of_block_b(m: usize) -> Vec<(&'static str, fem::Model)> {
     let size = [1.0, 1.0, 0.5];
     let mixed = |x: usize| if x < 4 { Cut::Hexes } else { Cut::Wedges };
@@ -319,12 +313,11 @@ fn kinds_of_block_b(m: usize) -> Vec<(&'static str, fem::Model)> {
     ]
 }
 
-/// (i)a on every kind: a sphere at rest on block B. The contact force is its weight within 1e-6 and so is the base's
-/// reaction, sums of nodal loads are kept to 1e-12, the gap is that of the contact and of the block's own deflection
-/// under the same load within 1e-6; and the mean settlement of the top is that of hex20 within 0.5 % for quadratic elements
-/// and 5 % for linear ones.
+/// Contact force and base reaction equal the weight within 1e-6, nodal load sums to 1e-12; the gap equals
+/// contact plus block deflection within 1e-6. Mean settlement within 0.5 % (quadratic) and 5 % (linear) of
+/// hex20.
 #[test]
-fn a_sphere_rests_on_blocks_of_every_kind() {
+fn a_sphere_rests_on_every_kind() {
     let mut reference = None;
     for (name, solid) in kinds_of_block_b(6) {
         let mut vertical = [true; 6];
@@ -381,11 +374,10 @@ fn a_sphere_rests_on_blocks_of_every_kind() {
     }
 }
 
-/// Three spheres slide with friction over the top of an elastic block B of each kind until they have crossed several borders,
-/// one of them from quadrilaterals to triangles where there are both: the account of energy closes to 1e-3 of what they
-/// had at the start, force and moment are handed over to 1e-12, and forces stay below what a jump of the surface would make.
+/// Three frictional spheres cross several borders: energy balance to 1e-3 of the initial energy, force and
+/// moment to 1e-12, no force peaks from surface jumps.
 #[test]
-fn sliding_over_elastic_blocks_of_every_kind_closes_the_account() {
+fn sliding_balances_energy_on_every_kind() {
     for (name, solid) in kinds_of_block_b(6) {
         let sphere = |x: f64, y: f64, v: [f64; 2]| dem::BodyInput {
             position: Vec3::new(x, y, 0.05 - 1e-4),

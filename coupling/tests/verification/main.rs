@@ -1,5 +1,4 @@
-//! Coupling against closed forms and reference solutions. Numbers and names of the problems (V0.5, (i)a, …) are
-//! those of the project's list of coupling verification problems; each test's head says what is exact in it.
+//! Verification of the coupling against closed forms and reference solutions.
 
 mod alone;
 mod beam;

@@ -1,4 +1,4 @@
-//! (ii): the inverse map on a distorted surface of many elements.
+//! Inverse mapping on a distorted surface of many elements.
 
 use crate::support::Scatter;
 use trackbed_coupling::surface::SolidSurface;
@@ -8,8 +8,7 @@ use trackbed_fem::Mesh;
 const CELLS: usize = 6;
 const EDGE: f64 = 1.0 / CELLS as f64;
 
-/// The top of 6 × 6 × 3 elements on 1 × 1 × 0.5 m: mid-side nodes are moved by up to 15 % of an edge in every direction,
-/// corner nodes by up to 10 %.
+/// Top of 6 × 6 × 3 elements: mid-side nodes moved by up to 15 % of an edge, corners by up to 10 %.
 fn distorted_top() -> (Mesh, SolidSurface) {
     let mut mesh = Mesh::block([CELLS, CELLS, CELLS / 2], [1.0, 1.0, 0.5]);
     let mut random = Scatter::new(7);
@@ -30,7 +29,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The patch nearest to a point among some, the distance, and the natural coordinates there.
+/// Nearest patch, distance and natural coordinates.
 fn nearest(
     surface: &SolidSurface,
     patches: impl Iterator<Item = u32>,
@@ -44,10 +43,10 @@ fn nearest(
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// 10,000 random points on the top: every one found through the tree of boxes, residual below 1e-12 of the edge, natural
-/// coordinates those that it was made from, and the element that a search through all elements gives.
+/// 10,000 random points: residual below 1e-12 of the edge, original natural coordinates, element as by
+/// exhaustive search.
 #[test]
-fn every_point_of_a_distorted_top_is_found_in_its_element() {
+fn finds_points_on_distorted_surface() {
     let (_, surface) = distorted_top();
     let faces = surface.faces().len() as u32;
     assert_eq!(faces, 36);
@@ -77,9 +76,8 @@ fn every_point_of_a_distorted_top_is_found_in_its_element() {
     assert!(worst < 1e-12 && apart < 1e-10);
 }
 
-/// A window in which every node moves at its own velocity from its own displacement: points are at X + u − u₀ + v τ, no point is
-/// faster than the bound, every point is among the candidates of its place at any time, and no face is said to be farther from a
-/// centre than it is.
+/// Points at X + u − u₀ + v τ, speed within the bound, candidates complete, clearance never above the
+/// distance.
 #[test]
 fn a_window_shows_the_surface_where_it_is() {
     let (mesh, mut surface) = distorted_top();
@@ -119,7 +117,7 @@ fn a_window_shows_the_surface_where_it_is() {
         assert!(surface.clearance(patch, centre) <= apart(nearest, centre) + 1e-12, "centre {k}");
         assert!(norm(velocity) <= surface.max_speed());
     }
-    // Mid-side nodes against corners: three times the speed of the nodes in the middle of a face.
+    // Mid-sides against corners: triple nodal speed at the centre of a face.
     let mut v = vec![0.0; n];
     for face in surface.faces() {
         face.nodes()

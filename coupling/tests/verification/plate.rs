@@ -1,9 +1,8 @@
-//! (vi)b: Zener's sphere on an infinite plate.
+//! Zener's sphere on an infinite plate.
 //!
-//! Zener (1941): σ'' + (1 + λ d/dτ) σ^(3/2) = 0, λ = α m/T, α = 1/(8 √(D ρ h)), T = (m/(K √v))^(2/5). A quarter of a square plate
-//! with planes of symmetry takes a quarter of the sphere's mass and of its contact stiffness. The plate is as wide as one
-//! and a quarter flexural waves of the contact's frequency, so that no reflection of weight returns, and so thin
-//! (T = 230 h/c) that plate theory holds and the mesh's own compliance under a point is a small part of the contact's.
+//! Zener (1941): σ'' + (1 + λ d/dτ) σ^(3/2) = 0, λ = α m/T, α = 1/(8 √(D ρ h)), T = (m/(K √v))^(2/5). Quarter
+//! symmetry. The plate is 1.25 flexural waves wide (no significant reflection) and thin (T = 230 h/c; mesh
+//! compliance is negligible).
 
 use crate::support::*;
 use trackbed_dem as dem;
@@ -16,7 +15,7 @@ const POISSON: f64 = 0.3;
 const DENSITY: f64 = 7800.0;
 const THICKNESS: f64 = 0.01;
 const SPEED: f64 = 0.1;
-/// Zener's unit of time [s].
+/// Zener's time unit [s].
 const UNIT: f64 = 4.4e-4;
 const CELLS: usize = 18;
 
@@ -47,7 +46,7 @@ fn plate(width: f64) -> fem::Model {
     .expect("a valid plate")
 }
 
-/// Restitution and peak force over m v/T of one impact that lasts about `duration` times T.
+/// Restitution and peak force over m v/T; duration about `duration` times T.
 fn impact(lambda: f64, duration: f64) -> (f64, f64) {
     let (d, impedance) = bending();
     let mass = lambda * UNIT * 8.0 * impedance;
@@ -57,7 +56,7 @@ fn impact(lambda: f64, duration: f64) -> (f64, f64) {
         / (std::f64::consts::PI / contact).sqrt();
     let solid = plate(1.25 * wave);
     let radius: f64 = 0.05;
-    // K/4 = 4/3 E* √R, E* = E/(2 (1 − ν²)) for two partners alike.
+    // K/4 = 4/3 E* √R, E* = E/(2 (1 − ν²)) for equal partners.
     let modulus = 0.25 * stiffness / (4.0 / 3.0 * radius.sqrt());
     let contact_material = dem::Material {
         density: 1.0,
@@ -101,7 +100,7 @@ fn impact(lambda: f64, duration: f64) -> (f64, f64) {
     (c.state.grains.velocity(0).z / SPEED, peak / (0.25 * mass * SPEED / UNIT))
 }
 
-/// λ, e, peak force/(m v/T), duration/T by integration of Zener's equation.
+/// λ, e, peak force/(m v/T), duration/T from Zener's equation.
 const TABLE: [(f64, f64, f64, f64); 5] = [
     (0.1, 0.8433, 1.0355, 3.2785),
     (0.2, 0.7140, 0.9460, 3.3487),
@@ -125,13 +124,13 @@ fn check(rows: &[(f64, f64, f64, f64)]) {
     }
 }
 
-/// e within ±0.02 of Zener's and the peak force within 3 %, λ = 0.5.
+/// λ = 0.5: e within ±0.02, peak force within 3 %.
 #[test]
-fn a_sphere_on_a_large_plate_leaves_energy_in_its_waves() {
+fn plate_waves_absorb_impact_energy() {
     check(&TABLE[2..3]);
 }
 
-/// The other rows, λ = 0.1, 0.2, 1 and 2.
+/// λ = 0.1, 0.2, 1 and 2.
 #[test]
 #[ignore = "four more hits, about 10 s"]
 fn zeners_restitution_over_the_inelasticity() {

@@ -1,4 +1,4 @@
-//! Dilated polyhedra on the faces of the solid, cut into triangles.
+//! Dilated polyhedra on triangulated faces of the solid.
 
 use crate::support::*;
 use trackbed_coupling::ledger::Balance;
@@ -11,7 +11,6 @@ use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{Shape, Vec3};
 use trackbed_fem as fem;
 
-/// The top of a model cut into triangles.
 fn triangles(solid: &fem::Model) -> SolidSurface {
     let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
     SolidSurface::new(solid.mesh(), faces.iter().flat_map(facets).collect())
@@ -21,7 +20,7 @@ fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
 }
 
-/// A stone of 14 corners on an ellipsoid, 0.2 m long, with edges rounded by 6 mm.
+/// 14 corners on an ellipsoid, 0.2 m long, edges rounded by 6 mm.
 fn stone(seed: u64) -> Shape {
     let mut random = Scatter::new(seed);
     let mut corner = || {
@@ -46,11 +45,10 @@ fn coupled<'a>(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) ->
     Coupled::with_surface(solid, grains, substeps, triangles(solid))
 }
 
-/// A stone in any pose, let go just above block B over the middle of a face, over seams and over the border, comes to rest on it.
-/// Contact force = weight and base reaction = weight within 1e-8, nodal loads = contact forces, moments included, within 1e-12
-/// in every step; the account of energy closes within 1e-3 of what was turned over.
+/// Random poses over face, seams and border. Contact force and base reaction equal the weight within 1e-8,
+/// nodal loads the contact forces and moments within 1e-12 per step; relative energy error 1e-3.
 #[test]
-fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
+fn stone_weight_acts_on_base() {
     for (k, place) in [[0.45, 0.55], [0.25, 0.5], [0.37, 0.61]].into_iter().enumerate() {
         let solid = block_b(4, Held::Base, fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 });
         let surface = triangles(&solid);
@@ -95,9 +93,8 @@ fn a_stone_rests_with_its_weight_on_the_block_and_the_base() {
     }
 }
 
-/// On a block so stiff that it does not give way a stone that falls, turning and moving aside, goes where it goes on a rigid plane: elastic and
-/// without friction within 1e-8 of its size over 0.25 s; with dashpots and springs of friction, which each triangle under an edge has
-/// for itself, within 1 %.
+/// Against a rigid plane: within 1e-8 of the size over 0.25 s, elastic and frictionless; within 1 % with
+/// dashpots and tangential springs, which each triangle under an edge has separately.
 #[test]
 fn a_rigid_block_is_a_plane() {
     for (friction, restitution, bound) in [(0.0, 1.0, 1e-8), (0.0, 0.4, 1e-2), (0.5, 0.4, 1e-2)] {
@@ -134,10 +131,10 @@ fn a_rigid_block_is_a_plane() {
     }
 }
 
-/// Elastic stones without friction jump on a soft block of solid without damping, which takes up a good part of their energy, with windows
-/// repeated until both sides agree: the account of energy of both closes within 1e-3 of what the stones brought, the work across the interface within 1e-9.
+/// Soft undamped block, iterated windows: energy error within 1e-3 of the initial energy, interface work
+/// error 1e-9.
 #[test]
-fn jumping_stones_keep_the_account_of_energy() {
+fn jumping_stones_conserve_energy() {
     let rayleigh = fem::Rayleigh::default();
     let solid = block([2, 2, 1], [1.0, 1.0, 0.5], 20e6, 0.3, 2000.0, Held::BaseAndSides, rayleigh);
     let surface = triangles(&solid);

@@ -1,14 +1,14 @@
-//! (v)a, (vii): many contact forces on block B against exact and reference settlements; (i)b: compliance.
+//! Contact forces on block B: settlement and compliance against references.
 
 use crate::support::*;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_fem as fem;
 
-/// (v)a, reciprocity: with rollers on the sides the area mean of the top's displacement is Σ F H/(A E_oed) for *any*
-/// set of vertical forces. Pass 1e-8. Catches a lost force, a wrong shape function, a wrong constraint.
+/// Reciprocity: with rollers on the sides, the mean top displacement is Σ F H/(A E_oed) for any vertical
+/// forces. Tolerance 1e-8.
 #[test]
-fn mean_settlement_of_any_forces_is_the_oedometers() {
+fn mean_settlement_matches_oedometers() {
     let solid = block_b(4, Held::BaseAndSides, fem::Rayleigh::default());
     let surface = top(&solid);
     let (young, poisson) = (20e6, 0.3);
@@ -28,9 +28,9 @@ fn mean_settlement_of_any_forces_is_the_oedometers() {
     assert!((mean / exact - 1.0).abs() < 1e-8);
 }
 
-/// (i)b: deflection under 1 N at an element corner, mid-face and mid-edge, for m = 4, 8, 12. Pass 0.5 %.
+/// Deflection under 1 N at element corner, mid-face and mid-edge, m = 4, 8, 12. Tolerance 0.5 %.
 #[test]
-fn point_load_compliance_is_the_published_one() {
+fn point_load_compliance_matches_reference() {
     for (m, corner, face, edge) in
         [(4, 5.10e-7, 2.03e-7, 3.20e-7), (8, 1.053e-6, 4.36e-7, 6.73e-7), (12, 1.598e-6, 6.72e-7, 1.028e-6)]
     {
@@ -58,7 +58,7 @@ fn point_load_compliance_is_the_published_one() {
 struct Patch {
     solid: fem::Model,
     surface: trackbed_coupling::surface::SolidSurface,
-    /// Consistent nodal load of 2,500 N on the patch 0.5 × 0.5 m.
+    /// 2,500 N on a patch of 0.5 × 0.5 m.
     consistent: Vec<f64>,
 }
 
@@ -78,12 +78,12 @@ impl Patch {
         Patch { solid, surface, consistent }
     }
 
-    /// Displacement averaged over the patch, downwards [m].
+    /// Mean patch settlement [m].
     fn mean(&self, u: &[f64]) -> f64 {
         self.consistent.iter().zip(u).map(|(f, u)| f * u).sum::<f64>() / TOTAL
     }
 
-    /// Displacement downwards at the node nearest to a place of the top [m].
+    /// Settlement of the nearest top node [m].
     fn at(&self, u: &[f64], x: f64, y: f64) -> f64 {
         let node = self
             .solid
@@ -96,9 +96,8 @@ impl Patch {
     }
 }
 
-/// (vii), consistent load: patch mean, centre and patch corner for m = 8 and 12 to the printed digits; and n × n equal
-/// point forces through the contact transfer, m = 8: patch mean over consistent 1.0331, 1.0083, 1.0037, 1.0009, 1.0002
-/// for n = 4, 8, 12, 24, 48. Pass 0.2 %. The same nodal loads given to the solid alone: equal, being the same.
+/// Consistent load, m = 8 and 12, to the printed digits. n × n equal point forces, m = 8: patch mean over
+/// consistent 1.0331, 1.0083, 1.0037, 1.0009, 1.0002 for n = 4, 8, 12, 24, 48. Tolerance 0.2 %.
 #[test]
 fn patch_settlement_meets_the_reference() {
     for (m, mean, centre, corner) in
@@ -129,11 +128,10 @@ fn patch_settlement_meets_the_reference() {
     }
 }
 
-/// (vii), first row, as a coupled run: n × n spheres pushed by an equal force each come to rest on the block; the patch
-/// mean over that of the consistent load is 1.0331 for n = 4 and 1.0083 for n = 8 within 0.2 %, and the static
-/// solution under the same nodal loads agrees to 1e-9.
+/// Coupled: patch mean over consistent 1.0331 for n = 4 and 1.0083 for n = 8 within 0.2 %; static solution
+/// within 1e-9.
 #[test]
-fn pushed_spheres_settle_the_patch_as_point_forces_do() {
+fn spheres_settle_as_point_forces() {
     let patch = Patch::new(8);
     let consistent = patch.mean(&fem::statics::solve(&patch.solid, &patch.consistent).unwrap().u);
     for (n, ratio) in [(4_usize, 1.0331), (8, 1.0083)] {

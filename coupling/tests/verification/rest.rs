@@ -1,4 +1,4 @@
-//! (i)a: a sphere at rest on block B.
+//! Sphere at rest on block B.
 
 use crate::support::*;
 use trackbed_dem as dem;
@@ -9,14 +9,13 @@ const RADIUS: f64 = 0.05;
 const DENSITY: f64 = 2650.0;
 const STIFFNESS: f64 = 1e5;
 
-/// Contact force = weight within 1e-6, nodal loads = contact force within 1e-12 in every step and about every point,
-/// base reaction = weight within 1e-6, and the settled gap is the contact's overlap plus the block's deflection
-/// under the same point load. R = 0.05 m, ρ = 2650 kg/m³: W = 13.6117 N. The last place is the block's own corner.
+/// Contact force and base reaction equal the weight within 1e-6, nodal loads the contact force within 1e-12
+/// per step; the gap is overlap plus block deflection. R = 0.05 m, ρ = 2650 kg/m³: W = 13.6117 N.
 #[test]
-fn sphere_rests_with_its_weight_on_the_block_and_the_base() {
-    // The block's own corner is its lightest point and needs the shortest window.
+fn sphere_rests_with_its_weight() {
+    // The block corner is the lightest point and needs the shortest window.
     for (place, substeps) in [([0.50, 0.50], 5), ([0.37, 0.61], 5), ([0.06, 0.06], 5), ([0.0, 0.0], 1)] {
-        // Enough damping to come to rest: the sphere on its spring, and the block near 58 Hz.
+        // Damps the sphere on its spring, and the block near 58 Hz.
         let solid = block_b(8, Held::Base, fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 });
         let mut free_only_vertically = [true; 6];
         free_only_vertically[2] = false;
@@ -51,7 +50,7 @@ fn sphere_rests_with_its_weight_on_the_block_and_the_base() {
             fem::energy::reactions(&solid, &c.state.solid, &load).iter().skip(2).step_by(3).sum();
         let rest = fem::statics::solve(&solid, &load).unwrap();
         let deflection = deflection(&c.work.surface, &contacts[0], &rest.u);
-        // The force acts along the normal of the bent surface, which is not quite vertical where it is not level.
+        // The normal of the bent surface is not vertical.
         let centre = c.state.grains.position(0);
         let arm = centre - Vec3::from(contacts[0].point);
         let normal_force = force * arm.norm() / arm.z;

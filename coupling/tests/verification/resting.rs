@@ -1,7 +1,7 @@
-//! Balls at rest on elastic ground without damping in the solid: undamped contacts that stick must not shake the ground.
+//! Balls at rest on undamped elastic ground: undamped sticking contacts must stay stable.
 //!
-//! Border: growth of a sticking contact is covered where Ω² ≤ 24 (θ − ½) (`docs/interface.py`), Ω = Δt √(Kₜ (1/m + R²/I)) = Δt √(3.5 Kₜ/m) of a
-//! ball. At θ = ½ the bound of the growth per window is W² Ω²/48.
+//! Limit: Ω² ≤ 24 (θ − ½) (`docs/interface.py`), Ω = Δt √(Kₜ (1/m + R²/I)) = Δt √(3.5 Kₜ/m) of a ball. At θ =
+//! ½ growth per window is at most W² Ω²/48.
 
 use crate::support::*;
 use std::f64::consts::FRAC_PI_8;
@@ -18,7 +18,7 @@ const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-5;
 const SUBSTEPS: u32 = 26;
 
-/// Ground of 4 × 2 × 1 elements, its nodes moved by up to `bend` of an element's height.
+/// 4 × 2 × 1 elements, nodes moved by up to `bend` of an element height.
 fn ground(young: f64, bend: f64) -> fem::Model {
     let mut mesh = Mesh::block([4, 2, 1], [1.6, 0.4, 0.3]);
     for x in &mut mesh.coordinates {
@@ -42,7 +42,7 @@ fn model(mesh: Mesh, young: f64, density: f64) -> fem::Model {
     .unwrap()
 }
 
-/// A ball on the ground above `place`, that sticks, on contacts of stiffness `k`.
+/// Sticking ball above `place`.
 fn ball(solid: &fem::Model, place: [f64; 2], density: f64, k: f64, substeps: u32) -> Coupled<'_> {
     let height = touching_height(&top(solid), place);
     let stone = dem::Material { rolling_friction: 0.9, ..material(density, k, 1.0, 0.2) };
@@ -65,7 +65,7 @@ fn ball(solid: &fem::Model, place: [f64; 2], density: f64, k: f64, substeps: u32
     )
 }
 
-/// Height of a ball's centre above `place` at which it just touches.
+/// Centre height at first contact.
 fn touching_height(surface: &SolidSurface, place: [f64; 2]) -> f64 {
     let [x, y] = place;
     let mut found = Vec::new();
@@ -80,7 +80,7 @@ fn touching_height(surface: &SolidSurface, place: [f64; 2]) -> f64 {
     z
 }
 
-/// Kinetic energy of the solid: largest in the fifth tenth of the windows, and in the last.
+/// Largest kinetic energy of the solid in the fifth and last tenth of the windows.
 fn swings(mut c: Coupled<'_>, theta: Option<f64>, windows: u64) -> ([f64; 2], InterfaceNumbers, f64) {
     c.step(&[]);
     let contacts = c.work.grains.surface_contacts().to_vec();
@@ -105,8 +105,8 @@ fn swings(mut c: Coupled<'_>, theta: Option<f64>, windows: u64) -> ([f64; 2], In
     (largest, numbers, theta)
 }
 
-/// Balls on corners, sides and anywhere, light and heavy, on flat and curved ground of three stiffnesses: kinetic energy falls over 2,500
-/// windows with the chosen θ, and in these windows with θ = ½ as well.
+/// Light and heavy balls at corners, sides and random points, three stiffnesses, flat and curved: kinetic
+/// energy falls over 2,500 windows with the default θ, and there with θ = ½ too.
 #[test]
 fn undamped_ball_stays_at_rest() {
     let mut random = Scatter::new(11);
@@ -114,7 +114,7 @@ fn undamped_ball_stays_at_rest() {
     for case in 0..8 {
         let bend = if case % 2 == 0 { 0.0 } else { 0.05 };
         let solid = ground([3e7, 1e8, 4e8][case % 3], bend);
-        // On curved ground on its crest and in its valley, where a ball stays.
+        // Stable positions: crest and valley.
         let place = match places.get(case) {
             Some(place) if bend == 0.0 => *place,
             None if bend == 0.0 => [0.8 + 0.25 * random.symmetric(), 0.2 + 0.05 * random.symmetric()],
@@ -139,7 +139,7 @@ fn undamped_ball_stays_at_rest() {
     }
 }
 
-/// A ball at rest drawn at random: ground flat or curved, a corner, side or face under it, all ratios of mass and stiffness.
+/// Random ball at rest.
 struct Draw {
     bend: f64,
     place: [f64; 2],
@@ -154,7 +154,7 @@ impl Draw {
         let mut random = Scatter::new(100 + case as u64);
         let mut log = |low: f64, high: f64| low * (high / low).powf(0.5 * (1.0 + random.symmetric()));
         let bend = if case.is_multiple_of(2) { 0.0 } else { 0.05 };
-        // On curved ground on its crest, where a ball stays.
+        // Stable position: the crest.
         let (name, place) =
             [("corner", [0.8, 0.2]), ("side", [0.6, 0.2]), ("face", [0.6, 0.1])][case / 2 % 3];
         let place = if bend > 0.0 { [FRAC_PI_8, place[1]] } else { place };
@@ -167,11 +167,11 @@ impl Draw {
         Draw { bend, place, name, spread, young: log(1e7, 4e8), stone }
     }
 
-    /// The ball in windows of `window` [s].
+    /// In windows of `window` [s].
     fn coupled<'a>(&self, solid: &'a fem::Model, window: f64) -> Coupled<'a> {
         let [x, y] = self.place;
         let mass = self.stone.density * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);
-        // The fastest swing of the ball alone takes 150 steps.
+        // 150 steps per fastest period of the ball.
         let fastest = (6.0 * self.stone.stiffness / mass).sqrt();
         let substeps = (window * fastest * 25.0).ceil().max(4.0);
         let surface = || match self.spread {
@@ -197,14 +197,13 @@ impl Draw {
     }
 }
 
-/// Windows of one period of the slowest swing of the contact, at least four.
+/// Windows per slowest contact period, at least four.
 fn period(numbers: &InterfaceNumbers) -> u64 {
     let swing = numbers.phase.max(numbers.stiffness.min(1.0) / 3.0);
     (2.0 * std::f64::consts::PI / swing).ceil().clamp(4.0, 60.0) as u64
 }
 
-/// Growth of amplitudes per window over the second half of `windows`; minus infinity of a system at rest, 1 of one that has grown beyond what
-/// weight and start explain.
+/// Growth per window over the second half; minus infinity at rest, 1 beyond the effect of weight and start.
 fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
     c.model.theta = theta;
     let surface = c.work.surface;
@@ -224,15 +223,15 @@ fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
     let (mass, stiffness) = (grains.mass(0), grains.contact_stiffness(0, 0).0);
     let start = 0.5 * mass * 1.3e-7 + (9.81 * mass).powi(2) / stiffness;
     match largest[1] {
-        // Rounding of places.
+        // Rounding.
         late if late < 1e-21 => f64::NEG_INFINITY,
         late if late > 100.0 * start => 1.0,
         late => 0.5 * (late / largest[0]).ln() / (0.25 * windows as f64),
     }
 }
 
-/// Border of stability from both sides: windows of 0.7 to 3 times the limit (W = 1, D = 1, Ω = 0.85) under the θ of the limit. Growth per
-/// window over 100 periods of the contact, at the limit also over 10 and 1,000.
+/// Windows of 0.7 to 3 times the limit (W = 1, D = 1, Ω = 0.85) with its θ, over 100 contact periods, at the
+/// limit also 10 and 1,000.
 fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     for case in cases {
@@ -277,7 +276,6 @@ fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
     found
 }
 
-/// Within the limits no ball shakes the ground.
 #[test]
 fn resting_balls_within_the_border_decay() {
     for [factor, rate] in border(0..6, [30, 100]) {
@@ -285,7 +283,7 @@ fn resting_balls_within_the_border_decay() {
     }
 }
 
-/// The whole figure of `docs/theory/coupling.md` (`docs/interface_border.py`).
+/// Figure of `docs/theory/coupling.md` (`docs/interface_border.py`).
 #[test]
 #[ignore = "minutes"]
 fn border_from_both_sides_in_full() {
@@ -302,8 +300,7 @@ fn border_from_both_sides_in_full() {
     assert!(grow(2.5, 9.0) > 0);
 }
 
-/// W of one contact is Δt √(K/m) with the mass of the point; n contacts at one point multiply W² and D by n; Ω of a ball is
-/// √(3.5 Kₜ/m).
+/// W = Δt √(K/m) for one contact; n contacts at one point multiply W² and D by n; Ω = √(3.5 Kₜ/m).
 #[test]
 fn numbers_of_known_interfaces() {
     use trackbed_coupling::interface::SurfacePoint;
@@ -338,7 +335,7 @@ fn numbers_of_known_interfaces() {
     let c = ball(&solid, [0.8, 0.2], 2600.0, 2e6, SUBSTEPS);
     let mass = c.model.grains.mass(0);
     let (_, numbers, _) = swings(c, None, 1);
-    // The same material on both sides: springs in series, and a tangential ratio of 0.5.
+    // Springs in series, tangential ratio 0.5.
     let exact = f64::from(SUBSTEPS) * DT * (3.5 * 0.5 * 2e6 / mass).sqrt();
     println!("phase {:.4} against {exact:.4}", numbers.phase);
     assert!((numbers.phase / exact - 1.0).abs() < 1e-2);

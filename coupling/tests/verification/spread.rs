@@ -1,4 +1,4 @@
-//! (iii) with distributed transfer: forces spread over discs, and the motion of the same discs back.
+//! Distributed load transfer over discs.
 
 use crate::support::*;
 use trackbed_coupling::step;
@@ -18,7 +18,7 @@ fn spread_top(model: &fem::Model, radius: f64) -> SolidSurface {
     top(model).spread_over(radius)
 }
 
-/// Nodal load of one contact, its audit before and after the spread.
+/// Nodal load of one contact with its audit.
 fn spread_load(model: &fem::Model, surface: &SolidSurface, c: &SurfaceContact) -> (Vec<f64>, TransferAudit) {
     let mut transfer = Transfer::new(surface);
     let mut audit = TransferAudit::default();
@@ -29,7 +29,7 @@ fn spread_load(model: &fem::Model, surface: &SolidSurface, c: &SurfaceContact) -
     (load, audit)
 }
 
-/// Deflection that a stone on the spread surface sees under itself [m].
+/// Deflection below a grain on the averaged surface [m].
 fn seen(model: &fem::Model, surface: &mut SolidSurface, c: &SurfaceContact, u: &[f64]) -> f64 {
     let zero = vec![0.0; u.len()];
     surface.begin_window(model.mesh(), u, &zero, &zero, 1.0);
@@ -38,14 +38,13 @@ fn seen(model: &fem::Model, surface: &mut SolidSurface, c: &SurfaceContact, u: &
     height
 }
 
-/// Quasi-static traverse of 100 N over block B, m = 8, along the middle of the elements and along their borders, for discs
-/// of 0.6 and 1 element edges: the ripple of the compliance is below 10 % (54.7 % as a point load); force and moment are
-/// kept to 1e-12 at every place, nodal loads are continuous, and so is the deflection over a border.
+/// Traverse of 100 N, m = 8, discs of 0.6 and 1 element edges: compliance ripple below 10 % (point load 54.7
+/// %); force and moment to 1e-12.
 ///
-/// The ripple itself against an independent calculation (numpy, own hex20 block, the discs' 36-point means): 8.7 and
-/// 3.8 % along the mid-line, 5.2 and 2.2 % along the borders.
+/// Independent calculation (numpy, own hex20 block, 36-point means): 8.7 and 3.8 % along mid-lines, 5.2 and
+/// 2.2 % along borders.
 #[test]
-fn the_ripple_of_a_spread_load_is_small() {
+fn the_ripple_of_discs_is_small() {
     let solid = block_b(M, Held::Base, fem::Rayleigh::default());
     let mut solver = StaticSolver::new(&solid).unwrap();
     for (radius, published) in [(0.6 * H, [0.052, 0.087]), (1.0 * H, [0.022, 0.038])] {
@@ -90,10 +89,10 @@ fn the_ripple_of_a_spread_load_is_small() {
     }
 }
 
-/// A rough, curved top: force and moment of slanting forces anywhere, borders and corners included, are kept to 1e-12, and
-/// the load goes beyond the touched face. The surface follows a rigid motion of small angle exactly.
+/// Rough curved top: force and moment to 1e-12 with inclined forces, also at borders; small rigid rotations
+/// are exact.
 #[test]
-fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
+fn distributed_load_conserves_force_and_moment() {
     let size = [0.6, 0.6, 0.3];
     let mut mesh = fem::Mesh::block([4, 4, 2], size);
     for x in &mut mesh.coordinates {
@@ -111,7 +110,7 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
     let mut wide = 0;
     for k in 0..400 {
         let t = f64::from(k);
-        // Every fourth point lies on a side of its face, so some on the border.
+        // Every fourth point on a side, some on the border.
         let mut local = [(0.917 * t).sin(), (1.313 * t).cos()];
         if k % 4 == 0 {
             local[k as usize / 4 % 2] = 1.0 - 2.0 * f64::from(k / 8 % 2);
@@ -137,11 +136,11 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
             load.chunks(3).enumerate().any(|(n, l)| *l != [0.0; 3] && !outside.contains(&(n as u32)));
         wide += i32::from(beyond);
     }
-    // Along a curved border no disc is left.
+    // Curved borders have no disc.
     assert!(wide > 350, "{wide} of 400 loads go beyond the touched face");
     println!("largest error of force {:.1e}, of moment {:.1e}", worst.0, worst.1);
     assert!(worst.0 < 1e-12 && worst.1 < 1e-12);
-    // u = t + w × x
+    // u = t + w × x.
     let (t, w) = (Vec3::new(1e-3, -2e-3, 5e-4), Vec3::new(2e-3, 1e-3, -3e-3));
     let rigid = |x: [f64; 3]| t + w.cross(&Vec3::from(x));
     let u: Vec<f64> = solid.mesh().coordinates.iter().flat_map(|x| <[f64; 3]>::from(rigid(*x))).collect();
@@ -154,7 +153,7 @@ fn sums_are_kept_on_a_rough_surface_and_at_its_borders() {
     }
 }
 
-/// What a stone sees is the transpose of what it loads: F · (motion seen for nodal motion v) = (nodal load of F) · v.
+/// F · (surface motion for nodal motion v) = (nodal load of F) · v.
 #[test]
 fn motion_comes_back_by_the_transpose() {
     let solid = block_b(4, Held::Free, fem::Rayleigh::default());
@@ -174,9 +173,8 @@ fn motion_comes_back_by_the_transpose() {
     }
 }
 
-/// A sphere bounces and slides over a soft block with its force spread over 0.6 of an edge: the account stays closed to
-/// 3e-4 of the energy turned over, as with a point force, and the interface's own error stays small. With windows of a single
-/// grain step it stays closed to 1e-5.
+/// Bouncing and sliding sphere, disc of 0.6 edges: relative energy error 3e-4; 1e-5 with windows of one DEM
+/// step.
 #[test]
 fn spreading_adds_no_energy() {
     for (radius, substeps, bound) in [(0.0, 5, 3e-4), (0.15, 5, 3e-4), (0.0, 1, 1e-5)] {

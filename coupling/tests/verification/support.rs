@@ -1,4 +1,4 @@
-//! Blocks, spheres and quasi-static solutions that the problems share.
+//! Common blocks, spheres and quasi-static solutions.
 
 use trackbed_coupling::step;
 use trackbed_coupling::surface::SolidSurface;
@@ -9,23 +9,23 @@ use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem as fem;
 use trackbed_fem::{Constraint, Mesh};
 
-/// How the sides and base of a block are held.
+/// Constraints of a block.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Held {
-    /// Base clamped, sides free.
+    /// Clamped base.
     Base,
-    /// Base clamped, rollers on the four sides.
+    /// Clamped base, rollers on four sides.
     BaseAndSides,
-    /// Not at all.
+    /// Unconstrained.
     Free,
 }
 
-/// Block B: 1 × 1 × 0.5 m with its top at z = 0, E = 20 MPa, ν = 0.3, m × m × m/2 elements, full rule.
+/// Block B: 1 × 1 × 0.5 m, top at z = 0, E = 20 MPa, ν = 0.3, m × m × m/2 elements, full integration.
 pub fn block_b(m: usize, held: Held, rayleigh: fem::Rayleigh) -> fem::Model {
     block([m, m, m / 2], [1.0, 1.0, 0.5], 20e6, 0.3, 2000.0, held, rayleigh)
 }
 
-/// A block of elements with its top at z = 0 and one corner of the base at x = y = 0.
+/// Block with its top at z = 0 and a base corner at x = y = 0.
 pub fn block(
     counts: [usize; 3],
     size: [f64; 3],
@@ -42,7 +42,6 @@ pub fn block(
     model(mesh, size, young, poisson, density, held, rayleigh)
 }
 
-/// A model on a mesh that fills a block, perhaps with another inner shape.
 pub fn model(
     mesh: Mesh,
     size: [f64; 3],
@@ -78,12 +77,11 @@ pub fn model(
     .expect("a valid block")
 }
 
-/// The upward faces of a model as a surface.
 pub fn top(model: &fem::Model) -> SolidSurface {
     SolidSurface::new(model.mesh(), SolidSurface::facing(model.mesh(), [0.0, 0.0, 1.0], 0.3))
 }
 
-/// The contact that a sphere with its centre at `centre` and a force `force` on the surface makes: the nearest patch.
+/// Contact of a sphere at `centre` with the nearest patch.
 pub fn contact(surface: &SolidSurface, centre: [f64; 3], force: [f64; 3]) -> SurfaceContact {
     let mut patches = Vec::new();
     surface.candidates(centre.map(|c| c - 0.2), centre.map(|c| c + 0.2), &mut patches);
@@ -106,7 +104,7 @@ pub fn contact(surface: &SolidSurface, centre: [f64; 3], force: [f64; 3]) -> Sur
     }
 }
 
-/// Nodal load of contacts, shape `[3·nodes]`, with the audit of its sums.
+/// Nodal load, shape `[3·nodes]`, and its audit.
 pub fn nodal_load(
     model: &fem::Model,
     surface: &SolidSurface,
@@ -120,7 +118,7 @@ pub fn nodal_load(
     (load, audit)
 }
 
-/// Vertical displacement of the solid under a contact: Σ N(ξ) u at the contact point [m].
+/// Vertical displacement at a contact [m].
 pub fn deflection(surface: &SolidSurface, contact: &SurfaceContact, u: &[f64]) -> f64 {
     let n = surface.shape_functions(contact.patch, contact.local);
     surface
@@ -131,7 +129,7 @@ pub fn deflection(surface: &SolidSurface, contact: &SurfaceContact, u: &[f64]) -
         .sum()
 }
 
-/// Area mean of the vertical displacement of the whole top [m].
+/// Mean vertical displacement of the top [m].
 pub fn mean_top(model: &fem::Model, surface: &SolidSurface, u: &[f64]) -> f64 {
     let mut weights = vec![0.0; model.dof_count()];
     for face in surface.faces() {
@@ -141,7 +139,7 @@ pub fn mean_top(model: &fem::Model, surface: &SolidSurface, u: &[f64]) -> f64 {
     weights.iter().zip(u).map(|(w, u)| w * u).sum::<f64>() / area
 }
 
-/// One elastic material for spheres and surface: contact stiffness [N/m], friction, restitution.
+/// Contact stiffness [N/m], friction, restitution.
 pub fn material(density: f64, stiffness: f64, friction: f64, restitution: f64) -> dem::Material {
     dem::Material {
         density,
@@ -154,7 +152,7 @@ pub fn material(density: f64, stiffness: f64, friction: f64, restitution: f64) -
     }
 }
 
-/// A coupled system of a solid and spheres, at rest in the solid's unloaded shape.
+/// Coupled system at rest, undeformed.
 pub struct Coupled<'a> {
     pub model: step::Model<'a>,
     pub state: step::State,
@@ -166,7 +164,6 @@ impl<'a> Coupled<'a> {
         Coupled::with_surface(solid, grains, substeps, top(solid))
     }
 
-    /// The same with a surface of its own.
     pub fn with_surface(
         solid: &'a fem::Model,
         grains: dem::ModelInput,
@@ -190,12 +187,10 @@ impl<'a> Coupled<'a> {
         Coupled { model, state, work }
     }
 
-    /// One window with the given forces on bodies.
     pub fn step(&mut self, applied: &[(usize, [f64; 3])]) {
         self.step_loaded(applied, |_, _| {});
     }
 
-    /// The same with loads on the solid.
     pub fn step_loaded(&mut self, applied: &[(usize, [f64; 3])], load: impl Fn(f64, &mut [f64])) {
         step::step(
             &self.model,
@@ -214,7 +209,7 @@ impl<'a> Coupled<'a> {
     }
 }
 
-/// Random numbers of a seed, for places that follow no pattern: SplitMix64 (Steele, Lea and Flood 2014).
+/// SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Scatter(u64);
 
 impl Scatter {
@@ -232,7 +227,7 @@ impl Scatter {
     }
 }
 
-/// Layers of 6 × 6 spheres in a box as wide as block B, a sleeper of 120 kg above them as body 0.
+/// Layers of 6 × 6 spheres on block B below a sleeper of 120 kg (body 0).
 pub fn sleeper_on_a_bed(layers: u32, dt: f64) -> dem::ModelInput {
     let side = |at: f64, normal: Vec3| dem::Plane {
         point: Vec3::new(at, at, 0.0),

@@ -1,11 +1,11 @@
-//! V0.5 and V0.6: nodal loads of a point force on the surface.
+//! Nodal loads of a point force on the surface.
 
 use crate::support::*;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_fem::{Mesh, Rayleigh};
 
-/// A block whose top nodes are moved about, so that faces are distorted and curved.
+/// Distorted, curved faces.
 fn rough_block() -> trackbed_fem::Model {
     let size = [0.6, 0.6, 0.3];
     let mut mesh = Mesh::block([3, 3, 2], size);
@@ -37,9 +37,9 @@ fn at(surface: &SolidSurface, patch: u32, local: [f64; 2], force: [f64; 3]) -> S
     }
 }
 
-/// V0.6: Σ Fᵢ = F and Σ xᵢ × Fᵢ = p × F to 1e-13, and only nodes of the face are loaded.
+/// Σ Fᵢ = F and Σ xᵢ × Fᵢ = p × F to 1e-13; only nodes of the face.
 #[test]
-fn force_and_moment_are_kept_to_rounding() {
+fn conserves_force_and_moment() {
     let model = rough_block();
     let surface = top(&model);
     let mut worst = (0.0_f64, 0.0_f64);
@@ -61,7 +61,7 @@ fn force_and_moment_are_kept_to_rounding() {
     assert!(worst.0 < 1e-13 && worst.1 < 1e-13);
 }
 
-/// The audit sees a load put on the wrong node: a contact point that is not where the coordinates say.
+/// A contact point inconsistent with its coordinates.
 #[test]
 fn the_audit_sees_a_moment_error() {
     let model = rough_block();
@@ -72,9 +72,9 @@ fn the_audit_sees_a_moment_error() {
     assert!(audit.force < 1e-13 && audit.moment > 1e-4, "{audit:?}");
 }
 
-/// V0.5: a point on an edge or a corner shared by two or four faces gives the same nodal loads from each, to 1e-14 F.
+/// To 1e-14 F.
 #[test]
-fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
+fn shared_edges_give_equal_loads() {
     let model = rough_block();
     let surface = top(&model);
     let force = [10.0, -5.0, -100.0];
@@ -108,10 +108,10 @@ fn shared_edges_and_corners_give_the_same_loads_from_every_side() {
     assert!(shared > 100 && worst < 1e-14);
 }
 
-/// The pressure on a face is the normal part of the impulse of all contacts on it over window and area: 100 N and 60 N on
-/// one face of 0.0625 m², 150 N on the next, for half a window each, with forces along the face that do not count.
+/// 100 N and 60 N on one face of 0.0625 m², 150 N on the next, half a window each; tangential forces do not
+/// count.
 #[test]
-fn the_pressure_on_a_face_is_its_impulse_over_its_area() {
+fn face_pressure_is_impulse_per_area() {
     let solid = block_b(4, Held::Base, Rayleigh::default());
     let surface = top(&solid);
     let mut transfer = trackbed_coupling::transfer::Transfer::new(&surface);
@@ -122,11 +122,10 @@ fn the_pressure_on_a_face_is_its_impulse_over_its_area() {
     assert!((found / (160.0 * 1e-3 / 2e-3 / 0.0625) - 1.0).abs() < 1e-12, "{found}");
 }
 
-/// What dashpots took beyond their law, in closed form: with the force D of a dashpot in each of four sub-steps of h, a surface
-/// said to move at v, after w in the window before, and found to have moved at s: 4 D h (v − s) + D h (v − w)/2, along each axis. The
-/// same in every window: each has a first sub-step of its own.
+/// Interface dashpot error of force D in four sub-steps h, predicted v after w, computed s: 4 D h (v − s) + D
+/// h (v − w)/2, in every window.
 #[test]
-fn the_lag_of_dashpots_has_its_closed_form_in_every_window() {
+fn dashpot_error_matches_closed_form() {
     let solid = block_b(4, Held::Base, Rayleigh::default());
     let surface = top(&solid);
     let mut transfer = trackbed_coupling::transfer::Transfer::new(&surface);

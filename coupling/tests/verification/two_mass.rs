@@ -1,15 +1,12 @@
-//! Order and size of the exchange step: the two-mass study, with this program's own windows.
+//! Two-mass study of coupling schemes and windows, with the program's own steps.
 //!
-//! The study (one surface node of mass m on a spring of 0.05 Kₙ, Newmark ½, ¼, and a stone of mass M on a contact Kₙ with a
-//! dashpot) is rebuilt from real parts: a block of 2 × 2 × 1 bricks with every dof held but the vertical one in the middle
-//! of its top, so that m and the spring are the diagonal entries of its matrices, and a sphere that is pressed on that
-//! node and may move vertically only. Grain steps are a twentieth of a window or less. The dashpot is chosen so that
-//! C = 2 ζ √(m' Kₙ), m' = m M/(m + M), as in the study.
+//! One surface node of mass m on a spring of 0.05 Kₙ and a grain of mass M on a contact Kₙ with dashpot C = 2
+//! ζ √(m' Kₙ), m' = m M/(m + M): the central top node of 2 × 2 × 1 hexahedra with one free dof, below a
+//! sphere.
 //!
-//! Reference: largest W = Δt √(Kₙ/m) with a spectral radius of at most 1 + 1e-6, to 0.1 %, from linear maps of one exchange
-//! computed apart (`docs/two_mass.py`) with the node in the middle of each sub-step, as here. For A they are those of the
-//! study, which goes in steps of 0.02 and 0.05; for B the study has the node at the end of a sub-step, which costs
-//! it its thresholds at ζ = 0.05 and 0.1 (0.19 and 0.34 against 1.81 and 1.73 here, M = 3 m), while those at 0.2 and 0.3 agree.
+//! Reference: largest W = Δt √(Kₙ/m) with spectral radius at most 1 + 1e-6, to 0.1 % (`docs/two_mass.py`,
+//! surface at mid-sub-step). With the surface at the sub-step's end, predicted loses its thresholds at ζ =
+//! 0.05 and 0.1 (0.19 and 0.34 instead of 1.81 and 1.73, M = 3 m), not those at 0.2 and 0.3.
 
 use crate::support::*;
 use trackbed_coupling::scheme::Scheme;
@@ -21,7 +18,7 @@ use trackbed_fem::{Constraint, Mesh};
 
 const STIFFNESS: f64 = 1e6;
 const RADIUS: f64 = 0.05;
-/// Presses the sphere on; so small that the surface stays flat.
+/// Small, so that the surface stays flat.
 const FORCE: f64 = 1.0;
 
 struct OneNode {
@@ -31,7 +28,6 @@ struct OneNode {
     spring: f64,
 }
 
-/// The block with one free dof.
 fn one_node() -> OneNode {
     let build = |young: f64| {
         let mut mesh = Mesh::block([2, 2, 1], [1.0, 1.0, 0.5]);
@@ -65,11 +61,11 @@ fn one_node() -> OneNode {
     OneNode { solid, node, mass, spring }
 }
 
-/// Growth of a small disturbance over many windows: its largest size late over that earlier.
+/// Late over early amplitude of a small disturbance.
 fn growth(scheme: Scheme, w: f64, zeta: f64, mass_ratio: f64) -> f64 {
     let OneNode { solid, node, mass, spring } = one_node();
     let stone = mass_ratio * mass;
-    // The program's dashpot knows the stone's mass alone.
+    // The contact law uses the grain mass only.
     let own = zeta * (mass / (mass + stone)).sqrt();
     let window = w * (mass / STIFFNESS).sqrt();
     let substeps = 20.max((w / 0.1).ceil() as u32);
@@ -115,7 +111,7 @@ fn growth(scheme: Scheme, w: f64, zeta: f64, mass_ratio: f64) -> f64 {
     largest[3] / largest[1]
 }
 
-/// Largest stable W of a scheme, by bisection between two values to 1 %.
+/// Largest stable W, bisected to 1 %.
 fn threshold(scheme: Scheme, zeta: f64, mass_ratio: f64, mut low: f64, mut high: f64) -> f64 {
     while high / low > 1.02 {
         let middle = (low * high).sqrt();
@@ -126,8 +122,7 @@ fn threshold(scheme: Scheme, zeta: f64, mass_ratio: f64, mut low: f64, mut high:
 
 const ITERATED: Scheme = Scheme::Iterated { tolerance: 1e-9, passes: 30 };
 
-/// Scheme A and B, stiffened and iterated, at 0.9 and 1.1 of the reference threshold (M = 3 m, ζ = 0.2): stable below,
-/// unstable above; the iterated scheme is stable at 5, three times what B can bear.
+/// Stable at 0.9 and unstable at 1.1 of the threshold (M = 3 m, ζ = 0.2); iterated stable at 5.
 #[test]
 fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
     for (scheme, reference) in [(Scheme::Lagged, 0.29), (Scheme::Predicted, 1.59), (Scheme::Stiffened, 3.33)]
@@ -142,10 +137,9 @@ fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
     assert!(iterated < 1.0 + 1e-4);
 }
 
-/// Without damping B grows by 0.021 W⁴ per window, which its limit leaves too small to matter in a thousand of them, and the
-/// iterated scheme not at all at five.
+/// Predicted grows by 0.021 W⁴ per window, negligible in a thousand; iterated does not grow.
 #[test]
-fn without_damping_the_schemes_are_neutral_within_their_limits() {
+fn undamped_schemes_are_nearly_neutral() {
     let limit = largest_w(Scheme::Predicted, 0.0, 1.0);
     let (within, beyond) =
         (growth(Scheme::Predicted, limit, 0.0, 1.0), growth(Scheme::Predicted, 2.5 * limit, 0.0, 1.0));
@@ -156,13 +150,12 @@ fn without_damping_the_schemes_are_neutral_within_their_limits() {
     assert!(within < 1.2 && beyond > 2.0 && iterated < 1.001);
 }
 
-/// The limits that scenes are judged by stay below the thresholds.
 #[test]
 fn limits_are_below_the_thresholds() {
     for ratio in [1.0, 3.0, 10.0] {
         for scheme in [Scheme::Lagged, Scheme::Predicted, Scheme::Stiffened] {
             for (zeta, threshold) in DAMPING.iter().zip(reference(ratio, scheme)) {
-                // Stiffened grows by less than 1e-4 per window beyond it, see the guide.
+                // Stiffened grows by less than 1e-4 per window beyond it.
                 let slow = scheme == Scheme::Stiffened && ratio == 10.0;
                 let limit = largest_w(scheme, *zeta, ratio);
                 assert!(limit < threshold || slow && limit <= 2.0, "{scheme:?} {ratio} {zeta}: {limit}");
@@ -189,8 +182,8 @@ fn reference(ratio: f64, scheme: Scheme) -> [f64; 4] {
     }
 }
 
-/// The whole table: A, B and stiffened within 10 % in W of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m (bisected to
-/// 2 %); the iterated scheme stable at 5.
+/// Within 10 % of the reference for ζ = 0.05 to 0.3 and M = m, 3 m, 10 m (bisected to 2 %); iterated stable
+/// at 5.
 #[test]
 #[ignore = "the table of the guide, 4 min"]
 fn thresholds_of_the_schemes_in_full() {

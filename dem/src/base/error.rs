@@ -1,181 +1,181 @@
-//! What can go wrong, with the body, pair and time it happened at.
+//! Errors of models and steps, with body, pair and time.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why a model cannot be built.
+/// Error of a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    /// A quantity of the model is beyond what a number holds, or 0 where it must not be.
+    /// Quantity is not finite, or zero where zero is invalid.
     #[error("{quantity} of the grains is not a finite number")]
     NotFinite {
-        /// Name of the quantity.
+        /// Quantity.
         quantity: &'static str,
     },
-    /// A material constant is out of range.
+    /// Invalid material constant.
     #[error("material {material}: {parameter}: found {value}, expected {expected}")]
     Material {
-        /// Index of the material.
+        /// Material index.
         material: usize,
-        /// Key of the parameter.
+        /// Parameter key.
         parameter: &'static str,
-        /// Value found, in the unit of the parameter.
+        /// Value found [unit of the parameter].
         value: f64,
         /// Valid values.
         expected: String,
     },
-    /// A parameter of a pair of materials is out of range.
+    /// Invalid parameter of a material pair.
     #[error("pair {index} of materials: {parameter}: found {value}, expected {expected}")]
     Pair {
-        /// Index of the pair.
+        /// Pair index.
         index: usize,
-        /// Key of the parameter.
+        /// Parameter key.
         parameter: &'static str,
-        /// Value found, in the unit of the parameter.
+        /// Value found [unit of the parameter].
         value: f64,
         /// Valid values.
         expected: String,
     },
-    /// Two materials have no law of contact.
+    /// Material pair without contact law.
     #[error("contact of materials {a} and {b}: {problem}")]
     Law {
-        /// One material.
+        /// First material.
         a: usize,
-        /// The other.
+        /// Second material.
         b: usize,
-        /// What is wrong.
+        /// Problem.
         problem: String,
     },
-    /// An index points nowhere.
+    /// Index out of range.
     #[error("{owner} {index} names {kind} {found}, but there are {count}")]
     Index {
-        /// What holds the index: "body", "plane", …
+        /// Owner of the index: "body", "plane", …
         owner: &'static str,
-        /// Its own index.
+        /// Index of the owner.
         index: usize,
-        /// What the index should name.
+        /// Kind of the referenced object.
         kind: &'static str,
-        /// The index found.
+        /// Index found.
         found: usize,
-        /// How many there are.
+        /// Number of such objects.
         count: usize,
     },
-    /// A shape is degenerate.
+    /// Degenerate shape.
     #[error("shape {shape}: {problem}")]
     Shape {
-        /// Index of the shape.
+        /// Shape index.
         shape: usize,
-        /// What is wrong.
+        /// Problem.
         problem: String,
     },
-    /// A body's value is out of range.
+    /// Invalid value of a body.
     #[error("body {body}: {quantity} is {value}; it must {requirement}")]
     Body {
-        /// Index of the body.
+        /// Body index.
         body: usize,
-        /// Name of the value.
+        /// Quantity.
         quantity: &'static str,
-        /// The value found.
+        /// Value found.
         value: f64,
-        /// What it must satisfy.
+        /// Requirement.
         requirement: &'static str,
     },
-    /// A wall is degenerate.
+    /// Degenerate wall.
     #[error("{wall}: {problem}")]
     Wall {
         /// "plane 2", "triangle 7 of surface 0", …
         wall: String,
-        /// What is wrong.
+        /// Problem.
         problem: &'static str,
     },
-    /// A body cannot be absent at the start.
+    /// Body that cannot be absent at the start.
     #[error("body {body} is to be absent at the start, but {problem}")]
     Absent {
-        /// Index of the body.
+        /// Body index.
         body: usize,
-        /// Why it cannot.
+        /// Reason.
         problem: &'static str,
     },
-    /// Two rigid partners may touch.
+    /// Possible contact of two rigid partners.
     #[error(
         "{a} and {b} can be in contact, but both are rigid (infinite stiffness); give one material, or the pair, a stiffness"
     )]
     RigidPair {
-        /// One partner.
+        /// First partner.
         a: String,
-        /// The other.
+        /// Second partner.
         b: String,
     },
-    /// The time step is above the stability limit.
+    /// Time step above the stability limit.
     #[error(
         "time step {dt} s is above the critical time step {limit} s, set by {cause}; reduce it, or allow it explicitly"
     )]
     TimeStep {
-        /// The step asked for [s].
+        /// Requested time step [s].
         dt: f64,
-        /// The limit [s].
+        /// Critical time step [s].
         limit: f64,
-        /// What sets the limit.
+        /// Object that sets the limit.
         cause: String,
     },
-    /// A constant of a kind of bond is out of range.
+    /// Invalid constant of a bond kind.
     #[error("bond kind {kind}: {quantity} is {value}; it must {requirement}")]
     BondKind {
-        /// Index of the kind.
+        /// Kind index.
         kind: usize,
-        /// Name of the constant.
+        /// Constant.
         quantity: &'static str,
-        /// The value found.
+        /// Value found.
         value: f64,
-        /// What it must satisfy.
+        /// Requirement.
         requirement: &'static str,
     },
-    /// A bond cannot be made.
+    /// Invalid bond.
     #[error("bond {index}: {problem}")]
     Bond {
-        /// Index of the bond.
+        /// Bond index.
         index: usize,
-        /// What is wrong.
+        /// Problem.
         problem: String,
     },
-    /// Adhesion cannot be combined with something.
+    /// Adhesion combined with an unsupported feature.
     #[error("contact override {index} has adhesion, which cannot be combined with {with}")]
     Adhesion {
-        /// Index of the override.
+        /// Override index.
         index: usize,
-        /// With what.
+        /// Unsupported feature.
         with: &'static str,
     },
-    /// Periodic axes cannot be as asked for.
+    /// Invalid periodic axes.
     #[error("periodic axes: {problem}")]
     Periodic {
-        /// What is wrong.
+        /// Problem.
         problem: String,
     },
-    /// A setting of the run is out of range.
+    /// Invalid setting of the run.
     #[error("{quantity} is {value}; it must {requirement}")]
     Setting {
-        /// Name of the setting.
+        /// Setting.
         quantity: &'static str,
-        /// The value found.
+        /// Value found.
         value: f64,
-        /// What it must satisfy.
+        /// Requirement.
         requirement: &'static str,
     },
 }
 
-/// One side of a contact.
+/// Contact partner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partner {
-    /// A body (index).
+    /// Body (index).
     Body(usize),
-    /// A plane (index).
+    /// Plane (index).
     Plane(usize),
-    /// A triangle (index over all triangle surfaces in order).
+    /// Triangle (index over all triangle surfaces).
     Triangle(u32),
-    /// A wall that has no triangles (index over all walls in order).
+    /// Wall without triangles (index over all walls).
     Wall(u32),
-    /// A patch of the external surface.
+    /// Patch of the external surface.
     Patch(u32),
 }
 
@@ -191,55 +191,54 @@ impl fmt::Display for Partner {
     }
 }
 
-/// Why a step failed. The state is then not fit to go on from: return to an earlier copy.
+/// Error of a step. The state is invalid afterwards: return to an earlier copy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
-    /// Two partners overlap by more than the smaller radius: the time step is too large, the contact too soft,
-    /// or the scene starts with bodies inside each other.
+    /// Overlap above the smaller radius: time step too large, contact too soft, or initial overlap.
     #[error(
         "at t = {time:.6e} s: overlap of body {body} and {partner}: {overlap} m (limit {bound} m). Reduce the time step, or increase the contact stiffness."
     )]
     Overlap {
         /// Time [s].
         time: f64,
-        /// The body.
+        /// Body.
         body: usize,
-        /// What it touches.
+        /// Contact partner.
         partner: Partner,
-        /// The overlap [m].
+        /// Overlap [m].
         overlap: f64,
-        /// The largest overlap that has a meaning [m].
+        /// Largest valid overlap [m].
         bound: f64,
     },
-    /// A body moves so fast that contacts would be missed, or its velocity is not a number.
+    /// Body too fast for contact detection, or its velocity is not a number.
     #[error(
         "at t = {time:.6e} s: speed of body {body}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
     )]
     Speed {
         /// Time [s].
         time: f64,
-        /// The body.
+        /// Body.
         body: usize,
-        /// Its speed [m/s].
+        /// Speed [m/s].
         speed: f64,
-        /// The bound [m/s].
+        /// Limit [m/s].
         bound: f64,
     },
-    /// A rigid triangle body moves so fast that contacts would be missed, or its velocity is not a number.
+    /// Rigid triangle body too fast for contact detection, or its velocity is not a number.
     #[error(
         "at t = {time:.6e} s: speed of wall {wall}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
     )]
     WallSpeed {
         /// Time [s].
         time: f64,
-        /// The wall, counted through.
+        /// Wall (index over all walls).
         wall: usize,
-        /// The largest speed of its points [m/s].
+        /// Largest speed of a point [m/s].
         speed: f64,
-        /// The bound [m/s].
+        /// Limit [m/s].
         bound: f64,
     },
-    /// Two round bodies of walls have come within each other's bounds.
+    /// Overlapping bounding boxes of two round rigid bodies.
     #[error(
         "at t = {time:.6e} s: contact of walls {} and {}: not supported between round rigid bodies. Keep their bounding boxes apart.",
         walls[0],
@@ -248,10 +247,10 @@ pub enum StepError {
     WallsMeet {
         /// Time [s].
         time: f64,
-        /// The walls, counted through.
+        /// Walls (indices over all walls).
         walls: [usize; 2],
     },
-    /// Two walls overlap by more than contacts are meant for.
+    /// Overlap of two walls above the limit.
     #[error(
         "at t = {time:.6e} s: overlap of walls {} and {}: {overlap:e} m (limit {bound:e} m). Increase the contact stiffness, or `rounding`.",
         walls[0],
@@ -260,48 +259,48 @@ pub enum StepError {
     WallsOverlap {
         /// Time [s].
         time: f64,
-        /// The walls, counted through.
+        /// Walls (indices over all walls).
         walls: [usize; 2],
         /// Overlap of one contact [m].
         overlap: f64,
-        /// The bound [m].
+        /// Limit [m].
         bound: f64,
     },
-    /// The device that computes the steps does not respond, or has no memory left.
+    /// Device does not respond, or is out of memory.
     #[error("at t = {time:.6e} s: GPU failed: {problem}")]
     Device {
         /// Time [s].
         time: f64,
-        /// What went wrong.
+        /// Problem.
         problem: String,
     },
-    /// A rank that computes a part of the steps does not respond, or cannot.
+    /// Rank does not respond, or failed.
     #[error("at t = {time:.6e} s: rank {rank} lost: {problem}")]
     Rank {
         /// Time [s].
         time: f64,
-        /// Number of the rank.
+        /// Rank.
         rank: usize,
-        /// What is known.
+        /// Problem.
         problem: String,
     },
-    /// An applied force names no body, or is not finite.
+    /// Applied force on an unknown body, or not finite.
     #[error("at t = {time:.6e} s: applied force {index} (body {body}): no such body, or not finite")]
     Applied {
         /// Time [s].
         time: f64,
         /// Index of the applied force.
         index: usize,
-        /// The body it names.
+        /// Body.
         body: usize,
     },
-    /// A surface is given, but the model has no material for it.
+    /// Surface without a material in the model.
     #[error("surface without a material in the model (surface_material)")]
     SurfaceMaterial,
-    /// The surface is not made of the triangles that the model has of it.
+    /// Surface with other triangles than the model.
     #[error("surface with other triangles than the model's (surface_mesh)")]
     SurfaceMesh,
-    /// State or work belongs to another model.
+    /// State or workspace of another model.
     #[error("state of {found} bodies for a model of {expected} bodies")]
     Mismatch {
         /// Bodies of the model.

@@ -1,9 +1,8 @@
-//! What a block of bodies may meet that ends a run.
+//! Failures within a block that end a run.
 
 use super::error::Partner;
 use serde::{Deserialize, Serialize};
 
-/// A failure that a block met.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) enum Failure {
     Overlap { body: u32, partner: Partner, overlap: f64, bound: f64 },

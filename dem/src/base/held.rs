@@ -1,6 +1,5 @@
-//! Memory that lists hold.
+//! Allocated memory of lists.
 
-/// Bytes that a list holds, room for more included.
 pub(crate) fn held<T>(list: &Vec<T>) -> usize {
     list.capacity() * size_of::<T>()
 }

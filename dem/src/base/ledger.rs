@@ -1,14 +1,14 @@
-//! Where energy and momentum went: sums over all steps since the start.
+//! Energy and momentum totals since the start.
 //!
-//! A step at time t carries the bodies from t − dt/2 to t + dt/2, so the sums belong to half steps, as the
-//! velocities do. Work is force × mean of the velocities before and after, which is exactly the change of kinetic
-//! energy in a leapfrog; energy that contacts dissipate uses the speed extrapolated to t, right to second order.
+//! A step at time t moves bodies from t − dt/2 to t + dt/2: totals belong to half steps. Work is force × mean
+//! velocity, exactly the change of kinetic energy in a leapfrog scheme; contact dissipation uses the speed
+//! extrapolated to t (second order).
 
 use crate::base::Vec3;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
-/// Impulse and angular impulse about the origin.
+/// Linear and angular impulse about the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Impulse {
     /// ∫ F dt [N s].
@@ -18,7 +18,6 @@ pub struct Impulse {
 }
 
 impl Impulse {
-    /// Adds the impulse of a force at a point.
     #[inline(always)]
     pub(crate) fn add(&mut self, point: &Vec3, impulse: &Vec3) {
         self.linear += impulse;
@@ -33,74 +32,72 @@ impl AddAssign<&Impulse> for Impulse {
     }
 }
 
-/// The ledger. Signs: dissipated energies are positive when lost; works and impulses are what the bodies received.
+/// Energy and momentum totals: dissipation lost, work and impulse received by the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
-    /// Energy lost in dashpots [J].
+    /// Dissipation by dashpots [J].
     pub dissipated_dashpot: f64,
-    /// Energy lost in sliding [J].
+    /// Dissipation by sliding [J].
     pub dissipated_friction: f64,
-    /// Energy lost in the dashpots of bonds [J].
+    /// Bond dashpot dissipation [J].
     #[serde(default)]
     pub dissipated_bonds: f64,
-    /// Energy set free by breaking bonds [J].
+    /// Energy released by bond breakage [J].
     #[serde(default)]
     pub released_by_breaks: f64,
-    /// Energy taken by local damping [J].
+    /// Dissipation by local damping [J].
     pub dissipated_local_damping: f64,
-    /// Energy lost in the dashpots of mounts of rigid bodies [J].
+    /// Mount dashpot dissipation [J].
     #[serde(default)]
     pub dissipated_mounts: f64,
     /// Work of applied forces [J].
     pub work_applied: f64,
-    /// Work of body forces, gravity excepted [J].
+    /// Work of body forces without gravity [J].
     pub work_body_forces: f64,
-    /// Work of planes and walls with prescribed motion on the bodies [J].
+    /// Work of planes and walls with prescribed motion [J].
     pub work_walls: f64,
-    /// Work of walls that are driven by a force on the bodies [J].
+    /// Work of servo-controlled walls [J].
     pub work_servo: f64,
-    /// Work of the external surface's motion on the bodies [J].
+    /// Work of the external surface [J].
     pub work_surface: f64,
-    /// Potential energy that bodies gained when they were put back into a periodic box [J].
+    /// Potential energy gain by periodic wrapping [J].
     #[serde(default)]
     pub work_periodic: f64,
-    /// Work of what keeps fixed motions at their speed [J].
+    /// Work of constraint forces [J].
     pub work_constraints: f64,
-    /// Energy that bodies brought along when they were put in, less what went with those taken out [J]: kinetic, of gravity,
-    /// and of the contact springs that ceased to be.
+    /// Energy of inserted minus removed bodies, without their contact springs [J].
     #[serde(default)]
     pub work_flow: f64,
-    /// Impulse of gravity.
+    /// Gravity impulse.
     pub gravity: Impulse,
-    /// Impulse of planes and walls, rigid bodies excepted: they count among the bodies.
+    /// Impulse of planes and walls without rigid bodies.
     pub walls: Impulse,
     /// Impulse of the external surface.
     pub surface: Impulse,
     /// Impulse of applied forces.
     pub applied: Impulse,
-    /// Impulse of body forces, gravity excepted.
+    /// Impulse of body forces without gravity.
     pub body_forces: Impulse,
-    /// Impulse of what keeps fixed motions at their speed.
+    /// Impulse of constraint forces.
     pub constraints: Impulse,
-    /// Angular impulse of periodic borders: of contacts across them, whose two forces do not act at one point, and of
-    /// bodies put back into the box. Its linear part is zero.
+    /// Angular impulse of periodic contacts (forces at two points) and wrapped bodies; linear part zero.
     #[serde(default)]
     pub periodic: Impulse,
     /// Impulse of local damping.
     pub local_damping: Impulse,
-    /// Impulse of the mounts of rigid bodies.
+    /// Impulse of mounts.
     #[serde(default)]
     pub mounts: Impulse,
-    /// Change of momentum by bodies that were set elsewhere.
+    /// Momentum change of repositioned bodies.
     #[serde(default)]
     pub jumps: Impulse,
-    /// Momentum that bodies brought along when they were put in, less that of those taken out.
+    /// Momentum of inserted minus removed bodies.
     #[serde(default)]
     pub flow: Impulse,
 }
 
 impl Ledger {
-    /// All energy lost [J].
+    /// Returns total dissipation [J].
     pub fn dissipated(&self) -> f64 {
         self.dissipated_dashpot
             + self.dissipated_friction
@@ -110,7 +107,7 @@ impl Ledger {
             + self.dissipated_mounts
     }
 
-    /// All work received from outside, gravity excepted (it has a potential) [J].
+    /// Returns external work without gravity [J].
     pub fn work(&self) -> f64 {
         self.work_applied
             + self.work_body_forces
@@ -122,7 +119,7 @@ impl Ledger {
             + self.work_flow
     }
 
-    /// Sum of all impulses: the change of momentum since the start.
+    /// Returns the total impulse, the change of momentum.
     pub fn impulse(&self) -> Impulse {
         let mut sum = self.gravity;
         let own = [self.walls, self.surface, self.applied, self.body_forces, self.constraints];

@@ -1,4 +1,4 @@
-//! What every layer uses: vectors, errors, the ledger, random numbers.
+//! Vectors, errors, energy totals, random numbers.
 
 pub mod error;
 pub(crate) mod failure;

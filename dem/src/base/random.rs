@@ -1,20 +1,20 @@
-//! The random stream of the generators.
+//! Random number stream of the generators.
 //!
-//! PCG XSL-RR 128/64 (M. E. O'Neill, "PCG: A family of simple fast space-efficient statistically good algorithms
-//! for random number generation", HMC-CS-2014-0905, 2014).
+//! PCG XSL-RR 128/64 (M. E. O'Neill, "PCG: A family of simple fast space-efficient statistically good
+//! algorithms for random number generation", HMC-CS-2014-0905, 2014).
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// A stream for one purpose; different purposes of one seed are independent.
+/// Random stream; different purposes of one seed are independent.
 pub struct Random(Pcg64);
 
 impl Random {
-    /// The stream of `purpose` that `seed` starts.
+    /// Creates the stream of `seed` and `purpose`.
     pub fn new(seed: u64, purpose: u64) -> Random {
-        // An odd multiplier keeps (seed, purpose) pairs apart; seed_from_u64 then spreads the bits.
+        // An odd multiplier separates (seed, purpose) pairs.
         Random(Pcg64::seed_from_u64(seed ^ purpose.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
@@ -23,7 +23,7 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A random order of 0..n (Fisher–Yates).
+    /// Random permutation of 0..n (Fisher–Yates).
     pub fn permutation(&mut self, n: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..n).collect();
         for i in (1..n).rev() {
@@ -33,7 +33,7 @@ impl Random {
         order
     }
 
-    /// An orientation uniform over all rotations (K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
+    /// Uniform random orientation (K. Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
     pub fn orientation(&mut self) -> UnitQuaternion<f64> {
         let (u, a, b) = (self.uniform(), TAU * self.uniform(), TAU * self.uniform());
         let (s, c) = ((1.0 - u).sqrt(), u.sqrt());

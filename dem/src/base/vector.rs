@@ -1,4 +1,4 @@
 //! Vectors.
 
-/// A vector of three components.
+/// Three-component vector.
 pub type Vec3 = nalgebra::Vector3<f64>;

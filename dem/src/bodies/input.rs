@@ -1,39 +1,39 @@
-//! A body as given by its user.
+//! Body input.
 
 use crate::base::Vec3;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
-/// One body.
+/// Body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyInput {
     /// Shape (index).
     pub shape: usize,
-    /// Factor on all lengths of the shape [-].
+    /// Scale factor on lengths [-].
     pub scale: f64,
     /// Material (index).
     pub material: usize,
-    /// Group number, carried to the output.
+    /// Group number, for output.
     pub part: u32,
-    /// Centre of mass at the start [m].
+    /// Initial centre of mass [m].
     pub position: Vec3,
-    /// Turns the shape's frame into the world's.
+    /// Shape frame to world.
     pub orientation: UnitQuaternion<f64>,
-    /// Velocity at the start [m/s].
+    /// Initial velocity [m/s].
     pub velocity: Vec3,
-    /// Angular velocity at the start, in world axes [rad/s].
+    /// Initial angular velocity, world axes [rad/s].
     pub spin: Vec3,
-    /// Motions that keep their starting velocity whatever the forces: x, y, z, and turning about x, y, z (world axes).
+    /// Motions at constant starting velocity: translation, rotation, world axes.
     pub fixed: [bool; 6],
-    /// Mass instead of density × volume [kg]; the inertia scales along.
+    /// Mass instead of density × volume [kg]; scales the inertia.
     pub mass: Option<f64>,
-    /// Whether the body is not there at the start: it waits until [`crate::engine::flow::exchange`] puts it in.
+    /// Whether the body is absent until [`crate::engine::flow::exchange`] inserts it.
     #[serde(default)]
     pub absent: bool,
 }
 
 impl Default for BodyInput {
-    /// Shape 0 of material 0, unscaled, at rest at the origin, free.
+    /// Free unscaled shape 0 of material 0, at rest at the origin.
     fn default() -> BodyInput {
         BodyInput {
             shape: 0,

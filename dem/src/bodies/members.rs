@@ -1,4 +1,4 @@
-//! Constants of the bodies of a block in block order, and the spheres that they are made of.
+//! Constants of a block's bodies in block order, and their spheres.
 
 use super::block::Block;
 use super::table::{Bodies, Kind, for_members};
@@ -11,51 +11,44 @@ use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
 use std::ops::Range;
 
-/// Constants of a block's bodies, and its spheres where they are. A block of single spheres keeps next to nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Members {
-    /// Whether any body is no single sphere: spheres and bodies then have numbers of their own.
+    /// Whether any body is not a single sphere, so that sphere and body indices differ.
     pub rigid: bool,
-    /// Whether all bodies are made of spheres.
     pub round: bool,
     pub mass_sum: f64,
-    /// The material of all bodies, where there is only one.
     pub material: Option<u32>,
-    /// Kind of each body; this and what follows is empty in blocks of single spheres.
+    /// Like the next fields, empty for single spheres.
     pub kind: Vec<Kind>,
     pub inertia: Vec<Vec3>,
-    /// Bounding radius of each body that is not a single sphere; zero for those.
+    /// Bounding radius; zero for single spheres.
     pub reach: Vec<f64>,
-    /// Bits 0–2 translation, 3–5 rotation; empty where all motions are free.
+    /// Bits 0–2 translation, 3–5 rotation; empty if all are free.
     pub fixed: Vec<u8>,
-    /// Shape (index) and scale of each body, and half sides of a box about its centre that holds it; only in blocks of
-    /// bodies that are not made of spheres.
+    /// Shape (index), scale; half sides of a bounding box. Only for bodies not made of spheres.
     pub solids: Vec<(u32, f64)>,
     pub half: Vec<Vec3>,
-    /// First sphere of each body, and one past the last.
+    /// First sphere of each body, and the total.
     pub first: Vec<u32>,
-    /// Number of spheres.
     pub count: usize,
-    /// Place of the body of each sphere, its centre in the body frame and radius, and the same in the world.
+    /// Body of each sphere; centre and radius in body frame and world.
     pub owner: Vec<u32>,
     pub local: Vec<Record>,
     spheres: Vec<Record>,
 }
 
-/// What all are equal to, if they are.
 pub(crate) fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
     let first = all.next()?;
     all.all(|x| x == first).then_some(first)
 }
 
 impl Members {
-    /// Number of spheres in bodies of several.
     pub fn in_clumps(&self) -> usize {
         let counts = self.first.windows(2).map(|w| (w[1] - w[0]) as usize);
         counts.filter(|count| *count > 1).sum()
     }
 
-    /// Lays the constants out in the block's present order, and places the spheres.
+    /// Rebuilds constants in block order and positions spheres.
     pub fn arrange(&mut self, table: &Bodies, shapes: &[Shape], block: &Block) {
         *self = Members::default();
         let bodies = &block.bodies;
@@ -95,57 +88,50 @@ impl Members {
         }
     }
 
-    /// Whether the block is one of bodies that are not made of spheres.
     pub fn solid(&self) -> bool {
         self.kind.first() == Some(&Kind::Solid)
     }
 
-    /// Whether all bodies are made of spheres and none has a fixed motion.
+    /// Whether all bodies are free and consist of spheres.
     pub fn plain(&self) -> bool {
         self.round && self.fixed.is_empty()
     }
 
-    /// Whether the bodies k to k + 3 are made of spheres and have no fixed motion.
+    /// Likewise for bodies k to k + 3.
     #[inline(always)]
     pub fn all_free(&self, k: usize) -> bool {
         self.round && (self.fixed.is_empty() || self.fixed[k..k + 4] == [0; 4])
     }
 
-    /// The body of a sphere.
     #[inline(always)]
     pub fn body(&self, sphere: u32) -> u32 {
         self.owner.get(sphere as usize).copied().unwrap_or(sphere)
     }
 
-    /// The spheres of a body.
     pub fn of_body(&self, k: usize) -> Range<u32> {
         if self.rigid { self.first[k]..self.first[k + 1] } else { k as u32..k as u32 + 1 }
     }
 
-    /// Number of a sphere within its body.
     #[inline(always)]
     pub fn member(&self, sphere: u32, body: usize) -> u32 {
         if self.rigid { sphere - self.first[body] } else { 0 }
     }
 
-    /// Centre and radius of each sphere, of clumps too.
+    /// Includes clump members.
     #[inline(always)]
     pub fn spheres<'a>(&'a self, block: &'a Block) -> &'a [Record] {
         if self.rigid { &self.spheres } else { &block.centre }
     }
 
-    /// Centre and radius of each sphere of a clump.
     pub fn spheres_of(&self, k: usize) -> &[Record] {
         &self.spheres[self.first[k] as usize..self.first[k + 1] as usize]
     }
 
-    /// Where the spheres of clumps are kept.
     #[inline(always)]
     pub fn local_and_world(&mut self) -> (&[Record], &mut [Record]) {
         (&self.local, &mut self.spheres)
     }
 
-    /// Puts the spheres of a body where its centre and orientation say.
     #[inline(always)]
     pub fn place_spheres(&mut self, k: usize, centre: &Record, orientation: &UnitQuaternion<f64>) {
         let (x, columns) = (V3::from_vec(&xyz(centre)), Turn::of(orientation).columns());
@@ -158,7 +144,6 @@ impl Members {
 }
 
 impl Members {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         let spheres = held(&self.owner) + held(&self.local) + held(&self.spheres) + held(&self.first);
         let bodies = held(&self.inertia) + held(&self.reach) + held(&self.kind);

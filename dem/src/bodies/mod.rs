@@ -1,4 +1,4 @@
-//! Bodies: what a user gives, constants of all, and the arrays of a block of neighbours that every step reads and writes.
+//! Bodies: input, constants, and per-block arrays.
 
 pub(crate) mod block;
 pub(crate) mod input;

@@ -1,6 +1,5 @@
-//! Parts of lists that keep the numbers of the whole.
+//! Sub-ranges indexed as the complete list.
 
-/// Neighbouring items of a list, by their places in the whole.
 #[derive(Debug)]
 pub(crate) struct Part<'a, T> {
     pub first: usize,
@@ -22,7 +21,6 @@ impl<T> Default for Part<'_, T> {
 }
 
 impl<T> Part<'_, T> {
-    /// The item at a place of the whole, if it is of this part.
     #[inline(always)]
     pub fn get(&self, at: usize) -> Option<&T> {
         self.list.get(at.wrapping_sub(self.first))

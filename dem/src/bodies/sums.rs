@@ -1,4 +1,4 @@
-//! What acts on the bodies of a block in a step, and what it books.
+//! Forces and totals of a block in one step.
 
 use crate::base::Vec3;
 use crate::base::failure::Failure;
@@ -7,7 +7,7 @@ use crate::lanes::record::Record;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
-/// Sum of the contact forces on a body, and of the torques about its centre; the fourth numbers are zero.
+/// Force and torque about the centre; fourth numbers zero.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(crate) struct Sums(pub [Record; 2]);
@@ -29,7 +29,6 @@ impl Sums {
         (force, torque)
     }
 
-    /// Adds a force and a torque about the centre.
     #[inline(always)]
     pub fn push(&mut self, force: &Vec3, torque: &Vec3) {
         let (f, t) = self.both();
@@ -40,42 +39,40 @@ impl Sums {
     }
 }
 
-/// Forces on the bodies of a block in the step at hand, and what the block books.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tally {
-    /// In block order; empty between steps, unless they are to be kept.
+    /// Empty between steps unless retained.
     pub sums: Vec<Sums>,
     pub ledger: Ledger,
-    /// Largest speed of a point of a body [m/s].
     pub fastest: f64,
     pub failure: Option<Failure>,
 }
 
-/// What grains and other walls felt from one wall in one step.
+/// Wall contact sums of one step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WallSum {
-    /// Force on them [N] and its moment about the wall's centre [N m].
+    /// Force on grains and other walls [N], and moment about the wall's centre [N m].
     pub force: Vec3,
     pub moment: Vec3,
-    /// Sum over the contacts of stiffness [N/m] and of √(stiffness × mass) [N s/m]; of driven walls only.
+    /// Σ stiffness [N/m], Σ √(stiffness × mass) [N s/m]; servo-controlled walls only.
     pub stiffness: f64,
     pub damping: f64,
-    /// Force of their dashpots on the grains; of driven walls only.
+    /// On the grains; servo-controlled walls only.
     pub dashpots: DashpotSum,
 }
 
-/// Forces of dashpots by the speed of the wall that their loss was computed with [N].
+/// Dashpot force by wall velocity of its dissipation [N].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct DashpotSum {
-    /// The speed of half a step ago.
+    /// Last half step.
     pub latest: Vec3,
-    /// That speed, extrapolated from the step before.
+    /// Extrapolated from the previous step.
     pub extrapolated: Vec3,
 }
 
 impl DashpotSum {
-    /// Loss [W] that the dashpots have beyond the computed one where the wall's speed was `now` [m/s] half a step ago, `change`
-    /// more than a step before, and is `next` half a step on: the loss over a step is that of the mean speed.
+    /// Dashpot dissipation beyond the computed one [W], based on the mean wall velocity: `now` [m/s] at the
+    /// last half step, `change` since the previous one, `next` at the coming one.
     pub fn lag(&self, now: &Vec3, change: &Vec3, next: &Vec3) -> f64 {
         let beyond = (next - now) * 0.5;
         self.latest.dot(&beyond) + self.extrapolated.dot(&(beyond - change * 0.5))

@@ -1,4 +1,4 @@
-//! Constants of the bodies, packed: what bodies share is kept once per class, and a body holds a class and a scale.
+//! Packed constants of all bodies: shared class, individual scale.
 
 use super::input::BodyInput;
 use crate::base::Vec3;
@@ -8,16 +8,13 @@ use crate::shape::{Shape, cuboid};
 use nalgebra::UnitQuaternion;
 use std::collections::HashMap;
 
-/// What kind of shape a body has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Sphere,
     Clump,
-    /// Not made of spheres.
     Solid,
 }
 
-/// Constants of one body, worked out from its class and scale.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
     pub kind: Kind,
@@ -26,17 +23,15 @@ pub(crate) struct Body {
     pub material: u32,
     pub part: u32,
     pub mass: f64,
-    /// Zero when no translation is free: the partner then has the effective mass alone.
+    /// Zero without free translation.
     pub inverse_mass: f64,
     /// Principal moments [kg m²].
     pub inertia: Vec3,
-    /// Radius of a sphere about the centre that holds the body [m].
     pub radius: f64,
     /// Bits 0–2 translation, 3–5 rotation.
     pub fixed: u8,
 }
 
-/// What many bodies have in common.
 #[derive(Clone, Copy, Debug)]
 struct Class {
     kind: Kind,
@@ -44,34 +39,30 @@ struct Class {
     material: u32,
     part: u32,
     fixed: u8,
-    /// A mass given instead of density × volume.
     mass: Option<f64>,
     density: f64,
-    /// Of the unscaled shape: volume, bounding radius, moments over mass.
+    /// Unscaled: volume, bounding radius, moments over mass.
     volume: f64,
     radius: f64,
     gyration2: Vec3,
 }
 
-/// All bodies of a model, and how they start.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies {
     classes: Vec<Class>,
-    /// Empty where there is one class only.
+    /// Empty for a single class.
     class: Vec<u32>,
     scale: Vec<f64>,
-    /// `None` once given up.
+    /// `None` once released.
     positions: Option<Vec<Vec3>>,
-    /// The rest is empty where all are unturned or at rest.
+    /// Empty if all are unrotated or at rest, likewise below.
     orientations: Vec<UnitQuaternion<f64>>,
     velocities: Vec<Vec3>,
     spins: Vec<Vec3>,
-    /// Bodies that are not there at the start; empty where all are.
     absent: Vec<bool>,
 }
 
 impl Bodies {
-    /// Resolves bodies of given shapes and materials.
     pub fn new(input: &[BodyInput], shapes: &[Shape], materials: &[Material]) -> Result<Bodies, ModelError> {
         let n = input.len();
         let mut bodies = Bodies {
@@ -149,7 +140,6 @@ impl Bodies {
         (0..self.len()).map(|k| self.get(k))
     }
 
-    /// Positions at the start, unless given up.
     pub fn positions(&self) -> Option<&[Vec3]> {
         self.positions.as_deref()
     }
@@ -170,7 +160,6 @@ impl Bodies {
         self.spins.get(k).copied().unwrap_or_default()
     }
 
-    /// Whether a body is not there at the start.
     pub fn absent(&self, k: usize) -> bool {
         self.absent.get(k).is_some_and(|a| *a)
     }
@@ -207,7 +196,6 @@ fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
     }
 }
 
-/// Calls `f` with centre and radius of each sphere of a shape.
 pub(crate) fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64)) {
     match shape {
         Shape::Sphere { radius } => f(Vec3::zeros(), radius * scale),

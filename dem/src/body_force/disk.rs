@@ -1,12 +1,13 @@
-//! What of a dilated disk is below a plane, at any tilt: slices across its axis are circles that the plane cuts segments from. They are summed up
-//! by a rule of Gauss between the slices that the plane only touches, which are known in closed form, in a variable in which the sums are smooth
-//! there too.
+//! Part of a dilated disk below a plane, at any tilt.
+//!
+//! Slices across the axis are circular segments. Gauss's rule runs between slices tangent to the plane, in a
+//! variable that keeps the integrand smooth.
 
 use super::skin::Wet;
 use crate::base::Vec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Half of the points and weights of Gauss's rule on [−1, 1]; the others lie opposite.
+/// Gauss's rule on [−1, 1]: positive half of points, with weights.
 const RULE: [[f64; 2]; 8] = [
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
     [0.281_603_550_779_258_9, 0.182_603_415_044_923_58],
@@ -18,23 +19,22 @@ const RULE: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_095],
 ];
 
-/// Slope below which a plane counts as lying across the axis.
+/// Slope of a plane normal to the axis.
 const LEVEL: f64 = 1e-12;
 
-/// A dilated disk, and a plane normal to (`slope`, 0, `up`) at `level` along it, both of length one; areas are seen along `along`.
+/// Disk, and plane n·x = `level`, n = (`slope`, 0, `up`).
 struct Cut {
     big: f64,
     r: f64,
     slope: f64,
     up: f64,
     level: f64,
-    /// Size and angle of the part of `along` across the axis, and the part along it.
+    /// `along`: size and angle across the axis; axial part.
     across: f64,
     angle: f64,
     axial: f64,
 }
 
-/// Sums over what is below.
 #[derive(Default)]
 struct Sum {
     volume: f64,
@@ -42,13 +42,12 @@ struct Sum {
     aside: f64,
     high: f64,
     area: f64,
-    /// Areas as seen, and with their sign.
+    /// Projected area: absolute and signed.
     seen: f64,
     signed: f64,
 }
 
-/// What of a disk of radius `big`, dilated by `r` [m], lies below the plane that is normal to the unit vector `up` at `level` along it [m];
-/// its areas as seen along the unit vector `along`.
+/// Part below up·x = `level` of a disk of radius `big`, dilated by `r` [m]; projected along `along`.
 pub(super) fn below([big, r]: [f64; 2], up: &Vec3, level: f64, along: &Vec3) -> Wet {
     let slope = libm::hypot(up.x, up.y);
     if level <= -(slope * big + r) {
@@ -87,13 +86,13 @@ pub(super) fn below([big, r]: [f64; 2], up: &Vec3, level: f64, along: &Vec3) -> 
 }
 
 impl Cut {
-    /// Angles of latitude on the rounding at which the plane touches slices, with both ends, in order.
+    /// Ascending latitudes where slices touch the plane, and both ends.
     fn places(&self) -> arrayvec::ArrayVec<f64, 6> {
         let tilt = libm::atan2(self.slope, self.up);
         let mut places = arrayvec::ArrayVec::new();
         places.push(-FRAC_PI_2);
         for side in [1.0, -1.0] {
-            // Where level = up r sin φ ± slope (R + r cos φ).
+            // level = up r sin φ ± slope (R + r cos φ).
             let q = (self.level - side * self.slope * self.big) / self.r;
             if q.abs() >= 1.0 {
                 continue;
@@ -111,12 +110,11 @@ impl Cut {
         places
     }
 
-    /// Half of the angle that is above the plane of a circle at a height z along the axis.
+    /// Half angle above the plane, at height z on the axis.
     fn dry(&self, z: f64, radius: f64) -> f64 {
         libm::acos(((self.level - self.up * z) / (self.slope * radius)).clamp(-1.0, 1.0))
     }
 
-    /// Adds the slices between two latitudes.
     fn strip(&self, [from, to]: [f64; 2], sum: &mut Sum) {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let (sine, cosine) = libm::sincos(middle);
@@ -131,7 +129,6 @@ impl Cut {
         }
     }
 
-    /// Adds a slice at a latitude of some width.
     fn slice(&self, latitude: f64, width: f64, sum: &mut Sum) {
         let (sine, cosine) = libm::sincos(latitude);
         let (z, radius) = (self.r * sine, self.big + self.r * cosine);
@@ -142,7 +139,7 @@ impl Cut {
         sum.volume += area * thick;
         sum.aside -= 2.0 / 3.0 * (radius * sb).powi(3) * thick;
         sum.high += z * area * thick;
-        // The rim has the normal (cos φ cos θ, cos φ sin θ, sin φ).
+        // Normal: (cos φ cos θ, cos φ sin θ, sin φ).
         let strip = self.r * radius * width;
         sum.area += strip * (TAU - 2.0 * beta);
         let (round, flat) = (cosine * self.across, sine * self.axial);

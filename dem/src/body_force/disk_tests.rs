@@ -2,7 +2,7 @@ use super::*;
 use crate::shape::dilated::tests::rows;
 use nalgebra::UnitQuaternion;
 
-/// What is below the water of 16 disks at any tilt, against a table that slices the other way agree with to 4e-8.
+/// Table checked to 4e-8 by slicing in another direction.
 #[test]
 fn disks_are_cut_exactly() {
     let table = rows(include_str!("../../tests/data/water/disks.csv"));
@@ -18,11 +18,11 @@ fn disks_are_cut_exactly() {
         worst[1] = worst[1].max((arm - Vec3::new(x, 0.0, down - z)).norm());
     }
     println!("volume off by {:.1e} m³, centre by {:.1e} m", worst[0], worst[1]);
-    // The table has nine digits of the volume, eight of the centre.
+    // Digits of the table: volume nine, centre eight.
     assert!(worst[0] < 1e-8 && worst[1] < 1e-7, "{worst:?}");
 }
 
-/// Wet and dry are the whole, in volume, moment, surface; areas as seen of a whole one are its shadow.
+/// Volume, moment, area; projected area of a whole disk.
 #[test]
 fn parts_add_up() {
     let (big, r) = (0.7, 0.12);
@@ -39,7 +39,7 @@ fn parts_add_up() {
         assert!((one.area + two.area - own.area).abs() < 1e-6 * own.area);
         assert!((one.arm * one.volume + two.arm * two.volume).norm() < 1e-9);
         let whole = below([big, r], &up, 10.0, &along);
-        // The shadow of a dilated disk: an ellipse dilated by a disk, by Steiner's formula.
+        // Shadow: an ellipse dilated by a disk (Steiner's formula).
         let tilt = along.z.abs();
         let around: f64 = (0..2000)
             .map(|k| {

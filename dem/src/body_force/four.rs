@@ -1,23 +1,22 @@
-//! Body forces that see four bodies at a time.
+//! Body forces computed for four bodies at a time.
 
 use super::work::{ForceWork, Seen};
 use crate::bodies::block::Block;
 use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
 
-/// Four bodies as such a force sees them; one that depends on more adds it here.
+/// Input of such a force for four bodies.
 pub(super) struct Bodies4<R> {
-    /// Velocity of the centre half a step ago [m/s].
+    /// Velocity of the centre, half a step ago [m/s].
     pub velocity: V3<R>,
-    /// Radius of the sphere of the body's volume [m].
+    /// Radius of the volume-equivalent sphere [m].
     pub radius: R,
 }
 
-/// The force [N] on four bodies at their centres, and the torque about them [N m].
+/// Force [N] and torque [N m] about the centres of four bodies.
 pub(super) trait ActOnFour {
     fn act_on_four<R: Real>(&self, on: &Bodies4<R>) -> (V3<R>, V3<R>);
 }
 
-/// Adds one force on the bodies of a block to what acts on them.
 pub(super) fn act(force: &impl ActOnFour, seen: &Seen<'_>, work: &mut ForceWork) {
     lanes::run(seen.simd, Acting { force, block: seen.block, work });
 }
@@ -43,7 +42,7 @@ impl<F: ActOnFour> Acting<'_, F> {
         let Acting { force, block, work: ForceWork { radius, acting, .. } } = self;
         let n = block.bodies.len();
         for k in (0..n).step_by(4) {
-            // The last four may be fewer: the lanes beyond see the last body again, and nobody reads them.
+            // Surplus lanes repeat the last body and are not read.
             let at = [k, (k + 1).min(n - 1), (k + 2).min(n - 1), (k + 3).min(n - 1)];
             let v = &block.velocity;
             let [vx, vy, vz, _] = R::transpose([

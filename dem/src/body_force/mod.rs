@@ -1,15 +1,9 @@
-//! Body forces: what acts on bodies without a partner. A stage of the step between contacts and motion, which works on four
-//! bodies at a time where it can, and leaves their motion as it is; a model without body forces has no such stage. (Gravity and
-//! local damping belong to the motion itself: one is the same acceleration for all, the other needs the sum of all forces.)
+//! Body forces: forces without a contact partner, other than gravity and local damping.
 //!
 //! A body force is one file with an `Act` and one line in `body_forces!`.
 //!
-//! A fluid that a body has to push aside adds to the body's inertia. Its reaction −mₐ a depends on the acceleration that it
-//! takes part in, and is worked out from all other forces F: −mₐ F/(m + mₐ), stable whatever mₐ is.
-//!
-//! Velocities are those of half a step ago, so a force that takes them as they are is right to first order in the share of the
-//! velocity that it takes in a step. Its work is booked exactly for translation, and with the spins before and after the step
-//! for rotation.
+//! Added mass mₐ reacts to all other forces F with −mₐ F/(m + mₐ), stable for any mₐ. Velocities are half a
+//! step old: drag is first order in its relative change of velocity per step.
 
 mod disk;
 mod four;
@@ -32,7 +26,6 @@ pub(crate) use skin::Skin;
 pub(crate) use work::{Act, ForceWork, Seen};
 
 impl BodyForce {
-    /// Waves that it depends on.
     pub(crate) fn wave(&self) -> Option<&Wave> {
         match self {
             BodyForce::Water(water) => water.wave.as_ref(),
@@ -41,10 +34,9 @@ impl BodyForce {
     }
 }
 
-/// Writes the list of all body forces.
 macro_rules! body_forces {
     ($($name:ident = $source:expr),+ $(,)?) => {
-        /// A body force.
+        /// Body force.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum BodyForce {
             $(
@@ -58,12 +50,12 @@ macro_rules! body_forces {
                 match self { $(BodyForce::$name(force) => force.act(seen, work)),+ }
             }
 
-            /// Where it is published.
+            /// Source of the model.
             pub fn source(&self) -> &'static str {
                 match self { $(BodyForce::$name(_) => $source),+ }
             }
 
-            /// What of it is out of range: quantity, value and requirement.
+            /// Quantity out of range, with value and requirement.
             pub(crate) fn fault(&self) -> Option<(&'static str, f64, &'static str)> {
                 match self { $(BodyForce::$name(force) => force.fault()),+ }
             }
@@ -77,7 +69,7 @@ body_forces! {
 }
 
 impl BodyForce {
-    /// Shortest time in which it changes the motion of a body [s].
+    /// Shortest time constant [s].
     fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
         match self {
             BodyForce::Water(water) => water.time_constant(bodies, gravity),
@@ -86,15 +78,15 @@ impl BodyForce {
     }
 }
 
-/// Shortest time in which any of the forces changes the motion of a body [s].
+/// Of all forces [s].
 pub(crate) fn time_constant(forces: &[BodyForce], bodies: &Bodies, gravity: &Vec3) -> f64 {
     forces.iter().map(|f| f.time_constant(bodies, gravity)).fold(f64::INFINITY, f64::min)
 }
 
-/// Longest step over that time: velocities then err by 1 %. Beyond the time itself explicit steps grow.
+/// Largest time step over time constant: velocity error 1 %. Above 1 explicit steps diverge.
 pub(crate) const RESOLVED: f64 = 0.02;
 
-/// Surfaces of all shapes, where one of the forces asks for them, or ground that is scarred.
+/// Empty unless water or scarring needs surfaces.
 pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Vec<Skin> {
     if scarred || forces.iter().any(|f| matches!(f, BodyForce::Water(_))) {
         shapes.iter().map(Skin::of).collect()
@@ -104,7 +96,7 @@ pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Ve
 }
 
 impl ForceWork {
-    /// Works out the forces on the bodies of a block and books their impulse; [`ForceWork::add_to`] adds them to the others.
+    /// Computes forces and records their impulse; [`ForceWork::add_to`] adds them.
     pub fn act(&mut self, forces: &[BodyForce], seen: Seen<'_>, ledger: &mut Ledger) {
         let (block, sums, kick) = (seen.block, seen.sums, seen.kick);
         self.acting.clear();

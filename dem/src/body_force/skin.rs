@@ -1,9 +1,7 @@
-//! The surface of a shape as triangles, and what of it is below a plane.
+//! Triangulated surface of a shape, and its part below a plane.
 //!
-//! Faces of a dilated polyhedron are as they are; an edge is divided into strips of at most 30°, whose corners are moved out so
-//! that the volume of the edge is right, and each corner into a fan whose middle is moved out until its volume is right. What is
-//! under water of it is cut exactly; faces, edges and corners that are wholly above or below are not looked into. Dilated disks have no
-//! triangles: slices of them are cut in closed form (`disk.rs`).
+//! Edges of dilated polyhedra become strips of at most 30°, vertices fans, moved outwards to the exact
+//! volume. Disks use closed forms (`disk.rs`).
 
 use super::disk;
 use crate::base::Vec3;
@@ -12,70 +10,65 @@ use crate::shape::dilated::Core;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Largest angle of a strip of an edge [rad].
+/// Largest strip angle [rad].
 const STRIP: f64 = 0.525;
 
-/// A triangle.
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     corners: [u16; 3],
-    /// Outward normal, as long as the area [m²], and that area.
+    /// Outward normal times area [m²], and area.
     area: Vec3,
     size: f64,
-    /// Volume of the tetrahedron between it and the origin [m³].
     volume: f64,
 }
 
-/// The triangles of a face, an edge or a corner.
 #[derive(Clone, Debug)]
 struct Group {
-    /// Corners of the core that it belongs to, and how far its points are from them: ranges of `owners` and `offsets`.
+    /// Core vertices, and offsets from them: ranges of `owners` and `offsets`.
     owners: Range<u32>,
     offsets: Range<u32>,
     facets: Range<u32>,
-    /// What its triangles add up to: tetrahedra and areas.
     volume: f64,
     moment: Vec3,
     area: f64,
-    /// The sum of the normals where all lie in one plane.
+    /// Sum of coplanar normals.
     flat: Option<Vec3>,
 }
 
-/// The surface of a shape, in its own frame; empty of shapes made of spheres.
+/// In the body frame; empty for shapes made of spheres.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Skin {
-    /// Corners of the core, and of triangles.
+    /// Core and triangle vertices.
     core: Vec<Vec3>,
     points: Vec<Vec3>,
     facets: Vec<Facet>,
     groups: Vec<Group>,
     owners: Vec<u8>,
     offsets: Vec<Vec3>,
-    /// Largest distance of a point from its corner of the core [m].
+    /// Largest offset from a core vertex [m].
     margin: f64,
-    /// First moment of the whole, which a finer surface would not have [m⁴], and its volume [m³].
+    /// Volume [m³]; first moment [m⁴], a discretisation error.
     whole: (f64, Vec3),
-    /// Mean distance of the corners from the centre [m].
+    /// Mean vertex distance from the centre [m].
     pub reach: f64,
-    /// Radii of a dilated disk, which has no triangles [m].
+    /// Radii of a dilated disk [m].
     disk: Option<[f64; 2]>,
 }
 
-/// What of a body is under water.
+/// Submerged part of a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wet {
     /// Volume [m³].
     pub volume: f64,
-    /// From the body's centre to that of the volume, world axes [m].
+    /// Vector from the body's centre to the centre of buoyancy [m].
     pub arm: Vec3,
-    /// Area of its surface, the plane of the water excepted [m²].
+    /// Wetted area [m²], without the waterplane.
     pub area: f64,
-    /// Half of the sum of the areas of its surface, the plane of the water included, each as seen along a direction [m²].
+    /// Half the sum of areas projected along a direction, with waterplane [m²].
     pub seen: f64,
 }
 
 impl Skin {
-    /// The surface of a shape.
     pub fn of(shape: &Shape) -> Skin {
         match shape {
             Shape::Sphere { .. } | Shape::Clump(_) => Skin::default(),
@@ -84,13 +77,13 @@ impl Skin {
         }
     }
 
-    /// The surface of a core dilated by a radius [m].
+    /// Core dilated by a radius [m].
     pub fn new(core: &Core, radius: f64) -> Skin {
         if let Some(rim) = core.rim {
             return Skin { disk: Some([rim, radius]), reach: rim + radius, ..Skin::default() };
         }
         let mut skin = Skin { core: core.corners.clone(), margin: radius, ..Skin::default() };
-        // Corners of the faces, moved out.
+        // Face vertices, moved outwards.
         let mut places = HashMap::new();
         for (f, face) in core.faces.iter().enumerate() {
             for &c in &face.corners {
@@ -113,9 +106,8 @@ impl Skin {
         skin
     }
 
-    /// Strips of the edges and fans of the corners.
     fn rounded(&mut self, core: &Core, radius: f64, places: &HashMap<(u8, u8), u16>) {
-        // Arcs around each corner: directions and points along them.
+        // Arcs around vertices: directions and points.
         let mut arcs: Vec<Vec<(Vec3, u16)>> = vec![Vec::new(); core.corners.len()];
         for edge in &core.edges {
             let [n, m] = edge.faces.map(|f| core.faces[f as usize].normal);
@@ -135,7 +127,7 @@ impl Skin {
             }
             self.group(&edge.ends, directions.iter().map(|d| d * radius), false);
             for (end, &c) in ends.iter().zip(&edge.ends) {
-                // Pairs of neighbours: a fan needs no order of the arcs around it.
+                // Neighbour pairs: a fan needs no order.
                 for k in 0..last {
                     arcs[c as usize].push((directions[k], end[k]));
                     arcs[c as usize].push((directions[k + 1], end[k + 1]));
@@ -151,7 +143,7 @@ impl Skin {
                 let spread = middle.dot(&a.cross(&b)).abs();
                 let [u, v] = [a.normalize(), b.normalize()];
                 let above = 1.0 + middle.dot(&u) + u.dot(&v) + v.dot(&middle);
-                // Solid angle of the three directions (Van Oosterom & Strackee 1983).
+                // Solid angle of three directions (Van Oosterom & Strackee 1983).
                 solid += 2.0 * libm::atan2(middle.dot(&u.cross(&v)).abs(), above);
                 flat += spread;
             }
@@ -172,7 +164,7 @@ impl Skin {
         self.points.len() as u16 - 1
     }
 
-    /// Adds a triangle, so that the origin, which lies within, is behind it.
+    /// Adds a triangle, oriented away from the interior origin.
     fn facet(&mut self, corners: [u16; 3]) {
         let [a, b, c] = corners.map(|k| self.points[k as usize]);
         let area = (b - a).cross(&(c - a)) * 0.5;
@@ -182,8 +174,7 @@ impl Skin {
         self.facets.push(Facet { corners, area, size: area.norm(), volume: volume.abs() });
     }
 
-    /// Makes the triangles that are in no group yet one, of a face, an edge or a corner with these corners of the core
-    /// and points at `offsets` from them.
+    /// Groups the remaining triangles of one face, edge or vertex.
     fn group(&mut self, corners: &[u8], offsets: impl IntoIterator<Item = Vec3>, flat: bool) {
         let from = self.groups.last().map_or(0, |g| g.facets.end);
         let (first, second) = (self.owners.len() as u32, self.offsets.len());
@@ -208,8 +199,7 @@ impl Skin {
         self.groups.push(group);
     }
 
-    /// What lies below the plane that is normal to the unit vector `up` at `level` [m] along it, all in the frame of the shape; its
-    /// areas as seen along the unit vector `along`. `heights` is scratch.
+    /// Part below the plane up·x = `level` [m]; projected along `along`; `heights` is scratch.
     pub fn below(&self, up: &Vec3, level: f64, along: &Vec3, heights: &mut Vec<f64>) -> Wet {
         if let Some(radii) = self.disk {
             return disk::below(radii, up, level, along);
@@ -247,7 +237,7 @@ impl Skin {
                 let [a, b, c] = f.corners;
                 let h = [a, b, c].map(|k| up.dot(&at(k)) - level);
                 let wet = h.map(|h| h <= 0.0);
-                // The corner that is alone on its side comes first.
+                // The vertex alone on its side is first.
                 let (p, h) = match wet {
                     [false, false, false] => continue,
                     [true, true, true] => {
@@ -271,24 +261,22 @@ impl Skin {
     }
 }
 
-/// The smallest and the largest of some numbers.
 fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)])
 }
 
-/// Sums over tetrahedra between the origin and triangles.
 #[derive(Default)]
 struct Part {
     volume: f64,
     moment: Vec3,
     area: f64,
     seen: f64,
-    /// The plane of the water, as its normal times its area.
+    /// Waterplane: normal times area.
     lid: Vec3,
 }
 
 impl Part {
-    /// Adds a triangle in the plane of a facet that has a `share` of its area.
+    /// Adds a coplanar part of a facet.
     #[inline(always)]
     fn add(&mut self, corners: &[Vec3; 3], facet: &Facet, along: &Vec3, share: f64) {
         let [a, b, c] = corners;
@@ -299,15 +287,15 @@ impl Part {
         self.seen += facet.area.dot(along).abs() * share;
     }
 
-    /// Adds what of a triangle, whose corners have heights `h` above a plane, is below it, and its share of the lid: a fan about
-    /// `foot`, a point of the plane. Its first corner is alone on its side.
+    /// Adds the part below the plane, and its waterplane as a fan about `foot`. The first vertex is alone on
+    /// its side.
     #[inline(always)]
     fn cut(&mut self, facet: &Facet, p: &[Vec3; 3], h: &[f64; 3], foot: &Vec3, along: &Vec3) {
         let alone = h[0] <= 0.0;
         let [s, t] = [h[0] / (h[0] - h[1]), h[0] / (h[0] - h[2])];
         let (first, last) = (p[0] + (p[1] - p[0]) * s, p[0] + (p[2] - p[0]) * t);
         let tip = [p[0], first, last];
-        // The lid is run through against the sense of the triangle.
+        // The waterplane is traversed against the triangle.
         let (before, after) = if alone {
             self.add(&tip, facet, along, s * t);
             (last, first)
@@ -324,8 +312,8 @@ impl Part {
     }
 }
 
-/// Directions from one unit normal to another in equal angles of at most [`STRIP`]; those in between are longer than 1, so that the
-/// triangles between neighbours have together the area of the sector.
+/// Directions between two normals in equal angles up to [`STRIP`]; inner ones are lengthened to the sector's
+/// area.
 fn strip(n: &Vec3, m: &Vec3) -> Vec<Vec3> {
     let angle = libm::atan2(n.cross(m).norm(), n.dot(m));
     let count = ((angle / STRIP).ceil() as usize).max(if angle > 0.035 { 2 } else { 1 });

@@ -1,9 +1,8 @@
-//! Drag of a fluid that moves with one velocity everywhere: wind, or the draught of a train.
+//! Drag of a fluid of uniform velocity, such as wind.
 //!
-//! F = ½ ρ C_d π r² |u| u, u the velocity of the fluid less that of the body's centre, r the radius of the sphere of the body's
-//! volume. C_d belongs to that radius and does not change with the speed: crushed stone of sphericity 0.8 has about 1.4, of 0.9
-//! 0.9, and a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵ (Haider & Levenspiel, Powder Technology 58, 1989,
-//! eq. 11). No lift, no shelter behind other bodies, no torque.
+//! F = ½ ρ C_d π r² |u| u, u the relative velocity, r the volume-equivalent radius. C_d is constant: crushed
+//! stone of sphericity 0.8 about 1.4, 0.9 about 0.9, a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵
+//! (Haider & Levenspiel, Powder Technology 58, 1989, eq. 11). No lift, shelter or torque.
 //!
 //! Theory manual: equation (6.34) of `docs/theory/track.md`.
 
@@ -13,17 +12,16 @@ use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body};
 use crate::lanes::{Real, V3};
 
-/// Where it is published.
 pub(super) const SOURCE: &str = "drag: Haider & Levenspiel, Powder Technology 58, 1989";
 
-/// A fluid that moves with one velocity everywhere.
+/// Fluid of uniform velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wind {
     /// Velocity [m/s].
     pub velocity: Vec3,
     /// Density of the fluid [kg/m³].
     pub density: f64,
-    /// Drag coefficient [-], of the sphere of a body's volume.
+    /// Drag coefficient [-], for the volume-equivalent sphere.
     pub drag: f64,
 }
 
@@ -41,8 +39,8 @@ impl Wind {
 }
 
 impl Wind {
-    /// Time in which the lightest body takes on the speed of the fluid [s]: m/(ρ C_d π r² u), r of the sphere around it, u the speed of
-    /// the fluid and that at which the body falls in it.
+    /// Response time of the lightest body [s]: m/(ρ C_d π r² u), r bounding radius, u fluid plus terminal
+    /// speed.
     pub(super) fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
         let time = |b: Body| {
             let area = self.density * self.drag * std::f64::consts::PI * b.radius * b.radius;
@@ -50,7 +48,7 @@ impl Wind {
             b.mass / (area * (self.velocity.norm() + falling))
         };
         let free = bodies.iter().filter(|b| b.inverse_mass > 0.0);
-        // A fluid without density or drag has none.
+        // Infinite without density or drag.
         free.map(time).filter(|t| t.is_finite()).fold(f64::INFINITY, f64::min)
     }
 }

@@ -1,26 +1,25 @@
-//! Contact-point bond: a spring in tension and one in shear at the point where two spheres meet. It resists no relative
-//! rotation, and breaks where the tension or the shear force reaches its limit.
+//! Contact-point bond: tension and shear spring, no rotational resistance.
 //!
-//! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond, a glue of no size).
+//! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, sec. 2 (contact bond).
 
 use super::springs::{
     BondDamping, BondKind, Criterion, Joint, Problem, Rules, Springs, not_negative, positive, strength,
 };
 
-/// A contact-point bond.
+/// Contact-point bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
-    /// Stiffness in tension and pressure [N/m].
+    /// Normal stiffness [N/m].
     pub normal: f64,
-    /// Stiffness in shear [N/m].
+    /// Shear stiffness [N/m].
     pub shear: f64,
-    /// Largest tension [N]; infinite for none.
+    /// Tensile limit [N], may be infinite.
     pub tension_limit: f64,
-    /// Largest shear force [N]; infinite for none.
+    /// Shear limit [N], may be infinite.
     pub shear_limit: f64,
     /// Dashpots.
     pub damping: BondDamping,
-    /// Whether the contact of the pair acts beside the bond; otherwise it starts when the bond has broken.
+    /// The pair's contact acts in parallel, not only after breakage.
     pub contact: bool,
 }
 

@@ -1,13 +1,10 @@
-//! Pairs whose bond has broken, until they separate.
+//! Debonded pairs, until they separate.
 //!
-//! Bonded spheres may overlap, or may be pressed together by the bond alone. Their contact acts on the overlap beyond a
-//! reference d₀, which is chosen in the moment of the break: the contact takes over the pressure that the bond carried,
-//! but never more than lets it store the energy that the bond had stored in that pressure. So the pressure goes on
-//! without a jump where the contact is at least as stiff as the bond, and the break creates no energy in any case.
-//! A bond broken in tension leaves d₀ = the overlap, or 0 for spheres apart.
+//! The contact acts on the overlap beyond a reference d₀: it takes over the bond's compression but stores at
+//! most its energy. The pressure is continuous if the contact is at least as stiff; breakage never adds
+//! energy. After tensile breakage d₀ is the overlap, or 0.
 //!
-//! Once the contact has ended and the spheres have no overlap, the pair goes to the ordinary contacts; this is looked
-//! at after fixed numbers of steps, so that it depends neither on the search nor on a restart.
+//! Separated pairs become ordinary contacts, at fixed steps for reproducible restarts.
 //!
 //! Theory manual: equation (2.14) of `docs/theory/shapes.md`.
 
@@ -21,25 +18,23 @@ use crate::lanes::{Real, V3};
 use crate::law::{ContactGeometry, ContactLaw, History, LawInput, Laws, Memory, with_law};
 use serde::{Deserialize, Serialize};
 
-/// Steps between two looks at which pairs have separated.
 pub(crate) const EVERY: u64 = 100;
 
-/// A pair that was bonded.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct DebondedPair {
-    /// Number of the bond in the model.
+    /// Bond index.
     pub number: u32,
-    /// Place of the first body in its block; block and place of the second.
+    /// Slot of the first body; block and slot of the second.
     pub i: u32,
     pub block: u32,
     pub j: u32,
-    /// Overlap that does not count, d₀ [m].
+    /// Reference overlap d₀ [m].
     pub reference: f64,
     pub history: History,
 }
 
-/// The largest overlap at which a contact presses no harder than `pressure` [N] and stores no more than `energy` [J].
-/// `stored` is the energy of the contact at an overlap.
+/// Largest overlap with force at most `pressure` [N] and energy at most `energy` [J]; `stored`: contact
+/// energy at an overlap.
 pub(crate) fn overlap_for(stored: impl Fn(f64) -> f64, radius: f64, pressure: f64, energy: f64) -> f64 {
     let fits = |d: f64| {
         let step = 1e-4 * d;
@@ -49,7 +44,7 @@ pub(crate) fn overlap_for(stored: impl Fn(f64) -> f64, radius: f64, pressure: f6
     if pressure <= 0.0 || !stored(high).is_finite() {
         return 0.0;
     }
-    // Down to the scale of the answer, then by halves.
+    // Find the scale, then bisect.
     while high > 1e-12 * radius && !fits(0.5 * high) {
         high *= 0.5;
     }
@@ -60,7 +55,6 @@ pub(crate) fn overlap_for(stored: impl Fn(f64) -> f64, radius: f64, pressure: f6
     low
 }
 
-/// A sphere that was bonded to another: centre, radius, velocity, inverse mass and spin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sphere<R> {
     pub x: V3<R>,
@@ -70,7 +64,7 @@ pub(crate) struct Sphere<R> {
     pub w: V3<R>,
 }
 
-/// How two spheres lie to each other: normal from b to a, contact point, overlap, effective radius.
+/// Normal from b to a, contact point, overlap, effective radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting<R> {
     pub normal: V3<R>,
@@ -79,7 +73,6 @@ pub(crate) struct Meeting<R> {
     pub radius: R,
 }
 
-/// How two spheres lie to each other.
 #[inline(always)]
 pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> Meeting<R> {
     let between = a.x - b.x;
@@ -92,7 +85,7 @@ pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> Meeting<R> {
     Meeting { normal, point, overlap, radius: a.radius * b.radius / (a.radius + b.radius) }
 }
 
-/// What the contact of two such spheres does: force on a, torques on both, and what it took [J].
+/// Force on a, torques on both, dissipation [J].
 pub(crate) struct Forces<R> {
     pub force: V3<R>,
     pub torque_a: V3<R>,
@@ -101,7 +94,7 @@ pub(crate) struct Forces<R> {
     pub friction: R,
 }
 
-/// The force of an overlap beyond a reference, over a step [s]; advances the memory of the contact.
+/// Force beyond the reference over a step [s]; updates contact history.
 #[inline(always)]
 pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
     law: &L::Lanes<R>,
@@ -113,7 +106,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
     step: R,
 ) -> Forces<R> {
     let (arm_a, arm_b) = (m.point - a.x, m.point - b.x);
-    // In this order: the last bits of broken stones hang on it.
+    // The order of operations fixes rounding.
     let velocity = a.v + a.w.cross(arm_a) - b.v - b.w.cross(arm_b);
     let input = LawInput {
         inverse_mass: a.inverse_mass + b.inverse_mass,
@@ -139,7 +132,7 @@ fn sphere(block: &Block, k: usize) -> Sphere<f64> {
     Sphere { x: vector(x), radius: x[3], v: vector(v), inverse_mass: v[3], w: vector(w) }
 }
 
-/// Geometry of a pair now: that of its contact, overlap beyond the reference; and the whole overlap [m].
+/// Contact geometry with overlap beyond the reference; total overlap [m].
 pub(crate) fn geometry(a: &Block, i: usize, b: &Block, j: usize, reference: f64) -> (ContactGeometry, f64) {
     let m = meet(&sphere(a, i), &sphere(b, j));
     let geometry = ContactGeometry {
@@ -151,7 +144,7 @@ pub(crate) fn geometry(a: &Block, i: usize, b: &Block, j: usize, reference: f64)
     (geometry, m.overlap)
 }
 
-/// The contact of a debonded pair: its forces, what it dissipated [J], and its failure.
+/// Forces, dissipation [J], failure.
 pub(crate) struct PairForces {
     pub slot: BondSlot,
     pub dashpot: f64,
@@ -159,7 +152,6 @@ pub(crate) struct PairForces {
     pub failure: Option<Failure>,
 }
 
-/// The contact of one pair; `a` and `b` are the blocks of its bodies.
 pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, dt: f64) -> PairForces {
     let (i, j) = (r.i as usize, r.j as usize);
     let materials = [a.material(i), b.material(j)];
@@ -186,7 +178,6 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
     PairForces { slot, dashpot: f.dashpot, friction: f.friction, failure }
 }
 
-/// [`forces`] of one pair.
 fn of_one<L: ContactLaw>(
     law: &L,
     spheres: (&Sphere<f64>, &Sphere<f64>),

@@ -1,25 +1,25 @@
-//! A bond given by its own stiffnesses and strengths, the same for spheres of any size: a beam between two centres.
-//! Forces act in the middle of the line of centres.
+//! Bond with given stiffness and strength, independent of sphere size: a beam between centres, forces at its
+//! middle.
 //!
-//! Source: Wang, Acta Geotechnica 4, 2009 (four springs, criterion by sum). With small rotations the springs are those
-//! of the bonded-particle models that keep a quaternion per bond.
+//! Source: Wang, Acta Geotechnica 4, 2009 (four springs, additive criterion). For small rotations equal to
+//! models with a quaternion per bond.
 
 use super::springs::{
     BondDamping, BondKind, Criterion, Joint, Problem, Rules, Springs, not_negative, positive, strength,
 };
 
-/// A bond by stiffness and strength.
+/// Bond with given stiffness and strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectBond {
-    /// Stiffness in tension and shear [N/m], bending and twisting [N m/rad].
+    /// Stiffness: tension, shear [N/m], bending, twisting [N m/rad].
     pub stiffness: [f64; 4],
-    /// Largest tension and shear [N], bending and twisting moment [N m]; infinite for none.
+    /// Strength: tension, shear [N], bending, twisting [N m]; may be infinite.
     pub strength: [f64; 4],
-    /// When it breaks. With [`Criterion::Stress`], tension and bending add up, and shear and twisting do.
+    /// Failure criterion. [`Criterion::Stress`] adds tension and bending, shear and twisting.
     pub criterion: Criterion,
     /// Dashpots.
     pub damping: BondDamping,
-    /// Whether the contact of the pair acts beside the bond; otherwise it starts when the bond has broken.
+    /// The pair's contact acts in parallel, not only after breakage.
     pub contact: bool,
 }
 

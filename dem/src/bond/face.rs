@@ -1,51 +1,50 @@
-//! Face bond: a rectangle of ice or cement that fills the face between two bodies of any shape, such as neighbouring floes of a sheet.
+//! Face bond: rectangle of ice or cement between bodies of any shape, such as ice floes.
 //!
-//! The bond is a beam from centre to centre, L long, with the section of the face: width w, thickness t, w along the sheet. With Young's
-//! modulus E and the ratio kₙ/kₛ, tension E wt/L, shear E wt/(L kₙ/kₛ), bending E wt³/12L, twisting E J/(L kₙ/kₛ), and Saint-Venant's
-//! J = ab³ (1/3 − 0.21 b/a (1 − b⁴/12a⁴)), a the longer, b the shorter side (Roark's formulas, 8th ed., table 10.7). Largest stresses
+//! Beam from centre to centre, length L, width w (along the sheet), thickness t, Young's modulus E, ratio
+//! kₙ/kₛ: tension E wt/L, shear E wt/(L kₙ/kₛ), bending E wt³/12L, twisting E J/(L kₙ/kₛ). Saint-Venant's
+//! J = ab³ (1/3 − 0.21 b/a (1 − b⁴/12a⁴)), a the longer, b the shorter side (Roark's formulas, 8th ed., table
+//! 10.7). Largest stresses, tension positive:
 //!
-//! σ = T/wt + 6|M_b|/wt²,  τ = |F_s|/wt + |M_t| b/J,
+//! σ = T/wt + 6|M_b|/wt²,  τ = |F_s|/wt + |M_t| b/J.
 //!
-//! T tension positive. The bond breaks where σ reaches the tensile (in a sheet the flexural) or τ the shear strength; the latter is constant
-//! or grows with pressure, c + (−T/wt) tan φ. Forces act in the face, wherever it lies between the centres.
+//! Failure: σ at tensile (flexural) strength, or τ at constant or Mohr–Coulomb strength c + (−T/wt) tan φ.
+//! Forces act in the face; contacts act in parallel.
 //!
-//! Bodies are in contact beside the bond as if it were not there.
-//!
-//! Limit: bending is as stiff and as strong about the axis across the sheet as about that along it, by the thickness. In a sheet that is no
-//! row, turning about the vertical is held by the shear of the faces around.
+//! Limits: bending about both axes uses the thickness; in a sheet, neighbouring faces resist rotation about
+//! the vertical.
 
 use super::parallel::ShearStrength;
 use super::springs::{
     BondDamping, BondKind, Cement, Criterion, Joint, Problem, Rules, Section, Springs, positive, strength,
 };
 
-/// A face bond.
+/// Face bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceBond {
     /// Young's modulus E [Pa].
     pub young: f64,
     /// kₙ/kₛ [-].
     pub ratio: f64,
-    /// Strength in tension and bending [Pa]; infinite for none.
+    /// Tensile and bending strength [Pa], may be infinite.
     pub tensile_strength: f64,
     /// Shear strength.
     pub shear_strength: ShearStrength,
-    /// When it breaks.
+    /// Failure criterion.
     pub criterion: Criterion,
     /// Dashpots.
     pub damping: BondDamping,
 }
 
-/// The face that a bond fills.
+/// Bonded face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     /// Width and thickness [m].
     pub size: [f64; 2],
-    /// Distance of the first body's centre from the face less that of the second [m].
+    /// Distance of the first body's centre from the face minus the second's [m].
     pub offset: f64,
 }
 
-/// Saint-Venant's constant of torsion of a rectangle [m⁴], and its shorter side [m].
+/// Saint-Venant torsion constant [m⁴]; shorter side [m].
 fn torsion([w, t]: [f64; 2]) -> [f64; 2] {
     let (a, b) = (w.max(t), w.min(t));
     let slender = b / a;
@@ -94,8 +93,8 @@ impl BondKind for FaceBond {
 mod tests {
     use super::*;
 
-    /// Constants of torsion by the series of Timoshenko & Goodier (Theory of Elasticity, 3rd ed., table of section 109): of a square 0.1406,
-    /// of 2 × 1 0.229, of 10 × 1 0.312, times ab³.
+    /// Timoshenko & Goodier (Theory of Elasticity, 3rd ed., table of section 109): square 0.1406, 2 × 1
+    /// 0.229, 10 × 1 0.312, times ab³.
     #[test]
     fn torsion_of_rectangles() {
         for (w, t, exact) in [(1.0, 1.0, 0.1406), (2.0, 1.0, 2.0 * 0.229), (0.1, 1.0, 0.312e-3)] {

@@ -1,36 +1,34 @@
-//! The forces of a bond, one or several at a time.
+//! Bond forces, scalar or SIMD.
 //!
-//! With d from b to a, L = |d|, n = d/L, lₐ + l_b = L the lever arms, and dt since the last step:
+//! With d from b to a, L = |d|, n = d/L, lever arms lₐ + l_b = L, dt since the last step:
 //!
-//! * the line of centres has swung by the Rodrigues vector s = tan(α/2) about d′ × d, tan α = |d′ × d|/d′·d, with
-//!   d′ = d − v dt the line one step ago;
-//! * the stored vectors turn with it, and about n as far as the mean spin ω̄ of both does, by tan(ω̄dt/2)·n;
-//! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, the slip at the bond, with n̄ the normal halfway: exactly
-//!   nothing in a rigid rotation by any angle about any axis, since then n − n′ = 2 tan(ω̄dt/2) × ½(n + n′);
-//! * relative rotation: θ += (ωₐ − ω_b) dt;
-//! * force on a: −n kₙ(L − L₀) − kₛ u, moment on a: −k_t (θ·n) n − k_b θ⊥, with dashpots on the velocities;
-//! * force and its opposite act at one point, so momentum and angular momentum are kept to rounding.
+//! * line of centres: rotated by the Rodrigues vector s = tan(α/2) about d′ × d, tan α = |d′ × d|/d′·d,
+//!   d′ = d − v dt;
+//! * stored vectors rotate with it, and about n by the mean angular velocity ω̄, tan(ω̄dt/2)·n;
+//! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, n̄ the mid-step normal; zero in rigid rotation,
+//!   as n − n′ = 2 tan(ω̄dt/2) × ½(n + n′);
+//! * rotation: θ += (ωₐ − ω_b) dt;
+//! * force on a: −n kₙ(L − L₀) − kₛ u, moment on a: −k_t (θ·n) n − k_b θ⊥, plus dashpots;
+//! * opposite forces share a point: (angular) momentum is conserved to rounding.
 //!
-//! The bond breaks at max(S₁, S₂) = 1 or, by sum, at S₁ + S₂ = 1, with the shares of strength
-//! S₁ = s₀T + s₁|θ⊥|, S₂ = s₂|u| + s₃|θ·n| + s₄T. Dashpots do not count.
+//! Failure, without dashpots: max(S₁, S₂) = 1 or S₁ + S₂ = 1, S₁ = s₀T + s₁|θ⊥|, S₂ = s₂|u| + s₃|θ·n| + s₄T.
 //!
 //! Theory manual: equations (2.11), (2.12) of `docs/theory/shapes.md`.
 
 use crate::lanes::{Real, V3};
 
 pub(crate) const LENGTH: usize = 0;
-/// Difference of the lever arms [m].
+/// Lever arm difference [m].
 pub(crate) const OFFSET: usize = 1;
 /// Tension, shear, bending, twisting.
 pub(crate) const STIFFNESS: usize = 2;
 pub(crate) const DAMPING: usize = 6;
 /// s₀ … s₄.
 pub(crate) const LIMIT: usize = 10;
-/// 1 for the criterion by sum, 0 for the larger share.
+/// 1: sum criterion, 0: maximum.
 pub(crate) const SUM: usize = 15;
 pub(crate) const COUNT: usize = 16;
 
-/// Centre, velocity and spin of a body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<R> {
     pub x: V3<R>,
@@ -38,19 +36,18 @@ pub(crate) struct Motion<R> {
     pub w: V3<R>,
 }
 
-/// What a bond remembers: shear displacement [m] and relative rotation [rad] of a against b.
+/// Shear displacement [m] and relative rotation [rad] of a against b.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Memory<R> {
     pub shear: V3<R>,
     pub turn: V3<R>,
 }
 
-/// Where a bond is now.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<R> {
     pub normal: V3<R>,
     pub length: R,
-    /// Speed of separation [m/s].
+    /// Separation rate [m/s].
     rate: R,
     /// lₐωₐ + l_bω_b [m/s].
     roll: V3<R>,
@@ -58,22 +55,20 @@ pub(crate) struct Frame<R> {
     arm_b: R,
 }
 
-/// What a bond does in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Response<R> {
     /// Force on a.
     pub force: V3<R>,
     pub torque_a: V3<R>,
     pub torque_b: V3<R>,
-    /// Shares of strength used up: S₁, S₂, and the one that counts.
+    /// Utilisations S₁, S₂, and the governing value.
     pub tensile: R,
     pub shearing: R,
     pub share: R,
-    /// Power of the dashpots at the velocities of half a step ago [W].
+    /// Dashpot power at half-step-old velocities [W].
     pub power: R,
 }
 
-/// Brings the memory of a bond to the present places of its bodies, which have moved with their velocities over `dt`.
 #[inline(always)]
 pub(crate) fn carry<R: Real>(
     offset: R,
@@ -93,7 +88,7 @@ pub(crate) fn carry<R: Real>(
     let normal = d * inverse;
     let along = v.dot(d);
 
-    // e = d′ × d / (2 d′·d), half the tangent of the angle; 1/d′·d by its series in the strain of a step.
+    // e = d′ × d / (2 d′·d); 1/d′·d as series in the strain increment.
     let strain = along * inverse_square * dt;
     let inverse_dot = inverse_square * (one + strain * (one + strain));
     let e = d.cross(v) * (half * dt * inverse_dot);
@@ -112,7 +107,7 @@ pub(crate) fn carry<R: Real>(
 
     let (arm_a, arm_b) = ((length + offset) * half, (length - offset) * half);
     let roll = a.w * arm_a + b.w * arm_b;
-    // Half of each increment before the turn and half after it.
+    // Half of each increment before, half after the rotation.
     let slip = (swing * length - roll * (half * dt * stretch)).cross(middle);
     memory.shear = rotate(c, s, memory.shear + slip) + slip;
     let turn = (a.w - b.w) * (half * dt);
@@ -120,21 +115,19 @@ pub(crate) fn carry<R: Real>(
     Frame { normal, length, rate: along * inverse, roll, arm_a, arm_b }
 }
 
-/// y turned by the Rodrigues vector c, s = 2/(1 + c²).
+/// Rotation by the Rodrigues vector c, s = 2/(1 + c²).
 #[inline(always)]
 fn rotate<R: Real>(c: V3<R>, s: R, y: V3<R>) -> V3<R> {
     let z = c.cross(y);
     y + (z + c.cross(z)) * s
 }
 
-/// Splits a rotation into the part along n and the part across.
 #[inline(always)]
 fn split<R: Real>(v: V3<R>, n: V3<R>) -> (R, V3<R>) {
     let along = v.dot(n);
     (along, v - n * along)
 }
 
-/// Force, moments and shares of strength.
 #[inline(always)]
 pub(crate) fn respond<R: Real>(
     k: &[R; COUNT],
@@ -175,13 +168,13 @@ pub(crate) fn respond<R: Real>(
     }
 }
 
-/// Where bonds hold. A share that is not a number counts as holding: the bodies then fail the check of their speed.
+/// NaN counts as intact: the speed check then reports the body.
 #[inline(always)]
 pub(crate) fn holds<R: Real>(r: &Response<R>) -> R::Mask {
     !R::splat(1.0).le(r.share)
 }
 
-/// Elastic energy of tension, shear, bending, twisting [J].
+/// Elastic energy: tension, shear, bending, twisting [J].
 #[inline(always)]
 pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>) -> f64 {
     let stretch = frame.length - k[LENGTH];
@@ -192,8 +185,8 @@ pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>)
         + k[STIFFNESS + 3] * twist * twist)
 }
 
-/// Elastic energy half a step before the bodies' positions. `since` is the time from the memory's instant to that half
-/// step: ½ dt for a memory of the last step, −½ dt for one of the present positions.
+/// Elastic energy at half step. `since`: time from the history's instant, ½ dt for the last step, −½ dt for
+/// current positions.
 pub(crate) fn half_step_energy(
     k: &[f64; COUNT],
     a: &Motion<f64>,

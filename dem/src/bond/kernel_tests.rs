@@ -6,10 +6,10 @@ fn v3(v: Vec3) -> V3<f64> {
     V3::from_vec(&v)
 }
 
-/// Two spheres of a rigid body that turns about a skew axis through neither: ten turns, 0.01 rad per step. Nothing
-/// is stored, and what was stored turns along.
+/// Rigid rotation about a skew outside axis: ten turns of 0.01 rad steps store nothing; stored vectors
+/// rotate.
 #[test]
-fn rigid_rotation_stores_nothing_and_carries_what_is_stored() {
+fn rigid_rotation_stores_no_energy() {
     let axis = Unit::new_normalize(Vec3::new(0.3, -0.8, 0.5));
     let (xa, xb) = (Vec3::new(0.1, 0.02, -0.03), Vec3::new(0.09, 0.035, -0.02));
     let n = (xa - xb).normalize();
@@ -38,8 +38,7 @@ fn rigid_rotation_stores_nothing_and_carries_what_is_stored() {
     }
 }
 
-/// Forces are the derivatives of the energy: for small motions in all twelve directions, energy = ½ k q², and the
-/// work of force and torques over the motion is minus its change.
+/// Forces are energy derivatives: ½ k q² in twelve directions; work equals energy loss.
 #[test]
 fn forces_follow_from_the_energy() {
     let mut k = [0.0; COUNT];
@@ -48,7 +47,7 @@ fn forces_follow_from_the_energy() {
     let (xa, xb) = (n * 0.019, Vec3::zeros());
     for direction in 0..12 {
         let mut unit = [Vec3::zeros(); 4];
-        // Lengths in the scale of a sphere, so that translations and rotations store alike.
+        // Sphere-scale lengths balance translational and rotational energy.
         unit[direction / 3][direction % 3] = if direction < 6 { 1e-2 } else { 1.0 };
         let [va, vb, wa, wb] = unit;
         let h = 1e-6;
@@ -72,7 +71,6 @@ fn forces_follow_from_the_energy() {
     }
 }
 
-/// Stiffness of pure motions: each spring answers to its own.
 #[test]
 fn pure_motions() {
     let mut k = [0.0; COUNT];
@@ -85,21 +83,21 @@ fn pure_motions() {
     };
     let near = |x: Vec3, y: Vec3| assert!((x - y).norm() < 1e-6 * y.norm(), "{x} {y}");
     let z = Vec3::z() * 0.02;
-    // Pulled apart by 1e-6 m.
+    // Tension 1e-6 m.
     let r = run(Motion { v: v3(Vec3::z()), ..still(z * (1.0 + 5e-5)) }, still(Vec3::zeros()));
     near(r.force.to_vec(), -Vec3::z() * 20.0);
-    // Sheared by 1e-6 m: force and both torques that balance it.
+    // Shear 1e-6 m: force and balancing torques.
     let r = run(Motion { v: v3(Vec3::x()), ..still(z + Vec3::x() * 1e-6) }, still(Vec3::zeros()));
     near(r.force.to_vec(), -Vec3::x() * 10.0);
     near(r.torque_a.to_vec(), Vec3::y() * 0.1);
     near(r.torque_b.to_vec(), Vec3::y() * 0.1);
-    // Bent by 2e-6 rad, without slip.
+    // Bending 2e-6 rad, no slip.
     let turned = |x, w| Motion { w: v3(w), ..still(x) };
     let r = run(turned(z, Vec3::x()), turned(Vec3::zeros(), -Vec3::x()));
     near(r.torque_a.to_vec(), -Vec3::x() * 1e-3);
     near(r.torque_b.to_vec(), Vec3::x() * 1e-3);
     assert!(r.force.to_vec().norm() < 1e-9);
-    // Twisted by 1e-6 rad.
+    // Twist 1e-6 rad.
     let r = run(turned(z, Vec3::z()), still(Vec3::zeros()));
     near(r.torque_a.to_vec(), -Vec3::z() * 3e-4);
     near(r.torque_b.to_vec(), Vec3::z() * 3e-4);

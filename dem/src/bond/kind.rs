@@ -1,4 +1,4 @@
-//! The list of kinds of bonds: a new one is a file and a line of [`kinds!`].
+//! Bond types; a new one needs a file and a line in [`kinds!`].
 
 use super::contact_point::ContactPoint;
 use super::direct::DirectBond;
@@ -8,7 +8,7 @@ use super::springs::BondKind;
 
 macro_rules! kinds {
     ($($(#[$doc:meta])+ $name:ident($kind:ty);)+) => {
-        /// A kind of bond.
+        /// Bond type.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Bond {
             $($(#[$doc])+ $name($kind),)+
@@ -21,7 +21,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// The same bond without a limit of strength.
+            /// Returns the bond with infinite strength.
             pub fn unbreakable(&self) -> Bond {
                 match self {
                     $(Bond::$name(kind) => Bond::$name(kind.unbreakable()),)+
@@ -32,18 +32,18 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// A cemented disk between the spheres: force and moment.
+    /// Cement disk between spheres: force and moment.
     Parallel(ParallelBond);
-    /// A spring at the contact point: force only.
+    /// Spring at the contact point: force only.
     ContactPoint(ContactPoint);
-    /// Stiffnesses and strengths of the bond itself, the same for every length and radius.
+    /// Given stiffness and strength, independent of length and radius.
     Direct(DirectBond);
-    /// What fills the face between two bodies of any shape: force and moment.
+    /// Face between bodies of any shape: force and moment.
     Face(FaceBond);
 }
 
 impl Bond {
-    /// Whether it fills a face between bodies of any shape; else it joins single spheres.
+    /// Returns true for bodies of any shape, else single spheres.
     pub fn fills_faces(&self) -> bool {
         self.kind().fills_faces()
     }

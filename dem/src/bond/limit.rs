@@ -1,10 +1,8 @@
-//! Share of the bonds in the limit of the time step.
+//! Contribution of bonds to the time step limit.
 //!
-//! The energy of a spring between two bodies, ½ k (gₐ·qₐ − g_b·q_b)², is at most k (gₐ·qₐ)² + k (g_b·q_b)²: so no
-//! frequency is above the largest of the bodies held alone by springs of twice the stiffness, ω² ≤ max λ(M⁻¹ K) with
-//! K = 2 Σ k g gᵀ over a body's bonds and their six springs, 6 × 6 (Gershgorin's bound by blocks). The dashpots, which
-//! act with the velocities of half a step ago, are bounded the same way; the leapfrog is stable for
-//! λ dt² + 2 γ dt < 4.
+//! Spring energy ½ k (gₐ·qₐ − g_b·q_b)² ≤ k (gₐ·qₐ)² + k (g_b·q_b)²: no frequency exceeds the
+//! value for one body on springs of twice the stiffness, ω² ≤ max λ(M⁻¹ K), K = 2 Σ k g gᵀ (Gershgorin's
+//! bound by blocks). Dashpots with half-step-old velocities likewise; stable for λ dt² + 2 γ dt < 4.
 
 use super::Constants;
 use super::kernel;
@@ -13,7 +11,7 @@ use crate::bodies::input::BodyInput;
 use crate::bodies::table::Bodies;
 use nalgebra::{Matrix6, Vector6};
 
-/// Bounds λ [1/s²] and γ [1/s] for each body. Shape `[bodies]`.
+/// λ [1/s²] and γ [1/s] of each body. Shape `[bodies]`.
 pub(crate) fn stiffest(bonds: &[Constants], bodies: &Bodies, places: &[BodyInput]) -> Vec<[f64; 2]> {
     let mut sums = vec![[Matrix6::<f64>::zeros(); 2]; if bonds.is_empty() { 0 } else { bodies.len() }];
     for bond in bonds {
@@ -31,7 +29,7 @@ pub(crate) fn stiffest(bonds: &[Constants], bodies: &Bodies, places: &[BodyInput
                 let (x, w) = (translation / m, rotation / i);
                 Vector6::new(x.x, x.y, x.z, w.x, w.y, w.z)
             };
-            // Slip at the bond of a body turning about t is ∓arm t × n.
+            // Slip of a body rotating about t: ∓arm t × n.
             let modes = [
                 (0, mode(n, Vec3::zeros())),
                 (1, mode(t, n.cross(&t) * (-sign * arm))),

@@ -1,4 +1,4 @@
-//! The loop over the bonds of a list, the bonds of one group or two in lanes.
+//! SIMD loop over the bonds of a list, one or two groups at a time.
 
 use super::kernel::{self, COUNT, Memory, Motion, carry, respond};
 use super::slot::BondSlot;
@@ -8,7 +8,6 @@ use crate::bodies::sums::Sums;
 use crate::lanes::record::Record;
 use crate::lanes::{Four, Kernel, Pack, Real, V3};
 
-/// Forces of the bonds in lanes, and which of them hold.
 pub(super) struct Outcome<P: Pack> {
     force: V3<P>,
     torque_a: V3<P>,
@@ -16,7 +15,6 @@ pub(super) struct Outcome<P: Pack> {
     holds: P::Mask,
 }
 
-/// The bonds in lanes: forces, and new memory.
 #[inline(always)]
 fn bonds<P: Pack>(
     a: &Motion<P>,
@@ -26,7 +24,7 @@ fn bonds<P: Pack>(
     dt: P,
     power: &mut P::Quad,
 ) -> Outcome<P> {
-    // No closures here: what is not inlined into the kernel's entry becomes a call per operation.
+    // No closures: they are not inlined into the kernel entry.
     let mut k = [P::zero(); COUNT];
     for (k, (p, q)) in k.iter_mut().zip(constants.0.iter().zip(constants.1)) {
         *k = P::join(p, q);
@@ -58,14 +56,12 @@ fn store<P: Pack>(v: V3<P>, to: &mut [Record; 3], and: &mut [Record; 3]) {
     v.z.split(&mut to[2], &mut and[2]);
 }
 
-/// Three numbers of each record.
 #[inline(always)]
 fn vectors<P: Pack>(rows: [P; 4]) -> V3<P> {
     let [x, y, z, _] = P::columns(rows);
     V3::new(x, y, z)
 }
 
-/// Bodies of one block, by lane.
 #[inline(always)]
 fn own<P: Pack>(block: &Block, at: [&[u32; 4]; 2]) -> Motion<P> {
     let (x, v, w) = (&block.centre[..], &block.velocity[..], &block.spin[..]);
@@ -76,7 +72,6 @@ fn own<P: Pack>(block: &Block, at: [&[u32; 4]; 2]) -> Motion<P> {
     }
 }
 
-/// Bodies of several blocks, by lane.
 #[inline(always)]
 fn far<P: Pack>(blocks: &[Block], block: [&[u32; 4]; 2], at: [&[u32; 4]; 2]) -> Motion<P> {
     Motion {
@@ -86,15 +81,12 @@ fn far<P: Pack>(blocks: &[Block], block: [&[u32; 4]; 2], at: [&[u32; 4]; 2]) -> 
     }
 }
 
-/// The bodies of a list's bonds. (A trait, since closures with operations on lanes are not inlined into the kernel's entry.)
+/// A trait, as closures with SIMD operations are not inlined into the kernel entry.
 pub(super) trait Ends {
-    /// How the bodies of the bonds of two groups move, of which the second counts only where lanes are eight.
     fn motions<P: Pack>(&self, groups: [&Group; 2]) -> (Motion<P>, Motion<P>);
-    /// Takes the forces of so many bonds, from position `first` of the list on.
     fn take<P: Pack>(&mut self, groups: [&Group; 2], out: &Outcome<P>, first: usize, count: usize);
 }
 
-/// Bodies of one block.
 pub(super) struct Within<'a> {
     pub block: &'a Block,
     pub sums: &'a mut [Sums],
@@ -117,7 +109,7 @@ impl Ends for Within<'_> {
     }
 }
 
-/// A body of one block and one of any.
+/// First body in this block, second in any.
 pub(super) struct Across<'a> {
     pub own: &'a Block,
     pub blocks: &'a [Block],
@@ -145,14 +137,13 @@ impl Ends for Across<'_> {
     }
 }
 
-/// The bonds of one list; returns the power of their dashpots.
+/// Returns dashpot power.
 pub(super) struct Bonds<'a, B> {
     pub groups: &'a mut [Group],
     pub constants: &'a [[Record; COUNT]],
-    /// Of bonds.
     pub count: usize,
     pub bodies: B,
-    /// Takes the positions of those that break.
+    /// Positions of breaking bonds.
     pub found: &'a mut Vec<u32>,
     /// Time since the last step [s].
     pub dt: f64,
@@ -165,7 +156,7 @@ impl<B: Ends> Kernel for Bonds<'_, B> {
     fn run<P: Pack>(self) -> f64 {
         let Bonds { groups, constants, count, mut bodies, found, dt } = self;
         let Some(&spare) = groups.first() else { return 0.0 };
-        // Record without a bond: a real pair, so that its arithmetic is harmless, with constants that are zero.
+        // Unused lanes repeat a real pair with zero constants, for harmless arithmetic.
         let (mut spare, none) = (spare, [Record::default(); COUNT]);
         let constants = &constants[..groups.len()];
         let dt = P::splat(dt);

@@ -1,20 +1,18 @@
-//! Bonds between bodies: elastic bars that carry force (and moment) until they break.
+//! Bonds between bodies, carrying force and moment until failure.
 //!
-//! A [`Bond`] is a kind of bond, one file each, and listed in `kind.rs`: [`ParallelBond`] (a cemented disk between two spheres), [`ContactPoint`]
-//! (force only), [`DirectBond`] (stiffnesses and strengths of the bond itself), [`FaceBond`] (the face between two bodies of any
-//! shape). A [`BondInput`] puts one between two bodies. All of them end up as the same sixteen constants, and one kernel (`kernel.rs`) computes the forces:
+//! Types ([`Bond`]): [`ParallelBond`], [`ContactPoint`], [`DirectBond`], [`FaceBond`]. A [`BondInput`]
+//! resolves to sixteen constants of one kernel (`kernel.rs`):
 //!
-//! * tension from the present length, kₙ (L − L₀): no drift;
-//! * shear, bending and twisting by increments in a frame that turns with the line of centres and with the mean spin
-//!   about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004). The increments are those of the angle
-//!   between the spins and the line of centres, so that a rigid motion of any size stores nothing.
+//! * tension from total length, kₙ (L − L₀), without drift;
+//! * shear, bending, twisting by increments in a frame rotating with the line of centres and the mean angular
+//!   velocity about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004); rigid motion stores
+//!   nothing.
 //!
-//! A bond breaks in the step in which its criterion reaches 1 (`kernel.rs`); the elastic energy it held goes to the
-//! ledger and, as the energy of an acoustic event, to the list of breaks. The pair then stays with this module as a
-//! `DebondedPair` (`debonded.rs`) until the two have separated.
+//! Breakage releases elastic energy ([`Break`]); the pair stays a `DebondedPair` (`debonded.rs`) until
+//! separation.
 //!
-//! Limits: all but face bonds join single spheres only, not clumps or boxes; rotations between bonded spheres are small (linear
-//! springs); the stored vectors turn with an error of the sixth power of the angle per step.
+//! Limits: all but face bonds join single spheres; small rotations between bonded spheres (linear springs);
+//! vector rotation errors of sixth order in the angle per step.
 
 mod contact_point;
 pub(crate) mod debonded;
@@ -51,70 +49,68 @@ use crate::bodies::table::{Bodies, Body, Kind};
 use serde::{Deserialize, Serialize};
 use springs::Joint;
 
-/// A bond between two bodies: single spheres, or, by their face, bodies of any shape. Its length at rest is their distance at the start of the model.
+/// Bond between single spheres, or between bodies of any shape by a face; unstrained in the initial state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BondInput {
-    /// First body (index).
+    /// First body.
     pub a: usize,
-    /// Second body (index).
+    /// Second body.
     pub b: usize,
-    /// Kind of bond (index into [`crate::ModelInput::bond_kinds`]).
+    /// Index into [`crate::ModelInput::bond_kinds`].
     pub kind: usize,
-    /// Factor on the tensile strength [-].
+    /// Tensile strength factor [-].
     pub tension: f64,
-    /// Factor on the shear strength [-].
+    /// Shear strength factor [-].
     pub shear: f64,
-    /// Factor on all stiffnesses [-].
+    /// Stiffness factor [-].
     pub stiffness: f64,
-    /// Face between the bodies, of a [`FaceBond`].
+    /// Face, of a [`FaceBond`].
     pub face: Option<Face>,
 }
 
 impl BondInput {
-    /// A bond with the strengths and stiffnesses of its kind.
+    /// Bond with unit factors.
     pub fn new(a: usize, b: usize, kind: usize) -> BondInput {
         BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0, face: None }
     }
 }
 
-/// How a bond broke.
+/// Failure mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BreakMode {
-    /// Tension and bending used up the larger share.
+    /// Tension and bending.
     Tension,
-    /// Shear and twisting did.
+    /// Shear and twisting.
     Shear,
 }
 
-/// A bond that broke: an acoustic event.
+/// Bond breakage, an acoustic event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Break {
     /// Time [s].
     pub time: f64,
-    /// Number of the bond in the model.
+    /// Bond index.
     pub bond: u32,
-    /// The bodies it joined.
+    /// Bonded bodies.
     pub bodies: [u32; 2],
-    /// Place of its middle [m].
+    /// Midpoint [m].
     pub place: Vec3,
-    /// How it broke.
+    /// Failure mode.
     pub mode: BreakMode,
-    /// Elastic energy set free, less what a contact of the pair takes over [J].
+    /// Released elastic energy, minus the part stored by the contact [J].
     pub energy: f64,
 }
 
-/// A bond resolved: what the kernel needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Constants {
-    /// Bodies.
     pub ends: [u32; 2],
-    /// In the order of [`kernel`]'s indices.
+    /// Order of [`kernel`].
     pub values: [f64; kernel::COUNT],
-    /// Whether the contact of the pair acts beside the bond.
+    /// The pair's contact acts in parallel.
     pub contact: bool,
 }
 
-/// Checks and resolves the bonds of an input.
+/// Checks and resolves bonds.
 pub(crate) fn resolve(
     kinds: &[Bond],
     bonds: &[BondInput],
@@ -178,7 +174,7 @@ pub(crate) fn resolve(
 }
 
 fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Constants {
-    // Of the principal moments the least is the one that a spring swings fastest.
+    // The least principal moment gives the highest frequency.
     let inertia = |body: &Body| if body.fixed >> 3 == 7 { 0.0 } else { 1.0 / body.inertia.min() };
     let reduced = |sum: f64| if sum > 0.0 { 1.0 / sum } else { 0.0 };
     let joint = Joint {
@@ -204,7 +200,7 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
     values[kernel::OFFSET] = springs.offset;
     values[kernel::STIFFNESS..kernel::STIFFNESS + 4].copy_from_slice(&stiffness);
     values[kernel::DAMPING..kernel::DAMPING + 4].copy_from_slice(&dashpots);
-    // Per unit of tension, bending angle, shear displacement, twist; the last per unit of tension.
+    // Per tension, bending angle, shear displacement, twist; per tension.
     let limit = [
         tension / b.tension,
         bending / b.tension * stiffness[2],

@@ -1,11 +1,11 @@
-//! Which spheres to bond: those whose surfaces are nearer than a gap.
+//! Selection of sphere pairs to bond.
 
 use crate::base::Vec3;
 use crate::lanes::record::Record;
 use crate::spatial::cells::Cells;
 
-/// Pairs (a, b), a < b, of spheres whose surfaces are less than `gap` [m] apart (overlapping ones included) and that
-/// `accept` takes, in ascending order. `spheres` are centres and radii [m].
+/// Pairs (a, b), a < b, with surface gap below `gap` [m] that `accept` selects, ascending. `spheres`:
+/// centres, radii [m].
 pub fn within_gap(
     spheres: &[(Vec3, f64)],
     gap: f64,

@@ -1,15 +1,14 @@
-//! Parallel bond: a disk of cement between two spheres, which stretches, shears, bends and twists.
+//! Parallel bond: cement disk between two spheres.
 //!
-//! With R the radius of the disk, A = πR², I = πR⁴/4, J = πR⁴/2 and stiffnesses kₙ, kₛ per area [Pa/m]:
-//! tension kₙA, shear kₛA, bending kₙI, twisting kₛJ. Stresses at the rim
+//! R disk radius, A = πR², I = πR⁴/4, J = πR⁴/2, stiffness per area kₙ, kₛ [Pa/m]: tension kₙA, shear kₛA,
+//! bending kₙI, twisting kₛJ. Rim stresses, tension positive:
 //!
-//! σ = T/A + β|M_b|R/I,  τ = |F_s|/A + |M_t|R/J,
+//! σ = T/A + β|M_b|R/I,  τ = |F_s|/A + |M_t|R/J.
 //!
-//! T tension positive. The bond breaks where σ reaches the tensile or τ the shear strength; the latter is constant or
-//! grows with pressure, τ_max = c + (−T/A) tan φ.
+//! Failure: σ at tensile strength, or τ at constant or Mohr–Coulomb strength τ_max = c + (−T/A) tan φ.
 //!
-//! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; the moment factor β is that of Potyondy
-//! (Proc. 45th US Rock Mech. Symp., 2011).
+//! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; β: Potyondy (Proc. 45th US
+//! Rock Mech. Symp., 2011).
 
 use super::springs::{
     BondDamping, BondKind, Cement, Criterion, Joint, Problem, Rules, Section, Springs, not_negative,
@@ -17,17 +16,17 @@ use super::springs::{
 };
 use std::f64::consts::PI;
 
-/// Stiffness of the cement.
+/// Cement stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParallelStiffness {
-    /// Young's modulus E [Pa] of a bar as long as the distance of the centres, kₙ = E/L, and the ratio kₙ/kₛ [-].
+    /// Modulus E [Pa] over centre distance, kₙ = E/L, and kₙ/kₛ [-].
     Modulus {
         /// Young's modulus [Pa].
         young: f64,
         /// kₙ/kₛ [-].
         ratio: f64,
     },
-    /// kₙ and kₛ themselves.
+    /// Stiffness per area.
     PerArea {
         /// kₙ [Pa/m].
         normal: f64,
@@ -36,10 +35,10 @@ pub enum ParallelStiffness {
     },
 }
 
-/// Strength in shear.
+/// Shear strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShearStrength {
-    /// The same under any pressure [Pa].
+    /// Pressure-independent [Pa].
     Constant(f64),
     /// Mohr–Coulomb.
     MohrCoulomb {
@@ -60,7 +59,7 @@ impl ShearStrength {
         }
     }
 
-    /// 1/strength without pressure [1/Pa], and tan φ over it.
+    /// 1/strength at zero pressure [1/Pa]; tan φ over it.
     pub(super) fn inverse(&self) -> (f64, f64) {
         match *self {
             ShearStrength::Constant(tau) => (1.0 / tau, 0.0),
@@ -69,24 +68,24 @@ impl ShearStrength {
     }
 }
 
-/// A parallel bond.
+/// Parallel bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelBond {
-    /// Radius of the disk over the smaller radius of the two spheres [-].
+    /// Disk radius over smaller sphere radius [-].
     pub radius_factor: f64,
     /// Stiffness.
     pub stiffness: ParallelStiffness,
-    /// Tensile strength [Pa]; infinite for none.
+    /// Tensile strength [Pa], may be infinite.
     pub tensile_strength: f64,
     /// Shear strength.
     pub shear_strength: ShearStrength,
-    /// β: part of the bending moment that counts in the tensile stress, 0 to 1.
+    /// β: fraction of the bending moment in the tensile stress, 0–1.
     pub moment_factor: f64,
-    /// When it breaks.
+    /// Failure criterion.
     pub criterion: Criterion,
     /// Dashpots.
     pub damping: BondDamping,
-    /// Whether the contact of the pair acts beside the bond; otherwise it starts when the bond has broken.
+    /// The pair's contact acts in parallel, not only after breakage.
     pub contact: bool,
 }
 

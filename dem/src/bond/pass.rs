@@ -1,5 +1,4 @@
-//! The passes over the bonds of a step: between blocks into slots, within a block straight onto its bodies; then, one
-//! by one in a fixed order, what the breaks leave behind.
+//! Bond passes of a step: between blocks (slots), within blocks, then breakage in a fixed order.
 
 use super::kernel::{self, COUNT, Motion, carry, respond};
 use super::loops::{Across, Bonds, Within};
@@ -17,7 +16,7 @@ use crate::law::Laws;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// One body's share in a slot: of a bond, or of a debonded pair behind all bonds.
+/// Debonded pairs follow bonds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Share {
     pub place: u32,
@@ -26,23 +25,20 @@ pub(crate) struct Share {
     pub first: bool,
 }
 
-/// A bond that broke in this step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Broken {
-    /// Position in its list.
     pub at: u32,
     pub mode: BreakMode,
-    /// Energy that it held half a step ago [J].
+    /// Energy half a step ago [J].
     pub energy: f64,
-    /// Pressure in its tension spring and the energy of that [N, J].
+    /// Spring compression and its energy [N, J].
     pub pressure: f64,
     pub pressed: f64,
-    /// Speed of approach [m/s].
+    /// Approach speed [m/s].
     pub approach: f64,
     pub place: Vec3,
 }
 
-/// Scratch of one list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ListWork {
     pub constants: Vec<[Record; COUNT]>,
@@ -55,7 +51,6 @@ pub(crate) struct ListWork {
     pub failure: Option<Failure>,
 }
 
-/// Scratch of the bonds.
 #[derive(Clone, Debug)]
 pub(crate) struct BondWork {
     simd: Simd,
@@ -70,12 +65,12 @@ impl Default for BondWork {
 }
 
 impl BondWork {
-    /// The shares of a block's bodies in what bonds between blocks do, in the order in which they are added.
+    /// Contributions of bonds between blocks, in summation order.
     pub fn shares(&self, block: usize) -> &[Share] {
         self.shares.get(block).map_or(&[], |s| s)
     }
 
-    /// Lays constants and slots out in the present order of the bodies: `inner` yields each block's list and its scratch.
+    /// Arranges constants and slots; `inner`: list and scratch data of each block.
     pub fn arrange<'a>(
         &mut self,
         bonds: &[Constants],
@@ -97,7 +92,6 @@ impl BondWork {
     }
 }
 
-/// Gives each bond between blocks, then each debonded, its slot, and each body its shares, in one fixed order.
 pub(crate) fn link(cross: &[BondList], work: &mut BondWork) {
     work.shares.iter_mut().for_each(Vec::clear);
     for (b, (list, w)) in cross.iter().zip(&mut work.cross).enumerate() {
@@ -117,11 +111,10 @@ fn motion(block: &Block, k: usize) -> Motion<f64> {
     Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
 }
 
-/// What is known of a bond in the step in which it breaks.
 fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -> Broken {
     let k = &parts.bonds[e.number as usize].values;
     let (a, b) = (motion(own, e.i as usize), motion(other, e.j as usize));
-    // The memory is that of now: carried on over no time, it gives the frame of now.
+    // Zero time increment gives the current frame.
     let mut memory = e.memory;
     let frame = carry(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
     let r = respond(k, &a, &b, &frame, &memory);
@@ -139,7 +132,6 @@ fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -
 }
 
 impl ListWork {
-    /// Begins a step.
     pub fn reset(&mut self) {
         self.found.clear();
         self.broken.clear();
@@ -147,14 +139,13 @@ impl ListWork {
     }
 }
 
-/// What the passes need beside lists and bodies.
 #[derive(Clone, Copy)]
 pub(crate) struct Parts<'a> {
     pub bonds: &'a [Constants],
     pub laws: &'a Laws,
     /// Time step [s].
     pub dt: f64,
-    /// Whether no step has been made: the motion before the start does not count.
+    /// No step yet: previous motion is ignored.
     pub fresh: bool,
 }
 
@@ -165,7 +156,6 @@ impl Parts<'_> {
     }
 }
 
-/// Bonds and debonded pairs between blocks: forces go to slots.
 pub(crate) fn cross(
     parts: &Parts<'_>,
     blocks: &[Block],
@@ -212,7 +202,6 @@ impl ListWork {
     }
 }
 
-/// Bonds and debonded pairs within block `b`, and its shares of those with others.
 pub(crate) fn within(
     parts: &Parts<'_>,
     b: usize,
@@ -251,14 +240,12 @@ pub(crate) fn within(
 }
 
 impl ListWork {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         held(&self.constants) + held(&self.slots) + held(&self.found) + held(&self.broken)
     }
 }
 
 impl BondWork {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.cross.iter().map(ListWork::bytes).sum::<usize>() + self.shares.iter().map(held).sum::<usize>()
     }

@@ -8,7 +8,7 @@ use crate::shape::Shape;
 use crate::spatial::surface::NoSurface;
 use crate::{Model, State, Work};
 
-/// A shaken cube of 11³ spheres, 0.1 mm apart, in two blocks at least.
+/// Shaken cube of 11³ spheres, gap 0.1 mm, at least two blocks.
 fn cube(strength: f64) -> ModelInput {
     let mut input = ModelInput {
         materials: vec![Material {
@@ -41,7 +41,7 @@ fn cube(strength: f64) -> ModelInput {
         .map(|(k, p)| BondInput::new(p[0], p[1], k % 3))
         .collect();
     assert_eq!(input.bonds.len(), 3 * 11 * 11 * 10);
-    // Every third bond can break, so that some do and most stay whatever the step.
+    // Every third bond may break.
     for strength in [strength, f64::INFINITY, f64::INFINITY] {
         input.bond_kinds.push(Bond::Direct(DirectBond {
             stiffness: [1.5e7, 6e6, 390.0, 310.0],
@@ -54,9 +54,9 @@ fn cube(strength: f64) -> ModelInput {
     input
 }
 
-/// The lanes of any processor and those of this one, with bonds that break in all of them.
+/// Scalar and native SIMD, with breakage in all lanes.
 #[test]
-fn portable_and_fast_lanes_give_the_same_bits() {
+fn scalar_and_simd_match_bitwise() {
     let model = Model::new(cube(20.0)).unwrap();
     let run = |simd: Simd| {
         let mut state = State::new(&model);
@@ -76,7 +76,6 @@ fn portable_and_fast_lanes_give_the_same_bits() {
     assert!(run(Simd::Portable) == run(Simd::best()));
 }
 
-/// A new order of the bodies, with bonds moved between the lists: same energy, same forces on every body.
 #[test]
 fn bonds_survive_a_new_order() {
     let model = Model::new(cube(f64::INFINITY)).unwrap();
@@ -95,7 +94,7 @@ fn bonds_survive_a_new_order() {
     };
     let (before, energy) = (forces(&state), crate::measure::energies(&model, &state).elastic_bonds);
     let places = state.places.clone();
-    // The order of a cube that stands still is that of its start: turn the bodies about for another.
+    // A resting cube stays sorted: permute the axes.
     let positions: Vec<Vec3> = (0..1331).map(|b| state.position(1330 - b).yzx()).collect();
     let all = crate::engine::order::Turnover::none(&state);
     crate::engine::order::reorder(&mut state, &model, &positions, &all);

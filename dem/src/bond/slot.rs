@@ -1,11 +1,10 @@
-//! Where bonds between blocks leave their forces.
+//! Slots for bond forces between blocks.
 
 use crate::base::Vec3;
 use crate::bodies::sums::Sums;
 use crate::lanes::record::Record;
 use crate::lanes::{Four, Portable};
 
-/// Force on the first body, and torques on both.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BondSlot {
     pub force: Record,
@@ -31,7 +30,6 @@ fn subtract<R: Four>(to: &mut Record, v: R) {
 }
 
 impl BondSlot {
-    /// Adds the first body's share to its sums, or the second's.
     #[inline(always)]
     pub fn share(&self, sums: &mut Sums, first: bool) {
         let (force, torque) = sums.both();

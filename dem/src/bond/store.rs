@@ -1,5 +1,5 @@
-//! Where bonds are kept: in lists of groups of four, one list per block for bonds within it, one for those that lead to
-//! other blocks (with the block of their first body). A list holds unbroken bonds only.
+//! Bond lists in groups of four, per block, and between blocks by the first body's block; unbroken bonds
+//! only.
 
 use super::debonded::DebondedPair;
 use super::kernel::{COUNT, Memory};
@@ -9,15 +9,14 @@ use crate::lanes::V3;
 use crate::lanes::record::Record;
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Number of a lane without a bond.
+/// Index of an unused lane.
 const NONE: u32 = u32::MAX;
 
-/// Four bonds.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Group {
-    /// Numbers in the model.
+    /// Bond indices.
     pub number: [u32; 4],
-    /// Place of the first body in its block; block and place of the second.
+    /// Slot of the first body; block and slot of the second.
     pub i: [u32; 4],
     pub block: [u32; 4],
     pub j: [u32; 4],
@@ -25,7 +24,6 @@ pub(crate) struct Group {
     pub turn: [Record; 3],
 }
 
-/// One bond of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     pub number: u32,
@@ -35,7 +33,6 @@ pub(crate) struct Entry {
     pub memory: Memory<f64>,
 }
 
-/// Bonds of a block, and pairs that were bonded.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct BondList {
     #[serde(serialize_with = "without_spare_lanes")]
@@ -44,7 +41,7 @@ pub(crate) struct BondList {
     pub debonded: Vec<DebondedPair>,
 }
 
-/// Lanes without a bond compute along; what that leaves in them has no meaning, and is saved as nothing.
+/// Unused lanes contain arbitrary values; they are saved as zero.
 fn without_spare_lanes<S: Serializer>(groups: &[Group], serializer: S) -> Result<S::Ok, S::Error> {
     let mut groups = groups.to_vec();
     for g in &mut groups {
@@ -55,18 +52,17 @@ fn without_spare_lanes<S: Serializer>(groups: &[Group], serializer: S) -> Result
     groups.serialize(serializer)
 }
 
-/// What else changes with bonds.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct BondState {
-    /// Bonds between blocks, by the block of their first body.
+    /// Between blocks, by the first body's block.
     pub cross: Vec<BondList>,
-    /// Whether no step has been made: the motion before the start does not count.
+    /// No step yet: previous motion is ignored.
     pub fresh: bool,
-    /// Power of all dashpots in the last step [W].
+    /// Dashpot power in the last step [W].
     pub power: f64,
-    /// Bonds broken so far by tension and by shear.
+    /// Breaks by tension, shear.
     pub broken: [u64; 2],
-    /// Breaks that nobody has taken yet.
+    /// Not yet collected.
     pub breaks: Vec<Break>,
 }
 
@@ -76,7 +72,6 @@ impl Memory<f64> {
 }
 
 impl BondList {
-    /// The bond at a position.
     pub fn get(&self, at: usize) -> Entry {
         let (g, l) = (&self.groups[at / 4], at % 4);
         let vector = |v: &[Record; 3]| V3::new(v[0][l], v[1][l], v[2][l]);
@@ -84,7 +79,6 @@ impl BondList {
         Entry { number: g.number[l], i: g.i[l], block: g.block[l], j: g.j[l], memory }
     }
 
-    /// Replaces the bond at a position.
     pub fn set(&mut self, at: usize, e: &Entry) {
         let (g, l) = (&mut self.groups[at / 4], at % 4);
         (g.number[l], g.i[l], g.block[l], g.j[l]) = (e.number, e.i, e.block, e.j);
@@ -93,19 +87,17 @@ impl BondList {
         }
     }
 
-    /// All bonds in order.
     pub fn iter(&self) -> impl Iterator<Item = Entry> + '_ {
         (0..self.count as usize).map(|at| self.get(at))
     }
 
-    /// Replaces the bonds.
     pub fn fill(&mut self, bonds: impl Iterator<Item = Entry>) {
         self.groups.clear();
         self.count = 0;
         for e in bonds {
             let at = self.count as usize;
             if at.is_multiple_of(4) {
-                // A lane without a bond repeats a real pair, so that its arithmetic is harmless; its constants are zero.
+                // Unused lanes repeat a real pair with zero constants, for harmless arithmetic.
                 let zero = [Record::default(); 3];
                 self.groups.push(Group {
                     number: [NONE; 4],
@@ -121,7 +113,7 @@ impl BondList {
         }
     }
 
-    /// Takes out the bonds at the given positions, ascending, and their constants; those behind move up.
+    /// Removes the bonds at ascending positions and their constants.
     pub fn remove(
         &mut self,
         constants: &mut Vec<[Record; COUNT]>,
@@ -151,7 +143,6 @@ impl BondList {
         }
     }
 
-    /// The constants of the bonds, group by group.
     pub fn constants(&self, bonds: &[Constants], out: &mut Vec<[Record; COUNT]>) {
         out.clear();
         out.extend(self.groups.iter().map(|g| {
@@ -166,14 +157,12 @@ impl BondList {
     }
 }
 
-/// Sets the constants at a position.
 fn set_constants(constants: &mut [[Record; COUNT]], at: usize, own: [f64; COUNT]) {
     for (to, x) in constants[at / 4].iter_mut().zip(own) {
         to[at % 4] = x;
     }
 }
 
-/// Pairs of bodies whose contact is not for the ordinary contacts to find: bonded, or not yet separated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Held {
     start: Vec<u32>,
@@ -181,7 +170,7 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// Holds the given pairs of so many bodies.
+    /// `bodies`: body count.
     pub fn set(&mut self, bodies: usize, mut pairs: Vec<[u32; 2]>) {
         self.start.clear();
         self.partner.clear();
@@ -200,13 +189,11 @@ impl Held {
         self.partner.extend(pairs.iter().map(|p| p[1]));
     }
 
-    /// All pairs.
     pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
         let rows = self.start.windows(2).enumerate();
         rows.flat_map(|(a, w)| self.partner[w[0] as usize..w[1] as usize].iter().map(move |b| [a as u32, *b]))
     }
 
-    /// Whether two bodies are held.
     #[inline]
     pub fn has(&self, a: u32, b: u32) -> bool {
         if self.start.is_empty() {
@@ -219,7 +206,6 @@ impl Held {
 }
 
 impl BondList {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         held(&self.groups) + held(&self.debonded)
     }
@@ -229,9 +215,8 @@ impl BondList {
 mod tests {
     use super::*;
 
-    /// What is left keeps its order, its memory and its constants, and lanes without a bond have none.
     #[test]
-    fn bonds_move_up_when_others_are_removed() {
+    fn removal_shifts_later_bonds() {
         let memory = |k: f64| Memory { shear: V3::new(k, 2.0 * k, -k), turn: V3::new(-k, k, 0.5 * k) };
         let entry = |k: u32| Entry { number: k, i: k + 1, block: 7, j: k + 2, memory: memory(f64::from(k)) };
         for gone in

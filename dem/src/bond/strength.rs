@@ -1,8 +1,7 @@
-//! Strengths that differ from bond to bond.
+//! Random bond strengths.
 //!
-//! * normal: mean 1, the standard deviation given, cut off at zero (drawn again);
-//! * Weibull: P(f < x) = 1 − exp(−x^m), the strength of a bond's kind being the scale (63.2 % of all bonds break below
-//!   it); the mean is Γ(1 + 1/m).
+//! * normal: mean 1, truncated at zero by redrawing;
+//! * Weibull: P(f < x) = 1 − exp(−x^m), scale from the bond type (63.2 % fractile), mean Γ(1 + 1/m).
 //!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
 //!
@@ -11,14 +10,14 @@
 use crate::base::random::Random;
 use std::f64::consts::TAU;
 
-/// How strengths spread about that of their kind.
+/// Distribution of strength factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
-    /// Not at all.
+    /// Uniform strength.
     Constant,
-    /// Normal, cut off at zero.
+    /// Normal, truncated at zero.
     Normal {
-        /// Standard deviation over the mean [-].
+        /// Coefficient of variation [-].
         deviation: f64,
     },
     /// Weibull.
@@ -28,11 +27,11 @@ pub enum Spread {
     },
 }
 
-/// Factors on the strength of `count` bonds, in their order. `purpose` keeps tension and shear apart; the first
-/// factors do not depend on `count`.
+/// Strength factors of `count` bonds, in order; `purpose` separates tension and shear. Leading factors do not
+/// depend on `count`.
 pub fn factors(spread: Spread, seed: u64, purpose: u64, count: usize) -> Vec<f64> {
     let mut random = Random::new(seed, 0x0b00 + purpose);
-    // 1 − u lies in (0, 1]: its logarithm is finite.
+    // 1 − u in (0, 1]: finite logarithm.
     (0..count)
         .map(|_| match spread {
             Spread::Constant => 1.0,
@@ -63,7 +62,7 @@ mod tests {
         f.iter().filter(|f| **f < x).count() as f64 / f.len() as f64
     }
 
-    /// The distribution functions at several points; a share of 200,000 has a standard error of 0.0011 at most.
+    /// Standard error of a fraction of 200,000: at most 0.0011.
     #[test]
     fn distributions() {
         let weibull = factors(Spread::Weibull { modulus: 4.0 }, 7, 0, N);
@@ -72,13 +71,13 @@ mod tests {
             assert!((share_below(&weibull, x) - expected).abs() < 0.005, "Weibull at {x}");
         }
         let normal = factors(Spread::Normal { deviation: 0.3 }, 7, 0, N);
-        // Φ(−1), Φ(0), Φ(1), Φ(2), given that x > 0: Φ(−3.33) = 4.3e-4 is cut off.
+        // Φ(−1), Φ(0), Φ(1), Φ(2), given x > 0: Φ(−3.33) = 4.3e-4 is cut off.
         for (x, expected) in [(0.7, 0.15866), (1.0, 0.5), (1.3, 0.84134), (1.6, 0.97725)] {
             assert!((share_below(&normal, x) - expected).abs() < 0.005, "normal at {x}");
         }
         let wide = factors(Spread::Normal { deviation: 2.0 }, 7, 0, N);
         assert!(wide.iter().all(|f| *f > 0.0));
-        // Cut off at −0.5 standard deviations: median where Φ = (1 + Φ(−0.5))/2 = 0.65427, x = 1 + 2 · 0.3968.
+        // Truncated at −0.5 deviations: median Φ = (1 + Φ(−0.5))/2 = 0.65427, x = 1 + 2 · 0.3968.
         assert!((share_below(&wide, 1.7936) - 0.5).abs() < 0.005);
     }
 

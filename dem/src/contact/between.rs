@@ -15,15 +15,15 @@ use crate::law::{ContactLaw, PairTable};
 use crate::pairs::cross::{Cross, CrossForces};
 use crate::pairs::groups::Group;
 
-/// Groups between the fetching of records and their use: those of other blocks lie far away in large beds.
+/// Prefetch distance [groups].
 const AHEAD: usize = 4;
 
-/// Contacts of block `b`'s spheres with spheres of other blocks: forces go to slots.
+/// Contacts of block `b` with other blocks; forces go to slots.
 pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub blocks: Part<'a, Block>,
     pub members: Part<'a, Members>,
-    /// The material of all bodies, where there is only one.
+    /// Common material, if any.
     pub material: Option<u32>,
     pub b: usize,
     pub lists: &'a mut Cross,

@@ -1,5 +1,4 @@
-//! The loops of a step on one block, chosen by law and by what the block holds. Nothing here depends on the type of the
-//! external surface, so these loops are compiled once, with this crate.
+//! Selects a block's contact loops. Independent of the surface type, hence compiled once, with this crate.
 
 use super::between::Between;
 use super::gather::Gathering;
@@ -23,7 +22,6 @@ macro_rules! build {
     };
 }
 
-/// Runs the one of four loops that two flags choose.
 macro_rules! select {
     ($rigid:expr, $turning:expr, $loop:ident, $simd:expr, $fields:tt) => {
         match ($rigid, $turning) {
@@ -35,7 +33,7 @@ macro_rules! select {
     };
 }
 
-/// Contacts of spheres of block `b` with spheres of others. `clumps`: any body of the model may be a clump.
+/// `clumps`: the model may contain clumps.
 pub(crate) fn between(
     Setting { laws, simd, dt }: Setting<'_>,
     clumps: bool,
@@ -51,14 +49,13 @@ pub(crate) fn between(
     });
 }
 
-/// Has the records of a block's bodies fetched, which contacts read in no order.
+/// Prefetches body records, read in random order.
 pub(crate) fn fetch(block: &Block) {
     lanes::prefetch(&block.centre);
     lanes::prefetch(&block.velocity);
     lanes::prefetch(&block.spin);
 }
 
-/// Adds up what other blocks left for a block.
 pub(crate) fn gather(simd: Simd, shares: &Shares, sums: &mut [Sums], slots: Slots<'_>) {
     if shares.wide {
         lanes::run(simd, Gathering::<true> { shares, sums, slots });
@@ -67,7 +64,6 @@ pub(crate) fn gather(simd: Simd, shares: &Shares, sums: &mut [Sums], slots: Slot
     }
 }
 
-/// Contacts between spheres of a block.
 pub(crate) fn interior(
     Setting { laws, simd, dt }: Setting<'_>,
     (block, members): (&Block, &Members),
@@ -81,7 +77,7 @@ pub(crate) fn interior(
     });
 }
 
-/// Contacts of spheres of a block with planes, which are of one `material` where that is given.
+/// `material`: common material of the planes.
 pub(crate) fn planes(
     Setting { laws, simd, dt }: Setting<'_>,
     planes: &[PlaneNow],
@@ -96,7 +92,7 @@ pub(crate) fn planes(
     });
 }
 
-/// Forces of contacts of a block's spheres with patches. `turning`: any may resist rolling or twisting, or adhere.
+/// `turning`: resistance against rolling or twisting, or adhesion possible.
 pub(crate) fn patch_forces(setting: &Setting<'_>, turning: bool, block: &Block, forces: &mut [PatchForce]) {
     let &Setting { laws, simd, dt } = setting;
     with_law!(laws, laws => if turning {

@@ -1,4 +1,4 @@
-//! Partners of contacts in lanes: bodies of one block, or of several.
+//! Contact partners in lanes.
 
 use crate::bodies::block::Block;
 use crate::bodies::members::Members;
@@ -7,10 +7,10 @@ use crate::bodies::sums::Tally;
 use crate::lanes::Pack;
 use crate::lanes::record::Record;
 
-/// A number per lane; of four lanes only, the others are not used.
+/// Index per lane; with four lanes the others are unused.
 pub(crate) type Names = [usize; 8];
 
-/// One partner of the contacts in lanes: its sphere, and of its body the centre, the velocity and the spin.
+/// Contact partner in lanes, with its body's motion.
 pub(crate) trait End {
     fn sphere(&self, lane: usize) -> &Record;
     fn centre(&self, lane: usize) -> &Record;
@@ -18,22 +18,21 @@ pub(crate) trait End {
     fn spin(&self, lane: usize) -> &Record;
 }
 
-/// Bodies of one block.
 pub(crate) struct Own<'a, const RIGID: bool> {
     spheres: &'a [Record],
     centre: &'a [Record],
     velocity: &'a [Record],
     spin: &'a [Record],
     names: [&'a [u32; 4]; 2],
-    /// Of clumps and boxes only.
+    /// Clumps and boxes only.
     body: Names,
 }
 
 impl<'a, const RIGID: bool> Own<'a, RIGID> {
-    /// `names`: of spheres, by lane.
+    /// `names`: spheres by lane.
     ///
     /// # Safety
-    /// Single spheres (`RIGID = false`): every name is below the number of the block's bodies.
+    /// If `RIGID = false`, names are below the block's body count.
     #[inline(always)]
     pub unsafe fn new<R: Pack>(
         block: &'a Block,
@@ -58,12 +57,12 @@ impl<'a, const RIGID: bool> Own<'a, RIGID> {
     #[inline(always)]
     fn of_body(&self, list: &'a [Record], lane: usize) -> &'a Record {
         let k = self.body(lane);
-        // SAFETY: as whoever called `new` has promised; the block's lists are of one length.
+        // SAFETY: promised by the caller of `new`; lists have equal length.
         if RIGID { &list[k] } else { unsafe { list.get_unchecked(k) } }
     }
 }
 
-/// Whether a block's lists of records and its sums are of one length, and `most` is below it.
+/// Whether records and sums have equal length above `most`.
 pub(crate) fn within(block: &Block, tally: &Tally, most: u32) -> bool {
     let n = block.centre.len();
     block.velocity.len() == n && block.spin.len() == n && tally.sums.len() == n && (most as usize) < n
@@ -88,11 +87,10 @@ impl<const RIGID: bool> End for Own<'_, RIGID> {
     }
 }
 
-/// Bodies of several blocks.
 pub(crate) struct Far<'a> {
     pub blocks: Part<'a, Block>,
     pub members: Part<'a, Members>,
-    /// Whether spheres may be those of clumps.
+    /// Whether clumps are possible.
     pub rigid: bool,
     pub block: [&'a [u32; 4]; 2],
     pub sphere: [&'a [u32; 4]; 2],

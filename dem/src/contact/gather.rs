@@ -1,11 +1,11 @@
-//! Forces that other blocks left in slots, added to a block's bodies.
+//! Adds forces from other blocks' slots to a block's bodies.
 
 use super::group_memory::FAR;
 use crate::bodies::sums::Sums;
 use crate::lanes::{self, Four, Kernel, Pack, Real};
 use crate::pairs::cross::{Shares, Slots};
 
-/// Adds the slots of contacts with other blocks, in their fixed order. `WIDE`: some hold both torques.
+/// Adds slots in fixed order. `WIDE`: some contain both torques.
 pub(crate) struct Gathering<'a, const WIDE: bool> {
     pub shares: &'a Shares,
     pub sums: &'a mut [Sums],

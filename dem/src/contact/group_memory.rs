@@ -1,35 +1,34 @@
-//! Memory of contacts in groups as lanes see it, and what they share: the law's constants, sums of dissipated energy.
+//! Contact history in lanes; law constants, dissipation.
 
 use crate::lanes::record::Record;
 use crate::lanes::{Four, Pack, Real, V3};
 use crate::law::{ContactLaw, FRESH, Memory, PairTable};
 use crate::pairs::groups::Springs;
 
-/// Groups between the fetching of groups and their use: more than a page.
+/// Prefetch distance [groups], more than a page.
 pub(crate) const FAR: usize = 32;
 
-/// The groups for the lanes, from the first of `list`; where there is one only, the spare one as the second.
+/// Groups for the lanes; a missing second one is the spare.
 #[inline(always)]
 pub(crate) fn side_by_side<'a, R: Pack, T>(list: &'a mut [T], spare: &'a mut T) -> (&'a mut T, &'a mut T) {
     let (first, rest) = list.split_at_mut(1);
     (&mut first[0], if R::GROUPS > 1 { &mut rest[0] } else { spare })
 }
 
-/// The law of the contacts in lanes: one for all, or mixed lane by lane.
+/// Law in lanes, uniform or mixed.
 pub(crate) struct Mix<'a, L: ContactLaw, R: Real> {
     laws: &'a PairTable<L>,
-    /// Set where either side is of one material.
+    /// Set if one side has a single material.
     one: Option<L::Lanes<R>>,
 }
 
 impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
-    /// `a`, `b`: the material of each side, where it has only one.
+    /// `a`, `b`: common material of each side, if any.
     #[inline(always)]
     pub fn new(laws: &'a PairTable<L>, a: Option<u32>, b: Option<u32>) -> Mix<'a, L, R> {
         Mix { laws, one: a.zip(b).map(|(a, b)| laws.get(a, b).splat()) }
     }
 
-    /// For materials in lanes.
     #[inline(always)]
     pub fn of(&self, a: R, b: R) -> L::Lanes<R> {
         match self.one {
@@ -39,7 +38,7 @@ impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
     }
 }
 
-/// Energy that contacts took, by lane of a group.
+/// Dissipation by lane.
 pub(crate) struct Spent<Q> {
     pub dashpot: Q,
     pub friction: Q,
@@ -52,7 +51,6 @@ impl<Q: Four> Spent<Q> {
     }
 }
 
-/// Reads the memory of groups.
 #[inline(always)]
 pub(crate) fn recall<R: Pack, const ROLL: bool>(
     springs: &(&mut Springs, &mut Springs),
@@ -71,7 +69,7 @@ pub(crate) fn recall<R: Pack, const ROLL: bool>(
     }
 }
 
-/// Writes the memory of groups: that of the lanes `on`, nothing for the others.
+/// Writes history in lanes `on`, resets the others.
 #[inline(always)]
 pub(crate) fn remember<R: Pack, const ROLL: bool>(
     springs: &mut (&mut Springs, &mut Springs),
@@ -95,13 +93,11 @@ pub(crate) fn remember<R: Pack, const ROLL: bool>(
     }
 }
 
-/// A vector per lane as a record with a fourth number.
 #[inline(always)]
 pub(crate) fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
     [v.x, v.y, v.z, last]
 }
 
-/// Force and torque of each lane, for the sums of bodies.
 #[inline(always)]
 pub(crate) fn records<R: Pack>(force: V3<R>, torque: V3<R>) -> [R::Record; 8] {
     R::records(four(force, R::zero()), four(torque, R::zero()))

@@ -1,4 +1,4 @@
-//! Contacts across periodic borders, one by one.
+//! Contacts across periodic borders.
 
 use super::single;
 use crate::base::error::Partner;
@@ -12,7 +12,7 @@ use crate::pairs::cross::{Cross, CrossForces, ImagePair};
 use crate::spatial::detect;
 use crate::spatial::periodic::Periodic;
 
-/// Contacts of block `b`'s image pairs; their slots follow those of the spheres and boxes.
+/// Image pairs of block `b`; slots follow the sphere and box slots.
 pub(crate) fn images(
     periodic: &Periodic,
     laws: &Laws,

@@ -14,21 +14,20 @@ use crate::lanes::{self, Four, Kernel, Pack};
 use crate::law::{ContactLaw, PairTable};
 use crate::pairs::groups::{Group, Groups};
 
-/// Passes of the loop between two portions of what the next block needs.
+/// Loop passes between prefetch portions.
 const PORTION: usize = 4;
 
-/// Adds force and torque to the sums of a body.
+/// Adds force and torque to a body.
 ///
 /// # Safety
-/// Single spheres (`RIGID = false`): `body` is below the number of sums.
+/// If `RIGID = false`, `body` is below the number of sums.
 #[inline(always)]
 unsafe fn give<R: Pack, const RIGID: bool>(record: R::Record, sums: &mut [Sums], body: usize) {
-    // SAFETY: as the caller has promised.
+    // SAFETY: promised by the caller.
     let sum = if RIGID { &mut sums[body] } else { unsafe { sums.get_unchecked_mut(body) } };
     R::give(record, &mut sum.0);
 }
 
-/// Contacts between spheres of one block.
 pub(crate) struct Interior<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub block: &'a Block,
@@ -55,7 +54,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Interior<'_,
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Record::default(); 4], [Record::default(); 4]);
         let count = len.div_ceil(4);
-        // Groups per portion of what the next block needs; with nothing to fetch, one loop over all.
+        // Groups per prefetch portion.
         let some = if next.is_empty() { count.max(1) } else { PORTION * R::GROUPS };
         let mut next = next.portions(count.div_ceil(some));
         for from in (0..count).step_by(some) {

@@ -1,4 +1,4 @@
-//! The loops over contacts: detection, the law, and the sums of forces on bodies.
+//! Contact loops: detection, law, force sums.
 
 pub(crate) mod between;
 pub(crate) mod dispatch;

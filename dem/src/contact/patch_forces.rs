@@ -1,4 +1,4 @@
-//! The law of contacts with patches, in lanes: what detection found of a block, force by force.
+//! Contact law of patches in lanes.
 
 use super::group_memory::{Mix, four};
 use crate::base::Vec3;
@@ -7,22 +7,21 @@ use crate::lanes::record::{Record, xyz};
 use crate::lanes::{Kernel, Pack, Real, V3};
 use crate::law::{ContactLaw, History, LawInput, LawOutput, Memory, PairTable};
 
-/// A contact of a sphere with a patch: what the law needs, and in the same places what it gives.
+/// Sphere–patch contact; outputs replace inputs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchForce {
-    /// Body within the block.
     pub body: u32,
-    /// The patch's own coordinates of the place.
+    /// Local coordinates on the patch.
     pub local: [f64; 2],
-    /// Where they touch, and the overlap.
+    /// Contact point, overlap.
     point: Record,
-    /// The normal, and the sphere's radius. Then the part of the torque that is a moment of its own.
+    /// In: normal, radius. Out: moment of the torque.
     normal: Record,
-    /// Velocity of the patch there, and one over the mass of its wall. Then the force on the body, and what dashpots took.
+    /// In: patch velocity, inverse wall mass. Out: force, dashpot loss.
     velocity: Record,
-    /// Angular velocity of its wall, and its material. Then the torque about the body's centre, and what sliding took.
+    /// In: wall angular velocity, material. Out: torque, friction loss.
     spin: Record,
-    /// Tangential spring, and approach speed before.
+    /// Tangential spring, previous approach speed.
     memory: Record,
     /// Rolling and twisting springs.
     turn: Record,
@@ -51,59 +50,54 @@ impl PatchForce {
         }
     }
 
-    /// Radius of the sphere [m].
     #[inline(always)]
     pub fn radius(&self) -> f64 {
         self.normal[3]
     }
 
-    /// What the contact remembers.
     #[inline(always)]
     pub fn history(&self) -> History {
         History { spring: xyz(&self.memory), rate: self.memory[3], turn: *self.turn }
     }
 
-    /// Force on the body [N].
     #[inline(always)]
     pub fn force(&self) -> Vec3 {
         xyz(&self.velocity)
     }
 
-    /// Torque on the body about its centre [N m].
     #[inline(always)]
     pub fn torque(&self) -> Vec3 {
         xyz(&self.spin)
     }
 
-    /// Moment of rolling and twisting resistance on the body [N m].
+    /// Rolling and twisting moment [N m].
     #[inline(always)]
     pub fn moment(&self) -> Vec3 {
         xyz(&self.normal)
     }
 
-    /// Energy that dashpots and that sliding took [J].
+    /// Dashpot and sliding loss [J].
     #[inline(always)]
     pub fn dissipated(&self) -> (f64, f64) {
         (self.velocity[3], self.spin[3])
     }
 }
 
-/// Spheres and the patches that they touch, by lane, as the law of their contact needs them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch<R> {
-    /// From the centre of the body to the contact point.
+    /// Body centre to contact point.
     pub arm: V3<R>,
     pub overlap: R,
     pub radius: R,
     pub normal: V3<R>,
-    /// Velocity and spin of the body; velocity of the wall at the point, and its spin.
+    /// Velocity and angular velocity of the body, and of the wall at the point.
     pub body: (V3<R>, V3<R>),
     pub wall: (V3<R>, V3<R>),
-    /// Sum of both inverse masses.
+    /// Sum of inverse masses.
     pub inverse_mass: R,
 }
 
-/// Force on the body, the torque about its centre, the part of that that is a moment of its own, and what it took.
+/// Force, torque about the centre, its moment part, dissipation.
 pub(crate) struct Forces<R> {
     pub force: V3<R>,
     pub torque: V3<R>,
@@ -112,7 +106,7 @@ pub(crate) struct Forces<R> {
     pub friction: R,
 }
 
-/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+/// Forces in lanes `on` over a step [s]; advances history.
 #[inline(always)]
 pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
     law: &L::Lanes<R>,
@@ -139,7 +133,6 @@ pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
     Forces { force, torque, moment, dashpot, friction }
 }
 
-/// Evaluates the law for all contacts of a block with patches.
 pub(crate) struct PatchLaw<'a, L, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub block: &'a Block,
@@ -157,7 +150,6 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
         let mut at = 0;
         while at < forces.len() {
             let count = (forces.len() - at).min(R::LANES);
-            // Record to spare repeat the last of.
             let of = |l: usize| &forces[at + if l < count { l } else { count - 1 }];
             let body = |l: usize| of(l).body as usize;
             let on = R::below(count);

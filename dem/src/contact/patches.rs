@@ -1,22 +1,16 @@
-//! Contacts of spheres with surfaces made of patches, without counting anything twice.
+//! Contacts of spheres with patch surfaces, without double counting.
 //!
-//! A sphere within reach of several patches touches the surface where its distance to the *union* of them has a
-//! local minimum. A closest point inside a patch is one. A closest point on an edge or a vertex is one only if no
-//! other patch through that point has a closer point; and points that several patches share count once: for a face
-//! before an edge before a vertex, and of these for the lowest patch. The test is on points, so it also holds for surfaces whose neighbouring patches do not share
-//! vertex numbers.
+//! Contacts are local minima of the distance to the *union* of patches. A closest point on an edge or vertex
+//! counts only if no patch through it is closer. Shared points count once: face before edge before vertex,
+//! then the lowest patch. The test uses points, so patches need not share vertex indices.
 //!
-//! A contact that moves on to another patch takes its memory along: matched by patch first, else with the nearest
-//! contact of that sphere that has just ended and has a similar normal.
+//! A contact that changes patch keeps its history: same patch first, else the nearest ending contact with a
+//! similar normal.
 //!
-//! Where two patches meet at a hollow angle both count, as two walls do, unless their normals differ by less than
-//! ten degrees: such a seam stands for a smooth surface (the faces of a solid are only C0, and a load bends every
-//! seam below it hollow), where counting each patch would double the stiffness near the seam and, as the bend comes
-//! and goes, pump energy into the contact. Of such contacts the deepest counts; its overlap is the largest of all
-//! and so continuous, and the force keeps a potential. Contacts are taken in falling order of overlap, and one that is
-//! like one taken before is left out, so the result does not depend on the order of the patches.
-//!
-//! The near list holds numbers only; what a contact remembers is kept for those in touch.
+//! At concave seams both patches count, unless their normals differ by less than ten degrees. Such a seam
+//! approximates a smooth surface (faces of a solid are C0), where two contacts would double the stiffness and
+//! add spurious energy. The deepest counts: its overlap is continuous, so the force has a potential.
+//! Descending overlap makes the result independent of patch order.
 
 use super::dispatch;
 use super::patch_forces::PatchForce;
@@ -34,35 +28,33 @@ use crate::law::{ContactGeometry, History};
 use crate::pairs::patches::{PatchContact, PatchList, PatchPair};
 use crate::spatial::surface::{Feature, PatchPoint, Surface, SurfaceContact};
 
-/// Scratch of a block for its contacts with patches, and what they leave.
+/// Scratch and results of a block.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PatchWork {
-    /// Whether any contact may resist rolling or twisting, or adhere.
+    /// Whether contacts may resist rolling or twisting, or adhere.
     pub turning: bool,
     found: Vec<PatchTouch>,
     live: Vec<PatchContact>,
     forces: Vec<PatchForce>,
-    /// Energy left in the springs of contacts that ended in this step [J].
+    /// Energy of ended springs [J].
     ended: f64,
-    /// Contacts with the external surface in this step.
     pub contacts: Vec<SurfaceContact>,
-    /// What the block's spheres felt from each wall; empty in blocks near none.
+    /// Force sums by wall; empty without walls nearby.
     pub wall_sums: Vec<WallSum>,
-    /// Forces of contacts with walls, and what dashpots and friction took in these, where another back end adds them up.
+    /// Wall contacts for another back end.
     pub aside: Aside,
 }
 
-/// Forces of contacts that are kept beside those that come after.
+/// Saved contact forces.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Aside {
-    /// In the order of the block's spheres.
+    /// In the order of spheres.
     pub forces: Vec<PatchForce>,
     pub dashpot: f64,
     pub friction: f64,
 }
 
 impl Aside {
-    /// Nothing, in the same memory.
     pub fn clear(&mut self) {
         self.forces.clear();
         (self.dashpot, self.friction) = (0.0, 0.0);
@@ -70,12 +62,12 @@ impl Aside {
 }
 
 impl PatchWork {
-    /// Forces of the contacts with the surface that came last, in the order of the block's spheres.
+    /// Latest surface contacts, in the order of spheres.
     pub fn forces(&self) -> &[PatchForce] {
         &self.forces
     }
 
-    /// Puts the contacts that came last aside, and what they took out of `tally`.
+    /// Moves the latest contacts and their dissipation out of `tally`.
     pub fn set_aside(&mut self, tally: &mut Tally) {
         let PatchWork { forces, aside, .. } = self;
         std::mem::swap(forces, &mut aside.forces);
@@ -84,32 +76,29 @@ impl PatchWork {
     }
 }
 
-/// Points closer than this fraction of the radius are one.
+/// Coincidence tolerance over radius.
 const SAME: f64 = 1e-6;
-/// Least cosine between the normals of contacts that are one contact with a smooth surface: ten degrees.
+/// Smallest cosine between normals of a smooth surface: ten degrees.
 const SMOOTH: f64 = 0.984_807_753_012_208;
-/// Least cosine between the normals of a contact before and after it moves on to another patch.
+/// Smallest cosine between normals for history transfer.
 const SIMILAR: f64 = 0.9;
 
-/// What a surface did in one step.
 #[derive(Default)]
 pub(crate) struct Exchange {
     pub work: f64,
     pub impulse: Impulse,
 }
 
-/// One patch against the sphere at hand.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchTouch {
     patch: u32,
     closest: PatchPoint,
     geometry: ContactGeometry,
-    /// The centre lies behind a one-sided surface.
+    /// Centre behind a one-sided surface.
     behind: bool,
     pub counts: bool,
 }
 
-/// How far the centre of a sphere is from the closest point of a patch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gap<R> {
     offset: V3<R>,
@@ -118,14 +107,14 @@ pub(crate) struct Gap<R> {
 }
 
 impl<R: Real> Gap<R> {
-    /// `offset`: of the centre; `straight`: the point is inside a patch, whose normal is exact.
+    /// `straight`: interior point with exact normal.
     #[inline(always)]
     pub fn new(offset: V3<R>, outward: V3<R>, straight: R::Mask) -> Gap<R> {
         let along = offset.dot(outward);
         Gap { offset, along, distance: R::select(straight, along.abs(), offset.norm2().sqrt()) }
     }
 
-    /// Normal and overlap of the contact of a sphere of radius `r`.
+    /// `r`: sphere radius.
     #[inline(always)]
     pub fn contact(&self, outward: V3<R>, r: R, straight: R::Mask, behind: R::Mask) -> (V3<R>, R) {
         let &Gap { offset, along, distance } = self;
@@ -142,8 +131,7 @@ impl<R: Real> Gap<R> {
     }
 }
 
-/// Finds which of the patches `pairs` (all of one sphere at `x`) count; `gone` is the bound on the way that anything
-/// has come towards anything since the near list was made. Results are appended to `out`.
+/// Appends the valid contacts of a sphere at `x`. `gone`: motion bound since the neighbour list was built.
 #[inline]
 fn touches<S: Surface>(
     surface: &S,
@@ -176,8 +164,7 @@ fn touches<S: Surface>(
         let gap = Gap::new(V3::from_vec(&offset), V3::from_vec(&outward), straight);
         let distance = gap.distance;
         if distance >= r && !(behind && straight) {
-            // Found as far only now. Beyond a sharp edge the bound stated less, and the next step looks again; a smooth
-            // patch has stated its true distance.
+            // Exact for a smooth patch; beyond a sharp edge, check again next step.
             pair.spare = if sharp { gone } else { gone + distance - r };
             continue;
         }
@@ -188,7 +175,7 @@ fn touches<S: Surface>(
         out.push(PatchTouch { patch: pair.patch, closest, geometry, behind, counts: true });
     }
     if out.len() < 2 {
-        // A single patch: nothing to tell apart but the space beside a one-sided surface.
+        // Excludes only the region next to a one-sided surface.
         for t in out.iter_mut() {
             t.counts = !(t.behind && t.closest.feature != Feature::Face);
         }
@@ -198,50 +185,45 @@ fn touches<S: Surface>(
     keep_deepest(out);
 }
 
-/// Within this of each other points of a sphere's contacts are one [m].
+/// Coincidence tolerance of contact points [m].
 #[inline(always)]
 pub(crate) fn tolerance<R: Real>(radius: R) -> R {
     R::splat(SAME) * radius
 }
 
-/// Whether two points are one to a sphere.
 #[inline(always)]
 pub(crate) fn one_point<R: Real>(a: V3<R>, b: V3<R>, radius: R) -> R::Mask {
     (a - b).norm2().sqrt().le(tolerance(radius))
 }
 
-/// Whether the normals of two contacts tell that they are one contact with a smooth surface.
 #[inline(always)]
 pub(crate) fn alike<R: Real>(a: V3<R>, b: V3<R>) -> R::Mask {
     a.dot(b).gt(R::splat(SMOOTH))
 }
 
-/// Whether a contact that begins, given by normal and point, may take the memory of one that ends; and how far that is away.
+/// Whether a new contact may adopt an ending one's history, and their distance.
 #[inline(always)]
 pub(crate) fn may_follow<R: Real>(new: (V3<R>, V3<R>), old: (V3<R>, V3<R>), radius: R) -> (R::Mask, R) {
     let away = (old.1 - new.1).norm2().sqrt();
     (old.0.dot(new.0).gt(R::splat(SIMILAR)) & away.lt(R::splat(0.5) * radius), away)
 }
 
-/// Whether a sphere has passed to the other side of a patch: a two-sided wall pushes back from whichever side the centre is on, so that
-/// a flipped normal there means it. `old`: normal and side before.
+/// Whether a sphere crossed a two-sided patch, which flips the normal. `old`: normal, side.
 #[inline(always)]
 pub(crate) fn passed<R: Real>(normal: V3<R>, side: R, old: (V3<R>, R)) -> R::Mask {
     old.0.dot(normal).lt(R::splat(-0.5)) & (old.1 * side).le(R::zero())
 }
 
-/// A sphere above the inside of a patch.
 pub(crate) struct Rest<R: Real> {
     pub normal: V3<R>,
     pub overlap: R,
-    /// Cosine between the contact's and the patch's own normal.
+    /// Cosine of contact and patch normal.
     pub side: R,
-    /// Whether nothing else can count.
+    /// Whether no other contact can count.
     pub stays: R::Mask,
 }
 
-/// How a sphere of radius `r` rests on a patch where the centre is `offset` from its foot: nothing moves so far in a step that it could
-/// have passed.
+/// Sphere on a patch interior, centre at `offset` from its foot; motion per step is too small to cross.
 #[inline(always)]
 pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> Rest<R> {
     let along = offset.dot(outward);
@@ -251,7 +233,6 @@ pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> Rest<R> {
     Rest { normal, overlap: r - distance, side: normal.dot(outward), stays }
 }
 
-/// Decides which of several touches count: see the head of this file.
 #[inline(always)]
 fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
     let same = |a: &Vec3, b: &Vec3| one_point(V3::from_vec(a), V3::from_vec(b), r);
@@ -277,14 +258,13 @@ fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
                 counts &= !same(&Vec3::from(nearest.point), &point);
             }
         }
-        // Behind the outer rim of a one-sided surface is beside it, not below it.
+        // Outside the outer rim of a one-sided surface.
         out[k].counts = counts && !(on_rim && out[k].behind && !shared);
     }
 }
 
-/// The contact of a sphere that stays inside a patch, where all patches near it lie in one plane and the
-/// overlap is so small that whatever else it touches of them differs by less than [`SMOOTH`]: the others need not be
-/// asked. That is how a bed rests on a floor of triangles.
+/// Interior contact with only coplanar patches nearby: at this small overlap, other contacts differ by less
+/// than [`SMOOTH`]. Typical on a triangulated floor.
 #[inline(always)]
 fn resting<S: Surface>(
     surface: &S,
@@ -302,7 +282,7 @@ fn resting<S: Surface>(
     stays.then(|| PatchContact { point, normal: normal.to_vec(), velocity, overlap, side, ..*old })
 }
 
-/// Of contacts whose normals differ little keeps the deepest, the first of equals.
+/// Keeps the deepest among similar normals, the first of equals.
 fn keep_deepest(found: &mut [PatchTouch]) {
     let mut last = (f64::INFINITY, 0);
     loop {
@@ -321,24 +301,23 @@ fn keep_deepest(found: &mut [PatchTouch]) {
     }
 }
 
-/// Whether a touch comes after `last` in falling order of overlap.
+/// Whether a contact follows `last` in descending overlap.
 fn after(last: (f64, usize), k: usize, t: &PatchTouch) -> bool {
     t.geometry.overlap < last.0 || (t.geometry.overlap == last.0 && k > last.1)
 }
 
-/// One surface as the contacts of a block see it.
 pub(crate) struct Against<'a, S, M, P> {
     pub surface: &'a S,
-    /// Material (index) of a patch, and what it is called.
+    /// By patch: material (index), partner name.
     pub material: M,
     pub partner: P,
-    /// Whether it belongs to another program part, which is given the contacts; else forces are summed by wall.
+    /// Whether contacts go to another program part; else forces are summed by wall.
     pub external: bool,
-    /// Bound on the way that anything has come towards anything since the near list was made [m].
+    /// Motion bound since the neighbour list was built [m].
     pub gone: f64,
 }
 
-/// All contacts of a block with one surface: found sphere by sphere, then the law of all of them, then what they do.
+/// Contacts of a block with a surface: detection, law, application.
 pub(crate) fn contacts<S: Surface>(
     setting: &Setting<'_>,
     against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
@@ -354,7 +333,7 @@ pub(crate) fn contacts<S: Surface>(
     exchange
 }
 
-/// Finds the contacts, with the memory of those that go on; `work` then holds them and what the law needs of each.
+/// Detects contacts and transfers history; results in `work`.
 #[inline(always)]
 fn find<S: Surface>(
     setting: &Setting<'_>,
@@ -382,7 +361,6 @@ fn find<S: Surface>(
     let mut friction = 0.0;
     let sharp = surface.sharp();
     let spheres = members.spheres(block);
-    // Patches lie in no order of the blocks.
     list.pairs.iter().filter(|p| p.spare <= gone).for_each(|p| surface.fetch(p.patch));
     let old = &mut list.live[..];
     let mut at = 0;
@@ -431,11 +409,11 @@ fn find<S: Surface>(
         }
     }
     old[at..].iter_mut().for_each(|c| friction += end(c));
-    // Summed apart from what sliding takes in this step, as it always was.
+    // Fixes the summation order.
     work.ended = friction;
 }
 
-/// Brings a contact to where it is now; returns its overlap and the bound where it is too deep [m].
+/// Updates a contact; returns overlap and limit if too deep [m].
 #[inline(always)]
 fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r: f64) -> Option<(f64, f64)> {
     let g = &t.geometry;
@@ -452,7 +430,6 @@ fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r:
     (passed || overlap > bound).then_some((overlap, bound))
 }
 
-/// Adds the forces to the bodies, and books them with the surface.
 #[inline(always)]
 fn apply<S: Surface>(
     setting: &Setting<'_>,
@@ -477,7 +454,7 @@ fn apply<S: Surface>(
             exchange.work += force.dot(&contact.velocity) * dt;
             exchange.impulse.add(&contact.point, &(force * dt));
             exchange.impulse.angular += moment * dt;
-            // What springs do not explain; a spring that slides holds what the limit has left to it.
+            // Dashpot part; a sliding spring holds the remaining limit.
             let (normal, tangential) =
                 single::springs(setting.laws, materials, contact.overlap, result.radius(), &contact.history);
             let sprung = contact.normal * normal - contact.history.spring * tangential;
@@ -524,7 +501,7 @@ fn apply<S: Surface>(
     exchange
 }
 
-/// A contact for a touch, with the memory that the same sphere has of the same patch.
+/// New contact with the sphere's history of the patch.
 fn begin(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
     let mut contact = PatchContact {
         i: sphere,
@@ -543,7 +520,7 @@ fn begin(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchConta
     contact
 }
 
-/// Contacts that begin take the memory of contacts that end nearby with a similar normal.
+/// Transfers history from ending contacts nearby with similar normals.
 fn hand_over(now: &mut [PatchContact], before: &mut [PatchContact], r: f64) {
     for contact in now.iter_mut().filter(|c| c.history.is_fresh()) {
         let of = V3::from_vec;

@@ -1,4 +1,4 @@
-//! Contacts with planes: spheres by lanes of four, corners of boxes one by one.
+//! Contacts with planes: spheres in lanes, box corners individually.
 
 use super::ends::{End, Own, within};
 use super::group_memory::{Mix, Spent, recall, records, remember, side_by_side};
@@ -15,14 +15,13 @@ use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory, PairTable};
 use crate::pairs::groups::{Group, Groups};
 use crate::shape::plane::{Plane, PlaneMotion};
 
-/// A plane where it is now: unit normal and its product with a point; velocity and material.
+/// Unit normal and level; velocity, material.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneNow {
     pub face: Record,
     pub motion: Record,
 }
 
-/// The planes as they are at this time.
 pub(crate) fn now(planes: &[Plane], motions: &[PlaneMotion], out: &mut Vec<PlaneNow>) {
     out.clear();
     out.extend(planes.iter().zip(motions).map(|(p, m)| {
@@ -34,11 +33,9 @@ pub(crate) fn now(planes: &[Plane], motions: &[PlaneMotion], out: &mut Vec<Plane
     }));
 }
 
-/// Spheres of a block against planes.
 pub(crate) struct Planes<'a, L, const RIGID: bool, const ROLL: bool> {
     pub laws: &'a PairTable<L>,
     pub planes: &'a [PlaneNow],
-    /// The material of all planes, where there is only one.
     pub material: Option<u32>,
     pub block: &'a Block,
     pub pairs: &'a mut Groups<2>,
@@ -123,7 +120,7 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Planes<'_, L
     }
 }
 
-/// From the centres of the bodies to those of their spheres at `position`; zero for single spheres.
+/// Body centre to sphere centre; zero for single spheres.
 #[inline(always)]
 fn offset<R: Pack, const RIGID: bool>(body: &Own<'_, RIGID>, position: V3<R>) -> V3<R> {
     if RIGID {
@@ -134,26 +131,24 @@ fn offset<R: Pack, const RIGID: bool>(body: &Own<'_, RIGID>, position: V3<R>) ->
     }
 }
 
-/// Spheres and the planes that they touch, by lane, as the law of their contact needs them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch<R> {
-    /// Centre of the sphere; the same from the centre of its body, not used for single spheres.
+    /// Sphere centre; relative to its body, unless a single sphere.
     pub position: V3<R>,
     pub offset: V3<R>,
     pub radius: R,
-    /// Of the plane, and how far the sphere's centre is above it.
+    /// Plane normal, height of the sphere centre.
     pub normal: V3<R>,
     pub height: R,
-    /// Of the body.
+    /// Body velocity.
     pub velocity: V3<R>,
     pub inverse_mass: R,
     pub spin: V3<R>,
-    /// Velocity of the plane.
+    /// Plane velocity.
     pub wall: V3<R>,
 }
 
-/// Forces of planes on bodies and their torques; what they took; work over time and moment about the origin of what planes
-/// did; and which overlap by more than the radius.
+/// Forces and torques on bodies; dissipation; power and moment of planes; excessive overlaps.
 pub(crate) struct Forces<R: Real> {
     pub force: V3<R>,
     pub torque: V3<R>,
@@ -165,7 +160,7 @@ pub(crate) struct Forces<R: Real> {
     pub overlap: R,
 }
 
-/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+/// Forces in lanes `on` over a step [s]; advances history.
 #[inline(always)]
 pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool>(
     law: &L::Lanes<R>,
@@ -207,7 +202,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool
     }
 }
 
-/// A sphere that lies deeper in a plane than its radius.
+/// Overlap above the radius.
 #[cold]
 fn too_deep(block: &Block, members: &Members, name: [u32; 2], overlap: f64, bound: f64) -> Failure {
     let [sphere, plane] = name;
@@ -215,7 +210,7 @@ fn too_deep(block: &Block, members: &Members, name: [u32; 2], overlap: f64, boun
     Failure::Overlap { body, partner: Partner::Plane(plane as usize), overlap, bound }
 }
 
-/// What planes did to a block, by lane: power, and sums of forces and of moments about the origin.
+/// Power, force and moment of planes about the origin.
 struct Done<Q> {
     work: Q,
     linear: V3<Q>,
@@ -244,7 +239,6 @@ impl<Q: Four> Done<Q> {
     }
 }
 
-/// A sum of vectors and the vectors of each group.
 #[inline(always)]
 fn add<R: Pack>(v: V3<R>, sum: V3<R::Quad>) -> V3<R::Quad> {
     V3::new(v.x.add_to(sum.x), v.y.add_to(sum.y), v.z.add_to(sum.z))

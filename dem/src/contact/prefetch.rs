@@ -1,5 +1,5 @@
-//! What the next block's contacts with others will read, fetched a little at a time while this block's are computed:
-//! memory gives it up far more slowly than the arithmetic between two blocks takes, and in no order that the processor could predict.
+//! Prefetches the next block's inter-block contact data, which is accessed in random order, during this
+//! block's computation.
 
 use crate::bodies::block::Block;
 use crate::bodies::part::Part;
@@ -7,7 +7,7 @@ use crate::lanes;
 use crate::lanes::record::Record;
 use crate::pairs::groups::Group;
 
-/// The next block and those after it, its contacts with them, and their slots of `width` records each. By default nothing.
+/// Following blocks, contacts, slots of `width` records.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Prefetch<'a> {
     pub blocks: Part<'a, Block>,
@@ -16,40 +16,37 @@ pub(crate) struct Prefetch<'a> {
     pub width: usize,
 }
 
-/// The same in so many portions.
 pub(crate) struct Portions<'a> {
     of: Prefetch<'a>,
-    /// The next body to fetch, and how many per portion.
+    /// Next body, bodies per portion.
     body: usize,
     bodies: usize,
-    /// The next group to fetch, how many 65536ths of one are due, and how many come with each portion.
+    /// Next group, fraction due and rate [1/65536 group].
     group: usize,
     due: usize,
     rate: usize,
 }
 
-/// Groups whose names are fetched before their partners.
+/// Prefetch distance of names before partners.
 const NAMES: usize = 4;
 
 impl<'a> Prefetch<'a> {
-    /// Whether there is nothing to fetch.
     pub fn is_empty(&self) -> bool {
         self.blocks.list.is_empty()
     }
 
-    /// Splits it.
     #[inline(always)]
     pub fn portions(self, count: usize) -> Portions<'a> {
         let own = self.blocks.list.first().map_or(0, |b| b.centre.len());
         let rate = (self.groups.len() << 16) / count.max(1);
-        // Two bodies share a line.
+        // Two bodies share a cache line.
         let bodies = own.div_ceil(count.max(1)).next_multiple_of(2);
         Portions { of: self, body: 0, bodies, group: 0, due: 0, rate }
     }
 }
 
 impl Portions<'_> {
-    /// Fetches the next portion. `RIGID`: spheres are not the bodies, and whose they are would have to be read first.
+    /// `RIGID`: skips partners, whose bodies would have to be read first.
     #[inline(always)]
     pub fn fetch<const RIGID: bool>(&mut self) {
         let Prefetch { blocks, groups, slots, width } = self.of;
@@ -71,7 +68,6 @@ impl Portions<'_> {
     }
 }
 
-/// Has the records of single spheres in other blocks fetched, as far as these are given.
 #[inline(always)]
 pub(crate) fn partners(blocks: Part<'_, Block>, group: &Group<3>) {
     let [_, block, sphere] = group.names();

@@ -1,5 +1,4 @@
-//! One contact at a time: what boxes, corners, images, debonded pairs, vertices and measures share. The loops over lanes
-//! (`sphere_pair.rs`, `planes.rs`, `patch_forces.rs`) do the same for many.
+//! Single contacts of boxes, corners, images, debonded pairs, vertices and measures.
 
 use crate::base::Vec3;
 use crate::bodies::block::PointMotion;
@@ -8,31 +7,28 @@ use crate::lanes::record::xyz;
 use crate::lanes::{Real, Simd, V3};
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, Laws, with_law};
 
-/// What all blocks share.
 #[derive(Clone, Copy)]
 pub(crate) struct Setting<'a> {
     pub laws: &'a Laws,
     pub simd: Simd,
-    /// Time step [s].
     pub dt: f64,
 }
 
-/// What one contact does to both partners.
 pub(crate) struct PairForce {
-    /// Force on a [N]; b takes the opposite.
+    /// Force on a, opposite on b [N].
     pub force: Vec3,
     /// Torques about the centres [N m].
     pub torque_a: Vec3,
     pub torque_b: Vec3,
-    /// Moment of rolling and twisting resistance on a, part of its torque [N m].
+    /// Rolling and twisting moment on a [N m].
     pub moment: Vec3,
-    /// Energy that dashpots, and that sliding, rolling and twisting took [J].
+    /// Dashpot; sliding, rolling and twisting loss [J].
     pub dashpot: f64,
     pub friction: f64,
 }
 
-/// The force between bodies that move as `a` and `b` at the contact point, of the given materials, over a step `dt` [s]. `share`:
-/// contacts of the two that carry their mass together; `friction`: a coefficient in place of that of the law.
+/// Force over a step `dt` [s]. `share`: contacts sharing the pair's mass; `friction` replaces the law's
+/// coefficient.
 pub(crate) fn between(
     laws: &Laws,
     materials: [u32; 2],
@@ -64,7 +60,6 @@ fn moving(m: &PointMotion) -> Moving<f64> {
     Moving { velocity, spin, arm, inverse_mass: m.inverse_mass() }
 }
 
-/// A body as a contact needs it: velocity, spin, the way from its centre to the contact point, and one over its mass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moving<R> {
     pub velocity: V3<R>,
@@ -79,20 +74,19 @@ impl<R: Real> Moving<R> {
         self.velocity + self.spin.cross(self.arm)
     }
 
-    /// Velocity at the contact point and spin, relative to those of the other body.
     #[inline(always)]
     pub fn against(&self, other: &Moving<R>) -> (V3<R>, V3<R>) {
         (self.at_point() - other.at_point(), self.spin - other.spin)
     }
 
-    /// Torques on this body and on the other of a force on this one and a moment of its own.
+    /// Torques on both bodies of force and moment on this one.
     #[inline(always)]
     pub fn torques(&self, other: &Moving<R>, force: V3<R>, moment: V3<R>) -> (V3<R>, V3<R>) {
         (self.arm.cross(force) + moment, -(other.arm.cross(force) + moment))
     }
 }
 
-/// The law of a pair of materials for one contact: see [`ContactLaw::evaluate_one`]. `friction`: a coefficient in place of its own.
+/// `friction` replaces the law's coefficient.
 pub(crate) fn evaluate(
     laws: &Laws,
     [a, b]: [u32; 2],
@@ -113,7 +107,7 @@ pub(crate) fn evaluate(
     })
 }
 
-/// Ends a contact, if it had begun: returns the energy left in its springs [J].
+/// Ends a contact; returns the energy left [J].
 pub(crate) fn end(laws: &Laws, [a, b]: [u32; 2], history: &mut History) -> f64 {
     if history.is_fresh() {
         return 0.0;
@@ -121,7 +115,7 @@ pub(crate) fn end(laws: &Laws, [a, b]: [u32; 2], history: &mut History) -> f64 {
     with_law!(laws, laws => laws.get(a, b).release(history))
 }
 
-/// Force of the normal spring [N] and stiffness of the tangential spring [N/m] at an overlap and an effective radius [m].
+/// Normal spring force [N] and tangential stiffness [N/m].
 pub(crate) fn springs(
     laws: &Laws,
     [a, b]: [u32; 2],
@@ -132,8 +126,7 @@ pub(crate) fn springs(
     with_law!(laws, laws => laws.get(a, b).springs(overlap, radius, history))
 }
 
-/// Adds to `sum` the part of a contact's `force` [N] that springs do not explain; `before` and `after`: memory of the contact before
-/// and after this step.
+/// Adds the dashpot part of `force` [N] to `sum`; `before`, `after`: history.
 pub(crate) fn add_dashpot(
     sum: &mut DashpotSum,
     laws: &Laws,
@@ -145,7 +138,7 @@ pub(crate) fn add_dashpot(
 ) {
     let (normal, tangential) = springs(laws, [a, b], geometry.overlap, geometry.radius, after);
     let dashpot = (force - geometry.normal * normal + after.spring * tangential) * weight;
-    // A law that remembers another number than the approach speed extrapolates nothing.
+    // Other history than approach speed: no extrapolation.
     if before.is_fresh() || laws.begun(a, b, 1.0) == 0.0 {
         sum.latest += dashpot;
     } else {

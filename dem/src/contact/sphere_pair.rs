@@ -1,8 +1,7 @@
-//! Contacts between spheres over the lanes of one group or two: detection, the law, forces and torques. Generic in the
-//! law, in whether bodies are spheres only (`RIGID = false`: the sphere is the body) or also clumps, and in whether
-//! rolling is resisted (`ROLL`). Contacts that do not touch add zeros, so that they change no bit of a sum.
+//! Sphere–sphere contacts in lanes. Separated pairs add zeros, which leave sums bitwise unchanged. `RIGID`:
+//! clumps; `ROLL`: rolling resistance.
 //!
-//! Theory manual: equation (1.1) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.1), `docs/theory/contacts.md`.
 
 use super::ends::End;
 use super::group_memory::{Mix, Spent, recall, remember};
@@ -11,53 +10,52 @@ use crate::lanes::{Pack, Real, V3};
 use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory};
 use crate::pairs::groups::Springs;
 
-/// Differences of records, by lane of each number; the fourth numbers are multiplied by `last` (1, 0 or −1) before.
+/// `last` (1, 0 or −1) scales the fourth number.
 #[inline(always)]
 fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
     let sign = R::record(&[1.0, 1.0, 1.0, last]);
     R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
 }
 
-/// Two spheres in each lane, as the law of their contact needs them.
+/// Sphere pair in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair<R> {
-    /// From the centre of b to that of a, and the square of its length.
+    /// Vector from b to a, and its squared length.
     pub between: V3<R>,
     pub distance2: R,
-    /// Sum of the radii, and the radius of a.
+    /// Sum of radii, and radius of a.
     pub reach: R,
     pub radius: R,
-    /// Velocity of body a less that of b, and the sum of their inverse masses.
+    /// Relative velocity, a minus b; sum of inverse masses.
     pub velocity: V3<R>,
     pub inverse_mass: R,
     pub spins: (V3<R>, V3<R>),
-    /// From the centres of the bodies to those of the spheres; not used for single spheres.
+    /// Body to sphere centres, unless single spheres.
     pub offsets: (V3<R>, V3<R>),
 }
 
-/// Forces of contacts in lanes: on a, and the torques on a and b; what they took; and what to complain of.
+/// Force on a, torques, dissipation, excessive overlaps.
 pub(crate) struct Forces<R: Real> {
     pub force: V3<R>,
     pub torque_a: V3<R>,
     pub torque_b: V3<R>,
-    /// Of single spheres: force times normal, and the levers of both.
+    /// Single spheres: force × normal, lever arms.
     pub moment: V3<R>,
     pub levers: (R, R),
     pub dashpot: R,
     pub friction: R,
-    /// Which overlap by more than the smaller radius, the overlap and that radius.
+    /// Overlap above the smaller radius; both values.
     pub deep: R::Mask,
     pub overlap: R,
     pub bound: R,
 }
 
-/// How two spheres that touch move against each other.
 struct Approach<R: Real> {
     input: LawInput<R>,
     radii: (R, R),
-    /// From the centres of the spheres to the contact point, along the normal.
+    /// Sphere centres to contact point.
     levers: (R, R),
-    /// From the centres of the bodies; zero for single spheres.
+    /// Body centres to contact point; zero for single spheres.
     arms: (V3<R>, V3<R>),
 }
 
@@ -67,7 +65,7 @@ impl<R: Real> Approach<R> {
         let &Pair { between, distance2, reach, velocity: translation, inverse_mass, spins: (wa, wb), .. } =
             pair;
         let distance = distance2.sqrt();
-        // distance/distance² rather than 1/distance: the division need not wait for the root.
+        // distance/distance²: the division need not wait for the root.
         let mut normal = between * (distance * (R::splat(1.0) / distance2));
         let apart = R::zero().lt(distance);
         if !R::all(apart) {
@@ -76,7 +74,7 @@ impl<R: Real> Approach<R> {
         let overlap = reach - distance;
         let ra = pair.radius;
         let rb = reach - ra;
-        // From the centres to the contact point, which halves the overlap.
+        // The contact point halves the overlap.
         let la = ra - R::splat(0.5) * overlap;
         let lb = distance - la;
         let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
@@ -93,7 +91,7 @@ impl<R: Real> Approach<R> {
     }
 }
 
-/// Forces of the contacts in the lanes `on`, over a step [s]; advances their memory.
+/// Forces in lanes `on` over a step [s]; advances history.
 #[inline(always)]
 pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool>(
     law: &L::Lanes<R>,
@@ -131,17 +129,15 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool
     }
 }
 
-/// Forces of contacts of a list, and which of them touch.
 pub(crate) struct Outcome<R: Real> {
     pub forces: Forces<R>,
     pub on: R::Mask,
-    /// Lanes that overlap by more than the smaller radius.
+    /// Lanes with overlap above the smaller radius.
     pub deep: u32,
 }
 
 impl<R: Pack> Outcome<R> {
-    /// The first contact that is too deep: its number in a list where the lanes begin with group `g`, the overlap and
-    /// its bound.
+    /// First excessive overlap: list index (lanes start at group `g`), overlap, limit.
     #[cold]
     pub fn too_deep(&self, g: usize) -> (usize, f64, f64) {
         let l = self.deep.trailing_zeros() as usize;
@@ -149,8 +145,7 @@ impl<R: Pack> Outcome<R> {
     }
 }
 
-/// The bodies of spheres that touch: what [`Pair`] has of them, and their materials. `x`: the records of the spheres;
-/// `between` from b to a, `distance2` its square, `reach` the radii's sum.
+/// `between` from b to a, `distance2` its square, `reach` the sum of radii.
 #[inline(always)]
 fn pair<R: Pack, const RIGID: bool>(
     a: &impl End,
@@ -175,7 +170,7 @@ fn pair<R: Pack, const RIGID: bool>(
     (Pair { between, distance2, reach, radius, velocity, inverse_mass, spins, offsets }, (ma, mb))
 }
 
-/// Contacts between spheres. `None` when none of them touches. `law` mixes constants for materials in lanes.
+/// `None` without contact. `law` mixes constants in lanes.
 #[inline(always)]
 pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
     law: &Mix<'_, L, R>,
@@ -187,7 +182,7 @@ pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bo
     spent: &mut Spent<R::Quad>,
     dt: f64,
 ) -> Option<Outcome<R>> {
-    // Differences of whole records, so that one transposition serves both partners; radii are added by the same token.
+    // One transposition serves both partners.
     let (xa, xb) = (R::rows(|l| a.sphere(l)), R::rows(|l| b.sphere(l)));
     let [dx, dy, dz, reach] = difference(xa, xb, -1.0);
     let between = V3::new(dx, dy, dz);

@@ -1,8 +1,7 @@
-//! Contacts and bonds of a state as the flat arrays that a device keeps, and back.
+//! Flat device arrays of contacts and bonds.
 //!
-//! Contacts lie list by list: across blocks, within them, with planes, of debonded pairs across and within, across periodic borders, with
-//! triangles, each block by block; so do bonds, across and within. Each body has what it takes part in as entries, in the order in which
-//! the engine adds it up.
+//! Order of lists, by blocks: cross-block, in-block, planes, debonded (cross, in-block), periodic, triangles.
+//! Entries of a body follow the engine's order of summation.
 
 use super::bodies::Spheres;
 use super::handed::Source;
@@ -23,7 +22,6 @@ use crate::pairs::cross::ImageName;
 use crate::pairs::groups::Groups;
 use crate::pairs::patches::PatchPair;
 
-/// Lists of bonds across blocks, then within.
 fn bond_lists(state: &State) -> [Vec<&BondList>; 2] {
     [state.bonds.cross.iter().collect(), state.lists.iter().map(|l| &l.bonds).collect()]
 }
@@ -37,20 +35,18 @@ fn add_to(spring: &mut Vec<[f64; 4]>, turn: &mut Vec<[f64; 4]>, h: History) {
     turn.push(h.turn);
 }
 
-/// Memory of all contacts: spring and the number of the normal law; rolling and twisting springs. And that of all bonds: shear, turn.
+/// History of all contacts (springs, normal-law value) and bonds (shear, rotation).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Memory {
     pub spring: Vec<[f64; 4]>,
     pub turn: Vec<[f64; 4]>,
     pub bonds: Vec<[f64; 4]>,
-    /// Of pairs of spheres and triangles.
     pub kept: Kept,
-    /// Whether these are the device's.
+    /// Whether the device computes triangle contacts.
     triangles: bool,
 }
 
 impl Memory {
-    /// Zeros for so many contacts, pairs of spheres and triangles among them, and bonds.
     pub fn zeros(model: &Model, contacts: usize, pairs: usize, bonds: usize) -> Memory {
         let zero = [0.0; 4];
         Memory {
@@ -62,7 +58,6 @@ impl Memory {
         }
     }
 
-    /// That of a state.
     pub fn of(model: &Model, state: &State) -> Memory {
         let mut out = Memory::zeros(model, 0, 0, 0);
         let Memory { spring, turn, bonds, .. } = &mut out;
@@ -79,7 +74,7 @@ impl Memory {
         out
     }
 
-    /// That of what is neither a contact of spheres with spheres or planes nor a bond.
+    /// Contacts other than sphere–sphere and sphere–plane; no bonds.
     pub fn of_rest(model: &Model, state: &State) -> Memory {
         let mut out = Memory::zeros(model, 0, 0, 0);
         out.add_rest(state);
@@ -96,14 +91,12 @@ impl Memory {
         }
     }
 
-    /// Puts it into a state with the same lists.
     pub fn put(&self, state: &mut State) {
         let from = self.put_contacts(state);
         self.put_rest(state, from);
     }
 
-    /// Puts that of contacts of spheres with spheres and planes, which come first, and of bonds into a state; how many there are of the
-    /// former.
+    /// Bonds, sphere and plane contacts; returns the number of these contacts.
     pub fn put_contacts(&self, state: &mut State) -> usize {
         let (mut at, mut bond) = (0, 0);
         state.cross.iter_mut().for_each(|c| self.fill(&mut c.spheres, &mut at));
@@ -121,7 +114,6 @@ impl Memory {
         at
     }
 
-    /// Puts that of all other contacts, from number `at` on, into a state.
     pub fn put_rest(&self, state: &mut State, mut at: usize) {
         for DebondedPair { history, .. } in bond_lists_mut(state).flat_map(|list| &mut list.debonded) {
             *history = self.history(at, true);
@@ -153,39 +145,34 @@ impl Memory {
     }
 }
 
-/// Who touches whom.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lists {
-    /// Bodies of each contact; the second of those with planes is the plane.
+    /// Bodies; the second is the plane in a plane contact.
     pub ends: Vec<[u32; 2]>,
-    /// Where the entries of each body begin, and one past the last.
+    /// Offsets of the entries of each body, with end.
     pub start: Vec<u32>,
-    /// What it is and which, and the other of its ends.
+    /// Packed entry (see [`entry`]) and the other body.
     pub entries: Vec<[u32; 2]>,
-    /// The block after whose contacts across it is summed up; one past the last block, if after all of these; more, if after all contacts
-    /// of spheres with spheres and planes.
+    /// Block after whose contacts the entry is summed; block count: after all, larger: after sphere and plane
+    /// contacts.
     pub after: Vec<u32>,
-    /// Where the lists of each block begin, and one past the last of each.
+    /// Offsets of the lists of each block, with end.
     pub ranges: Vec<[u32; LISTS]>,
-    /// Bodies of each bond, and its constants.
     pub bond_ends: Vec<[u32; 2]>,
     pub bond_constants: Vec<[f64; kernel::COUNT]>,
-    /// Overlap of each debonded pair that does not count.
+    /// Overlap without force [m].
     pub reference: Vec<f64>,
-    /// Way of each image from its sphere.
+    /// Vector from each sphere to its periodic image [m].
     pub ways: Vec<[f64; 4]>,
-    /// Pairs of spheres and triangles, at the end of the contacts.
     pub pairs: Pairs,
-    /// What the processor hands over, and the bodies that it needs to know for that: block, place and number, ascending.
+    /// Sources of CPU forces; bodies that the CPU needs: block, index, global index.
     pub handed: Vec<Source>,
     pub watched: Vec<[u32; 3]>,
-    /// Number of blocks.
     blocks: usize,
-    /// Number of the first contact.
     first: u32,
 }
 
-/// Body, entry, and after which block's contacts across it comes, in the order of the sums of each body.
+/// Body, entry, block; in order of summation.
 struct Entered {
     all: Vec<[u32; 3]>,
     after: u32,
@@ -198,7 +185,7 @@ impl Entered {
 }
 
 impl Lists {
-    /// The lists of a state. `first`: how many contacts come before these, as the device has listed them itself.
+    /// `first`: contacts listed by the device before.
     pub fn of(model: &Model, state: &State, work: &Work, spheres: &Spheres, first: usize) -> Lists {
         let (blocks, first) = (state.blocks.len(), first as u32);
         let mut out = Lists { ranges: vec![[0; LISTS]; blocks + 1], blocks, first, ..Lists::default() };
@@ -226,7 +213,6 @@ impl Lists {
         out
     }
 
-    /// Number of the next contact.
     pub fn next(&self) -> u32 {
         self.first + self.ends.len() as u32
     }
@@ -235,12 +221,11 @@ impl Lists {
         self.ends[(contact - self.first) as usize]
     }
 
-    /// Where a list of a block begins; block `blocks`: one past its last.
     pub fn from(&self, list: List, block: usize) -> u32 {
         self.ranges[block][list as usize]
     }
 
-    /// First contact of each sphere across blocks, then within, then with planes, and one past the last; room for as much again of spheres.
+    /// Offsets of each sphere: cross-block, in-block, planes, then space for as many again.
     pub fn offsets(&self, work: &Work, spheres: &Spheres) -> Vec<u32> {
         let count = spheres.count;
         let mut out = vec![0; 4 * count + 1];
@@ -262,7 +247,6 @@ impl Lists {
         self.ranges[block][0] + place
     }
 
-    /// Contacts of spheres with spheres and planes.
     fn contacts(&mut self, state: &State, work: &Work, spheres: &Spheres) {
         let mark = |out: &mut Lists, list: List, b: usize| out.ranges[b][list as usize] = out.next();
         for (b, cross) in state.cross.iter().enumerate() {
@@ -286,7 +270,6 @@ impl Lists {
         mark(self, List::Planes, self.blocks);
     }
 
-    /// Contacts across periodic borders.
     fn images(&mut self, model: &Model, state: &State, spheres: &Spheres) {
         for (b, cross) in state.cross.iter().enumerate() {
             self.ranges[b][List::Images as usize] = self.next();
@@ -299,7 +282,6 @@ impl Lists {
         self.ranges[self.blocks][List::Images as usize] = self.next();
     }
 
-    /// Debonded pairs and bonds of some lists, one of each block; `debonded`, `bonds`: what these are here.
     fn bonds(&mut self, model: &Model, debonded: List, bonds: List, lists: &[&BondList]) {
         let across = bonds == List::CrossBonds;
         for b in 0..=self.blocks {
@@ -318,8 +300,6 @@ impl Lists {
         }
     }
 
-    /// Enters contacts and bonds with their bodies, in the order of the sums: contacts across blocks, bonds and debonded pairs across
-    /// and within, contacts within, planes, triangles, what the processor has of walls and the surface.
     fn enter(&mut self, model: &Model, state: &State, work: &Work, spheres: &Spheres) {
         let room = 2 * (self.ends.len() + self.bond_ends.len());
         let mut entered = Entered { all: Vec::with_capacity(room), after: 0 };
@@ -345,11 +325,11 @@ impl Lists {
         self.sort(&entered.all);
     }
 
-    /// Contacts, bonds and debonded pairs across blocks, and what the processor has of pairs of bodies.
+    /// Includes CPU forces of body pairs.
     fn enter_across(&mut self, state: &State, work: &Work, spheres: &Spheres, entered: &mut Entered) {
-        // Across blocks the engine takes the formulas of clumps for all spheres, where there are clumps.
+        // As the engine with any clump.
         let across = if spheres.clumps { What::Members } else { What::Spheres };
-        // Those that the processor moves gather nothing here.
+        // The CPU sums forces on solid bodies.
         let here = |b: &usize| !work.members[*b].solid();
         for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
             for share in &w.shares.list {
@@ -380,7 +360,6 @@ impl Lists {
         }
     }
 
-    /// Contacts within blocks, and with planes.
     fn enter_within(&self, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         let within =
             [(List::Own, What::Spheres, What::Members), (List::Planes, What::Plane, What::MemberPlane)];
@@ -399,7 +378,6 @@ impl Lists {
         }
     }
 
-    /// What the processor has of contacts with walls and with the external surface.
     fn enter_patches(&mut self, model: &Model, state: &State, work: &Work, entered: &mut Entered) {
         type Of = (fn(&BlockLists) -> &[PatchPair], fn(usize, u32) -> Source);
         let on_walls: Of = (|l| &l.walls.pairs, |block, place| Source::Walls { block, place });
@@ -415,14 +393,13 @@ impl Lists {
         }
     }
 
-    /// Notes what the processor hands over to a body (block, place); its number.
+    /// Adds a source for a body (block, index) and returns its index.
     fn hand_over(&mut self, source: Source, [block, place]: [u32; 2]) -> u32 {
         self.handed.push(source);
         self.watched.push([block, place, self.body(block as usize, place)]);
         self.handed.len() as u32 - 1
     }
 
-    /// The other of the ends of an entry, if it has any.
     fn there(&self, entry: u32) -> u32 {
         let (of, what, second) = parts_of(entry);
         let side = usize::from(!second);
@@ -435,7 +412,6 @@ impl Lists {
         }
     }
 
-    /// Sorts entries by body; the order of each body's entries stays.
     fn sort(&mut self, all: &[[u32; 3]]) {
         let bodies = self.from(List::Bodies, self.blocks) as usize;
         self.start = vec![0; bodies + 1];

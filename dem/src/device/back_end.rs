@@ -1,4 +1,4 @@
-//! The back end: what is handed to a device and back, and in which order its kernels run.
+//! Device back end: transfers of state, and the sequence of kernels of a step.
 
 use super::arrays::{Lists, Memory};
 use super::bodies::{Constants, Motion, Spheres};
@@ -21,48 +21,42 @@ use crate::engine::work::Work;
 use crate::engine::{beside, bonds, neighbours, order, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
-/// The text of the kernels for a model: C and CUDA at once.
+/// Returns the source of the kernels for a model, valid as C and CUDA.
 ///
 /// # Errors
-/// [`Unsupported`] names what a device does not compute.
+/// [`Unsupported`] for the first unsupported feature.
 pub fn source(model: &Model) -> Result<String, Unsupported> {
     scope::check(model)?;
     Ok(text::text(&model.laws, &text::features(model)))
 }
 
-/// Steps on a device. A state that it has taken over is whole again after [`BackEnd::download`].
+/// Steps on a device. A state stepped on it is complete only after [`BackEnd::download`].
 pub struct Device<M> {
     pub(super) machine: M,
-    /// What the processor needs for its search, and for the steps that it makes itself.
+    /// For the CPU's search and its own steps.
     pub(super) work: Work,
     pub(super) call: Call,
     pub(super) features: Features,
     pub(super) spheres: Spheres,
     books: Vec<f64>,
-    /// Mass of the bodies of each block [kg].
     mass: Vec<f64>,
-    /// Planes and walls as the device has them.
     planes: Vec<[f64; 4]>,
     walls: Vec<f64>,
-    /// Whether the device is ahead of the state.
+    /// Whether the device state is newer than the host state.
     pub(super) ahead: bool,
-    /// Whether the device has found the neighbours, and neither the state nor `work` knows them.
+    /// Neighbours found on the device, not in state or `work`.
     pub(super) found: bool,
-    /// Contacts, those of spheres with spheres and planes, which come first, and pairs of spheres and triangles among them; bonds on the
-    /// device.
+    /// Contacts, sphere and plane contacts (first), sphere–triangle pairs, bonds.
     pub(super) contacts: usize,
     pub(super) among_spheres: usize,
     pub(super) pairs: usize,
     bonds: usize,
-    /// The search after which the device was handed the pairs that bonds hold, since it has this order of bodies.
     pub(super) held_since: Option<u64>,
-    /// Whether the next step is the engine's to make.
+    /// Whether the engine must make the next step.
     pub(super) orphans: bool,
-    /// The processor's part of the steps.
     pub(super) handed: Handed,
 }
 
-/// Arrays that change places after each step.
 const PAIRS: [(Slot, Slot); 11] = [
     (Slot::OldX, Slot::NewX),
     (Slot::OldV, Slot::NewV),
@@ -78,10 +72,10 @@ const PAIRS: [(Slot, Slot); 11] = [
 ];
 
 impl<M: Machine> Device<M> {
-    /// A device that has taken a state over. `machine` has the kernels of the model's [`source`].
+    /// Uploads a state. `machine` holds the kernels of the model's [`source`].
     ///
     /// # Errors
-    /// The device has no memory for it, or does not respond.
+    /// Device out of memory or not responding.
     pub fn new(machine: M, model: &Model, state: &State) -> Result<Device<M>, StepError> {
         let work = Work::new(model, state);
         let mut call = Call::new();
@@ -111,7 +105,7 @@ impl<M: Machine> Device<M> {
             pairs: 0,
             bonds: 0,
             orphans: false,
-            // Bonds break, and spheres touch more triangles than there is room for.
+            // Bond breakage and too many triangle contacts repeat a step on the CPU.
             handed: Handed::new(features.bonds || features.walls > 0),
         };
         let law = text::law_constants(&model.laws, materials);
@@ -126,12 +120,12 @@ impl<M: Machine> Device<M> {
         Ok(device)
     }
 
-    /// The machine.
+    /// Machine that runs the kernels.
     pub fn machine(&self) -> &M {
         &self.machine
     }
 
-    /// How often candidates were searched and how often the near list was made from them.
+    /// Returns the numbers of searches and of neighbour-list rebuilds.
     pub fn rebuilds(&self) -> (u64, u64) {
         self.work.rebuilds()
     }
@@ -152,7 +146,6 @@ impl<M: Machine> Device<M> {
         self.machine.get(self.call.buffers[slot as usize], from, numbers)
     }
 
-    /// What pairs of spheres and triangles keep.
     pub(super) fn get_kept(&mut self, memory: &mut Memory) -> Result<(), String> {
         let kept = &mut memory.kept;
         self.get(Slot::OldSpare, 0, &mut kept.spare)?;
@@ -175,7 +168,7 @@ impl<M: Machine> Device<M> {
             self.reserve(slot, 4 * n)?;
         }
         self.reserve(Slot::Speed2, n)?;
-        // Behind what blocks book stands whether the step has failed.
+        // The last value is the failure flag.
         let booked = self.features.quantities() * state.blocks.len() + 1;
         self.reserve(Slot::Books, booked)?;
         self.books.resize(booked, 0.0);
@@ -200,7 +193,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Orientations, and the spheres that the bodies are made of.
     fn take_clumps(&mut self, motion: &Motion, constants: &Constants) -> Result<(), String> {
         let spheres = std::mem::take(&mut self.spheres);
         let numbers: [(Slot, &[[f64; 4]]); 6] = [
@@ -217,7 +209,7 @@ impl<M: Machine> Device<M> {
         self.put_counts(Slot::FirstSphere, &spheres.first)?;
         self.put_counts(Slot::Owner, &spheres.owner)?;
         let (bodies, count) = (motion.x.len(), spheres.world.len());
-        // Where they are is kept by the device alone from now on.
+        // Sphere positions exist only on the device from here.
         self.spheres = Spheres { local: Vec::new(), world: Vec::new(), ..spheres };
         for (slot, count) in
             [(Slot::NewOrientation, bodies), (Slot::NewMomentum, bodies), (Slot::NewSpheres, count)]
@@ -227,7 +219,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// The near list, bonds, and the memory of both.
     fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
         let lists = Lists::of(model, state, &self.work, &self.spheres, 0);
         let memory = Memory::of(model, state);
@@ -279,7 +270,6 @@ impl<M: Machine> Device<M> {
         self.hand_over_from(lists)
     }
 
-    /// Notes where the lists begin that come after contacts of spheres with spheres and planes, and how long they are.
     pub(super) fn note_rest(&mut self, lists: &Lists) {
         self.among_spheres = lists.from(List::CrossDebonded, 0) as usize;
         self.pairs = lists.pairs.ends.len();
@@ -289,7 +279,6 @@ impl<M: Machine> Device<M> {
         self.call.count(Count::FirstPatch, lists.next() as usize);
     }
 
-    /// Room for what pairs of spheres and triangles leave.
     pub(super) fn room_for_pairs(&mut self, pairs: usize) -> Result<(), String> {
         let room = [
             (Slot::NewSpare, pairs),
@@ -300,7 +289,6 @@ impl<M: Machine> Device<M> {
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
 
-    /// Has the processor's part of the steps follow these lists.
     pub(super) fn hand_over_from(&mut self, lists: Lists) -> Result<(), String> {
         if self.features.beside {
             let width = self.features.picked_width();
@@ -310,7 +298,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Makes `state` whole.
     fn fetch(&mut self, model: &Model, state: &mut State) -> Result<(), StepError> {
         if self.ahead {
             self.bring_back(model, state, Listed::All).map_err(|e| failed(state, e))?;
@@ -319,7 +306,7 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Puts what the device has into a state, or all but where its lists say already what it remembers.
+    /// Downloads the parts of `listed`.
     pub(super) fn bring_back(
         &mut self,
         model: &Model,
@@ -362,7 +349,7 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Advances the state by one step. Its motion and the memory of its contacts stay on the device.
+    /// Advances the state by one step; motion and contact history stay on the device.
     fn advance<S: Surface>(
         &mut self,
         model: &Model,
@@ -371,7 +358,7 @@ impl<M: Machine> Device<M> {
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         let new_order = state.steps > 0 && state.steps.is_multiple_of(order::EVERY);
-        // Forces on bodies that the processor moves do not concern the device.
+        // Forces on bodies that the CPU moves do not affect the device.
         let solid = |k: usize| k < model.body_count() && model.body(k).kind == Kind::Solid;
         if new_order || !applied.iter().all(|a| solid(a.body)) {
             return self.by_processor(model, state, surface, applied);
@@ -393,11 +380,11 @@ impl<M: Machine> Device<M> {
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
-            // The arrays of the step before are there still: made again, the step says what has failed.
+            // The device still has the previous step: a repeat on the CPU identifies the failure.
             self.ahead = true;
             let as_before = !beside || self.handed.put_back(state);
             self.by_processor(model, state, surface, applied)?;
-            // Else the processor's contacts have been in this step twice: it is not one to go on from.
+            // CPU contacts have advanced twice: invalid state.
             let again = || failed(state, "a step failed on the GPU but not when repeated on the CPU".into());
             return if as_before { Ok(()) } else { Err(again()) };
         }
@@ -415,7 +402,6 @@ impl<M: Machine> Device<M> {
         step::conclude(model, state, &mut self.work, all, surface.max_speed())
     }
 
-    /// Has the engine make a step.
     fn by_processor<S: Surface>(
         &mut self,
         model: &Model,
@@ -431,7 +417,7 @@ impl<M: Machine> Device<M> {
         self.take_over(model, state).map_err(|e| failed(state, e))
     }
 
-    /// Runs the kernels of a step; whether it has failed.
+    /// Returns whether the step failed.
     fn launch(&mut self, model: &Model, state: &State) -> Result<bool, String> {
         planes::now(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
@@ -461,7 +447,6 @@ impl<M: Machine> Device<M> {
         Ok(self.books.last() != Some(&0.0))
     }
 
-    /// What was written becomes what is read.
     fn exchange(&mut self) {
         for (old, new) in PAIRS {
             self.call.buffers.swap(old as usize, new as usize);

@@ -1,4 +1,4 @@
-//! The bodies of a state as the flat arrays that a device keeps, and back: block by block.
+//! Flat device arrays of bodies, block by block.
 
 use super::layout::How;
 use crate::Vec3;
@@ -12,8 +12,8 @@ use crate::lanes::V3;
 use crate::lanes::turn::Turn;
 use nalgebra::UnitQuaternion;
 
-/// Motion of all bodies: position and radius, velocity and inverse mass, spin and material; in models with clumps orientation and
-/// angular momentum too.
+/// Position, radius; velocity, inverse mass; angular velocity, material; with clumps orientation, angular
+/// momentum.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     pub x: Vec<[f64; 4]>,
@@ -24,7 +24,6 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Zeros for so many bodies.
     pub fn zeros(bodies: usize, clumps: bool) -> Motion {
         let zeros = |n: usize| vec![[0.0; 4]; n];
         let turning = if clumps { bodies } else { 0 };
@@ -37,7 +36,6 @@ impl Motion {
         }
     }
 
-    /// That of a state.
     pub fn of(state: &State, clumps: bool) -> Motion {
         let mut out = Motion::default();
         for block in &state.blocks {
@@ -56,12 +54,12 @@ impl Motion {
         out
     }
 
-    /// Puts it into a state with the same bodies in the same order, and their spheres into `work`.
+    /// Writes motion to a state, member spheres to `work`.
     pub fn put(&self, state: &mut State, work: &mut Work) {
         let mut at = 0;
         for (block, members) in state.blocks.iter_mut().zip(&mut work.members) {
             let n = block.bodies.len();
-            // What the processor moves is where it should be.
+            // The CPU moves solid bodies.
             if members.solid() {
                 at += n;
                 continue;
@@ -85,13 +83,11 @@ impl Motion {
     }
 }
 
-/// Puts places, and orientations where there are clumps, into a state with the same bodies in the same order, and their spheres into `work`;
-/// motions stay what they are there.
+/// As [`Motion::put`], positions and orientations only.
 pub(super) fn put_places(x: &[[f64; 4]], orientation: &[[f64; 4]], state: &mut State, work: &mut Work) {
     let mut at = 0;
     for (block, members) in state.blocks.iter_mut().zip(&mut work.members) {
         let n = block.bodies.len();
-        // As in `Motion::put`.
         if !members.solid() {
             block.centre.iter_mut().zip(&x[at..at + n]).for_each(|(to, from)| to.0 = *from);
             let turns = orientation.iter().skip(at);
@@ -106,23 +102,21 @@ pub(super) fn put_places(x: &[[f64; 4]], orientation: &[[f64; 4]], state: &mut S
     }
 }
 
-/// An orientation as the engine has it.
 pub(super) fn quaternion([i, j, k, s]: &[f64; 4]) -> UnitQuaternion<f64> {
     Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion()
 }
 
-/// Constants of all bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Constants {
-    /// How each moves ([`How`]).
+    /// Integration flags ([`How`]).
     pub how: Vec<u32>,
-    /// The first of each block that moves by itself, or one past its last.
+    /// First body integrated singly, by block.
     pub first_single: Vec<u32>,
-    /// Mass as the engine's sums of moments have it: of those that move four at a time one over its inverse.
+    /// Mass [kg] in first moments; in groups of four the inverse of the inverse mass.
     pub mass: Vec<f64>,
-    /// Mass and moment of inertia.
+    /// Mass [kg], moment of inertia [kg m²].
     pub inertia: Vec<[f64; 2]>,
-    /// In models with clumps: principal moments and bounding radius, and the spin that a fixed rotation keeps.
+    /// Principal moments, bounding radius; fixed angular velocity.
     pub moments: Vec<[f64; 4]>,
     pub target: Vec<[f64; 4]>,
 }
@@ -161,24 +155,21 @@ impl Constants {
     }
 }
 
-/// Whether body k of n moves with the others of its group of four (see `integrate/leapfrog.rs`).
+/// Integrated in a group of four (`integrate/leapfrog.rs`).
 fn by_four(members: &Members, k: usize, n: usize) -> bool {
     let group = k - k % 4;
     group + 4 <= n && (members.plain() || members.all_free(group))
 }
 
-/// The spheres of all bodies, where any body is a clump; else spheres are bodies.
+/// Member spheres with any clump; otherwise bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spheres {
-    /// Whether any body is a clump.
     pub clumps: bool,
-    /// Number of spheres.
     pub count: usize,
-    /// First sphere of each block.
     pub base: Vec<u32>,
-    /// First sphere of each body, and one past the last.
+    /// First sphere of each body, with end.
     pub first: Vec<u32>,
-    /// Body of each sphere; its centre in the frame of that and radius; the same in the world.
+    /// Body; centre and radius in the body frame and in the global frame.
     pub owner: Vec<u32>,
     pub local: Vec<[f64; 4]>,
     pub world: Vec<[f64; 4]>,
@@ -211,12 +202,10 @@ impl Spheres {
         out
     }
 
-    /// Number of a sphere of a block.
     pub fn at(&self, block: usize, sphere: u32) -> u32 {
         self.base[block] + sphere
     }
 
-    /// Body of a sphere.
     pub fn owner(&self, sphere: u32) -> u32 {
         self.owner.get(sphere as usize).copied().unwrap_or(sphere)
     }

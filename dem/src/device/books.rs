@@ -1,4 +1,4 @@
-//! What the blocks of a device book, added up as the engine adds up its own.
+//! Sums the block totals of a device in the engine's order.
 
 use super::layout::{Booked, Features, WALL_BOOKED};
 use crate::base::Vec3;
@@ -9,8 +9,7 @@ use crate::engine::state::State;
 use crate::engine::step::Collected;
 use crate::engine::work::Work;
 
-/// Adds up what the blocks have booked in a step, block by block, each number where the engine's loops would; what walls and bonds
-/// take block by block goes to `work`. `mass`: of the bodies of each block [kg].
+/// Sums the totals of a step block by block; wall and bond totals go to `work`. `mass`: per block [kg].
 pub(super) fn add_up(
     books: &[f64],
     f: &Features,
@@ -48,7 +47,7 @@ pub(super) fn add_up(
             sums.clear();
             sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
         }
-        // Of contacts within the block, with planes, walls and the surface, then of those across.
+        // Order of the engine's sums: contacts in the block, then cross-block.
         if f.beside {
             let Tally { ledger, failure: wrong, .. } = &work.blocks[b].tally;
             let aside = &work.blocks[b].patches.aside;
@@ -92,7 +91,7 @@ pub(super) fn add_up(
     all
 }
 
-/// Adds what the processor's pairs of a block did, together with what contacts of spheres across took in dashpots and friction.
+/// Adds CPU pairs of a block, and the loss [J] of its cross-block sphere contacts.
 fn add_pairs(sum: &mut Ledger, work: &mut Work, b: usize, [dashpot, friction]: [f64; 2]) {
     let cross = &work.cross[b];
     sum.dissipated_dashpot += dashpot + cross.dashpot;
@@ -109,7 +108,6 @@ fn vector(q: &[f64], k: usize) -> Vec3 {
     Vec3::new(q[k], q[k + 1], q[k + 2])
 }
 
-/// Adds what local damping and fixed motions did to a block.
 fn add_held(sum: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
     let vector = |k: usize| vector(q, k);
     sum.work_constraints += q[7];

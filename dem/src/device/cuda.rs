@@ -1,5 +1,4 @@
-//! A CUDA device as a [`Machine`]. The driver's and NVRTC's libraries are loaded when they are asked for, so that neither the build nor
-//! any other run needs them.
+//! CUDA device as a [`Machine`]; its libraries are loaded at run time, so the build does not need them.
 
 use super::layout::Arguments;
 use super::machine::{Call, Machine};
@@ -12,28 +11,26 @@ use cudarc::nvrtc::{CompileError, CompileOptions, compile_ptx_with_opts};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Threads of a block, as the text states them in its launch bounds.
+/// Threads per block, as in the launch bounds of the kernels.
 const THREADS: u32 = 128;
 
-/// Size of the memory that reads of each step go through; larger ones are rare and do without [B].
+/// Pinned download buffer [B]; larger downloads bypass it.
 const LANDING: usize = 1 << 22;
 
-/// A CUDA device with the kernels of one model.
+/// CUDA device with the kernels of one model.
 pub struct Cuda {
     stream: Arc<CudaStream>,
     kernels: HashMap<&'static str, CudaFunction>,
     buffers: Vec<Option<CudaSlice<u8>>>,
-    /// Memory of the processor that the device reaches by itself: what each step reads goes through it.
     landing: Option<PinnedHostSlice<u8>>,
-    /// What it is called.
+    /// Device name.
     pub name: String,
 }
 
-/// Arguments of a kernel, by value.
 #[repr(transparent)]
 struct ByValue(Arguments);
 
-// SAFETY: `Arguments` is `repr(C)` of plain numbers, laid out as the text declares its only parameter.
+// SAFETY: `Arguments` is `repr(C)` of plain numbers and matches the only kernel parameter.
 unsafe impl DeviceRepr for ByValue {}
 
 fn of_driver(e: DriverError) -> String {
@@ -41,9 +38,9 @@ fn of_driver(e: DriverError) -> String {
 }
 
 impl Cuda {
-    /// What the machine lacks for a device, if anything.
+    /// Returns the missing library or device, if any.
     pub fn missing() -> Option<&'static str> {
-        // SAFETY: both only try to open a library by name.
+        // SAFETY: both calls only try to open a library by name.
         let (driver, compiler) =
             unsafe { (cudarc::driver::sys::is_culib_present(), cudarc::nvrtc::sys::is_culib_present()) };
         match (driver, compiler) {
@@ -53,15 +50,15 @@ impl Cuda {
         }
     }
 
-    /// The first device, with the kernels of a text, by name. Call it where nothing is [missing](Cuda::missing).
+    /// Compiles `text` for the first device. Requires that nothing is [missing](Cuda::missing).
     ///
     /// # Errors
-    /// There is no device, or it does not take the kernels.
+    /// No device, or the kernels do not compile or load.
     pub fn new(text: &str, kernels: &[&'static str]) -> Result<Cuda, String> {
         let context = CudaContext::new(0).map_err(of_driver)?;
         let (major, minor) = context.compute_capability().map_err(of_driver)?;
         let options = CompileOptions {
-            // Products that are contracted with sums would have other bits.
+            // Contraction to fused multiply-add would change bits.
             fmad: Some(false),
             options: vec![format!("--gpu-architecture=compute_{major}{minor}")],
             ..CompileOptions::default()
@@ -77,14 +74,14 @@ impl Cuda {
         Ok(Cuda { stream: context.default_stream(), kernels, buffers: Vec::new(), landing: None, name })
     }
 
-    /// A buffer with room for so many bytes; what it held is lost where it was too small.
+    /// Returns a buffer of at least `bytes`; growing discards its contents.
     fn room(&mut self, buffer: usize, bytes: usize) -> Result<&mut CudaSlice<u8>, String> {
         if self.buffers.len() <= buffer {
             self.buffers.resize_with(buffer + 1, || None);
         }
         let slot = &mut self.buffers[buffer];
         if slot.as_ref().is_none_or(|slice| slice.len() < bytes) {
-            // Freed first: both need not fit beside each other. Lists grow and shrink a little from search to search.
+            // Both may not fit. List lengths vary: margin 25 %.
             *slot = None;
             *slot = Some(self.stream.alloc_zeros((bytes + bytes / 4).max(64)).map_err(of_driver)?);
         }
@@ -101,7 +98,7 @@ impl Cuda {
         stream.memcpy_htod(bytes, &mut slice.slice_mut(..bytes.len())).map_err(of_driver)
     }
 
-    /// Writes into a buffer that has room for it, from place `from` on.
+    /// Writes into an existing buffer from index `from`.
     fn fill_up<T: Pod>(&mut self, buffer: usize, from: usize, data: &[T]) -> Result<(), String> {
         let (bytes, from) = (cast_slice::<T, u8>(data), from * size_of::<T>());
         let Some(Some(slice)) = self.buffers.get_mut(buffer).filter(|_| !bytes.is_empty()) else {
@@ -120,12 +117,12 @@ impl Cuda {
             return self.stream.synchronize().map_err(of_driver);
         }
         if self.landing.is_none() {
-            // SAFETY: nothing is read from it that has not been copied into it.
+            // SAFETY: only bytes copied into it before are read.
             let memory = unsafe { self.stream.context().alloc_pinned_with_flags(LANDING, 0) };
             self.landing = Some(memory.map_err(of_driver)?);
         }
         let Some(landing) = &mut self.landing else { return Err("no memory".into()) };
-        // It is copied to the end of what is handed over here.
+        // Stored at the start of the pinned buffer.
         let landed = &mut landing.as_mut_slice().map_err(of_driver)?[..bytes.len()];
         self.stream.memcpy_dtoh(&wanted, landed).map_err(of_driver)?;
         self.stream.synchronize().map_err(of_driver)?;
@@ -185,7 +182,7 @@ impl Machine for Cuda {
         };
         let mut launch = self.stream.launch_builder(function);
         launch.arg(&arguments);
-        // SAFETY: the kernel has this one parameter, and its buffers are as large as the counts in it say.
+        // SAFETY: the only parameter, with buffers of the sizes in its counts.
         unsafe { launch.launch(grid) }.map(|_| ()).map_err(of_driver)
     }
 }

@@ -1,5 +1,4 @@
-//! The processor's part of a step (`engine/beside.rs`), as the device gets it: forces that it adds up with its own, in their order.
-//! What the processor needs to know for that, the motion of the bodies that take part, comes back after each step.
+//! CPU part of a step on a device: uploads contact forces, downloads the motion of the bodies involved.
 
 use super::bodies::quaternion;
 use super::layout::{Count, Slot};
@@ -12,32 +11,29 @@ use crate::engine::work::Work;
 use crate::lanes::record::Record;
 use crate::spatial::surface::Surface;
 
-/// Where the forces of an entry come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The pair whose slot begins with a record of a block: spheres come first in all kinds of pairs that they are in.
+    /// Body pair: index of its first record in the slots of block `from`; spheres come first.
     Pair { from: usize, record: usize },
-    /// The contacts of a body with walls.
+    /// Wall contacts of a body.
     Walls { block: usize, place: u32 },
-    /// The contacts of a body with the external surface.
+    /// Its contacts with the external surface.
     Surface { block: usize, place: u32 },
 }
 
-/// What is handed over.
 #[derive(Default)]
 pub(super) struct Handed {
     sources: Vec<Source>,
-    /// Block, place and number of the bodies that the processor needs to know.
+    /// Bodies whose motion the CPU needs: block, index, global index.
     watched: Vec<[u32; 3]>,
     start: Vec<u32>,
-    /// Force and torque, in turn.
+    /// Force and torque, alternating.
     forces: Vec<[f64; 4]>,
     picked: Vec<[f64; 4]>,
-    /// What contacts remembered before the step, where it may be made again.
+    /// Contact history before the step, if the step may be repeated.
     kept: Option<Kept>,
 }
 
-/// How far the forces of a block have been gone through.
 #[derive(Default)]
 struct InTurn {
     block: u32,
@@ -45,7 +41,7 @@ struct InTurn {
 }
 
 impl InTurn {
-    /// Adds those of a body (block, place) to a list; bodies come in order.
+    /// Appends the forces of a body (block, index); bodies must come in order.
     fn add(&mut self, all: &[PatchForce], [block, place]: [u32; 2], to: &mut Vec<[f64; 4]>) {
         if block != self.block {
             *self = InTurn { block, next: 0 };
@@ -60,12 +56,11 @@ impl InTurn {
 }
 
 impl Handed {
-    /// Forces and torques of all entries, one after another.
     fn collect(&mut self, work: &Work) {
         let Handed { sources, start, forces, .. } = self;
         start.clear();
         forces.clear();
-        // Contacts with walls lie in the order of the bodies, and so do those with the surface.
+        // Wall and surface contacts are stored in body order.
         let (mut on_walls, mut on_surface) = (InTurn::default(), InTurn::default());
         for source in &*sources {
             start.push(forces.len() as u32 / 2);
@@ -86,12 +81,11 @@ impl Handed {
 }
 
 impl Handed {
-    /// Nothing yet. `again`: whether there may be steps that a device gives back though nothing is wrong with them.
+    /// Empty. `again`: whether valid steps may have to be repeated on the CPU.
     pub fn new(again: bool) -> Handed {
         Handed { kept: again.then(Kept::default), ..Handed::default() }
     }
 
-    /// Notes the sources of forces, and whom the processor needs to know.
     pub fn take_over<M: Machine>(
         &mut self,
         (machine, call): (&mut M, &mut Call),
@@ -108,7 +102,6 @@ impl Handed {
         Ok(())
     }
 
-    /// Works the processor's forces out and hands them over.
     pub fn hand_over<M: Machine, S: Surface>(
         &mut self,
         (machine, call): (&mut M, &Call),
@@ -125,13 +118,12 @@ impl Handed {
         machine.put(call.buffer(Slot::Handed), self.forces.as_flattened())
     }
 
-    /// Has a state's contacts remember what they did before the forces of this step were worked out; whether that was kept.
+    /// Restores the contact history of before this step; returns whether it was saved.
     pub fn put_back(&self, state: &mut State) -> bool {
         self.kept.iter().for_each(|kept| kept.put_back(state));
         self.kept.is_some()
     }
 
-    /// Brings back where the bodies are that the processor needs to know.
     pub fn pick<M: Machine>(
         &mut self,
         (machine, call): (&mut M, &Call),

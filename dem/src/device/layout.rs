@@ -1,4 +1,4 @@
-//! What the kernels are handed: places of arrays, numbers and counts, by the names that the text has for them.
+//! Kernel arguments, with their names in the kernel source.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -10,16 +10,14 @@ macro_rules! table {
         pub(super) enum $enum { $($(#[$about])* $entry),+ }
 
         impl $enum {
-            /// Name, and type of what an array holds.
             const ALL: &[(&str, &str)] = &[$(($name, concat!("" $(, $kind)?))),+];
-            /// How many there are.
             pub const COUNT: usize = Self::ALL.len();
         }
     };
 }
 
 table! {
-    /// Arrays. Those with an old and a new one change places after each step.
+    /// Arrays; old and new ones are swapped after each step.
     Slot {
         OldX = "OLD_X": "const four",
         OldV = "OLD_V": "const four",
@@ -31,119 +29,104 @@ table! {
         NewW = "NEW_W": "four",
         NewMemory = "NEW_MEMORY": "four",
         NewTurn = "NEW_TURN": "four",
-        /// Bodies of each contact, spheres where clumps may be; the second of those with planes is the plane.
+        /// Bodies, or spheres with clumps; then plane.
         Ends = "ENDS": "ends",
-        /// Where the entries of each body begin, and one past the last.
+        /// Offsets of the entries of each body, with end.
         Start = "START": "unsigned",
-        /// A contact, a bond or what is handed over, what it is ([`What`]), and whether the body is the second, as [`entry`] puts them
-        /// together; and what it is with: the other of the ends.
+        /// Packed entry (see [`entry`]) and the other body.
         Entries = "ENTRIES": "ends",
-        /// Constants of the laws of each pair of materials.
         Law = "LAW": "const real",
-        /// Unit normal and its product with a point; velocity and material.
+        /// Unit normal n and n·x of a plane point; velocity and material.
         Planes = "PLANES": "const four",
-        /// How a body moves ([`How`]).
         Single = "SINGLE": "const unsigned",
-        /// Mass and moment of inertia of each body; its mass as sums of moments have it.
+        /// Mass, moment of inertia; mass for first moments.
         Constants = "CONSTANTS": "const two",
         Mass = "MASS": "const real",
-        /// Where the lists of each block begin ([`List`]).
         Ranges = "RANGES": "unsigned",
-        /// The first body of each block that moves by itself, or one past its last.
+        /// First body integrated singly, by block.
         FirstSingle = "FIRST_SINGLE": "const unsigned",
-        /// What dashpots and friction took in each contact.
         Spent = "SPENT": "two",
-        /// Spheres of clumps and single ones: centre and radius, the body of each, the first of each body and one past the last, and
-        /// where they lie in the frames of their bodies.
+        /// Centre and radius; body; offsets by body; centre in the body frame.
         OldSpheres = "OLD_SPHERES": "const four",
         NewSpheres = "NEW_SPHERES": "four",
         Owner = "OWNER": "const unsigned",
         FirstSphere = "FIRST_SPHERE": "const unsigned",
         Local = "LOCAL": "const four",
-        /// Of each body in a model with clumps: orientation; angular momentum; principal moments and bounding radius, which is
-        /// zero of spheres; the spin that fixed rotations keep.
+        /// Clumps: orientation, angular momentum, principal moments and bounding radius (spheres: zero),
+        /// fixed angular velocity.
         OldOrientation = "OLD_ORIENTATION": "const four",
         NewOrientation = "NEW_ORIENTATION": "four",
         OldMomentum = "OLD_MOMENTUM": "const four",
         NewMomentum = "NEW_MOMENTUM": "four",
         Moments = "MOMENTS": "const four",
         Target = "TARGET": "const four",
-        /// What planes did in each of their contacts: power and force; moment about the origin.
+        /// Power and force; moment about the origin.
         Walls = "WALLS": "four",
-        /// Numbers and names of each triangle of walls, and where the walls are (`walls.rs`).
+        /// Wall triangles and poses (`walls.rs`).
         Shapes = "SHAPES": "const real",
         Patches = "PATCHES": "const unsigned",
         WallNow = "WALL_NOW": "const real",
-        /// Sphere and triangle of each pair; the first pair of each sphere that has any, and one past the last.
         PatchPairs = "PATCH_PAIRS": "const ends",
         Groups = "GROUPS": "const unsigned",
-        /// Way that is left of each pair, and what it remembers of its contact.
+        /// Distance left to contact, and history.
         OldSpare = "OLD_SPARE": "const real",
         NewSpare = "NEW_SPARE": "real",
         OldTouch = "OLD_TOUCH": "const four",
         NewTouch = "NEW_TOUCH": "four",
-        /// What the springs of a contact that ended had left, force on the body and moment about the centre of the wall, of each pair.
+        /// Residual spring energy of an ended contact, force, moment about the wall's centre.
         Ended = "ENDED": "real",
         Action = "ACTION": "four",
-        /// Of each contact across a periodic border the way of the image from its sphere, and the angular impulse that it gives.
+        /// Vector from sphere to image, angular impulse.
         Ways = "WAYS": "const four",
         Couples = "COUPLES": "four",
-        /// What local damping and fixed motions did to each body, where a model has them.
         HeldBy = "HELD_BY": "real",
-        /// Bodies of each bond, its constants, what it remembers (shear, turn), and the power of its dashpots.
+        /// Bodies, constants, history (shear, rotation), dashpot power.
         BondEnds = "BOND_ENDS": "const ends",
         BondConstants = "BOND_CONSTANTS": "const real",
         OldBonds = "OLD_BONDS": "const four",
         NewBonds = "NEW_BONDS": "four",
         Power = "POWER": "real",
-        /// Overlap of each debonded pair that does not count.
         Reference = "REFERENCE": "const real",
-        /// Square of the speed of each body.
         Speed2 = "SPEED2": "real",
-        /// What each block books, and behind it whether the step has failed.
+        /// Block totals, then the failure flag.
         Books = "BOOKS": "real",
-        /// Whether a step has failed.
         Flags = "FLAGS": "unsigned",
-        /// What the processor has worked out (`handed.rs`): where the forces of each entry begin, and one past the last; force and
-        /// torque of each. The bodies that it needs to know, and their motion.
+        /// CPU forces (`handed.rs`): offsets by entry, force and torque; bodies that the CPU needs, and their
+        /// motion.
         HandedStart = "HANDED_START": "const unsigned",
         Handed = "HANDED": "const four",
         Watched = "WATCHED": "const unsigned",
         Picked = "PICKED": "four",
-        /// Of the search. One over the width of the cells and the largest radius of each class of size; the block of each body; point,
-        /// with one where it is open, offset and normal of each plane.
+        /// 1/cell width and largest radius per size class; block of each body; point (1 if open), offset and
+        /// normal of planes.
         Grids = "GRIDS": "const real",
         Block = "BLOCK": "const unsigned",
         PlanesSearched = "PLANES_SEARCHED": "const four",
-        /// First item of each bucket and one past the last; the bucket of each sphere and its place there; spheres by bucket.
+        /// Offsets of buckets; bucket and index of each sphere; spheres by bucket.
         Cells = "CELLS": "unsigned",
         Bucket = "BUCKET": "unsigned",
         Place = "PLACE": "unsigned",
         Items = "ITEMS": "unsigned",
-        /// First contact of each sphere with other blocks, then within its own, then with planes; first of its partners. One past the last.
+        /// Offsets by sphere: contacts (cross-block, in-block, planes), partners.
         Offsets = "OFFSETS": "unsigned",
-        /// Entries that the processor lists: where those of each body begin, and one past the last; the entries; the block after whose
-        /// contacts across each is summed up, which is one past the last for what follows all of these, and more for what comes last.
+        /// CPU entries: offsets by body, entries, `Lists::after`.
         RestStart = "REST_START": "const unsigned",
         Rest = "REST": "const ends",
         RestFrom = "REST_FROM": "const unsigned",
-        /// Partners of each body that it never has a contact with, as these have bonds: where they begin, and one past the last.
+        /// Bonded partners, which exclude contacts.
         HeldStart = "HELD_START": "const unsigned",
         HeldWith = "HELD_WITH": "const unsigned",
-        /// Partners of each sphere, ascending.
         Rows = "ROWS": "unsigned",
-        /// Contacts and their offsets before the search, and how much it has found.
+        /// Previous contacts and offsets; totals found.
         OldEnds = "OLD_ENDS": "const ends",
         OldOffsets = "OLD_OFFSETS": "const unsigned",
         Totals = "TOTALS": "unsigned",
-        /// A list of which sums are made, and those of its stretches.
         Summed = "SUMMED": "unsigned",
         Sums = "SUMS": "unsigned",
     }
 }
 
 table! {
-    /// Numbers.
     Number {
         Step = "STEP",
         Way = "WAY",
@@ -152,75 +135,65 @@ table! {
         GravityZ = "GRAVITY_Z",
         Damping = "DAMPING",
         Bound = "BOUND",
-        /// Bound on the way that anything has come towards anything since the near list was made.
+        /// Bound on relative displacements since the last rebuild [m].
         Gone = "GONE",
-        /// The last step, and the time since then: zero before the first.
+        /// Last time step and time since it [s]; initially zero.
         Last = "LAST",
         Since = "SINCE",
-        /// Way apart up to which partners are listed.
+        /// Largest gap of listed partners [m].
         Reach = "REACH",
     }
 }
 
 table! {
-    /// Counts.
     Count {
         Bodies = "BODIES",
         Blocks = "BLOCKS",
         Materials = "MATERIALS",
-        /// The first contact with a plane.
         FirstPlane = "FIRST_PLANE",
-        /// The first contact of a debonded pair.
         FirstDebonded = "FIRST_DEBONDED",
-        /// The first contact of a sphere and a triangle.
         FirstPatch = "FIRST_PATCH",
-        /// The first contact across a periodic border.
         FirstImage = "FIRST_IMAGE",
         Spheres = "SPHERE_COUNT",
         Planes = "PLANE_COUNT",
         Watched = "WATCHED_COUNT",
-        /// A power of two.
         Buckets = "BUCKETS",
-        /// Of sums: where the list begins, its length, and where the sums of its stretches go.
+        /// Prefix sums: offset, length, offset of segment sums.
         SumFrom = "SUM_FROM",
         SumLength = "SUM_COUNT",
         SumTo = "SUM_TO",
     }
 }
 
-/// What an entry of a body is: at most sixteen kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
     Spheres,
     Plane,
     Bond,
     Debonded,
-    /// A contact of spheres that may be members of clumps, and one of such a sphere with a plane.
+    /// Possible clump members, with spheres or planes.
     Members,
     MemberPlane,
-    /// The pairs of a sphere with triangles.
     Walls,
-    /// A contact across a periodic border.
     Images,
-    /// What the processor hands over.
     Handed,
 }
 
-/// Bits of an entry below what it is of.
+/// Bits of an entry below the index.
 const ENTRY_SHIFT: u32 = 5;
 
-/// The entry of a body: contact or bond `of`, of which it may be the `second`.
+/// Packs an entry: index of the contact or bond, its type, and whether the body is its second.
 pub(super) fn entry(what: What, of: u32, second: bool) -> u32 {
     of << ENTRY_SHIFT | (what as u32) << 1 | u32::from(second)
 }
 
-/// What an entry is of, the number of a [`What`], and whether the body is the second.
+/// Unpacks type, index and side of an entry.
 pub(super) fn parts_of(entry: u32) -> (usize, u32, bool) {
     ((entry >> ENTRY_SHIFT) as usize, entry >> 1 & ((1 << (ENTRY_SHIFT - 1)) - 1), entry & 1 == 1)
 }
 
-/// How a body moves: by itself, with bits of fixed motions; turning, as clumps do and all of a group of four with one; in a block with
-/// orientations; not on the device.
+/// Integration flags: singly (with fixed motions), rotating (clumps, or groups with one), in a block with
+/// orientations, not on the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct How;
 
@@ -228,51 +201,42 @@ impl How {
     pub const SINGLE: u32 = 1;
     pub const TURNS: u32 = 1 << 7;
     pub const ORIENTED: u32 = 1 << 8;
-    /// The processor moves it.
     pub const ELSEWHERE: u32 = 1 << 9;
 
-    /// Bits of fixed motions of a body that moves by itself.
     pub fn fixed(bits: u8) -> u32 {
         u32::from(bits) << 1
     }
 }
 
-/// Lists of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum List {
     Bodies,
-    /// Contacts of spheres with other blocks and within; with planes; of debonded pairs across and within.
+    /// Spheres across and within blocks; planes; debonded pairs across and within.
     Cross,
     Own,
     Planes,
     CrossDebonded,
     OwnDebonded,
-    /// Bonds across and within.
     CrossBonds,
     OwnBonds,
-    /// Pairs of spheres and triangles.
     Patches,
-    /// Contacts across periodic borders.
     Images,
 }
 pub(super) const LISTS: usize = 10;
 
-/// What a block books, part by part: how many numbers each, in this order.
+/// Parts of a block's totals, with their numbers of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Booked {
-    /// What dashpots and friction took in contacts of spheres with other blocks, then within.
+    /// Loss by dashpots and friction, across, then within the block.
     Spheres,
-    /// The same of contacts with planes; power, force and moment of what the planes did.
     Planes,
-    /// Mass times position, and the largest square of a speed.
+    /// First moment of mass, and largest squared speed.
     Motion,
-    /// Power of bonds across and within; what dashpots and friction took in contacts of debonded pairs across and within.
+    /// Power across and within; loss of debonded pairs across and within.
     Bonds,
-    /// What local damping and fixed motions did.
     Held,
-    /// What dashpots and friction took in contacts with triangles; force and moment of each wall.
+    /// Loss; force and moment of each wall.
     Patches,
-    /// Angular impulse of contacts across periodic borders.
     Images,
 }
 
@@ -288,24 +252,22 @@ impl Booked {
     ];
 }
 
-/// Numbers that a block books of each wall: force and moment.
 pub(super) const WALL_BOOKED: usize = 6;
-/// Numbers of a triangle and of a wall, and names of a triangle.
+/// Values per triangle and wall, indices per triangle.
 pub(super) const SHAPE_WIDTH: usize = 25;
 pub(super) const WALL_WIDTH: usize = 19;
 pub(super) const PATCH_WIDTH: usize = 5;
 
-/// Numbers that one thread sums up in the search.
+/// Values per thread in prefix sums.
 pub(super) const STRETCH: usize = 64;
 
-/// Numbers that a body keeps for local damping and fixed motions.
 pub(super) const HELD_WIDTH: usize = 21;
 
-/// Arguments of a launch, as the text declares them.
+/// Launch arguments, as in the kernel source.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Arguments {
-    /// Addresses of arrays.
+    /// Array addresses.
     pub at: [u64; Slot::COUNT],
     /// Numbers.
     pub number: [f64; Number::COUNT],
@@ -313,46 +275,37 @@ pub struct Arguments {
     pub count: [u32; Count::COUNT],
 }
 
-/// What the text is for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Features {
-    /// Constants of a pair of materials.
     pub law_width: usize,
-    /// Whether any pair resists rolling or twisting, or adheres.
+    /// Whether any pair has rolling or twisting resistance or adhesion.
     pub roll: bool,
-    /// Whether there are local damping, and motions held by it or fixed.
+    /// Local damping, or fixed motions.
     pub damped: bool,
     pub held: bool,
     pub bonds: bool,
-    /// Whether any body is a clump.
     pub clumps: bool,
-    /// Number of walls, where these are the device's.
+    /// Walls that the device computes.
     pub walls: usize,
-    /// Whether there are periodic borders.
     pub periodic: bool,
-    /// Whether the processor has a part in each step.
     pub beside: bool,
-    /// Classes of size in the search for neighbours.
     pub classes: usize,
 }
 
 impl Features {
-    /// Whether there is anything that the processor lists.
     pub fn rest(&self) -> bool {
         self.bonds || self.walls > 0 || self.periodic || self.beside
     }
 
-    /// Records of four that state where a body is and how it moves.
     pub fn picked_width(&self) -> usize {
         if self.clumps { 4 } else { 3 }
     }
 
-    /// Numbers that a block books.
     pub fn quantities(&self) -> usize {
         Booked::ALL.iter().map(|(part, ..)| self.booked(*part).len()).sum()
     }
 
-    /// Where the numbers of a part lie among them; nowhere where a model has none.
+    /// Range of a part; empty if the model lacks it.
     pub fn booked(&self, of: Booked) -> Range<usize> {
         let mut from = 0;
         for (part, _, count) in Booked::ALL {
@@ -396,7 +349,7 @@ impl Features {
         from..from
     }
 
-    /// The lines of C that sum up number `number` of all blocks, which lie part by part, by the function of its part.
+    /// C code that sums value `number` of all blocks.
     pub fn books(&self) -> String {
         let mut out = String::new();
         for (part, name, _) in Booked::ALL {
@@ -418,7 +371,6 @@ impl Features {
     }
 }
 
-/// The declarations that the text begins with.
 pub(super) fn declarations(f: &Features, fresh: &str) -> String {
     let mut out = format!(
         "typedef struct {{ void *at[{}]; real number[{}]; unsigned count[{}]; }} arguments;\n",
@@ -449,7 +401,7 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("ITERATIONS", crate::integrate::rotation::ITERATIONS),
         ("CLASSES", f.classes),
         ("STRETCH", STRETCH),
-        // With spheres alone a step fits into the 128 registers that four blocks at once leave a thread, and is faster; larger steps would spill.
+        // Spheres only: fits the 128 registers of four resident blocks.
         ("BLOCKS_AT_ONCE", if f.clumps || f.bonds || f.walls > 0 || f.periodic || f.beside { 3 } else { 4 }),
         ("ENTRY_SHIFT", ENTRY_SHIFT as usize),
         ("PICKED_WIDTH", f.picked_width()),

@@ -1,20 +1,19 @@
-//! What carries the kernels out.
+//! Interface of a device that runs the kernels.
 
 use super::layout::{Arguments, Count, Number, Slot};
 use crate::engine::beside;
 use crate::engine::model::Model;
 
-/// A launch: which array is where, and the numbers and counts.
+/// Launch: buffers by array, numbers and counts.
 #[derive(Clone, Debug)]
 pub struct Call {
-    /// Number of the buffer for each address that the text knows.
+    /// Buffer index of each array.
     pub buffers: Vec<usize>,
     numbers: [f64; Number::COUNT],
     counts: [u32; Count::COUNT],
 }
 
 impl Call {
-    /// Buffers in their places, numbers and counts zero.
     pub(super) fn new() -> Call {
         Call { buffers: (0..Slot::COUNT).collect(), numbers: [0.0; Number::COUNT], counts: [0; Count::COUNT] }
     }
@@ -31,7 +30,7 @@ impl Call {
         self.counts[which as usize] = n as u32;
     }
 
-    /// The arguments as kernels take them: a structure by value on a device. `address`: of a buffer.
+    /// Returns the kernel arguments; `address` maps a buffer index to its address.
     pub fn arguments(&self, address: impl Fn(usize) -> u64) -> Arguments {
         let mut at = [0; Slot::COUNT];
         at.iter_mut().zip(&self.buffers).for_each(|(to, &buffer)| *to = address(buffer));
@@ -39,64 +38,64 @@ impl Call {
     }
 }
 
-/// A device: buffers by number, and kernels by name. Messages say what went wrong.
+/// Device: buffers by index, kernels by name.
 pub trait Machine {
-    /// Makes a buffer hold these numbers, whatever its size was.
+    /// Fills a buffer with numbers, resizing it.
     ///
     /// # Errors
-    /// No memory is left, or the device does not respond.
+    /// Out of memory, or device not responding.
     fn put(&mut self, buffer: usize, numbers: &[f64]) -> Result<(), String>;
 
-    /// Makes a buffer hold these counts.
+    /// Fills a buffer with counts, resizing it.
     ///
     /// # Errors
     /// As [`Machine::put`].
     fn put_counts(&mut self, buffer: usize, counts: &[u32]) -> Result<(), String>;
 
-    /// Puts numbers into a buffer from number `from` on, for which it has room; what else it holds stays.
+    /// Overwrites part of an existing buffer, starting at index `from`.
     ///
     /// # Errors
-    /// The device does not respond.
+    /// Device not responding.
     fn fill(&mut self, buffer: usize, from: usize, numbers: &[f64]) -> Result<(), String>;
 
-    /// The same of counts.
+    /// As [`Machine::fill`], for counts.
     ///
     /// # Errors
     /// As [`Machine::fill`].
     fn fill_counts(&mut self, buffer: usize, from: usize, counts: &[u32]) -> Result<(), String>;
 
-    /// Makes a buffer hold so many numbers, whatever they are.
+    /// Reserves space for `numbers` values; contents undefined.
     ///
     /// # Errors
     /// As [`Machine::put`].
     fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String>;
 
-    /// Makes a buffer hold so many counts, whatever they are.
+    /// Reserves space for `counts` counts; contents undefined.
     ///
     /// # Errors
     /// As [`Machine::put`].
     fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String>;
 
-    /// Reads as many numbers of a buffer as there is room for, from number `from` on.
+    /// Reads `numbers.len()` values, starting at index `from`.
     ///
     /// # Errors
-    /// The device does not respond.
+    /// Device not responding.
     fn get(&mut self, buffer: usize, from: usize, numbers: &mut [f64]) -> Result<(), String>;
 
-    /// Reads counts of a buffer, from the first on.
+    /// Reads `counts.len()` counts, from the first.
     ///
     /// # Errors
     /// As [`Machine::get`].
     fn get_counts(&mut self, buffer: usize, counts: &mut [u32]) -> Result<(), String>;
 
-    /// Runs a kernel with so many threads, after all that was launched before.
+    /// Runs a kernel with `threads` threads, after all earlier launches.
     ///
     /// # Errors
-    /// The device does not respond.
+    /// Device not responding.
     fn launch(&mut self, kernel: &'static str, threads: usize, call: &Call) -> Result<(), String>;
 }
 
-/// The kernels of a model: a step, the search for neighbours, and with a part of the processor in each step the last.
+/// Step, search, download (last, for a CPU part).
 const ALL: [&str; 13] = [
     "bodies",
     "books",
@@ -113,7 +112,7 @@ const ALL: [&str; 13] = [
     "pick",
 ];
 
-/// The kernels that the text for a model has.
+/// Kernels of a model.
 pub fn kernels(model: &Model) -> &'static [&'static str] {
     if beside::any(model) { &ALL } else { &ALL[..ALL.len() - 1] }
 }

@@ -1,10 +1,9 @@
-//! Steps on a device: the same arrays and the same order of sums as the engine's, and formulas that are the engine's own,
-//! recorded (`tape.rs`) and written out as text (`text`, a file a kind of force or motion) that a C compiler takes as well as CUDA's.
+//! Time steps on a device, bitwise identical to the engine's.
 //!
-//! Contacts of spheres with each other and with planes are searched there too, all others by the processor (`search.rs`); a step that fails
-//! there or that puts the bodies in a new order is made by the engine itself. Contacts of spheres with a surface that another crate moves,
-//! contacts of bodies that are not made of spheres, and the motion of these are the processor's part of each step (`handed.rs`).
-//! Whatever the device cannot compute is refused by name ([`check`]).
+//! The engine's own formulas are recorded (`tape.rs`) and written as C and CUDA source (`text`). The CPU
+//! searches contacts other than sphere–sphere and sphere–plane, re-sorts bodies, repeats failed steps, and
+//! computes its part of a step (`handed.rs`): external surfaces and solid bodies. Unsupported features are
+//! rejected ([`check`]).
 
 mod arrays;
 mod back_end;

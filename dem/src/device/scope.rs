@@ -1,23 +1,23 @@
-//! What a device computes: models with anything else are refused by name.
+//! Model features supported by a device.
 
 use crate::bodies::table::Kind;
 use crate::engine::model::Model;
 use crate::shape::Shape;
 
-/// What a model has and a device does not compute.
+/// Name of an unsupported feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("not supported on a GPU: {0}")]
 pub struct Unsupported(pub &'static str);
 
-/// Whether a device computes all that a model has.
+/// Checks that a device supports all features of a model.
 ///
 /// # Errors
-/// [`Unsupported`] names the first thing that it does not.
+/// [`Unsupported`] for the first unsupported feature.
 pub fn check(model: &Model) -> Result<(), Unsupported> {
     let shape = |k: usize| model.shape(k);
     let bodies = || 0..model.body_count();
     let solid = |k: usize| model.body(k).kind == Kind::Solid;
-    // Those about some axes take the solution of a system of equations.
+    // Rotation about some axes only requires solving a system of equations.
     let about_some = |k: usize| {
         let fixed = model.body(k).fixed >> 3;
         matches!(shape(k), Shape::Clump(_)) && fixed != 0 && fixed != 7

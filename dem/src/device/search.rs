@@ -1,8 +1,7 @@
-//! The search for neighbours on the device: its kernels in turn (`text/search.c`), and what of it the processor gets.
+//! Neighbour search on the device (`text/search.c`).
 //!
-//! The near list is a function of where bodies are: all pairs within a reach, by the order of their spheres, with the memory of those that
-//! were listed before. So it has the engine's bits however it is found; here straight from cells, without candidates. What else there is the
-//! processor lists as the engine does, and its entries are put where the engine has them in its sums.
+//! The neighbour list depends only on positions, so any search gives the engine's bits; here cells without
+//! candidate lists. The CPU lists contacts other than sphere–sphere and sphere–plane.
 
 use super::arrays::{Lists, Memory};
 use super::back_end::Device;
@@ -20,8 +19,7 @@ use crate::law::History;
 use crate::spatial::surface::Surface;
 
 impl<M: Machine> Device<M> {
-    /// Makes the near list anew where the bodies are: what the processor lists first, as far as there is any. Whether the device has not made
-    /// its own, since the next step is the processor's.
+    /// Rebuilds the neighbour list; returns true if the CPU must make the next step.
     pub(super) fn list<S: Surface>(
         &mut self,
         model: &Model,
@@ -40,7 +38,7 @@ impl<M: Machine> Device<M> {
         }
         neighbours::update(model, state, &mut self.work, surface, Listed::Rest);
         if self.features.walls > 0 && state.lists.iter().any(orphans) {
-            // What such a contact leaves behind is the engine's to book. Of contacts among spheres the state has those of before.
+            // The engine records their energy; the state still has the previous sphere contacts.
             self.bring_back(model, state, Listed::Rest)?;
             (self.ahead, self.found, state.stale) = (false, true, true);
             return Ok(true);
@@ -50,7 +48,7 @@ impl<M: Machine> Device<M> {
         Ok(false)
     }
 
-    /// Puts where bodies are, and the memory of what the processor lists, into a state.
+    /// Downloads positions, and history for CPU lists.
     fn fetch_rest(&mut self, model: &Model, state: &mut State) -> Result<(), String> {
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let Motion { mut x, mut orientation, .. } = Motion::zeros(n, self.features.clumps);
@@ -68,7 +66,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Hands the pairs over that bonds hold, where these may be others.
     fn hold(&mut self, model: &Model, state: &State) -> Result<(), String> {
         let searches = self.work.searched.searches;
         if !self.features.bonds || self.held_since == Some(searches) {
@@ -89,9 +86,9 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Makes the near list of spheres with spheres and planes anew, and what all bodies gather.
+    /// Rebuilds sphere and plane contacts and all entries.
     fn search(&mut self, model: &Model, state: &State) -> Result<(), String> {
-        // What was found before is where memory comes from.
+        // History is copied from the previous lists.
         for (new, old) in [(Slot::Ends, Slot::OldEnds), (Slot::Offsets, Slot::OldOffsets)] {
             self.call.buffers.swap(new as usize, old as usize);
         }
@@ -134,7 +131,7 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// There is nothing behind the contacts of spheres with spheres and planes.
+    /// No contacts other than sphere–sphere and sphere–plane.
     fn note_none(&mut self, contacts: usize) {
         for none in [Count::FirstDebonded, Count::FirstPatch, Count::FirstImage] {
             self.call.count(none, contacts);
@@ -142,7 +139,6 @@ impl<M: Machine> Device<M> {
         (self.contacts, self.among_spheres) = (contacts, contacts);
     }
 
-    /// Puts down what the processor lists.
     fn put_lists(&mut self, lists: &Lists) -> Result<(), String> {
         self.note_rest(lists);
         let ends = self.buffer(Slot::Ends);
@@ -163,7 +159,6 @@ impl<M: Machine> Device<M> {
         self.reserve(Slot::Couples, 4 * lists.ways.len())
     }
 
-    /// Puts down what contacts remember that the processor lists.
     fn put_memory(&mut self, model: &Model, state: &State, from: usize) -> Result<(), String> {
         let memory = Memory::of_rest(model, state);
         let of_springs = self.buffer(Slot::OldMemory);
@@ -177,13 +172,11 @@ impl<M: Machine> Device<M> {
         self.room_for_pairs(self.pairs)
     }
 
-    /// Room for what contacts remember after the next step.
     fn remember(&mut self, contacts: usize) -> Result<(), String> {
         self.reserve(Slot::NewMemory, 4 * contacts)?;
         self.reserve(Slot::NewTurn, if self.features.roll { 4 * contacts } else { 0 })
     }
 
-    /// Puts the spheres into buckets.
     fn fill_cells(&mut self, model: &Model, state: &State, spheres: usize) -> Result<(), String> {
         let (near, most) = (state.near, model.radii.1);
         let grid = |k: usize| [1.0 / (2.0 * largest(most, k) + near), largest(most, k)];
@@ -212,9 +205,9 @@ impl<M: Machine> Device<M> {
         self.call_kernel("fill_cells", spheres)
     }
 
-    /// Has each number of a list become the sum of all before it.
+    /// Exclusive prefix sums, in place.
     fn running_total(&mut self, slot: Slot, count: usize) -> Result<(), String> {
-        // The list, sums of its stretches, sums of stretches of these; all but the list in one buffer.
+        // Levels: the list, segment sums, sums of these; all sums share one buffer.
         let (mut lengths, mut from) = (vec![count], vec![0, 0]);
         while let Some(&last) = lengths.last().filter(|n| **n > STRETCH) {
             lengths.push(last.div_ceil(STRETCH));
@@ -242,7 +235,7 @@ impl<M: Machine> Device<M> {
         self.machine.reserve_counts(self.call.buffers[slot as usize], counts)
     }
 
-    /// Puts the lists that the device has found into a state, without what their contacts remember.
+    /// Writes lists to a state, without history.
     pub(super) fn name_contacts(&mut self, state: &mut State) -> Result<(), String> {
         let mut ranges = vec![[0; LISTS]; state.blocks.len() + 1];
         let mut ends = vec![[0; 2]; self.among_spheres];
@@ -255,7 +248,7 @@ impl<M: Machine> Device<M> {
                 let at = |b: usize| ranges[b][list as usize] as usize;
                 ends[at(b)..at(b + 1)].iter().copied()
             };
-            // Where spheres are bodies, these have their numbers within a block.
+            // Spheres that are bodies have block-local indices.
             let first = if self.work.members[b].rigid { bases[b] } else { ranges[b][List::Bodies as usize] };
             cross.spheres.clear();
             for [i, j] in of(List::Cross) {

@@ -1,15 +1,15 @@
-//! The classes of size that the cells of the search have.
+//! Size classes of the search cells.
 
-/// Most classes of size; all smaller spheres share the last.
+/// Upper limit; all smaller spheres share the last class.
 const CLASSES: usize = 8;
 
-/// Classes of size for spheres between two radii [m]: each spans a factor of two, where they differ much.
+/// Returns the number of size classes between two radii [m]; each spans a factor of two.
 pub(super) fn classes((least, most): (f64, f64)) -> usize {
     let wide = most > 3.0 * least;
     (1..CLASSES).take_while(|k| wide && least <= largest(most, *k)).count() + 1
 }
 
-/// The largest radius of a class [m].
+/// Returns the largest radius of a class [m].
 pub(super) fn largest(most: f64, class: usize) -> f64 {
     most / f64::from(1_u32 << class)
 }
@@ -18,7 +18,7 @@ pub(super) fn largest(most: f64, class: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Every radius between the two has a class that is no more than twice as large, but in the last.
+    /// Every radius lies within a factor of two of its class, except in the last.
     #[test]
     fn classes_halve() {
         assert_eq!([(1.0, 1.0), (0.4, 1.0), (0.25, 1.0), (0.2, 1.0)].map(classes), [1, 1, 3, 3]);

@@ -1,8 +1,7 @@
-//! A number that writes down what is done to it: formulas written over [`Real`] become text of C.
+//! Records formulas over [`Real`] as C source.
 //!
-//! Equal operations on equal operands are written once, what no result needs is left out. A guard `any` of a formula counts as true
-//! and `all` as false: both ways are written down, and the formula selects by the same mask what holds. Nothing is rearranged, so
-//! the text has the bits of the formula wherever products are not contracted with sums.
+//! Guards `any` record as true, `all` as false: both branches are written and selected by mask. Nothing is
+//! rearranged, so results are bitwise identical without contraction.
 
 use crate::lanes::{Real, V3};
 use std::cell::RefCell;
@@ -10,7 +9,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// One operation; operands are numbers of operations before it.
+/// Operation; operands are indices of earlier operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Op {
     Constant(u64),
@@ -18,7 +17,6 @@ enum Op {
     Negate(u32),
     Root(u32),
     Magnitude(u32),
-    /// An operator of C between two operands.
     Infix(&'static str, u32, u32),
     Smaller(u32, u32),
     Larger(u32, u32),
@@ -36,7 +34,6 @@ impl Op {
         }
     }
 
-    /// Whether it yields a truth value.
     fn is_truth(&self) -> bool {
         matches!(self, Op::Not(_) | Op::Infix("<" | "<=" | "==" | "&" | "|", ..))
     }
@@ -47,9 +44,7 @@ struct Tape {
     ops: Vec<Op>,
     known: HashMap<Op, u32>,
     inputs: Vec<String>,
-    /// Constants that [`next`] has handed out.
     counted: usize,
-    /// Constants that [`value`] has seen.
     values: Vec<f64>,
 }
 
@@ -65,39 +60,38 @@ fn put(op: Op) -> u32 {
     })
 }
 
-/// Writes an operation down. A formula makes hundreds of these calls, once a run: inlined they were a third of the engine's code.
+/// Not inlined: hundreds of calls per formula made a third of the engine's code.
 #[cold]
 #[inline(never)]
 fn infix(sign: &'static str, a: u32, b: u32) -> u32 {
     put(Op::Infix(sign, a, b))
 }
 
-/// As [`infix`], of one operand.
+/// As [`infix`], for one operand.
 #[cold]
 #[inline(never)]
 fn prefix(op: fn(u32) -> Op, a: u32) -> u32 {
     put(op(a))
 }
 
-/// As [`infix`], of a number that is known.
+/// As [`infix`], for a constant.
 #[cold]
 #[inline(never)]
 fn constant(x: f64) -> Recorded {
     Recorded(put(Op::Constant(x.to_bits())))
 }
 
-/// A number on the tape of this thread.
+/// Number on this thread's tape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recorded(u32);
 
-/// A truth value: one that is known while recording, or one on the tape.
+/// Truth value known while recording, or on the tape.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Truth {
     Known(bool),
     Open(u32),
 }
 
-/// Begins an empty tape on this thread.
 pub(super) fn begin() {
     TAPE.set(Tape::default());
 }
@@ -112,24 +106,23 @@ fn named(expression: String) -> u32 {
     put(Op::Input(k))
 }
 
-/// A number that an expression of C yields where the text will stand.
+/// Records a C expression as a number.
 pub(super) fn input(expression: impl Into<String>) -> Recorded {
     Recorded(named(expression.into()))
 }
 
-/// The numbers x, y, z of a record of C.
 #[cold]
 #[inline(never)]
 pub(super) fn vector(record: &str) -> V3<Recorded> {
     V3::new(input(format!("{record}.x")), input(format!("{record}.y")), input(format!("{record}.z")))
 }
 
-/// A truth value that an expression of C yields.
+/// Records a C expression as a truth value.
 pub(super) fn truth(expression: &str) -> Truth {
     Truth::Open(named(expression.into()))
 }
 
-/// The next of the constants `k[0]`, `k[1]`, … in the order in which they are fetched.
+/// Returns the next of the constants `k[0]`, `k[1]`, … in order of calls.
 pub(super) fn next(_: &[f64; 8]) -> Recorded {
     let k = TAPE.with_borrow_mut(|t| {
         t.counted += 1;
@@ -138,13 +131,13 @@ pub(super) fn next(_: &[f64; 8]) -> Recorded {
     input(format!("k[{k}]"))
 }
 
-/// Notes the value of a constant; see [`values`].
+/// Stores the value of a constant; see [`values`].
 pub(super) fn value(x: &[f64; 8]) -> Recorded {
     TAPE.with_borrow_mut(|t| t.values.push(x[0]));
     Recorded::splat(x[0])
 }
 
-/// The constants that [`value`] has seen since [`begin`], in the order of [`next`].
+/// Values stored since [`begin`], in the order of [`next`].
 pub(super) fn values() -> Vec<f64> {
     TAPE.with_borrow(|t| t.values.clone())
 }
@@ -253,7 +246,6 @@ impl Real for Recorded {
     }
 }
 
-/// What the text assigns: an expression of C to the left, and what is on the tape.
 #[derive(Default)]
 pub(super) struct Results(Vec<(String, u32)>);
 
@@ -262,14 +254,14 @@ impl Results {
         self.0.push((to.into(), x.0));
     }
 
-    /// The numbers x, y, z of a record of C.
+    /// Assigns x, y, z of a C structure.
     pub fn vector(&mut self, to: &str, v: V3<Recorded>) {
         for (c, x) in ["x", "y", "z"].iter().zip(v.array()) {
             self.number(format!("{to}.{c}"), x);
         }
     }
 
-    /// Vectors one after another in an array of C.
+    /// Assigns consecutive vectors of a C array.
     pub fn row(&mut self, to: &str, list: &[V3<Recorded>]) {
         let numbers = list.iter().flat_map(|v| v.array());
         numbers.enumerate().for_each(|(k, x)| self.number(format!("{to}[{k}]"), x));
@@ -282,7 +274,6 @@ impl Results {
         }
     }
 
-    /// The block of C that these results need of this thread's tape.
     pub fn text(&self) -> String {
         TAPE.with_borrow(|t| {
             let mut live = vec![false; t.ops.len()];
@@ -309,7 +300,7 @@ impl Results {
 }
 
 impl Tape {
-    /// How an operation is written; `None` for what is written where it is used.
+    /// C expression of an operation; `None` if written where it is used.
     fn expression(&self, op: &Op) -> Option<String> {
         let of = |k: u32| self.operand(k);
         Some(match *op {
@@ -334,7 +325,7 @@ impl Tape {
     }
 }
 
-/// A number with all its digits.
+/// Number with all digits.
 pub(super) fn literal(x: f64) -> String {
     let bits = x.to_bits();
     let (exponent, digits) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));

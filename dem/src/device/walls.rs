@@ -1,4 +1,4 @@
-//! Walls of triangles, and the pairs of spheres and triangles, as the flat arrays that a device keeps.
+//! Flat device arrays of wall triangles and sphere–triangle pairs.
 
 use super::bodies::Spheres;
 use super::layout::{PATCH_WIDTH, SHAPE_WIDTH, WALL_WIDTH};
@@ -8,12 +8,12 @@ use crate::engine::state::{BlockLists, State};
 use crate::law::History;
 use crate::pairs::patches::{PatchContact, PatchList};
 
-/// The triangles of all walls, in the frames of these.
+/// Triangles of all walls, in the wall frames.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Triangles {
-    /// Plane, planes of the edges, corners.
+    /// Planes of triangle and edges, vertices.
     pub shapes: Vec<[f64; SHAPE_WIDTH]>,
-    /// Wall, number that triangles in one plane share, and numbers of the corners.
+    /// Wall, index of the plane shared by coplanar triangles, vertex indices.
     pub names: Vec<[u32; PATCH_WIDTH]>,
 }
 
@@ -29,7 +29,8 @@ impl Triangles {
     }
 }
 
-/// Where the walls are: centre at the start, displacement, orientation, velocity, spin, whether turned, material, and one over the mass.
+/// Initial centre, displacement, orientation, velocity, angular velocity, rotated flag, material, 1/mass of
+/// each wall.
 pub(super) fn placed(model: &Model, state: &State) -> Vec<[f64; WALL_WIDTH]> {
     let walls = model.walls.walls.iter().zip(&state.walls);
     walls
@@ -49,19 +50,16 @@ pub(super) fn placed(model: &Model, state: &State) -> Vec<[f64; WALL_WIDTH]> {
         .collect()
 }
 
-/// Pairs of spheres and triangles, block by block, and those of each sphere.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    /// Sphere and triangle.
     pub ends: Vec<[u32; 2]>,
-    /// First pair of each sphere that has any, and one past the last.
+    /// First pair of each sphere that has any, with end.
     pub groups: Vec<u32>,
-    /// Whether a contact of the last step has no pair any more: what it leaves behind is the engine's to book.
+    /// Whether a contact of the last step lost its pair: the engine must record its energy.
     pub orphans: bool,
 }
 
 impl Pairs {
-    /// Adds those of a block.
     pub fn add(&mut self, block: usize, lists: &BlockLists, spheres: &Spheres) {
         for pairs in lists.walls.pairs.chunk_by(|a, b| a.i == b.i) {
             self.groups.push(self.ends.len() as u32);
@@ -71,13 +69,11 @@ impl Pairs {
     }
 }
 
-/// Whether a contact of a block's last step has no pair any more.
 pub(super) fn orphans(lists: &BlockLists) -> bool {
     let alive = joined(&lists.walls).filter(Option::is_some).count();
     alive < lists.walls.live.len()
 }
 
-/// The contact of each pair, if it has one.
 fn joined(list: &PatchList) -> impl Iterator<Item = Option<&PatchContact>> {
     let mut live = list.live.iter().peekable();
     list.pairs.iter().map(move |pair| {
@@ -87,8 +83,8 @@ fn joined(list: &PatchList) -> impl Iterator<Item = Option<&PatchContact>> {
     })
 }
 
-/// What pairs keep beside the memory of their law: the way that is left, and of those in touch point and overlap, normal and side,
-/// velocity of the wall and one.
+/// Pair data besides the law's history: remaining distance; in contact also point and overlap, normal and
+/// side, wall velocity and a flag of 1.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Kept {
     pub spare: Vec<f64>,
@@ -96,12 +92,11 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// Zeros for so many pairs.
     pub fn zeros(pairs: usize) -> Kept {
         Kept { spare: vec![0.0; pairs], touch: vec![[[0.0; 4]; 3]; pairs] }
     }
 
-    /// Adds that of a block, and calls `f` with the memory of each pair.
+    /// Appends pairs of a block; `f` gets their histories.
     pub fn add(&mut self, list: &PatchList, mut f: impl FnMut(History)) {
         self.spare.extend(list.pairs.iter().map(|pair| pair.spare));
         for contact in joined(list) {
@@ -113,7 +108,7 @@ impl Kept {
         }
     }
 
-    /// Puts it into a block's list, from pair `at` on; `history`: the memory of the k-th of these.
+    /// Writes from pair `at` on; `history(k)`: of pair `at` + k.
     pub fn put(&self, list: &mut PatchList, at: usize, history: impl Fn(usize) -> History) {
         list.live.clear();
         for (k, pair) in list.pairs.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Forces that the caller applies to bodies in a step.
+//! External forces on bodies in a step.
 
 use super::input::AppliedForce;
 use super::model::Model;
@@ -7,7 +7,6 @@ use crate::base::error::StepError;
 use crate::integrate::leapfrog::Applied;
 use crate::lanes::record::xyz;
 
-/// Brings applied forces into block order.
 pub(crate) fn place(
     model: &Model,
     state: &State,
@@ -25,12 +24,11 @@ pub(crate) fn place(
         let torque = (a.point - centre).cross(&a.force);
         out.push(Applied { block, place, force: a.force, torque });
     }
-    // Stable: forces on one body add up in the order given.
+    // Stable sort: forces on one body are summed in the given order.
     out.sort_by_key(|a| (a.block, a.place));
     Ok(())
 }
 
-/// Those of a block, of forces in block order.
 pub(crate) fn of_block(applied: &[Applied], b: usize) -> &[Applied] {
     let from = applied.partition_point(|a| (a.block as usize) < b);
     let to = applied.partition_point(|a| a.block as usize <= b);

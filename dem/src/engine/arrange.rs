@@ -1,4 +1,4 @@
-//! Scratch laid out for a state: constants of the bodies in their present order, slots and shares.
+//! Layout of scratch data: constants in block order, contact slots and gather lists.
 
 use super::model::Model;
 use super::place;
@@ -14,11 +14,11 @@ use crate::lanes::Simd;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::{CrossForces, Gather, ImagePair};
 
-/// Spheres below which sharing the work costs more than it saves. Both ways give the same bits.
+/// Spheres below which threading does not pay.
 const PARALLEL: usize = 2500;
 
 impl Work {
-    /// Scratch for a state.
+    /// Creates scratch data for a state.
     pub fn new(model: &Model, state: &State) -> Work {
         let mut work = Work {
             members: Vec::new(),
@@ -50,13 +50,12 @@ impl Work {
         work
     }
 
-    /// Follows another state of the same model from now on, such as an earlier one that is taken up again. What comes
-    /// then has the bits that new scratch gives.
+    /// Attaches to another state of the same model, with bitwise identical results.
     pub fn follow(&mut self, model: &Model, state: &State) {
         self.arrange(model, state);
     }
 
-    /// Puts the spheres of clumps where these are, after something else than a step may have moved them.
+    /// Updates clump spheres.
     pub(crate) fn place_spheres(&mut self, state: &State) {
         let blocks = self.members.iter_mut().zip(&state.blocks);
         for (members, block) in blocks.filter(|(members, _)| members.rigid) {
@@ -66,7 +65,6 @@ impl Work {
         }
     }
 
-    /// Lays the constants out in the state's present order.
     pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
         self.searched.listed = None;
         self.own = 0..state.blocks.len();
@@ -82,14 +80,14 @@ impl Work {
             }
             w.patches.turning = model.laws.rolls_among(&place::materials(block), &model.patch_materials);
         }
-        // A block without a body or with several materials has none of its own.
+        // A block without bodies has no common material.
         self.material = common(self.members.iter().map(|m| m.material)).flatten();
         link(model, state, self);
         bonds::arrange(model, state, self);
     }
 }
 
-/// Gives each contact between blocks its slot and each body the list of slots it gathers, in one fixed order.
+/// The order of summation is fixed.
 pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     let mut counts = vec![0; state.blocks.len()];
     let Work { members, blocks: works, cross: forces, walls, sheet, .. } = work;

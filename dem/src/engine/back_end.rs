@@ -1,10 +1,8 @@
-//! Where steps are computed: the seam for processors other than the one that the rest of the program runs on.
+//! Compute back ends (CPU, GPU).
 //!
-//! A back end takes a [`State`] over, advances it step by step, and gives it back. In between it may keep the arrays of motion
-//! and the memory of contacts where it likes; they are flat arrays per block (`bodies/block.rs`, `pairs`), made to be copied
-//! as they are. What every step changes anyway and whoever drives the steps reads, time, count and length of steps, the
-//! ledger and the contacts with an external surface, is up to date after each. All of them give the bits of the first, [`Work`],
-//! which computes on the state itself, so that taking it over and giving it back cost nothing.
+//! A back end uploads a [`State`], advances it and downloads it; meanwhile motion and contact history may
+//! live elsewhere. Time, steps, balance terms and surface contacts are current after each step. Results are
+//! bitwise identical to [`Work`], which computes on the state itself.
 
 use super::input::AppliedForce;
 use super::model::Model;
@@ -14,18 +12,18 @@ use super::work::Work;
 use crate::base::error::StepError;
 use crate::spatial::surface::{Surface, SurfaceContact};
 
-/// What computes the steps of one model's states.
+/// Compute back end for states of one model.
 pub trait BackEnd {
-    /// Takes over another state of the same model, or this one after something else has changed it.
+    /// Uploads a state of the same model, also after external changes.
     ///
     /// # Errors
-    /// A device does not respond, or has no memory left.
+    /// Device failure or insufficient memory.
     fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError>;
 
-    /// Advances the state by one step of [`State::dt`]; see [`step()`](super::step::step).
+    /// Advances by one step of [`State::dt`]; see [`step()`](super::step::step).
     ///
     /// # Errors
-    /// [`StepError`]; the state is then not fit to go on from.
+    /// [`StepError`]; the state is then invalid.
     fn step<S: Surface>(
         &mut self,
         model: &Model,
@@ -34,14 +32,13 @@ pub trait BackEnd {
         applied: &[AppliedForce],
     ) -> Result<(), StepError>;
 
-    /// Makes `state` whole: motion and memory of contacts as they are now. Before it is measured, written, looked at for the
-    /// length of steps, or changed.
+    /// Completes `state` with current motion and contact history.
     ///
     /// # Errors
-    /// A device does not respond.
+    /// Device failure.
     fn download(&mut self, model: &Model, state: &mut State) -> Result<(), StepError>;
 
-    /// Contacts with the external surface in the last step, by block, then sphere, then patch.
+    /// Contacts with the external surface in the last step, by block, sphere, patch.
     fn surface_contacts(&self) -> &[SurfaceContact];
 }
 

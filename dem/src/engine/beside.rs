@@ -1,6 +1,5 @@
-//! What a back end for spheres leaves to the processor in a step: contacts of spheres with the external surface, and with walls where any
-//! of these is round or driven by a force, all contacts of bodies that are not made of spheres, and the motion of these. Everything that
-//! takes part is where the step begins.
+//! CPU part of a step with a back end for spheres: contacts with the external surface and with round or
+//! servo-controlled walls; contacts and motion of bodies not made of spheres.
 
 use super::block_work::BlockWork;
 use super::model::Model;
@@ -20,18 +19,15 @@ use crate::pairs::patches::PatchList;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
-/// Whether a model has any of it.
 pub(crate) fn any(model: &Model) -> bool {
     model.solids || model.surface_material.is_some() || walls(model)
 }
 
-/// Whether contacts of spheres with walls are among it.
 pub(crate) fn walls(model: &Model) -> bool {
     !model.walls.triangulated() || model.walls.walls.iter().any(|w| w.servo.is_some())
 }
 
-/// Forces of these contacts: into the slots of their pairs, and of those with walls and the surface into the scratch of the block; the
-/// near list is good. What blocks book begins anew.
+/// Resets block totals. The neighbour list must be valid.
 pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let setting = Setting { laws: &model.laws, simd: work.simd, dt: state.pace.kick() };
     let gone = state.drift + state.wall_drift;
@@ -76,7 +72,7 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     }
 }
 
-/// What the contacts of this part remember before a step, so that it can be made again.
+/// Contact history before a step, for repeating it.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
     blocks: Vec<KeptOfBlock>,
@@ -85,12 +81,11 @@ pub(crate) struct Kept {
 #[derive(Debug, Default)]
 struct KeptOfBlock {
     kinds: Vec<PairList>,
-    /// With walls, and with the external surface.
+    /// Walls, external surface.
     patches: [PatchList; 2],
 }
 
 impl Kept {
-    /// Keeps that of a state.
     pub fn keep(&mut self, state: &State) {
         self.blocks.resize_with(state.blocks.len(), KeptOfBlock::default);
         for (kept, (cross, lists)) in self.blocks.iter_mut().zip(state.cross.iter().zip(&state.lists)) {
@@ -101,7 +96,6 @@ impl Kept {
         }
     }
 
-    /// Puts it back.
     pub fn put_back(&self, state: &mut State) {
         for (kept, (cross, lists)) in self.blocks.iter().zip(state.cross.iter_mut().zip(&mut state.lists)) {
             copy_kinds(&mut cross.kinds, &kept.kinds);
@@ -117,7 +111,6 @@ fn copy_kinds(to: &mut Vec<PairList>, from: &[PairList]) {
     to.iter_mut().zip(from).for_each(|(to, from)| to.copy_from(from));
 }
 
-/// Moves the bodies that are not made of spheres under the forces in the slots of their pairs.
 pub(crate) fn motion(model: &Model, state: &mut State, work: &mut Work) {
     let drive = step::drive(model, state.pace);
     let Work { members, blocks: works, cross, applied, simd, .. } = work;

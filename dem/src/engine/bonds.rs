@@ -1,4 +1,4 @@
-//! Bonds of a state: filed by block, settled after a step, handed over when a broken pair has separated.
+//! Bond lists: distribution over blocks, update after a step, release of separated pairs.
 
 use super::model::Model;
 use super::state::State;
@@ -12,18 +12,16 @@ use crate::bond::{BondList, Break, BreakMode, Held};
 use crate::lanes::record::xyz;
 use crate::law::History;
 
-/// What the passes over bonds need of a model; `dt` is the step that has brought the bodies here [s].
+/// `dt`: last step [s].
 pub(crate) fn parts(model: &Model, dt: f64, fresh: bool) -> Parts<'_> {
     Parts { bonds: &model.bonds, laws: &model.laws, dt, fresh }
 }
 
-/// Lays the scratch of the bonds out in the state's present order.
 pub(crate) fn arrange(model: &Model, state: &State, work: &mut Work) {
     let lists = state.lists.iter().map(|l| &l.bonds).zip(work.blocks.iter_mut().map(|w| &mut w.bonds));
     work.bonds.arrange(&model.bonds, lists, &state.bonds);
 }
 
-/// Lists the pairs whose contact is not for the ordinary contacts.
 pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
     let mut pairs = Vec::new();
     if !model.bonds.is_empty() {
@@ -38,20 +36,17 @@ pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
     held.set(model.body_count(), pairs);
 }
 
-/// A bond or a debonded on its way to a new order of the bodies.
 enum Filed {
     Bond(u32, Memory<f64>),
     Debonded(DebondedPair),
 }
 
-/// Puts all bonds of a new state into its lists.
 pub(crate) fn start(model: &Model, state: &mut State) {
     state.bonds.fresh = true;
     let all = (0..model.bonds.len() as u32).map(|k| Filed::Bond(k, Memory::NONE)).collect();
     file(model, state, all);
 }
 
-/// Takes all bonds and debonded pairs out of a state's lists.
 pub(crate) fn take(state: &mut State) -> Unfiled {
     let mut all = Vec::new();
     let inner: Vec<BondList> = state.lists.iter_mut().map(|l| std::mem::take(&mut l.bonds)).collect();
@@ -62,10 +57,8 @@ pub(crate) fn take(state: &mut State) -> Unfiled {
     Unfiled(all)
 }
 
-/// Bonds between [`take`] and [`put`].
 pub(crate) struct Unfiled(Vec<Filed>);
 
-/// Puts bonds into the lists of the state's present blocks.
 pub(crate) fn put(model: &Model, state: &mut State, unfiled: Unfiled) {
     file(model, state, unfiled.0);
 }
@@ -80,7 +73,7 @@ fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
             Filed::Bond(number, _) => *number,
             Filed::Debonded(r) => r.number,
         };
-        // The first body of a bond is that of the model, whatever the order of the blocks: no sign ever turns.
+        // First body by model index, independent of block order: signs never flip.
         let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
         let across = usize::from(b != block);
         match filed {
@@ -110,7 +103,6 @@ fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
 }
 
 impl State {
-    /// Calls `f` with the number of every unbroken bond and its entry, block by block.
     pub(crate) fn each_bond(&self, mut f: impl FnMut(u32, (u32, Entry))) {
         for (b, lists) in self.lists.iter().enumerate() {
             let cross = self.bonds.cross.get(b);
@@ -120,7 +112,6 @@ impl State {
         }
     }
 
-    /// Calls `f` with every pair that was bonded and has not separated yet, and the block of its first body.
     pub(crate) fn each_debonded(&self, mut f: impl FnMut(u32, &DebondedPair)) {
         for (b, lists) in self.lists.iter().enumerate() {
             let cross = self.bonds.cross.get(b).map_or(&[][..], |list| &list.debonded);
@@ -134,23 +125,22 @@ impl State {
         lists.map(|list| list.count as usize).sum()
     }
 
-    /// Bonds broken so far, by tension and by shear.
+    /// Bonds broken by tension and by shear.
     pub fn broken_bonds(&self) -> (u64, u64) {
         (self.bonds.broken[0], self.bonds.broken[1])
     }
 
-    /// All breaks that nobody has collected, in the order of time.
+    /// Breaks not yet collected, in order of time.
     pub fn breaks(&self) -> &[Break] {
         &self.bonds.breaks
     }
 
-    /// Breaks since the last call, in the order of time.
+    /// Returns and clears the breaks, in order of time.
     pub fn take_breaks(&mut self) -> Vec<Break> {
         std::mem::take(&mut self.bonds.breaks)
     }
 }
 
-/// After the bodies have moved: books what the dashpots took, takes broken bonds out and hands separated pairs over.
 /// Returns the first failure of a debonded pair.
 pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Option<Failure> {
     let (mut power, mut failure) = (0.0, None);
@@ -180,8 +170,8 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
             changed |= across;
         }
     }
-    // The force of this step used the velocities of half a step ago, its work is that on the mean of those and the
-    // next: c v² + ½ c v·Δv, and the second part sums up to a quarter of the change of power.
+    // Forces use velocities half a step old, work their mean with the next: c v² + ½ c v·Δv. The second term
+    // sums to a quarter of the change of power.
     let last = if state.bonds.fresh { power } else { state.bonds.power };
     state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.pace.kick();
     state.bonds.power = power;
@@ -193,7 +183,6 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
     failure
 }
 
-/// Books a break, and makes what is left of the pair.
 fn part(
     model: &Model,
     state: &mut State,
@@ -212,7 +201,7 @@ fn part(
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
         let dt = state.pace.dt;
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
-        // The bodies have moved on: lengths one step and half a step ago, the latter at the new velocity.
+        // One step and half a step ago, the latter at the new velocity.
         let half = ra + rb - (x - v * (0.5 * dt)).norm();
         let then = ra + rb - (x - v * dt).norm();
         let radius = ra * rb / (ra + rb);
@@ -237,29 +226,26 @@ fn part(
     pair
 }
 
-/// Steps between two looks of [`settle`] at which debonded pairs have separated.
 pub(crate) const LOOKS: u64 = debonded::EVERY;
 
-/// Whether there are debonded pairs.
 pub(crate) fn any_debonded(state: &State) -> bool {
     let mut any = false;
     state.each_debonded(|_, _| any = true);
     any
 }
 
-/// Bonds broken so far, and debonded pairs.
+/// Broken bonds, debonded pairs.
 pub(crate) fn parted(state: &State) -> ((u64, u64), usize) {
     let mut pairs = 0;
     state.each_debonded(|_, _| pairs += 1);
     (state.broken_bonds(), pairs)
 }
 
-/// Whether [`settle`] looks at which debonded pairs have separated, for which it needs their places and memory.
+/// Separation checks need current positions and history.
 pub(crate) fn looks_at_separation(state: &State) -> bool {
     state.steps.is_multiple_of(LOOKS) && any_debonded(state)
 }
 
-/// Hands pairs that have separated over to the ordinary contacts, at its time.
 pub(crate) fn hand_over(state: &mut State) -> bool {
     if !state.steps.is_multiple_of(debonded::EVERY) {
         return false;
@@ -282,7 +268,7 @@ pub(crate) fn hand_over(state: &mut State) -> bool {
     let after: usize = lists.iter().chain(&cross).map(Vec::len).sum();
     own.iter_mut().zip(lists).for_each(|(l, list)| l.bonds.debonded = list);
     bonds.cross.iter_mut().zip(cross).for_each(|(b, list)| b.debonded = list);
-    // The pairs are to be found as neighbours from now on.
+    // These pairs must become neighbours.
     state.stale |= after < before;
     after < before
 }

@@ -1,5 +1,5 @@
-//! Candidates: everything within the skin of touching, found by cells and trees. Valid until motion has used the
-//! skin up, which `neighbours.rs` checks against the positions kept here.
+//! Broad-phase candidate pairs closer than the search skin, from cell grids and trees; `neighbours.rs` checks
+//! their validity.
 
 use super::block_work::{BlockWork, Candidates};
 use super::hulls::Hulls;
@@ -25,15 +25,14 @@ use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Which contacts are listed here.
+/// Locally listed contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Listed {
     All,
-    /// All but those of spheres with each other, those across periodic borders excepted, and with planes: a back end lists these itself.
+    /// Excludes planes and sphere pairs, except periodic ones: the back end lists these.
     Rest,
 }
 
-/// Finds all candidates anew.
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S, listed: Listed) {
     super::bonds::hold(model, state, &mut work.held);
     let Work { members, blocks: works, parallel, held, walls: standing, sheet, own, halo, .. } = &mut *work;
@@ -69,7 +68,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     }
     hand_back(works, own);
 
-    // Corners of the boxes that hold bodies count as points that move.
+    // Corners of bounding boxes are tracked as points.
     for b in own.clone() {
         let (own, block, w) = (&members[b], &state.blocks[b], &mut works[b]);
         for (k, half) in own.half.iter().enumerate() {
@@ -87,7 +86,6 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     searched.searches += 1;
 }
 
-/// Files pairs with spheres of earlier blocks, which others search, with these blocks.
 fn hand_back(works: &mut [BlockWork], own: &Range<usize>) {
     let (earlier, here) = works.split_at_mut(own.start);
     for (b, w) in own.clone().zip(here) {
@@ -98,23 +96,20 @@ fn hand_back(works: &mut [BlockWork], own: &Range<usize>) {
     earlier.iter_mut().for_each(|w| w.candidates.cross.sort_unstable());
 }
 
-/// All spheres of a state in cells, or of the blocks that are searched here and those of others near them; needed for the
-/// search only, which is rare: not kept.
+/// Freed after the search.
 struct All<'a> {
     model: &'a Model,
     state: &'a State,
     members: &'a [Members],
     held: &'a Held,
-    /// The blocks that are searched.
     own: &'a Range<usize>,
     points: Vec<Record>,
-    /// Block and number there of each.
+    /// Block and local index.
     names: Vec<[u32; 2]>,
-    /// First sphere of each block.
     first: Vec<u32>,
     cells: Cells,
     space: Option<Space>,
-    /// Where most spheres are in clumps, which are searched body by body first.
+    /// If most spheres are in clumps.
     hulls: Option<Hulls>,
     listed: Listed,
 }
@@ -145,7 +140,7 @@ impl<'a> All<'a> {
             }
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
-        // Single spheres beside a sleeper, or a few clumps, would only pay for a second level.
+        // With few clumps a second level does not pay.
         let in_clumps: usize = members[own.clone()].iter().map(Members::in_clumps).sum();
         let among_spheres = listed == Listed::All;
         let by_bodies = among_spheres && space.is_none() && 2 * in_clumps > points.len();
@@ -159,28 +154,23 @@ impl<'a> All<'a> {
         All { model, state, members, held, own, points, names, first, cells, space, hulls, listed }
     }
 
-    /// The spheres of a block.
     fn of_block(&self, b: usize) -> &[Record] {
         &self.points[self.first[b] as usize..][..self.members[b].count]
     }
 
-    /// Block and place of a sphere's body.
     fn body(&self, point: u32) -> (u32, u32) {
         let [block, sphere] = self.names[point as usize];
         (block, self.members[block as usize].body(sphere))
     }
 
-    /// Number of a body in the model.
     fn number(&self, (block, place): (u32, u32)) -> u32 {
         self.state.blocks[block as usize].bodies[place as usize]
     }
 
-    /// Whether a body keeps its velocity.
     fn still(&self, (block, place): (u32, u32)) -> bool {
         self.state.blocks[block as usize].velocity[place as usize][3] == 0.0
     }
 
-    /// Partners of the spheres of a block: spheres and planes.
     fn spheres(&self, b: usize, c: &mut Candidates) {
         c.pairs.clear();
         c.cross.clear();
@@ -215,7 +205,6 @@ impl<'a> All<'a> {
         c.images.sort_unstable();
     }
 
-    /// Puts down what is near a sphere: its later partners, of `row`, and planes.
     fn list(&self, b: usize, global: u32, me: (u32, u32), c: &mut Candidates) {
         let (model, p, i) = (self.model, &self.points[global as usize], global - self.first[b]);
         c.reference.push(&xyz(p));
@@ -242,16 +231,15 @@ impl<'a> All<'a> {
         }
     }
 
-    /// Whether two bodies may touch: neither both are held in place, nor is their contact a bond.
+    /// Excludes fixed pairs and bonds.
     fn may_touch(&self, me: (u32, u32), other: (u32, u32)) -> bool {
         let both_still = self.still(me) && self.still(other);
         !both_still && !self.held.has(self.number(me), self.number(other))
     }
 
-    /// Later bodies whose hulls are near that of a body, in `near`.
     fn near_hulls(&self, hulls: &Hulls, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &hulls.around[body as usize]);
-        // Those of blocks before the first that is searched here are later to nobody.
+        // Blocks before the first local one have no later partners.
         let before = hulls.of_block(self.own.start).start;
         near.clear();
         hulls.cells.near(p, skin, |other| {
@@ -267,7 +255,6 @@ impl<'a> All<'a> {
         near.sort_unstable();
     }
 
-    /// Spheres of the bodies `near` that are near one, in `row`, in their order.
     #[inline(always)]
     fn within_hulls(&self, hulls: &Hulls, near: &[u32], global: u32, row: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &self.points[global as usize]);
@@ -283,7 +270,7 @@ impl<'a> All<'a> {
         }
     }
 
-    /// Later spheres near one, in `row`; images of them go to their own list.
+    /// Image pairs go to a separate list.
     #[inline(always)]
     fn round(&self, global: u32, i: u32, me: (u32, u32), c: &mut Candidates) {
         let skin = self.model.skin;
@@ -302,7 +289,6 @@ impl<'a> All<'a> {
             });
         } else {
             let p = &self.points[global as usize];
-            // As for hulls.
             let before = self.first.get(self.own.start).copied().unwrap_or(0);
             self.cells.near(p, skin, |j| {
                 let q = &self.points[j as usize];
@@ -319,7 +305,6 @@ impl<'a> All<'a> {
     }
 }
 
-/// Bodies and planes as they are.
 pub(crate) fn now<'a>(
     model: &'a Model,
     state: &'a State,
@@ -330,7 +315,6 @@ pub(crate) fn now<'a>(
     now_of(model, bodies, &state.planes, standing, &state.scars)
 }
 
-/// The same of parts of a state.
 pub(crate) fn now_of<'a>(
     model: &'a Model,
     (blocks, members): (Part<'a, Block>, Part<'a, Members>),

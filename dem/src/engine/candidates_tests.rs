@@ -9,7 +9,7 @@ use crate::spatial::surface::NoSurface;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
-/// Clumps of up to six spheres and single spheres, some of them held in place, thrown into a box so that many touch.
+/// Clumps and spheres, some fixed, thrown into a box in dense contact.
 fn thrown(seed: u64) -> ModelInput {
     let mut rng = Pcg64Mcg::new(seed.into());
     let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
@@ -38,7 +38,6 @@ fn thrown(seed: u64) -> ModelInput {
     input
 }
 
-/// Bodies searched by their hulls have the candidates of their spheres, in the same order.
 #[test]
 fn hulls_find_what_spheres_find() {
     for seed in 0..4 {

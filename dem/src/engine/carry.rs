@@ -1,4 +1,4 @@
-//! A bed in another model: bodies go on there with their motion and with the memory of the contacts among them.
+//! Transfer of a bed to another model, with motion and contact history.
 
 use super::bonds;
 use super::model::Model;
@@ -12,14 +12,12 @@ use crate::lanes::record::{set_xyz, xyz};
 use std::collections::BTreeMap;
 
 impl State {
-    /// Puts the first `count` bodies where they are in the state `other` of another model, whose first bodies have the same shapes
-    /// and sizes and are joined by the same bonds. Which of them are there, how they move, and what their contacts and bonds with each
-    /// other remember comes with them; motions that the model gives stay. Contacts with walls, a surface and further bodies are forgotten,
-    /// time and accounts are those of this state. Call it before a [`Work`](crate::Work) is made, and [`State::remember`] once contacts are
-    /// found.
+    /// Copies the first `count` bodies from the state `other` of a model with identical shapes, sizes and
+    /// bonds, with motion and mutual history. Prescribed motions stay, other contacts are reset. Call it
+    /// before creating a [`Work`](crate::Work), and [`State::remember`] after contact detection.
     ///
     /// # Errors
-    /// The number of a body that is not the same: `other` does not have it, or with another size.
+    /// Index of the first missing or different body.
     pub fn carry(&mut self, model: &Model, other: &State, count: usize) -> Result<(), usize> {
         let known = count.min(self.places.len()).min(other.places.len());
         let same = |k: &usize| *k < known && (!other.present(*k) || other.size(*k) == model.body(*k).radius);
@@ -38,14 +36,13 @@ impl State {
         bonds::put(model, self, bonds::take(&mut other.clone()));
         (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
         self.bonds.power = other.bonds.power;
-        // Velocities are those of half of the last step ago.
+        // Velocities are half of the last step old.
         self.pace.last = other.pace.last;
         self.remember(model, other, count);
         Ok(())
     }
 
-    /// Gives the contacts of the first `count` bodies with each other the memory that those of a state have which was carried over: finding
-    /// contacts takes a step.
+    /// Restores the mutual contact history of carried bodies; contact detection takes a step.
     pub fn remember(&mut self, model: &Model, other: &State, count: usize) {
         for (b, block) in self.blocks.iter().enumerate() {
             let (fresh, cross) = place::lists(model, block);
@@ -69,13 +66,11 @@ impl State {
         sort(self);
     }
 
-    /// Radius around a body that is there, all of it [m].
     fn size(&self, body: usize) -> f64 {
         let [b, k] = self.places[body];
         self.blocks[b as usize].centre[k as usize].0[3]
     }
 
-    /// A body of this state's model as it is in another state.
     fn row_of(&self, model: &Model, body: usize, other: &State) -> Row {
         let [b, k] = other.places[body].map(|n| n as usize);
         let from = &other.blocks[b];
@@ -89,7 +84,7 @@ impl State {
         };
         set_xyz(&mut row.velocity, &velocity);
         set_xyz(&mut row.spin, &spin);
-        // Of another density the same spin is another angular momentum.
+        // Another density changes angular momentum at the same angular velocity.
         let ratio = from.velocity[k].0[3] / row.velocity.0[3];
         if ratio.is_finite() {
             row.rotation.momentum *= ratio;
@@ -107,10 +102,9 @@ mod tests {
     use crate::spatial::surface::NoSurface;
     use crate::testing::{SOFT, dumbbells, push, shaft};
 
-    /// In a model with a plane more that nothing touches, and one body more, spheres and clumps go on as they would have; with
-    /// contacts that have forgotten they do not.
+    /// An added plane and body without contact leave the motion unchanged, unless history is lost.
     #[test]
-    fn a_bed_goes_on_in_another_model() {
+    fn bed_continues_in_another_model() {
         let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);
         input.planes = shaft(0.2, &[Vec3::x(), Vec3::y()]);
         input.materials.push(crate::Material { friction: 0.0, ..input.materials[0] });
@@ -136,7 +130,7 @@ mod tests {
         advance(&model, &mut state, 12_000);
         let mut carried = State::new(&other);
         carried.carry(&other, &state, count).unwrap();
-        // What a probe does to the memory of contacts is undone.
+        // Undo the probe's changes of contact history.
         let mut work = Work::new(&other, &carried);
         crate::find_contacts(&other, &mut carried, &mut work, &NoSurface).unwrap();
         carried.remember(&other, &state, count);
@@ -158,7 +152,6 @@ mod tests {
         let (same, not) = (apart(&carried), apart(&forgotten));
         println!("carried: apart by {same:.1e} m after 400 steps; without memory by {not:.1e} m");
         assert!(same < 1e-9 && not > 1e-7, "{same:.1e} {not:.1e}");
-        // Another size is another body.
         let mut wrong = State::new(&other);
         assert_eq!(wrong.carry(&other, &State::new(&other), count + 2), Err(count + 1));
     }

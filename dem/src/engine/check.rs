@@ -1,4 +1,4 @@
-//! Checks of a model's input: every refusal names what it found.
+//! Checks of model input.
 
 use super::input::{ModelInput, SearchSkin, TimeStep};
 use super::timestep;
@@ -29,7 +29,6 @@ fn crushing_takes_energy(m: &Material) -> bool {
         || m.corner_strength < conical_damage::greatest_strength(modulus, m.corner_angle)
 }
 
-/// Ranges and indices.
 pub(crate) fn input(input: &ModelInput) -> Result<(), ModelError> {
     materials(input)?;
     shapes(input)?;
@@ -118,7 +117,6 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Bodies that are absent at the start have no bonds.
 pub(crate) fn absent_bonds(input: &ModelInput) -> Result<(), ModelError> {
     match input.bonds.iter().flat_map(|b| [b.a, b.b]).find(|&b| input.bodies[b].absent) {
         Some(body) => Err(ModelError::Absent { body, problem: "a bond holds it" }),
@@ -165,7 +163,6 @@ fn walls(input: &ModelInput) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Materials of the external surface.
 pub(crate) fn surfaces(input: &ModelInput) -> impl Iterator<Item = usize> {
     input.surface_material.into_iter().chain(input.other_surface.map(|(_, m)| m))
 }
@@ -202,7 +199,6 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Refuses contacts between two rigid partners that may come about.
 pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
     let endless = |a: u32, b: usize| laws.rigid(a, b as u32);
     let count = input.materials.len();
@@ -224,7 +220,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         if let Some(p) = input.planes.iter().position(|p| endless(a.material, p.material)) {
             return error(format!("plane {p}"));
         }
-        // Boxes touch neither.
+        // Boxes interact with neither.
         if a.kind != Kind::Solid || input.shapes[a.shape].dilated() {
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
@@ -249,7 +245,6 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
     Ok(())
 }
 
-/// Refuses what dilated polyhedra cannot be combined with.
 pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
     let is_one = |b: &Body| matches!(input.shapes[b.shape], Shape::Polyhedron(_));
     let Some(first) = bodies.iter().find(is_one) else { return Ok(()) };
@@ -275,7 +270,7 @@ pub(crate) fn polyhedra(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Res
     Ok(())
 }
 
-/// Refuses walls that touch each other and are both rigid, or by a law that cannot be spread along edges.
+/// Rejects wall–wall contacts that are rigid, or nonlinear without an edge law.
 pub(crate) fn shells(walls: &Walls, shells: &Shells, laws: &Laws) -> Result<(), ModelError> {
     for &[a, b] in &shells.pairs {
         let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
@@ -293,7 +288,6 @@ pub(crate) fn shells(walls: &Walls, shells: &Shells, laws: &Laws) -> Result<(), 
     Ok(())
 }
 
-/// Refuses what ground that is scarred cannot be combined with.
 pub(crate) fn scarring(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelError> {
     let Some(wall) = input.walls.iter().position(|w| w.scarring.is_some()) else { return Ok(()) };
     let error = |problem| Err(ModelError::Wall { wall: format!("wall {wall}"), problem });
@@ -306,7 +300,6 @@ pub(crate) fn scarring(bodies: &Bodies, input: &ModelInput) -> Result<(), ModelE
     Ok(())
 }
 
-/// Refuses what adhesion cannot be combined with.
 pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
     let Some(index) = input.contacts.iter().position(|c| c.adhesion.is_some_and(|w| w > 0.0)) else {
         return Ok(());
@@ -325,10 +318,10 @@ pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks a fixed step against the time in which drag or lift of a fluid changes the motion of a body [s].
+/// Checks a fixed step; `time` [s].
 ///
 /// # Errors
-/// The step is longer.
+/// A step longer than the response time to fluid drag or lift.
 pub(crate) fn fluid_step(step: &TimeStep, time: f64) -> Result<(), ModelError> {
     match *step {
         TimeStep::Fixed(dt) if dt > time => {

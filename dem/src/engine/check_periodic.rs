@@ -1,4 +1,4 @@
-//! What periodic axes cannot be combined with.
+//! Checks of periodic axes.
 
 use super::input::ModelInput;
 use crate::base::Vec3;
@@ -7,7 +7,7 @@ use crate::bodies::table::{Bodies, Kind};
 use crate::body_force::BodyForce;
 use crate::spatial::patchwork::Patch;
 
-/// Refuses what cannot be combined with periodic axes, and boxes so short that a body may meet itself or another twice.
+/// Includes boxes too short for unique periodic images.
 pub(crate) fn check(
     input: &ModelInput,
     bodies: &Bodies,

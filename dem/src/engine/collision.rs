@@ -1,9 +1,8 @@
-//! The cap from the time of a collision.
+//! Time step bound from collision duration.
 //!
-//! In a collision of two bodies at ω dt = x, ω = √(K/m*), the leapfrog errs, over all moments at which the first touch may
-//! fall in a step: restitution e = 0.5 comes out 0.4993 to 0.5027 at x = 0.2 and up to 0.51 at x = 0.3; without a dashpot the
-//! kinetic energy grows by about 0.0063 x³ per collision, which nothing takes away again. So x ≤ 0.2 where the restitution is
-//! well below 1, and less where the growth would be more than a hundredth of what the collision takes, 1 − e²; 0.08 at least.
+//! At ω dt = x, ω = √(K/m*), leapfrog errors over all contact instants are: restitution e = 0.5 becomes
+//! 0.4993 to 0.5027 at x = 0.2, up to 0.51 at x = 0.3. Without dashpot the kinetic energy grows by about
+//! 0.0063 x³ per collision. So x ≤ 0.2, less if growth exceeds 0.01 of the loss 1 − e²; at least 0.08.
 //!
 //! Theory manual: equation (3.8) of `docs/theory/motion.md`.
 
@@ -12,23 +11,23 @@ use super::timestep::contact_radius;
 use crate::bodies::table::Bodies;
 use crate::law::Laws;
 
-/// ω dt of collisions that lose much, and of those that lose nothing.
+/// ω dt of strongly dissipative and of elastic collisions.
 const LARGEST: f64 = 0.2;
 const SMALLEST: f64 = 0.08;
 
-/// What the cap is multiplied by in a packing, where the restitution of single collisions matters less than stability.
+/// Relaxation in a packing, where stability matters more than restitution.
 pub(crate) const PACKED: f64 = 4.0;
 
-/// Growth of the energy in a collision without a dashpot over (ω dt)³.
+/// Energy growth of an undamped collision over (ω dt)³.
 const HEATING: f64 = 0.0063;
 
-/// ω dt of a collision that takes the share `loss` of its energy.
+/// ω dt for the energy loss fraction `loss`.
 fn collision(loss: f64) -> f64 {
     libm::cbrt(0.01 * loss / HEATING).clamp(SMALLEST, LARGEST)
 }
 
-/// Longest step [s] that the collisions of the lightest bodies of each material allow; infinite where nothing can collide.
-/// `expected`: overlap over the radius for laws whose stiffness grows; `largest`: radius of the largest sphere [m].
+/// Longest step [s] for collisions of the lightest bodies of each material; infinite without collisions.
+/// `expected`: overlap over radius; `largest`: sphere radius [m].
 pub(crate) fn longest(
     bodies: &Bodies,
     input: &ModelInput,
@@ -37,7 +36,7 @@ pub(crate) fn longest(
     expected: f64,
     largest: f64,
 ) -> f64 {
-    // Mass and radius of the lightest body that can move, by material.
+    // Mass and radius of the lightest free body, by material.
     let mut lightest = vec![(f64::INFINITY, 0.0); input.materials.len()];
     for body in bodies.iter().filter(|b| b.inverse_mass > 0.0) {
         let least = &mut lightest[body.material as usize];
@@ -48,7 +47,7 @@ pub(crate) fn longest(
     let mut longest = f64::INFINITY;
     for (a, &(mass, radius)) in lightest.iter().enumerate().filter(|(_, l)| l.0.is_finite()) {
         for &b in partners {
-            // Of a partner without bodies, a wall, the mass is infinite.
+            // Walls have infinite mass.
             let together = 1.0 / (1.0 / mass + 1.0 / lightest[b].0);
             let stiffness = laws.stiffness(a as u32, b as u32, expected * radius, radius);
             if stiffness.is_finite() && stiffness > 0.0 {

@@ -1,26 +1,22 @@
-//! Spheres around bodies: clumps are searched body by body before their spheres are, since those of one body never touch each
-//! other and most of two bodies are apart.
+//! Bounding spheres of bodies: clumps are searched body by body first, as most pairs of bodies are apart.
 
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
 use crate::spatial::cells::Cells;
 use std::ops::Range;
 
-/// Spheres around all bodies that have spheres, in the order of these.
 pub(super) struct Hulls {
-    /// Sphere around each body.
     pub around: Vec<Record>,
-    /// The same in cells.
     pub cells: Cells,
-    /// First sphere of each body, and one past the last.
+    /// First sphere of each body, plus end.
     first: Vec<u32>,
-    /// First body of each block, and one past the last.
+    /// First body of each block, plus end.
     blocks: Vec<u32>,
 }
 
 impl Hulls {
-    /// Around the bodies that `points` are the spheres of, one after the other; `owners`: block and place of the body of each.
-    /// For searches that reach `skin` beyond touch [m], in so many blocks.
+    /// `points`: spheres in body order; `owners`: block and slot of each sphere's body; `skin`: search skin
+    /// [m].
     pub fn new(
         points: &[Record],
         owners: impl Iterator<Item = (u32, u32)>,
@@ -52,18 +48,16 @@ impl Hulls {
         hulls
     }
 
-    /// Bodies of a block.
     pub fn of_block(&self, block: usize) -> Range<u32> {
         self.blocks[block]..self.blocks[block + 1]
     }
 
-    /// Spheres of a body.
     pub fn spheres(&self, body: u32) -> Range<u32> {
         self.first[body as usize]..self.first[body as usize + 1]
     }
 }
 
-/// A sphere that holds others: about the middle of the box around them, a little larger than rounding needs.
+/// Bounding sphere about the box centre, with margin for rounding.
 fn around(spheres: &[Record]) -> Record {
     if let [one] = spheres {
         return *one;

@@ -1,4 +1,4 @@
-//! What a model is made of, as given by its user. [`crate::engine::model::Model`] is the checked and resolved form.
+//! User input of a model; checked form: [`crate::engine::model::Model`].
 
 use crate::base::Vec3;
 use crate::bodies::input::BodyInput;
@@ -12,56 +12,54 @@ use crate::wall::{TriangleSurface, WallInput};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How the time step is chosen.
+/// Choice of the time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum TimeStep {
-    /// This fraction, in (0, 1], of the stability limit (see [`crate::engine::timestep`]); 0.1 to 0.2 suits most scenes.
+    /// Fraction, in (0, 1], of the stability limit ([`crate::engine::timestep`]); typically 0.1–0.2.
     Auto {
-        /// Fraction of the limit [-].
+        /// Fraction [-].
         fraction: f64,
     },
-    /// This share, in (0, 1], of what the contacts of each moment allow (see [`crate::stability`]), which whoever advances
-    /// the state has to ask for ([`crate::stability::divide`]); until then as `Auto`.
+    /// Fraction, in (0, 1], of the critical step of current contacts ([`crate::stability`]); `Auto` unless
+    /// the caller uses [`crate::stability::divide`].
     Measured {
-        /// Share of the limit [-].
+        /// Fraction [-].
         share: f64,
-        /// Longest step for reasons that the grains do not know of, such as springs on bodies from outside [s].
+        /// Upper bound, e.g. from external springs on bodies [s].
         longest: f64,
-        /// Whether the restitution of single collisions matters, which takes short steps as long as few contacts last.
+        /// Resolve the restitution of single collisions while few contacts last.
         collisions: bool,
     },
-    /// This many seconds, refused when above the limit.
+    /// Step [s]; must not exceed the limit.
     Fixed(f64),
-    /// This many seconds, whatever the limit.
+    /// Step [s], not checked.
     FixedAboveLimit(f64),
 }
 
-/// Distance beyond touch up to which neighbours are listed. A wide one is searched for less often and lists more pairs that
-/// do not touch; it changes no bit of a motion.
+/// Search skin (Verlet distance); does not change results.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SearchSkin {
-    /// This share of the mean radius of all spheres [-].
+    /// Fraction of the mean radius [-].
     Share(f64),
-    /// This distance [m].
+    /// Distance [m].
     Distance(f64),
 }
 
 impl Default for SearchSkin {
-    /// A fifth of the mean radius.
     fn default() -> SearchSkin {
         SearchSkin::Share(0.2)
     }
 }
 
-/// Largest share of what the contacts allow, for stiffnesses with local damping.
+/// Bound for stiffnesses with local damping.
 const DAMPED: f64 = 0.95;
 
 impl TimeStep {
-    /// Share of what the contacts allow that is usually taken.
+    /// Default fraction of the critical step.
     pub const SHARE: f64 = 0.8;
 
-    /// The same under local damping: a force against the motion acts with 1 + α of it, as a stiffer contact would. A step of 0.8 of the
-    /// limit with α = 0.8 kept light grains below a boulder in motion for ever.
+    /// Local damping scales decelerating forces by 1 + α, like a stiffer contact. At 0.8 of the limit and
+    /// α = 0.8, light grains below a boulder never came to rest.
     pub(crate) fn damped(self, damping: Option<LocalDamping>) -> TimeStep {
         let most = DAMPED / (1.0 + damping.map_or(0.0, |d| d.factor)).sqrt();
         match self {
@@ -73,32 +71,31 @@ impl TimeStep {
     }
 }
 
-/// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4, as used in later codes):
-/// each component of the total force, gravity included, is reduced by this fraction when it accelerates the
-/// body and increased when it slows it; torques alike. Not physical: for deposition only.
+/// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4): accelerating components
+/// are reduced, decelerating ones increased. For deposition only.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocalDamping {
     /// Fraction in [0, 1).
     pub factor: f64,
 }
 
-/// A force on a body for one step.
+/// Force on a body for one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AppliedForce {
     /// Body (index).
     pub body: usize,
     /// Force [N].
     pub force: Vec3,
-    /// Point of the world where it acts [m].
+    /// Point of application [m].
     pub point: Vec3,
 }
 
-/// Everything a model is made of.
+/// Model input.
 #[derive(Clone, Debug)]
 pub struct ModelInput {
     /// Materials.
     pub materials: Vec<Material>,
-    /// Pairs of materials with values of their own.
+    /// Values of material pairs.
     pub contacts: Vec<PairOverride>,
     /// Shapes.
     pub shapes: Vec<Shape>,
@@ -108,38 +105,37 @@ pub struct ModelInput {
     pub planes: Vec<Plane>,
     /// Triangle surfaces.
     pub triangles: Vec<TriangleSurface>,
-    /// Walls of other shapes, and triangle surfaces that turn, swing, are driven by a force or are bodies.
+    /// Other walls, and triangle surfaces that rotate, oscillate, are servo-controlled or rigid bodies.
     pub walls: Vec<WallInput>,
-    /// Material (index) of the external surface, when the scene has one.
+    /// Material index of the external surface.
     pub surface_material: Option<usize>,
-    /// Part of the external surface that is of another material: its first patch, from which on all others follow, and
-    /// the material (index).
+    /// First patch and material index of a second external surface.
     pub other_surface: Option<(u32, usize)>,
-    /// The external surface as triangles, which dilated polyhedra need beside one.
+    /// Triangulated external surface, for dilated polyhedra.
     pub surface_mesh: Option<Arc<SurfaceMesh>>,
-    /// Acceleration of gravity [m/s²].
+    /// Gravity [m/s²].
     pub gravity: Vec3,
-    /// Body forces beside gravity.
+    /// Other body forces.
     pub body_forces: Vec<BodyForce>,
     /// Time step.
     pub time_step: TimeStep,
-    /// Largest speed at which two bodies are expected to meet [m/s]: sets the overlap at which contacts after Hertz are
-    /// taken for the limit of the time step; the estimate of [`crate::engine::timestep`] when `None`.
+    /// Largest expected impact speed [m/s], for Hertz stiffness in the time step limit. `None`: estimated
+    /// ([`crate::engine::timestep`]).
     pub impact_speed: Option<f64>,
-    /// Distance beyond touch up to which neighbours are listed.
+    /// Search skin.
     pub skin: SearchSkin,
-    /// Local damping, for deposition only.
+    /// Local damping.
     pub damping: Option<LocalDamping>,
-    /// Kinds of bonds.
+    /// Bond types.
     pub bond_kinds: Vec<Bond>,
-    /// Bonds between spheres, unstrained at the start.
+    /// Bonds, initially unstrained.
     pub bonds: Vec<BondInput>,
-    /// Lower and upper border [m] along x, y and z where the scene repeats itself; `None` along axes where it does not.
+    /// Lower and upper periodic boundary [m] along x, y, z.
     pub periodic: [Option<[f64; 2]>; 3],
 }
 
 impl Default for ModelInput {
-    /// Nothing at all, gravity 9.81 m/s² downward (−z), time step 0.1 of the limit.
+    /// Empty, gravity 9.81 m/s² along −z.
     fn default() -> ModelInput {
         ModelInput {
             materials: Vec::new(),
@@ -166,7 +162,6 @@ impl Default for ModelInput {
 }
 
 impl ModelInput {
-    /// All walls of patches: triangle surfaces, then walls.
     pub(crate) fn all_walls(&self) -> impl Iterator<Item = WallInput> {
         self.triangles.iter().map(WallInput::of_triangles).chain(self.walls.iter().cloned())
     }

@@ -1,4 +1,4 @@
-//! Model, state, scratch, search and the step: the layer that composes the parts of all features.
+//! Model, state, scratch data and time step of the DEM.
 
 pub(crate) mod applied;
 mod arrange;

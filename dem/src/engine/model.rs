@@ -1,4 +1,4 @@
-//! The checked, resolved and immutable model: what a run needs and never changes.
+//! Checked, resolved and immutable model.
 
 use super::check;
 use super::collision;
@@ -19,65 +19,56 @@ use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::{Sheet, SheetFacet};
 use crate::wall::{WallInput, set::Walls, shells::Shells};
 
-/// Spheres that a block of bodies holds, about. Part of a scene's numbers (it orders sums), so a constant.
+/// Spheres per block, about. It orders sums, so it is a constant.
 const BLOCK_SPHERES: usize = 1024;
 
-/// The model. Build it with [`Model::new`].
+/// Model ([`Model::new`]).
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(crate) bodies: Bodies,
     pub(crate) shapes: Vec<Shape>,
-    /// Faces, edges and corners of each shape.
     pub(crate) cores: Vec<Core>,
-    /// Planes with unit normals.
     pub(crate) planes: Vec<Plane>,
     pub(crate) walls: Walls,
-    /// Walls as they touch each other.
     pub(crate) shells: Shells,
     pub(crate) surface_material: Option<u32>,
     pub(crate) other_surface: Option<(u32, u32)>,
     pub(crate) laws: Laws,
-    /// Largest overlap expected, over the effective radius: what stiffnesses that grow with the overlap are taken at.
+    /// Largest expected overlap over effective radius, for overlap-dependent stiffness.
     pub(crate) expected: f64,
     pub(crate) gravity: Vec3,
     pub(crate) damping: f64,
     pub(crate) body_forces: Vec<BodyForce>,
-    /// Whether bodies scar the ground.
     pub(crate) scarred: bool,
-    /// Surfaces of the shapes, where body forces ask for them.
+    /// Shape surfaces, if needed for body forces.
     pub(crate) skins: Vec<Skin>,
     pub(crate) skin: f64,
-    /// Smallest and largest sphere radius [m].
+    /// Smallest and largest sphere [m].
     pub(crate) radii: (f64, f64),
-    /// Whether any body is a clump, and whether any is not made of spheres.
+    /// Any body is a clump; any is not made of spheres.
     pub(crate) clumps: bool,
     pub(crate) solids: bool,
-    /// Materials of bodies, of planes excepted, and of walls and the external surface (indices, ascending).
+    /// Of bodies, of planes, and of walls and external surface; ascending.
     pub(crate) body_materials: Vec<u32>,
     pub(crate) patch_materials: Vec<u32>,
-    /// Bodies per block.
     pub(crate) block: usize,
-    /// Bonds, resolved.
     pub(crate) bonds: Vec<crate::bond::Constants>,
-    /// Patches of the walls, where bodies with faces may touch them.
+    /// For bodies with faces.
     pub(crate) patches: Vec<Patch>,
-    /// Trees of the patches.
     pub(crate) patch_trees: Trees,
-    /// The external surface, where bodies with faces may touch it.
+    /// For bodies with faces.
     pub(crate) sheet: Sheet,
     pub(crate) periodic: Option<Periodic>,
     steps: Steps,
     limit: DtLimit,
 }
 
-/// Sizes of the spheres of a model.
 struct Sizes {
-    /// Smallest and largest radius [m]; of boxes alone a length scale for the search and for the speed bound.
+    /// Smallest and largest radius [m]; for boxes only, a length scale of search and speed bound.
     radii: (f64, f64),
     spheres: usize,
     /// Most spheres of a body.
     largest: usize,
-    /// Mean radius [m].
     mean: f64,
 }
 
@@ -93,7 +84,7 @@ impl Sizes {
             });
         }
         if spheres == 0 {
-            // Boxes alone: a length scale for the search and for the speed bound.
+            // Boxes only: length scale of search and speed bound.
             let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
             radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
         }
@@ -108,7 +99,7 @@ impl Model {
     /// Checks and resolves an input.
     ///
     /// # Errors
-    /// [`ModelError`] names the first thing that is out of range, points nowhere, or cannot work.
+    /// [`ModelError`] of the first invalid entry.
     pub fn new(input: ModelInput) -> Result<Model, ModelError> {
         check::input(&input)?;
         let bodies = Bodies::new(&input.bodies, &input.shapes, &input.materials)?;
@@ -154,7 +145,7 @@ impl Model {
         let patch_materials = sorted(walls_and_surface.chain(check::surfaces(&input).map(|m| m as u32)));
         let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
         Ok(Model {
-            // Spheres of a block are numbered with 16 bits.
+            // Sphere indices of a block have 16 bits.
             block: (BLOCK_SPHERES * round / spheres.max(1))
                 .clamp(16, BLOCK_SPHERES)
                 .min(65_535 / largest)
@@ -190,29 +181,29 @@ impl Model {
         })
     }
 
-    /// The time step that a run begins with [s]; [`State::dt`](crate::State::dt) is the one that it has.
+    /// Initial time step [s]; current value: [`State::dt`](crate::State::dt).
     pub fn dt(&self) -> f64 {
         self.steps.first
     }
 
-    /// The stability limit of the time step and what sets it.
+    /// Stability limit and its cause.
     pub fn dt_limit(&self) -> &DtLimit {
         &self.limit
     }
 
-    /// Share of what the contacts allow that steps take, where they follow it (see [`crate::stability`]).
+    /// Fraction of the critical time step of current contacts, if steps follow it ([`crate::stability`]).
     pub fn measured(&self) -> Option<f64> {
         self.steps.share
     }
 
-    /// Longest step that collisions, rigid bodies of walls and the input allow [s], whatever touches; `packed`: where most
-    /// contacts last (see [`crate::stability`]).
+    /// Longest step [s] for collisions, rigid-body walls and the input; `packed`: most contacts last
+    /// ([`crate::stability`]).
     pub fn longest(&self, packed: bool) -> f64 {
         self.steps.longest.min(if packed { self.steps.lasting } else { self.steps.collision })
     }
 
-    /// Gives up the positions that the bodies start from, for a run that has its state: 24 bytes per body.
-    /// [`State::new`](crate::engine::state::State::new) needs them and cannot be called afterwards.
+    /// Discards the initial positions (24 bytes per body); [`State::new`](crate::engine::state::State::new)
+    /// cannot be called afterwards.
     pub fn forget_start(&mut self) {
         self.bodies.forget_positions();
     }
@@ -223,12 +214,11 @@ impl Model {
         self.bodies.get(body)
     }
 
-    /// Whether any shape is a dilated polyhedron or disk.
+    /// Returns true if any shape is a dilated polyhedron or disk.
     pub fn has_faces(&self) -> bool {
         self.shapes.iter().any(Shape::dilated)
     }
 
-    /// Whether there are body forces, or drag of ground that is scarred.
     pub(crate) fn acts_on_bodies(&self) -> bool {
         self.scarred || !self.body_forces.is_empty()
     }
@@ -238,17 +228,17 @@ impl Model {
         self.bodies.len()
     }
 
-    /// Number of bonds at the start.
+    /// Number of initial bonds.
     pub fn bond_count(&self) -> usize {
         self.bonds.len()
     }
 
-    /// The two bodies of a bond.
+    /// Bodies of a bond.
     pub fn bond_ends(&self, bond: usize) -> [usize; 2] {
         self.bonds[bond].ends.map(|b| b as usize)
     }
 
-    /// Number of spheres: single ones and members of clumps.
+    /// Number of spheres, clump members included.
     pub fn sphere_count(&self) -> usize {
         (0..self.bodies.len()).map(|b| self.member_count(b) as usize).sum()
     }
@@ -263,44 +253,43 @@ impl Model {
         self.body(body).inertia
     }
 
-    /// Radius of the smallest sphere about its centre of mass that is known to hold the body [m].
+    /// Bounding radius about the centre of mass [m].
     pub fn radius(&self, body: usize) -> f64 {
         self.body(body).radius
     }
 
-    /// Group number of a body.
+    /// Group of a body.
     pub fn part(&self, body: usize) -> u32 {
         self.body(body).part
     }
 
-    /// Shape of a body (unscaled).
+    /// Unscaled shape of a body.
     pub fn shape(&self, body: usize) -> &Shape {
         &self.shapes[self.body(body).shape]
     }
 
-    /// Number of a body's shape in the input.
+    /// Input index of a body's shape.
     pub fn shape_number(&self, body: usize) -> usize {
         self.body(body).shape
     }
 
-    /// Factor on the lengths of the body's shape.
+    /// Length scale factor of a body's shape.
     pub fn scale(&self, body: usize) -> f64 {
         self.body(body).scale
     }
 
-    /// Volume of a body's shape [m³].
+    /// Volume of a body [m³].
     pub fn volume(&self, body: usize) -> f64 {
         volume(self.shape(body), self.body(body).scale)
     }
 
-    /// Spheres of a body in its own frame: centre [m] and radius [m]. One for a sphere, none for a box.
+    /// Spheres in the body frame: centre [m], radius [m]; empty for a box.
     pub fn members(&self, body: usize) -> Vec<(Vec3, f64)> {
         let mut members = Vec::new();
         for_members(self.shape(body), self.body(body).scale, |c, r| members.push((c, r)));
         members
     }
 
-    /// Number of a body's spheres.
     pub(crate) fn member_count(&self, body: usize) -> u32 {
         match self.shape(body) {
             Shape::Sphere { .. } => 1,
@@ -309,39 +298,37 @@ impl Model {
         }
     }
 
-    /// Planes, with unit normals.
+    /// Planes with unit normals.
     pub fn planes(&self) -> &[Plane] {
         &self.planes
     }
 
-    /// Body forces beside gravity.
+    /// Body forces other than gravity.
     pub fn body_forces(&self) -> &[BodyForce] {
         &self.body_forces
     }
 
-    /// Acceleration of gravity [m/s²].
+    /// Gravity [m/s²].
     pub fn gravity(&self) -> Vec3 {
         self.gravity
     }
 
-    /// Distance beyond touch up to which neighbours are listed [m].
+    /// Search skin [m].
     pub fn skin(&self) -> f64 {
         self.skin
     }
 
-    /// Half sides of a box body, scaled [m].
     pub(crate) fn half(&self, body: usize) -> Vec3 {
         self.shape(body).half_sides(self.body(body).scale)
     }
 
-    /// Number of walls: triangle surfaces, then walls.
+    /// Number of walls, triangle surfaces included.
     pub fn wall_count(&self) -> usize {
         self.walls.walls.len()
     }
 
-    /// Normal stiffness K [N/m] and damping ratio of a contact between two materials, for estimates. A stiffness that
-    /// grows with the overlap is taken at the largest overlap expected (see [`crate::engine::timestep`]) of the largest sphere, or
-    /// is that of the longest edge where edges have a law of their own and are stiffer.
+    /// Normal stiffness K [N/m] and damping ratio of a material pair, at the expected overlap of the largest
+    /// sphere ([`crate::engine::timestep`]) or the longest edge, whichever is stiffer.
     pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
         let (a, b) = (a as u32, b as u32);
         let radius = self.radii.1;
@@ -356,17 +343,16 @@ impl Model {
         (point.max(edge), self.laws.damping_ratio(a, b))
     }
 
-    /// Force of the normal spring [N] and its stiffness [N/m] between two materials at an overlap and an effective radius
-    /// [m].
+    /// Normal spring force [N] and stiffness [N/m] at an overlap and an effective radius [m].
     pub fn contact_spring(&self, a: usize, b: usize, overlap: f64, radius: f64) -> (f64, f64) {
         self.laws.loading(a as u32, b as u32, overlap, radius)
     }
 
-    /// A new contact between two materials as springs and dashpots, at an overlap and an effective radius [m], for the effective
-    /// mass of both bodies [kg]. Without friction there is nothing across the normal.
+    /// Springs and dashpots of a new contact at an overlap and effective radius [m]; `mass`: effective mass
+    /// [kg]. No tangential part without friction.
     pub fn linearised(&self, a: usize, b: usize, mass: f64, radius: f64, overlap: f64) -> Linearised {
         let materials = [a as u32, b as u32];
-        // Laws that keep a radius begin with that of the bodies; others keep a speed, which springs do not depend on.
+        // The stored rate is a radius, or a speed, which springs do not depend on.
         let history = History { rate: radius, ..History::NONE };
         let law = self.laws.linearised(materials, mass, radius, overlap, &history);
         let (limit, _) = self.laws.held_by_friction(materials, None, overlap, radius, &history);
@@ -378,22 +364,22 @@ impl Model {
         }
     }
 
-    /// Whether a patch is one of the second external surface ([`Model::patch_material`]).
+    /// Returns true if a patch belongs to the second external surface ([`Model::patch_material`]).
     pub fn on_other_surface(&self, patch: u32) -> bool {
         self.other_surface.is_some_and(|(first, _)| patch >= first)
     }
 
-    /// Tangential over normal stiffness of a contact between two materials.
+    /// Ratio of tangential to normal stiffness.
     pub fn tangential_ratio(&self, a: usize, b: usize) -> f64 {
         self.laws.tangential_ratio(a as u32, b as u32)
     }
 
-    /// Material that an external surface counts as.
+    /// Material of the external surface.
     pub fn surface_material(&self) -> Option<usize> {
         self.surface_material.map(|m| m as usize)
     }
 
-    /// Material of a patch of an external surface.
+    /// Material of an external surface patch.
     #[inline]
     pub fn patch_material(&self, patch: u32) -> usize {
         match self.other_surface {
@@ -402,7 +388,6 @@ impl Model {
         }
     }
 
-    /// The external surface where its triangles are.
     pub(crate) fn sheet_at<'a>(&self, facets: &'a [SheetFacet]) -> SheetView<'a> {
         SheetView { facets, materials: (self.surface_material.unwrap_or(0), self.other_surface) }
     }
@@ -413,7 +398,6 @@ impl Model {
     }
 }
 
-/// Each number once, ascending.
 fn sorted(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut all: Vec<u32> = numbers.collect();
     all.sort_unstable();

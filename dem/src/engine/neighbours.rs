@@ -1,9 +1,7 @@
-//! The near list: candidates that touch or are within a small reach of it, with the memory of their contacts.
+//! Neighbour list with contact history, built from broad-phase candidate pairs.
 //!
-//! It is made from the candidates whenever motion may have used its reach up, by a bound on the speeds; the
-//! candidates themselves are searched anew when true displacements no longer leave room for the near list's
-//! reach. Pairs are kept in the order of their spheres, and pairs that do not touch add nothing to any sum, so
-//! neither the skin nor the reach nor the moment of a search changes a bit of the result.
+//! It is rebuilt when a bound on speeds exceeds its cut-off, the candidates when true displacements exceed
+//! the skin. Pairs are sorted and distant pairs add nothing, so rebuild times do not affect results.
 
 use super::arrange::link;
 use super::block_work::Candidates;
@@ -23,7 +21,6 @@ use crate::shape::cuboid;
 use crate::spatial::surface::Surface;
 use rayon::prelude::*;
 
-/// Makes the near list anew when it is due, or the part of it that is listed here. Of what is listed elsewhere a state has nothing then.
 pub(crate) fn update<S: Surface>(
     model: &Model,
     state: &mut State,
@@ -51,15 +48,13 @@ pub(crate) fn update<S: Surface>(
     renew(model, state, work, surface, approach);
 }
 
-/// Whether partners may have come together so far that candidates lack pairs of the near list.
 pub(crate) fn too_far(model: &Model, state: &State, approach: f64) -> bool {
     approach + state.near > model.skin
 }
 
-/// Chooses the reach of a near list that is due.
 pub(crate) fn adapt(model: &Model, state: &mut State) {
     if used_up(state) {
-        // A reach that lasts for some ten steps costs least.
+        // A list that lasts about ten steps costs least.
         if state.lasted < 6 {
             state.near = (1.5 * state.near).min(0.5 * model.skin);
         } else if state.lasted > 40 {
@@ -68,7 +63,7 @@ pub(crate) fn adapt(model: &Model, state: &mut State) {
     }
 }
 
-/// Makes the near list from the candidates, after partners may have come together by `approach` since these were found [m].
+/// `approach`: bound on relative displacement since the search [m].
 pub(crate) fn renew<S: Surface>(
     model: &Model,
     state: &mut State,
@@ -80,7 +75,6 @@ pub(crate) fn renew<S: Surface>(
     made(state, work);
 }
 
-/// Takes note of a near list that has just been made.
 pub(crate) fn made(state: &mut State, work: &mut Work) {
     state.drift = 0.0;
     state.wall_drift = 0.0;
@@ -89,17 +83,15 @@ pub(crate) fn made(state: &mut State, work: &mut Work) {
     work.searched.refreshes += 1;
 }
 
-/// Whether motion may have used the reach of the near list up.
 fn used_up(state: &State) -> bool {
     (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near
 }
 
-/// Whether [`update`] makes the near list anew.
 pub(crate) fn due(state: &State) -> bool {
     state.stale || used_up(state)
 }
 
-/// A bound on the square of the way that any body has come since the candidates were found [m²].
+/// Bound on squared displacement since the search [m²].
 pub(crate) fn moved2(state: &State, work: &Work) -> f64 {
     let own = work.own.clone();
     let blocks = state.blocks[own.clone()].iter().zip(&work.members[own.clone()]).zip(&work.blocks[own]);
@@ -120,7 +112,7 @@ pub(crate) fn moved2(state: &State, work: &Work) -> f64 {
     moved2.fold(0.0, f64::max)
 }
 
-/// A bound on the way that any two partners have come together since the candidates were found [m]; `moved2`: of bodies [m²].
+/// Bound on relative displacement since the search [m].
 pub(crate) fn approach(model: &Model, state: &State, work: &Work, moved2: f64) -> f64 {
     let moved = moved2.sqrt();
     let planes = state.planes.iter().zip(&work.searched.planes);
@@ -190,7 +182,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         cross.iter_mut().zip(works.iter().map(|w| &w.candidates)).enumerate().for_each(between);
         lists.iter_mut().zip(works.iter_mut().map(|w| &mut w.candidates)).enumerate().for_each(within);
     }
-    // Lists are made once in some ten steps: not kept.
+    // Rarely used: memory is released.
     work.merging.clear();
     link(model, state, work);
 }

@@ -1,4 +1,4 @@
-//! Bodies sorted anew (`place.rs`), at fixed numbers of steps: contacts and bonds go along with them.
+//! Spatial re-sorting of bodies, contacts and bonds.
 
 use super::bonds;
 use super::model::Model;
@@ -17,21 +17,20 @@ use std::collections::BTreeMap;
 /// Steps between two sortings.
 pub(crate) const EVERY: u64 = 5000;
 
-/// Who is there after a new order.
+/// Bodies present after re-sorting.
 pub(crate) struct Turnover {
-    /// Whether a body was there and stays. Shape `[bodies]`.
+    /// Remaining bodies. Shape `[bodies]`.
     pub stays: Vec<bool>,
-    /// Bodies that come in; those that were there and do not stay may come in anew.
+    /// Inserted bodies; removed ones may be re-inserted.
     pub come: BTreeMap<u32, Row>,
 }
 
 impl Turnover {
-    /// All stay, none comes.
     pub fn none(state: &State) -> Turnover {
         Turnover { stays: (0..state.places.len()).map(|b| state.present(b)).collect(), come: BTreeMap::new() }
     }
 
-    /// Where all those are that will be there [m]; zero for others. Shape `[bodies]`.
+    /// Positions [m], zero if absent. Shape `[bodies]`.
     pub fn positions(&self, state: &State) -> Vec<Vec3> {
         let of = |b: usize| match self.come.get(&(b as u32)) {
             Some(row) => xyz(&row.centre),
@@ -42,8 +41,6 @@ impl Turnover {
     }
 }
 
-/// Sorts a state anew by the given positions; contacts go along with their bodies. Those of bodies that do not stay are
-/// forgotten.
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turnover: &Turnover) {
     let Turnover { stays, come } = turnover;
     let present = |b: usize| stays[b] || come.contains_key(&(b as u32));
@@ -78,7 +75,6 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     sort(state);
 }
 
-/// Puts the lists of a state in the order of their names, and has its neighbours searched.
 pub(super) fn sort(state: &mut State) {
     for lists in &mut state.lists {
         lists.pairs.sort();
@@ -96,25 +92,22 @@ pub(super) fn sort(state: &mut State) {
     state.stale = true;
 }
 
-/// What a state was before.
 pub(super) struct Old {
     pub blocks: Vec<Block>,
     pub lists: Vec<BlockLists>,
     pub cross: Vec<Cross>,
 }
 
-/// Where spheres were and are.
 pub(super) struct Names<'a> {
-    /// Of each old block: body and member of each sphere.
+    /// Body and member of each sphere, by old block.
     old: Vec<Vec<[u32; 2]>>,
     stays: &'a [bool],
-    /// Block and place of each body now, and its first sphere there.
+    /// New block, slot, first sphere of each body.
     places: Vec<[u32; 2]>,
     first: Vec<u32>,
 }
 
 impl<'a> Names<'a> {
-    /// Of a state and what it was before; `members`: how many spheres a body had; `stays`: whether its contacts go along with it.
     pub fn new(
         state: &State,
         model: &Model,
@@ -138,14 +131,13 @@ impl<'a> Names<'a> {
         Names { old, stays, places: state.places.clone(), first }
     }
 
-    /// Block and number of an old block's sphere now; `None` where its body does not stay.
+    /// `None` if the body is removed.
     fn sphere(&self, block: usize, sphere: u32) -> Option<(u32, u32)> {
         let [body, member] = self.old[block][sphere as usize].map(|n| n as usize);
         self.stays[body].then(|| (self.places[body][0], self.first[body] + member as u32))
     }
 }
 
-/// [`Names`] for pairs of kinds.
 struct Moved<'a> {
     names: &'a Names<'a>,
     old: &'a [Block],
@@ -163,10 +155,9 @@ impl Renamed for Moved<'_> {
 }
 
 impl Old {
-    /// A body as it was, from its old block.
     fn row(&self, model: &Model, body: usize, b: usize, k: usize) -> Row {
         let from = &self.blocks[b];
-        // A single sphere among its like has no orientation of its own.
+        // Blocks of single spheres store no orientation.
         let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
         Row {
             centre: from.centre[k],
@@ -179,7 +170,7 @@ impl Old {
     pub fn pairs(&self, names: &Names<'_>, state: &mut State) {
         let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
             let (Some(a), Some(b)) = (a, b) else { return };
-            // The spring is that of the first against the second.
+            // The spring acts on the first body: reverse it.
             let turned = history.turned();
             let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
             if a.0 == b.0 {
@@ -214,7 +205,6 @@ impl Old {
         }
     }
 
-    /// `bodies`: only those of two bodies, without planes.
     pub fn kinds(&self, names: &Names<'_>, state: &mut State, bodies: bool) {
         let names = Moved { names, old: &self.blocks };
         for (b, cross) in self.cross.iter().enumerate() {
@@ -250,8 +240,7 @@ impl Old {
 }
 
 impl State {
-    /// Puts the bodies into blocks of present neighbours and carries the contacts along. Done every [`EVERY`] steps: by
-    /// count, so that a restart does not change when.
+    /// Re-sorts every [`EVERY`] steps; counting makes restarts reproducible.
     pub(crate) fn reorder(&mut self, model: &Model) {
         if let Some(periodic) = &model.periodic {
             super::periodic::wrap(periodic, model, self);
@@ -272,7 +261,6 @@ mod tests {
     use crate::spatial::surface::NoSurface;
     use crate::testing::{SOFT, dumbbells, push, shaft};
 
-    /// Every contact keeps its force when the bodies are sorted anew, whichever of its two bodies comes first.
     #[test]
     fn contacts_survive_a_new_order() {
         let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);
@@ -291,7 +279,7 @@ mod tests {
         while state.steps < 3 * EVERY {
             crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
         }
-        // A contact between two bodies as seen by the one with the lower number.
+        // Oriented from the lower body index.
         let forces = |state: &State| {
             let mut swapped = 0;
             let mut list: Vec<_> = measure::contacts(&model, state)

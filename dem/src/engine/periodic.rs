@@ -1,4 +1,4 @@
-//! Periodic axes (`spatial/periodic.rs`): bodies put back into the box.
+//! Periodic wrapping of bodies (`spatial/periodic.rs`).
 
 use super::model::Model;
 use super::state::State;
@@ -7,7 +7,6 @@ use crate::lanes::record::{set_xyz, xyz};
 use crate::pairs::cross::{ImageName, ImagePair};
 use crate::spatial::periodic::{NONE, Periodic, Turns};
 
-/// Puts all bodies back into the box. Pairs whose partners go different ways become image pairs, or cease to be.
 pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
     let mut moved = false;
     let mut turns: Vec<Vec<Turns>> = Vec::with_capacity(state.blocks.len());
@@ -66,13 +65,13 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
 }
 
 impl Model {
-    /// A point put back into the box along the periodic axes, lower borders included, upper ones not [m]; the point
-    /// itself without. Positions of a [`State`] may have run on beyond the borders.
+    /// Wraps a point along periodic axes, upper boundaries excluded [m]; [`State`] positions may be
+    /// unwrapped.
     pub fn wrap(&self, x: &Vec3) -> Vec3 {
         self.periodic.map_or(*x, |p| p.wrap(x))
     }
 
-    /// Lower and upper border [m] of each axis that is periodic.
+    /// Lower and upper periodic boundary [m] of each axis.
     pub fn periodic(&self) -> [Option<[f64; 2]>; 3] {
         std::array::from_fn(|d| {
             let p = self.periodic.filter(|p| p.length[d] > 0.0)?;

@@ -21,7 +21,7 @@ fn wraps_into_the_box() {
     assert_eq!(p.turns(&Vec3::new(-9.5, 7.0, 0.0)), [-5, 2, 0]);
 }
 
-/// Spheres and clumps that fall on a moving plane and drift across two periodic borders.
+/// Bodies falling on a moving plane and crossing two periodic boundaries.
 fn drifting() -> ModelInput {
     let material = Material {
         density: 2600.0,
@@ -61,10 +61,8 @@ fn drifting() -> ModelInput {
     input
 }
 
-/// Every contact keeps its force, and every spring its length, when bodies are put back into the box and sorted anew,
-/// whether it becomes one across a border or ceases to be one.
 #[test]
-fn contacts_survive_the_way_back_into_the_box() {
+fn wrapping_keeps_contact_forces() {
     let model = Model::new(drifting()).unwrap();
     let mut state = State::new(&model);
     let mut work = Work::new(&model, &state);
@@ -72,7 +70,7 @@ fn contacts_survive_the_way_back_into_the_box() {
     for _ in 0..8000 {
         crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
     }
-    // Contacts between bodies as seen by the one with the lower number, and how many are across borders.
+    // Oriented from the lower body index; counts periodic pairs.
     let forces = |state: &State| {
         let (mut across, mut swapped) = (0, 0);
         let mut list: Vec<_> = measure::contacts(&model, state)

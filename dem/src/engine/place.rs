@@ -1,10 +1,8 @@
-//! The order of bodies in memory: blocks of neighbours, and rows within a block.
+//! Memory order of bodies.
 //!
-//! The bodies are halved again and again across the longest side of their bounds, at multiples of the block size,
-//! so that every block but the last holds equally many and is about as long as wide. Within a block they lie in
-//! the order of cells (z, then y, then x), which the processor's prefetcher likes better than space-filling
-//! curves. Bodies that are not made of spheres come last, in blocks of their own. The order sets the order of sums, hence the last bits of a
-//! run; it depends on the positions alone.
+//! Recursive bisection across the longest side gives compact blocks. Within a block, cell order (z, y, x)
+//! suits hardware prefetching better than space-filling curves. Bodies not made of spheres come last, in
+//! separate blocks. The order depends on positions only and fixes rounding of sums.
 
 use super::model::Model;
 use super::state::BlockLists;
@@ -17,10 +15,9 @@ use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use crate::pairs::list::PairList;
 
-/// Bodies that are not made of spheres in a block, about.
+/// Non-sphere bodies per block.
 const SOLIDS: usize = 256;
 
-/// Numbers of the bodies of each block, of those that are `present`; the positions of others do not matter.
 pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) -> bool) -> Vec<Vec<u32>> {
     let of_kind = |solids: bool| -> Vec<u32> {
         (0..positions.len() as u32)
@@ -36,13 +33,12 @@ pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) 
     if solids.len() > SOLIDS {
         sort(&mut solids, model, positions, SOLIDS, &mut out);
     } else if !solids.is_empty() {
-        // In the order of the input: few bodies, such as sleepers, stay where they are.
+        // Input order: few bodies, such as sleepers.
         out.push(solids);
     }
     out
 }
 
-/// Halves bodies into blocks of `size` bodies each.
 fn sort(bodies: &mut [u32], model: &Model, positions: &[Vec3], size: usize, out: &mut Vec<Vec<u32>>) {
     let radius = bodies.iter().map(|&b| model.body(b as usize).radius).sum::<f64>() / bodies.len() as f64;
     halve(bodies, positions, size, 2.0 * radius, out);
@@ -62,14 +58,13 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
         });
     let axis = (hi - lo).imax();
     let middle = count / 2 * size;
-    // Ties by number, so that the result does not depend on the order that the bodies come in.
+    // Ties by index: independent of input order.
     bodies.sort_unstable_by(|&a, &b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(&b)));
     let (left, right) = bodies.split_at_mut(middle);
     halve(left, positions, size, cell, out);
     halve(right, positions, size, cell, out);
 }
 
-/// What the arrays of a block hold of one body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub centre: Record,
@@ -79,7 +74,6 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// A body at rest.
     pub fn at_rest(model: &Model, body: usize, centre: &Vec3, rotation: Rotation) -> Row {
         let b = model.body(body);
         Row {
@@ -91,7 +85,6 @@ impl Row {
     }
 }
 
-/// A block of the given bodies; orientations are kept only where any of them is no single sphere.
 pub(crate) fn block(model: &Model, bodies: Vec<u32>, row: impl Fn(u32) -> Row) -> Block {
     let rigid = bodies.iter().any(|&b| model.bodies.kind(b as usize) != Kind::Sphere);
     let mut block = Block::default();
@@ -109,7 +102,7 @@ pub(crate) fn block(model: &Model, bodies: Vec<u32>, row: impl Fn(u32) -> Row) -
     block
 }
 
-/// Materials (indices, ascending) of the bodies of a block.
+/// Ascending.
 pub(crate) fn materials(block: &Block) -> Vec<u32> {
     let mut all: Vec<u32> = (0..block.spin.len()).map(|k| block.material(k)).collect();
     all.sort_unstable();
@@ -117,8 +110,7 @@ pub(crate) fn materials(block: &Block) -> Vec<u32> {
     all
 }
 
-/// Empty lists for a block and its contacts with others; they keep rolling springs only where materials that may meet
-/// in them need it.
+/// Rolling springs are stored only if a material pair needs them.
 pub(crate) fn lists(model: &Model, block: &Block) -> (BlockLists, Cross) {
     let own = materials(block);
     let planes: Vec<u32> = model.planes.iter().map(|p| p.material as u32).collect();

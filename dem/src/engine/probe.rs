@@ -1,4 +1,4 @@
-//! Contacts of a state that has made no step.
+//! Contact detection without a step.
 
 use super::bonds;
 use super::model::Model;
@@ -8,8 +8,7 @@ use super::work::Work;
 use crate::base::error::StepError;
 use crate::spatial::surface::Surface;
 
-/// Finds the contacts of a state that has made no step yet, so that measures see them from the start. Nothing moves,
-/// and the ledger stays as it is.
+/// Finds the contacts of an initial state. Motion and balance terms are unchanged.
 ///
 /// # Errors
 /// As [`step`].
@@ -32,7 +31,7 @@ pub fn find_contacts<S: Surface>(
     }
     (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
     (state.lasted, state.stale) = (probe.lasted, probe.stale);
-    // The probe may have broken bonds, and has taken the spheres of clumps along. What it has found of forces stays.
+    // The probe may have broken bonds and moved clump spheres; its forces stay.
     for (members, block) in work.members.iter_mut().zip(&state.blocks) {
         members.arrange(&model.bodies, &model.shapes, block);
     }

@@ -1,7 +1,7 @@
-//! Bodies in ground that they scar (`law/scarring.rs`): when each comes into the soil and leaves it, how deep it sinks, what area drags.
+//! Scarring of the ground by bodies (`law/scarring.rs`).
 //!
-//! A body is in the soil as long as it reaches through the surface. The surface over which its area is cut is the plane of the triangle
-//! beneath its centre, or else of the nearest one that it reaches through.
+//! The drag area is cut by the plane of the triangle beneath the centre, or of the nearest penetrated
+//! triangle.
 
 use super::block_work::Ground;
 use super::candidates;
@@ -17,10 +17,9 @@ use crate::law::scarring::{Scar, Scarring};
 use crate::spatial::facet::Facet;
 use crate::spatial::patchwork::Form;
 
-/// A way below which friction has forgotten that it has grown [m].
+/// Travel below which the friction increase is reset [m].
 const FORGOTTEN: f64 = 1e-12;
 
-/// Follows every body for the next step.
 pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
     let down = model.gravity.normalize();
     let mut heights = std::mem::take(&mut work.heights);
@@ -44,7 +43,7 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
             let body = Body { model, block: &blocks[b], members: &work.members[b], k, down: &down };
             let before = scar.inside;
             body.follow(scar, own, pace.kick(), &mut heights);
-            // Ground that was out of reach comes within it as the body sinks.
+            // Sinking brings further ground within the cut-off.
             *stale |= scar.inside != before;
         }
         work.ground = ground;
@@ -53,7 +52,6 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
 }
 
 impl Ground {
-    /// Takes note of a patch near the body.
     fn see(&mut self, on: &OnGround, facet: &Facet, wall: usize, centre: &Vec3, down: &Vec3) {
         self.touches |= on.touches;
         self.cuts |= on.cuts;
@@ -67,7 +65,7 @@ impl Ground {
     }
 }
 
-/// Whether a vertical line through a point meets a triangle.
+/// Returns true if a vertical line through `x` crosses the triangle.
 fn beneath(facet: &Facet, x: &Vec3, down: &Vec3) -> bool {
     let slope = facet.normal.dot(down);
     if slope == 0.0 {
@@ -77,7 +75,6 @@ fn beneath(facet: &Facet, x: &Vec3, down: &Vec3) -> bool {
     facet.edges.iter().zip(&facet.corners).all(|(edge, corner)| edge.side.dot(&(foot - corner)) <= 0.0)
 }
 
-/// A body of a block.
 struct Body<'a> {
     model: &'a Model,
     block: &'a Block,
@@ -87,12 +84,12 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// Brings what it does to the ground up to date, for a step of `dt` [s].
+    /// `dt` [s].
     fn follow(&self, scar: &mut Scar, ground: &Ground, dt: f64, heights: &mut Vec<f64>) {
         let law = self.model.walls.walls[ground.wall].scarring;
         let Some((law, (normal, height))) = law.zip(ground.plane).filter(|_| self.inside(scar, ground))
         else {
-            // Out of the soil: nothing but the way that friction has grown with stays, and that fades.
+            // Out of the soil, the friction increase decays.
             let law = self.model.walls.walls.iter().find_map(|w| w.scarring);
             let way = law.map_or(0.0, |law| law.way(scar.way, false, 0.0, dt));
             let way = if way > FORGOTTEN { way } else { 0.0 };
@@ -121,7 +118,7 @@ impl Body<'_> {
         ground.cuts || scar.inside && sunk
     }
 
-    /// Drag over the square of its speed: that of its part below the surface, as seen along its way [kg/m].
+    /// Drag over squared speed, from the projected immersed area [kg/m].
     fn resistance(
         &self,
         law: &Scarring,

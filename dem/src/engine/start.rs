@@ -1,4 +1,4 @@
-//! The state that a run starts from.
+//! Initial state of a run.
 
 use super::bonds;
 use super::model::Model;
@@ -12,7 +12,7 @@ use crate::integrate::pace::Pace;
 use crate::law::scarring::Scar;
 use crate::shape::plane::PlaneMotion;
 
-/// The leapfrog's velocity half a step of `dt` [s] before a moment at which the body moves at `velocity` [m/s], free to fall.
+/// Leapfrog velocity half a step of `dt` [s] ago, in free fall; `velocity` [m/s].
 pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3, dt: f64) -> Vec3 {
     let fixed = model.body(body).fixed;
     let kick = Vec3::from_fn(|d, _| if fixed >> d & 1 == 1 { 0.0 } else { model.gravity[d] });
@@ -20,10 +20,10 @@ pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3, dt: f
 }
 
 impl State {
-    /// The start: positions and velocities as given, at time 0.
+    /// Creates the initial state at time 0.
     ///
-    /// The leapfrog's velocities at −dt/2 are the given ones less half a step of gravity. A contact or applied
-    /// force already there at time 0 acts with its first full kick, a shift of half a step in time.
+    /// Velocities at −dt/2 exclude half a step of gravity. Initial contact or applied forces act with a full
+    /// first kick, a time shift of half a step.
     pub fn new(model: &Model) -> State {
         let plane =
             |p: &crate::Plane| PlaneMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false };

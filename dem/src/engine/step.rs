@@ -1,4 +1,4 @@
-//! One step of the grains: search when due, contacts, integration.
+//! DEM time step: search if due, contacts, integration.
 
 use super::block_work::BlockWork;
 use super::bonds;
@@ -36,16 +36,12 @@ pub use super::probe::find_contacts;
 
 /// Advances `state` by one step of [`State::dt`].
 ///
-/// `surface` is a surface that another crate owns ([`NoSurface`](crate::spatial::surface::NoSurface) for none), as it is at
-/// the state's time; its contacts are then in [`Work::surface_contacts`]. `applied` forces act during this step.
-///
-/// The result has the same bits whatever the number of threads, and whether or not `work` is new. Large scenes share
-/// their blocks among the threads of rayon's current pool; calling from inside a pool (`ThreadPool::install`) spares
-/// two hand-overs per step.
+/// `surface` is at the state's time ([`NoSurface`](crate::spatial::surface::NoSurface) for none). Results are
+/// bitwise identical for any number of threads and for new `work`. Calls from inside a rayon pool
+/// (`ThreadPool::install`) save two thread switches. `applied` forces act for this step.
 ///
 /// # Errors
-/// [`StepError`] names the body, its partner and the time when an overlap or a speed leaves the range in which the
-/// method has a meaning. The state is then not fit to go on from.
+/// [`StepError`] for overlaps or speeds out of range; the state is then invalid.
 pub fn step<S: Surface>(
     model: &Model,
     state: &mut State,
@@ -66,7 +62,6 @@ pub fn step<S: Surface>(
     collect(model, state, work, surface.max_speed())
 }
 
-/// Brings what acts on bodies from outside to where it is in this step: applied forces, walls, and the external surface.
 pub(crate) fn prepare<S: Surface>(
     model: &Model,
     state: &mut State,
@@ -87,7 +82,6 @@ pub(crate) fn prepare<S: Surface>(
     Ok(())
 }
 
-/// What drives all bodies in a step.
 pub(crate) fn drive(model: &Model, pace: Pace) -> Drive<'_> {
     Drive {
         gravity: model.gravity,
@@ -98,14 +92,13 @@ pub(crate) fn drive(model: &Model, pace: Pace) -> Drive<'_> {
     }
 }
 
-/// Puts the triangles of the external surface where they are.
 fn sheet<S: Surface>(
     model: &Model,
     state: &mut State,
     work: &mut Work,
     surface: &S,
 ) -> Result<(), StepError> {
-    // The lists name triangles that are there, or none.
+    // Lists depend on whether the surface has triangles.
     state.stale |= surface.is_empty() != work.sheet.is_empty();
     if surface.is_empty() {
         work.sheet.clear();
@@ -121,7 +114,7 @@ fn sheet<S: Surface>(
     Ok(())
 }
 
-/// Forces on the bodies of the blocks that are this process's own, and their motion by a step; the near list is good.
+/// The neighbour list must be valid.
 pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     if !model.bonds.is_empty() {
         let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
@@ -135,7 +128,6 @@ pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut W
     contacts_and_motion(model, state, work, surface);
 }
 
-/// Contacts between blocks go to slots; all else concerns one block at a time, its motion included.
 fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let (pace, parallel) = (state.pace, work.parallel);
     let dt = pace.kick();
@@ -145,7 +137,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let standing = (&work.walls[..], &work.sheet[..]);
-    // Contacts between blocks: they read their own block and later ones, and write slots.
+    // Reads own and later blocks, writes slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
         out.clear_books();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
@@ -194,25 +186,23 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     threads::through(threads, &work.own, lists, beyond, between, within);
 }
 
-/// What all blocks share in a step.
 struct Shared<'a, S> {
     model: &'a Model,
     setting: Setting<'a>,
     surface: &'a S,
-    /// The planes where they are, and their material where they have only one.
+    /// Placed planes and their common material.
     planes: (&'a [PlaneNow], Option<u32>),
     walls: PlacedWalls<'a>,
     bonds: (&'a BondWork, Parts<'a>),
     drive: Drive<'a>,
-    /// Time of the places [s].
+    /// Time of the positions [s].
     time: f64,
     scars: &'a [Scar],
-    /// Bound on the way that anything has come towards anything since the near list was made [m].
+    /// Relative displacement bound since the last neighbour list [m].
     gone: f64,
 }
 
 impl<S: Surface> Shared<'_, S> {
-    /// What body forces see of a block.
     fn seen<'b>(&'b self, block: &'b Block, members: &'b Members, sums: &'b [Sums]) -> Seen<'b> {
         let Model { bodies, skins, gravity, .. } = self.model;
         let Setting { simd, dt: kick, .. } = self.setting;
@@ -220,7 +210,6 @@ impl<S: Surface> Shared<'_, S> {
         Seen { simd, block, members, bodies, skins, gravity: *gravity, sums, time, kick, scars }
     }
 
-    /// All forces on the bodies of a block; what other blocks left for it is in `slots`.
     fn forces(&self, b: usize, one: &mut One<'_>, slots: Slots<'_>, next: Prefetch<'_>) {
         let (model, setting) = (self.model, self.setting);
         let One { block, members, lists, work } = one;
@@ -255,7 +244,7 @@ impl<S: Surface> Shared<'_, S> {
     }
 }
 
-/// Contacts of a block's spheres with walls; `gone`: as for [`on_surface`].
+/// Sphere–wall contacts of a block; `gone`: as [`on_surface`].
 pub(crate) fn on_walls(
     model: &Model,
     setting: &Setting<'_>,
@@ -275,8 +264,7 @@ pub(crate) fn on_walls(
     patches::contacts(setting, &against, list, own, &mut work.tally, &mut work.patches);
 }
 
-/// Contacts of a block's spheres with the external surface, and what that did; `gone`: bound on the way that anything has come towards
-/// anything since the near list was made [m].
+/// Sphere–surface contacts of a block; `gone`: relative displacement bound since the last neighbour list [m].
 pub(crate) fn on_surface<S: Surface>(
     model: &Model,
     setting: &Setting<'_>,
@@ -297,7 +285,7 @@ pub(crate) fn on_surface<S: Surface>(
     work.tally.ledger.surface += &done.impulse;
 }
 
-/// Adds up what the blocks report, in block order, and moves on in time.
+/// Sums in block order.
 pub(crate) fn collect(
     model: &Model,
     state: &mut State,
@@ -325,16 +313,14 @@ pub(crate) fn collect(
     conclude(model, state, work, all, surface_speed)
 }
 
-/// What all blocks report together.
 #[derive(Default)]
 pub(crate) struct Collected {
     pub sum: Ledger,
-    /// The largest speed [m/s].
+    /// Largest speed [m/s].
     pub fastest: f64,
     pub failure: Option<Failure>,
 }
 
-/// Moves walls on, then time.
 pub(crate) fn conclude(
     model: &Model,
     state: &mut State,

@@ -9,7 +9,6 @@ use crate::shape::clump::Clump;
 use crate::shape::plane::Plane;
 use crate::spatial::surface::NoSurface;
 
-/// A tumbling heap of spheres, or of spheres and clumps, under either law.
 fn heap(hertz: bool, clumps: bool) -> Model {
     Model::new(heap_input(hertz, clumps)).unwrap()
 }
@@ -59,7 +58,7 @@ fn heap_input(hertz: bool, clumps: bool) -> ModelInput {
         });
     }
     if clumps && !hertz {
-        // A plate that falls on top, also of the last block of spheres.
+        // A plate falls on top, also of the last block.
         input.shapes.push(Shape::Box { half: [0.1, 0.1, 0.01] });
         let (position, velocity) = (Vec3::new(0.15, 0.2, 0.4627), Vec3::new(0.0, 0.0, -3.0));
         input.bodies.push(BodyInput { shape: 2, position, velocity, ..BodyInput::default() });
@@ -84,15 +83,14 @@ fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
     motion.chain(booked).map(f64::to_bits).collect()
 }
 
-/// Stepped serially and shared among threads: the same bits.
 #[test]
-fn shared_blocks_give_the_bits_of_serial_ones() {
+fn threaded_blocks_match_serial_bitwise() {
     let model = heap(false, false);
     let run = |parallel| bits(&model, 1500, parallel, Simd::best());
     assert!(run(false) == run(true));
 }
 
-/// Registers of either kind, and plain arrays: the same bits, for each law, with and without clumps.
+/// SIMD and scalar lanes, each law, with and without clumps.
 #[test]
 fn all_lanes_give_the_same_bits() {
     let kinds = [(false, false), (false, true), (true, false), (true, true)];
@@ -106,8 +104,7 @@ fn all_lanes_give_the_same_bits() {
     }
 }
 
-/// Four bodies at a time are moved and booked as one by one, which a force on any of them calls for, be it zero: with
-/// local damping and without, with forces on some and motions of others fixed.
+/// Applied forces, even zero, select the scalar path: with and without local damping and fixed motions.
 #[test]
 fn four_move_as_one() {
     for (clumps, damping) in [(false, 0.0), (false, 0.3), (true, 0.0), (true, 0.3)] {
@@ -149,9 +146,9 @@ fn four_move_as_one() {
     }
 }
 
-/// Four at a time and one by one, which a fixed neighbour calls for.
+/// A fixed neighbour selects the scalar path.
 #[test]
-fn a_speed_that_is_no_number_is_an_error() {
+fn rejects_nan_speed() {
     for fixed in [false, true] {
         let mut input = heap_input(false, false);
         input.bodies.truncate(8);
@@ -170,7 +167,7 @@ fn a_speed_that_is_no_number_is_an_error() {
     }
 }
 
-/// One, two, three and seven threads: the same bits, with memory of rolling and rebuilt lists, or with a box.
+/// 1, 2, 3 and 7 threads, with rolling history and rebuilt lists, or a box.
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for hertz in [true, false] {

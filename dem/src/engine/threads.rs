@@ -1,12 +1,8 @@
-//! How threads share the blocks.
+//! Distribution of blocks over threads.
 //!
-//! A contact between two blocks is computed with the first of them, while neither has moved; a block moves once all its
-//! contacts are known. So one thread can go through blocks in their order: contacts with later blocks, then all that
-//! concerns this block alone, its motion included, then the next. What a block reads then lies in the cache still, or
-//! has been fetched meanwhile.
-//!
-//! Several threads take runs of neighbouring blocks, each of which is gone through like that. Contacts that reach beyond
-//! their run come first, for all runs: then no thread reads a body that another one moves.
+//! Contacts between two blocks are computed with the first, before either moves. A thread processes blocks in
+//! order: contacts with later blocks, then the block itself with its motion, in cache or prefetched. Several
+//! threads process contiguous ranges; contacts beyond a range come first, so no thread reads moving bodies.
 
 use super::block_work::BlockWork;
 use super::state::BlockLists;
@@ -21,14 +17,12 @@ use crate::pairs::cross::{Cross, CrossForces, Slots};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// A run is this share of what is left for each thread: large runs first, so that little reaches beyond them, and small
-/// ones last, so that threads end together. Unit tests have small beds.
+/// Large ranges first, small ones last for balance. Unit tests have small beds.
 const SHARE: usize = if cfg!(test) { 1 } else { 2 };
 
-/// Blocks in beds that caches do not hold: what a block reads is fetched while the one before it is computed.
+/// Blocks that exceed the caches: prefetch pays.
 const LARGE: usize = if cfg!(test) { 2 } else { 24 };
 
-/// Lists by block: arrays of motion, constants, contacts within and their scratch; contacts with others and their slots.
 pub(crate) struct Lists<'a> {
     pub blocks: &'a mut [Block],
     pub members: &'a mut [Members],
@@ -39,7 +33,6 @@ pub(crate) struct Lists<'a> {
 }
 
 impl<'a> Lists<'a> {
-    /// Splits the first blocks off.
     fn split_off(&mut self, size: usize) -> Lists<'a> {
         Lists {
             blocks: self.blocks.split_off_mut(..size).unwrap_or_default(),
@@ -52,7 +45,7 @@ impl<'a> Lists<'a> {
     }
 }
 
-/// One block, as what concerns it alone sees it.
+/// View of one block.
 pub(crate) struct One<'a> {
     pub block: &'a mut Block,
     pub members: &'a mut Members,
@@ -60,11 +53,9 @@ pub(crate) struct One<'a> {
     pub work: &'a mut BlockWork,
 }
 
-/// The bodies of neighbouring blocks and their constants.
 pub(crate) type Bodies<'a> = (Part<'a, Block>, Part<'a, Members>);
 
-/// Goes through the blocks `own` of all on so many threads. `between` computes a block's contacts with later ones, `within` all
-/// else; `beyond` is scratch. Earlier blocks only have their contacts with these computed; none of them moves.
+/// `between`: contacts with later blocks; `within`: the rest; `beyond`: scratch. Earlier blocks do not move.
 pub(crate) fn through(
     threads: usize,
     own: &Range<usize>,
@@ -104,7 +95,6 @@ pub(crate) fn through(
     exchange(threads, own, all.cross, all.slots, beyond);
 }
 
-/// Goes through one run of `count` blocks, which begins with block `first`.
 fn run(
     first: usize,
     count: usize,
@@ -149,7 +139,6 @@ fn run(
     }
 }
 
-/// Runs of the blocks `own` for so many threads; one thread has one.
 fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
     let (mut at, end) = (own.start, own.end);
     std::iter::from_fn(move || {
@@ -160,18 +149,17 @@ fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>
     })
 }
 
-/// Of each block up to the last of `own`, where its run ends; of those before them zero.
+/// End of each block's range; zero before `own`.
 fn ends(own: &Range<usize>, threads: usize) -> impl Iterator<Item = usize> + use<> {
     let runs = runs(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
     std::iter::repeat_n(0, own.start).chain(runs)
 }
 
-/// Whether a block has contacts with blocks at or behind `end`, which is zero for blocks whose contacts all are such.
+/// Zero includes all contacts.
 fn reaches(cross: &Cross, end: usize) -> bool {
     cross.last_block() >= end.max(1)
 }
 
-/// Exchanges the contacts of blocks that reach beyond their run.
 fn exchange(
     threads: usize,
     own: &Range<usize>,
@@ -187,8 +175,7 @@ fn exchange(
     }
 }
 
-/// Shares items among the threads of the current pool: each takes the next one when it is through with its last, so that
-/// one with dear items gets few of them. Threads that do something else are not waited for.
+/// Dynamic distribution for load balance, without waiting for busy threads.
 fn share<I: Iterator + Send>(threads: usize, items: I, work: impl Fn(I::Item) + Sync) {
     let queue = Mutex::new(items);
     crew(threads, &|| {
@@ -198,7 +185,6 @@ fn share<I: Iterator + Send>(threads: usize, items: I, work: impl Fn(I::Item) + 
     });
 }
 
-/// Does `work` `count` times, on as many threads as are free.
 fn crew(count: usize, work: &(impl Fn() + Sync)) {
     match count {
         0 | 1 => work(),
@@ -218,7 +204,6 @@ mod tests {
     use crate::testing::{SOFT, push, shaft};
     use crate::{Material, Vec3};
 
-    /// Spinning spheres of unlike sizes: forces and torques across blocks are those within a block, to rounding.
     #[test]
     fn blocks_do_not_show() {
         for rolling_friction in [0.0, 0.1] {

@@ -1,37 +1,30 @@
 //! Stability limit of the time step.
 //!
-//! A body of mass m held by contacts of stiffness K on all sides, its neighbours moving against it, swings at most
-//! at ω² = s K (1/m + r²/I), where s counts the contacts that act in one direction (twice, for the neighbours'
-//! motion: Gershgorin's bound) and r²/I is for a contact off the centre. With dashpots on velocities of half a step ago the
-//! leapfrog is stable for (ω dt)² + 4 ζ' ω dt < 4, ζ' = ζ √(s/2) the damping ratio of the body in all its contacts. Twice the
-//! damping is allowed for,
+//! A body of mass m in contacts of stiffness K, its neighbours moving against it, oscillates at most at
+//! ω² = s K (1/m + r²/I). Here s is twice the number of contacts acting in one direction (Gershgorin's
+//! bound), r the lever arm. With dashpots on velocities half a step old the leapfrog is stable for
+//! (ω dt)² + 4 ζ' ω dt < 4, ζ' = ζ √(s/2). Twice the damping is used,
 //!
 //! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
 //!
-//! because single hits that begin with such a step are to find their restitution.
+//! to resolve the restitution of single collisions. Actual contacts usually allow several times more
+//! (`stability`).
 //!
-//! This is what is known before anything touches. What the contacts that are there allow, usually several times as much,
-//! is measured from them in the course of a run: `stability`.
+//! - sphere: s = 12, six contacts with a component in one direction;
+//! - clump: s = 24, or twice the members touching a plane if more; largest r² (contacts may all lie far out);
+//! - box: s twice the neighbours of smallest bounding radius on its largest side, two contacts each (at least
+//!   16 with other boxes); mean r² of the side.
 //!
-//! s: 12 for a sphere (six contacts with a component in one direction), 24 for a clump (each neighbour may touch
-//! it with more than one member) or twice as many as touch a plane at once where that is more (needles and plates
-//! made of many), and for a box twice as many as neighbours of the smallest bounding radius find
-//! room on its largest side, two contacts each (16 at least where other boxes are there). Contacts on a clump may all lie
-//! far out, so its r² is the largest; those on the side of a box are spread over it, so its r² is the mean over the side.
-//! A rolling or twisting spring turns the body as the tangential spring does, with a lever no longer than the sphere's
-//! radius: it counts as a second tangential spring.
+//! A rolling or twisting spring counts as a second tangential spring: its lever arm is at most the radius.
 //!
-//! Where contacts stiffen with the overlap the limit holds up to the largest overlap that a law expects (`law/hertz.rs`),
-//! given the densest body, the height H of all bodies and the speed at which they meet: [`ModelInput::impact_speed`], or
-//! else the largest of the starting speeds of bodies, planes and triangle surfaces, added to that of a fall through the
-//! height of all bodies, √(2 g H).
+//! If stiffness grows with overlap, the limit holds up to the expected overlap (`law/hertz.rs`) of the
+//! densest body. The impact speed is [`ModelInput::impact_speed`], or the largest initial speed plus
+//! √(2 g H), H the height of all bodies. Hertz: dt ∝ d^(-1/4), so 16 times the overlap halves the limit,
+//! within the usual fraction (0.1 to 0.2). Large external loads need an explicit impact speed. Bonds add
+//! their own bound (`bond/limit.rs`).
 //!
-//! Under Hertz's law the limit falls only with d^(-1/4): a load that presses 16 times as deep halves it, and the usual
-//! fraction of the limit (0.1 to 0.2) leaves that room. Loads from outside are not known here: give an impact speed for them.
-//! Bonds add their own bound to that of the contacts (`bond/limit.rs`).
-//!
-//! Limits: very unlike sizes, where one large body has more contacts than s, are on the safe side because its mass
-//! grows faster than their number. Sides of a clump that are flat, yet not across a principal axis, are not looked for.
+//! Limits: one large body among small ones may exceed s, but its mass grows faster. Flat clump sides oblique
+//! to principal axes are not detected.
 //!
 //! Theory manual: equation (3.6) of `docs/theory/motion.md`.
 
@@ -50,29 +43,28 @@ use crate::wall::shells::Shells;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// The limit and its cause.
+/// Stability limit and its cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DtLimit {
-    /// Largest stable step [s]; 1e-4 s when no body can move.
+    /// Critical time step [s]; 1e-4 if no body can move.
     pub dt: f64,
-    /// The body that sets it.
+    /// Governing body.
     pub body: usize,
-    /// The material index of the partner that is stiffest for it.
+    /// Material index of the stiffest partner.
     pub partner: usize,
-    /// Stiffness of that contact [N/m].
+    /// Contact stiffness [N/m].
     pub stiffness: f64,
-    /// Effective mass of the body at its outermost contact [kg].
+    /// Effective mass at the outermost contact [kg].
     pub mass: f64,
-    /// The rigid body of this wall sets it, in place of `body`.
+    /// Governing rigid-body wall, instead of `body`.
     pub wall: Option<usize>,
-    /// Square of the highest frequency that the body's bonds alone could give it [1/s²].
+    /// Squared frequency bound of bonds only [1/s²].
     pub bonds: f64,
-    /// Square of the highest frequency that the mount of a wall's body gives it [1/s²].
+    /// Squared frequency bound of the wall support [1/s²].
     pub mount: f64,
 }
 
 impl DtLimit {
-    /// Where no body can move.
     const FREE: DtLimit = DtLimit {
         dt: 1e-4,
         body: 0,
@@ -113,7 +105,6 @@ impl fmt::Display for DtLimit {
     }
 }
 
-/// Smallest limit over all free bodies. Falls back to 1e-4 s when no body can move.
 pub(crate) fn limit(
     bodies: &Bodies,
     input: &ModelInput,
@@ -123,7 +114,6 @@ pub(crate) fn limit(
     (r_min, r_max): (f64, f64),
 ) -> DtLimit {
     let bonded = bond::stiffest(bonds, bodies, &input.bodies);
-    // A rolling spring counts as one more tangential spring on a lever.
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
     let several = bodies.iter().filter(|b| b.kind == Kind::Solid).count() > 1;
@@ -144,14 +134,14 @@ pub(crate) fn limit(
         let radius = contact_radius(&body, shape, r_max);
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
-            // The stiffest contact has the largest circle: that of the body's own radius on a plane.
+            // Largest effective radius: contact with a plane.
             let stiffness = laws.stiffness(a, b, expected * radius, radius);
             let tangential = stiffness * laws.tangential_ratio(a, b);
             if !stiffness.is_finite() {
                 continue;
             }
             let sides = sides(shape, &body, (r_min, several), (laws, b, stiffness));
-            // A sphere's tangential spring turns it as well: 1/m + r²/I = 3.5/m.
+            // Tangential spring with rotation: 1/m + r²/I = 3.5/m.
             let own = if body.kind == Kind::Sphere {
                 stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
             } else {
@@ -187,7 +177,7 @@ pub(crate) fn limit(
     least
 }
 
-/// Largest effective radius of the contacts of a body [m]: that of its largest sphere, on a plane; of a box that of the largest sphere there is.
+/// Largest effective contact radius [m]: on a plane; for a box, largest sphere of the model.
 pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     match shape {
         Shape::Sphere { .. } | Shape::Polyhedron(_) => body.radius,
@@ -197,8 +187,8 @@ pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     }
 }
 
-/// Contacts that act in one direction at once, twice. `smallest`: radius of the smallest neighbour [m]; `several`: there are
-/// other boxes; `corner`: the stiffness of a corner on material `b` [N/m].
+/// Returns s. `smallest`: neighbour radius [m]; `several`: other boxes exist; `corner`: corner stiffness
+/// [N/m].
 fn sides(
     shape: &Shape,
     body: &Body,
@@ -211,29 +201,26 @@ fn sides(
         Shape::Box { half } => {
             let h = half.map(|h| 2.0 * h * body.scale / (2.0 * smallest) + 1.0);
             let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
-            // Boxes on two opposite sides touch in four points each.
+            // Two opposite sides, four contact points each.
             if several { grains.max(16.0) } else { grains }
         }
         Shape::Polyhedron(it) => 2.0 * faces(it, body, laws, b, corner),
     }
 }
 
-/// Most corners of a face.
 fn corners(it: &Dilated) -> f64 {
     it.core.faces.iter().map(|f| f.corners.len()).max().unwrap_or(0) as f64
 }
 
-/// Corners' worth of stiffness that act on a dilated polyhedron in one direction: as much as a face with the longest circumference has
-/// on a face of its like, its edges and those of the other one. `corner`: the stiffness of a corner on material `b` [N/m].
+/// Equivalent number of `corner` stiffnesses [N/m]: face on identical face, largest circumference.
 fn faces(it: &Dilated, body: &Body, laws: &Laws, b: u32, corner: f64) -> f64 {
     2.0 * Face::of(it, body).worth(laws, [body.material, b], corner)
 }
 
-/// A face with the most corners and the longest circumference.
 #[derive(Clone, Copy)]
 struct Face {
     corners: f64,
-    /// Circumference [m], and over the length with the stiffness of a corner under a linear law.
+    /// Circumference [m]; the same over the edge length equivalent to one corner (linear law).
     around: f64,
     lengths: f64,
 }
@@ -244,7 +231,6 @@ impl Face {
         Face { corners: corners(it), around: body.scale * around, lengths: around / (LENGTH * it.radius) }
     }
 
-    /// One that has the most of both.
     fn max(&self, other: &Face) -> Face {
         Face {
             corners: self.corners.max(other.corners),
@@ -253,7 +239,7 @@ impl Face {
         }
     }
 
-    /// How many corners of the stiffness `corner` [N/m] its corners and edges are worth.
+    /// Stiffness in units of `corner` [N/m].
     fn worth(&self, laws: &Laws, materials: [u32; 2], corner: f64) -> f64 {
         let edges = match laws.edges(materials) {
             None => self.lengths,
@@ -263,9 +249,8 @@ impl Face {
     }
 }
 
-/// Longest step [s] with which dilated polyhedra may come to lie on a face: one that stands on a corner has a stiffness many times smaller
-/// until it does, and that may happen between two looks at what the contacts allow. Infinite where there are none.
-/// `expected`: the overlap expected over the radius.
+/// Longest step [s] for polyhedra landing on a face: stiffness rises many-fold, possibly between two
+/// stability checks. `expected`: overlap over radius.
 pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: f64) -> f64 {
     let partners = partners(bodies, input);
     let mut longest = f64::INFINITY;
@@ -277,7 +262,7 @@ pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected
             let corner = laws.stiffness(a, b, expected * body.radius, body.radius);
             let stiffness = corner * laws.tangential_ratio(a, b).max(1.0);
             let zeta = laws.damping_ratio(a, b);
-            // Half of what is stable: so close to the limit a collision of such a face would heat.
+            // Half the stable value: such collisions add energy near the limit.
             let bound = 0.5 * ((4.0 + 16.0 * zeta * zeta).sqrt() - 4.0 * zeta);
             if stiffness.is_finite() {
                 let all = faces(it, &body, laws, b, corner) * stiffness;
@@ -288,7 +273,7 @@ pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected
     longest
 }
 
-/// Largest overlap expected over the effective radius (see the module); zero where the stiffness does not depend on it.
+/// Expected overlap over effective radius; zero for constant stiffness.
 pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> f64 {
     let gravity = input.gravity.norm();
     let down = if gravity > 0.0 { input.gravity / gravity } else { Vec3::z() };
@@ -307,7 +292,6 @@ pub(crate) fn expected_overlap(bodies: &Bodies, input: &ModelInput, laws: &Laws)
     laws.expected_overlap(&Expected { density, speed, gravity, height })
 }
 
-/// Materials that something to touch is made of, ascending.
 pub(crate) fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     let mut used = vec![false; input.materials.len()];
     bodies.iter().for_each(|b| used[b.material as usize] = true);
@@ -319,7 +303,7 @@ pub(crate) fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     (0..used.len()).filter(|&m| used[m]).collect()
 }
 
-/// Number of members that a plane across a principal axis touches at once (to a tenth of the largest radius).
+/// Members touching a plane across a principal axis (within 0.1 of the largest radius).
 fn flat(clump: &Clump) -> usize {
     let slack = 0.1 * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max);
     let touching = |axis: usize, sign: f64| {
@@ -330,7 +314,7 @@ fn flat(clump: &Clump) -> usize {
     (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0)
 }
 
-/// 1/m + max over the principal axes of (distance of contacts from the axis)²/I [1/kg].
+/// 1/m + max over principal axes of (lever arm)²/I [1/kg].
 fn compliance(body: &Body, shape: &Shape) -> f64 {
     let mut reach2 = [0.0_f64; 3];
     match shape {
@@ -346,7 +330,7 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
         Shape::Box { half } => {
             for k in 0..3 {
                 let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
-                // Contacts spread over a side have a third of the squared half length along it, all of it across.
+                // Over a side: a third of the squared half length along it, all of it across.
                 reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
             }
         }
@@ -362,16 +346,15 @@ fn compliance(body: &Body, shape: &Shape) -> f64 {
     1.0 / body.mass + turn
 }
 
-/// What touches the bodies of walls: a material, and the radius of the smallest that is made of it [m].
+/// Material and smallest radius [m].
 #[derive(Clone, Copy)]
 struct Partner {
     material: u32,
     radius: f64,
-    /// Of polyhedra and disks the largest face.
+    /// Of polyhedra and disks.
     face: Option<Face>,
 }
 
-/// What may touch the body of a wall.
 fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
     let grains = bodies.iter().map(|b| b.material);
     let planes = input.planes.iter().map(|p| p.material as u32);
@@ -390,7 +373,7 @@ fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
             }
         }
     }
-    // Where polyhedra are all there is of a material nothing else touches.
+    // Polyhedra have no other partners.
     let round = |m: u32| {
         let point = |b: &Body| b.material == m && !matches!(input.shapes[b.shape], Shape::Polyhedron(_));
         bodies.iter().any(|b| point(&b)) || input.planes.iter().any(|p| p.material as u32 == m)
@@ -400,10 +383,8 @@ fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
     partners
 }
 
-/// Notes what the laws of contact mean for the walls: the damping of drives, and a lower limit of the time step
-/// where the rigid body of a wall needs it; returns the longest step [s] that is stable whatever comes to touch such a body before the contacts that are
-/// there are looked at. `radii` are those of the smallest and the largest sphere [m], `expected`
-/// the overlap expected over the radius.
+/// Sets servo damping and rigid-body step limits; returns the longest step [s] stable for contacts arising
+/// between stability checks. `radii`: smallest, largest sphere [m]; `expected`: overlap over radius.
 pub(crate) fn walls(
     walls: &mut Walls,
     limit: &mut DtLimit,
@@ -437,7 +418,7 @@ pub(crate) fn walls(
         }
         for &Partner { material, radius, face } in &partners {
             let point = laws.stiffness(wall.material, material, expected * radii.1, radii.1);
-            // Spheres and planes touch by a point or two, polyhedra by as much as a face has.
+            // Points for spheres and planes, up to a full face for polyhedra.
             let times = face.map_or(1.0, |f| f.worth(laws, [wall.material, material], point));
             let stiffness = times * point;
             if !stiffness.is_finite() {
@@ -446,7 +427,7 @@ pub(crate) fn walls(
             let ratio = laws.tangential_ratio(wall.material, material) * if laws.rolls() { 2.0 } else { 1.0 };
             let zeta = laws.damping_ratio(wall.material, material);
             let dt = body.step_limit(stiffness, stiffness * ratio, zeta, radius);
-            // Faces of many that lie on it are known from the contacts; one may come to lie on it between two looks at them.
+            // Existing face contacts are measured; new ones may form between two checks.
             let sudden = if face.is_some() {
                 0.5 * body.step_limit(stiffness, stiffness * ratio, zeta, f64::INFINITY)
             } else {
@@ -458,15 +439,14 @@ pub(crate) fn walls(
     least
 }
 
-/// The same for walls that touch each other ([`Shells`]): the longest step [s] with which one may come to lie on another between two looks at
-/// what the contacts allow, as flat and as stiff as their corners and edges let it.
+/// As `walls`, for walls landing flat on each other ([`Shells`]).
 pub(crate) fn shells(walls: &mut Walls, limit: &mut DtLimit, shells: &Shells, laws: &Laws) -> f64 {
     let mut least = f64::INFINITY;
     for &[a, b] in &shells.pairs {
         let [own, other] = [a, b].map(|k| walls.walls[k as usize].material);
         let [first, second] = [shells.radius(a), shells.radius(b)];
         let reach = first + second;
-        // What it is where they are about to come through each other.
+        // Stiffness just before interpenetration is rejected.
         let corner = laws.stiffness(own, other, DEEPEST * reach, first.max(second));
         let edge = match laws.edges([own, other]) {
             None => corner / (LENGTH * reach),
@@ -476,7 +456,7 @@ pub(crate) fn shells(walls: &mut Walls, limit: &mut DtLimit, shells: &Shells, la
         let stiffness = corners * corner + length * edge;
         let ratio = laws.tangential_ratio(own, other) * if laws.rolls() { 2.0 } else { 1.0 };
         let zeta = laws.damping_ratio(own, other);
-        // A drive has to know the dashpots of what it presses.
+        // The servo needs the dashpots of its contacts.
         let driven = &mut walls.walls[b as usize].damping;
         *driven = driven.max(zeta);
         for k in [a, b] {

@@ -1,4 +1,4 @@
-//! Walls that touch each other: bodies of triangles and all other walls of patches (`contact/kind/shell.rs`).
+//! Contacts between walls: bodies of triangles and other patch walls (`contact/kind/shell.rs`).
 
 use super::model::Model;
 use super::state::State;
@@ -12,20 +12,18 @@ use crate::pairs::meets::Meet;
 use crate::spatial::patchwork::WallNow;
 use crate::wall::shells::Form;
 
-/// Share of the radii of two walls that they may approach each other by in a step, so that nothing passes through a surface unseen.
+/// Largest approach per step over the radii of two walls, against undetected penetration.
 const LARGEST_STEP: f64 = 0.5;
 
-/// Scratch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WallContacts {
-    /// What each wall does to others in a step; empty where none touches another.
+    /// Load of each wall on others; empty without contacts.
     pub sums: Vec<WallSum>,
     now: Vec<WallNow>,
     met: Met,
     old: Vec<Meet>,
 }
 
-/// Finds where a pair touches, if it may.
 fn find(model: &Model, [a, b]: [u32; 2], now: &[WallNow], met: &mut Met) {
     met.clear();
     let [own, other] = [a, b].map(|k| &now[k as usize]);
@@ -47,7 +45,6 @@ fn find(model: &Model, [a, b]: [u32; 2], now: &[WallNow], met: &mut Met) {
     }
 }
 
-/// Sums up what walls do to each other in a step.
 pub(crate) fn forces(
     model: &Model,
     state: &mut State,
@@ -86,20 +83,19 @@ pub(crate) fn forces(
     failure
 }
 
-/// Largest speed of a point of a wall [m/s].
+/// Largest speed of a wall point [m/s].
 fn speed(model: &Model, state: &State, wall: u32) -> f64 {
     let (wall, own) = (&model.walls.walls[wall as usize], &state.walls[wall as usize]);
     own.velocity.norm() + own.spin.norm() * wall.reach
 }
 
-/// What belongs to one other wall of memory in order.
 fn of(meets: &[Meet], other: u32) -> &[Meet] {
     let from = meets.partition_point(|m| m.other < other);
     let to = meets.partition_point(|m| m.other <= other);
     &meets[from..to]
 }
 
-/// Calls `f` with the two walls of each contact between walls, and the contact, as they were `back` seconds ago.
+/// `back`: seconds ago.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut([u32; 2], &ContactNow<'_>)) {
     if model.shells.pairs.is_empty() {
         return;

@@ -1,7 +1,7 @@
-//! What walls do at the end of a step: they take the forces of the grains and of each other, book what they did, and move on.
+//! Wall motion at the end of a step.
 //!
-//! A wall with prescribed motion does work F·v̄ + M·ω̄ with the means of its velocities before and after the step: those
-//! of the bodies' half steps. The prescribed oscillation enters by the displacement, so that it does not drift.
+//! A prescribed wall does work F·v̄ + M·ω̄, with mean velocities before and after the step, consistent with
+//! the bodies' half steps. Prescribed oscillations set the displacement, so they do not drift.
 
 use super::model::Model;
 use super::state::State;
@@ -16,7 +16,6 @@ use crate::wall::body::{self, Ground};
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
 
-/// What grains and other walls felt from a wall.
 fn booked(work: &Work, wall: usize) -> WallSum {
     let within = work.blocks.iter().map(|w| &w.patches.wall_sums);
     let across = work.cross.iter().map(|w| &w.wall_sums);
@@ -27,7 +26,7 @@ fn booked(work: &Work, wall: usize) -> WallSum {
     sum
 }
 
-/// Moves all walls of patches by one step; returns the largest speed of any point of them, and the first failure.
+/// Returns the largest point speed and the first failure.
 pub(crate) fn advance(
     model: &Model,
     state: &mut State,
@@ -82,7 +81,7 @@ pub(crate) fn advance(
                 let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * kick;
                 if wall.servo.is_some() {
                     ledger.work_servo += done;
-                    // A drive without mass may jump within a step, which dashpots do not know of before the next one.
+                    // A massless servo may jump within a step, which the dashpots miss.
                     ledger.dissipated_dashpot += sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
                     own.change = own.velocity - before;
                 } else {
@@ -95,7 +94,7 @@ pub(crate) fn advance(
                 speed
             }
         };
-        // Whatever moves a wall, it must not pass by a grain within a step.
+        // A wall must not pass a grain within a step.
         if (speed.is_nan() || speed > bound) && failure.is_none() {
             failure = Some(Failure::Wall { wall: k as u32, speed, bound });
         }
@@ -104,7 +103,7 @@ pub(crate) fn advance(
     (fastest, failure.or_else(|| meeting(model, state)))
 }
 
-/// Two bodies that do not touch each other and whose bounds meet.
+/// Finds two non-interacting bodies with overlapping bounds.
 fn meeting(model: &Model, state: &State) -> Option<Failure> {
     let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.stands());
     let bodies = || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(k, _)| round(*k));
@@ -137,7 +136,7 @@ fn meeting(model: &Model, state: &State) -> Option<Failure> {
     None
 }
 
-/// Bound on the way that any point of a wall has come since it was as in `before` [m].
+/// Bound on the displacement of wall points since `before` [m].
 pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
     model
         .walls
@@ -153,7 +152,6 @@ pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<
         .fold(0.0, f64::max)
 }
 
-/// The planes that bodies of triangles may stand on, for a step of `dt` [s].
 pub(crate) fn ground<'a>(model: &'a Model, motions: &'a [PlaneMotion], dt: f64) -> Ground<'a> {
     Ground { laws: &model.laws, planes: &model.planes, motions, tip_radius: model.radii.0, dt }
 }

@@ -1,4 +1,4 @@
-//! Scratch of the step: never saved, made anew from a state at any time without changing a bit of what follows.
+//! Scratch data of the step: never saved, rebuilt from a state with bitwise identical results.
 
 use super::block_work::{BlockWork, Ground};
 use super::candidates::Listed;
@@ -22,28 +22,25 @@ use crate::spatial::surface::SurfaceContact;
 use nalgebra::UnitQuaternion;
 use std::ops::Range;
 
-/// What the search knows: whether the candidates exist, and where walls were when they were found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Searched {
     pub listed: Option<Listed>,
     pub planes: Vec<Vec3>,
     pub walls: Vec<(Vec3, UnitQuaternion<f64>)>,
     pub surface_drift: f64,
-    /// Searches, and near lists made from what they found.
+    /// Searches, neighbour list builds.
     pub searches: u64,
     pub refreshes: u64,
 }
 
-/// The scratch. Build it with [`Work::new`] for one state; it follows that state from then on.
+/// Scratch data of one state ([`Work::new`]).
 #[derive(Clone, Debug)]
 pub struct Work {
     pub(crate) members: Vec<Members>,
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossForces>,
-    /// Scratch of [`super::threads::through`].
     pub(crate) beyond: Vec<CrossForces>,
     pub(crate) bonds: BondWork,
-    /// Pairs that are not for the ordinary contacts.
     pub(crate) held: Held,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
@@ -51,37 +48,31 @@ pub struct Work {
     pub(crate) merging: Buffers<Merging>,
     pub(crate) keep_forces: bool,
     pub(crate) searched: Searched,
-    /// What the processor computes four lanes with.
     pub(crate) simd: Simd,
     pub(crate) planes: Vec<PlaneNow>,
-    /// Walls of patches where they are, where bodies with faces may touch them.
     pub(crate) walls: Vec<WallNow>,
     pub(crate) wall_contacts: WallContacts,
-    /// What each body of a block has of ground that is scarred.
+    /// Surface below each body.
     pub(crate) ground: Vec<Ground>,
-    /// Scratch of cutting bodies.
     pub(crate) heights: Vec<f64>,
-    /// The external surface where it is, likewise.
     pub(crate) sheet: Vec<SheetFacet>,
-    /// The material of all bodies and of all planes, where there is only one.
+    /// Common material of bodies and of planes.
     pub(crate) material: Option<u32>,
     pub(crate) plane_material: Option<u32>,
-    /// Whether blocks are shared among threads.
     pub(crate) parallel: bool,
-    /// The blocks that are searched and moved here: all, unless other ranks have the rest (see [`crate::ranks`]).
+    /// Local blocks ([`crate::ranks`]).
     pub(crate) own: Range<usize>,
-    /// Bodies of other blocks that are known where they are (block, place), ascending.
+    /// Known bodies of other blocks (block, slot), ascending.
     pub(crate) halo: Vec<[u32; 2]>,
 }
 
 impl Work {
-    /// Contacts with the external surface in the last step, by block, then sphere, then patch.
+    /// Contacts with the external surface in the last step, by block, sphere, patch.
     pub fn surface_contacts(&self) -> &[SurfaceContact] {
         &self.surface_contacts
     }
 
-    /// Whether [`Work::contact_force`] and [`Work::contact_torque`] shall know the forces after a step; they take 64
-    /// bytes per body.
+    /// Enables [`Work::contact_force`] and [`Work::contact_torque`] (64 bytes per body).
     pub fn keep_forces(&mut self, keep: bool) {
         self.keep_forces = keep;
     }
@@ -91,17 +82,17 @@ impl Work {
         self.blocks[b as usize].tally.sums.get(k as usize)
     }
 
-    /// Sum of the contact forces on a body in the last step, if kept; else zero [N].
+    /// Contact force on a body [N]; zero if not kept.
     pub fn contact_force(&self, state: &State, body: usize) -> Vec3 {
         self.sums(state, body).map(|s| xyz(s.force())).unwrap_or_default()
     }
 
-    /// Sum of the contact torques on a body about its centre in the last step, if kept; else zero [N m].
+    /// Contact torque about the centre [N m]; zero if not kept.
     pub fn contact_torque(&self, state: &State, body: usize) -> Vec3 {
         self.sums(state, body).map(|s| xyz(s.torque())).unwrap_or_default()
     }
 
-    /// How often candidates were searched and how often the near list was made from them.
+    /// Number of searches and of neighbour list builds.
     pub fn rebuilds(&self) -> (u64, u64) {
         (self.searched.searches, self.searched.refreshes)
     }

@@ -1,50 +1,48 @@
-//! Bodies bounded by triangles: whether a point is inside, how far the surface is, what volume it encloses.
+//! Closed triangle surfaces: point-in-solid test, surface proximity, enclosed volume.
 //!
-//! Inside is where a ray along +z crosses the surface an odd number of times. The triangles are projected along z and
-//! the crossings decided by the half-open rule of polygon filling: an edge counts where exactly one of its ends is
-//! above the point's y. Each edge is evaluated from its lower vertex number, so neighbours agree to the last bit: a
-//! ray through an edge or a vertex is counted right without any tolerance. Nothing is asked of the order of a
-//! triangle's vertices, nor that edges join just two triangles: closed means that every edge joins an even number.
-//! The volume takes the outside of each triangle from the same test.
+//! A point is inside if a ray along +z crosses the surface an odd number of times. Triangles are projected
+//! along z; an edge counts if exactly one end is above the point's y (half-open rule). Edges are evaluated
+//! from the lower vertex index, so neighbours agree bitwise and no tolerance is needed. Orientation is
+//! arbitrary; every edge must join an even number of triangles.
 //!
 //! Source: crossing number with consistent edges (Haines, Graphics Gems IV, 1994; own form for triangles).
-//! Limits: the surface must not cut itself; points on it count as either side.
+//! Limits: no self-intersection; surface points count as either side.
 
 use crate::base::Vec3;
 use crate::shape::polyhedron::Surface;
 use crate::spatial::distance::Nearest;
 use std::collections::BTreeMap;
 
-/// Why triangles do not bound a body.
+/// Defect of a closed surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
     /// No triangle.
     #[error("the surface has no triangle")]
     Empty,
-    /// A vertex is not finite.
+    /// Non-finite vertex.
     #[error("vertex {0} of the surface is not finite")]
     NotFinite(usize),
-    /// A triangle names a vertex that does not exist.
+    /// Unknown vertex.
     #[error("triangle {0} of the surface names a vertex that does not exist")]
     Index(usize),
-    /// The surface has a border.
+    /// Open boundary.
     #[error("the surface is not closed: {edges} edges join an odd number of triangles, one at ({}, {}, {}) m", .at[0], .at[1], .at[2])]
     Open {
-        /// Number of such edges.
+        /// Number of open edges.
         edges: usize,
-        /// Middle of one of them [m].
+        /// Midpoint of one [m].
         at: [f64; 3],
     },
 }
 
-/// A closed triangle surface.
+/// Closed triangle surface.
 #[derive(Clone, Debug)]
 pub struct ClosedSurface {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     low: Vec3,
     high: Vec3,
-    /// Triangles over each cell of a grid in x and y.
+    /// Triangles by grid cell in x and y.
     plan: Vec<Vec<u32>>,
     counts: [usize; 2],
     width: [f64; 2],
@@ -53,10 +51,10 @@ pub struct ClosedSurface {
 }
 
 impl ClosedSurface {
-    /// Checks the surface; vertices in the same place count as one.
+    /// Checks the surface; coincident vertices are merged.
     ///
     /// # Errors
-    /// [`SurfaceError`] when it has no triangle, a bad vertex, or a border.
+    /// [`SurfaceError`] for no triangle, an invalid vertex or an open boundary.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<ClosedSurface, SurfaceError> {
         if triangles.is_empty() {
             return Err(SurfaceError::Empty);
@@ -107,27 +105,27 @@ impl ClosedSurface {
         Ok(surface)
     }
 
-    /// Vertices [m], each place once.
+    /// Distinct vertices [m].
     pub fn vertices(&self) -> &[Vec3] {
         &self.vertices
     }
 
-    /// Vertices of each triangle.
+    /// Vertex indices of each triangle.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Corners of the box around it [m].
+    /// Bounding box [m].
     pub fn bounds(&self) -> (Vec3, Vec3) {
         (self.low, self.high)
     }
 
-    /// Volume enclosed [m³].
+    /// Enclosed volume [m³].
     pub fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// Whether a point is inside.
+    /// Returns true if a point is inside.
     pub fn contains(&self, p: &Vec3) -> bool {
         if (0..3).any(|d| !(p[d] >= self.low[d] && p[d] <= self.high[d])) {
             return false;
@@ -137,12 +135,12 @@ impl ClosedSurface {
         above.count() % 2 == 1
     }
 
-    /// Whether a sphere lies wholly inside.
+    /// Returns true if a sphere is entirely inside.
     pub fn holds(&self, centre: &Vec3, radius: f64) -> bool {
         self.contains(centre) && !self.meets(centre, radius)
     }
 
-    /// Whether the surface passes through a sphere.
+    /// Returns true if the surface intersects a sphere.
     pub fn meets(&self, centre: &Vec3, radius: f64) -> bool {
         self.nearest.closest((*centre).into()).distance < radius
     }
@@ -157,7 +155,7 @@ impl ClosedSurface {
         })
     }
 
-    /// Whether the ray from `p` along +z crosses a triangle.
+    /// Ray from `p` along +z.
     fn crossed(&self, t: usize, p: &Vec3) -> bool {
         let ids = self.triangles[t];
         let mut ends = [[0.0; 2]; 2];
@@ -178,7 +176,7 @@ impl ClosedSurface {
         ends[0][1] + share * (ends[1][1] - ends[0][1]) > p.z
     }
 
-    /// ⅓ Σ x·n A with the normals that look outward.
+    /// ⅓ Σ x·n A with outward normals.
     fn enclosed(&self) -> f64 {
         let middle = 0.5 * (self.low + self.high);
         let small = 1e-7 * (self.high - self.low).norm();
@@ -198,14 +196,13 @@ impl ClosedSurface {
     }
 }
 
-/// Vertices with each place once, and the triangles that remain triangles.
 fn welded(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut seen: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let mut kept = Vec::new();
     let number: Vec<u32> = vertices
         .iter()
         .map(|v| {
-            // Adding 0 makes −0 the same place as 0.
+            // Adding 0 maps −0 to 0.
             let key: [u64; 3] = std::array::from_fn(|d| (v[d] + 0.0).to_bits());
             *seen.entry(key).or_insert_with(|| {
                 kept.push(*v);

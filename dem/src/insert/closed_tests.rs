@@ -4,7 +4,7 @@ use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::PI;
 
-/// The unit cube with its faces cut into n × n squares, every second triangle turned over.
+/// Unit cube, n × n squares per face, every second triangle flipped.
 fn cube(n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for d in 0..3 {
@@ -28,7 +28,7 @@ fn cube(n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// A ball of radius 1 about `centre`, by latitudes and longitudes, vertices unturned.
+/// Unit ball by latitude and longitude.
 fn ball(centre: Vec3, n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices = Vec::new();
     for i in 0..=n {
@@ -55,9 +55,8 @@ fn random() -> impl FnMut() -> f64 {
     move || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Points whose rays run exactly through vertices, along edges and within faces of a cube of unoriented triangles.
 #[test]
-fn rays_through_edges_and_vertices_are_counted_right() {
+fn counts_rays_through_edges_and_vertices() {
     let (vertices, triangles) = cube(4);
     let surface = ClosedSurface::new(&vertices, &triangles).unwrap();
     assert_relative_eq!(surface.volume(), 1.0, max_relative = 1e-13);
@@ -79,7 +78,7 @@ fn rays_through_edges_and_vertices_are_counted_right() {
     assert!(!surface.holds(&Vec3::new(3.0, 0.5, 0.5), 0.1));
 }
 
-/// A ball with a ball-shaped hollow: two shells, one inside the other.
+/// Ball with a spherical cavity.
 #[test]
 fn hollow_ball_against_the_closed_form() {
     let n = 60;
@@ -90,7 +89,7 @@ fn hollow_ball_against_the_closed_form() {
     vertices.extend(inner.iter().map(|v| centre + (v - centre) * 0.5));
     triangles.extend(faces.iter().map(|t| [t[2] + first, t[1] + first, t[0] + first]));
     let surface = ClosedSurface::new(&vertices, &triangles).unwrap();
-    // The polyhedron lies within 1 − cos(π/2n) of the ball.
+    // Faceting error: 1 − cos(π/2n).
     assert_relative_eq!(surface.volume(), 4.0 / 3.0 * PI * (1.0 - 0.125), max_relative = 3e-3);
     let mut unit = random();
     let mut found = [0; 2];

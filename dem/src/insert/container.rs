@@ -1,36 +1,36 @@
-//! Where grains are filled in: a box, a cylinder or cone, a closed surface.
+//! Filling regions: box, cylinder or cone, closed surface.
 
 use super::closed::ClosedSurface;
 use crate::base::Vec3;
 use std::f64::consts::PI;
 
-/// A space to fill.
+/// Region to fill.
 #[derive(Clone, Debug)]
 pub enum Container {
-    /// A box along the axes.
+    /// Axis-aligned box.
     Box {
         /// Lower corner [m].
         low: Vec3,
         /// Upper corner [m].
         high: Vec3,
     },
-    /// A cylinder, or a cone cut off at both ends (a funnel).
+    /// Cylinder or truncated cone (funnel).
     Cone {
-        /// Middle of one end [m].
+        /// First end centre [m].
         from: Vec3,
-        /// Middle of the other end [m].
+        /// Second end centre [m].
         to: Vec3,
         /// Radius at `from` [m].
         from_radius: f64,
         /// Radius at `to` [m].
         to_radius: f64,
     },
-    /// The inside of a closed surface.
+    /// Interior of a closed surface.
     Surface(ClosedSurface),
 }
 
 impl Container {
-    /// Its volume [m³].
+    /// Volume [m³].
     pub fn volume(&self) -> f64 {
         match self {
             Container::Box { low, high } => (high - low).iter().product(),
@@ -41,12 +41,12 @@ impl Container {
         }
     }
 
-    /// Corners of a box around it [m].
+    /// Bounding box [m].
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {
             Container::Box { low, high } => (*low, *high),
             Container::Cone { from, to, from_radius, to_radius } => {
-                // A disc of radius r across the unit vector n reaches r √(1 − n_d²) along d.
+                // A disc of radius r normal to n extends r √(1 − n_d²) along d.
                 let n = (to - from).normalize();
                 let reach = n.map(|x| (1.0 - x * x).max(0.0).sqrt());
                 let (a, b) = (reach * *from_radius, reach * *to_radius);
@@ -56,7 +56,7 @@ impl Container {
         }
     }
 
-    /// Whether a sphere lies wholly inside.
+    /// Returns true if a sphere is entirely inside.
     pub fn holds(&self, centre: &Vec3, radius: f64) -> bool {
         match self {
             Container::Box { low, high } => {
@@ -68,7 +68,7 @@ impl Container {
                 let along = (centre - from).dot(&axis);
                 let off = (centre - from - axis * along).norm();
                 let slope = (to_radius - from_radius) / length;
-                // Distance to the side: across it, not across the axis.
+                // Normal distance to the side.
                 let side = (from_radius + slope * along - off) / (1.0 + slope * slope).sqrt();
                 along >= radius && along + radius <= length && side >= radius
             }
@@ -82,8 +82,8 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
-    /// Volume by random points, and a sphere that just fits a funnel: its largest radius at height h above the tip is
-    /// h sin α for half the opening angle α.
+    /// Monte Carlo volume; largest sphere in a funnel: radius h sin α at height h above the tip, half opening
+    /// angle α.
     #[test]
     fn cones_hold_what_fits() {
         let (from, to) = (Vec3::new(0.2, 0.1, -0.3), Vec3::new(0.8, -0.5, 0.9));

@@ -1,10 +1,8 @@
-//! Inlets and outlets: bodies that are taken out of a run and put in.
+//! Inlets and outlets: insertion and removal of bodies during a run.
 //!
-//! All bodies that a run will ever see are in the model from the start. One that is *absent* is in no block, so that no
-//! loop over blocks meets it; [`State::present`] tells. [`exchange`] takes bodies out and puts bodies in between two steps,
-//! and books what they brought and took, so that the accounts of energy and momentum close as ever.
+//! All bodies are in the model from the start; absent ones belong to no block ([`State::present`]).
 //!
-//! Limits: no boxes, and no bodies that the model joins by bonds.
+//! Limits: no boxes, no bonded bodies.
 
 use crate::base::Vec3;
 use crate::base::error::StepError;
@@ -20,48 +18,45 @@ use crate::measure;
 use nalgebra::UnitQuaternion;
 use std::collections::BTreeMap;
 
-/// A body on its way in.
+/// Body to insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
     /// Body (index).
     pub body: usize,
     /// Centre of mass [m].
     pub position: Vec3,
-    /// Turns the shape's frame into the world's; single spheres do not track theirs.
+    /// Rotation from shape frame to world; not tracked for single spheres.
     pub orientation: UnitQuaternion<f64>,
-    /// Velocity at the state's time [m/s].
+    /// Velocity at the current time [m/s].
     pub velocity: Vec3,
-    /// Angular velocity, in world axes [rad/s].
+    /// Angular velocity in world axes [rad/s].
     pub spin: Vec3,
 }
 
-/// Why bodies cannot be taken out or put in.
+/// Failed insertion or removal.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FlowError {
-    /// The body cannot.
+    /// Body not supported.
     #[error("body {body} cannot be {what}: {problem}")]
     Body {
         /// Index of the body.
         body: usize,
         /// `"taken out"` or `"put in"`.
         what: &'static str,
-        /// Why not.
+        /// Reason.
         problem: &'static str,
     },
-    /// What computes the steps cannot take the bodies over.
+    /// Back end failure.
     #[error(transparent)]
     Step(#[from] StepError),
 }
 
-/// Takes out the bodies `leave` and puts in `arrive`, which may be bodies that have just left. Contacts among bodies that
-/// stay keep their memory; those of bodies taken out cease to be. The velocities that the leapfrog keeps are those half a
-/// step ago: of a body put in, the given one less half a step of gravity, so that it falls freely as from its place and
-/// velocity at the state's time.
-///
-/// The energy and momentum of half a step ago that go and come are booked in the ledger.
+/// Removes the bodies `leave` and inserts `arrive`, possibly the same; remaining contacts keep their history.
+/// Leapfrog velocities of inserted bodies lag by half a step of gravity; energy and momentum of that instant
+/// are balanced.
 ///
 /// # Errors
-/// [`FlowError`] names the first body that cannot leave or come; nothing is changed then.
+/// [`FlowError`] of the first invalid body; nothing is changed.
 pub fn exchange(
     model: &Model,
     state: &mut State,
@@ -115,7 +110,7 @@ pub fn exchange(
         state.set_velocity(model, body, velocity, a.spin);
     }
     if !arrive.is_empty() {
-        // They touch nothing: what they bring is their own.
+        // Without contacts, only their own energy enters.
         let come = |b: usize| by_number.contains_key(&b);
         state.ledger.work_flow += measure::energies_of(model, state, come).total();
         let momentum = measure::momentum_of(model, state, come);
@@ -130,7 +125,6 @@ fn row(model: &Model, a: &Arrival) -> Row {
     Row::at_rest(model, a.body, &a.position, rotation)
 }
 
-/// Whether each body has a bond in the model; empty where there are none.
 fn bonded(model: &Model) -> Vec<bool> {
     let mut bonded = if model.bonds.is_empty() { Vec::new() } else { vec![false; model.bodies.len()] };
     for bond in &model.bonds {

@@ -13,7 +13,7 @@ use crate::{Model, ModelError, step};
 
 const SIDE: f64 = 0.12;
 
-/// Spheres and dumbbells in a shaft with a floor, or one that repeats itself along x; every fifth is absent at the start.
+/// Shaft with spheres and dumbbells, optionally periodic along x; every fifth body is absent.
 fn input(periodic: bool) -> ModelInput {
     let material = Material {
         stiffness: 2e4,
@@ -63,7 +63,7 @@ impl Run {
         exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
     }
 
-    /// What the sum of energies is to keep [J].
+    /// Conserved energy sum [J].
     fn account(&self) -> f64 {
         let ledger = &self.state.ledger;
         measure::energies(&self.model, &self.state).total() + ledger.dissipated() - ledger.work()
@@ -75,7 +75,6 @@ impl Run {
     }
 }
 
-/// Takes out the lowest bodies and puts as many of the waiting ones in above the others.
 fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut Places) -> (usize, usize) {
     let low: Vec<usize> = (0..run.model.body_count())
         .filter(|&b| run.state.present(b) && run.state.position(b).z < 0.03)
@@ -95,10 +94,9 @@ fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut Places) -> (u
     (low.len(), arrive.len())
 }
 
-/// The accounts of energy and momentum close while bodies come and go as well as they do without; springs that vanish
-/// are among what is booked.
+/// Energy and momentum balances close as without exchange, including vanishing springs.
 #[test]
-fn accounts_close_while_bodies_come_and_go() {
+fn balances_close_during_insertion_and_removal() {
     for periodic in [false, true] {
         let mut run = Run::new(input(periodic));
         let mut waiting: Vec<usize> =
@@ -132,7 +130,7 @@ fn accounts_close_while_bodies_come_and_go() {
     }
 }
 
-/// A contact between two bodies as seen by the one with the lower number, or with a plane.
+/// Oriented from the lower body index or against a plane.
 fn forces(run: &Run) -> Vec<((usize, usize, usize), Vec3)> {
     let mut list: Vec<_> = contacts(&run.model, &run.state)
         .iter()
@@ -148,7 +146,7 @@ fn forces(run: &Run) -> Vec<((usize, usize, usize), Vec3)> {
 }
 
 #[test]
-fn contacts_of_those_that_stay_keep_their_forces() {
+fn remaining_contacts_keep_forces() {
     for periodic in [false, true] {
         let mut run = Run::new(input(periodic));
         run.steps(4000);
@@ -157,7 +155,7 @@ fn contacts_of_those_that_stay_keep_their_forces() {
         let mut expected = forces(&run);
         let all = expected.len();
         expected.retain(|((a, b, plane), _)| !leave.contains(a) && (*plane > 0 || !leave.contains(b)));
-        // One comes back at once, to its old place: of what it touched nothing is remembered.
+        // Reinsertion at the old position resets history.
         let position = run.state.position(leave[0]);
         let back = Arrival {
             body: leave[0],
@@ -174,7 +172,7 @@ fn contacts_of_those_that_stay_keep_their_forces() {
         for (x, y) in expected.iter().zip(&found) {
             assert_eq!(x.0, y.0);
             same += usize::from(x.1 == y.1);
-            // Seen from the other side the last bit may differ.
+            // Reversed orientation may change the last bit.
             assert!((x.1 - y.1).norm() <= 1e-12 * x.1.norm(), "{x:?} {y:?}");
         }
         assert!(same * 10 > found.len() * 7, "{same} of {}", found.len());
@@ -183,9 +181,9 @@ fn contacts_of_those_that_stay_keep_their_forces() {
     }
 }
 
-/// Where it is after n steps: x + v t + g t²/2 at all steps, whatever the others do; without a memory of its first life.
+/// x + v t + g t²/2 at every step, without previous history.
 #[test]
-fn a_body_put_in_falls_as_it_should() {
+fn inserted_body_falls_freely() {
     for body in [4, 9, 3] {
         let mut run = Run::new(input(false));
         run.steps(333);
@@ -205,7 +203,7 @@ fn a_body_put_in_falls_as_it_should() {
         let t = run.state.time - begun;
         assert!(t > 0.01, "{t} {}", run.model.dt());
         if matches!(run.model.shape(body), Shape::Clump(_)) {
-            // It turns about z; the axes of its shape are not those of its inertia, so about z only for a short while.
+            // Shape and inertia axes differ: rotation stays about z only briefly.
             let angle = run.state.orientation(&run.model, body).angle();
             assert!(angle > 0.3 && (run.state.spin(body) - spin).norm() < 7.0, "{angle}");
         } else {
@@ -214,7 +212,7 @@ fn a_body_put_in_falls_as_it_should() {
     }
 }
 
-/// All may leave; the run goes on without any, and with those that come later.
+/// All bodies may leave and return.
 #[test]
 fn a_run_without_any_body() {
     let mut run = Run::new(input(true));
@@ -237,7 +235,7 @@ fn a_run_without_any_body() {
     run.exchange(&[], &arrive).unwrap();
     run.steps(4000);
     assert!(run.state.present_count() == 1 && run.state.position(77).z < 0.011);
-    // It rests on the floor, and none but itself counts.
+    // In contact with the floor only.
     assert_eq!(measure::coordination(&run.model, &run.state), 1.0);
     let found = contacts(&run.model, &run.state);
     let all = measure::coordination_of(&run.model, &run.state, &found, |_| true);
@@ -246,9 +244,8 @@ fn a_run_without_any_body() {
     assert!(ratio < 1e-3, "{ratio}");
 }
 
-/// A run sorted anew after the change goes on with the same bits from a copy with fresh scratch.
 #[test]
-fn fresh_scratch_goes_on_with_the_same_bits() {
+fn new_scratch_continues_bitwise() {
     let mut run = Run::new(input(false));
     let mut waiting: Vec<usize> = (0..160).filter(|&b| !run.state.present(b)).collect();
     run.steps(700);
@@ -264,7 +261,7 @@ fn fresh_scratch_goes_on_with_the_same_bits() {
 }
 
 #[test]
-fn what_cannot_leave_or_come_is_named() {
+fn rejects_invalid_exchange() {
     let mut input = input(false);
     let position = Vec3::new(0.06, 0.06, 0.7);
     input.bodies.push(BodyInput { shape: 2, position, ..BodyInput::default() });

@@ -1,18 +1,15 @@
-//! Gradation: the mass passing each sieve, and stones drawn from it.
+//! Grading curve and grain sizes drawn from it.
 //!
-//! Between two sieves a < b that hold the mass fraction M the mass is uniform over ln d, the straight line of the
-//! usual sieve diagram. Stones of one shape have mass ∝ d³, so the *number* of stones per size is
+//! Between sieves a < b with mass fraction M, mass is uniform over ln d. With mass ∝ d³ the number per size
+//! is
 //!
 //! ```text
 //! dn = M / ln(b/a) · d⁻⁴ dd,    n(d) − n(a) = M / (3 ln(b/a)) · (a⁻³ − d⁻³),
 //! ```
 //!
-//! which is inverted in closed form. Stones are drawn at stratified quantiles of n: one per n-th part of the
-//! distribution, jittered inside it, then shuffled. The passing curve of n stones thus errs by about 1/n, where
-//! independent draws would err by about 1/√n.
+//! inverted in closed form. Stratified quantiles of n have a passing error of about 1/n instead of 1/√n.
 //!
-//! Limits: the size of a stone is its sieve size; the mass per size³ must not depend on the size, so shapes are to
-//! be dealt out independently of the sizes.
+//! Limits: grain size is sieve size; shapes must not depend on size.
 //!
 //! Theory manual: equation (2.2) of `docs/theory/shapes.md`.
 
@@ -21,10 +18,10 @@ use serde::{Deserialize, Serialize};
 
 const PURPOSE: u64 = 1;
 
-/// Why a sieve table is not a gradation.
+/// Invalid grading.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GradationError {
-    /// The columns differ in length, or there are fewer than two sieves.
+    /// Unequal columns, or fewer than two sieves.
     #[error(
         "a gradation needs at least two sieves and one passing value for each: {sizes} sizes, {passing} values"
     )]
@@ -34,45 +31,45 @@ pub enum GradationError {
         /// Number of passing values.
         passing: usize,
     },
-    /// A sieve size is not positive and finite, or not above the one before.
+    /// Size not positive and finite, or not ascending.
     #[error("sieve {index}: size {size} m; sizes must be positive and strictly rising")]
     Size {
-        /// Row from 0, by rising size.
+        /// Row index, ascending size.
         index: usize,
-        /// The size [m].
+        /// Size [m].
         size: f64,
     },
-    /// A passing fraction is outside 0..1 or falls with rising size.
+    /// Passing fraction outside 0–1 or descending.
     #[error(
         "sieve {index}: passing fraction {passing}; fractions must lie in 0..1 and never fall with rising size"
     )]
     Passing {
-        /// Row from 0, by rising size.
+        /// Row index, ascending size.
         index: usize,
-        /// The fraction [-].
+        /// Fraction [-].
         passing: f64,
     },
-    /// A lower limit is above the upper one.
+    /// Lower above upper limit.
     #[error("sieve {index}: lower limit {lo} is above the upper limit {hi}")]
     Limits {
-        /// Row from 0, by rising size.
+        /// Row index, ascending size.
         index: usize,
-        /// Lower limit of the fraction [-].
+        /// Lower limit [-].
         lo: f64,
-        /// Upper limit of the fraction [-].
+        /// Upper limit [-].
         hi: f64,
     },
-    /// Not everything passes the largest sieve.
+    /// Passing below 1 at the largest sieve.
     #[error("only the fraction {0} passes the largest sieve; it must be 1, add a larger sieve")]
     Oversize(f64),
-    /// Something passes the smallest sieve: the sizes of that part are unknown.
+    /// Passing above 0 at the smallest sieve.
     #[error(
         "the fraction {0} passes the smallest sieve; add a finest size with nothing passing, or cut the fines"
     )]
     Fines(f64),
 }
 
-/// A mass passing curve.
+/// Grading curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gradation {
     sizes: Vec<f64>,
@@ -80,10 +77,10 @@ pub struct Gradation {
 }
 
 impl Gradation {
-    /// A curve from sieve sizes [m], strictly rising, and the mass fractions passing them [-], from 0 to 1.
+    /// Builds a curve from ascending sieve sizes [m] and mass fractions passing [-], 0 to 1.
     ///
     /// # Errors
-    /// [`GradationError`], naming the row.
+    /// [`GradationError`] with the row.
     pub fn new(sizes: &[f64], passing: &[f64]) -> Result<Gradation, GradationError> {
         let n = sizes.len();
         if n < 2 || passing.len() != n {
@@ -107,14 +104,12 @@ impl Gradation {
         Ok(Gradation { sizes: sizes.to_vec(), passing: passing.to_vec() })
     }
 
-    /// The middle of a standard's limits: sieve sizes [m], strictly rising, lower and upper mass fractions passing.
-    ///
-    /// Standards let a little pass the smallest sieve without saying how fine it is. With `finest` [m] that part
-    /// reaches from there to the smallest sieve; with `None` it is cut off and the rest rescaled to 1, which keeps
-    /// small stones from setting the time step.
+    /// Mean of a standard's limits: ascending sieve sizes [m], lower and upper mass fractions passing. Grains
+    /// below the first sieve extend to `finest` [m], or are cut (`None`), as small grains govern the time
+    /// step.
     ///
     /// # Errors
-    /// [`GradationError`], naming the row of the table extended by `finest`.
+    /// [`GradationError`] with the row of the extended table.
     pub fn from_limits(
         sizes: &[f64],
         lo: &[f64],
@@ -143,22 +138,22 @@ impl Gradation {
         Gradation::new(&sizes, &passing)
     }
 
-    /// Sieve sizes [m], rising.
+    /// Sieve sizes [m], ascending.
     pub fn sizes(&self) -> &[f64] {
         &self.sizes
     }
 
-    /// Mass fraction passing each sieve [-], from 0 to 1.
+    /// Mass fraction passing each sieve [-].
     pub fn passing(&self) -> &[f64] {
         &self.passing
     }
 
-    /// The same curve for stones `s` times as large (`s` > 0).
+    /// Scales sizes by `s` > 0.
     pub fn scaled(&self, s: f64) -> Gradation {
         Gradation { sizes: self.sizes.iter().map(|d| d * s).collect(), passing: self.passing.clone() }
     }
 
-    /// Mass fraction finer than `size` [m], linear in ln(size) between sieves.
+    /// Mass fraction finer than `size` [m], linear in ln(size).
     pub fn passing_at(&self, size: f64) -> f64 {
         let k = self.sizes.partition_point(|&d| d <= size);
         if k == 0 {
@@ -171,12 +166,12 @@ impl Gradation {
         self.passing[k - 1] + t * (self.passing[k] - self.passing[k - 1])
     }
 
-    /// Mean of size³ over the number of stones [m³]; times a shape's volume at size 1 it is the mean stone volume.
+    /// Number mean of size³ [m³].
     pub fn mean_cube(&self) -> f64 {
         1.0 / self.number_weights().iter().sum::<f64>()
     }
 
-    /// Stones per class and unit of Σ d³ [m⁻³].
+    /// Grains per class and unit of Σ d³ [m⁻³].
     fn number_weights(&self) -> Vec<f64> {
         let class = |k: usize| {
             let (a, b) = (self.sizes[k], self.sizes[k + 1]);
@@ -185,13 +180,13 @@ impl Gradation {
         (0..self.sizes.len() - 1).map(class).collect()
     }
 
-    /// Sizes [m] of `n` stones whose passing curve is this one, in random order; the same for the same seed.
+    /// Draws `n` sizes [m] in random order, reproducible by `seed`.
     pub fn sample(&self, n: usize, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed, PURPOSE);
         let weights = self.number_weights();
         let total: f64 = weights.iter().sum();
         let mut class = 0;
-        let mut below = 0.0; // number weight of the classes passed
+        let mut below = 0.0; // number weight of classes passed
         let mut sorted = Vec::with_capacity(n);
         for i in 0..n {
             let at = total * (i as f64 + random.uniform()) / n as f64;
@@ -207,9 +202,8 @@ impl Gradation {
     }
 }
 
-/// Mass fraction [-] of stones (size [m], mass [kg]) that passes each of the `sieves` [m].
-///
-/// A stone passes the sieves that are larger than it or equal. Without mass every fraction is 0.
+/// Mass fraction [-] of grains (size [m], mass [kg]) passing `sieves` [m], equal size included; zero without
+/// mass.
 pub fn achieved_passing(sieves: &[f64], stones: &[(f64, f64)]) -> Vec<f64> {
     let total: f64 = stones.iter().map(|s| s.1).sum();
     let finer = |sieve: f64| stones.iter().filter(|s| s.0 <= sieve).fold(0.0, |sum, s| sum + s.1);
@@ -242,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_give_their_middle_and_fines_are_kept_or_cut() {
+    fn limits_average_and_fines_cut() {
         let kept = Gradation::from_limits(&SIEVES, &LO, &HI, Some(0.016)).unwrap();
         assert_relative_eq!(kept.passing_at(0.040), 0.475, max_relative = 1e-14);
         assert_relative_eq!(kept.passing_at(0.0224), 0.015, max_relative = 1e-14);
@@ -253,17 +247,16 @@ mod tests {
     }
 
     #[test]
-    fn mean_cube_is_that_of_the_stones() {
+    fn mean_cube_matches_sample() {
         let g = Gradation::from_limits(&SIEVES, &LO, &HI, None).unwrap();
         let mean = cubes(&g.sample(4000, 3)).iter().map(|s| s.1).sum::<f64>() / 4000.0;
         assert_relative_eq!(mean, g.mean_cube(), max_relative = 1e-3);
-        // One narrow class: the size itself.
         let narrow = Gradation::new(&[0.05, 0.050001], &[0.0, 1.0]).unwrap();
         assert_relative_eq!(narrow.mean_cube(), 0.05_f64.powi(3), max_relative = 1e-4);
     }
 
     #[test]
-    fn same_seed_same_bits_and_order_is_random() {
+    fn sampling_is_reproducible_and_shuffled() {
         let g = Gradation::from_limits(&SIEVES, &LO, &HI, None).unwrap();
         let a = g.sample(300, 5);
         assert!(a.iter().zip(g.sample(300, 5)).all(|(x, y)| x.to_bits() == y.to_bits()));

@@ -1,16 +1,13 @@
-//! Growth: grains start small at random places of a container and grow to their size, pushing each other away.
+//! Radius expansion: grains start small at random positions and expand to full size.
 //!
-//! In every round all lengths of the grains grow by one step of an even ladder from `start` to 1; then the grains relax
-//! without gravity, with local damping (Cundall & Strack 1979) and the friction asked for, until the unbalanced force
-//! is small against the contact forces. The last relaxation is the most thorough. (Lubachevsky & Stillinger 1990 let
-//! sizes grow at a rate instead; rounds need nothing but ordinary models, one per round.)
+//! Each round scales all lengths by one step from `start` to 1, then relaxes without gravity, with local
+//! damping (Cundall & Strack 1979). Lubachevsky & Stillinger (1990) expand at a rate instead.
 //!
-//! The porosity follows from the sizes, so the caller chooses them for it: (1 − n) V = Σ V_i. What the relaxed grains
-//! still overlap is no solid; [`Grown::porosity`] takes it off by the leading term of a lens, π δ² R with R the reduced
-//! radius of the two spheres (of the sphere alone at a wall).
+//! Grain sizes set the porosity: (1 − n) V = Σ V_i. [`Grown::porosity`] subtracts overlaps by the leading
+//! lens term π δ² R, R the reduced radius (sphere radius at a wall).
 //!
-//! Limits: without friction equal spheres jam near n = 0.36, two sizes lower; below that overlaps grow and the porosity
-//! found stays above the one asked for. The sides of cones are 96 flat strips around the circle (volume + 0.04 %).
+//! Limits: frictionless equal spheres jam near n = 0.36, bidisperse ones lower; below, the porosity stays
+//! above the target. Cone sides are 96 strips (volume + 0.04 %).
 //!
 //! Theory manual: equation (3.13) of `docs/theory/motion.md`.
 
@@ -26,72 +23,71 @@ use std::f64::consts::PI;
 
 /// Strips around a cone.
 const STRIPS: usize = 96;
-/// Steps between two looks at the forces.
+/// Steps between two convergence checks.
 const STRIDE: u64 = 25;
-/// Overlap over radius below which grains count as apart.
+/// Overlap over radius that counts as no contact.
 const APART: f64 = 1e-3;
 
-/// How to grow.
+/// Parameters of radius expansion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
-    /// Share of their lengths that grains start with, above 0 and at most 1.
+    /// Initial length fraction, in (0, 1].
     pub start: f64,
-    /// Rounds from `start` to 1, at least 1.
+    /// Rounds, at least 1.
     pub rounds: usize,
-    /// Friction while growing, 0 or more; more friction packs looser.
+    /// Friction during expansion; more friction gives looser packing.
     pub friction: f64,
-    /// Unbalanced-force ratio at which the last relaxation ends; the others end at a hundred times that, at most 0.1.
+    /// Final unbalanced-force ratio; earlier rounds use 100 times it, at most 0.1.
     pub unbalanced: f64,
-    /// Most steps of the last relaxation; the others have a tenth of it.
+    /// Most steps of the last relaxation; earlier rounds use a tenth.
     pub steps: u64,
 }
 
 impl Default for Growth {
-    /// From half the size in 20 rounds, without friction, to a ratio of 1e-3 in at most 20,000 steps.
+    /// Half size, 20 rounds, frictionless, ratio 1e-3 within 20,000 steps.
     fn default() -> Growth {
         Growth { start: 0.5, rounds: 20, friction: 0.0, unbalanced: 1e-3, steps: 20_000 }
     }
 }
 
-/// Grains after growth.
+/// Result of radius expansion.
 #[derive(Clone, Debug)]
 pub struct Grown {
-    /// The grains at full size where they are now, at rest. The order is that of the input.
+    /// Full-size grains at rest, in input order.
     pub bodies: Vec<BodyInput>,
-    /// Steps in all.
+    /// Total steps.
     pub steps: u64,
-    /// Porosity of the container, overlaps counted once [-].
+    /// Porosity, overlaps counted once [-].
     pub porosity: f64,
-    /// Unbalanced-force ratio at the end; 0 where nothing touches.
+    /// Final unbalanced-force ratio; 0 without contacts.
     pub unbalanced: f64,
-    /// Largest overlap over the reduced radius of its contact [-].
+    /// Largest overlap over reduced radius [-].
     pub overlap: f64,
 }
 
-/// Why grains cannot grow.
+/// Failed radius expansion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GrowError {
-    /// The model of a round cannot be built.
+    /// Invalid model.
     #[error("radius expansion: {0}")]
     Model(#[from] ModelError),
-    /// A step failed: too many grains for the container, or too few rounds.
+    /// Failed step: too many grains or too few rounds.
     #[error("radius expansion, round {round}: {source} Increase `rounds` or the porosity.")]
     Step {
         /// Round, from 1.
         round: usize,
-        /// What went wrong.
+        /// Cause.
         source: StepError,
     },
-    /// A grain left the container.
+    /// Grain outside the container.
     #[error("grain {0} left the container during radius expansion. Increase `rounds` or the porosity.")]
     Escaped(usize),
 }
 
-/// Grows `bodies` (given at full size, at the places where their small forms start) in a container. `material` is that
-/// of grains and sides alike.
+/// Expands `bodies` (full size, at initial positions) in a container; `material` also for the sides.
 ///
 /// # Errors
-/// [`GrowError`] when a model cannot be built, a step fails, or a grain is pushed out.
+/// [`GrowError`] for an invalid model, a failed step or an expelled grain.
 pub fn grow(
     container: &Container,
     shapes: &[Shape],
@@ -166,12 +162,11 @@ pub fn grow(
     Ok(grown)
 }
 
-/// The material that grains grow with: springs whose stiffness does not grow with the overlap, for they start deep in each other, and whose size
-/// does not matter to where they come to rest.
+/// Linear springs, because initial overlaps are deep; stiffness does not affect the rest position.
 fn springs(material: &Material, friction: f64) -> Material {
     let one = material.with_friction(friction);
     match material.young {
-        // A modulus times a length of a centimetre.
+        // Modulus times 1 cm.
         Some(young) => Material {
             stiffness: 0.01 * young,
             young: None,
@@ -183,7 +178,7 @@ fn springs(material: &Material, friction: f64) -> Material {
     }
 }
 
-/// The sides of a container as walls of material 0.
+/// Container sides as walls of material 0.
 fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
     let plane =
         |point: &Vec3, normal: Vec3| Plane { point: *point, normal, material: 0, velocity: Vec3::zeros() };
@@ -197,7 +192,7 @@ fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
             let helper = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
             let u = axis.cross(&helper).normalize();
             let v = axis.cross(&u);
-            // Strips that touch the cone from outside, in the middle of each.
+            // Strips circumscribe the cone.
             let reach = 1.0 / libm::cos(PI / STRIPS as f64);
             let ring = |end: &Vec3, radius: f64| {
                 let at = move |k: usize| {
@@ -214,7 +209,7 @@ fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
                     let l = (k + 1) % n;
                     [[k, l, n + l], [k, n + l, n + k]]
                 })
-                // The tip of a cone has no width.
+                // Degenerate at the tip.
                 .filter(|t| {
                     let [a, b, c] = t.map(|v| vertices[v as usize]);
                     (b - a).cross(&(c - a)).norm() > 1e-12 * (to - from).norm_squared()

@@ -17,7 +17,6 @@ fn material() -> Material {
     }
 }
 
-/// Grains of a shape in a container, sized for a porosity.
 fn bodies(
     container: &Container,
     shape: &Shape,
@@ -44,8 +43,8 @@ fn bodies(
     places.iter().zip(&sizes).map(body).collect()
 }
 
-/// Porosity asked for, found by the overlaps at contacts and by the measure of a region, within half a per cent; at
-/// 0.4 the packing is jammed (the walls of a small box loosen it), at 0.5 nothing touches any more.
+/// Target porosity, from overlaps and from a region, within 0.5 %; jammed at 0.4 (small-box walls loosen it),
+/// no contacts at 0.5.
 #[test]
 fn spheres_grow_to_the_porosity() {
     let container = Container::Box { low: Vec3::new(-0.1, 0.0, 0.3), high: Vec3::new(0.1, 0.2, 0.5) };
@@ -80,7 +79,6 @@ fn spheres_grow_to_the_porosity() {
     }
 }
 
-/// Clumps, in a funnel and in a closed surface: all stay inside.
 #[test]
 fn clumps_grow_in_funnels_and_surfaces() {
     let clump = Clump::from_spheres(&[([0.0; 3], 0.4), ([0.3, 0.0, 0.0], 0.3)]).unwrap();
@@ -104,7 +102,6 @@ fn clumps_grow_in_funnels_and_surfaces() {
     }
 }
 
-/// Grains with a modulus start as deep in each other as those with springs, and come to the same porosity.
 #[test]
 fn elastic_grains_grow() {
     let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(0.2) };
@@ -127,7 +124,7 @@ fn elastic_grains_grow() {
 }
 
 #[test]
-fn too_much_in_too_few_rounds_is_said() {
+fn rejects_too_few_rounds() {
     let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(0.2) };
     let shape = Shape::Sphere { radius: 0.5 };
     let bodies = bodies(&container, &shape, SizeLaw::Equal(1.0), 200, 0.1, 0.3);

@@ -2,36 +2,36 @@
 //!
 //! | lattice | layers along z | porosity |
 //! |---|---|---|
-//! | simple cubic ("loose") | squares above each other, d apart | 1 − π/6 = 0.4764 |
-//! | hexagonal close packed | triangles, ABAB…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
-//! | face-centred cubic | triangles, ABCABC…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
+//! | simple cubic ("loose") | square, d apart | 1 − π/6 = 0.4764 |
+//! | hexagonal close packed | ABAB…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
+//! | face-centred cubic | ABCABC…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
 //!
-//! Rows of the close-packed layers run along x, d apart in x and d √3/2 in y. Limits: neighbours touch but for a
-//! share [`GAP`] of the diameter, so that rounding makes no contact; the porosities are those of the bulk.
+//! Close-packed rows run along x, d √3/2 apart in y. Bulk porosities; a gap of [`GAP`] diameters prevents
+//! contacts by rounding.
 
 use crate::base::Vec3;
 
-/// Gap between neighbours, as a share of their distance.
+/// Relative gap between neighbours.
 pub const GAP: f64 = 1e-9;
 
-/// A lattice of equal spheres.
+/// Lattice of equal spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lattice {
     /// Simple cubic.
     Simple,
     /// Hexagonal close packed.
     Hexagonal,
-    /// Face-centred cubic, a close-packed plane lying flat.
+    /// Face-centred cubic, close-packed plane horizontal.
     FaceCentred,
 }
 
 impl Lattice {
-    /// Place of the sphere in column i, row j, layer k, in diameters, from the first sphere.
+    /// Relative position of column i, row j, layer k, in diameters.
     fn site(self, i: usize, j: usize, k: usize) -> Vec3 {
         let (x, y, z) = (i as f64, j as f64, k as f64);
-        let third = 1.0 / 3.0_f64.sqrt(); // shift of a layer in y, twice the height of a triangle's centre over √3/2
+        let third = 1.0 / 3.0_f64.sqrt(); // layer shift in y over √3/2
         let row = |shift_x: f64, shift_y: f64| {
-            // Every other row is shifted by half a sphere; so a finite block stays upright.
+            // Alternate rows shift by half a sphere, so a finite block stays upright.
             let odd = (j % 2) as f64;
             Vec3::new(
                 x + 0.5 * ((odd + shift_x) % 2.0),
@@ -46,8 +46,8 @@ impl Lattice {
         }
     }
 
-    /// Centres [m] of `counts` columns, rows and layers of spheres of radius `radius` [m], with the bounding box of
-    /// the lattice cornered at `low` [m]. Layers are the slowest index.
+    /// Centres [m] of `counts` columns, rows and layers (slowest) of spheres of `radius` [m]; `low`: bounding
+    /// box corner [m].
     pub fn block(self, low: Vec3, radius: f64, counts: [usize; 3]) -> Vec<Vec3> {
         let d = 2.0 * radius * (1.0 + GAP);
         let mut sites = Vec::with_capacity(counts.iter().product());
@@ -61,12 +61,12 @@ impl Lattice {
         sites
     }
 
-    /// As [`Lattice::block`], all spheres that lie wholly between `low` and `high` [m], however many they are.
+    /// As [`Lattice::block`], all spheres between `low` and `high` [m].
     pub fn fill(self, low: Vec3, high: Vec3, radius: f64) -> Vec<Vec3> {
         let d = 2.0 * radius * (1.0 + GAP);
-        // One more than fits by the closest spacing of rows and layers; what sticks out is left out.
+        // One spare row and layer; protruding spheres are dropped.
         let most = (high - low).map(|l| ((l.max(0.0) / (0.8 * d)) as usize).saturating_add(2));
-        // The gaps of a full row may stick out.
+        // Gaps of a full row may protrude.
         let slack = 2.0 * GAP * (high - low).max();
         let mut sites = self.block(low, radius, [most.x, most.y, most.z]);
         sites.retain(|c| (0..3).all(|k| c[k] + radius <= high[k] + slack));
@@ -87,8 +87,8 @@ mod tests {
 
     const ALL: [Lattice; 3] = [Lattice::Simple, Lattice::Hexagonal, Lattice::FaceCentred];
 
-    /// Spheres inside have 6 or 12 neighbours at one diameter and none nearer. The close packings differ in the
-    /// second shell: 8/3 distances squared of 2 (in d²) both, but hcp has neighbours at √(8/3) d, fcc has none.
+    /// 6 or 12 neighbours at d. Both close packings have second-shell squared distance 2 (in d²); only hcp
+    /// has √(8/3) d.
     #[test]
     fn neighbours_are_those_of_the_lattice() {
         for lattice in ALL {
@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// Porosity of the bulk, measured in a box of whole periods that cuts spheres: the closed forms to 1e-8.
+    /// Bulk porosity over whole periods: closed forms to 1e-8.
     #[test]
     fn bulk_porosity_is_the_closed_form() {
         let radius = 0.01;
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_filled_and_not_overfilled() {
+    fn fills_box_without_overflow() {
         for lattice in ALL {
             let (low, high) = (Vec3::new(-0.2, 0.1, 0.0), Vec3::new(0.21, 0.5, 0.4));
             let sites = lattice.fill(low, high, 0.02);
@@ -146,7 +146,7 @@ mod tests {
                 assert!((0..3).all(|k| c[k] - 0.02 > low[k] - 1e-9 && c[k] + 0.02 < high[k] + 2e-9));
                 assert!(sites[..i].iter().all(|q| (q - c).norm() > 0.04));
             }
-            // The simple lattice has exactly 10 × 10 × 10; the others more than that.
+            // The simple lattice has 10 × 10 × 10.
             let least = 1000;
             assert!(sites.len() >= least, "{lattice:?}: {}", sites.len());
         }

@@ -1,7 +1,6 @@
-//! Stone library: shapes at unit scale, as clumps of spheres, as bonded spheres, or as dilated polyhedra.
+//! Stone library: shapes at unit scale as clumps, bonded spheres or dilated polyhedra.
 //!
-//! File form (TOML); lengths in metres at unit scale. A library whose stones all have sieve size 1 m is scaled by
-//! the sieve size wanted.
+//! TOML, lengths in metres; stones of sieve size 1 m scale by the target size.
 //!
 //! ```toml
 //! name = "ballast, 6 stones"
@@ -13,11 +12,8 @@
 //! ]
 //! ```
 //!
-//! A stone with `corners = [[x, y, z], …]` and `radius` is a dilated polyhedron: the convex hull of the corners, all of which must be
-//! corners of it, rolled over by a sphere of that radius.
-//!
-//! A stone with `bonds = [[0, 1], …]`, pairs of spheres counted from 0, can break; `density_factor` makes up for its
-//! pores.
+//! Dilated polyhedron: `corners = [[x, y, z], …]`, all on the convex hull, and `radius`. Breakable stone:
+//! `bonds = [[0, 1], …]` (sphere indices); `density_factor` compensates its pores.
 
 use crate::base::Vec3;
 use crate::shape::clump::{Clump, ShapeError};
@@ -25,91 +21,90 @@ use crate::shape::cluster::{Cluster, ClusterError};
 use crate::shape::dilated::{Dilated, DilatedError};
 use serde::{Deserialize, Serialize};
 
-/// A library file as written.
+/// Library file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoneLibrary {
-    /// What the library is.
+    /// Title.
     pub name: String,
-    /// Where the shapes come from.
+    /// Source of the shapes.
     pub source: String,
-    /// The stones, at least one.
+    /// Stones, at least one.
     pub stones: Vec<Stone>,
 }
 
-/// One stone of a library file.
+/// Stone of a library file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stone {
-    /// Its name, for messages.
+    /// Name for messages.
     pub name: String,
-    /// x, y, z of the centre and radius of each sphere [m] in any frame.
+    /// Centre x, y, z and radius of each sphere [m].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spheres: Vec<[f64; 4]>,
-    /// x, y, z of each corner of a polyhedron [m] in any frame.
+    /// Polyhedron corners x, y, z [m].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corners: Vec<[f64; 3]>,
-    /// Radius that a polyhedron is dilated by [m].
+    /// Dilation radius [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// Pairs of bonded spheres, counted from 0, of a stone that can break; none for a rigid clump.
+    /// Bonded sphere pairs, from 0; empty for a rigid clump.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bonds: Vec<[u32; 2]>,
-    /// Density of the spheres over that of the stone's material, above 0; 1 without it. A bonded stone is porous: with
-    /// this factor its spheres have the mass of the solid stone. Rigid clumps do not use it.
+    /// Sphere density over material density of a porous bonded stone, above 0, default 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density_factor: Option<f64>,
 }
 
-/// Why a library is of no use.
+/// Invalid library.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LibraryError {
-    /// It holds no stone.
+    /// No stone.
     #[error("stone library '{0}' contains no stone")]
     Empty(String),
-    /// A stone is not a clump.
+    /// Invalid clump.
     #[error("stone {index} ('{name}') of library '{library}': {source}")]
     Stone {
-        /// Name of the library.
+        /// Library.
         library: String,
-        /// Index of the stone, from 0.
+        /// Stone index.
         index: usize,
-        /// Name of the stone.
+        /// Stone.
         name: String,
-        /// What is wrong with it.
+        /// Cause.
         source: ShapeError,
     },
-    /// A stone is not a bonded cluster.
+    /// Invalid cluster.
     #[error("stone {index} ('{name}') of library '{library}': {source}")]
     Cluster {
-        /// Name of the library.
+        /// Library.
         library: String,
-        /// Index of the stone, from 0.
+        /// Stone index.
         index: usize,
-        /// Name of the stone.
+        /// Stone.
         name: String,
-        /// What is wrong with it.
+        /// Cause.
         source: ClusterError,
     },
-    /// A stone is not a dilated polyhedron.
+    /// Invalid polyhedron.
     #[error("stone {index} ('{name}') of library '{library}': {source}")]
     Polyhedron {
-        /// Name of the library.
+        /// Library.
         library: String,
-        /// Index of the stone, from 0.
+        /// Stone index.
         index: usize,
-        /// Name of the stone.
+        /// Stone.
         name: String,
-        /// What is wrong with it.
+        /// Cause.
         source: DilatedError,
     },
 }
 
 impl StoneLibrary {
-    /// The stones as clumps, each in the frame of its union, in the file's order and size.
+    /// Clumps in their union frames, in file order and size.
     ///
     /// # Errors
-    /// [`LibraryError`] when there is no stone, or one whose spheres do not make a clump.
+    /// [`LibraryError`] for no stone or an invalid clump.
     pub fn clumps(&self) -> Result<Vec<Clump>, LibraryError> {
         self.each(|index, stone| {
             Clump::from_spheres(&stone.balls()).map_err(|source| LibraryError::Stone {
@@ -121,10 +116,10 @@ impl StoneLibrary {
         })
     }
 
-    /// The stones as bonded clusters, each in the frame of its spheres, in the file's order and size.
+    /// Clusters in their own frames, in file order and size.
     ///
     /// # Errors
-    /// [`LibraryError`] when there is no stone, or one whose spheres and bonds do not make a cluster.
+    /// [`LibraryError`] for no stone or an invalid cluster.
     pub fn clusters(&self) -> Result<Vec<Cluster>, LibraryError> {
         self.each(|index, stone| {
             let factor = stone.density_factor.unwrap_or(1.0);
@@ -137,10 +132,10 @@ impl StoneLibrary {
         })
     }
 
-    /// The stones as dilated polyhedra, each in its own frame, in the file's order and size.
+    /// Polyhedra in their own frames, in file order and size.
     ///
     /// # Errors
-    /// [`LibraryError`] when there is no stone, or one whose corners and radius do not make a dilated polyhedron.
+    /// [`LibraryError`] for no stone or an invalid polyhedron.
     pub fn polyhedra(&self) -> Result<Vec<Dilated>, LibraryError> {
         self.each(|index, stone| {
             let corners: Vec<Vec3> = stone.corners.iter().map(|c| Vec3::from(*c)).collect();
@@ -198,10 +193,10 @@ mod tests {
     }
 
     #[test]
-    fn shipped_stones_have_sieve_size_one_in_their_own_frame() {
+    fn shipped_stones_have_unit_sieve_size() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../inputs/track/cyclic/stones.toml");
         let text = std::fs::read_to_string(file).unwrap();
-        // The rows of numbers, stone by stone; the whole form is parsed where scenes are read.
+        // Number rows only; scenes parse the full format.
         let row = |line: &str| {
             let numbers =
                 line.trim().strip_prefix('[')?.strip_suffix("],")?.split(',').map(|x| x.trim().parse());
@@ -235,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_polyhedron_needs_corners_and_a_radius() {
+    fn rejects_polyhedron_without_radius() {
         let mut file = library(&[("tetrahedron", &[])]);
         assert!(file.polyhedra().unwrap_err().to_string().contains("0 m; it must be positive"));
         file.stones[0].radius = Some(0.1);

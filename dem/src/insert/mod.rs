@@ -1,8 +1,5 @@
-//! Making packings: sizes from a gradation or a law, shapes from a library, places on a lattice, at random, or loosely
-//! stacked for gravity deposition, in boxes, cones and closed surfaces; growth to a porosity.
-//!
-//! Everything random comes from a PCG stream that the scene's seed starts, so a scene has the same stones, bit for
-//! bit, on every machine and for any number of threads.
+//! Packing generation. Random numbers come from a PCG stream of the scene's seed: bitwise reproducible on all
+//! machines and thread counts.
 
 pub mod closed;
 pub mod container;

@@ -1,73 +1,70 @@
-//! First positions of stones, free of overlap, ready to fall into a box.
+//! Overlap-free initial positions for gravity deposition.
 //!
-//! Each stone is represented by its bounding sphere. The stones come in random order; for each, a few random points
-//! of the plan are tried, the sphere is let down there until it meets the floor or a sphere below, and the lowest
-//! of the tries is taken. The heap so rises evenly, layer by layer, as high as the stones need, and denser than a
-//! lattice of the largest sphere would be: stones fall less far and settle sooner. With z₁ the height at which a
-//! sphere of radius r at (x, y) rests on an earlier one (xⱼ, yⱼ, zⱼ, rⱼ):
+//! Bounding spheres are dropped in random order at several random plan points; the lowest position is
+//! selected. The packing is denser than a lattice of the largest sphere. Rest height of a sphere of radius r
+//! at (x, y) on (xⱼ, yⱼ, zⱼ, rⱼ):
 //!
 //! ```text
 //! z₁ = zⱼ + √((r + rⱼ)² − (x − xⱼ)² − (y − yⱼ)²)
 //! ```
 //!
-//! Orientations are uniform over all rotations. Positions and orientations depend on the seed alone.
+//! Orientations are uniform over all rotations.
 
 use crate::base::random::Random;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const PURPOSE: u64 = 2;
-/// Random plan points tried per stone.
+/// Trial points per stone.
 const TRIES: usize = 12;
-/// Gap to neighbours and walls, as a share of a stone's radius: no contact at the start, whatever the rounding.
+/// Relative gap against initial contacts by rounding.
 const GAP: f64 = 1e-3;
 
-/// Where a stone starts.
+/// Initial position of a stone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     /// Centre of mass [m].
     pub position: Vector3<f64>,
-    /// Rotation from the stone's principal frame to the world.
+    /// Rotation from principal frame to world.
     pub orientation: UnitQuaternion<f64>,
 }
 
-/// Why stones cannot be placed.
+/// Failed placement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PlaceError {
-    /// The box is empty or not finite.
+    /// Empty or non-finite box.
     #[error("insertion box must have positive lengths along x and y: {lo:?} .. {hi:?} m")]
     Box {
-        /// Lower corner in plan [m].
+        /// Lower plan corner [m].
         lo: [f64; 2],
-        /// Upper corner in plan [m].
+        /// Upper plan corner [m].
         hi: [f64; 2],
     },
-    /// A bounding radius is not positive and finite.
+    /// Invalid bounding radius.
     #[error("stone {index}: bounding radius {radius} m; it must be positive")]
     Radius {
-        /// Index of the stone, from 0.
+        /// Index of the stone.
         index: usize,
-        /// Its bounding radius [m].
+        /// Bounding radius [m].
         radius: f64,
     },
-    /// A stone is wider than the box.
+    /// Stone wider than the box.
     #[error("stone {index} with bounding radius {radius} m does not fit into a box of width {width} m")]
     TooWide {
-        /// Index of the stone, from 0.
+        /// Index of the stone.
         index: usize,
-        /// Its bounding radius [m].
+        /// Bounding radius [m].
         radius: f64,
-        /// The smaller side of the box [m].
+        /// Smaller box side [m].
         width: f64,
     },
 }
 
-/// Places stones of the given bounding radii [m] loosely in a box without overlap, from its floor upwards.
+/// Places stones of bounding `radii` [m], in their order, in a box open at the top.
 ///
-/// `lo` is the lower corner [m] (its z is the floor), `hi_xy` the upper end in plan [m]; the box is open at the top.
-/// The result has the order of `radii`.
+/// `lo` is the lower corner [m] (z: floor), `hi_xy` the upper plan corner [m].
 ///
 /// # Errors
-/// [`PlaceError`] for an empty box, a bad radius, or a stone wider than the box.
+/// [`PlaceError`] for an empty box, an invalid radius or too wide a stone.
 pub fn place_loose(
     lo: [f64; 3],
     hi_xy: [f64; 2],
@@ -113,14 +110,14 @@ pub fn place_loose(
     Ok(placed)
 }
 
-/// A placed sphere, relative to the box's corner, and the greatest height of a centre in its column up to it.
+/// Relative to the box corner; largest centre height of the column so far.
 struct Entry {
     centre: [f64; 3],
     radius: f64,
     highest: f64,
 }
 
-/// Spheres placed so far, in square columns at least as wide as the largest sphere.
+/// In columns at least as wide as the largest sphere.
 struct Heap {
     columns: Vec<Vec<Entry>>,
     count: [usize; 2],
@@ -142,14 +139,14 @@ impl Heap {
         [index(x, 0), index(y, 1)]
     }
 
-    /// Lowest height of the centre of a sphere let down at (x, y); `give_up` or above when it is not below that.
+    /// Rest height at (x, y); `give_up` or above if not lower.
     fn resting_height(&self, x: f64, y: f64, r: f64, give_up: f64) -> f64 {
         let [i, j] = self.column(x, y);
         let mut z = r;
         for a in i.saturating_sub(1)..=(i + 1).min(self.count[0] - 1) {
             for b in j.saturating_sub(1)..=(j + 1).min(self.count[1] - 1) {
                 for e in self.columns[a * self.count[1] + b].iter().rev() {
-                    // No earlier sphere of the column can hold the new one higher than this.
+                    // Earlier spheres of the column cannot support higher positions.
                     if e.highest + r + self.largest <= z || z >= give_up {
                         break;
                     }
@@ -185,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn no_overlaps_inside_the_box_and_not_needlessly_high() {
+    fn placement_is_dense_without_overlap() {
         let radii = radii(1000);
         let placed = place_loose(LO, HI, &radii, 11).unwrap();
         let mut top = 0.0_f64;
@@ -222,7 +219,7 @@ mod tests {
         let placed = place_loose([0.0; 3], [10.0, 10.0], &vec![0.05; n], 1).unwrap();
         let rotations: Vec<Matrix3<f64>> =
             placed.iter().map(|p| p.orientation.to_rotation_matrix().into_inner()).collect();
-        // Each entry has mean 0 and mean square 1/3; the standard errors are 0.009 and 0.005.
+        // Each entry: mean 0, mean square 1/3; standard errors 0.009 and 0.005.
         let mean = rotations.iter().sum::<Matrix3<f64>>() / n as f64;
         let square = rotations.iter().map(|m| m.component_mul(m)).sum::<Matrix3<f64>>() / n as f64;
         assert!(mean.iter().all(|x| x.abs() < 0.04), "{mean}");

@@ -1,7 +1,6 @@
-//! Room in a box: random places where a sphere touches nothing that is there, for grains that come in during a run.
+//! Free space in an insertion box: random, overlap-free positions during a run.
 //!
-//! A clump on its way in stands for its bounding sphere; what is there counts with its own spheres, boxes, planes, walls
-//! and the external surface, polyhedra and disks with their bounding spheres. Across periodic borders images count.
+//! Inserted clumps, polyhedra and disks count as bounding spheres. Periodic images count.
 
 use super::scatter::Grid;
 use crate::base::Vec3;
@@ -15,28 +14,27 @@ use crate::shape::cuboid;
 use crate::spatial::surface::Surface;
 use nalgebra::UnitQuaternion;
 
-/// Purpose of the stream of places and turns.
+/// Random stream id.
 const PURPOSE: u64 = 7;
-/// Random places tried per grain.
+/// Trial positions per grain.
 const TRIES: usize = 1000;
-/// Gap to all that is there, as a share of the grain's radius.
+/// Relative gap to obstacles.
 pub const GAP: f64 = 1e-3;
 
-/// A box of a running state, as it is now.
+/// Snapshot of an insertion box.
 pub struct Room<'a> {
     model: &'a Model,
     state: &'a State,
     surface: &'a dyn Surface,
     region: BoxRegion,
     spheres: Grid,
-    /// Centre, orientation and half sides of the boxes.
+    /// Centre, orientation, half lengths.
     boxes: Vec<(Vec3, UnitQuaternion<f64>, Vec3)>,
     patches: Vec<u32>,
 }
 
 impl<'a> Room<'a> {
-    /// The room that all bodies but those `without` leave in a box; grains of bounding radii up to `largest` [m] are to be
-    /// put there, as well as those that come in with them.
+    /// Free space left by all bodies but `without`, for grains of bounding radii up to `largest` [m].
     pub fn new(
         model: &'a Model,
         state: &'a State,
@@ -82,13 +80,13 @@ impl<'a> Room<'a> {
         Room { model, state, surface, region, spheres, boxes, patches: Vec::new() }
     }
 
-    /// Takes up the place of a grain of bounding radius `radius` [m] that comes in at the same time.
+    /// Occupies the position of a simultaneously inserted grain; `radius` [m].
     pub fn fill(&mut self, x: &Vec3, radius: f64) {
         self.spheres.add(*x, radius);
     }
 
-    /// A random place for a grain of bounding radius `radius` [m] wholly inside the box, and a random orientation. The
-    /// grain then takes up its place. None where no place was found.
+    /// Finds and occupies a random position and orientation for a grain of bounding `radius` [m]; `None` if
+    /// the box is full.
     pub fn place(&mut self, radius: f64, random: &mut Places) -> Option<(Vec3, UnitQuaternion<f64>)> {
         let r = radius * (1.0 + GAP);
         let (low, high) = (self.region.low.add_scalar(r), self.region.high.add_scalar(-r));
@@ -124,7 +122,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Whether a sphere is clear of a surface, and on its outer side where it has one.
+/// Returns true if a sphere is clear of a surface, on its outer side if one-sided.
 fn clear_of(surface: &dyn Surface, x: &Vec3, r: f64, patches: &mut Vec<u32>) -> bool {
     if surface.is_empty() {
         return true;
@@ -139,7 +137,7 @@ fn clear_of(surface: &dyn Surface, x: &Vec3, r: f64, patches: &mut Vec<u32>) -> 
     })
 }
 
-/// Ways from a body to itself and its images next to it across periodic borders [m].
+/// Offsets of adjacent periodic images, with zero [m].
 fn images(model: &Model) -> Vec<Vec3> {
     let periodic = model.periodic();
     let mut ways = vec![Vec3::zeros()];
@@ -152,8 +150,7 @@ fn images(model: &Model) -> Vec<Vec3> {
     ways
 }
 
-/// Streams of random numbers, a new one for every grain: what one is given depends on the seed and on how many have been
-/// requested before, whether in this start of the program or in an earlier one.
+/// Random streams, one per grain: values depend on seed and request count only, also after a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Places {
     seed: u64,
@@ -161,14 +158,14 @@ pub struct Places {
 }
 
 impl Places {
-    /// The streams that a seed starts.
+    /// Starts the streams of a seed.
     pub fn new(seed: u64) -> Places {
         Places { seed, requests: 0 }
     }
 
     fn next(&mut self) -> Random {
         self.requests += 1;
-        // Odd multipliers keep grains and purposes apart.
+        // Odd multipliers separate grains and purposes.
         Random::new(self.seed ^ self.requests.wrapping_mul(0xd134_2543_de82_ef95), PURPOSE)
     }
 }

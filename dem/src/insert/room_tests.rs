@@ -9,7 +9,6 @@ use crate::wall::TriangleSurface;
 
 const RADIUS: f64 = 0.05;
 
-/// Two spheres, a box, a plane and a slanting triangle in and about the unit cube.
 fn model(periodic: bool) -> Model {
     let at = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
     let mut input = ModelInput {
@@ -41,7 +40,6 @@ fn model(periodic: bool) -> Model {
     Model::new(input).unwrap()
 }
 
-/// Grains get places clear of all that is there and of each other, until there is no room left.
 #[test]
 fn grains_touch_nothing() {
     for periodic in [false, true] {
@@ -62,7 +60,7 @@ fn grains_touch_nothing() {
         let found = fill();
         assert_eq!(found, fill());
         assert!(found.len() > 200, "{}", found.len());
-        // Closest approach to each of what is there: none nearer than a radius, some near it.
+        // Clearances: at least zero, some small.
         let mut gaps = [f64::INFINITY; 6];
         let turns = if periodic { vec![-2.0, 0.0, 2.0] } else { vec![0.0] };
         let centre = Vec3::new(0.8, 0.2, 0.3);
@@ -98,7 +96,7 @@ fn grains_touch_nothing() {
     }
 }
 
-/// A grain that is wider than the box finds no place; what is to leave takes none.
+/// Too large a grain finds no position; leaving bodies occupy none.
 #[test]
 fn room_for_one() {
     let model = model(false);
@@ -111,7 +109,7 @@ fn room_for_one() {
     let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     assert_eq!(room.place(0.11, &mut places), None);
     let first = room.place(0.06, &mut places).unwrap();
-    // The next look finds the room as it was, and takes another place in it.
+    // A later request sees the same space, but draws another position.
     let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     let second = room.place(0.06, &mut places).unwrap();
     assert!(first.0 != second.0 && first.1 != second.1);

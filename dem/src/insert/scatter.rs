@@ -1,8 +1,7 @@
-//! Random places in a container: spheres are put down one by one where they overlap none before them (random
-//! sequential addition, Widom 1966), large ones first.
+//! Random sequential addition (Widom 1966) in a container, large spheres first.
 //!
-//! Limits: equal spheres jam near 0.38 of the volume (Torquato 2002); long before, most tries are in vain. Denser
-//! packings: growth (`grow.rs`), or settling.
+//! Limits: equal spheres jam near a solid fraction of 0.38 (Torquato 2002). Denser: radius expansion
+//! (`grow.rs`) or deposition.
 
 use super::container::Container;
 use crate::base::Vec3;
@@ -11,41 +10,40 @@ use nalgebra::UnitQuaternion;
 
 const PURPOSE: u64 = 4;
 const TURNS: u64 = 5;
-/// Tries per sphere before giving up.
+/// Trials per sphere.
 const TRIES: usize = 20_000;
 
-/// Why spheres cannot be scattered.
+/// Failed random placement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScatterError {
-    /// A radius is not positive and finite.
+    /// Invalid radius.
     #[error("grain {index}: radius {radius} m; it must be positive")]
     Radius {
-        /// Index of the grain, from 0.
+        /// Index of the grain.
         index: usize,
-        /// Its radius [m].
+        /// Radius [m].
         radius: f64,
     },
-    /// No free place was found.
+    /// No free position.
     #[error(
         "no free position for a grain of radius {radius} m after {placed} of {count} grains (solid fraction {share:.3}; random insertion reaches about 0.38)"
     )]
     Full {
-        /// Grains placed before.
+        /// Grains placed.
         placed: usize,
-        /// Grains asked for.
+        /// Grains requested.
         count: usize,
-        /// Radius of the grain that found none [m].
+        /// Radius of the failed grain [m].
         radius: f64,
-        /// Volume of the bounding spheres placed before over that of the container [-].
+        /// Solid fraction of bounding spheres [-].
         share: f64,
     },
 }
 
-/// Centres [m] of spheres of the given radii [m] in a container, none overlapping another or the container's sides.
-/// The result has the order of `radii`.
+/// Overlap-free centres [m] for spheres of `radii` [m], in their order.
 ///
 /// # Errors
-/// [`ScatterError`] for a bad radius, or when the container is full.
+/// [`ScatterError`] for an invalid radius or a full container.
 pub fn scatter(container: &Container, radii: &[f64], seed: u64) -> Result<Vec<Vec3>, ScatterError> {
     if let Some(index) = radii.iter().position(|r| !(*r > 0.0 && r.is_finite())) {
         return Err(ScatterError::Radius { index, radius: radii[index] });
@@ -79,13 +77,13 @@ pub fn scatter(container: &Container, radii: &[f64], seed: u64) -> Result<Vec<Ve
     Ok(centres)
 }
 
-/// Orientations of `n` grains, uniform over all rotations; the same for the same seed.
+/// `n` uniform random rotations, reproducible by `seed`.
 pub fn orientations(n: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
     let mut random = Random::new(seed, TURNS);
     (0..n).map(|_| random.orientation()).collect()
 }
 
-/// Spheres by cells; those outside the bounds fall into the outermost.
+/// Outside spheres go to boundary cells.
 pub(super) struct Grid {
     low: Vec3,
     width: f64,
@@ -98,7 +96,7 @@ impl Grid {
     pub fn new(low: Vec3, high: Vec3, width: f64, largest: f64) -> Grid {
         let counts = std::array::from_fn(|d| (((high[d] - low[d]) / width) as usize).clamp(1, 200));
         let cells = vec![Vec::new(); counts.iter().product()];
-        // Cells may be wider than asked for where there would be too many.
+        // Wider cells limit their number.
         let width = (0..3).map(|d| (high[d] - low[d]) / counts[d] as f64).fold(width, f64::max);
         Grid { low, width, counts, cells, largest }
     }
@@ -162,9 +160,9 @@ mod tests {
         }
     }
 
-    /// Equal spheres reach 0.3 of the volume, and above the jamming share of 0.38 it is said how far it went.
+    /// Equal spheres reach 0.3; above jamming (0.38) the error states the fraction.
     #[test]
-    fn up_to_the_share_that_random_places_reach() {
+    fn scatters_up_to_jamming() {
         let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(1.0) };
         let count = |share: f64| (share / (4.0 / 3.0 * std::f64::consts::PI * 0.03_f64.powi(3))) as usize;
         assert!(scatter(&container, &vec![0.03; count(0.29)], 1).is_ok());

@@ -1,61 +1,57 @@
-//! Size laws of grains: equal, two sizes, uniform, normal, log-normal.
+//! Size distributions: monodisperse, bidisperse, uniform, truncated normal and log-normal.
 //!
-//! Sizes are drawn at stratified quantiles: one from each n-th part of the distribution, jittered inside it, then
-//! shuffled. Moments and curves of n sizes so err by about 1/n.
-//!
-//! Normal and log-normal laws are cut at `low` and `high` and rescaled (truncated distributions). The quantile is found
-//! by Newton's iteration on the distribution function; Φ(x) = ½ + φ(x) (x + x³/3 + x⁵/15 + …) (Abramowitz & Stegun
-//! 1964, 26.2.11) near 0, and 1 − Φ(x) = φ(x) / (x + 1/(x + 2/(x + …))) (26.2.14) beyond 3.
+//! Stratified quantiles have errors of about 1/n. Newton's method; Φ(x) = ½ + φ(x) (x + x³/3 + x⁵/15 + …)
+//! (Abramowitz & Stegun 1964, 26.2.11) near 0, 1 − Φ(x) = φ(x) / (x + 1/(x + 2/(x + …))) (26.2.14) beyond 3.
 
 use crate::base::random::Random;
 use std::f64::consts::TAU;
 
 const PURPOSE: u64 = 3;
 
-/// A law of sizes [m].
+/// Size distribution [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SizeLaw {
-    /// All alike.
+    /// Monodisperse.
     Equal(f64),
-    /// Two sizes; `large_share` is the share of the large ones in the volume of all grains.
+    /// Bidisperse.
     Two {
-        /// The small size [m].
+        /// Small size [m].
         small: f64,
-        /// The large size [m].
+        /// Large size [m].
         large: f64,
-        /// Share of the volume [-], 0 to 1.
+        /// Volume fraction of large grains [-].
         large_share: f64,
     },
-    /// Uniform between two sizes, in number.
+    /// Uniform by number.
     ByNumber {
         /// Smallest [m].
         low: f64,
         /// Largest [m].
         high: f64,
     },
-    /// Uniform between two sizes, in volume: equal steps of size hold equal volume.
+    /// Uniform by volume.
     ByVolume {
         /// Smallest [m].
         low: f64,
         /// Largest [m].
         high: f64,
     },
-    /// Normal in number, cut at both ends.
+    /// Truncated normal, by number.
     Normal {
-        /// Mean before cutting [m].
+        /// Untruncated mean [m].
         mean: f64,
-        /// Standard deviation before cutting [m].
+        /// Untruncated standard deviation [m].
         deviation: f64,
         /// Smallest [m].
         low: f64,
         /// Largest [m].
         high: f64,
     },
-    /// Log-normal in number, cut at both ends.
+    /// Truncated log-normal, by number.
     LogNormal {
-        /// Median before cutting [m].
+        /// Untruncated median [m].
         median: f64,
-        /// Standard deviation of ln(size) before cutting [-].
+        /// Untruncated standard deviation of ln(size) [-].
         deviation: f64,
         /// Smallest [m].
         low: f64,
@@ -64,31 +60,31 @@ pub enum SizeLaw {
     },
 }
 
-/// Why a size law is of no use.
+/// Invalid size distribution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SizeError {
-    /// A size is not positive and finite.
+    /// Size not positive and finite.
     #[error("the size {0} m is not positive and finite")]
     Size(f64),
-    /// Low and high are in the wrong order.
+    /// Limits not ascending.
     #[error("sizes from {0} m to {1} m: the first must be the smaller")]
     Order(f64, f64),
-    /// A share is out of range.
+    /// Fraction out of range.
     #[error("the fraction {0} of the large size must lie in 0..1")]
     Share(f64),
-    /// A deviation is not positive.
+    /// Deviation not positive.
     #[error("the standard deviation {0} must be positive and finite")]
     Deviation(f64),
-    /// The cut leaves nothing of a distribution.
+    /// Truncation leaves almost nothing.
     #[error("almost nothing of the distribution lies between {0} m and {1} m")]
     Cut(f64, f64),
 }
 
 impl SizeLaw {
-    /// Checks the constants.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// [`SizeError`] names the first that is out of range.
+    /// [`SizeError`] of the first invalid value.
     pub fn check(&self) -> Result<(), SizeError> {
         let size = |d: f64| if d > 0.0 && d.is_finite() { Ok(()) } else { Err(SizeError::Size(d)) };
         let range = |low: f64, high: f64| {
@@ -119,7 +115,7 @@ impl SizeLaw {
         if normal(b) - normal(a) > 1e-6 { Ok(()) } else { Err(SizeError::Cut(low, high)) }
     }
 
-    /// Ends of a cut distribution in standard deviations from its middle.
+    /// Truncation limits in standard deviations.
     fn ends(&self) -> [f64; 2] {
         match *self {
             SizeLaw::Normal { mean, deviation, low, high } => {
@@ -132,12 +128,12 @@ impl SizeLaw {
         }
     }
 
-    /// Size below which the share `q` of the number of grains lies [m].
+    /// Size at number fraction `q` [m].
     pub fn quantile(&self, q: f64) -> f64 {
         match *self {
             SizeLaw::Equal(d) => d,
             SizeLaw::Two { small, large, large_share } => {
-                // In number: shares of volume over the volume of one.
+                // Number: volume fraction over grain volume.
                 let (s, l) = ((1.0 - large_share) / small.powi(3), large_share / large.powi(3));
                 if q * (s + l) < s { small } else { large }
             }
@@ -178,7 +174,7 @@ impl SizeLaw {
         x
     }
 
-    /// Sizes [m] of `n` grains in random order; the same for the same seed.
+    /// Draws `n` sizes [m] in random order, reproducible by `seed`.
     pub fn sample(&self, n: usize, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed, PURPOSE);
         let sorted: Vec<f64> =
@@ -187,12 +183,10 @@ impl SizeLaw {
     }
 }
 
-/// Standard normal density.
 fn density(x: f64) -> f64 {
     libm::exp(-0.5 * x * x) / TAU.sqrt()
 }
 
-/// Standard normal distribution function.
 fn normal(x: f64) -> f64 {
     if x.abs() > 3.0 {
         let y = x.abs();
@@ -213,7 +207,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// Values of the table (Abramowitz & Stegun 1964, table 26.1) and symmetry, on both branches.
+    /// Abramowitz & Stegun 1964, table 26.1; symmetry, both branches.
     #[test]
     fn normal_distribution_function() {
         for (x, p) in [
@@ -236,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_have_the_moments_of_their_law() {
+    fn samples_match_distribution_moments() {
         let n = 4000;
         let d = SizeLaw::ByNumber { low: 0.02, high: 0.05 }.sample(n, 1);
         assert_relative_eq!(moments(&d).0, 0.035, max_relative = 1e-3);
@@ -246,7 +240,8 @@ mod tests {
         let (mean, deviation) = moments(&wide.sample(n, 2));
         assert_relative_eq!(mean, 0.04, max_relative = 1e-3);
         assert_relative_eq!(deviation, 0.005, max_relative = 5e-3);
-        // Cut one deviation each side: variance 1 − 2 φ(1)/(2Φ(1) − 1) = 0.291125 of the whole (Johnson et al. 1994).
+        // Truncated at ±1 deviation: variance 1 − 2 φ(1)/(2Φ(1) − 1) = 0.291125 of the total (Johnson et al.
+        // 1994).
         let cut = SizeLaw::Normal { mean: 0.04, deviation: 0.005, low: 0.035, high: 0.045 };
         let d = cut.sample(n, 3);
         assert_relative_eq!(moments(&d).1, 0.005 * 0.291_125_f64.sqrt(), max_relative = 2e-3);
@@ -261,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn laws_by_volume_hold_their_shares_of_volume() {
+    fn volume_laws_match_volume_fractions() {
         let n = 20_000;
         let d = SizeLaw::Two { small: 0.02, large: 0.05, large_share: 0.6 }.sample(n, 7);
         let volume =
@@ -272,7 +267,6 @@ mod tests {
         for share in [0.25, 0.5, 0.75] {
             assert!((volume(0.02 + 0.04 * share) / volume(0.06) - share).abs() < 1e-3);
         }
-        // The extremes of the fraction.
         assert!(
             SizeLaw::Two { small: 0.02, large: 0.05, large_share: 0.0 }
                 .sample(9, 1)

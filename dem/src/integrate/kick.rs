@@ -1,10 +1,10 @@
-//! Kicks: what forces make of velocities in a step, without the arrays that these lie in (`leapfrog.rs`).
+//! Kicks: velocity changes of a step.
 //!
 //! Theory manual: equation (3.9) of `docs/theory/motion.md`.
 
 use crate::lanes::{Real, V3};
 
-/// Local damping of a force or a torque against a motion, component by component.
+/// Local damping of a force or torque component.
 #[inline(always)]
 pub(crate) fn resist<R: Real>(load: R, motion: R, damping: R) -> R {
     let (zero, one) = (R::zero(), R::splat(1.0));
@@ -12,19 +12,18 @@ pub(crate) fn resist<R: Real>(load: R, motion: R, damping: R) -> R {
     -(damping * load.abs()) * sign
 }
 
-/// What drives a free body, component by component or in lanes of components.
+/// Loads on a free body, by component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Push<R> {
-    /// Of contacts [N].
     pub force: R,
     pub gravity: R,
     pub inverse_mass: R,
-    /// Time that velocities advance by [s]; zero where nothing is kicked.
+    /// Zero for no kick [s].
     pub step: R,
     pub damping: R,
 }
 
-/// Velocity of a free body after the kick, and the force of local damping, if there is any.
+/// Velocity after the kick, and local damping force.
 #[inline(always)]
 pub(crate) fn kick_free<R: Real, const DAMPED: bool>(v: R, p: &Push<R>) -> (R, R) {
     if DAMPED {
@@ -36,30 +35,29 @@ pub(crate) fn kick_free<R: Real, const DAMPED: bool>(v: R, p: &Push<R>) -> (R, R
     }
 }
 
-/// Change of a free sphere's spin over the torque: its moment of inertia is 2/5 m r².
+/// I = 2/5 m r².
 #[inline(always)]
 pub(crate) fn turn_of_sphere<R: Real>(kick: R, inverse_mass: R, radius: R) -> R {
     R::splat(2.5) * kick * inverse_mass / (radius * radius)
 }
 
-/// A body kicked by itself: with applied forces, fixed motions, or in the last places of a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Single<R: Real> {
     pub velocity: V3<R>,
     pub spin: V3<R>,
-    /// Sums of contacts, and of applied forces.
+    /// Contacts; applied forces.
     pub force: (V3<R>, V3<R>),
     pub torque: (V3<R>, V3<R>),
     pub gravity: V3<R>,
     pub mass: R,
-    /// Of a sphere.
+    /// For a sphere.
     pub inertia: R,
-    /// Which motions are fixed: translation, rotation.
+    /// Fixed translations and rotations.
     pub fixed: [[R::Mask; 3]; 2],
     pub damping: R,
 }
 
-/// What a kick makes of a [`Single`]: velocity, spin of a sphere, all forces and torques, and those of local damping.
+/// Velocity, angular velocity of a sphere, total force and torque, local damping.
 pub(crate) struct Kicked<R> {
     pub velocity: V3<R>,
     pub spin: V3<R>,
@@ -69,14 +67,13 @@ pub(crate) struct Kicked<R> {
     pub damping_torque: V3<R>,
 }
 
-/// Sign with sign(0) = 0: a body at rest is not damped.
+/// Sign(0) = 0: no damping at rest.
 #[inline(always)]
 fn sign<R: Real>(x: R) -> R {
     let one = R::splat(1.0);
     R::select(x.equals(R::zero()), R::zero(), R::select(x.gt(R::zero()), one, -one))
 }
 
-/// Share of local damping in a load against a motion.
 #[inline(always)]
 fn held<R: Real>(load: V3<R>, motion: V3<R>, damping: R) -> V3<R> {
     let of = -damping;
@@ -87,7 +84,6 @@ fn held<R: Real>(load: V3<R>, motion: V3<R>, damping: R) -> V3<R> {
     )
 }
 
-/// `old` where a motion is fixed, else advanced.
 #[inline(always)]
 fn advanced<R: Real>(old: V3<R>, load: V3<R>, share: R, fixed: &[R::Mask; 3]) -> V3<R> {
     let new = old + load * share;
@@ -98,7 +94,6 @@ fn advanced<R: Real>(old: V3<R>, load: V3<R>, share: R, fixed: &[R::Mask; 3]) ->
     )
 }
 
-/// Kicks one body over `kick` [s].
 #[inline(always)]
 pub(crate) fn kick_single<R: Real>(s: &Single<R>, kick: R) -> Kicked<R> {
     let mut force = s.force.0 + s.force.1 + s.gravity * s.mass;

@@ -1,15 +1,12 @@
-//! Leapfrog, the velocity Verlet scheme with velocities at half steps:
+//! Leapfrog: velocity Verlet with velocities at half steps,
 //!
 //! v(n+½) = v(n−½) + dt F(n)/m,  x(n+1) = x(n) + dt v(n+½),
 //!
-//! and likewise for spin and momentum. One kick per step, so impulses are sums of F dt to rounding; momentum and
-//! angular momentum (x(n+1), v(n+½)) balance to rounding too, and the change of kinetic energy in a step is
-//! exactly dt F(n)·(v(n−½) + v(n+½))/2.
+//! likewise for rotation. Momentum and angular momentum (x(n+1), v(n+½)) balance to rounding; the change of
+//! kinetic energy is exactly dt F(n)·(v(n−½) + v(n+½))/2.
 //!
-//! Local damping (Cundall) takes the share α of each component of the sum of forces, gravity included, and of torques
-//! where it drives the motion, and adds it where it brakes; it is booked with the mean of the velocities too.
-//!
-//! Fixed motions keep their velocity: what holds them is booked as work and impulse of constraints.
+//! Local damping (Cundall) scales each component of total force (with gravity) and torque by 1 − α if it
+//! drives the motion, by 1 + α if it brakes. Fixed motions keep their velocity; constraints do work.
 //!
 //! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 
@@ -29,7 +26,6 @@ use crate::lanes::turn::Turn;
 use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
 use nalgebra::UnitQuaternion;
 
-/// A force applied to a body in this step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Applied {
     pub block: u32,
@@ -38,21 +34,20 @@ pub(crate) struct Applied {
     pub torque: Vec3,
 }
 
-/// What drives all bodies alike.
+/// Loads common to all bodies.
 #[derive(Clone, Copy)]
 pub(crate) struct Drive<'a> {
     /// Acceleration [m/s²].
     pub gravity: Vec3,
-    /// Share of local damping [-].
+    /// Local damping coefficient α [-].
     pub damping: f64,
-    /// Largest speed that a step allows [m/s].
+    /// Speed limit [m/s].
     pub bound: f64,
     pub bodies: &'a Bodies,
-    /// Lengths of the step and of the one before.
     pub pace: Pace,
 }
 
-/// Moves the bodies of a block under the forces of `tally` and the block's applied forces, which are in order of place.
+/// Moves a block; applied forces are sorted by body index in it.
 pub(crate) fn advance(
     simd: Simd,
     drive: &Drive<'_>,
@@ -71,14 +66,13 @@ pub(crate) fn advance(
     }
 }
 
-/// Moves all bodies of a block by one step: four at a time where all four are free, else one by one. `PLAIN`: all are free, and
-/// nothing is to be asked.
+/// Groups of four free bodies, others singly. `PLAIN`: all are free.
 struct Advance<'a, const RIGID: bool, const PLAIN: bool> {
     drive: &'a Drive<'a>,
     block: &'a mut Block,
     members: &'a mut Members,
     tally: &'a mut Tally,
-    /// The block's applied forces, by place.
+    /// Sorted by body index.
     applied: &'a [Applied],
 }
 
@@ -100,7 +94,7 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
         let n = block.bodies.len();
         let mut sums = Sums::<P::Quad>::new();
         let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
-        // Above the bound, or not a number, which a maximum does not show.
+        // NaN does not show in a maximum.
         let wild = |v2: f64| v2.is_nan() || v2 > bound * bound;
         let mut too_fast = false;
         let quick = if PLAIN { n - n % 4 } else { 0 };
@@ -114,7 +108,7 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
             }
         }
         if RIGID {
-            // A loop of its own, so that the processor works on several turns at once.
+            // Separate loop: rotations overlap in the pipeline.
             for k in (0..quick).step_by(4) {
                 place_four::<P>(block, members, k);
             }
@@ -169,15 +163,13 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
     }
 }
 
-/// What the bodies moved four at a time add up to, by lane.
+/// Sums over groups of four.
 struct Sums<R> {
-    /// Mass times position before the step.
     moment: V3<R>,
-    /// Square of the largest speed.
     fastest2: R,
-    /// Whether all speeds are numbers.
+    /// No NaN.
     sound: bool,
-    // Of local damping: its power, its forces and its torques as records of three components, the moments of its forces.
+    // Local damping: power, forces, torques, moments of forces.
     power: R,
     force: R,
     torque: R,
@@ -210,14 +202,14 @@ impl<R: Four> Sums<R> {
     }
 }
 
-/// Square of the largest speed of a body's points.
+/// Of a body's points.
 fn speed2<const RIGID: bool>(block: &Block, members: &Members, k: usize) -> f64 {
     let v = xyz(&block.velocity[k]).norm();
     let turn = if RIGID { xyz(&block.spin[k]).norm() * members.reach[k] } else { 0.0 };
     (v + turn) * (v + turn)
 }
 
-/// Moves the free bodies k to k + 3; `DAMPED`: with local damping. Their spheres stay behind.
+/// Moves free bodies k to k + 3, without member spheres.
 #[inline(always)]
 fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     drive: &Drive<'_>,
@@ -283,9 +275,8 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     sums.fastest2 = sums.fastest2.max(speed2);
 }
 
-/// Kicks and turns the free bodies k to k + 3, clumps and perhaps single spheres among them, by torques and the parts
-/// of them that are local damping. Returns the squares of the
-/// largest speeds of their points, given those of the centres.
+/// Kicks and rotates free bodies k to k + 3. Returns the largest squared speeds of their points, from the
+/// centres'.
 #[inline(always)]
 fn turn_four<R: Four, const DAMPED: bool>(
     block: &mut Block,
@@ -324,7 +315,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     let orientation = Turn { v: V3::new(qi, qj, qk), s: qw };
     let (momentum, before) = (V3::new(mx, my, mz), V3::new(wx, wy, wz));
     let body = Rigid { orientation, momentum, spin: before, inertia };
-    // A single sphere keeps its orientation; its momentum is not used.
+    // Single spheres keep their orientation.
     let momentum = turning::kicked(&body, torque, kick);
     let new = rotation::free(orientation, momentum, inertia, R::splat(pace.dt));
     let mut held = V3::zero();
@@ -349,7 +340,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     turning::fastest2(speed2, rate, reach)
 }
 
-/// Puts the spheres of four bodies from `body` on where centres and orientations say, as many at a time as there are groups of lanes.
+/// Updates the member spheres of four bodies.
 #[inline(always)]
 fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
     let (centre, rotation) = (&block.centre[body..body + 4], &block.rotation[body..body + 4]);
@@ -362,7 +353,6 @@ fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
     ]);
     let zero = P::Quad::zero();
     let [x, y, z] = Turn { v: V3::new(i, j, k), s }.columns();
-    // Columns of the matrix of each body.
     let x = P::Quad::transpose([x.x, x.y, x.z, zero]);
     let y = P::Quad::transpose([y.x, y.y, y.z, zero]);
     let z = P::Quad::transpose([z.x, z.y, z.z, zero]);
@@ -385,7 +375,7 @@ fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
     }
 }
 
-/// Any body, with applied forces, local damping and fixed motions. Returns the square of the largest speed of its points.
+/// Any body. Returns the largest squared speed of its points.
 fn general<const RIGID: bool>(
     drive: &Drive<'_>,
     block: &mut Block,
@@ -417,7 +407,6 @@ fn general<const RIGID: bool>(
     let (v1, force, torque) = (kicked.velocity.to_vec(), kicked.force.to_vec(), kicked.torque.to_vec());
     let (damping, damping_torque) = (kicked.damping.to_vec(), kicked.damping_torque.to_vec());
 
-    // Translation.
     let mean = (v0 + v1) * 0.5;
     let ledger = &mut tally.ledger;
     if fixed & 7 != 0 {
@@ -428,7 +417,6 @@ fn general<const RIGID: bool>(
     set_xyz(&mut block.velocity[k], &v1);
     set_xyz(&mut block.centre[k], &(x + v1 * dt));
 
-    // Rotation.
     let (mean_spin, reach) = if RIGID && members.kind[k] != Kind::Sphere {
         let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
         (spin, members.reach[k])
@@ -457,7 +445,7 @@ fn general<const RIGID: bool>(
     turning::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
 }
 
-/// Kicks and turns a clump or a box; returns the mean spin of the kick.
+/// Kicks and rotates a clump or box; returns the mean angular velocity.
 #[inline]
 fn rotate(
     drive: &Drive<'_>,
@@ -497,12 +485,12 @@ fn rotate(
     turned.mean.to_vec()
 }
 
-/// Spin after the impulse about the fixed axes that gives it the components `target` there.
+/// Angular velocity with the components `target` about fixed axes.
 pub(crate) fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fixed: u8) -> Vec3 {
     if fixed == 7 {
         return *target;
     }
-    // World inverse inertia, its rows of free axes replaced by those of the identity: solving gives the impulse.
+    // Identity rows for free axes: the solution is the impulse.
     let turn = r.orientation.to_rotation_matrix();
     let inverse = turn.matrix()
         * nalgebra::Matrix3::from_diagonal(&inertia.map(|i| 1.0 / i))
@@ -517,7 +505,7 @@ pub(crate) fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fix
             }
         }
     }
-    // The principal minors of a positive definite matrix are positive, so a solution always exists.
+    // Always solvable: principal minors of a positive definite matrix are positive.
     let impulse = system.lu().solve(&rhs).unwrap_or_else(Vec3::zeros);
     spin + inverse * impulse
 }

@@ -1,15 +1,13 @@
-//! Rotation of bodies with unlike principal moments.
+//! Rotation of bodies with different principal moments.
 //!
-//! The angular momentum L is kept in world axes: torques change it, free rotation does not. The orientation then
-//! follows the implicit midpoint rule for Euler's equations: with Π the momentum in the body frame and
-//! ω = I⁻¹ (Π₀ + Π₁)/2,
+//! The global angular momentum L is stored. The orientation follows the implicit midpoint rule for Euler's
+//! equations, with body-frame momentum Π and ω = I⁻¹ (Π₀ + Π₁)/2:
 //!
-//! q₁ = q₀ ∘ (1, ω dt/2)/norm,  Π₁ = the same L seen from q₁,
+//! q₁ = q₀ ∘ (1, ω dt/2)/norm,  Π₁ = L in the frame of q₁,
 //!
-//! so that Π₁ − Π₀ = −dt ω × (Π₀ + Π₁)/2. It keeps every quadratic invariant: the kinetic energy as well as |L|,
-//! to rounding, for any step (Simo & Wong, Int. J. Numer. Meth. Engng 31, 1991; Austin, Krishnaprasad & Wang,
-//! J. Comput. Phys. 107, 1993). Second order, no trigonometric function. The implicit equation is solved by fixed
-//! points, each gaining a factor of about ω dt.
+//! so that Π₁ − Π₀ = −dt ω × (Π₀ + Π₁)/2. Second order; conserves kinetic energy and |L| to rounding for any
+//! step (Simo & Wong, Int. J. Numer. Meth. Engng 31, 1991; Austin, Krishnaprasad & Wang, J. Comput. Phys.
+//! 107, 1993). Solved by fixed-point iteration.
 //!
 //! Theory manual: equation (3.4) of `docs/theory/motion.md`.
 
@@ -18,13 +16,13 @@ use crate::lanes::turn::Turn;
 use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
-/// Most iterations; reached only when ω dt is of the order of one, where results have no meaning anyway.
+/// Reached only for ω dt of order one.
 pub(crate) const ITERATIONS: usize = 60;
 
-/// The implicit equation of free rotation, whose solution is c = ω dt/2.
+/// Solution c = ω dt/2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Midpoint<R> {
-    /// Momentum in the body frame at the start.
+    /// Initial momentum in the body frame.
     pub start: V3<R>,
     /// dt/2 over the principal moments.
     pub half: V3<R>,
@@ -38,14 +36,13 @@ impl<R: Real> Midpoint<R> {
         Midpoint { start: orientation.back(momentum), half }
     }
 
-    /// Where iterations begin.
     #[inline(always)]
     pub fn guess(&self) -> V3<R> {
         let Midpoint { start, half } = self;
         V3::new(start.x * half.x, start.y * half.y, start.z * half.z)
     }
 
-    /// One iteration, and whether another is needed: the mid momentum solves Π + c × Π = Π₀.
+    /// One iteration of Π + c × Π = Π₀, and whether another is needed.
     #[inline(always)]
     pub fn iterate(&self, c: V3<R>) -> (V3<R>, R::Mask) {
         let Midpoint { start, half } = *self;
@@ -61,7 +58,7 @@ impl<R: Real> Midpoint<R> {
     fn solve(&self) -> V3<R> {
         let mut c = self.guess();
         let one = R::splat(1.0);
-        // Record that have converged stay as they are, so that none depends on its neighbours.
+        // Converged lanes are frozen: independent of their neighbours.
         let mut open = one.equals(one);
         for _ in 0..ITERATIONS {
             let (next, more) = self.iterate(c);
@@ -84,7 +81,7 @@ pub(crate) fn turned<R: Real>(orientation: Turn<R>, c: V3<R>) -> Turn<R> {
     Turn { v: vector * scale, s: scalar * scale }
 }
 
-/// Orientation after free rotation over `dt` with world angular momentum `momentum` and principal moments `inertia`.
+/// Orientation after free rotation; `momentum` global.
 #[inline(always)]
 pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Turn<R> {
     turned(orientation, Midpoint::new(orientation, momentum, inertia, dt).solve())
@@ -100,7 +97,7 @@ pub fn free_one(
     free(Turn::of(orientation), V3::from_vec(momentum), V3::from_vec(inertia), dt).quaternion()
 }
 
-/// Orientation after turning over `dt` with a constant world spin, of the same order.
+/// Orientation after rotation at constant global angular velocity.
 #[inline(always)]
 pub(crate) fn steadily<R: Real>(q: Turn<R>, spin: V3<R>, dt: R) -> Turn<R> {
     let (one, V3 { x: i, y: j, z: k }) = (R::splat(1.0), spin * (R::splat(0.5) * dt));
@@ -119,16 +116,16 @@ pub fn steady(orientation: &UnitQuaternion<f64>, spin: &Vec3, dt: f64) -> UnitQu
     steadily(Turn::of(orientation), V3::from_vec(spin), dt).quaternion()
 }
 
-/// The turn by the angle |v| [rad] about v.
+/// Rotation by the angle |v| [rad] about v.
 pub fn by(v: &Vec3) -> UnitQuaternion<f64> {
     let half = 0.5 * v.norm();
     let (sin, cos) = libm::sincos(half);
-    // Near zero sin(half)/2 half is ½.
+    // Limit ½ at zero.
     let scale = if half > 1e-8 { 0.5 * sin / half } else { 0.5 };
     normalised(Quaternion::from_parts(cos, v * scale))
 }
 
-/// The vector of a turn by at most half a circle: angle [rad] times axis.
+/// Rotation vector: angle [rad] (at most π) times axis.
 pub fn vector(turn: &UnitQuaternion<f64>) -> Vec3 {
     let (v, s) = (turn.imag(), turn.w);
     let length = v.norm();
@@ -163,9 +160,9 @@ mod tests {
         q * q.inverse_transform_vector(momentum).component_div(inertia)
     }
 
-    /// What is written over any kind of number has the bits of nalgebra's products, which results have always had.
+    /// As in stored reference results.
     #[test]
-    fn steady_turns_have_the_bits_of_nalgebra() {
+    fn steady_rotation_matches_nalgebra_bits() {
         for k in 0..1000_i32 {
             let x = |i: i32| libm::sin(f64::from(7 * k + i) * 1.7);
             let q = UnitQuaternion::new_normalize(Quaternion::new(x(0), x(1), x(2), x(3)));
@@ -175,9 +172,9 @@ mod tests {
         }
     }
 
-    /// Energy and momentum of an asymmetric top, turning near its unstable axis, over a million steps.
+    /// Asymmetric top near its unstable axis.
     #[test]
-    fn asymmetric_top_keeps_energy_for_a_million_steps() {
+    fn asymmetric_top_conserves_energy() {
         let inertia = Vec3::new(1.0, 2.0, 3.0);
         let momentum = Vec3::new(0.02, 2.0, 0.05);
         let mut q = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.7);
@@ -198,7 +195,7 @@ mod tests {
         assert!(flips > 50, "the top must tumble, {flips}");
     }
 
-    /// Error against a solution with steps a hundred times smaller falls fourfold when the step is halved.
+    /// Reference: steps a hundred times smaller.
     #[test]
     fn second_order() {
         let inertia = Vec3::new(1.0, 2.0, 3.0);

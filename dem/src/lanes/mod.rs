@@ -1,17 +1,10 @@
-//! Four lanes of numbers at a time, and one source for them and for single numbers.
+//! SIMD lanes: one source for single numbers and four lanes.
 //!
-//! `Real` is what a formula needs: arithmetic, roots, comparisons to a mask, choice by mask. It is implemented for
-//! `f64` (one lane), for `Portable` (an array of four that any processor can do) and for `Avx2` (a register of
-//! four). `Four` adds what only four lanes have: loading and storing, and the transposition between four records of
-//! four numbers and four lanes of each number. Every operation rounds as IEEE 754 says and products are never fused
-//! with sums, so all three give the same bits.
+//! `Real` is implemented for `f64`, `Portable` and `Avx2`, with IEEE 754 rounding and no fused multiply-add:
+//! all give the same bits. `Pack` is one group of four lanes, or two (`Avx512`).
 //!
-//! `Pack` is lanes of one group of four or of two at once (`Avx512`), for loops over lists of groups.
-//!
-//! A `Kernel` is a loop written once over `R: Pack`; `run` picks the implementation, and compiles the whole loop
-//! with the processor's features on. Everything that a kernel calls must be `#[inline(always)]` as well: an operation
-//! on `Avx2` that is not inlined below that entry becomes a call per operation, ten times slower. That rules out
-//! closures with such operations in them, hence also `map` and `from_fn`.
+//! A `Kernel` is a loop over `R: Pack`, compiled by `run` with CPU features. Its functions must be
+//! `#[inline(always)]`, as calls on `Avx2` are ten times slower; this excludes closures, `map` and `from_fn`.
 
 #[cfg(not(all(target_arch = "x86_64", not(feature = "portable"))))]
 mod plain;
@@ -41,7 +34,7 @@ use x86 as machine;
 mod tests {
     use super::*;
 
-    /// A formula that uses everything, on awkward numbers.
+    /// All operations, on awkward numbers.
     struct Formula<'a>(&'a [[f64; 4]; 8]);
 
     #[inline(always)]
@@ -89,7 +82,7 @@ mod tests {
         };
         let portable = bits(run(Simd::Portable, Formula(&numbers)));
         assert_eq!(portable, bits(run(Simd::best(), Formula(&numbers))));
-        // One lane at a time. The group's `any` looks at all lanes, so take groups of four equal ones.
+        // `any` depends on all lanes: four equal records.
         for (k, r) in numbers.iter().enumerate() {
             let same = [*r; 8];
             let four = bits(run(Simd::best(), Formula(&same)));

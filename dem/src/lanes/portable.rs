@@ -1,13 +1,12 @@
-//! Four lanes in an array, for any processor.
+//! Four lanes in an array, for any CPU.
 
 use super::real::{Four, Real};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Four lanes that any processor can do.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable([f64; 4]);
 
-/// Truth values of [`Portable`].
+/// Mask of [`Portable`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PortableMask([bool; 4]);
 

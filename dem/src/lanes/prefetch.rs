@@ -1,31 +1,31 @@
-//! Lists that the processor fetches before they are needed.
+//! Prefetching of lists.
 
 use super::machine;
 
-/// Hints of the instruction, `_MM_HINT_T0` and `_MM_HINT_T1`.
+/// `_MM_HINT_T0` and `_MM_HINT_T1`.
 const FIRST_CACHE: i32 = 3;
 const SECOND_CACHE: i32 = 2;
 
-/// Has the processor fetch a list into its second cache, where it can be asked to.
+/// Into the second-level cache.
 #[inline]
 pub(crate) fn prefetch<T>(list: &[T]) {
     machine::prefetch::<SECOND_CACHE>(list.as_ptr().cast(), size_of_val(list));
 }
 
-/// The same for the first `count` of a list.
+/// First `count` elements.
 #[inline]
 pub(crate) fn prefetch_first<T>(list: &[T], count: usize) {
     prefetch(&list[..list.len().min(count)]);
 }
 
-/// Has the processor fetch `count` of a list from place `at` on, which may lie beyond its end, into its first cache. Its own
-/// foresight stops at every page.
+/// `count` elements from `at`, possibly past the end, into the first-level cache: hardware prefetching stops
+/// at page borders.
 #[inline(always)]
 pub(crate) fn ahead<T>(list: &[T], at: usize, count: usize) {
     machine::prefetch::<FIRST_CACHE>(list.as_ptr().wrapping_add(at).cast(), count * size_of::<T>());
 }
 
-/// The same into its second cache.
+/// Into the second-level cache.
 #[inline(always)]
 pub(crate) fn far_ahead<T>(list: &[T], at: usize, count: usize) {
     machine::prefetch::<SECOND_CACHE>(list.as_ptr().wrapping_add(at).cast(), count * size_of::<T>());

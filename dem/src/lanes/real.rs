@@ -1,15 +1,15 @@
-//! Numbers that formulas are written over: one at a time, or four lanes.
+//! Number type of formulas: a single number, or lanes.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A number, or several side by side.
+/// A number, or several in lanes.
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// One truth value per lane.
+    /// Truth value of each lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
-    /// Whether operations are written down in place of being computed ([`crate::device`]).
+    /// Whether operations are recorded instead of computed ([`crate::device`]).
     const RECORDS: bool = false;
 
     /// The same number in every lane.
@@ -18,24 +18,24 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
-    /// `self` where it is the smaller, else `other` (so `other` where one is not a number).
+    /// Smaller value; `other` if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// `self` where it is the larger, else `other`.
+    /// Larger value; `other` if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// Where `self` is less.
+    /// `self` < `other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// Where `self` is less or equal.
+    /// `self` ≤ `other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// Where both are equal.
+    /// `self` = `other`.
     fn equals(self, other: Self) -> Self::Mask;
-    /// `yes` where the mask holds, else `no`.
+    /// `yes` if set, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Whether the mask holds in any lane.
+    /// Whether any lane is set.
     fn any(mask: Self::Mask) -> bool;
-    /// Whether the mask holds in all lanes.
+    /// Whether all lanes are set.
     fn all(mask: Self::Mask) -> bool;
 
-    /// Where `self` is greater.
+    /// `self` > `other`.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
@@ -47,7 +47,7 @@ pub trait Real:
         Self::splat(0.0)
     }
 
-    /// `self` where the mask holds, else zero.
+    /// `self` if set, else zero.
     #[inline(always)]
     fn only(self, mask: Self::Mask) -> Self {
         Self::select(mask, self, Self::zero())
@@ -103,16 +103,15 @@ impl Real for f64 {
     }
 }
 
-/// Four lanes.
 pub(crate) trait Four: Real {
     fn load(x: &[f64; 4]) -> Self;
     fn store(self, to: &mut [f64; 4]);
-    /// Lane l of the result's k-th element is element k of the l-th row.
+    /// Lane l of result k is element k of row l.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
-    /// Bit l tells lane l of a mask.
+    /// Bit l: lane l of a mask.
     fn bits(mask: Self::Mask) -> u32;
 
-    /// The four numbers of a record as four lanes of each number: element k holds number k of the records `at`.
+    /// Transposed records: result k holds number k of the records `at`.
     #[inline(always)]
     #[cfg_attr(not(test), allow(dead_code))]
     fn gather(records: &[[f64; 4]], at: &[u32; 4]) -> [Self; 4] {
@@ -132,14 +131,13 @@ pub(crate) trait Four: Real {
         out
     }
 
-    /// Sum of the lanes, in one fixed order.
+    /// Sum of the lanes, in fixed order.
     #[inline(always)]
     fn sum(self) -> f64 {
         let [a, b, c, d] = self.array();
         (a + b) + (c + d)
     }
 
-    /// Largest lane.
     #[inline(always)]
     fn largest(self) -> f64 {
         let [a, b, c, d] = self.array();

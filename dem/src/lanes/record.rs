@@ -1,16 +1,15 @@
-//! Four numbers that are loaded as one.
+//! Four numbers loaded together.
 
 use crate::base::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Four numbers loaded as one; aligned, so that none lies across two lines of the cache.
+/// Four numbers, aligned to avoid crossing cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 #[repr(C, align(32))]
 pub(crate) struct Record(pub [f64; 4]);
 
 impl Record {
-    /// A vector and a fourth number.
     #[inline(always)]
     pub fn of(v: &Vec3, last: f64) -> Record {
         Record([v.x, v.y, v.z, last])
@@ -32,13 +31,11 @@ impl std::ops::DerefMut for Record {
     }
 }
 
-/// The first three numbers.
 #[inline(always)]
 pub(crate) fn xyz(record: &Record) -> Vec3 {
     Vec3::new(record[0], record[1], record[2])
 }
 
-/// Sets the first three numbers.
 #[inline(always)]
 pub(crate) fn set_xyz(record: &mut Record, v: &Vec3) {
     record[0] = v.x;

@@ -1,9 +1,9 @@
-//! Rotations over any kind of number.
+//! Rotations of any number type.
 
 use super::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
-/// Rotations in lanes: vector and scalar part of unit quaternions.
+/// Unit quaternion: vector and scalar part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn<R> {
     pub v: V3<R>,
@@ -11,34 +11,32 @@ pub(crate) struct Turn<R> {
 }
 
 impl<R: Real> Turn<R> {
-    /// The vector turned.
     #[inline(always)]
     pub fn apply(self, x: V3<R>) -> V3<R> {
         let t = self.v.cross(x) * R::splat(2.0);
         x + t * self.s + self.v.cross(t)
     }
 
-    /// The vector turned back.
+    /// Inverse rotation of a vector.
     #[inline(always)]
     pub fn back(self, x: V3<R>) -> V3<R> {
         let t = x.cross(self.v) * R::splat(2.0);
         x + t * self.s + t.cross(self.v)
     }
 
-    /// The vector turned, with the bits of nalgebra's product: what bodies that move by themselves have always had.
+    /// As [`Turn::apply`], with nalgebra's bits, for bodies integrated singly.
     #[inline(always)]
     pub fn times(self, x: V3<R>) -> V3<R> {
         let t = self.v.cross(x) * R::splat(2.0);
         t * self.s + self.v.cross(t) + x
     }
 
-    /// The turn back.
     #[inline(always)]
     pub fn inverse(self) -> Turn<R> {
         Turn { v: -self.v, s: self.s }
     }
 
-    /// Columns of the matrix.
+    /// Columns of the rotation matrix.
     #[inline(always)]
     pub fn columns(self) -> [V3<R>; 3] {
         let Turn { v: V3 { x: i, y: j, z: k }, s } = self;
@@ -55,38 +53,36 @@ impl<R: Real> Turn<R> {
 }
 
 impl Turn<f64> {
-    /// From the crate's rotations.
     #[inline(always)]
     pub fn of(q: &UnitQuaternion<f64>) -> Turn<f64> {
         Turn { v: V3::new(q.i, q.j, q.k), s: q.w }
     }
 
-    /// To the crate's rotations.
     #[inline(always)]
     pub fn quaternion(self) -> UnitQuaternion<f64> {
         UnitQuaternion::new_unchecked(Quaternion::new(self.s, self.v.x, self.v.y, self.v.z))
     }
 }
 
-/// Where a body with its centre at `centre` and the matrix of these columns has a point of its own frame.
+/// Global position of a body point, from rotation columns and centre.
 #[inline(always)]
 pub(crate) fn placed<R: Real>([x, y, z]: [V3<R>; 3], centre: V3<R>, local: V3<R>) -> V3<R> {
     centre + ((x * local.x + y * local.y) + z * local.z)
 }
 
-/// Component by component, over principal moments.
+/// Divides by principal moments.
 #[inline(always)]
 pub(crate) fn over<R: Real>(a: V3<R>, inertia: V3<R>) -> V3<R> {
     V3::new(a.x / inertia.x, a.y / inertia.y, a.z / inertia.z)
 }
 
-/// World spin of a body with this orientation and world angular momentum.
+/// Angular velocity from angular momentum, global axes.
 #[inline(always)]
 pub(crate) fn spin<R: Real>(q: Turn<R>, momentum: V3<R>, inertia: V3<R>) -> V3<R> {
     q.times(over(q.inverse().times(momentum), inertia))
 }
 
-/// World angular momentum of a body with this orientation and world spin.
+/// Angular momentum from angular velocity, global axes.
 #[inline(always)]
 pub(crate) fn momentum<R: Real>(q: Turn<R>, spin: V3<R>, inertia: V3<R>) -> V3<R> {
     let local = q.inverse().times(spin);
@@ -98,7 +94,7 @@ mod tests {
     use super::*;
     use crate::Vec3;
 
-    /// What is written over any kind of number has the bits of nalgebra's products, which results have always had.
+    /// Bitwise identical to nalgebra, as in stored reference results.
     #[test]
     fn the_bits_are_those_of_nalgebra() {
         for k in 0..1000_i32 {

@@ -1,9 +1,9 @@
-//! Vectors of three lanes.
+//! Vectors of lanes.
 
 use super::real::Real;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A vector of three lanes-full of numbers.
+/// Vector of three lane-wide components.
 #[derive(Clone, Copy, Debug)]
 pub struct V3<R> {
     /// First component.
@@ -15,7 +15,7 @@ pub struct V3<R> {
 }
 
 impl<R: Real> V3<R> {
-    /// A vector of its components.
+    /// Vector of components.
     #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> V3<R> {
         V3 { x, y, z }
@@ -45,19 +45,19 @@ impl<R: Real> V3<R> {
         V3 { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
     }
 
-    /// The components.
+    /// Components.
     #[inline(always)]
     pub fn array(self) -> [R; 3] {
         [self.x, self.y, self.z]
     }
 
-    /// Square of the length.
+    /// Squared length.
     #[inline(always)]
     pub fn norm2(self) -> R {
         self.dot(self)
     }
 
-    /// `yes` where the mask holds, else `no`.
+    /// `yes` if set, else `no`.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: V3<R>, no: V3<R>) -> V3<R> {
         V3 {
@@ -67,7 +67,7 @@ impl<R: Real> V3<R> {
         }
     }
 
-    /// `self` where the mask holds, else zero.
+    /// `self` if set, else zero.
     #[inline(always)]
     pub fn only(self, mask: R::Mask) -> V3<R> {
         V3 { x: self.x.only(mask), y: self.y.only(mask), z: self.z.only(mask) }
@@ -98,7 +98,6 @@ impl<R: Real> Neg for V3<R> {
     }
 }
 
-/// Vector times number.
 impl<R: Real> Mul<R> for V3<R> {
     type Output = V3<R>;
     #[inline(always)]
@@ -108,13 +107,13 @@ impl<R: Real> Mul<R> for V3<R> {
 }
 
 impl V3<f64> {
-    /// From the crate's vector.
+    /// Single-lane vector.
     #[inline(always)]
     pub fn from_vec(v: &crate::Vec3) -> V3<f64> {
         V3 { x: v.x, y: v.y, z: v.z }
     }
 
-    /// To the crate's vector.
+    /// Converts to `Vec3`.
     #[inline(always)]
     pub fn to_vec(self) -> crate::Vec3 {
         crate::Vec3::new(self.x, self.y, self.z)

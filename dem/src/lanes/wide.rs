@@ -1,51 +1,45 @@
-//! Lanes of whole groups of four contacts: one group at a time, or two side by side in the registers of AVX-512.
+//! Lanes of groups of four contacts: one, or two in AVX-512.
 //!
-//! Each lane goes through the same operations either way, and what is summed over lanes is summed group by group, so
-//! the bits are the same.
+//! Sums over lanes are made group by group: the bits are the same.
 
 use super::real::{Four, Real};
 use crate::lanes::record::Record;
 
-/// The lanes of one group, or of two.
 pub(crate) trait Pack: Real {
-    /// The lanes of one group.
     type Quad: Four;
-    /// Eight numbers of one lane.
+    /// Eight numbers per lane.
     type Record: Copy;
-    /// How many groups.
     const GROUPS: usize;
-    /// How many lanes.
     const LANES: usize = 4 * Self::GROUPS;
 
-    /// The lanes of the groups; of one group only, the second is not read.
+    /// One group: `second` is unused.
     fn join(first: &[f64; 4], second: &[f64; 4]) -> Self;
-    /// Stores the lanes of each group; of one group only, the second stays as it is.
+    /// One group: `second` is unchanged.
     fn split(self, first: &mut [f64; 4], second: &mut [f64; 4]);
-    /// `sum` and the lanes of each group, added group by group.
+    /// One group after the other.
     fn add_to(self, sum: Self::Quad) -> Self::Quad;
-    /// The lanes of each group; of one group only, the second is a copy.
+    /// A single group is repeated.
     fn quads(self) -> [Self::Quad; 2];
-    /// The same lanes in each group.
     fn twice(quad: Self::Quad) -> Self;
-    /// The lane K of each group in all of its lanes.
+    /// Broadcasts lane K within each group.
     fn spread<const K: usize>(self) -> Self;
-    /// Numbers for the lanes; those beyond the last lane are not used.
+    /// Surplus numbers are ignored.
     fn of(x: &[f64; 8]) -> Self;
-    /// The lanes as numbers, zeros beyond the last.
+    /// Stores the lanes, then zeros.
     fn numbers(self) -> [f64; 8];
-    /// Bit l tells lane l of a mask.
+    /// Bit l: lane l of a mask.
     fn mask_bits(mask: Self::Mask) -> u32;
-    /// Loads a record for each lane, in the order that [`Pack::columns`] wants.
+    /// A record per lane, in the order of [`Pack::columns`].
     fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; 4];
-    /// As [`Pack::rows`], two records for each lane.
+    /// Two records per lane.
     fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([Self; 4], [Self; 4]);
-    /// The lanes below `count`.
+    /// Lanes below `count`.
     fn below(count: usize) -> Self::Mask;
-    /// Number k of each lane's record from the rows that hold the records.
+    /// Transposes: number k of each lane's record.
     fn columns(rows: [Self; 4]) -> [Self; 4];
-    /// The eight numbers of each lane; nothing of meaning beyond the last lane.
+    /// Eight numbers per lane.
     fn records(first: [Self; 4], second: [Self; 4]) -> [Self::Record; 8];
-    /// Per lane a record of `force` and `torque_a`, and one of −`force` and `torque_b`; the fourth numbers are zero.
+    /// `force` and `torque_a`; −`force` and `torque_b`; fourth numbers zero.
     #[inline(always)]
     fn opposed(
         force: [Self; 3],
@@ -56,18 +50,15 @@ pub(crate) trait Pack: Real {
         let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
         (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
     }
-    /// Adds a record to eight numbers.
     fn give(record: Self::Record, to: &mut [Record; 2]);
-    /// Stores a record.
     fn put(record: Self::Record, to: &mut [Record; 2]);
 
-    /// `self − o sign` for signs that are 1, 0 or −1, whose product is exact.
+    /// Exact product: signs are 1, 0, −1.
     #[inline(always)]
     fn less(self, o: Self, sign: Self) -> Self {
         self - o * sign
     }
 
-    /// The same record in every row.
     #[inline(always)]
     fn record(x: &[f64; 4]) -> Self {
         Self::join(x, x)
@@ -153,10 +144,9 @@ impl<F: Four> Pack for F {
     }
 }
 
-/// A loop over lanes.
+/// Loop over lanes.
 pub(crate) trait Kernel {
-    /// What it returns.
     type Output;
-    /// Runs the loop; must be `#[inline(always)]`.
+    /// Must be `#[inline(always)]`.
     fn run<R: Pack>(self) -> Self::Output;
 }

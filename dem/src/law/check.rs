@@ -1,11 +1,11 @@
-//! Checks of what materials and pairs say of their laws.
+//! Consistency of materials and pairs with their laws.
 
 use super::damping::Damping;
 use super::material::{Material, Pair, PairOverride};
 use super::table::{Combination, combination};
 use crate::base::error::ModelError;
 
-/// Laws for which a constant of a material or a pair is used by no contact have no effect, which is refused.
+/// Rejects constants that no contact uses.
 pub(crate) fn laws(materials: &[Material], exceptions: &[PairOverride]) -> Result<(), ModelError> {
     let count = materials.len();
     let law = |i: usize, j: usize| -> Result<Option<&'static Combination>, ModelError> {

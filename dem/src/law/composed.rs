@@ -1,19 +1,14 @@
-//! A law of contact put together from its parts: normal force and dashpot, tangential spring and Coulomb friction, rolling
-//! and twisting resistance, adhesion. What they have in common is written here once.
+//! Composition of contact laws: normal force with dashpot, tangential spring with Coulomb friction, rolling
+//! and twisting resistance, adhesion. A pair uses the smaller friction, rolling and twisting coefficients.
 //!
-//! What a contact loses is right to second order in spite of the leapfrog's velocities at half steps (the phase of a damped
-//! swing to first). The dashpot sees the approach speed of half a step ago, with a coefficient that makes up for it
-//! (`lag.rs`). (The speed extrapolated to the full step, 3/2 ḋ(n−½) − 1/2 ḋ(n−3/2), takes steps up to a half shorter and errs five times as much; a speed at the full
-//! step predicted from the contact alone softens the springs of contacts at rest: `docs/developer/engine.md`.) What
-//! the dashpot takes is booked with the extrapolated speed.
+//! Dissipation is second order in spite of half-step velocities (phase of a damped oscillation: first). The
+//! dashpot uses the last half-step approach speed with a corrected coefficient (`lag.rs`), its loss the
+//! extrapolated speed. Alternatives: `docs/developer/engine.md`.
 //!
-//! A force that jumps from zero at first touch (the linear law's dashpot, adhesion) first counts for the part θ + ½ of the
-//! step, θ = d/(ḋ dt) being the part for which the contact has been there.
+//! The first force that jumps at contact (linear dashpot, adhesion) is weighted by θ + ½, θ = d/(ḋ dt) the
+//! fraction of the step in contact.
 //!
-//! The parts: `linear.rs`, `hertz.rs` (normal), `spring.rs`, `mindlin.rs` (tangential), `damping.rs`, `turning.rs` (rolling
-//! and twisting), `adhesion.rs`. Friction, rolling and twisting coefficients of a pair are the smaller of the two.
-//!
-//! Theory manual: equation (3.3) of `docs/theory/motion.md`.
+//! Theory manual: eq. (3.3), `docs/theory/motion.md`.
 
 use super::adhesion;
 use super::constants::{Constants, constants};
@@ -27,30 +22,27 @@ use super::tangential::TangentialLaw;
 use super::turning::{self, Turning, turning};
 use crate::lanes::{Real, V3};
 
-/// Constants of one pair of materials, with normal part `N` and tangential part `T`.
+/// Pair constants with normal law `N` and tangential law `T`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Composed<N, T> {
-    /// The normal part.
+    /// Normal law.
     pub normal: N,
-    /// The tangential part.
+    /// Tangential law.
     pub tangential: T,
-    /// What all laws have.
+    /// Constants of every law.
     pub common: Common,
     damping: Damping,
 }
 
-/// Constants that do not depend on the normal and the tangential part.
+/// Constants independent of `N` and `T`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common<R = f64> {
-    /// Cs/C [-].
     tangential_damping: R,
     /// Friction coefficient [-].
     pub friction: R,
-    /// Coefficient of rolling resistance [-].
     rolling: R,
-    /// Coefficient of twisting resistance [-].
     twisting: R,
-    /// Adhesive force over the effective radius [N/m].
+    /// Adhesive force over effective radius [N/m].
     pull: R,
 }
 
@@ -89,13 +81,12 @@ impl<N: NormalLaw, T: TangentialLaw<N>> Constants for Composed<N, T> {
     }
 }
 
-/// What the beginning of contacts means for a step.
 struct Onset<R> {
-    /// Approach speed at this instant [m/s].
+    /// At the full step [m/s].
     now: R,
-    /// Part of the step during which the contact was there [s].
+    /// Contact time within the step [s].
     time: R,
-    /// Weight of a force that jumps at first touch [-].
+    /// Weight of a jumping force [-].
     weight: R,
 }
 
@@ -114,7 +105,7 @@ fn onset<R: Real>(
     let mut now = R::splat(1.5) * approach - R::splat(0.5) * remembered;
     let (mut time, mut weight) = (step, one);
     if R::any(fresh & on) {
-        // Far above 1: the contact is there from the start of the run, not from within this step.
+        // Far above 1: contact since the start of the run.
         let closing = R::zero().lt(approach);
         let since = R::select(closing, overlap / (approach * step), R::splat(f64::INFINITY));
         let share = since.min(one);
@@ -165,8 +156,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
         let fresh = memory.rate.equals(R::splat(FRESH));
-        // A law whose memory holds another number books its dashpot with the speed of half a step ago: what that is wrong by adds up to
-        // nothing over a swing.
+        // Other history: the last half-step speed serves; its errors cancel over an oscillation.
         let remembered_approach = if N::REMEMBERS { approach } else { memory.rate };
         let Onset { now, time, weight } =
             onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLL);
@@ -291,7 +281,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     fn tangential_ratio(&self) -> f64 {
-        // Where both depend on the overlap they do in the same way, by the circle.
+        // Both depend on overlap through the contact circle, or not at all.
         let (normal, circle) = (self.normal.stiffness(1.0, 1.0), self.normal.circle(1.0, 1.0, 1.0));
         if normal > 0.0 && normal.is_finite() { self.tangential.stiffness(circle) / normal } else { 0.0 }
     }

@@ -1,4 +1,4 @@
-//! Laws driven by prescribed motion.
+//! Laws under prescribed motion.
 
 use super::*;
 use crate::base::Vec3;
@@ -36,7 +36,7 @@ fn moduli_of_like_pairs_and_of_rigid_partners() {
 }
 
 #[test]
-fn force_and_stiffness_of_hertz_and_mindlin() {
+fn hertz_mindlin_force_and_stiffness() {
     let law = HertzLaw::mix(&pair(&GLASS, &GLASS));
     let (d, dt) = (2e-5, 1e-4);
     let mut h = History { rate: 0.0, ..History::NONE };
@@ -49,10 +49,9 @@ fn force_and_stiffness_of_hertz_and_mindlin() {
     assert!((law.stiffness(d, RADIUS) * d / normal - 1.5).abs() < 1e-12);
 }
 
-/// The damping that the closed form gives, against an integration of m d̈ = −max(0, F) in steps far below the time of
-/// contact; at two speeds.
+/// Closed-form damping against integration of m d̈ = −max(0, F), at two speeds.
 #[test]
-fn damping_gives_the_restitution_at_any_speed() {
+fn damping_gives_restitution() {
     for e in [0.1, 0.5, 0.9] {
         let law = HertzLaw::mix(&pair(&Material { restitution: e, ..GLASS }, &GLASS));
         for speed in [0.01, 1.0] {
@@ -64,7 +63,7 @@ fn damping_gives_the_restitution_at_any_speed() {
             };
             let time = (mass * mass / (RADIUS * law.normal.modulus.powi(2) * speed)).powf(0.2);
             let h = 1e-5 * time;
-            // Midpoint rule; the start lies inside, where the dashpot's root is smooth.
+            // Midpoint rule; starts where the dashpot's root is smooth.
             let (mut d, mut v) = (speed * h, speed);
             loop {
                 let (dm, vm) = (d + 0.5 * h * v, v - 0.5 * h / mass * force(d, v));
@@ -84,7 +83,7 @@ fn touch(overlap: f64) -> ContactGeometry {
 }
 
 #[test]
-fn stiffness_of_like_pair_and_rigid_wall() {
+fn stiffness_against_equal_and_rigid_partner() {
     let wall = Material { stiffness: f64::INFINITY, ..SOFT };
     assert_eq!(LinearLaw::mix(&pair(&SOFT, &SOFT)).normal.stiffness, 1e5);
     assert_eq!(LinearLaw::mix(&pair(&SOFT, &wall)).normal.stiffness, 2e5);
@@ -92,7 +91,7 @@ fn stiffness_of_like_pair_and_rigid_wall() {
 }
 
 #[test]
-fn coulomb_limit_in_every_direction_and_spring_shortened() {
+fn coulomb_limit_shortens_spring() {
     let law = LinearLaw::mix(&pair(&SOFT, &SOFT));
     for k in 0..8 {
         let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;

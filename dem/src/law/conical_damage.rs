@@ -1,25 +1,24 @@
-//! Normal law: elastic spheres whose corners crush where the pressure passes what the rock bears (conical damage).
+//! Normal law: elastic spheres with conical damage of corners.
 //!
-//! Broken rock touches at corners. Here a corner is a cone of the half-angle α with a spherical tip of the radius R (the effective radius
-//! at first touch, R₀). Where Hertz's pressure in the middle of the contact, p = (2 E*/π) √(u/R), reaches the strength σ of the corner,
-//! the tip crushes: it is rounded to the larger sphere that fits the same cone, whose top lies back by (R − R₀) k, k = (1 − sin α)/sin α,
-//! so that p stays at σ. With δ the overlap,
+//! A corner is a cone of half-angle α with a spherical tip of radius R, initially the effective radius R₀. If
+//! Hertz's central pressure p = (2 E*/π) √(u/R) reaches the strength σ, the tip crushes to a larger sphere in
+//! the cone, so that p = σ. Its apex recedes by (R − R₀) k, k = (1 − sin α)/sin α. With overlap δ:
 //!
-//! * elastic overlap u = δ − (R − R₀) k, force F = 4/3 E* √R u^(3/2) where u > 0, else none;
-//! * crushing where u > h R, h = (π σ/2E*)²: R = (δ + k R₀)/(h + k), so that u = h R and F = 4/3 E* h^(3/2) R²;
-//! * unloading and reloading with the R that is left, so that a deformation (R − R₀) k stays until the partners part.
+//! * elastic overlap u = δ − (R − R₀) k, force F = 4/3 E* √R u^(3/2) if u > 0, else 0;
+//! * crushing if u > h R, h = (π σ/2E*)²: R = (δ + k R₀)/(h + k), so that u = h R and F = 4/3 E* h^(3/2) R²;
+//! * unloading and reloading at constant R; permanent deformation (R − R₀) k until separation resets R.
 //!
-//! Work of crushing from R to R': c (k/3 − h/15)(R'³ − R³), c = 4/3 E* h^(3/2), positive where h < 5k, which is asked for. The dashpot is that
-//! of `hertz.rs` on the circle √(R u); the restitution of a hit that crushes nothing is that of the materials, of others it is less.
-//! The memory is R; it is forgotten when the partners part, as if they met with other corners the next time. Bodies that overlap already when
-//! a model begins, as in a bed that another stage has pressed, have crushed there: R = R₀ + δ/k, without a force.
+//! Crushing work from R to R': c (k/3 − h/15)(R'³ − R³), c = 4/3 E* h^(3/2), positive for h < 5k (required).
+//! Dashpot as in `hertz.rs` on the circle √(R u); prescribed restitution without crushing, else smaller.
+//! Initial overlaps count as crushed: R = R₀ + δ/k, zero force.
 //!
-//! Sources: Harkness, Zervos, Le Pen, Aingaran & Powrie, Granular Matter 18:65, 2016; with the overlap as above Suhr & Six, Granular Matter
-//! 19:64, 2017 (also in YADE, by the latter). Mixing: the smaller σ and the smaller α; a partner without a strength of its own does not lower them. Against a partner so soft that h ≥ 5k nothing crushes.
+//! Sources: Harkness, Zervos, Le Pen, Aingaran & Powrie, Granular Matter 18:65, 2016; this overlap: Suhr &
+//! Six, Granular Matter 19:64, 2017 (also in YADE). Mixing: smaller σ, smaller α; no crushing against a soft
+//! partner, h ≥ 5k.
 //!
-//! Limits: rubble takes no room; contact circle small against the radii.
+//! Limits: debris has no volume; contact circle small against the radii.
 //!
-//! Theory manual: equations (1.10), (1.11), (1.12) of `docs/theory/contacts.md`.
+//! Theory manual: eqs (1.10), (1.11), (1.12), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::contact::FRESH;
@@ -29,20 +28,17 @@ use super::normal::{Expected, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 use std::f64::consts::PI;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConicalDamage<R = f64> {
     /// Effective modulus E* [Pa].
     pub modulus: R,
-    /// Elastic overlap over the radius at which corners crush, h [-].
+    /// Elastic overlap over radius at crushing, h [-].
     pub limit: R,
-    /// Way back of the tip over the growth of its radius, k [-].
+    /// Apex recession over radius growth, k [-].
     pub slope: R,
-    /// 1/(h + k), zero where nothing crushes [-].
     growth: R,
-    /// 1/k, likewise [-].
     given_way: R,
-    /// Work of crushing over the growth of R³ [Pa].
     work: R,
     /// Damping ratio ζ [-].
     damping_ratio: R,
@@ -50,24 +46,24 @@ pub struct ConicalDamage<R = f64> {
 
 constants!(ConicalDamage { modulus, limit, slope, growth, given_way, work, damping_ratio });
 
-/// Elastic overlap over the radius at which a corner of the strength σ [Pa] crushes, with the effective modulus E* [Pa].
+/// Returns h [-] for strength σ [Pa] and modulus E* [Pa].
 pub fn elastic_limit(strength: f64, modulus: f64) -> f64 {
     (0.5 * PI * strength / modulus).powi(2)
 }
 
-/// Strength [Pa] at and above which crushing would give energy, with the effective modulus E* [Pa] and the half-angle α [rad] of the cone.
+/// Returns the strength [Pa] above which crushing would release energy, for E* [Pa] and α [rad].
 pub fn greatest_strength(modulus: f64, angle: f64) -> f64 {
     2.0 * modulus / PI * (5.0 * slope(angle)).sqrt()
 }
 
-/// How far the tip of a cone of the half-angle α [rad] lies back for each metre that its radius grows [-].
+/// Returns k [-] for half-angle α [rad].
 pub fn slope(angle: f64) -> f64 {
     let sine = libm::sin(angle);
     (1.0 - sine) / sine
 }
 
 impl ConicalDamage {
-    /// Radius [m] and elastic overlap [m] of a contact.
+    /// Radius [m] and elastic overlap [m].
     #[inline(always)]
     fn state(&self, overlap: f64, radius: f64, remembered: f64) -> (f64, f64) {
         let before =
@@ -92,7 +88,7 @@ impl NormalLaw for ConicalDamage {
         let strength = pair.a.corner_strength.min(pair.b.corner_strength);
         let limit = elastic_limit(strength, modulus);
         let slope = slope(pair.a.corner_angle.min(pair.b.corner_angle));
-        // A soft partner yields before the corner does.
+        // A soft partner deforms before the corner crushes.
         let crushes = limit < 5.0 * slope;
         let work = if crushes {
             4.0 / 3.0 * modulus * limit * limit.sqrt() * (slope / 3.0 - limit / 15.0)
@@ -108,7 +104,7 @@ impl NormalLaw for ConicalDamage {
     fn respond<R: Real>(law: &ConicalDamage<R>, touch: &Touch<R>) -> Response<R> {
         let Touch { radius, overlap, .. } = *touch;
         let overlap_before = touch.overlap_before();
-        // Bodies that overlap already when a model begins have crushed there.
+        // Initial overlaps count as crushed.
         let there = (overlap * R::splat(0.5)).lt(overlap_before);
         let first = radius + (overlap_before * law.given_way).only(there);
         let before = R::select(touch.fresh, first, touch.remembered.max(radius));
@@ -171,7 +167,7 @@ impl NormalLaw for ConicalDamage {
         self.damping_ratio
     }
 
-    /// As Hertz's where no corner crushes; else the overlap at which crushing has taken up the impact, or bears the weight of all bodies.
+    /// Overlap that absorbs the impact or supports the weight of all bodies; without crushing as Hertz.
     fn expected_overlap(&self, e: &Expected) -> f64 {
         let elastic = hertz::expected(self.modulus, e);
         let crushed = if self.growth > 0.0 && elastic > self.limit {

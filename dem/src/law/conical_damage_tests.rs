@@ -1,4 +1,4 @@
-//! Corners that crush, against the figures of another program and closed forms.
+//! Conical damage against YADE and closed forms.
 
 use super::*;
 use crate::base::Vec3;
@@ -20,8 +20,8 @@ fn law(a: &Material, b: &Material) -> ConicalDamage {
     ConicalDamage::mix(&Pair { a, b, exception: None }, 0.0)
 }
 
-/// Overlap, force and radius of the tip that YADE's own check of this law expects (`checkHertzExtended.py`, after Suhr & Six 2017), for a
-/// sphere of 0.1 m on a plane and on its like; it compares to 1e-5, and so do the digits printed there.
+/// YADE's check (`checkHertzExtended.py`, after Suhr & Six 2017): overlap, force and tip radius of a 0.1 m
+/// sphere on a plane and on an equal sphere; tolerance 1e-5, the printed digits.
 #[test]
 fn figures_of_another_program() {
     let law = law(&GRANITE, &GRANITE);
@@ -34,7 +34,7 @@ fn figures_of_another_program() {
         assert!((found / force - 1.0).abs() < 1e-5, "{found} against {force}");
         let pressure = 2.0 * law.modulus / PI * (elastic / tip).sqrt();
         assert!((pressure / 6e7 - 1.0).abs() < 1e-5, "{pressure}");
-        // The tangent in the same state, and the work that crushing took: all work less what is stored.
+        // Tangent here, and crushing work as total minus stored.
         let (rise, n) = (1e-6 * overlap, 4000);
         let slope = (law.force(overlap + rise, radius, radius) - law.force(overlap - rise, radius, radius))
             / (2.0 * rise);
@@ -47,7 +47,7 @@ fn figures_of_another_program() {
     }
 }
 
-/// Unloading leaves a deformation, and reloading follows the same line; nothing of it is left without a strength.
+/// Permanent deformation; reloading on the same line; none without a strength.
 #[test]
 fn what_has_crushed_stays() {
     let law = law(&GRANITE, &GRANITE);
@@ -66,7 +66,7 @@ fn what_has_crushed_stays() {
     assert_eq!(whole.state(deep, radius, radius), (radius, deep));
 }
 
-/// Bodies that overlap when a model begins have crushed there: no force, and any further overlap is elastic at first; a first touch has not.
+/// Initial overlaps are crushed: no force, then elastic. First contacts are not.
 #[test]
 fn overlaps_of_the_start_have_crushed() {
     let law = law(&GRANITE, &GRANITE);
@@ -89,7 +89,7 @@ fn overlaps_of_the_start_have_crushed() {
     );
 }
 
-/// Where the elastic overlap is gone nothing holds bodies that slide over each other, and the spring begins anew with the next load.
+/// No resistance to sliding without elastic overlap; the spring restarts.
 #[test]
 fn nothing_is_held_without_pressure() {
     let law = ConicalLaw::mix(&Pair { a: &GRANITE, b: &GRANITE, exception: None });
@@ -110,7 +110,7 @@ fn nothing_is_held_without_pressure() {
     assert!(force.normal > 1.0 && force.force.x.abs() < 1e-9 * force.normal, "{force:?}");
 }
 
-/// A partner without corners takes those of the other; one softer than any corner crushes none.
+/// A partner without corners adopts the other's; a soft one crushes none.
 #[test]
 fn partners_without_corners() {
     let plate = Material { corner_strength: f64::INFINITY, corner_angle: 0.5 * PI, ..GRANITE };
@@ -122,7 +122,7 @@ fn partners_without_corners() {
     assert!(greatest_strength(soft.modulus, GRANITE.corner_angle) < GRANITE.corner_strength);
 }
 
-/// What a model expects: the overlap of an impact that only crushes, and of a column's weight, to what the closed form leaves out.
+/// Crushing impact and weight of a column, within neglected terms.
 #[test]
 fn expected_overlaps() {
     let law = law(&GRANITE, &GRANITE);

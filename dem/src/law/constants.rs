@@ -1,23 +1,23 @@
-//! Constants of laws, one by one and in lanes.
+//! Constants of laws, scalar and in lanes.
 
 use crate::lanes::Real;
 
-/// Constants of one pair of materials, of a law or of a part of one, and the same in lanes.
+/// Pair constants, scalar and in lanes.
 pub trait Constants: Copy + Send + Sync {
-    /// The constants in lanes.
+    /// Constants in lanes.
     type Lanes<R: Real>: Copy;
 
-    /// All zero: for lanes of other laws, where nothing is made of them.
+    /// All zero, for lanes of other laws.
     const ZERO: Self;
 
-    /// The same constants in every lane.
+    /// Broadcasts the constants to all lanes.
     fn splat<R: Real>(&self) -> Self::Lanes<R>;
 
-    /// Constants per lane (of as many as there are), put together by `join`.
+    /// Joins per-lane constants.
     fn mixed<R: Real>(all: [&Self; 8], join: fn(&[f64; 8]) -> R) -> Self::Lanes<R>;
 }
 
-/// [`Constants`] of a struct of numbers, field by field.
+/// Implements [`Constants`] field by field.
 macro_rules! constants {
     ($part:ident { $($field:ident),+ $(,)? }) => {
         impl $crate::law::constants::Constants for $part {

@@ -1,49 +1,49 @@
-//! A contact as detection finds it, what it remembers, and what a law makes of it: one by one and in lanes.
+//! Contact geometry, history and force.
 
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 use serde::{Deserialize, Serialize};
 
-/// Where and how two partners touch. "a" is the partner the force is computed for, "b" the other.
+/// Contact of partner a, which receives the force, with b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactGeometry {
-    /// The one point where the force acts on both [m].
+    /// Point of the force on both [m].
     pub point: Vec3,
     /// Unit normal, from b to a.
     pub normal: Vec3,
-    /// Overlap, positive in contact [m].
+    /// Overlap [m].
     pub overlap: f64,
     /// Effective radius 1/(1/R₁ + 1/R₂) [m].
     pub radius: f64,
 }
 
-/// Memory of one contact.
+/// Contact history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct History {
-    /// Tangential spring: displacement of a against b that still pulls back [m].
+    /// Tangential displacement of a against b [m].
     pub spring: Vec3,
-    /// The one number that the normal part of the law keeps, [`FRESH`] before the first force: the approach speed half a
-    /// step before the last force where it has a dashpot [m/s], or what its file states.
+    /// Normal law's number, [`FRESH`] before the first force: with dashpot the approach speed half a step
+    /// before the last force [m/s].
     pub rate: f64,
-    /// Rolling spring (three components) and twisting spring: angles of a against b that still turn back, times the
-    /// effective radius [m]. Zero where neither resistance is modelled.
+    /// Rolling (three components) and twisting spring: angle of a against b × effective radius [m]; zero
+    /// without resistance.
     pub turn: [f64; 4],
 }
 
-/// Marks a history without a contact (finite, so that every format can hold it).
+/// Marker of a new contact, finite for all file formats.
 pub const FRESH: f64 = f64::MAX;
 
 impl History {
-    /// Memory of a contact that has not begun.
+    /// New contact.
     pub const NONE: History = History { spring: Vec3::new(0.0, 0.0, 0.0), rate: FRESH, turn: [0.0; 4] };
 
-    /// Whether the contact has not begun.
+    /// Whether the contact is new.
     #[inline(always)]
     pub fn is_fresh(&self) -> bool {
         self.rate == FRESH
     }
 
-    /// Moves the partner of the tangential spring by `way` [m] where no step has: the part across `normal` counts.
+    /// Displaces the tangential spring by `way` [m], outside a step.
     #[inline(always)]
     pub(crate) fn displace(&mut self, way: &Vec3, normal: &Vec3) {
         if !self.is_fresh() {
@@ -51,26 +51,24 @@ impl History {
         }
     }
 
-    /// The same contact seen from the other partner. A twist has the same sense from both sides.
+    /// History for the other partner; twist keeps its sense.
     pub(crate) fn turned(&self) -> History {
         if self.is_fresh() {
-            // No zero gets a sign that a step without a contact would not take away from it.
+            // Zeros keep their sign, as in steps without contact.
             return *self;
         }
-        // Likewise of springs that nothing has strained: less than zero by nothing is zero.
+        // Unstrained springs keep +0.
         let back = |x: f64| 0.0 - x;
         let [x, y, z, twist] = self.turn;
         History { spring: self.spring.map(back), rate: self.rate, turn: [back(x), back(y), back(z), twist] }
     }
 
-    /// Of one lane.
     #[inline(always)]
     pub(crate) fn of(memory: &Memory<f64>) -> History {
         let &Memory { spring, rate, roll, twist } = memory;
         History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] }
     }
 
-    /// In one lane.
     #[inline(always)]
     pub(crate) fn memory(&self) -> Memory<f64> {
         let [x, y, z, twist] = self.turn;
@@ -78,31 +76,31 @@ impl History {
     }
 }
 
-/// What a law makes of one contact in a step.
+/// Contact force of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce {
-    /// Force on a [N]; b takes the opposite.
+    /// Force on a, opposite on b [N].
     pub force: Vec3,
-    /// Its normal part, pressure positive [N], less adhesion.
+    /// Normal part, compression positive, without adhesion [N].
     pub normal: f64,
-    /// Moment of rolling and twisting resistance on a [N m]; b takes the opposite.
+    /// Rolling and twisting moment on a, opposite on b [N m].
     pub moment: Vec3,
-    /// Energy dissipated by dashpots and lasting deformation in this step [J].
+    /// Dissipation by dashpots and permanent deformation [J].
     pub dashpot: f64,
-    /// Energy dissipated by sliding, rolling and twisting in this step [J].
+    /// Dissipation by sliding, rolling and twisting [J].
     pub friction: f64,
 }
 
-/// A contact as springs and dashpots about where it is.
+/// Linearised contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Linearised {
-    /// Stiffness along the normal [N/m], the larger of loading and unloading.
+    /// Normal stiffness, larger of loading and unloading [N/m].
     pub normal: f64,
-    /// Stiffness across it [N/m].
+    /// Tangential stiffness [N/m].
     pub tangential: f64,
-    /// Dashpot along the normal [N s/m].
+    /// Normal damping [N s/m].
     pub damping: f64,
-    /// Dashpot across it [N s/m].
+    /// Tangential damping [N s/m].
     pub tangential_damping: f64,
     /// Rolling stiffness [N m/rad].
     pub rolling: f64,
@@ -110,10 +108,10 @@ pub struct Linearised {
     pub twisting: f64,
 }
 
-/// Contacts as a law sees them, in lanes.
+/// Law input in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct LawInput<R> {
-    /// Sum of the inverse masses of the bodies, 1/m* = 1/m₁ + 1/m₂ [1/kg].
+    /// 1/m* = 1/m₁ + 1/m₂ [1/kg].
     pub inverse_mass: R,
     /// Effective radius [m].
     pub radius: R,
@@ -121,9 +119,9 @@ pub struct LawInput<R> {
     pub overlap: R,
     /// Unit normal from b to a.
     pub normal: V3<R>,
-    /// Velocity of a relative to b at the contact point, half a step ago [m/s].
+    /// Velocity of a minus b at the contact point, last half step [m/s].
     pub velocity: V3<R>,
-    /// Spin of a less that of b, half a step ago [rad/s].
+    /// Angular velocity of a minus b, last half step [rad/s].
     pub spin: V3<R>,
 }
 
@@ -132,7 +130,7 @@ pub struct LawInput<R> {
 pub struct Memory<R> {
     /// Tangential spring [m].
     pub spring: V3<R>,
-    /// The number of the normal law, or [`FRESH`].
+    /// Normal law's number, or [`FRESH`].
     pub rate: R,
     /// Rolling spring [m].
     pub roll: V3<R>,
@@ -141,7 +139,6 @@ pub struct Memory<R> {
 }
 
 impl<R: Real> Memory<R> {
-    /// `yes` where the mask holds, else `no`.
     #[inline(always)]
     pub(crate) fn select(mask: R::Mask, yes: &Memory<R>, no: &Memory<R>) -> Memory<R> {
         Memory {
@@ -162,21 +159,19 @@ pub struct LawOutput<R> {
     pub normal: R,
     /// Moment on a [N m].
     pub moment: V3<R>,
-    /// Energy dissipated by dashpots and lasting deformation [J].
+    /// Dashpot and deformation loss [J].
     pub dashpot: R,
-    /// Energy dissipated by sliding, rolling and twisting [J].
+    /// Sliding, rolling and twisting loss [J].
     pub friction: R,
 }
 
 impl<R: Real> LawOutput<R> {
-    /// No force.
     #[inline(always)]
     pub(crate) fn none() -> LawOutput<R> {
         let (zero, vector) = (R::zero(), V3::zero());
         LawOutput { force: vector, normal: zero, moment: vector, dashpot: zero, friction: zero }
     }
 
-    /// `yes` where the mask holds, else `no`.
     #[inline(always)]
     pub(crate) fn select(mask: R::Mask, yes: &LawOutput<R>, no: &LawOutput<R>) -> LawOutput<R> {
         LawOutput {

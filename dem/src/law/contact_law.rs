@@ -1,4 +1,4 @@
-//! What the loops over contacts, the limit of the step and the measures know of a law.
+//! Interface of contact laws.
 
 use super::constants::Constants;
 use super::contact::{ContactForce, ContactGeometry, History, LawInput, LawOutput, Linearised, Memory};
@@ -7,16 +7,16 @@ use super::normal::Expected;
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 
-/// A law of contact: constants of one pair of materials, and the force.
+/// Contact law: pair constants and force.
 pub trait ContactLaw: Constants {
-    /// Mixes the constants of two materials.
+    /// Mixes two materials.
     fn mix(pair: &Pair<'_>) -> Self;
 
-    /// The same with another coefficient of friction.
+    /// Returns the law with another friction.
     fn with_friction(&self, friction: f64) -> Self;
 
-    /// The forces of the contacts in the lanes `on`, over a step [s]. Advances their memory; what it does to the
-    /// other lanes has no meaning. `ROLL`: with rolling and twisting resistance, and with adhesion.
+    /// Returns forces in lanes `on` over a step [s] and advances history (undefined in other lanes). `ROLL`:
+    /// rolling and twisting resistance, adhesion.
     fn evaluate<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
@@ -25,7 +25,7 @@ pub trait ContactLaw: Constants {
         step: R,
     ) -> LawOutput<R>;
 
-    /// As [`ContactLaw::evaluate`], which all loops inline but those that record: they share one copy.
+    /// [`ContactLaw::evaluate`], not inlined in recording loops.
     #[inline(always)]
     fn acting<R: Real, const ROLL: bool>(
         law: &Self::Lanes<R>,
@@ -41,55 +41,53 @@ pub trait ContactLaw: Constants {
         }
     }
 
-    /// Energy stored in the normal spring, and in the tangential, rolling and twisting springs together [J].
+    /// Returns the energy of normal, and of all other springs [J].
     fn stored(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
-    /// Force of the normal spring less adhesion [N], and stiffness of the tangential spring [N/m], of a contact with
-    /// this memory.
+    /// Returns normal spring force minus adhesion [N] and tangential stiffness [N/m].
     fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
-    /// Largest force of the tangential spring that friction holds with this memory [N], and the spring's stiffness [N/m].
+    /// Returns friction limit [N] and stiffness [N/m] of the tangential spring.
     fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
-    /// Energy that contacts which end leave in their tangential, rolling and twisting springs [J].
+    /// Returns the energy left in other than normal springs of ending contacts [J].
     fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;
 
-    /// Force of the normal spring on first loading [N] and its tangent stiffness [N/m], for estimates.
+    /// Returns force [N] and tangent stiffness [N/m] of first loading.
     fn loading(&self, overlap: f64, radius: f64) -> (f64, f64);
 
-    /// Largest normal stiffness [N/m] at an overlap [m], for the time step.
+    /// Returns the largest normal stiffness [N/m] for the time step.
     fn stiffness(&self, overlap: f64, radius: f64) -> f64;
 
-    /// The contact as springs and dashpots about where it is, sticking; `mass` is the effective mass of the bodies [kg].
+    /// Linearises a sticking contact; effective `mass` [kg].
     fn linearised(&self, mass: f64, radius: f64, overlap: f64, history: &History) -> Linearised;
 
-    /// Tangential over normal stiffness [-], both at one overlap.
+    /// Returns tangential over normal stiffness [-].
     fn tangential_ratio(&self) -> f64;
 
-    /// Damping ratio ζ of the contact [-].
+    /// Returns damping ratio ζ [-].
     fn damping_ratio(&self) -> f64;
 
-    /// Share 1 − e² of its energy that a collision takes [-].
+    /// Returns energy loss 1 − e² of a collision [-].
     fn loss(&self) -> f64;
 
-    /// Largest overlap expected, over the effective radius [-]; zero where the stiffness does not depend on it.
+    /// Returns the largest expected overlap over radius [-]; zero for constant stiffness.
     fn expected_overlap(&self, expected: &Expected) -> f64;
 
-    /// What the normal law remembers of a contact that is there already and closes at `approach` [m/s].
+    /// Returns the normal law's number for an existing contact closing at `approach` [m/s].
     fn begun(&self, approach: f64) -> f64;
 
-    /// Whether the contact resists rolling or twisting, or adheres.
+    /// Whether it resists rolling or twisting, or adheres.
     fn rolls(&self) -> bool;
 
-    /// Names of the normal and the tangential law.
+    /// Names, normal and tangential.
     fn names(&self) -> [&'static str; 2];
 
-    /// Sources of the parts in use.
+    /// Sources.
     fn sources(&self) -> Vec<&'static str>;
 
-    /// The force on one contact, given the sum 1/m₁ + 1/m₂ of the inverse masses of the bodies [1/kg], the velocity of a
-    /// relative to b at the contact point and the spin of a less that of b, both half a step ago [m/s, rad/s], and
-    /// the step [s]. Advances the contact's memory.
+    /// Returns the force on one contact and advances its history. Inverse effective mass [1/kg]; velocity at
+    /// the contact point, angular velocity, a minus b, last half step [m/s, rad/s]; step [s].
     #[inline(always)]
     fn evaluate_one(
         &self,
@@ -125,7 +123,7 @@ pub trait ContactLaw: Constants {
         }
     }
 
-    /// Ends a contact: forgets it, and returns the energy left in its tangential, rolling and twisting springs [J].
+    /// Resets the history; returns the energy left in other than normal springs [J].
     #[inline(always)]
     fn release(&self, history: &mut History) -> f64 {
         let memory = history.memory();
@@ -134,7 +132,7 @@ pub trait ContactLaw: Constants {
     }
 }
 
-/// A call that is not inlined.
+/// Prevents inlining.
 #[cold]
 #[inline(never)]
 fn apart<T>(call: impl FnOnce() -> T) -> T {

@@ -1,21 +1,21 @@
-//! Where the damping ratio ζ of a pair is from.
+//! Source of a pair's damping ratio ζ.
 
 use super::restitution;
 
-/// The damping part of a law: it gives ζ when materials are mixed; the dashpot itself belongs to the normal law.
+/// Definition of ζ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Damping {
-    /// ζ of the clipped law with the restitution of the pair (`restitution.rs`).
+    /// From restitution (`restitution.rs`).
     #[default]
     Restitution,
-    /// ζ itself [-], zero or more.
+    /// Given ζ [-], not negative.
     Ratio(f64),
     /// None.
     None,
 }
 
 impl Damping {
-    /// Damping ratio ζ [-], given the restitution of the pair.
+    /// Returns ζ [-].
     pub fn ratio(self, restitution: f64) -> f64 {
         match self {
             Damping::Restitution => restitution::damping_ratio(restitution),
@@ -24,7 +24,7 @@ impl Damping {
         }
     }
 
-    /// Where it is published.
+    /// Publication.
     pub fn source(self) -> Option<&'static str> {
         match self {
             Damping::Restitution => Some(restitution::SOURCE),

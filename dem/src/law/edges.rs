@@ -1,32 +1,29 @@
-//! Edges of dilated bodies beside corners after Hertz.
+//! Edge contacts of dilated bodies whose corners follow Hertz's law.
 //!
-//! A corner of radius r presses into a face as a sphere does. Every point of an edge presses by its own overlap δ(s) with
-//! E*/4 per unit of length: F = E*/4 ∫ δ ds, which is linear in δ. Two edges of radius r that cross at right angles overlap by
-//! δ − s²/(4 r) in the distance s from where they cross; summed up over both edges that is 4/3 E* √r δ^(3/2), Hertz's force of
-//! crossing cylinders. An edge that lies on a face has E* L δ/4, where the half-space gives π E* L δ/Λ with Λ between 11 and 17 for L = 12 r
-//! (`docs/guide/verification.md`).
+//! An edge contributes E*/4 per unit length: F = E*/4 ∫ δ ds, linear in δ. For two edges of radius r crossing
+//! at right angles, overlap δ − s²/(4 r) at distance s, both integrals give 4/3 E* √r δ^(3/2), Hertz's force
+//! of crossing cylinders. An edge flat on a face has E* L δ/4; the half-space gives π E* L δ/Λ, Λ between 11
+//! and 17 for L = 12 r (`docs/guide/verification.md`).
 //!
-//! So edges are contacts after the linear law, between materials that are added to those of a model: with springs of E/(8(1 − ν²))
-//! for a metre, and the tangential over normal stiffness 2(1 − ν)/(2 − ν) of Mindlin's circle. What contacts weigh is their length.
+//! Edges follow the linear law between added materials: stiffness E/(8(1 − ν²)) per metre, tangential over
+//! normal stiffness 2(1 − ν)/(2 − ν) as Mindlin's circle, weighted by length. [`Material::edge_factor`] π
+//! gives the line law π/4 E* L δ of Popov (Contact Mechanics and Friction, 2010, sec. 4.2).
 //!
-//! [`Material::edge_factor`] π gives the line law π/4 E* L δ of Popov (Contact Mechanics and Friction, 2010, sec. 4.2).
+//! Limits: points of an edge do not interact. Parallel edges are twice as stiff as an edge on a face; edges
+//! crossing at angle θ follow 1/sin θ, elastic cylinders nearly its root.
 //!
-//! Limits: one point of an edge does not sink where another one presses. Edges side by side, which press from both, are twice as
-//! stiff as one of them on a face; those that cross at an angle θ follow 1/sin θ, where elastic cylinders follow its root nearly.
-//!
-//! Theory manual: equation (2.8) of `docs/theory/shapes.md`.
+//! Theory manual: eq. (2.8), `docs/theory/shapes.md`.
 
 use super::hertz::Hertz;
 use super::material::{LawName, Material, Pair, PairOverride};
 use super::normal::NormalLaw;
 use super::table::combination;
 
-/// Whether the contacts of a pair of materials follow Hertz's law.
 pub(super) fn spread(pair: &Pair<'_>) -> bool {
     combination(pair).ok().flatten().is_some_and(|c| c.normal == Hertz::NAME)
 }
 
-/// Materials and exceptions, and behind them the same for edges.
+/// Appends edge materials and exceptions.
 pub(super) fn beside(
     materials: &[Material],
     exceptions: &[PairOverride],

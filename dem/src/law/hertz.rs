@@ -1,23 +1,20 @@
 //! Normal law: elastic spheres after Hertz.
 //!
-//! With d the overlap, R = R₁R₂/(R₁ + R₂), a = √(R d) the radius of the contact circle and
-//! 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂: F = max(0, 4/3 E* √R d^(3/2) + C ḋ) (Hertz 1882; Johnson, Contact Mechanics, 1985,
-//! sec. 4.2), with C = √5 ζ √(4/3 E* √R m*) d^(1/4) (Tsuji, Tanaka & Ishida, Powder Technology 71, 1992).
+//! Overlap d, R = R₁R₂/(R₁ + R₂), circle a = √(R d), 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂: F = max(0, 4/3 E* √R
+//! d^(3/2) + C ḋ) (Hertz 1882; Johnson, Contact Mechanics, 1985, sec. 4.2), C = √5 ζ √(4/3 E* √R m*) d^(1/4)
+//! (Tsuji, Tanaka & Ishida, Powder Technology 71, 1992).
 //!
-//! Restitution. With s = d^(5/4) as the coordinate and dτ = d^(1/4) dt·5/4 as the time, m* d̈ = −F becomes
-//! v dv/ds = −(4/5)(s + √5 ζ v) in units of the impact: the damped *linear* oscillator, with damping ratio ζ. It ends,
-//! clipped, where the linear one does, so ζ(e) is that of `restitution.rs`, and e does not depend on the speed. (The
-//! usual −ln e/√(π² + ln² e) belongs to the force that is not clipped.)
+//! Restitution: s = d^(5/4), dτ = d^(1/4) dt·5/4 turn m* d̈ = −F into the *linear* oscillator v dv/ds =
+//! −(4/5)(s + √5 ζ v). So ζ(e) is as in `restitution.rs`, and e is independent of speed.
 //!
-//! Overlap expected, for the limit of the step: the larger of two, as a fraction of the radius, for the densest body.
+//! Expected overlap for the time step, densest body, the larger of
 //!
-//! * Impact at speed v: d/R = (5π/4 · ρ v²/E*)^(2/5), the overlap of a sphere that meets a plane
-//!   (Johnson, eq. 11.24, with m = 4/3 π ρ R³).
-//! * Rest below all others: a column of height H presses with F = 4 R² ρ g H on a sphere, d/R = (3 ρ g H/E*)^(2/3).
+//! * impact at speed v: d/R = (5π/4 · ρ v²/E*)^(2/5), sphere on plane (Johnson, eq. 11.24, m = 4/3 π ρ R³);
+//! * rest under a column of height H: F = 4 R² ρ g H, d/R = (3 ρ g H/E*)^(2/3).
 //!
 //! Limits: smooth elastic spheres, contact circle small against the radii.
 //!
-//! Theory manual: equations (1.2), (1.7), (3.7) of `docs/theory/contacts.md` and `docs/theory/motion.md`.
+//! Theory manual: eqs (1.2), (1.7), (3.7), `docs/theory/contacts.md`, `docs/theory/motion.md`.
 
 use super::constants::constants;
 use super::lag;
@@ -25,10 +22,10 @@ use super::material::{Material, Pair};
 use super::normal::{Expected, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
-/// 2 √(5/6): with the tangent stiffness S = 2 E* a the dashpot is 2 √(5/6) ζ √(S m*).
+/// With tangent stiffness S = 2 E* a the dashpot is 2 √(5/6) ζ √(S m*).
 const DASHPOT: f64 = 1.825_741_858_350_553_8;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hertz<R = f64> {
     /// Effective modulus E* [Pa].
@@ -39,22 +36,20 @@ pub struct Hertz<R = f64> {
 
 constants!(Hertz { modulus, damping_ratio });
 
-/// Coefficient of the dashpot that acts in a step [N s/m] beside a spring of the tangent stiffness `tangent` [N/m].
+/// Corrected dashpot coefficient [N s/m]; `tangent` [N/m].
 #[inline(always)]
 pub(super) fn dashpot<R: Real>(zeta: R, tangent: R, touch: &Touch<R>) -> R {
-    // C = DASHPOT ζ √(S m*): with 1/m* it is C/m* that comes first.
     let rate = R::splat(DASHPOT) * zeta * (tangent * touch.inverse_mass).sqrt();
     let (numerator, denominator) = lag::share(R::splat(0.5) * touch.step * rate);
     rate * numerator / (touch.inverse_mass * denominator)
 }
 
-/// Effective modulus E* of two materials [Pa], of which one without a modulus is rigid.
+/// E* [Pa]; rigid without a modulus.
 pub(super) fn modulus(pair: &Pair<'_>) -> f64 {
     let soft = |m: &Material| m.young.map_or(0.0, |e| (1.0 - m.poisson * m.poisson) / e);
     1.0 / (soft(pair.a) + soft(pair.b))
 }
 
-/// Overlap of elastic bodies that a model expects, over the effective radius, before it is kept within bounds.
 pub(super) fn expected(modulus: f64, e: &Expected) -> f64 {
     let impact = libm::pow(1.25 * std::f64::consts::PI * e.density * e.speed * e.speed / modulus, 0.4);
     let rest = libm::pow(3.0 * e.density * e.gravity * e.height / modulus, 2.0 / 3.0);
@@ -112,7 +107,7 @@ impl NormalLaw for Hertz {
     }
 
     fn expected_overlap(&self, e: &Expected) -> f64 {
-        // A floor for bodies at rest without weight: no spring may be without stiffness.
+        // Stiffness must not vanish for weightless bodies at rest.
         expected(self.modulus, e).clamp(1e-9, 1.0)
     }
 }

@@ -1,4 +1,4 @@
-//! The laws of all pairs of materials of a model.
+//! Contact laws of all material pairs.
 
 use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
@@ -8,17 +8,17 @@ use super::normal::Expected;
 use super::table::{ConicalLaw, HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
 use crate::lanes::Pack;
 
-/// The mixed constants of all pairs of materials.
+/// Mixed constants of all pairs.
 #[derive(Clone, Debug)]
 pub struct PairTable<L> {
     count: usize,
     pairs: Vec<L>,
-    /// Pairs whose edges have a law of their own, that of the materials behind them; empty where none has.
+    /// Pairs with separate edge laws.
     edged: Vec<bool>,
 }
 
 impl<L: ContactLaw> PairTable<L> {
-    /// Mixes every pair once. Of several exceptions for one pair the last holds.
+    /// Mixes every pair; its last exception applies.
     pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> PairTable<L> {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
@@ -26,13 +26,13 @@ impl<L: ContactLaw> PairTable<L> {
         PairTable { count, pairs, edged: Vec::new() }
     }
 
-    /// How many materials there are, without those of edges.
+    /// Number of materials, excluding edge materials.
     #[inline(always)]
     fn own(&self) -> usize {
         if self.edged.is_empty() { self.count } else { self.count / 2 }
     }
 
-    /// The materials whose law acts at edges, where that is not the law of `a` and `b`.
+    /// Materials of the edge law, if separate.
     #[inline(always)]
     pub(crate) fn edges(&self, [a, b]: [u32; 2]) -> Option<[u32; 2]> {
         let own = self.own() as u32;
@@ -40,13 +40,12 @@ impl<L: ContactLaw> PairTable<L> {
         has.then(|| [a + own, b + own])
     }
 
-    /// Constants of materials `a` and `b`.
+    /// Returns constants of `a` and `b`.
     #[inline(always)]
     pub fn get(&self, a: u32, b: u32) -> &L {
         &self.pairs[a as usize * self.count + b as usize]
     }
 
-    /// Constants of a pair of materials per lane, given as numbers in lanes.
     #[inline(always)]
     pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
         let (a, b) = (a.numbers(), b.numbers());
@@ -57,12 +56,11 @@ impl<L: ContactLaw> PairTable<L> {
         L::mixed(laws, R::of)
     }
 
-    /// Whether any pair resists rolling or twisting, or adheres.
     pub(crate) fn rolls(&self) -> bool {
         self.pairs.iter().any(L::rolls)
     }
 
-    /// The laws of pairs that are not rigid, each pair once.
+    /// Non-rigid pairs.
     fn in_use(&self) -> impl Iterator<Item = &L> {
         let own = self.own();
         let upper = (0..own).flat_map(move |i| (i..own).map(move |j| i * self.count + j));
@@ -82,7 +80,7 @@ impl<L: ContactLaw> PairTable<L> {
     }
 }
 
-/// The laws of all contacts of a model. Those of every pair alike have kernels of their own.
+/// Laws of all contacts; uniform laws have separate kernels.
 #[derive(Clone, Debug)]
 pub(crate) enum Laws {
     Linear(PairTable<LinearLaw>),
@@ -92,7 +90,7 @@ pub(crate) enum Laws {
     Mixed(PairTable<Mixed>),
 }
 
-/// Runs an expression with the table of the law in use.
+/// Evaluates with the table in use.
 macro_rules! with_law {
     ($laws:expr, $table:ident => $body:expr) => {
         match $laws {
@@ -107,7 +105,7 @@ macro_rules! with_law {
 pub(crate) use with_law;
 
 impl Laws {
-    /// The laws of materials and pairs that [`super::check::laws`] has let pass.
+    /// Requires [`super::check::laws`].
     pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (i..count).map(move |j| (i, j)));
@@ -117,19 +115,19 @@ impl Laws {
         if only(&[Row::Linear]) {
             Laws::Linear(PairTable::new(materials, exceptions))
         } else if only(&[Row::Linear, Row::Rough]) {
-            // Pairs without asperities have the bits of the linear law there.
+            // Bitwise linear for pairs without asperities.
             Laws::Rough(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz]) {
             Laws::Hertz(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz, Row::Conical]) {
-            // Bodies without corners that crush have the forces of Hertz's law there.
+            // Bitwise Hertz for pairs without crushing corners.
             Laws::Conical(PairTable::new(materials, exceptions))
         } else {
             Laws::Mixed(PairTable::new(materials, exceptions))
         }
     }
 
-    /// The same for models with edges that press: beside Hertz's law those have one of their own (`edges.rs`).
+    /// With separate edge laws for Hertz pairs (`edges.rs`).
     pub fn with_edges(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
@@ -144,7 +142,7 @@ impl Laws {
         laws
     }
 
-    /// The materials whose law acts at edges, where that is not the law of the two.
+    /// Materials of the edge law, if separate.
     #[inline(always)]
     pub fn edges(&self, materials: [u32; 2]) -> Option<[u32; 2]> {
         with_law!(self, t => t.edges(materials))
@@ -158,7 +156,6 @@ impl Laws {
         with_law!(self, t => t.get(a, b).stiffness(overlap, radius))
     }
 
-    /// A contact as springs and dashpots (see [`ContactLaw::linearised`]).
     pub fn linearised(
         &self,
         [a, b]: [u32; 2],
@@ -170,7 +167,6 @@ impl Laws {
         with_law!(self, t => t.get(a, b).linearised(mass, radius, overlap, history))
     }
 
-    /// Whether two materials are both rigid, so that they must never touch.
     pub fn rigid(&self, a: u32, b: u32) -> bool {
         self.stiffness(a, b, 1.0, 1.0).is_infinite()
     }
@@ -183,17 +179,14 @@ impl Laws {
         with_law!(self, t => t.get(a, b).damping_ratio())
     }
 
-    /// Share 1 − e² of its energy that a collision takes [-].
     pub fn loss(&self, a: u32, b: u32) -> f64 {
         with_law!(self, t => t.get(a, b).loss())
     }
 
-    /// Largest overlap expected over the effective radius; zero where no stiffness depends on it.
     pub fn expected_overlap(&self, expected: &Expected) -> f64 {
         with_law!(self, t => t.expected_overlap(expected))
     }
 
-    /// What the normal law remembers of a contact that is there already and closes at `approach` [m/s].
     pub fn begun(&self, a: u32, b: u32, approach: f64) -> f64 {
         with_law!(self, t => t.get(a, b).begun(approach))
     }
@@ -202,8 +195,7 @@ impl Laws {
         with_law!(self, t => t.get(a, b).stored(overlap, radius, history))
     }
 
-    /// Largest force of the tangential spring that friction holds [N], and the spring's stiffness [N/m]; `friction`: a coefficient in place of
-    /// that of the law.
+    /// `friction` replaces the law's coefficient.
     pub fn held_by_friction(
         &self,
         [a, b]: [u32; 2],
@@ -219,7 +211,6 @@ impl Laws {
         })
     }
 
-    /// How many materials there are.
     pub fn materials(&self) -> u32 {
         with_law!(self, t => t.count as u32)
     }
@@ -228,24 +219,21 @@ impl Laws {
         with_law!(self, t => t.rolls())
     }
 
-    /// Whether any pair of one material of each list resists rolling or twisting, or adheres.
     pub fn rolls_among(&self, a: &[u32], b: &[u32]) -> bool {
         with_law!(self, t => a.iter().any(|&a| b.iter().any(|&b| t.get(a, b).rolls())))
     }
 
-    /// The laws in use, in words.
     pub fn title(&self) -> String {
         let titles = with_law!(self, t => t.titles());
         if titles.is_empty() { "no contacts".to_string() } else { titles.join(" and ") }
     }
 
-    /// Sources of the laws in use.
     pub fn sources(&self) -> Vec<&'static str> {
         with_law!(self, t => t.sources())
     }
 }
 
-/// Sources of the laws of contact that materials and exceptions for their pairs use.
+/// Sources of the laws in use.
 pub fn sources(materials: &[Material], exceptions: &[PairOverride]) -> Vec<&'static str> {
     Laws::new(materials, exceptions).sources()
 }

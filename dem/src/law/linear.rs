@@ -1,12 +1,12 @@
 //! Normal law: linear spring and dashpot.
 //!
-//! With n from b to a, v the velocity of a relative to b at the contact point, d the overlap, ḋ = −v·n:
-//! F = max(0, K d + C ḋ), K = 2 k₁k₂/(k₁ + k₂), C = 2ζ√(m*K), m* = m₁m₂/(m₁ + m₂) of the *bodies*; ζ makes the clipped law
-//! give the wanted restitution (`restitution.rs`). Source: Cundall & Strack, Géotechnique 29 (1979).
+//! Normal n from b to a, velocity v of a relative to b at the contact point, overlap d, ḋ = −v·n: F = max(0,
+//! K d + C ḋ), K = 2 k₁k₂/(k₁ + k₂), C = 2ζ√(m*K), m* = m₁m₂/(m₁ + m₂) of the *bodies*; ζ from restitution
+//! (`restitution.rs`). Source: Cundall & Strack, Géotechnique 29 (1979).
 //!
-//! The dashpot's force jumps from zero at first touch, see `composed.rs`. Limits: overlaps small against the radii.
+//! Limits: overlaps small against the radii. The dashpot force jumps at first contact (`composed.rs`).
 //!
-//! Theory manual: equation (1.3) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.3), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::lag;
@@ -14,7 +14,7 @@ use super::material::Pair;
 use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear<R = f64> {
     /// Normal stiffness K [N/m].

@@ -1,51 +1,51 @@
-//! Contact materials and exceptions for pairs of them.
+//! Contact materials and pair exceptions.
 //!
-//! Theory manual: equation (1.2) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.2), `docs/theory/contacts.md`.
 
 use super::damping::Damping;
 
-/// A contact material. The law of a pair of materials is that of [`PairOverride::normal`], else the one that both have
-/// (`table.rs`): [`Material::normal`], or Hertz's where there is a Young's modulus and the linear one where there is a
-/// stiffness. A material with neither is rigid and takes the law of its partner.
+/// Contact material. Law of a pair: [`PairOverride::normal`], else the common [`Material::normal`], else
+/// Hertz with a Young's modulus, linear with a stiffness. A material with neither is rigid and adopts its
+/// partner's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Mass per volume of the body [kg/m³].
+    /// Body density [kg/m³].
     pub density: f64,
-    /// Normal stiffness k of a contact between two bodies of this material [N/m]; infinite for a rigid wall.
-    /// Two materials give K = 2 k₁k₂/(k₁ + k₂), so a rigid partner gives 2k.
+    /// Normal stiffness k between equal bodies [N/m], infinite if rigid: K = 2 k₁k₂/(k₁ + k₂), 2k with a
+    /// rigid partner.
     pub stiffness: f64,
     /// Tangential over normal stiffness, Ks/Kn [-].
     pub tangential_ratio: f64,
-    /// Tangential over normal damping coefficient, Cs/Cn [-].
+    /// Tangential over normal damping, Cs/Cn [-].
     pub tangential_damping_ratio: f64,
-    /// Coulomb friction coefficient [-]; with asperities that at large forces.
+    /// Coulomb friction [-]; with asperities at large forces.
     pub friction: f64,
-    /// Friction that asperities add at vanishing force [-] (`rough.rs`); zero: none.
+    /// Asperity friction at vanishing force [-] (`rough.rs`).
     pub asperity_friction: f64,
-    /// Normal force over the square of the effective radius at which half of it is left [Pa].
+    /// Normal force over effective radius squared at half of it [Pa].
     pub asperity_pressure: f64,
-    /// Coefficient of restitution of a central impact, in (0, 1].
+    /// Restitution of a central impact, in (0, 1].
     pub restitution: f64,
-    /// Young's modulus [Pa]; the stiffness of contacts then follows from their sizes.
+    /// Young's modulus [Pa]; stiffness then depends on size.
     pub young: Option<f64>,
-    /// Poisson's ratio [-]; used with a Young's modulus.
+    /// Poisson's ratio [-].
     pub poisson: f64,
-    /// Factor on the stiffness of edges of dilated bodies [-]; used with a Young's modulus (`edges.rs`).
+    /// Stiffness factor of dilated edges [-] (`edges.rs`).
     pub edge_factor: f64,
-    /// Largest pressure that corners bear [Pa] (`conical_damage.rs`); infinite: they do not crush.
+    /// Corner strength [Pa] (`conical_damage.rs`); infinite: no crushing.
     pub corner_strength: f64,
-    /// Half the angle of the cone of a corner [rad].
+    /// Half-angle of corners [rad].
     pub corner_angle: f64,
-    /// Rolling resistance: largest moment over R* F [-]; zero: none.
+    /// Rolling resistance: largest moment over R* F [-].
     pub rolling_friction: f64,
-    /// Twisting resistance: largest moment about the normal over R* F [-]; zero: none.
+    /// Twisting resistance: largest moment over R* F [-].
     pub twisting_friction: f64,
-    /// Normal law of its contacts; absent: that of its constants.
+    /// Normal law; `None`: from the constants.
     pub normal: Option<LawName>,
 }
 
 impl Material {
-    /// A rigid wall without friction, for the fields that a material does not care about.
+    /// Rigid frictionless wall.
     pub const RIGID: Material = Material {
         density: 1.0,
         stiffness: f64::INFINITY,
@@ -67,7 +67,7 @@ impl Material {
 }
 
 impl Material {
-    /// The same material with one coefficient of friction at all forces.
+    /// Returns the material with constant friction.
     pub fn with_friction(self, friction: f64) -> Material {
         Material { friction, asperity_friction: 0.0, ..self }
     }
@@ -80,34 +80,34 @@ impl Default for Material {
     }
 }
 
-/// Values of one pair of materials that replace the mixed ones.
+/// Pair exceptions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairOverride {
     /// First material (index).
     pub a: usize,
-    /// Second material (index); may equal the first.
+    /// Second material (index), may equal the first.
     pub b: usize,
-    /// Friction coefficient [-]; in place of that of asperities too.
+    /// Friction [-], without asperities.
     pub friction: Option<f64>,
-    /// Coefficient of restitution, in (0, 1].
+    /// Restitution, in (0, 1].
     pub restitution: Option<f64>,
-    /// Normal stiffness K of the contact itself [N/m].
+    /// Normal stiffness K [N/m].
     pub stiffness: Option<f64>,
-    /// Work of adhesion w [J/m²]: spheres and walls in touch attract each other with 2π w R*; absent: they do not.
+    /// Work of adhesion w [J/m²]: attraction 2π w R* of spheres and walls.
     pub adhesion: Option<f64>,
     /// Normal law.
     pub normal: Option<LawName>,
-    /// Tangential law; absent: the one that belongs to the normal law.
+    /// Tangential law; `None`: by normal law.
     pub tangential: Option<LawName>,
-    /// Where the damping ratio is from; absent: from the restitution.
+    /// Damping; `None`: from restitution.
     pub damping: Option<Damping>,
     /// Rolling resistance: largest moment over R* F [-].
     pub rolling_friction: Option<f64>,
-    /// Twisting resistance: largest moment about the normal over R* F [-].
+    /// Twisting resistance: largest moment over R* F [-].
     pub twisting_friction: Option<f64>,
 }
 
-/// Name of a law of the table (`table.rs`).
+/// Law name (`table.rs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawName(pub(super) &'static str);
 
@@ -115,37 +115,37 @@ impl LawName {
     /// No tangential force.
     pub const NONE: LawName = LawName("none");
 
-    /// As written in a scene.
+    /// Scene name.
     pub fn as_str(&self) -> &'static str {
         self.0
     }
 }
 
-/// Two materials and what a scene says of the pair.
+/// Two materials and their exception.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
-    /// One material.
+    /// First material.
     pub a: &'a Material,
-    /// The other.
+    /// Second material.
     pub b: &'a Material,
-    /// Values in place of the mixed ones.
+    /// Exception, if any.
     pub exception: Option<&'a PairOverride>,
 }
 
 impl<'a> Pair<'a> {
-    /// The pair of two materials by index, the same for (i, j) and (j, i). Of several exceptions for it the last holds.
+    /// Returns the pair of two indices, any order; its last exception applies.
     pub fn of(materials: &'a [Material], exceptions: &'a [PairOverride], i: usize, j: usize) -> Pair<'a> {
         let exception = exceptions.iter().rfind(|e| (e.a, e.b) == (i, j) || (e.a, e.b) == (j, i));
-        // In index order, so that (i, j) and (j, i) have the same bits.
+        // Makes (i, j) and (j, i) bitwise equal.
         Pair { a: &materials[i.min(j)], b: &materials[i.max(j)], exception }
     }
 
-    /// A value of the exception.
+    /// Returns a value of the exception.
     pub fn given<T>(&self, pick: fn(&PairOverride) -> Option<T>) -> Option<T> {
         self.exception.and_then(pick)
     }
 
-    /// The smaller value of the two materials, if the exception has none.
+    /// Returns the exception, or the smaller value.
     pub fn smaller(&self, given: fn(&PairOverride) -> Option<f64>, own: fn(&Material) -> f64) -> f64 {
         self.given(given).unwrap_or(own(self.a).min(own(self.b)))
     }

@@ -1,18 +1,16 @@
-//! Tangential law: Mindlin's stiffness of the contact circle, rescaled as the overlap changes.
+//! Tangential law: Mindlin's stiffness of the contact circle.
 //!
-//! With a = √(R d) the radius of the contact circle and 1/G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂, G = E/(2(1 + ν)): a spring of
-//! stiffness 8 G* a (Mindlin 1949), turned, damped, limited and shortened as any (`slide.rs`).
+//! With a = √(R d) and 1/G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂, G = E/(2(1 + ν)): spring stiffness 8 G* a (Mindlin
+//! 1949), slider as in `slide.rs`.
 //!
-//! The stiffness changes with a. While the overlap grows the force is kept, so the spring is shortened by a₀/a; while it
-//! falls the spring's length is kept, so the force falls as a does (the rule of Elata & Berryman, Mech. Mater. 24, 1996: a
-//! force kept on unloading would create energy). The energy of the spring falls in both cases and is booked as friction:
-//! in the real contact it goes into slip near the rim. Rolling and twisting springs have the same stiffness and follow the
-//! same rule. The circle before is that of the overlap d − ḋ dt.
+//! Loading keeps the force: the spring shortens by a₀/a. Unloading keeps the length: the force falls with a
+//! (Elata & Berryman, Mech. Mater. 24, 1996: constant force would create energy). Lost spring energy counts
+//! as friction (slip near the rim). Rolling and twisting springs likewise. The previous circle belongs to
+//! overlap d − ḋ dt.
 //!
-//! Limits: the partial slip near the rim under oscillating tangential force (Mindlin & Deresiewicz 1953) only as the rule
-//! above has it.
+//! Limits: partial slip (Mindlin & Deresiewicz 1953) only by this rule.
 //!
-//! Theory manual: equations (1.2), (1.8) of `docs/theory/contacts.md`.
+//! Theory manual: eqs (1.2), (1.8), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::hertz::Hertz;
@@ -20,16 +18,16 @@ use super::material::{LawName, Material, Pair};
 use super::tangential::{Carried, Grip, TangentialLaw};
 use crate::lanes::Real;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mindlin<R = f64> {
-    /// Effective shear modulus G* [Pa].
+    /// Shear modulus G* [Pa].
     pub shear: R,
 }
 
 constants!(Mindlin { shear });
 
-/// Effective shear modulus G* of two materials [Pa], of which one without a modulus is rigid; zero where the pair has no tangential force.
+/// G* [Pa]; rigid without a modulus, zero without tangential force.
 pub(super) fn shear(pair: &Pair<'_>) -> f64 {
     if pair.given(|e| e.tangential) == Some(LawName::NONE) {
         return 0.0;
@@ -60,7 +58,7 @@ impl TangentialLaw<Hertz> for Mindlin {
         Some(Carried { kept, loss })
     }
 
-    /// Stiffness and energy have gone to zero with the overlap, booked on the way but for the last step's.
+    /// Stiffness and energy vanish with the overlap; only the last step's loss is neglected.
     #[inline(always)]
     fn at_end<R: Real>(_: &Mindlin<R>) -> Option<R> {
         None

@@ -1,24 +1,20 @@
-//! Several laws in one model: one per pair of materials.
-//!
-//! In lanes each law that is there is evaluated for its own contacts, and the results are put together by mask; so a
-//! contact has the bits that it has under its law alone, and only models with several laws pay for it.
+//! Several laws in one model. Lanes evaluate every law present and select by mask: contacts are bitwise as
+//! under their law only.
 
-/// Writes the table of laws: the list of its rows, and the law that is one of them for each pair of materials.
 macro_rules! combinations {
     ($($row:ident($normal:ty, $tangential:ty) = $title:literal),+ $(,)?) => {
-        /// All combinations of laws.
+        /// All law combinations.
         pub const COMBINATIONS: &[Combination] =
             &[$(Combination::of::<$normal, $tangential>($title)),+];
 
-        /// Rows of the table.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub(super) enum Row { $($row),+ }
 
-        /// The law of one pair of materials, which is any row of the table.
+        /// Any row of the table.
         #[derive(Clone, Copy, Debug)]
         pub(crate) enum Mixed { $($row(Composed<$normal, $tangential>)),+ }
 
-        /// Constants of all rows, and which one holds for a lane.
+        /// Constants of all rows, and the row of each lane.
         #[derive(Clone, Copy, Debug)]
         #[allow(non_snake_case)]
         pub(crate) struct MixedLanes<R: $crate::lanes::Real> {
@@ -67,7 +63,7 @@ macro_rules! combinations {
 
         impl ContactLaw for Mixed {
             fn mix(pair: &Pair<'_>) -> Mixed {
-                // Rigid pairs never touch; the law of others has been found before.
+                // Rigid pairs have no contacts; others are validated.
                 let number = number_of(pair).ok().flatten().unwrap_or(0);
                 [$(|pair: &Pair<'_>| Mixed::$row(ContactLaw::mix(pair))),+][number](pair)
             }
@@ -136,7 +132,7 @@ macro_rules! combinations {
 }
 pub(super) use combinations;
 
-/// Methods that the law of the row has: signature and call.
+/// Forwards to the row's law.
 macro_rules! of_each_row {
     ($($row:ident),+ => {}) => {};
     ($($row:ident),+ => {

@@ -1,10 +1,8 @@
-//! Laws of contact: detection yields a [`ContactGeometry`], a law turns it into a force; neither knows the other.
+//! Contact laws: force from [`ContactGeometry`], composed of parts (`composed.rs`, `table.rs`) per material
+//! pair.
 //!
-//! A law is composed of parts (`composed.rs`): normal force and damping, tangential force, rolling, twisting, adhesion.
-//! `table.rs` lists those there are; each pair of materials has its own.
-//!
-//! A law is written once, over [`Real`](crate::lanes::Real): the loops over many pairs evaluate four contacts at a time
-//! ([`ContactLaw::evaluate`]), walls, boxes and measures one ([`ContactLaw::evaluate_one`]). Both give the same bits.
+//! Laws are generic over [`Real`](crate::lanes::Real): [`ContactLaw::evaluate`] in SIMD lanes,
+//! [`ContactLaw::evaluate_one`] for single contacts, bitwise identical.
 
 pub mod adhesion;
 pub(crate) mod check;

@@ -1,5 +1,4 @@
-//! Parameters of contact materials and of pairs of them: key, unit, valid range, typical range. Checks of models and scenes, warnings
-//! about atypical values and the schema of scenes read these tables.
+//! Parameters of materials and pairs, for validation, warnings and scene schema.
 
 use super::damping::Damping;
 use super::material::{Material, PairOverride};

@@ -1,25 +1,23 @@
-//! Damping ratio of a linear spring–dashpot from the restitution it shall give.
+//! Damping ratio of a linear spring–dashpot from restitution.
 //!
-//! The force F = K d + C ḋ is clipped at zero, so a contact ends when the force vanishes, before the overlap does.
-//! With ζ = C/(2√(m*K)) the ratio of the speeds after and before is (Schwager & Pöschel, Granular Matter 9, 2007)
+//! F = K d + C ḋ is clipped at zero, so contact ends before the overlap. With ζ = C/(2√(m*K)) (Schwager &
+//! Pöschel, Granular Matter 9, 2007)
 //!
 //! * ζ < 1: e = exp[−(ζ/w)(π − atan2(2ζw, 1 − 2ζ²))], w = √(1 − ζ²);
 //! * ζ = 1: e = exp(−2);
 //! * ζ > 1: e = exp[−(2ζ/s) ln(ζ + s)], s = √(ζ² − 1).
 //!
-//! e falls steadily with ζ, so bisection inverts it. The usual ζ = −ln e/√(π² + ln²e) ignores the clip and gives
-//! 0.325 where 0.2 is wanted.
+//! Bisection inverts e(ζ). The unclipped ζ = −ln e/√(π² + ln²e) gives 0.325 instead of 0.2.
 //!
-//! Theory manual: equation (1.4) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.4), `docs/theory/contacts.md`.
 
-/// Where it is published.
 pub(super) const SOURCE: &str =
     "restitution of the clipped dashpot: Schwager & Poschel, Granular Matter 9, 2007";
 
-/// Restitution of the clipped law for damping ratio `zeta` ≥ 0.
+/// Returns the restitution for damping ratio `zeta` ≥ 0.
 pub fn restitution(zeta: f64) -> f64 {
     let gap = 1.0 - zeta * zeta;
-    // Near ζ = 1 both forms lose digits; their common series is exp(−2 − (4/3)(ζ − 1) + …).
+    // Series near ζ = 1, where both forms lose digits: exp(−2 − (4/3)(ζ − 1) + …).
     if gap.abs() < 1e-8 {
         libm::exp(-2.0 - 4.0 / 3.0 * (zeta - 1.0))
     } else if gap > 0.0 {
@@ -31,7 +29,7 @@ pub fn restitution(zeta: f64) -> f64 {
     }
 }
 
-/// Damping ratio that gives restitution `e` in (0, 1].
+/// Returns the damping ratio for `e` in (0, 1].
 pub fn damping_ratio(e: f64) -> f64 {
     if e >= 1.0 {
         return 0.0;
@@ -55,11 +53,11 @@ pub fn damping_ratio(e: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Integrates the clipped oscillator with steps far below its period.
+    /// Clipped oscillator in small steps.
     fn bounce(zeta: f64) -> f64 {
         let (mut x, mut v, h) = (0.0_f64, 1.0_f64, 1e-5);
         let force = |x: f64, v: f64| -(x + 2.0 * zeta * v);
-        // Classical fourth-order Runge–Kutta until the force would pull.
+        // Fourth-order Runge–Kutta.
         while force(x, v) < 0.0 || x == 0.0 {
             let (a1, v1) = (force(x, v), v);
             let (a2, v2) = (force(x + 0.5 * h * v1, v + 0.5 * h * a1), v + 0.5 * h * a1);

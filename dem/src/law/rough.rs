@@ -1,21 +1,18 @@
-//! Tangential law: friction that falls with the pressure in the contact, as on rough rock, beside a spring of constant stiffness.
+//! Tangential law: spring of constant stiffness with pressure-dependent friction.
 //!
-//! Faces of broken stone slide over the asperities of each other where little presses them together, and shear these off where much
-//! does: the friction angle of rough rock joints and of rockfill falls with the stress (Barton & Kjærnsli, J. Geotech. Eng. Div. ASCE
-//! 107, 1981), and so does that of single contacts. Bulk friction of stones that falls with the stress needs an interparticle friction
-//! that does (Suhr & Six, Powder Technol. 294, 2016; Comput. Part. Mech. 4, 2017). Here
+//! μ(F) = μ + μₐ/(1 + F/(p R²)),
 //!
-//! μ(F) = μ + μₐ/(1 + F/(p R²))
+//! F the normal force, R the effective radius: μ + μₐ at vanishing force, half of μₐ at F = p R², μ with
+//! sheared asperities. F/R² is size-independent at equal stress. Fs = −Ks ξ − Cs vₜ (`spring.rs`), limited to
+//! μ(F) F.
 //!
-//! with F the normal force and R the effective radius: μ is left where asperities are gone, μ + μₐ acts at vanishing force, and half
-//! of μₐ is left at F = p R². Force over R² makes beds of stones of another size alike at the same stress. Fs = −Ks ξ − Cs vₜ as in
-//! `spring.rs`, limited to μ(F) F.
+//! Friction of rock falls with stress in joints and rockfill (Barton & Kjærnsli, J. Geotech. Eng. Div. ASCE
+//! 107, 1981) and in contacts (Suhr & Six, Powder Technol. 294, 2016; Comput. Part. Mech. 4, 2017). Mixing:
+//! smaller μₐ, smaller p; `PairOverride::friction` replaces both.
 //!
-//! Mixing: the smaller μₐ, the smaller p. A pair with a friction of its own (`PairOverride::friction`) has that one alone.
+//! Limits: no wear of asperities.
 //!
-//! Limits: asperities do not wear, so what a contact has borne before does not count. The product μ(F) F grows with F throughout.
-//!
-//! Theory manual: equation (1.13) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.13), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::material::{LawName, Pair};
@@ -24,21 +21,19 @@ use super::spring::Spring;
 use super::tangential::{Carried, Grip, TangentialLaw};
 use crate::lanes::Real;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rough<R = f64> {
     stiffness: R,
     compliance: R,
-    /// Friction that asperities add at vanishing force [-].
     asperities: R,
-    /// Normal force over the square of the effective radius at which half of that is left [Pa].
+    /// Normal force over effective radius squared at half of it [Pa].
     pressure: R,
 }
 
 constants!(Rough { stiffness, compliance, asperities, pressure });
 
-/// Friction that asperities add between two materials at vanishing force [-], and the pressure at which half of it is left [Pa];
-/// `None` where the pair has one coefficient. `law`: the tangential law that knows of them.
+/// Asperity friction [-] and half-value pressure [Pa]; `None` for constant friction.
 pub(super) fn asperities(pair: &Pair<'_>, law: LawName) -> Option<(f64, f64)> {
     let of_its_own =
         pair.given(|e| e.friction).is_some() || pair.given(|e| e.tangential).is_some_and(|t| t != law);
@@ -47,7 +42,6 @@ pub(super) fn asperities(pair: &Pair<'_>, law: LawName) -> Option<(f64, f64)> {
     (!of_its_own && added > 0.0).then_some((added, pressure))
 }
 
-/// Name in a scene.
 pub(super) const NAME: LawName = LawName("rough");
 
 impl<N: ConstantStiffness> TangentialLaw<N> for Rough {

@@ -1,13 +1,13 @@
-//! Tangential law: Mindlin's spring beside corners that crush, with friction that falls with the pressure in the contact.
+//! Tangential law: Mindlin's spring with conical damage and pressure-dependent friction.
 //!
-//! The spring is that of `mindlin.rs` on the contact circle a = √(R u) of `conical_damage.rs`: while corners crush the circle grows and the
-//! force is kept; where the elastic overlap is gone, so is the spring. With asperities the coefficient is that of Suhr & Six (Powder Technol. 294, 2016),
+//! Spring of `mindlin.rs` on the circle a = √(R u) of `conical_damage.rs`. With asperities (Suhr & Six,
+//! Powder Technol. 294, 2016)
 //!
 //! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π a²) the mean pressure,
 //!
-//! so that crushed corners, where p̄ is 2/3 of their strength, keep μ + μₐ/(1 + 2σ/3p). Mixing as in `rough.rs`.
+//! so crushed corners, p̄ = 2/3 σ, keep μ + μₐ/(1 + 2σ/3p). Mixing as in `rough.rs`.
 //!
-//! Theory manual: equation (1.13) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.13), `docs/theory/contacts.md`.
 
 use super::conical_damage::ConicalDamage;
 use super::constants::constants;
@@ -17,20 +17,18 @@ use super::rough::asperities;
 use super::tangential::{Carried, Grip, TangentialLaw};
 use crate::lanes::Real;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughMindlin<R = f64> {
-    /// Effective shear modulus G* [Pa].
+    /// Shear modulus G* [Pa].
     pub shear: R,
-    /// Friction that asperities add at vanishing pressure [-].
     asperities: R,
-    /// π times the mean pressure at which half of that is left [Pa].
+    /// π × mean pressure at half asperity friction [Pa].
     pressure: R,
 }
 
 constants!(RoughMindlin { shear, asperities, pressure });
 
-/// Name in a scene.
 const NAME: LawName = LawName("mindlin");
 
 impl TangentialLaw<ConicalDamage> for RoughMindlin {
@@ -52,7 +50,6 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
     #[inline(always)]
     fn limit<R: Real>(law: &RoughMindlin<R>, friction: R, normal: R, _: R, circle: R) -> R {
         let half = law.pressure * circle * circle;
-        // Without a force there is no circle.
         let share = half / (half + normal).max(R::splat(f64::MIN_POSITIVE));
         (friction + law.asperities * share) * normal
     }
@@ -67,7 +64,7 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
         Some(Carried { kept: kept.only(touches), loss: R::select(touches, loss, all) })
     }
 
-    /// Stiffness and energy have gone to zero with the elastic overlap, booked on the way but for the last step's.
+    /// Stiffness and energy vanish with the elastic overlap; only the last step's loss is neglected.
     #[inline(always)]
     fn at_end<R: Real>(_: &RoughMindlin<R>) -> Option<R> {
         None

@@ -1,44 +1,43 @@
-//! Ground that falling rocks scar: soil that gives way over a plane that does not.
+//! Scarring: soil over rigid ground, penetrated and ploughed by falling rocks.
 //!
-//! A rock that comes down at the vertical speed v sinks by d = 0.1 M^⅓ Me^−0.4 v^0.8 (M its mass [kg], Me the mechanical strength of the
-//! soil [kPa]) before the soil is as hard as rock: from there on contacts are those of two solids. Until it has left the soil, the drag
-//! ½ C ρ A |u| u is on its centre of mass, A the area of its part below the surface as seen along its velocity u. Soil piles up before
-//! it while it slides, so friction grows with the way s that its centre of mass has made while it touches,
-//! μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s); once it touches no more, ds/dt = −β s.
+//! A rock of vertical speed v penetrates d = 0.1 M^⅓ Me^−0.4 v^0.8 (mass M [kg], soil strength Me [kPa])
+//! before contact is solid. In soil, the drag ½ C ρ A |u| u acts on its centre of mass, A the submerged area
+//! projected along velocity u. Friction grows with the path s in contact, μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s);
+//! without contact ds/dt = −β s.
 //!
-//! Sources: Lu, Caviezel, Christen, Demmel, Ringenbach, Bühler, Dinneen, Gerber & Bartelt, Landslides 16, 2019, 2353–2367 (eqs 9, 11 to 14); friction:
-//! Leine, Schweizer, Christen, Glover, Bartelt & Gerber, Multibody Syst. Dyn. 32, 2014, 241–271 (eqs 46, 47).
+//! Sources: Lu, Caviezel, Christen, Demmel, Ringenbach, Bühler, Dinneen, Gerber & Bartelt, Landslides 16,
+//! 2019, 2353–2367 (eqs 9, 11 to 14); friction: Leine, Schweizer, Christen, Glover, Bartelt & Gerber,
+//! Multibody Syst. Dyn. 32, 2014, 241–271 (eqs 46, 47).
 //!
-//! Limits: the drag gives no torque. Soil below the surface is as deep as a rock sinks, and the scar is forgotten when the rock has left.
+//! Limits: no drag torque; soil as deep as the penetration; the scar vanishes with the rock.
 //!
-//! Theory manual: equations (6.37), (6.38) of `docs/theory/track.md`.
+//! Theory manual: eqs (6.37), (6.38), `docs/theory/track.md`.
 
 use crate::base::Vec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_2_PI;
 
-/// Where it is published.
+/// Source.
 pub const SOURCE: &str = "ground that rocks scar: Lu and others, Landslides 16, 2019; Leine and others, Multibody Syst. Dyn. 32, 2014";
 
-/// Ground that rocks scar.
+/// Scarred ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scarring {
-    /// Mechanical strength of the soil Me [Pa].
+    /// Soil strength Me [Pa].
     pub strength: f64,
-    /// Drag coefficient of the soil C, that of its flow (1) and that of its compaction together [-].
+    /// Drag coefficient C, flow (1) plus compaction [-].
     pub drag: f64,
-    /// Density of the soil [kg/m³].
+    /// Soil density [kg/m³].
     pub density: f64,
-    /// Friction coefficient where a rock has not slid, μ₀, and where it has slid far, μ₁ [-].
+    /// Friction before, μ₀, and after long sliding, μ₁ [-].
     pub friction: [f64; 2],
-    /// How fast friction grows with the way, κ [1/m].
+    /// Friction growth κ [1/m].
     pub growth: f64,
-    /// How fast that way is forgotten, β [1/s].
+    /// Path decay rate β [1/s].
     pub decay: f64,
 }
 
 impl Scarring {
-    /// What of it is out of range.
     pub(crate) fn fault(&self) -> Option<&'static str> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let not_negative = |x: f64| x >= 0.0 && x.is_finite();
@@ -53,40 +52,40 @@ impl Scarring {
         )
     }
 
-    /// How deep a rock sinks that comes down at a vertical speed [m].
+    /// Returns penetration [m] at a vertical speed [m/s].
     pub fn depth(&self, mass: f64, speed: f64) -> f64 {
         0.1 * libm::cbrt(mass) * libm::pow(self.strength * 1e-3, -0.4) * libm::pow(speed.max(0.0), 0.8)
     }
 
-    /// Friction coefficient after a way [m].
+    /// Returns friction after a path [m].
     pub fn friction(&self, way: f64) -> f64 {
         let [first, last] = self.friction;
         first + FRAC_2_PI * (last - first) * libm::atan(self.growth * way)
     }
 
-    /// The way after another step of `dt` [s] at a speed [m/s], with or without a contact.
+    /// Returns the path [m] after a step `dt` [s] at a speed [m/s].
     pub fn way(&self, way: f64, touches: bool, speed: f64, dt: f64) -> f64 {
         if touches { way + speed * dt } else { way * libm::exp(-self.decay * dt) }
     }
 
-    /// Drag over the square of the speed of a rock with an area in the soil [m²], [kg/m].
+    /// Returns drag over speed squared [kg/m] for a submerged area [m²].
     pub fn resistance(&self, area: f64) -> f64 {
         0.5 * self.drag * self.density * area
     }
 }
 
-/// What a rock does to such ground.
+/// State of a rock in scarred ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scar {
-    /// Whether it is in the soil.
+    /// Whether in the soil.
     pub inside: bool,
-    /// The way that the ground gives way beneath it [m].
+    /// Soil displacement [m].
     pub sunk: Vec3,
-    /// The way that friction has grown with [m].
+    /// Path [m].
     pub way: f64,
-    /// Drag over the square of its speed [kg/m].
+    /// Drag over speed squared [kg/m].
     pub resistance: f64,
-    /// Friction coefficient [-].
+    /// Friction [-].
     pub friction: f64,
 }
 
@@ -103,8 +102,8 @@ mod tests {
         decay: 185.0,
     };
 
-    /// Depths that Lu and others compute for four impacts of 780 kg (their table 3, two digits). Their table 2 has the speed at the start of each
-    /// simulation, their figure 8 when the rock meets the ground, to about 0.01 s.
+    /// Four impacts of 780 kg by Lu and others (table 3, two digits). Table 2 gives the speed at the
+    /// simulation start, figure 8 the impact time to about 0.01 s.
     #[test]
     fn depths_are_the_published_ones() {
         for (strength, speed, fall, depth) in [
@@ -120,10 +119,10 @@ mod tests {
     }
 
     #[test]
-    fn friction_grows_with_the_way_and_is_forgotten() {
+    fn friction_grows_and_decays() {
         let own = CHANT_SURA;
         assert_eq!(own.friction(0.0), 0.55);
-        // atan 1 = π/4: half way up.
+        // atan 1 = π/4.
         assert!((own.friction(1.0 / 3.0) - 1.275).abs() < 1e-12);
         assert!((own.friction(1e9) - 2.0).abs() < 1e-6);
         let mut way = 0.0;

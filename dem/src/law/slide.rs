@@ -1,28 +1,24 @@
-//! Springs that yield: the tangential spring of Coulomb friction, also used for rolling and twisting (`turning.rs`).
+//! Slider of Coulomb friction, also for rolling and twisting (`turning.rs`).
 //!
-//! A spring in the tangent plane is turned into the present plane with its length kept, lengthened by the sliding
-//! displacement, and, with a dashpot beside it, limited in force; it is then shortened so that it holds exactly the
-//! limited force. The energy lost is the spring's mean force times the slide.
+//! The spring is rotated into the tangent plane at constant length, extended, limited in force together with
+//! its dashpot, and shortened to the limit. Dissipation is mean spring force × slip.
 //!
-//! Where there is a dashpot, it and the spring lie side by side behind the slider: what slides stretches neither. The rate u of
-//! both follows from −Ks (ξ + u t) − Cs u = the limited force, so that the dashpot takes Cs u² and the spring never holds more than
-//! was put into it. (With the dashpot at the full velocity, as in LAMMPS' `gran/hooke/history`, a
-//! fast graze leaves the spring stretched by −Cs v/Ks, far beyond what the contact has done.)
+//! Spring and dashpot are parallel, in series with the slider. Their rate u follows from −Ks (ξ + u t) − Cs u
+//! = the limit; the dashpot dissipates Cs u², the spring stores at most its work. (A dashpot at full
+//! velocity, as in LAMMPS' `gran/hooke/history`, leaves a spurious −Cs v/Ks after fast grazing.)
 //!
-//! Theory manual: equations (1.5), (1.6) of `docs/theory/contacts.md`.
+//! Theory manual: eqs (1.5), (1.6), `docs/theory/contacts.md`.
 
 use super::tangential::Grip;
 use crate::lanes::{Real, V3};
 
-/// What a spring and its dashpot did in a step.
 pub(crate) struct Slid<V, R> {
     pub force: V,
     pub dashpot: R,
     pub friction: R,
 }
 
-/// A spring in the plane across `normal`. `velocity` lies in that plane; `time` is the part of the step during which the
-/// contact was there [s].
+/// Spring across `normal`. `velocity`: tangential; `time`: contact time within the step [s].
 #[inline(always)]
 pub(crate) fn plane<R: Real>(
     spring: &mut V3<R>,
@@ -39,8 +35,8 @@ pub(crate) fn plane<R: Real>(
     let along = spring.dot(normal);
     let flat = *spring - normal * along;
     let (along2, flat2) = (along * along, flat.norm2());
-    // The projection shortens by half the square of the turn. Below ten microradians per step that adds up to less
-    // than 5e-6 of the whole angle turned, and the root and the division are spared.
+    // Projection error is half the rotation squared: below 1e-5 rad per step it adds up to less than 5e-6 of
+    // the total rotation; root and division are saved.
     let turned = along2.gt(R::splat(1e-10) * flat2);
     let mut before = flat;
     if R::any(turned & on) {
@@ -84,7 +80,6 @@ pub(crate) fn plane<R: Real>(
     Slid { force, dashpot, friction }
 }
 
-/// As [`plane`] for a spring in one direction.
 #[inline(always)]
 pub(crate) fn line<R: Real>(
     spring: &mut R,
@@ -117,8 +112,8 @@ pub(crate) fn line<R: Real>(
 mod tests {
     use super::*;
 
-    /// Neither friction nor the dashpot ever gives energy, however strong the dashpot; both together are the work less what the
-    /// spring stores (to an error that vanishes with the step); and the spring alone never holds more than the limit.
+    /// No energy is released, however strong the dashpot; dissipation is work minus stored energy (error
+    /// vanishes with the step); the spring stays within the limit.
     #[test]
     fn friction_dissipates_and_the_account_closes() {
         let (stiffness, limit, dt) = (1e5, 10.0, 1e-5);

@@ -1,9 +1,9 @@
-//! Tangential law: a spring of constant stiffness.
+//! Tangential law: spring of constant stiffness.
 //!
-//! Ks = α K with K of the normal law on first loading, and Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slide.rs`).
-//! Mixing: α harmonic like the stiffness, 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
+//! Ks = α K, K the first-loading normal stiffness; Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slide.rs`).
+//! Mixing: 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
 //!
-//! Theory manual: equation (1.6) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.6), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::material::{LawName, Pair, harmonic};
@@ -11,14 +11,13 @@ use super::normal::ConstantStiffness;
 use super::tangential::{Carried, Grip, TangentialLaw};
 use crate::lanes::Real;
 
-/// Source of the linear law, normal and tangential.
 pub(super) const SOURCE: &str =
     "contact: linear spring-dashpot with Coulomb friction, Cundall & Strack, Geotechnique 29(1), 1979";
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring<R = f64> {
-    /// Tangential stiffness Ks [N/m].
+    /// Stiffness Ks [N/m].
     pub stiffness: R,
     /// 1/Ks [m/N].
     pub(super) compliance: R,

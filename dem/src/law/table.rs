@@ -1,7 +1,4 @@
-//! The laws there are: one row for each combination of a normal and a tangential law.
-//!
-//! A new law is a file beside this one and a row here. All rows can meet in one model (`mixed.rs`); some have kernels of
-//! their own for models that have no other ([`Laws`]).
+//! Table of laws: combinations of normal and tangential law, all usable in one model (`mixed.rs`).
 
 use super::composed::Composed;
 use super::conical_damage::ConicalDamage;
@@ -26,31 +23,31 @@ combinations! {
     Conical(ConicalDamage, RoughMindlin) = "Hertz-Mindlin with conical damage",
 }
 
-/// The linear law.
+/// Linear law.
 pub type LinearLaw = Composed<Linear, Spring>;
-/// The linear law with friction that falls with the pressure.
+/// Linear law with pressure-dependent friction.
 pub type RoughLaw = Composed<Linear, Rough>;
-/// Hertz's law with Mindlin's.
+/// Hertz–Mindlin law.
 pub type HertzLaw = Composed<Hertz, Mindlin>;
-/// Hertz's law with corners that crush.
+/// Hertz–Mindlin law, conical damage.
 pub type ConicalLaw = Composed<ConicalDamage, RoughMindlin>;
 
-/// A normal and a tangential law that go together.
+/// Compatible normal and tangential law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Combination {
-    /// Name of the normal law in a scene.
+    /// Normal law's scene name.
     pub normal: &'static str,
-    /// Name of the tangential law in a scene.
+    /// Tangential law's scene name.
     pub tangential: &'static str,
-    /// Both in words.
+    /// Title.
     pub title: &'static str,
-    /// Keys of a material that the normal law needs.
+    /// Normal law's required material keys.
     pub normal_keys: &'static [&'static str],
-    /// Keys of a material that the tangential law needs.
+    /// Tangential law's required material keys.
     pub tangential_keys: &'static [&'static str],
-    /// Whether the restitution is that of a dashpot.
+    /// Whether a dashpot defines the restitution.
     pub dashpot: bool,
-    /// Whether the stiffness grows with the overlap.
+    /// Whether stiffness grows with the overlap.
     pub stiffens: bool,
 }
 
@@ -67,40 +64,39 @@ impl Combination {
         }
     }
 
-    /// Whether the laws use a key of a material.
+    /// Whether a material key is used.
     pub fn uses(&self, key: &str) -> bool {
         self.normal_keys.contains(&key) || self.tangential_keys.contains(&key)
     }
 }
 
-/// A combination in words.
 pub(super) fn title([normal, tangential]: [&str; 2]) -> &'static str {
     let row = COMBINATIONS.iter().find(|c| c.normal == normal && c.tangential == tangential);
     row.map_or("a law of its own", |c| c.title)
 }
 
-/// The normal law of this name.
+/// Returns a normal law by name.
 pub fn normal_named(name: &str) -> Option<LawName> {
     COMBINATIONS.iter().find(|c| c.normal == name).map(|c| LawName(c.normal))
 }
 
-/// The tangential law of this name, or [`LawName::NONE`].
+/// Returns a tangential law by name, or [`LawName::NONE`].
 pub fn tangential_named(name: &str) -> Option<LawName> {
     let none = LawName::NONE.as_str();
     COMBINATIONS.iter().map(|c| c.tangential).chain([none]).find(|known| *known == name).map(LawName)
 }
 
-/// Names of all normal laws.
+/// Normal laws.
 pub fn normals() -> Vec<&'static str> {
     once(COMBINATIONS.iter().map(|c| c.normal))
 }
 
-/// Names of all tangential laws, and that of none.
+/// Tangential laws and [`LawName::NONE`].
 pub fn tangentials() -> Vec<&'static str> {
     once(COMBINATIONS.iter().map(|c| c.tangential).chain([LawName::NONE.as_str()]))
 }
 
-/// Each text once, in order.
+/// Removes duplicates.
 pub(super) fn once(texts: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
     let mut out = Vec::new();
     texts.for_each(|t| {
@@ -111,21 +107,21 @@ pub(super) fn once(texts: impl Iterator<Item = &'static str>) -> Vec<&'static st
     out
 }
 
-/// Why a pair of materials has no law.
+/// Material pair without law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoLaw {
-    /// The two have unlike normal laws.
+    /// Different normal laws.
     #[error("different normal laws, \"{0}\" and \"{1}\", and none for the pair")]
     Unlike(&'static str, &'static str),
-    /// Normal and tangential law do not go together.
+    /// Incompatible laws.
     #[error("normal law \"{0}\" with tangential law \"{1}\", an unsupported combination")]
     NoSuch(&'static str, &'static str),
 }
 
-/// Number of the row for a pair of materials, `None` where both are rigid, so that they never touch.
+/// Row of a pair, `None` if both are rigid.
 ///
 /// # Errors
-/// [`NoLaw`] where the scene does not say which, or names laws that do not go together.
+/// [`NoLaw`] if ambiguous or incompatible.
 pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     let own = |m: &Material| {
         let implied = if m.corner_strength.is_finite() {
@@ -142,7 +138,7 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     let spring = pair.given(|e| e.stiffness).map(|_| Linear::NAME);
     let normal = match (given, a, b) {
         (Some(name), _, _) => name,
-        // Corners crush against a partner without corners too.
+        // Corners also crush against partners without corners.
         (None, Some(Hertz::NAME), Some(ConicalDamage::NAME)) => ConicalDamage::NAME,
         (None, Some(ConicalDamage::NAME), Some(Hertz::NAME)) => ConicalDamage::NAME,
         (None, Some(a), Some(b)) if a != b => return Err(NoLaw::Unlike(a, b)),
@@ -160,10 +156,10 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     }
 }
 
-/// The laws of a pair of materials, `None` where both are rigid.
+/// Returns the laws of a pair, `None` if both are rigid.
 ///
 /// # Errors
-/// [`NoLaw`] where the scene does not say which, or names laws that do not go together.
+/// [`NoLaw`] if ambiguous or incompatible.
 pub fn combination(pair: &Pair<'_>) -> Result<Option<&'static Combination>, NoLaw> {
     Ok(number_of(pair)?.map(|k| &COMBINATIONS[k]))
 }

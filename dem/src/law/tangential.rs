@@ -1,58 +1,56 @@
-//! The tangential part of a law: the stiffness of the spring that Coulomb friction limits (`slide.rs`), and how it is
-//! carried over when the overlap changes.
+//! Interface of tangential laws: stiffness of the friction-limited spring (`slide.rs`) and transfer to
+//! another overlap.
 
 use super::constants::Constants;
 use super::material::Pair;
 use super::normal::NormalLaw;
 use crate::lanes::Real;
 
-/// The spring of contacts, in lanes.
+/// Tangential spring, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Grip<R> {
     /// Stiffness Ks [N/m].
     pub stiffness: R,
-    /// 1/Ks [m/N], where it is known beforehand.
+    /// 1/Ks [m/N], if constant.
     pub compliance: Option<R>,
 }
 
-/// What a change of the overlap does to springs of stiffness Ks, in lanes.
+/// Effect of an overlap change, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Carried<R> {
-    /// Part of their length that they keep [-].
+    /// Length fraction kept [-].
     pub kept: R,
-    /// Energy that they lose, over their length squared before [N/m].
+    /// Energy loss over previous length squared [N/m].
     pub loss: R,
 }
 
-/// A tangential law beside the normal law `N`: constants of one pair of materials. Rolling and twisting springs have the
-/// same stiffness and are carried over alike.
+/// Tangential law for normal law `N`: pair constants, also for rolling and twisting springs.
 pub trait TangentialLaw<N: NormalLaw>: Constants {
-    /// Name in a scene.
+    /// Scene name.
     const NAME: &'static str;
-    /// Where it is published.
+    /// Source.
     const SOURCE: &'static str;
-    /// Keys of a material that it needs.
+    /// Required material keys.
     const KEYS: &'static [&'static str];
 
-    /// Mixes the constants of two materials.
+    /// Mixes two materials.
     fn mix(pair: &Pair<'_>, normal: &N) -> Self;
 
-    /// The springs of contacts whose circles have the radius `circle` [m].
+    /// Returns the spring for circle radius `circle` [m].
     fn grip<R: Real>(law: &Self::Lanes<R>, circle: R) -> Grip<R>;
 
-    /// Largest tangential force [N] of contacts with the coefficient `friction`, the normal force `normal` [N], the effective radius
-    /// `radius` [m] and a circle of the radius `circle` [m].
+    /// Returns the friction limit [N], by default Coulomb's.
     #[inline(always)]
     fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R, _circle: R) -> R {
         friction * normal
     }
 
-    /// How springs are carried over to a circle of the radius `circle` from one of the radius `before` [m]; `None`: as they are.
+    /// Transfers springs from circle radius `before` to `circle` [m]; `None`: unchanged.
     fn carry<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<Carried<R>>;
 
-    /// Stiffness of springs in a contact that ends, where the law has not brought it to zero by then.
+    /// Returns the stiffness at contact end, unless zero.
     fn at_end<R: Real>(law: &Self::Lanes<R>) -> Option<R>;
 
-    /// Stiffness [N/m] of a contact whose circle has the radius `circle` [m].
+    /// Returns the stiffness [N/m] for radius `circle` [m].
     fn stiffness(&self, circle: f64) -> f64;
 }

@@ -1,16 +1,14 @@
-//! Rolling and twisting resistance: springs that yield, with the stiffness of the tangential one.
+//! Rolling and twisting resistance: friction-limited springs of tangential stiffness.
 //!
-//! Theory manual: equation (1.14) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.14), `docs/theory/contacts.md`.
 
 use super::slide::{Slid, line, plane};
 use super::tangential::Grip;
 use crate::lanes::{Real, V3};
 
-/// Where it is published.
 pub(super) const SOURCE: &str = "rolling and twisting resistance: Luding, Granular Matter 10, 2008";
 
-/// Springs against rolling and twisting: stiffness and damping of the tangential springs, and the limits as fractions of
-/// the normal force.
+/// Tangential stiffness and damping, limits over normal force.
 pub(crate) struct Turning<R> {
     pub stiffness: R,
     pub damping: R,
@@ -21,12 +19,12 @@ pub(crate) struct Turning<R> {
     pub time: R,
 }
 
-/// Moment of rolling and twisting resistance on a, and the energy it took.
+/// Rolling and twisting moment on a, and dissipation.
 ///
-/// With R the effective radius and ω the spin of a less that of b, the rolling velocity is R (ω − (ω·n) n) and the
-/// twisting velocity R ω·n. Each stretches a spring with the stiffness of the tangential one, whose force is limited to
-/// μᵣ F and μₜ F; times R it is the moment (Luding, Granular Matter 10, 2008, sections 2.5 to 2.7; with moments
-/// against angles: stiffness Ks R², limit μ R F, as in Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C).
+/// With effective radius R and relative angular velocity ω, the rolling velocity is R (ω − (ω·n) n), the
+/// twisting velocity R ω·n. Spring forces, limited to μᵣ F and μₜ F, times R are the moments (Luding,
+/// Granular Matter 10, 2008, sections 2.5 to 2.7; in moments and angles: stiffness Ks R², limit μ R F, as in
+/// Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C).
 #[inline(always)]
 pub(crate) fn turning<R: Real>(
     t: &Turning<R>,
@@ -39,7 +37,6 @@ pub(crate) fn turning<R: Real>(
 ) -> Slid<V3<R>, R> {
     let about = spin.dot(normal);
     let rolling = (spin - normal * about) * t.radius;
-    // Without a limit there is no resistance and no spring.
     let rolls = R::zero().lt(t.rolling);
     let twists = R::zero().lt(t.twisting);
     let r = plane(

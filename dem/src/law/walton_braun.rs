@@ -1,17 +1,17 @@
-//! Normal law: linear loading and stiffer unloading, which leaves a deformation behind (Walton & Braun).
+//! Normal law: linear loading, stiffer unloading, permanent deformation (Walton & Braun).
 //!
-//! With d the overlap and D the largest one so far: F = k₁ d while d = D grows; below it F = max(0, k₁ D − k₂ (D − d)), down to
-//! the residual overlap (1 − k₁/k₂) D, where the force ends, and back up the same line. k₁ = K of the linear law; k₂ = k₁/e².
+//! Overlap d, largest overlap D: F = k₁ d while d = D grows; below F = max(0, k₁ D − k₂ (D − d)), down to the
+//! residual overlap (1 − k₁/k₂) D, reloading on the same line. k₁ = K of the linear law; k₂ = k₁/e².
 //!
-//! Restitution. Loading takes up F²/(2 k₁), unloading gives back F²/(2 k₂): e = √(k₁/k₂) at any speed, without a dashpot.
-//! The difference is plastic work, ½ k₁ (1 − k₁/k₂) D² in all, and is booked as D grows.
+//! Restitution e = √(k₁/k₂) at any speed. Plastic work ½ k₁ (1 − k₁/k₂) D² is counted as D grows. Separation
+//! resets the history D.
 //!
-//! D is the number that the contact remembers; it is forgotten when the partners part. Source: Walton & Braun, J. Rheol.
-//! 30, 949 (1986), with their constant ratio of stiffnesses; beside it the spring of `spring.rs` with Ks = α k₁.
+//! Source: Walton & Braun, J. Rheol. 30, 949 (1986), constant stiffness ratio; tangential spring of
+//! `spring.rs` with Ks = α k₁.
 //!
-//! Limits: overlaps small against the radii; no dashpot, also none beside the tangential spring.
+//! Limits: overlaps small against the radii; no dashpots.
 //!
-//! Theory manual: equation (1.9) of `docs/theory/contacts.md`.
+//! Theory manual: eq. (1.9), `docs/theory/contacts.md`.
 
 use super::constants::constants;
 use super::contact::FRESH;
@@ -19,14 +19,13 @@ use super::material::Pair;
 use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
 use crate::lanes::Real;
 
-/// Constants of one pair of materials.
+/// Pair constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaltonBraun<R = f64> {
-    /// Stiffness of first loading k₁ [N/m].
+    /// Loading stiffness k₁ [N/m].
     pub loading: R,
-    /// Stiffness of unloading and reloading k₂ [N/m].
+    /// Unloading stiffness k₂ [N/m].
     pub unloading: R,
-    /// Plastic work over the largest overlap squared, ½ k₁ (1 − k₁/k₂) [N/m].
     plastic: R,
 }
 

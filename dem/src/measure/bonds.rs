@@ -1,4 +1,4 @@
-//! What can be read off bonds.
+//! Bond measures.
 
 use crate::base::Vec3;
 use crate::bodies::block::Block;
@@ -10,20 +10,20 @@ use crate::engine::state::State;
 use crate::lanes::V3;
 use crate::lanes::record::Record;
 
-/// A bond as it is now, with the forces that the next step will find.
+/// Bond, with the forces of the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BondRecord {
-    /// Number of the bond in the model.
+    /// Index in the model.
     pub bond: usize,
     /// First body.
     pub a: usize,
     /// Second body.
     pub b: usize,
-    /// Point where the force acts [m].
+    /// Point of force [m].
     pub point: Vec3,
     /// Unit vector from b to a.
     pub normal: Vec3,
-    /// Tension, positive when it pulls the bodies together [N], without the dashpot.
+    /// Tensile force without dashpot [N].
     pub tension: f64,
     /// Elastic shear force on a [N].
     pub shear: Vec3,
@@ -31,9 +31,9 @@ pub struct BondRecord {
     pub bending: f64,
     /// Twisting moment about the normal [N m].
     pub twisting: f64,
-    /// Whole force on a, dashpots included [N].
+    /// Total force on a, dashpots included [N].
     pub force: Vec3,
-    /// Share of the strength used up [-].
+    /// Mobilised fraction of strength [-].
     pub share: f64,
 }
 
@@ -46,10 +46,10 @@ fn ends(state: &State, b: u32, e: &Entry) -> (Motion<f64>, Motion<f64>) {
     (motion(&state.blocks[b as usize], e.i as usize), motion(&state.blocks[e.block as usize], e.j as usize))
 }
 
-/// Elastic energy of all bonds at the last half step [J].
+/// At the last half step [J].
 pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
     let dt = state.pace.last;
-    // Before the first step the memory is that of the start itself.
+    // Initially, the history belongs to the start.
     let since = if state.bonds.fresh { -0.5 * dt } else { 0.5 * dt };
     let mut sum = 0.0;
     state.each_bond(|number, (b, e)| {
@@ -59,7 +59,7 @@ pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
     sum
 }
 
-/// All unbroken bonds, block by block.
+/// Returns all unbroken bonds, block by block.
 pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
     let dt = if state.bonds.fresh { 0.0 } else { state.pace.last };
     let mut out = Vec::with_capacity(state.bond_count());
@@ -89,16 +89,16 @@ pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
     out
 }
 
-/// Rotation of a bond: of one end against the other, or of the line of centres by shear.
+/// Rotation of a bond: relative, or of its centre line by shear.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BondRotation {
-    /// Number of the bond in the model.
+    /// Index in the model.
     pub bond: usize,
     /// Angle [rad].
     pub angle: f64,
 }
 
-/// The largest rotation that an unbroken bond resists; none where no bond resists any.
+/// Returns the largest rotation resisted by an unbroken bond, if any.
 pub fn largest_rotation(model: &Model, state: &State) -> Option<BondRotation> {
     let mut largest: Option<BondRotation> = None;
     state.each_bond(|number, (_, e)| {
@@ -115,7 +115,7 @@ pub fn largest_rotation(model: &Model, state: &State) -> Option<BondRotation> {
     largest
 }
 
-/// Calls `f` with each debonded pair, its blocks, and the geometry of its contact beyond the reference.
+/// Debonded pairs, their blocks, and contact geometry beyond the initial overlap.
 pub(crate) fn each_touch(
     blocks: &[Block],
     state: &State,

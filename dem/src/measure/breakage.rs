@@ -1,16 +1,14 @@
-//! Breakage of bonded stones, by their sieve curves before and after.
+//! Breakage of bonded stones, from sieve curves before and after.
 //!
-//! The pieces that bonds held together at the start, and those that the unbroken ones hold together now, have the mass of their
-//! spheres and the sieve size of their outline: the intermediate extent along the principal axes, with the spheres where they were
-//! at the start, so that a stone that has not broken keeps its size. From both curves follow two indices:
+//! Sieve size of a fragment: intermediate principal extent at initial positions, constant for unbroken
+//! stones.
 //!
-//! * Marsal (1967): the sum of what each sieve of the R10 series holds back less than before, as a share of the mass.
-//! * Ballast breakage index (Indraratna, Lackenby & Christie, Géotechnique 55 (2005) 325): A/(A + B) over a linear axis of sizes from
-//!   2.36 mm to the size d₉₅ that 95 % of the stones passed before; A is the area between both curves, A + B that between the
-//!   straight line from (2.36 mm, 0) to (d₉₅, 0.95), "maximum breakage", and the curve before. It is meant for gradings: for stones
-//!   of one size that all break it may pass 1.
+//! * Marsal (1967): sum of the decreases of mass fraction retained on the R10 sieves.
+//! * Ballast breakage index (Indraratna, Lackenby & Christie, Géotechnique 55 (2005) 325): A/(A + B) on a
+//!   linear size axis from 2.36 mm to the initial d₉₅. A: area between both curves; A + B: area from the
+//!   initial curve to maximum breakage, the line (2.36 mm, 0) to (d₉₅, 0.95). May exceed 1 for single sizes.
 //!
-//! Limits: no piece is smaller than a sphere of the model, so fines are missing; bodies without a bond at the start do not count.
+//! Limits: no fines below the sphere size; initially unbonded bodies do not count.
 
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -19,31 +17,30 @@ use std::collections::BTreeMap;
 
 /// Smallest size of the ballast breakage index [m].
 const SMALLEST: f64 = 2.36e-3;
-/// Share of the mass that passes its largest size.
+/// Mass fraction passing its largest size.
 const LARGEST: f64 = 0.95;
-/// The R10 series of sieves of a decade.
 const R10: [f64; 10] = [1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0];
 
-/// Sieve size [m] and mass [kg] of a piece.
+/// Sieve size [m], mass [kg].
 type Piece = (f64, f64);
 
-/// Sieve curves before and after, and what they say.
+/// Sieve curves and breakage indices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakage {
-    /// Sieves [m], rising.
+    /// Sieve sizes [m], ascending.
     pub sieves: Vec<f64>,
-    /// Share of the mass that passed each before.
+    /// Initial mass fraction passing [-].
     pub before: Vec<f64>,
-    /// Share that passes now.
+    /// Present mass fraction passing [-].
     pub after: Vec<f64>,
     /// Marsal's index.
     pub marsal: f64,
-    /// The ballast breakage index; none where stones are so fine or so many fines are there that it has no area.
+    /// Ballast breakage index; `None` if its area vanishes (fines).
     pub ballast: Option<f64>,
 }
 
 impl Breakage {
-    /// By pieces before and after.
+    /// Compares fragments before and after.
     pub fn of(before: &[Piece], after: &[Piece]) -> Breakage {
         let sizes = || before.iter().chain(after).map(|p| p.0);
         let sieves = series(sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
@@ -59,15 +56,14 @@ impl Breakage {
     }
 }
 
-/// Share of the mass that passes each sieve: of pieces that are no larger.
 fn passing(sieves: &[f64], pieces: &[Piece]) -> Vec<f64> {
     let total: f64 = pieces.iter().map(|p| p.1).sum();
-    // Not `sum`, which is -0 of nothing.
+    // An empty `sum` would be -0.
     let finer = |sieve: f64| pieces.iter().filter(|p| p.0 <= sieve).fold(0.0, |sum, p| sum + p.1);
     sieves.iter().map(|&s| if total > 0.0 { finer(s) / total } else { 0.0 }).collect()
 }
 
-/// Sieves of the R10 series from the largest that lets no piece of `low` [m] through to the smallest that lets `high` through.
+/// R10 sieves from the largest retaining `low` to the smallest passing `high` [m].
 fn series(low: f64, high: f64) -> Vec<f64> {
     if !(low > 0.0 && high.is_finite() && low <= high) {
         return Vec::new();
@@ -82,7 +78,6 @@ fn series(low: f64, high: f64) -> Vec<f64> {
     all[first..=last].to_vec()
 }
 
-/// The ballast breakage index.
 fn ballast(before: &[Piece], after: &[Piece]) -> Option<f64> {
     let mut rising = before.to_vec();
     rising.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -92,7 +87,7 @@ fn ballast(before: &[Piece], after: &[Piece]) -> Option<f64> {
         passed += p.1;
         passed >= LARGEST * total * (1.0 - 1e-12)
     })?;
-    // ∫ P dd of a curve of steps: each piece passes all sizes from its own on.
+    // ∫ P dd of the step curve.
     let area = |pieces: &[Piece]| -> f64 {
         let mass: f64 = pieces.iter().map(|p| p.1).sum();
         pieces.iter().map(|p| p.1 * (top.0 - p.0.max(SMALLEST)).max(0.0)).sum::<f64>() / mass
@@ -101,7 +96,7 @@ fn ballast(before: &[Piece], after: &[Piece]) -> Option<f64> {
     (top.0 > SMALLEST && all > 0.0).then(|| (area(after) - area(before)) / all)
 }
 
-/// Breakage of the bonded stones of a state; none where the model has no bonds, or has given up where its bodies start.
+/// Returns the breakage; `None` without bonds or initial positions.
 pub fn breakage(model: &Model, state: &State) -> Option<Breakage> {
     let starts = model.bodies.positions()?;
     let mut bonded: Vec<u32> = model.bonds.iter().flat_map(|b| b.ends).collect();
@@ -122,7 +117,7 @@ pub fn breakage(model: &Model, state: &State) -> Option<Breakage> {
     Some(Breakage::of(&pieces(all.collect()), &pieces(whole)))
 }
 
-/// Sieve size and mass of bodies that hang together, at the places where they started.
+/// Connected bodies at their initial positions.
 fn piece(model: &Model, starts: &[crate::base::Vec3], bodies: &[u32]) -> Piece {
     let spheres: Vec<([f64; 3], f64)> =
         bodies.iter().map(|&b| (starts[b as usize].into(), model.radius(b as usize))).collect();
@@ -136,14 +131,13 @@ fn piece(model: &Model, starts: &[crate::base::Vec3], bodies: &[u32]) -> Piece {
 mod tests {
     use super::*;
 
-    /// Ten units of stones of 20 to 60 mm, of which one of 50 mm with three units breaks into 40 mm (two) and 20 mm (one), by hand.
+    /// Manual: 10 units of 20 to 60 mm; a 50 mm stone of 3 units breaks into 40 mm (2) and 20 mm (1).
     ///
-    /// Marsal: the sieve of 40 mm holds the stones of 50 mm back (they pass 50 mm): it loses 3 of 10, that of 31.5 mm gains 2,
-    /// that of 16 mm 1. Ballast breakage index: 90 % passed at 50 mm, so d₉₅ = 60 mm. A = (2 · 10 + 1 · 30)/10 = 5 mm.
-    /// The curve before has (1 · 40 + 2 · 30 + 3 · 20 + 3 · 10)/10 = 19 mm below it, the line 0.95 · 57.64/2 = 27.379 mm,
-    /// so 5/(27.379 − 19).
+    /// Marsal: the 40 mm sieve retains the 50 mm stones: −3 of 10; 31.5 mm: +2; 16 mm: +1.
+    /// Index: 90 % passed 50 mm, so d₉₅ = 60 mm and A = (2 · 10 + 1 · 30)/10 = 5 mm. Initial area
+    /// (1 · 40 + 2 · 30 + 3 · 20 + 3 · 10)/10 = 19 mm, line 0.95 · 57.64/2 = 27.379 mm: 5/(27.379 − 19).
     #[test]
-    fn indices_are_those_of_the_hand() {
+    fn indices_match_hand_calculation() {
         let before = [(0.02, 1.0), (0.03, 2.0), (0.04, 3.0), (0.05, 3.0), (0.06, 1.0)];
         let after = [(0.02, 1.0), (0.03, 2.0), (0.04, 3.0), (0.04, 2.0), (0.02, 1.0), (0.06, 1.0)];
         let found = Breakage::of(&before, &after);
@@ -155,17 +149,15 @@ mod tests {
         assert!(close(&found.sieves, &[0.016, 0.02, 0.025, 0.0315, 0.04, 0.05, 0.063]), "{:?}", found.sieves);
         assert!(close(&found.before, &[0.0, 0.1, 0.1, 0.3, 0.6, 0.9, 1.0]), "{:?}", found.before);
         assert!(close(&found.after, &[0.0, 0.2, 0.2, 0.4, 0.9, 0.9, 1.0]), "{:?}", found.after);
-        // Nothing breaks: nothing is found.
         let same = Breakage::of(&before, &before);
         assert_eq!((same.marsal, same.ballast), (0.0, Some(0.0)));
     }
 
-    /// Stones of one size, and dust: no area is left to break into.
     #[test]
-    fn extremes_have_no_index_rather_than_a_wrong_one() {
+    fn no_index_without_area() {
         assert_eq!(Breakage::of(&[(0.002, 1.0)], &[(0.001, 1.0)]).ballast, None);
         assert_eq!(Breakage::of(&[], &[]).ballast, None);
-        // All of 50 mm, all broken to halves: A = 25 mm of 0.95 · 47.64/2.
+        // All 50 mm stones halved: A = 25 mm of 0.95 · 47.64/2.
         let one = Breakage::of(&[(0.05, 1.0)], &[(0.025, 0.5), (0.025, 0.5)]);
         assert!((one.ballast.unwrap() - 25.0 / (0.475 * 47.64)).abs() < 1e-9);
         assert_eq!(one.marsal, 1.0);

@@ -1,24 +1,23 @@
-//! Volume that a box cuts out of a sphere, in closed form.
+//! Volume of the intersection of a sphere and a box, in closed form.
 //!
-//! The box is the signed sum of eight octants with their corners at its own, so the volume is
+//! The box is a signed sum of octants at its corners:
 //!
 //! ```text
 //! V = Σ ± K(a, b, c),   K(a, b, c) = |{x > a, y > b, z > c, x² + y² + z² < 1}|.
 //! ```
 //!
-//! With a, b, c ≥ 0 and the corner inside the sphere, the divergence theorem gives
-//! 3 K = S − a A_a − b A_b − c A_c: A the flat sides (a disc cut by two lines), S the piece of the sphere, which by
-//! Gauss and Bonnet is 2π − Σ γ − Σ a φ_a. Here φ_a is the angle of the arc on x = a, whose geodesic curvature is
-//! a/√(1 − a²), and γ_ab = arccos(−ab / √((1 − a²)(1 − b²))) the exterior angle where two arcs meet. Negative
-//! a: K(a, b, c) = K(b, c) − K(−a, b, c), where K of two and of one argument are the wedge and the cap.
+//! For a, b, c ≥ 0 and the corner inside, 3 K = S − a A_a − b A_b − c A_c by the divergence theorem, with
+//! flat sides A and the spherical face S = 2π − Σ γ − Σ a φ_a (Gauss–Bonnet). The arc on x = a has the angle
+//! φ_a and the geodesic curvature a/√(1 − a²); exterior angles are γ_ab = arccos(−ab / √((1 − a²)(1 − b²))).
+//! Negative a: K(a, b, c) = K(b, c) − K(−a, b, c), with the wedge K(b, c).
 //!
-//! Source: own derivation; checked against octants, caps, wedges and a quadrature. Limits: rounding of about 1e-15 R³.
+//! Source: own derivation; checked against octants, caps, wedges and a quadrature. Rounding error: 1e-15 R³.
 
 use super::BoxRegion;
 use crate::base::Vec3;
 use std::f64::consts::PI;
 
-/// Volume of the part of a sphere that lies in a box [m³].
+/// Returns the volume of a sphere inside a box [m³].
 pub fn sphere_box_volume(centre: &Vec3, radius: f64, region: &BoxRegion) -> f64 {
     let low = (region.low - centre) / radius;
     let high = (region.high - centre) / radius;
@@ -39,13 +38,13 @@ pub fn sphere_box_volume(centre: &Vec3, radius: f64, region: &BoxRegion) -> f64 
     sum.clamp(0.0, whole) * cube
 }
 
-/// Volume of the unit ball beyond x = a.
+/// x > a.
 fn cap(a: f64) -> f64 {
     let a = a.clamp(-1.0, 1.0);
     PI * (1.0 - a) * (1.0 - a) * (2.0 + a) / 3.0
 }
 
-/// Volume of the unit ball beyond x = a and y = b.
+/// x > a, y > b.
 fn wedge(a: f64, b: f64) -> f64 {
     if a < 0.0 {
         return cap(b) - wedge(-a, b);
@@ -63,7 +62,7 @@ fn wedge(a: f64, b: f64) -> f64 {
     (sphere - a * segment(ra, b, fa) - b * segment(rb, a, fb)) / 3.0
 }
 
-/// Volume of the unit ball beyond x = a, y = b and z = c.
+/// x > a, y > b, z > c.
 fn octant(a: f64, b: f64, c: f64) -> f64 {
     if a < 0.0 {
         return wedge(b, c) - octant(-a, b, c);
@@ -78,7 +77,7 @@ fn octant(a: f64, b: f64, c: f64) -> f64 {
         return 0.0;
     }
     let r = [a, b, c].map(|h| (1.0 - h * h).sqrt());
-    // Angle and area of the side at height h on a disc of radius r cut at u and v.
+    // Face at height h: disc of radius r cut at u and v.
     let side = |r: f64, u: f64, v: f64| {
         let arc = (angle(u / r) - libm::asin((v / r).min(1.0))).max(0.0);
         let chord = |p: f64, q: f64| p * ((r * r - p * p).max(0.0).sqrt() - q);
@@ -96,7 +95,7 @@ fn angle(cosine: f64) -> f64 {
     libm::acos(cosine.clamp(-1.0, 1.0))
 }
 
-/// Exterior angle where the circles at heights a and b (radii ra and rb) meet.
+/// Exterior angle of the circles at heights a and b.
 fn turn(a: f64, b: f64, ra: f64, rb: f64) -> f64 {
     angle(-a * b / (ra * rb))
 }
@@ -112,7 +111,7 @@ mod tests {
         BoxRegion { low: low.into(), high: high.into() }
     }
 
-    /// Half, quarter and eighth of a sphere, a cap of height h: π h² (3R − h)/3, and a slab.
+    /// Half, quarter, eighth, slab, and cap of height h: π h² (3R − h)/3.
     #[test]
     fn parts_with_closed_forms() {
         let (c, r) = (Vec3::new(0.3, -0.2, 5.0), 0.7);
@@ -133,14 +132,12 @@ mod tests {
         let slab = unit_box([-0.1, -9.0, -9.0], [0.4, 9.0, 9.0]);
         let exact = PI * (0.5 - (0.064 + 0.001) / 3.0);
         assert_relative_eq!(sphere_box_volume(&Vec3::zeros(), 1.0, &slab), exact, max_relative = 1e-14);
-        // A box inside a sphere is cut whole.
         let small = unit_box([-0.3, 0.0, -0.2], [0.4, 0.1, 0.5]);
         assert_relative_eq!(sphere_box_volume(&Vec3::zeros(), 1.0, &small), 0.049, max_relative = 1e-13);
     }
 
-    /// Area of a disc of radius r about the origin cut by a rectangle, by exact strips in x of many y intervals.
     fn quadrature(region: &BoxRegion) -> f64 {
-        // Substitution x = sin t, then y = √(1 − x²) sin s: the integrand has no root at the ends.
+        // x = sin t, y = √(1 − x²) sin s: smooth integrand.
         let n = 1500;
         let mut sum = 0.0;
         let (t0, t1) = (region.low.x.max(-1.0).asin(), region.high.x.min(1.0).asin());
@@ -159,9 +156,9 @@ mod tests {
         sum
     }
 
-    /// Random boxes about a sphere: against a quadrature (its error is below 1e-5), and cut into eight they add up.
+    /// Quadrature error below 1e-5; eight parts add up.
     #[test]
-    fn random_boxes_against_quadrature_and_their_parts() {
+    fn random_boxes_match_quadrature() {
         let mut rng = Pcg64Mcg::new(5);
         let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let mut cut = 0;

@@ -1,4 +1,4 @@
-//! Contacts as they are now, for force chains and coordination numbers.
+//! Present contacts, for force chains and coordination.
 
 use crate::base::Vec3;
 use crate::base::error::Partner;
@@ -19,42 +19,41 @@ use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::SheetFacet;
 use std::borrow::Cow;
 
-/// One contact.
+/// Contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRecord {
-    /// The body the force is given for.
+    /// Body on which the force acts.
     pub a: usize,
-    /// What it touches.
+    /// Contact partner.
     pub b: Partner,
-    /// Where [m].
+    /// Contact point [m].
     pub point: Vec3,
     /// Unit normal, from b to a.
     pub normal: Vec3,
     /// Overlap [m].
     pub overlap: f64,
-    /// Reduced radius of the two spheres, r₁r₂/(r₁ + r₂); of the sphere alone where the partner is flat [m].
+    /// Reduced radius r₁r₂/(r₁ + r₂), or the radius against a flat partner [m].
     pub radius: f64,
-    /// Normal force, pressure positive [N].
+    /// Normal force, positive in compression [N].
     pub normal_force: f64,
-    /// Whole force on a [N].
+    /// Total force on a [N].
     pub force: Vec3,
-    /// Where the touched image of b stands, from b [m]: b is touched at `point` − `shift`. Zero but across periodic
-    /// borders.
+    /// Vector from b to its periodic image in contact [m]; b itself is in contact at `point` − `shift`.
     pub shift: Vec3,
 }
 
-/// Bodies as they are, or moved back in time by `back` seconds: only then are they copied.
+/// Bodies `back` seconds ago.
 struct Snapshot<'a> {
     model: &'a Model,
     planes: &'a [PlaneMotion],
     walls: Vec<WallNow>,
     sheet: Vec<SheetFacet>,
     blocks: Cow<'a, [Block]>,
-    /// Spheres of each block, and the places of their bodies; of blocks of single spheres, none.
+    /// Member spheres and their bodies; empty for single spheres.
     spheres: Vec<Vec<Record>>,
     owners: Vec<Vec<u32>>,
     back: f64,
-    /// The last step [s].
+    /// Last time step [s].
     last: f64,
     scars: &'a [Scar],
 }
@@ -144,7 +143,7 @@ fn move_back(block: &mut Block, back: f64) {
     }
 }
 
-/// The spheres of a block's bodies and the places of these; nothing where every body is its own sphere.
+/// Member spheres and their bodies; empty for single spheres.
 fn members(model: &Model, block: &Block) -> (Vec<Record>, Vec<u32>) {
     let (mut own, mut owner) = (Vec::new(), Vec::new());
     for (k, (&body, r)) in block.bodies.iter().zip(&block.rotation).enumerate() {
@@ -156,7 +155,7 @@ fn members(model: &Model, block: &Block) -> (Vec<Record>, Vec<u32>) {
     (own, owner)
 }
 
-/// Calls `f` for every contact of the bodies as they were `back` seconds ago, in the order of the near list.
+/// Visits every contact `back` seconds ago, in neighbour-list order.
 pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&Visited<'_>)) {
     let now = Snapshot::new(model, state, back);
     debonded(state, &now, &mut f);
@@ -221,19 +220,17 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
     }
 }
 
-/// What a sphere in touch with a patch needs to know of the patch.
 struct Partnership {
     material: u32,
     partner: Partner,
-    /// Velocity of the patch at the contact point [m/s].
+    /// At the contact point [m/s].
     velocity: Vec3,
-    /// Spin of what it belongs to [rad/s].
+    /// Angular velocity of its body [rad/s].
     spin: Vec3,
-    /// One over the mass that it belongs to [1/kg].
+    /// Inverse mass of its body [1/kg].
     inverse_mass: f64,
 }
 
-/// Contacts of pairs whose bond has broken.
 fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>)) {
     super::bonds::each_touch(&now.blocks, state, |p, q, r, geometry| {
         let (i, j) = (r.i as usize, r.j as usize);
@@ -281,7 +278,7 @@ fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visit
     }
 }
 
-/// A contact with a patch: the geometry of the last step, its overlap brought to the time asked for.
+/// Geometry of the last step, overlap at the requested time.
 fn patch(
     now: &Snapshot<'_>,
     b: usize,
@@ -316,7 +313,7 @@ fn patch(
     }
 }
 
-/// Force that the next step will find of a contact, and the normal part of it [N].
+/// Force of the next step, total and normal [N].
 pub(super) fn force_of(model: &Model, state: &State, c: &ContactNow<'_>) -> (Vec3, f64) {
     let mut history = *c.history;
     let ContactForce { force, normal, .. } = single::evaluate(
@@ -333,7 +330,7 @@ pub(super) fn force_of(model: &Model, state: &State, c: &ContactNow<'_>) -> (Vec
     (force * c.weight, normal * c.weight)
 }
 
-/// All contacts, with the forces that the next step will find; block by block, in a fixed order.
+/// Returns all contacts with the forces of the next step, in fixed order.
 pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     let mut out = Vec::new();
     visit(model, state, 0.0, |c| {
@@ -353,8 +350,8 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     out
 }
 
-/// Coordination number: contacts that carry a force, per body that is free to move; a contact between two bodies
-/// counts for both. Several contacts of one pair of clumps count as many. Zero without free bodies.
+/// Coordination number [-]: loaded contacts per free body, two per contact between bodies. Clump pairs may
+/// count several. Zero without free bodies.
 pub fn coordination(model: &Model, state: &State) -> f64 {
     let free = |body: usize| model.body(body).inverse_mass > 0.0;
     let count: usize = contacts(model, state)
@@ -366,12 +363,12 @@ pub fn coordination(model: &Model, state: &State) -> f64 {
     if bodies == 0 { 0.0 } else { count as f64 / bodies as f64 }
 }
 
-/// Sum of the forces of contacts and bonds on each body [N]. Shape `[bodies]`.
+/// Returns the sum of contact and bond forces on each body [N]. Shape `[bodies]`.
 pub fn contact_forces(model: &Model, state: &State) -> Vec<Vec3> {
     contact_forces_of(model, state, &contacts(model, state))
 }
 
-/// As [`contact_forces`], from contacts that are known already.
+/// As [`contact_forces`], from given contacts.
 pub fn contact_forces_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<Vec3> {
     let mut sum = vec![Vec3::zeros(); model.body_count()];
     for c in contacts {

@@ -1,4 +1,4 @@
-//! How many partners bodies have, and which way their contacts look.
+//! Coordination numbers and fabric.
 //!
 //! Theory manual: equation (3.14) of `docs/theory/motion.md`.
 
@@ -7,16 +7,14 @@ use crate::base::error::Partner;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 
-/// Coordination of a packing. A contact counts when it carries a force; several contacts of one pair of clumps are one
-/// neighbour; walls and surfaces are neighbours, those of one wall (or patch) one.
+/// Coordination from loaded contacts; a clump, wall or surface is one neighbour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coordination {
-    /// Mean number of neighbours of a body that is free to move.
+    /// Mean number of neighbours of free bodies.
     pub mean: f64,
-    /// The same without those that carry nothing: bodies with no or one neighbour are left out, with their contacts
-    /// (mechanical coordination number, Thornton 2000).
+    /// Mechanical coordination number (Thornton 2000), without rattlers and their contacts.
     pub mechanical: f64,
-    /// Share of the free bodies with no or one neighbour.
+    /// Fraction of free bodies with at most one neighbour.
     pub rattlers: f64,
     /// Number of free bodies with 0, 1, 2, … neighbours.
     pub distribution: Vec<usize>,
@@ -41,7 +39,7 @@ pub fn neighbours(model: &Model, contacts: &[ContactRecord]) -> Vec<u32> {
     count
 }
 
-/// Coordination of the bodies of which `counted` is true (all others still are neighbours).
+/// Coordination of selected bodies; all count as neighbours.
 pub fn coordination_of(
     model: &Model,
     state: &State,
@@ -70,8 +68,8 @@ pub fn coordination_of(
     }
 }
 
-/// Fabric tensor (Satake 1982): mean of n ⊗ n over the contacts that carry a force and pass `counted`, in the order xx,
-/// yy, zz, xy, yz, zx [-]. Its trace is 1; a third on the diagonal is an isotropic packing. Zero without contacts.
+/// Fabric tensor (Satake 1982): mean n ⊗ n of loaded, selected contacts, as xx, yy, zz, xy, yz, zx [-]. Trace
+/// 1, or zero without contacts.
 pub fn fabric(contacts: &[ContactRecord], counted: impl Fn(&ContactRecord) -> bool) -> [f64; 6] {
     let mut sum = [0.0; 6];
     let mut count = 0;
@@ -84,18 +82,18 @@ pub fn fabric(contacts: &[ContactRecord], counted: impl Fn(&ContactRecord) -> bo
     sum.map(|s| if count > 0 { s / f64::from(count) } else { 0.0 })
 }
 
-/// The strong contacts: those with more than the mean normal force (Radjai, Wolf, Jean & Moreau 1998).
+/// Contacts of above-mean normal force (Radjai, Wolf, Jean & Moreau 1998).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrongNetwork {
-    /// Mean normal force of the contacts that carry one [N].
+    /// Mean normal force of loaded contacts [N].
     pub mean_force: f64,
-    /// Share of those contacts that is above the mean [-].
+    /// Fraction of contacts above the mean [-].
     pub contacts: f64,
-    /// Share of the sum of normal forces that these carry [-].
+    /// Their fraction of the total normal force [-].
     pub load: f64,
 }
 
-/// Mean force, and what the contacts above it carry.
+/// Returns the strong force network.
 pub fn strong_network(contacts: &[ContactRecord]) -> StrongNetwork {
     let forces = || contacts.iter().map(|c| c.normal_force).filter(|f| *f > 0.0);
     let (count, sum) = forces().fold((0_usize, 0.0), |(n, s), f| (n + 1, s + f));
@@ -108,8 +106,8 @@ pub fn strong_network(contacts: &[ContactRecord]) -> StrongNetwork {
     StrongNetwork { mean_force, contacts: strong as f64 / count as f64, load: carried / sum }
 }
 
-/// Unbalanced-force ratio: mean of |sum of contact forces and weight| over the bodies that are free to move, over the
-/// mean of |contact force|. It tends to 0 in equilibrium; without contacts it is infinite.
+/// Unbalanced-force ratio [-]: mean |contact forces + weight| of free bodies over mean |contact force|.
+/// Infinite without contacts.
 pub fn unbalanced_ratio(model: &Model, state: &State, contacts: &[ContactRecord]) -> f64 {
     let mut net: Vec<crate::Vec3> =
         (0..model.body_count()).map(|b| model.gravity() * model.mass(b)).collect();
@@ -128,7 +126,7 @@ pub fn unbalanced_ratio(model: &Model, state: &State, contacts: &[ContactRecord]
     let mut free = 0;
     for (b, (force, body)) in net.iter().zip(model.bodies.iter()).enumerate() {
         if state.present(b) && body.inverse_mass > 0.0 {
-            // What is held fixed is balanced by its support.
+            // The support balances fixed directions.
             let d = |k: usize| if body.fixed >> k & 1 == 1 { 0.0 } else { force[k] * force[k] };
             sum += (d(0) + d(1) + d(2)).sqrt();
             free += 1;

@@ -1,4 +1,4 @@
-//! Energies and momentum at the last half step.
+//! Energies and momentum.
 
 use super::contacts::visit;
 use crate::base::error::Partner;
@@ -19,36 +19,35 @@ pub struct Energies {
     pub kinetic_rotation: f64,
     /// Normal springs.
     pub elastic_normal: f64,
-    /// Tangential springs, and the work of sliding of the last half step, which the ledger books with the next.
+    /// Tangential springs, and sliding work not yet recorded as dissipated.
     pub elastic_tangential: f64,
     /// Bonds: tension, shear, bending, twisting.
     pub elastic_bonds: f64,
-    /// Springs of mounts of rigid bodies.
+    /// Springs of rigid-body supports.
     pub elastic_mounts: f64,
     /// −m g·x, zero at the origin.
     pub gravity: f64,
 }
 
 impl Energies {
-    /// Kinetic energy.
+    /// Kinetic energy [J].
     pub fn kinetic(&self) -> f64 {
         self.kinetic_translation + self.kinetic_rotation
     }
 
-    /// Energy in springs.
+    /// Elastic energy [J].
     pub fn elastic(&self) -> f64 {
         self.elastic_normal + self.elastic_tangential + self.elastic_bonds + self.elastic_mounts
     }
 
-    /// All of it. This less [`Ledger::work`](crate::base::ledger::Ledger::work) plus
-    /// [`Ledger::dissipated`](crate::base::ledger::Ledger::dissipated) is constant to second order in dt.
+    /// Total energy [J]. Minus [`Ledger::work`](crate::base::ledger::Ledger::work) plus
+    /// [`Ledger::dissipated`](crate::base::ledger::Ledger::dissipated) it is constant to second order in dt.
     pub fn total(&self) -> f64 {
         self.kinetic() + self.elastic() + self.gravity
     }
 }
 
-/// Energies at the last half step: exact functions of the state. Bodies that are wholly fixed count with the
-/// kinetic energy of their prescribed motion.
+/// Returns the energies at the last half step, with fixed bodies in prescribed motion.
 pub fn energies(model: &Model, state: &State) -> Energies {
     let mut e = Energies::default();
     bodies(model, state, |_| true, &mut e);
@@ -72,7 +71,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
     e
 }
 
-/// Energies of the bodies of which `counted` is true and of all contacts that they have.
+/// Selected bodies and all their contacts.
 pub(crate) fn energies_of(model: &Model, state: &State, counted: impl Fn(usize) -> bool) -> Energies {
     let mut e = Energies::default();
     bodies(model, state, &counted, &mut e);
@@ -82,7 +81,6 @@ pub(crate) fn energies_of(model: &Model, state: &State, counted: impl Fn(usize) 
     e
 }
 
-/// Adds what bodies have by themselves.
 fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut Energies) {
     let back = 0.5 * state.pace.last;
     for block in &state.blocks {
@@ -99,7 +97,6 @@ fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut
     }
 }
 
-/// Adds the springs of contacts.
 fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool, e: &mut Energies) {
     let back = 0.5 * state.pace.last;
     visit(model, state, back, |c| {
@@ -109,10 +106,9 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
     });
 }
 
-/// Adds the springs of a contact.
 fn springs(model: &Model, c: &ContactNow<'_>, back: f64, e: &mut Energies) {
-    // The spring belongs to the last full step: half a step of sliding brings it to the half step. Beyond what friction holds that is
-    // work of friction, which the ledger has not booked yet.
+    // Sliding advances the spring by half a step; beyond the friction limit it is dissipation, not yet
+    // recorded.
     let n = &c.geometry.normal;
     let slip = c.velocity - n * c.velocity.dot(n);
     let mut history = *c.history;
@@ -143,8 +139,8 @@ fn springs(model: &Model, c: &ContactNow<'_>, back: f64, e: &mut Energies) {
     e.elastic_tangential += tangential * c.weight;
 }
 
-/// Momentum [kg m/s] and angular momentum about the origin [kg m²/s] at the last half step. With
-/// [`Ledger::impulse`](crate::base::ledger::Ledger::impulse) they balance to rounding.
+/// Momentum [kg m/s], and angular momentum about the origin [kg m²/s], at the last half step. Balanced by
+/// [`Ledger::impulse`](crate::base::ledger::Ledger::impulse) to rounding.
 pub fn momentum(model: &Model, state: &State) -> Impulse {
     let mut sum = momentum_of(model, state, |_| true);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
@@ -155,7 +151,7 @@ pub fn momentum(model: &Model, state: &State) -> Impulse {
     sum
 }
 
-/// The same of the bodies of which `counted` is true.
+/// Selected bodies.
 pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) -> bool) -> Impulse {
     let mut sum = Impulse::default();
     for block in &state.blocks {
@@ -171,9 +167,8 @@ pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) 
     sum
 }
 
-/// Energy in proportion to which an error of the balance means something, whatever has been transferred so far [J]: all
-/// bodies at the largest speed that a moving wall or a body with prescribed motion has had, and at the speed by which rounding of a place
-/// changes in a step. A wall at that speed transfers ½mv² to a body in one touch, and the touch errs by the share (ω dt)²/4 of it.
+/// Reference of energy errors [J]: all bodies at the largest prescribed speed, and at the rounding speed of
+/// positions. A wall transfers ½mv² in an impact, with a relative error of (ω dt)²/4.
 pub fn reference_energy(model: &Model, state: &State) -> f64 {
     let (mut mass, mut speed, mut far) = (0.0, state.driven_speed, 0.0_f64);
     for block in &state.blocks {
@@ -196,5 +191,5 @@ pub fn reference_energy(model: &Model, state: &State) -> f64 {
     0.5 * mass * speed * speed
 }
 
-/// Rounding of the distance between two bodies over that of their places: a few sums of places that were each rounded in every step.
+/// Accumulated rounding of distances, relative to positions.
 const ROUNDING: f64 = 64.0;

@@ -1,4 +1,4 @@
-//! How high and how low dilated polyhedra reach.
+//! Highest and lowest points of dilated polyhedra.
 
 use crate::base::Vec3;
 use crate::engine::model::Model;
@@ -7,7 +7,6 @@ use crate::shape::Shape;
 use crate::shape::dilated::Dilated;
 use nalgebra::UnitQuaternion;
 
-/// A polyhedron where it is.
 struct Standing<'a> {
     it: &'a Dilated,
     centre: Vec3,
@@ -26,7 +25,7 @@ impl Standing<'_> {
         self.centre + self.turn * (self.it.core.corners[k] * self.scale)
     }
 
-    /// Height of the core's upper side at a place; `None` beside it.
+    /// Top of the core at (x, y), inside its projection.
     fn above(&self, x: f64, y: f64) -> Option<f64> {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for face in &self.it.core.faces {
@@ -44,15 +43,15 @@ impl Standing<'_> {
     }
 }
 
-/// Height of the lowest point of a dilated polyhedron [m]; `None` of other shapes.
+/// Lowest point of a dilated polyhedron [m]; `None` for other shapes.
 pub fn lowest(model: &Model, state: &State, body: usize) -> Option<f64> {
     let it = Standing::of(model, state, body)?;
     let corners = (0..it.it.core.corners.len()).map(|k| it.corner(k).z);
     Some(corners.fold(f64::INFINITY, f64::min) - it.it.radius * it.scale)
 }
 
-/// Height below which all of a dilated polyhedron lies that is over a rectangle with this middle and half sides [m]; at most by its
-/// radius too high. `None` of other shapes, and of those beside it.
+/// Upper bound on its height over a rectangle (`middle`, `half` sides) [m], within its radius. `None`
+/// outside, and for other shapes.
 pub fn highest_over(
     model: &Model,
     state: &State,
@@ -70,7 +69,7 @@ pub fn highest_over(
         let (way, mut range) = (b - a, [0.0_f64, 1.0]);
         for d in 0..2 {
             for sign in [1.0, -1.0] {
-                // at + s slope ≤ 0 within the rectangle.
+                // Within the rectangle: at + s slope ≤ 0.
                 let (at, slope) = (sign * (a[d] - middle[d]) - half[d], sign * way[d]);
                 if slope > 0.0 {
                     range[1] = range[1].min(-at / slope);
@@ -100,9 +99,9 @@ mod tests {
     use crate::engine::input::ModelInput;
     use crate::law::material::Material;
 
-    /// A cube of 2 × 2 × 2 on its face, then turned onto an edge by 45 degrees: its top is an edge along y.
+    /// Face down, then rotated by 45° about y.
     #[test]
-    fn a_cube_reaches_where_its_corners_are() {
+    fn cube_extent_matches_corners() {
         let corners: Vec<Vec3> =
             (0..8).map(|k| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.9 } else { -0.9 })).collect();
         let cube = Shape::Polyhedron(Box::new(Dilated::new(&corners, 0.1).unwrap().0));
@@ -125,7 +124,7 @@ mod tests {
         near(over(0, [0.0, 0.0], [5.0, 5.0]), 4.0);
         near(over(0, [0.0, 0.0], [0.1, 0.1]), 4.0);
         near(over(1, [0.0, 0.0], [0.1, 0.1]), 3.0 + edge + 0.1);
-        // Beside the edge the side falls by its distance, less the radius by which the place is widened.
+        // The sloping face falls 1:1, less the widening by the radius.
         near(over(1, [0.6, 0.0], [0.1, 0.1]), 3.0 + edge - 0.4 + 0.1);
         assert!(over(0, [3.0, 0.0], [0.5, 0.5]).is_none());
     }

@@ -1,4 +1,4 @@
-//! What a scene costs: the loops that its contacts run through, and the memory that state and scratch hold.
+//! Contact kernels and memory use.
 
 use crate::base::held::held;
 use crate::engine::model::Model;
@@ -7,7 +7,7 @@ use crate::engine::work::Work;
 use crate::lanes::Simd;
 use crate::shape::Shape;
 
-/// The loops that the contacts of a model run through, in words.
+/// Describes the contact kernels of a model.
 pub fn kernels(model: &Model) -> String {
     let law = model.laws.title();
     let has = |what: fn(&Shape) -> bool| (0..model.body_count()).any(|b| what(model.shape(b)));
@@ -28,7 +28,7 @@ pub fn kernels(model: &Model) -> String {
     format!("{law}, {shapes}{rolling}{bonds}{drag}, {lanes}")
 }
 
-/// Bytes that bodies, contacts, bonds, neighbours and forces hold now; constants of the model are not counted.
+/// Memory of bodies, contacts, bonds, neighbours and forces [B], without model constants.
 pub fn bytes(state: &State, work: &Work) -> usize {
     let blocks: usize = state.blocks.iter().map(|b| b.bytes()).sum();
     let lists = state

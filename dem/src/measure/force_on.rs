@@ -1,4 +1,4 @@
-//! The force on a group of bodies, and loads on structures.
+//! Forces on bodies and structures.
 
 use super::bonds::records;
 use super::contacts::{contacts, force_of};
@@ -8,8 +8,8 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::wall_contacts;
 
-/// Sum of the forces of bonds and contacts on the bodies that `of` picks, from bodies, walls and surfaces that are not
-/// among them [N]: on bodies of prescribed motion, what holds them is its opposite (gravity apart).
+/// Returns the contact and bond force of others on selected bodies [N]; for prescribed motion, minus the
+/// holding force (without gravity).
 pub fn force_on(model: &Model, state: &State, of: impl Fn(usize) -> bool) -> Vec3 {
     let mut sum = Vec3::zeros();
     let mut add = |a: usize, b: Option<usize>, force: Vec3| {
@@ -26,8 +26,8 @@ pub fn force_on(model: &Model, state: &State, of: impl Fn(usize) -> bool) -> Vec
     sum
 }
 
-/// Calls `f` with place [m] and force [N] of each contact on a structure: bodies and walls that `body` and `wall` pick. Of bodies that touch
-/// an image across a periodic border the place is on the structure itself.
+/// Calls `f` with point [m] and force [N] of each contact on selected bodies and walls, at its periodic
+/// original.
 pub fn loads_on(
     model: &Model,
     state: &State,

@@ -1,14 +1,14 @@
-//! Fragments: bodies held together by bonds.
+//! Fragments of bonded bodies.
 
 use crate::engine::model::Model;
 use crate::engine::state::State;
 
-/// The connected components of bodies and unbroken bonds. Clumps, boxes and spheres without a bond are fragments of one.
+/// Components connected by unbroken bonds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fragments {
-    /// Fragment of each body; fragments are numbered from 0 in the order of their smallest body. Shape `[bodies]`.
+    /// Fragment of each body, by smallest body. Shape `[bodies]`.
     pub of: Vec<u32>,
-    /// Number of bodies of each fragment.
+    /// Bodies per fragment.
     pub sizes: Vec<u32>,
 }
 
@@ -22,7 +22,7 @@ pub fn fragments(model: &Model, state: &State) -> Fragments {
     Fragments { of, sizes }
 }
 
-/// Fragment of each of `count` bodies that pairs of them join (union–find with path halving).
+/// Union–find with path halving.
 pub(super) fn components(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..count as u32).collect();
     let root = |parent: &mut Vec<u32>, mut k: u32| {
@@ -34,7 +34,7 @@ pub(super) fn components(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>
     };
     for [a, b] in pairs {
         let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        // The smaller body is the root, whatever the order of the bonds.
+        // Independent of the order of bonds.
         parent[a.max(b) as usize] = a.min(b);
     }
     let mut of = vec![0; count];

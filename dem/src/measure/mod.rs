@@ -1,9 +1,8 @@
-//! What can be read off a state: energies, momentum, contacts, stress, porosity, fabric, radial distribution. None of it changes the state.
+//! Measures of a state.
 //!
-//! Energies and momentum are those of the last half step, t − dt/2, where the velocities of the leapfrog live:
-//! bodies are moved back by half a step for it, springs likewise. So energy plus ledger closes to second order in
-//! dt at every step, and momentum plus ledger to rounding. Contacts are those of the present positions, with the
-//! forces that the next step will find.
+//! Energies and momentum belong to the last half step, t − dt/2, as velocities do: bodies and springs are
+//! moved back. The energy balance is second order in dt, the momentum balance exact. Contacts have the forces
+//! of the next step.
 
 mod bonds;
 mod breakage;

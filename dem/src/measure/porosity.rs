@@ -1,10 +1,8 @@
-//! Volume of the bodies in a box, and the porosity it leaves.
+//! Solid volume and porosity in a box.
 //!
-//! Spheres and box bodies that lie wholly inside count whole; a sphere on the border is cut in closed form
-//! (`clip.rs`). A clump inside counts with the volume of its union; one on the border is cut by a quadrature: midpoint
-//! rule over columns along z, [`COLUMNS`] × [`COLUMNS`] over its extent, the union of the intervals of each column
-//! exact. The error is about 1e-3 of such a clump's volume. Box bodies on the border are cut in the same way.
-//! Limits: overlaps at contacts count for both bodies, as in the usual definition of a packing's porosity.
+//! Exact for spheres (`clip.rs`) and bodies inside. Other bodies on the border: midpoint rule over
+//! [`COLUMNS`] × [`COLUMNS`] columns with exact intervals, error about 1e-3. Limit: contact overlaps count
+//! for both bodies.
 
 use super::{BoxRegion, sphere_box_volume};
 use crate::base::Vec3;
@@ -16,11 +14,10 @@ use crate::shape::dilated::Core;
 use crate::shape::dilated::part::{Bounds, Part, View};
 use crate::shape::dilated::press::{Segment, Target};
 
-/// Columns along one side of a body that the border of a region cuts.
+/// Columns per side of a body on the border.
 pub const COLUMNS: usize = 40;
 
-/// Volume of one body inside a box [m³]; along periodic axes that of the body between the borders and of its images
-/// one box length away. That of a body that is absent is zero.
+/// Returns the volume of a body and its periodic images inside a box [m³].
 pub fn body_volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f64 {
     if !state.present(body) {
         return 0.0;
@@ -87,18 +84,17 @@ fn volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f
     sum * step.x * step.y
 }
 
-/// Volume of all bodies inside a box [m³].
+/// Returns the volume of all bodies inside a box [m³].
 pub fn solid_volume(model: &Model, state: &State, region: &BoxRegion) -> f64 {
     (0..model.body_count()).map(|body| body_volume_in(model, state, body, region)).sum()
 }
 
-/// Share of a box that no body fills [-]; 0 for a box without volume. Negative where overlaps are large.
+/// Porosity [-]; 0 without volume, negative for large overlaps.
 pub fn porosity(model: &Model, state: &State, region: &BoxRegion) -> f64 {
     let volume = region.volume();
     if volume > 0.0 { 1.0 - solid_volume(model, state, region) / volume } else { 0.0 }
 }
 
-/// The box around a body.
 fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) -> (Vec3, Vec3) {
     if model.body(body).kind == Kind::Solid {
         let turn = state.orientation(model, body).to_rotation_matrix();
@@ -112,7 +108,7 @@ fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) ->
         .fold(start, |(low, high), (c, r)| (low.inf(&c.add_scalar(-r)), high.sup(&c.add_scalar(*r))))
 }
 
-/// Where the vertical line through (x, y) passes through a body that is not made of spheres.
+/// Intersection with the vertical line through (x, y).
 fn column_of_solid(model: &Model, state: &State, body: usize, x: f64, y: f64) -> Option<(f64, f64)> {
     let (turn, centre) = (state.orientation(model, body), state.position(body));
     let origin = turn.inverse_transform_vector(&(Vec3::new(x, y, 0.0) - centre));
@@ -137,10 +133,10 @@ fn column_of_solid(model: &Model, state: &State, body: usize, x: f64, y: f64) ->
     (span.0 < span.1).then_some(span)
 }
 
-/// Where a line with a unit direction, s along it from `origin`, passes through a dilated core.
+/// Intersection of a line with a dilated core.
 fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 2]> {
     let reach = origin.norm() + core.reach + radius;
-    // Through the core itself, and near it: together one stretch, for the body is convex.
+    // The body is convex: one interval.
     let mut inner = if core.rim.is_some() { [0.0; 2] } else { [-reach, reach] };
     for face in &core.faces {
         let (at, slope) = (face.normal.dot(origin) - face.offset, face.normal.dot(along));

@@ -1,10 +1,9 @@
-//! Radial distribution function: how dense bodies lie about a body, against the mean.
+//! Radial distribution function.
 //!
-//! g(r) = n(r)/(ρ 4/3 π (r₂³ − r₁³)), with n the mean number of centres between the distances r₁ and r₂ from a centre and
-//! ρ the number of centres over the volume of the box. Only bodies that are farther than the reach from every side of the
-//! box count as centres; across periodic borders that the box reaches to on both sides, images stand for what is beyond.
+//! g(r) = n(r)/(ρ 4/3 π (r₂³ − r₁³)), n the mean number of centres between r₁ and r₂ from a centre, ρ the
+//! number density. Reference centres are farther than the cut-off from non-periodic sides.
 //!
-//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 8.2, eq. (8.14); with the exact volume of shells.
+//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 8.2, eq. (8.14).
 
 use super::region::BoxRegion;
 use crate::base::Vec3;
@@ -12,9 +11,8 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use std::f64::consts::PI;
 
-/// g at the middle of `bins` shells of equal width up to the distance `reach` [m], of the bodies `counted` that have
-/// their centre in the box. `None` where no body is far enough from the sides, or where the reach is more than half the
-/// distance of two periodic borders.
+/// Returns g in `bins` equal shells up to `reach` [m]. `None` without reference centres, or if `reach`
+/// exceeds half a period.
 pub fn radial_distribution(
     model: &Model,
     state: &State,
@@ -57,7 +55,7 @@ pub fn radial_distribution(
     Some(count.iter().enumerate().map(of).collect())
 }
 
-/// Along which axes a box goes from one periodic border to the other.
+/// Axes spanning the period.
 fn round(model: &Model, region: &BoxRegion) -> [bool; 3] {
     let borders = model.periodic();
     std::array::from_fn(|d| {
@@ -68,14 +66,14 @@ fn round(model: &Model, region: &BoxRegion) -> [bool; 3] {
     })
 }
 
-/// Points by cells at least as wide as the reach.
+/// Cells at least as wide as the cut-off.
 struct Grid<'a> {
     points: &'a [Vec3],
     low: Vec3,
     side: Vec3,
     around: [bool; 3],
     counts: [usize; 3],
-    /// First place of each cell in `order`, and its end.
+    /// Offsets in `order`.
     first: Vec<usize>,
     order: Vec<usize>,
 }
@@ -83,7 +81,7 @@ struct Grid<'a> {
 impl<'a> Grid<'a> {
     fn new(points: &'a [Vec3], region: &BoxRegion, around: [bool; 3], reach: f64) -> Grid<'a> {
         let side = region.high - region.low;
-        // No more cells than points need.
+        // No more cells than points.
         let most = libm::cbrt(points.len() as f64).ceil().max(1.0);
         let counts = std::array::from_fn(|d| (side[d] / reach).floor().clamp(1.0, most) as usize);
         let mut grid =
@@ -108,7 +106,7 @@ impl<'a> Grid<'a> {
         (c * self.counts[1] + b) * self.counts[0] + a
     }
 
-    /// Cells beside one along an axis, itself included, each once.
+    /// Neighbour cells on an axis, each once.
     fn beside(&self, d: usize, at: usize) -> impl Iterator<Item = usize> {
         let (n, around) = (self.counts[d], self.around[d]);
         (0..n).filter(move |&k| {
@@ -117,7 +115,7 @@ impl<'a> Grid<'a> {
         })
     }
 
-    /// Calls `f` with the points of the cells about `x` and their distance from it, that of the nearest image.
+    /// Minimum-image distances.
     fn near(&self, x: &Vec3, mut f: impl FnMut(usize, f64)) {
         let [a, b, c] = self.cell(x);
         for k in self.beside(2, c) {

@@ -22,9 +22,8 @@ fn cube(side: f64) -> BoxRegion {
     BoxRegion { low: Vec3::zeros(), high: Vec3::repeat(side) }
 }
 
-/// Neighbours of a face-centred cubic lattice of edge 1: 12 at √½, 6 at 1, 24 at √1.5, 12 at √2, 24 at √2.5 (Conway &
-/// Sloane, Sphere Packings, Lattices and Groups, 1988, table 4.5), nothing between; in a box with borders that are
-/// periodic, and amid a larger crystal.
+/// Face-centred cubic, edge 1: 12 neighbours at √½, 6 at 1, 24 at √1.5, 12 at √2, 24 at √2.5 (Conway &
+/// Sloane, Sphere Packings, Lattices and Groups, 1988, table 4.5).
 #[test]
 fn shells_of_a_crystal() {
     const N: usize = 8;
@@ -56,8 +55,7 @@ fn shells_of_a_crystal() {
     }
 }
 
-/// Points at random have g = 1 within four standard deviations of the number in each shell, with and without periodic
-/// borders; bodies that are not counted do not show.
+/// g = 1 within four standard deviations; uncounted bodies have no effect.
 #[test]
 fn an_ideal_gas_has_none() {
     let mut random = rand_pcg::Pcg64Mcg::new(5);
@@ -72,7 +70,7 @@ fn an_ideal_gas_has_none() {
         let width = reach / bins as f64;
         for (k, g) in g.iter().enumerate() {
             let shell = 4.0 / 3.0 * PI * width.powi(3) * ((k + 1).pow(3) - k.pow(3)) as f64;
-            // Pairs are found from both sides.
+            // Each pair is found twice.
             let pairs = 0.5 * centres * 8000.0 * shell;
             assert!((g - 1.0).abs() < 4.0 / pairs.sqrt(), "periodic {periodic}, shell {k}: {g}");
         }

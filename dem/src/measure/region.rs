@@ -1,8 +1,8 @@
-//! Boxes in which quantities are measured.
+//! Boxes for measurements.
 
 use crate::base::Vec3;
 
-/// A box along the axes.
+/// Axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxRegion {
     /// Lower corner [m].
@@ -12,12 +12,12 @@ pub struct BoxRegion {
 }
 
 impl BoxRegion {
-    /// Its volume [m³].
+    /// Volume [m³].
     pub fn volume(&self) -> f64 {
         (self.high - self.low).iter().map(|l| l.max(0.0)).product()
     }
 
-    /// Whether it holds a point; its lower sides belong to it, its upper ones do not.
+    /// Whether the box contains a point; lower sides inclusive, upper exclusive.
     pub fn holds(&self, x: &Vec3) -> bool {
         (0..3).all(|d| x[d] >= self.low[d] && x[d] < self.high[d])
     }

@@ -1,12 +1,12 @@
-//! Sieve sizes of bodies, by the definition that filling uses: the diameter of a sphere, the intermediate extent of a
-//! clump. The curve follows from [`achieved_passing`](crate::insert::gradation::achieved_passing).
+//! Sieve sizes of bodies: diameter of a sphere, intermediate extent of a clump. Curve:
+//! [`achieved_passing`](crate::insert::gradation::achieved_passing).
 
 use crate::engine::model::Model;
 use crate::shape::Shape;
 
-/// Sieve size [m] and mass [kg] of the bodies that `counted` names by number; boxes are no stones and left out.
+/// Sieve size [m] and mass [kg] of selected bodies, without boxes.
 pub fn stones(model: &Model, counted: impl Fn(usize) -> bool) -> Vec<(f64, f64)> {
-    // The size of a shape at scale 1 is found once: sorting extents per body would cost more than the rest.
+    // Once per shape: sorting extents dominates.
     let unit: Vec<Option<f64>> = model.shapes.iter().map(size_of).collect();
     (0..model.body_count())
         .filter(|&b| counted(b))
@@ -14,7 +14,7 @@ pub fn stones(model: &Model, counted: impl Fn(usize) -> bool) -> Vec<(f64, f64)>
         .collect()
 }
 
-/// Sieve size of a shape at scale 1 [m]; none for a box.
+/// Sieve size of a shape at scale 1 [m]; `None` for a box.
 pub fn size_of(shape: &Shape) -> Option<f64> {
     match shape {
         Shape::Sphere { radius } => Some(2.0 * radius),

@@ -1,11 +1,9 @@
-//! Mean stress of each body from its contact and bond forces (Love 1927; Weber 1966):
-//! σ = (1/V) Σ ½ (r ⊗ F + F ⊗ r), r from the body's centre to the contact point, F the force on the body.
-//! With this sign pressure is negative: tension positive, as in the solid. The symmetric part is taken: the rest
-//! is the unbalanced torque.
+//! Mean stress of bodies from contact and bond forces (Love 1927; Weber 1966):
+//! σ = (1/V) Σ ½ (r ⊗ F + F ⊗ r), r from the body's centre to the contact, F the force on the body.
+//! Tension is positive.
 //!
-//! The mean stress in a region of volume V is Σ V_p σ_p / V over the bodies with their centre in it. For a region that
-//! ends at walls which hold all bodies, in equilibrium without weight, this is the force on a wall over its area.
-//! Limits: a region with sides amid the bodies should be many of them wide: those on its border count whole or not.
+//! Region of volume V: Σ V_p σ_p / V over bodies centred in it; equals the wall pressure in equilibrium
+//! without weight. Limit: regions need many bodies across.
 //!
 //! Theory manual: equation (3.14) of `docs/theory/motion.md`.
 
@@ -16,12 +14,12 @@ use crate::base::error::Partner;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 
-/// Mean stress of each body [Pa] in the order xx, yy, zz, xy, yz, zx. Shape `[bodies][6]`.
+/// Mean stress of each body [Pa], as xx, yy, zz, xy, yz, zx. Shape `[bodies][6]`.
 pub fn mean_stress(model: &Model, state: &State) -> Vec<[f64; 6]> {
     mean_stress_of(model, state, &contacts(model, state))
 }
 
-/// As [`mean_stress`], from contacts that are known already.
+/// As [`mean_stress`], from given contacts.
 pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) -> Vec<[f64; 6]> {
     let mut stress = vec![[0.0; 6]; model.body_count()];
     let bonds = super::bonds::records(model, state);
@@ -47,7 +45,7 @@ pub fn mean_stress_of(model: &Model, state: &State, contacts: &[ContactRecord]) 
     stress
 }
 
-/// Mean stress in a region [Pa], voids included, in the order xx, yy, zz, xy, yz, zx, from the stress of each body.
+/// Mean stress of a region, with voids [Pa], as xx, yy, zz, xy, yz, zx.
 pub fn region_stress(model: &Model, state: &State, bodies: &[[f64; 6]], region: &BoxRegion) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (body, stress) in bodies.iter().enumerate() {

@@ -1,8 +1,7 @@
-//! Scratch that is kept between steps.
+//! Reusable scratch buffers.
 
 use std::sync::Mutex;
 
-/// Buffers handed out to blocks in progress.
 #[derive(Debug)]
 pub(crate) struct Buffers<T>(Mutex<Vec<T>>);
 
@@ -23,7 +22,6 @@ impl<T: Default> Buffers<T> {
         self.0.lock().map(|mut b| b.pop()).ok().flatten().unwrap_or_default()
     }
 
-    /// Frees them.
     pub fn clear(&self) {
         if let Ok(mut buffers) = self.0.lock() {
             *buffers = Vec::new();

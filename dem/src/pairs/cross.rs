@@ -1,4 +1,4 @@
-//! Contacts between blocks: lists, the slots that their forces go to, and who gathers them.
+//! Contacts between blocks: lists, force slots, gathering.
 
 use super::groups::Groups;
 use super::list::PairList;
@@ -13,19 +13,18 @@ use crate::law::History;
 use crate::spatial::surface::SurfaceContact;
 use serde::{Deserialize, Serialize};
 
-/// Contacts of a block's spheres with bodies of other blocks.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Cross {
-    /// Sphere of this block, other block, sphere there.
+    /// Local sphere, other block, sphere there.
     pub spheres: Groups<3>,
-    /// Pairs of bodies that are not made of spheres, by kind; empty where a model has none.
+    /// By pair type; empty for spheres only.
     pub kinds: Vec<PairList>,
-    /// Sphere of this block and the image of one of any block across a periodic border.
+    /// Local sphere and periodic image.
     #[serde(default)]
     pub images: Vec<ImagePair>,
 }
 
-/// Sphere of a block, other block, sphere there, and how many box lengths the image is away from that sphere.
+/// Sphere, other block, sphere there, box lengths to the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct ImageName {
     pub i: u32,
@@ -34,7 +33,6 @@ pub(crate) struct ImageName {
     pub shift: [i32; 3],
 }
 
-/// Two spheres that touch across a periodic border or nearly do.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct ImagePair {
     pub name: ImageName,
@@ -42,19 +40,18 @@ pub(crate) struct ImagePair {
 }
 
 impl ImagePair {
-    /// A pair that has not touched.
     pub fn new(name: ImageName) -> ImagePair {
         ImagePair { name, history: History::NONE }
     }
 }
 
 impl Cross {
-    /// No contacts; `turning`: those of spheres remember rolling and twisting. `kinds`: empty lists of other pairs.
+    /// `turning`: rolling and twisting history; `kinds`: empty lists by type.
     pub fn new(turning: bool, kinds: Vec<PairList>) -> Cross {
         Cross { spheres: Groups::new(turning), kinds, images: Vec::new() }
     }
 
-    /// No partner lies in a later block than this.
+    /// Bound on partner blocks.
     pub fn last_block(&self) -> usize {
         let images = self.images.iter().map(|p| p.name.block).max().unwrap_or(0);
         let kinds = self.kinds.iter().map(|list| list.last_block()).max().unwrap_or(0);
@@ -62,32 +59,31 @@ impl Cross {
     }
 }
 
-/// Contacts of a block with others: their forces, what they dissipated, and the first failure.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CrossForces {
-    /// Records of all contacts. Of spheres and images `width` each: three (the force on the first partner and the torques
-    /// on both), or of single spheres two (the force and its lever on the first, the moment per lever and that on the
-    /// second). Of pairs of kinds three each.
+    /// Contact records. Spheres and images, `width` each: three (force on the first, both torques), or two
+    /// for single spheres (force and lever arm; moment per lever arm and second lever arm). Pair types:
+    /// three.
     pub slots: Vec<Record>,
     pub width: usize,
-    /// Where the records of the kinds and of images begin.
+    /// First record of pair types, of images.
     pub kinds_at: usize,
     pub images_at: usize,
     pub dashpot: f64,
     pub friction: f64,
-    /// Work that planes do on bodies that are not made of spheres, and their impulse.
+    /// Plane work on bodies not made of spheres, and impulse.
     pub work_walls: f64,
     pub walls: Impulse,
-    /// What those bodies felt from each wall of patches; empty in blocks near none.
+    /// Patch wall loads on those bodies; empty without walls.
     pub wall_sums: Vec<WallSum>,
-    /// Angular impulse about the origin that contacts across periodic borders give in this step.
+    /// Angular impulse about the origin from periodic contacts.
     pub couple: Vec3,
-    /// Contacts of those bodies with the external surface.
+    /// Of those bodies.
     pub surface: SurfaceBook,
     pub failure: Option<Failure>,
 }
 
-/// Contacts with the external surface, the work that it does [J], and the impulse that it gives.
+/// Surface contacts, work [J], impulse.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SurfaceBook {
     pub contacts: Vec<SurfaceContact>,
@@ -96,7 +92,6 @@ pub(crate) struct SurfaceBook {
 }
 
 impl CrossForces {
-    /// Begins a step: nothing is dissipated yet.
     pub fn clear_books(&mut self) {
         (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
         self.wall_sums.clear();
@@ -105,7 +100,7 @@ impl CrossForces {
         (self.walls, self.couple, self.failure) = (Impulse::default(), Vec3::zeros(), None);
     }
 
-    /// Makes room for the contacts of a list; `clumps`: partners may be clumps, whose torques differ from a lever's.
+    /// Allocates slots; `clumps`: torques do not follow from lever arms.
     pub fn lay_out(&mut self, lists: &Cross, clumps: bool) {
         self.width = if clumps || lists.spheres.turning { 3 } else { 2 };
         self.kinds_at = lists.spheres.len() * self.width;
@@ -117,8 +112,6 @@ impl CrossForces {
     }
 }
 
-/// Contacts of blocks with others, as those who gather them see them: of the run's own blocks, and of all whose contacts reach
-/// beyond their run.
 #[derive(Clone, Copy)]
 pub(crate) struct Slots<'a> {
     pub own: Part<'a, CrossForces>,
@@ -126,7 +119,6 @@ pub(crate) struct Slots<'a> {
 }
 
 impl Slots<'_> {
-    /// Those of a block.
     #[inline(always)]
     pub fn of(&self, block: usize) -> &CrossForces {
         match self.beyond.get(block) {
@@ -136,12 +128,11 @@ impl Slots<'_> {
     }
 }
 
-/// One body's share in a slot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gather {
     pub place: u32,
     pub block: u32,
-    /// Four times the slot's first record; plus two where it has three of them, and one for the second partner.
+    /// Four times the first record; +2 with three records, +1 for the second partner.
     slot: u32,
 }
 
@@ -150,30 +141,27 @@ impl Gather {
         Gather { place, block, slot: 4 * record as u32 + 2 * u32::from(width == 3) + u32::from(!first) }
     }
 
-    /// The slot's first record.
     #[inline(always)]
     pub fn record(&self) -> usize {
         (self.slot >> 2) as usize
     }
 
-    /// Whether the slot has three records.
     #[inline(always)]
     pub fn wide(&self) -> bool {
         self.slot & 2 != 0
     }
 
-    /// Whether the body is the first partner.
     #[inline(always)]
     pub fn first(&self) -> bool {
         self.slot & 1 == 0
     }
 }
 
-/// The shares of a block's bodies, in the order in which they are added.
+/// Contributions to a block's bodies, in summation order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shares {
     pub list: Vec<Gather>,
-    /// Whether any slot has three records.
+    /// Some slot has three records.
     pub wide: bool,
 }
 
@@ -185,7 +173,7 @@ impl Shares {
     }
 }
 
-/// Replaces a list of image pairs, keeping the memory of those that were there. Names ascend.
+/// Replaces image pairs by ascending `names`; history is kept.
 pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = ImageName>) {
     let mut old = std::mem::take(list).into_iter().peekable();
     for name in names {
@@ -195,7 +183,6 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
 }
 
 impl Cross {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         let kinds: usize = self.kinds.iter().map(PairList::bytes).sum();
         self.spheres.bytes() + kinds + held(&self.images)

@@ -1,7 +1,6 @@
-//! Lists of contacts with their memory, four to a group: what the loops over lanes work on.
+//! Contact lists with history, in SIMD groups of four.
 //!
-//! Groups come in twos, for loops over eight lanes. The last ones may hold fewer than four; the other lanes bear the
-//! names of the first contact of the two and have none.
+//! Groups are paired for eight lanes. Unused lanes repeat the first contact's name, without history.
 
 use crate::base::Vec3;
 use crate::base::held::held;
@@ -9,14 +8,13 @@ use crate::lanes::record::Record;
 use crate::law::{FRESH, History};
 use serde::{Deserialize, Serialize};
 
-/// Four contacts: N numbers that say between whom, and the memory.
+/// Four contacts: N indices each, and history.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group<const N: usize> {
     names: [[u32; 4]; N],
     pub springs: Springs,
 }
 
-/// The memory of four contacts, rolling and twisting apart.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Springs {
     pub spring: [Record; 3],
@@ -24,36 +22,32 @@ pub(crate) struct Springs {
 }
 
 impl<const N: usize> Group<N> {
-    /// Names to read and memory to write.
     #[inline(always)]
     pub fn parts(&mut self) -> (&[[u32; 4]; N], &mut Springs) {
         (&self.names, &mut self.springs)
     }
 
-    /// Between whom the contacts are.
     #[inline(always)]
     pub fn names(&self) -> &[[u32; 4]; N] {
         &self.names
     }
 
-    /// Contacts of body 0 with itself that have not begun.
+    /// Inactive self-contacts of body 0.
     pub const EMPTY: Group<N> = Group {
         names: [[0; 4]; N],
         springs: Springs { spring: [Record([0.0; 4]); 3], rate: Record([FRESH; 4]) },
     };
 }
 
-/// A list of contacts.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(into = "Flat", try_from = "Flat")]
 pub(crate) struct Groups<const N: usize> {
     len: usize,
-    /// The largest of the names, by place.
+    /// Largest names, by component.
     most: [u32; N],
     pub groups: Vec<Group<N>>,
-    /// Rolling and twisting springs of each group; empty unless `turning`.
+    /// Rolling and twisting springs; empty unless `turning`.
     pub turns: Vec<[Record; 4]>,
-    /// Whether rolling and twisting springs are kept.
     pub turning: bool,
 }
 
@@ -76,7 +70,7 @@ impl<const N: usize> Groups<N> {
         self.len == 0
     }
 
-    /// No name in place k is larger than the k-th of these.
+    /// Component-wise bound of names.
     pub fn most(&self) -> [u32; N] {
         self.most
     }
@@ -132,12 +126,11 @@ impl<const N: usize> Groups<N> {
         }
     }
 
-    /// All contacts in order.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; N], History)> + '_ {
         (0..self.len).map(|k| (self.name(k), self.history(k)))
     }
 
-    /// Takes over another list's contacts without giving up memory of its own.
+    /// Copies without reallocation.
     pub fn copy_from(&mut self, other: &Groups<N>) {
         self.clear();
         (self.len, self.most) = (other.len, other.most);
@@ -148,7 +141,6 @@ impl<const N: usize> Groups<N> {
         self.turning = other.turning;
     }
 
-    /// Sorts by name.
     pub fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.len).collect();
         order.sort_unstable_by_key(|&k| self.name(k));
@@ -159,7 +151,6 @@ impl<const N: usize> Groups<N> {
     }
 }
 
-/// What a checkpoint holds of a list: names and memory of each contact in turn.
 #[derive(Serialize, Deserialize)]
 struct Flat {
     turning: bool,
@@ -199,7 +190,6 @@ impl<const N: usize> TryFrom<Flat> for Groups<N> {
 }
 
 impl<const N: usize> Groups<N> {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         held(&self.groups) + held(&self.turns)
     }
@@ -210,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_what_is_pushed_sorts_and_goes_through_a_checkpoint() {
+    fn pushes_sorts_and_restores_checkpoint() {
         for turning in [false, true] {
             let mut list = Groups::<2>::new(turning);
             let history = |k: u32| {

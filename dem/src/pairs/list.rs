@@ -1,12 +1,10 @@
-//! Lists of pairs that may touch in several points at once, with the memory of each point: what pairs of kinds without
-//! loops over lanes are kept in (`contact/kind`).
+//! Pairs with several contact points and their history, for pair types without SIMD (`contact/kind`).
 
 use crate::base::held::held;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
-/// Memory of one contact point: the features that touch there, what the law keeps, the share of its force that acted, and whether it is the
-/// law that edges have of their own.
+/// History of a contact point: features, law history, applied force fraction, edge law flag.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PointMemory {
     pub feature: u32,
@@ -16,23 +14,22 @@ pub(crate) struct PointMemory {
 }
 
 impl PointMemory {
-    /// Of a contact that has just begun.
     pub const FRESH: PointMemory =
         PointMemory { feature: 0, history: History::NONE, weight: 0.0, edge: false };
 
-    /// The same contact seen from the other partner: the halves of the feature change places.
+    /// Seen from the other partner: feature halves swap.
     pub fn turned(&self) -> PointMemory {
         PointMemory { feature: self.feature.rotate_left(16), history: self.history.turned(), ..*self }
     }
 }
 
-/// First partner in the block that holds the list, block of the second, second partner there.
+/// Local first partner, block of the second, second partner.
 pub(crate) type PairName = [u32; 3];
 
-/// Something about a pair that saves work in the next step, and changes nothing of what is found: no checkpoint holds it.
+/// Acceleration hint without effect on results; not saved in checkpoints.
 pub(crate) type Hint = Option<[f64; 4]>;
 
-/// Where the memory of a pair lies: its first point, how many there are, and for how many there is room.
+/// First point, count, capacity.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     first: u32,
@@ -40,10 +37,10 @@ struct Span {
     room: u32,
 }
 
-/// Rooms come in multiples of this many points.
+/// Capacity increment.
 const ROOM: usize = 4;
 
-/// Pairs of one kind, in ascending order of their names but while they are sorted anew.
+/// Pairs of one type, ascending except during re-sorting.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(try_from = "Flat", into = "Flat")]
 pub(crate) struct PairList {
@@ -51,11 +48,10 @@ pub(crate) struct PairList {
     spans: Vec<Span>,
     hints: Vec<Hint>,
     memory: Vec<PointMemory>,
-    /// No second partner lies in a later block than this.
+    /// Bound on the second partner's block.
     last_block: u32,
 }
 
-/// What a checkpoint holds: names, numbers of points, and the points of each pair in turn.
 #[derive(Serialize, Deserialize)]
 struct Flat {
     names: Vec<PairName>,
@@ -95,7 +91,7 @@ impl PartialEq for PairList {
 }
 
 impl PairList {
-    /// Becomes the same as another, in its own memory.
+    /// Copies without reallocation.
     pub fn copy_from(&mut self, other: &PairList) {
         let PairList { names, spans, hints, memory, last_block } = other;
         self.names.clone_from(names);
@@ -109,7 +105,7 @@ impl PairList {
         self.names.len()
     }
 
-    /// No second partner lies in a later block than this.
+    /// Bound on the second partner's block.
     pub fn last_block(&self) -> u32 {
         self.last_block
     }
@@ -118,29 +114,25 @@ impl PairList {
         self.names[k]
     }
 
-    /// Points in which a pair touched.
     pub fn points(&self, k: usize) -> &[PointMemory] {
         let span = self.spans[k];
         &self.memory[span.first as usize..][..span.count as usize]
     }
 
-    /// Gives a pair other points.
     pub fn set(&mut self, k: usize, points: &[PointMemory]) {
         let span = &mut self.spans[k];
         if points.len() > span.room as usize {
-            // What it had stays unused until the list is made anew.
+            // The old range stays unused until the list is rebuilt.
             *span = room(&mut self.memory, points.len());
         }
         span.count = points.len() as u32;
         self.memory[span.first as usize..][..points.len()].copy_from_slice(points);
     }
 
-    /// What is known about a pair from the last step.
     pub fn hint_mut(&mut self, k: usize) -> &mut Hint {
         &mut self.hints[k]
     }
 
-    /// Adds a pair with the memory of its points.
     pub fn push(&mut self, name: PairName, points: &[PointMemory]) {
         self.names.push(name);
         self.spans.push(room(&mut self.memory, points.len()));
@@ -149,7 +141,7 @@ impl PairList {
         self.set(self.len() - 1, points);
     }
 
-    /// Replaces the pairs by those of ascending names, keeping the memory of those that were there.
+    /// Replaces pairs by ascending `names`; history is kept.
     pub fn replace(&mut self, names: impl Iterator<Item = PairName>) {
         let old = std::mem::take(self);
         let mut k = 0;
@@ -166,7 +158,6 @@ impl PairList {
         }
     }
 
-    /// Sorts by name.
     pub fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_unstable_by_key(|&k| self.name(k));
@@ -175,13 +166,11 @@ impl PairList {
         *self = sorted;
     }
 
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         held(&self.names) + held(&self.spans) + held(&self.hints) + held(&self.memory)
     }
 }
 
-/// Room for so many points behind all others.
 fn room(memory: &mut Vec<PointMemory>, count: usize) -> Span {
     let (first, room) = (memory.len(), count.next_multiple_of(ROOM));
     memory.resize(first + room, PointMemory::FRESH);
@@ -199,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_that_stay_keep_their_points_and_go_through_a_checkpoint() {
+    fn kept_pairs_survive_checkpoint() {
         let mut list = PairList::default();
         for k in [7, 3, 5] {
             list.push([k, 4, 1], &[point(k), point(k + 1)][..k as usize / 3]);
@@ -220,9 +209,8 @@ mod tests {
         assert!(PairList::try_from(flat).is_err());
     }
 
-    /// Points come and go, and more of them than there was room for.
     #[test]
-    fn a_pair_has_room_for_any_number_of_points() {
+    fn pair_stores_many_points() {
         let mut list = PairList::default();
         list.push([0, 0, 1], &[]);
         list.push([0, 0, 2], &[point(9)]);

@@ -1,14 +1,13 @@
-//! Memory of the points in which two walls touch.
+//! History of contact points between walls.
 
 use super::list::PointMemory;
 use serde::{Deserialize, Serialize};
 
-/// A point in which a wall touches another one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Meet {
-    /// Number of the other wall.
+    /// Other wall.
     pub other: u32,
-    /// What presses, and what is pressed into.
+    /// Indenting and indented feature.
     pub name: [u32; 2],
     pub memory: PointMemory,
 }

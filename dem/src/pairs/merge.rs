@@ -1,16 +1,14 @@
-//! A list of near pairs made anew from candidates, with the memory of contacts that go on.
+//! Rebuild of a neighbour list from candidates, with contact history.
 
 use super::groups::Groups;
 use crate::law::History;
 
-/// Scratch for the near list of a block.
 #[derive(Debug, Default)]
 pub(crate) struct Merging {
     pub two: Merge<2>,
     pub three: Merge<3>,
 }
 
-/// Scratch for one list.
 #[derive(Debug, Default)]
 pub(crate) struct Merge<const N: usize> {
     keys: Vec<[u32; N]>,
@@ -18,8 +16,7 @@ pub(crate) struct Merge<const N: usize> {
 }
 
 impl<const N: usize> Merge<N> {
-    /// Replaces a list by those candidates (in ascending order) that are close, keeping the memory of contacts that were
-    /// there.
+    /// Keeps the close candidates (ascending); history is kept.
     #[inline]
     pub fn merge(
         &mut self,
@@ -28,7 +25,7 @@ impl<const N: usize> Merge<N> {
         close: impl Fn(&[u32; N]) -> bool,
     ) {
         let Merge { keys, fresh } = self;
-        // Written always and kept if close: whether it is cannot be predicted.
+        // Branch-free: closeness is unpredictable.
         keys.clear();
         keys.resize(candidates.len(), [0; N]);
         let mut count = 0;

@@ -1,5 +1,4 @@
-//! Storage of pairs, written once for every kind of pair: lists in groups of lanes with the memory of contacts, merging
-//! with candidates, slots for forces across blocks.
+//! Storage of contact pairs and history.
 
 pub(crate) mod buffers;
 pub(crate) mod cross;

@@ -1,16 +1,15 @@
-//! Spheres near patches of a surface: candidates within the skin, and of them the near list.
+//! Sphere–patch candidates and neighbour lists.
 
 use super::patches::PatchPair;
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
 use crate::spatial::surface::Surface;
 
-/// A patch that a sphere was found near.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     i: u32,
     patch: u32,
-    /// A lower bound of the gap between them then [m].
+    /// Lower bound of the gap [m].
     gap: f32,
 }
 
@@ -20,8 +19,7 @@ impl Candidate {
     }
 }
 
-/// Patches near each free sphere of a block (or each sphere, where the patch itself is free to move); none at all is found
-/// by one query for the whole block.
+/// Patches near free spheres (all spheres, if the patch can move); one query covers blocks without any.
 pub(crate) fn candidates<S: Surface>(
     surface: &S,
     spheres: &[Record],
@@ -59,9 +57,8 @@ pub(crate) fn candidates<S: Surface>(
     }
 }
 
-/// The near list: candidates within `near` of touch, none of which has come closer by more than `approach` since they were
-/// found. Both lists are in order of sphere and patch; `list` is replaced, and keeps the patch coordinates of the pairs that
-/// it holds already.
+/// Candidates within `near` of contact; `approach`: bound on relative displacement since the search. Sorted
+/// by sphere and patch; `list` keeps patch coordinates.
 pub(crate) fn refresh<S: Surface>(
     surface: &S,
     spheres: &[Record],

@@ -1,37 +1,34 @@
-//! Contacts of spheres with the patches of a surface.
+//! Sphere–patch contacts.
 
 use crate::base::Vec3;
 use crate::base::held::held;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
-/// A sphere that touches a patch of a surface or nearly does.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PatchPair {
     pub i: u32,
     pub patch: u32,
     pub local: [f64; 2],
-    /// Way that sphere and patch can come together before they may touch, counted from when the near list was made
-    /// [m]; negative in touch.
+    /// Relative displacement possible before contact since the list was built [m]; negative in contact.
     pub spare: f64,
 }
 
-/// A sphere in touch with a patch, and what is remembered of the last step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PatchContact {
     pub i: u32,
     pub patch: u32,
-    /// Where the patch was touched, the normal, the patch's velocity and the overlap there.
+    /// Contact point, normal, patch velocity, overlap.
     pub point: Vec3,
     pub normal: Vec3,
     pub velocity: Vec3,
     pub overlap: f64,
-    /// Cosine between the contact's and the patch's own normal: its sign tells the side.
+    /// Cosine between contact and patch normal: its sign gives the side.
     pub side: f64,
     pub history: History,
 }
 
-/// Spheres near the patches of a surface, and those in touch; both in order of sphere and patch.
+/// Sorted by sphere and patch.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct PatchList {
     pub pairs: Vec<PatchPair>,
@@ -43,7 +40,7 @@ impl PatchList {
         self.pairs.is_empty() && self.live.is_empty()
     }
 
-    /// Becomes the same as another, in its own memory.
+    /// Copies without reallocation.
     pub fn copy_from(&mut self, other: &PatchList) {
         self.pairs.clone_from(&other.pairs);
         self.live.clone_from(&other.live);
@@ -51,7 +48,6 @@ impl PatchList {
 }
 
 impl PatchList {
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         held(&self.pairs) + held(&self.live)
     }

@@ -1,14 +1,14 @@
-//! Where spheres were when candidates were searched.
+//! Sphere positions at the last search.
 
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
 
-/// Where spheres were, to single precision from one of them.
+/// Single precision, relative to one sphere.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reference {
     origin: Vec3,
     offsets: Vec<[f32; 3]>,
-    /// Bound on the error of an offset [m].
+    /// Error bound of offsets [m].
     error: f64,
 }
 
@@ -19,7 +19,7 @@ impl Reference {
 
     pub fn push(&mut self, x: &Vec3) {
         let offset = x - self.origin;
-        // Half a unit in the last place of each component, and room for the three together.
+        // Half a unit in the last place per component, with margin for all three.
         self.error = self.error.max(1.1e-7 * offset.amax());
         self.offsets.push([offset.x as f32, offset.y as f32, offset.z as f32]);
     }
@@ -28,7 +28,7 @@ impl Reference {
         self.offsets.len()
     }
 
-    /// A bound from above on the square of the way from the k-th place.
+    /// Upper bound on the squared displacement.
     #[inline(always)]
     pub fn moved2(&self, k: usize, x: &Vec3) -> f64 {
         let [a, b, c] = self.offsets[k].map(f64::from);

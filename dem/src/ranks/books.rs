@@ -1,4 +1,4 @@
-//! What blocks book in a step, sent to the first rank.
+//! Messages of block totals to the first rank.
 
 use super::code::{put, take};
 use crate::base::failure::Failure;
@@ -9,22 +9,21 @@ use crate::engine::work::Work;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// What a block books; of walls what follows.
 #[derive(Serialize, Deserialize)]
 struct Book {
     fastest: f64,
     failure: Option<Failure>,
-    /// Of its contacts with later blocks.
+    /// Contacts with later blocks.
     dashpot: f64,
     friction: f64,
     failure_across: Option<Failure>,
     wall_sums: u32,
 }
 
-/// Numbers of a ledger as a message has them, at most.
+/// Upper limit on balance values in a message.
 const LEDGER: usize = 128;
 
-/// Puts a ledger into a message: most of its numbers are zero, and only said to be. (Minus zero is not.)
+/// Zeros, except −0, take one bit.
 fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
     let mut room = [0; 8 * LEDGER];
     let count = words(ledger, &mut room);
@@ -35,12 +34,11 @@ fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
     }
 }
 
-/// Writes a ledger; the number of words of eight bytes that it takes.
+/// Returns the number of eight-byte words.
 fn words(ledger: &Ledger, room: &mut [u8]) -> usize {
     postcard::to_slice(ledger, room).expect("a ledger is so many numbers").len().div_ceil(8)
 }
 
-/// Reads it.
 fn take_ledger(rest: &mut &[u8]) -> Option<Ledger> {
     let mut room = [0; 8 * LEDGER];
     let count = words(&Ledger::default(), &mut room);
@@ -57,7 +55,7 @@ fn take_ledger(rest: &mut &[u8]) -> Option<Ledger> {
     take(&mut &room[..])
 }
 
-/// What a list of bonds books; bonds that broke follow.
+/// Totals of a bond list; broken bonds follow.
 #[derive(Serialize, Deserialize)]
 struct BondBook {
     power: f64,
@@ -83,13 +81,11 @@ fn read_bonds(w: &mut ListWork, rest: &mut &[u8]) -> Option<()> {
     Some(())
 }
 
-/// Whether a bond broke in this step.
 pub(super) fn any_broken(work: &Work) -> bool {
     let lists = work.blocks.iter().map(|w| &w.bonds).chain(&work.bonds.cross);
     lists.into_iter().any(|list| !list.broken.is_empty())
 }
 
-/// Puts the books of blocks into a message; `bonds`: of their bonds too.
 pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u8>) {
     for b in own.clone().filter(|_| bonds) {
         write_bonds(&work.blocks[b].bonds, out);
@@ -111,7 +107,7 @@ pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u
     }
 }
 
-/// Reads them; `None` where the message is not what it should be.
+/// `None` if the message is malformed.
 pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &[u8]) -> Option<()> {
     for b in own.clone().filter(|_| bonds) {
         read_bonds(&mut work.blocks[b].bonds, rest)?;

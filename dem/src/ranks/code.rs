@@ -1,27 +1,24 @@
-//! Messages as bytes, written to and read from room that is kept.
+//! Message encoding, with reused buffers.
 
 use serde::{Deserialize, Serialize};
 
-/// Appends a value to a message.
 pub(super) fn put<T: Serialize + ?Sized>(out: &mut Vec<u8>, value: &T) {
     let room = std::mem::take(out);
-    // Only types that cannot be written at all fail here: none of ours.
+    // Cannot fail for the types used here.
     *out = postcard::to_extend(value, room).expect("a value that can be written");
 }
 
-/// Appends numbers to a message, eight bytes each.
 pub(super) fn put_numbers(out: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
     numbers.into_iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
 }
 
-/// Reads the next value of a message; `None` where there is none.
+/// `None` at the end of the message.
 pub(super) fn take<'a, T: Deserialize<'a>>(rest: &mut &'a [u8]) -> Option<T> {
     let (value, left) = postcard::take_from_bytes(rest).ok()?;
     *rest = left;
     Some(value)
 }
 
-/// Reads the next numbers of a message.
 pub(super) fn take_numbers<const N: usize>(rest: &mut &[u8]) -> Option<[f64; N]> {
     let (head, left) = rest.split_at_checked(8 * N)?;
     *rest = left;

@@ -1,4 +1,4 @@
-//! All ranks but the first: they do what that one says.
+//! Command loop of all ranks but the first.
 
 use super::code::{put, put_numbers, take, take_numbers};
 use super::link::{Link, Lost};
@@ -10,13 +10,12 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 
-/// The rank that leads.
 const FIRST: usize = 0;
 
-/// Serves the first rank until that has nothing left to do. `make` makes the model from its description, or says why not.
+/// Serves the first rank until it ends; `make` builds the model from its description.
 ///
 /// # Errors
-/// A rank is lost.
+/// [`Lost`] if a rank is lost.
 pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, String>) -> Result<(), Lost> {
     loop {
         let mut message = Vec::new();
@@ -38,7 +37,7 @@ pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, 
     }
 }
 
-/// The model, where it is that of the first rank as far as can be seen.
+/// Checks that the model matches the first rank's.
 fn same(model: Model, bodies: u64, dt: f64) -> Result<Model, String> {
     if model.body_count() as u64 == bodies && model.dt() == dt {
         return Ok(model);
@@ -50,7 +49,7 @@ fn same(model: Model, bodies: u64, dt: f64) -> Result<Model, String> {
     ))
 }
 
-/// Takes a state over, and what follows.
+/// Receives a state and runs commands.
 fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     let mut message = Vec::new();
     link.receive(FIRST, &mut message)?;
@@ -92,7 +91,6 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     }
 }
 
-/// One step of this rank's blocks.
 fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now) -> Result<(), Lost> {
     if now.renew {
         let moved2 = rank.moved2(state);

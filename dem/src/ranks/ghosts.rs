@@ -1,4 +1,4 @@
-//! Bodies of other ranks that a rank's blocks may touch: who sends which to whom, and their motion after each step.
+//! Ghost bodies and their motion.
 
 use super::code::{put_numbers, take_numbers};
 use crate::bodies::block::Block;
@@ -9,17 +9,17 @@ use crate::lanes::record::Record;
 use nalgebra::{Quaternion, Unit};
 use std::ops::Range;
 
-/// Block and place of a body.
+/// Block and index of a body.
 pub(super) type Place = [u32; 2];
 
-/// By rank: the bodies that it is sent, and those that it sends.
+/// Received and sent, by rank.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ghosts {
     pub to: Vec<Vec<Place>>,
     pub from: Vec<Vec<Place>>,
 }
 
-/// Bodies of other blocks that the near lists of the blocks `own` name, ascending, each once.
+/// Ghosts in neighbour lists, ascending, unique.
 pub(super) fn of_lists(state: &State, work: &Work, own: &Range<usize>) -> Vec<Place> {
     let mut need = Vec::new();
     for (b, cross) in state.cross.iter().enumerate().take(own.end) {
@@ -32,7 +32,6 @@ pub(super) fn of_lists(state: &State, work: &Work, own: &Range<usize>) -> Vec<Pl
     sorted(need)
 }
 
-/// The same of bonds, and of pairs that were bonded.
 fn bonded(state: &State, own: &Range<usize>, need: &mut Vec<Place>) {
     for (b, list) in state.bonds.cross.iter().enumerate() {
         let bonds = list.iter().map(|e| (e.i, e.block, e.j));
@@ -42,7 +41,7 @@ fn bonded(state: &State, own: &Range<usize>, need: &mut Vec<Place>) {
     }
 }
 
-/// The same of candidates and bonds.
+/// Candidates and bonds.
 pub(super) fn of_candidates(state: &State, work: &Work, own: &Range<usize>) -> Vec<Place> {
     let mut need = Vec::new();
     bonded(state, own, &mut need);
@@ -54,12 +53,12 @@ pub(super) fn of_candidates(state: &State, work: &Work, own: &Range<usize>) -> V
     sorted(need)
 }
 
-/// The body of the one of two spheres that lies in another rank's block, if one does.
+/// Body outside `own`, if only one is.
 fn partner(work: &Work, own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
     other(own, a, b).map(|[block, sphere]| [block, work.members[block as usize].body(sphere)])
 }
 
-/// The one of two that lies in another rank's block while the other does not, if one does.
+/// Body outside `own`, if only one is.
 fn other(own: &Range<usize>, a: Place, b: Place) -> Option<Place> {
     let there = |[block, _]: Place| !own.contains(&(block as usize));
     match (there(a), there(b)) {
@@ -75,7 +74,7 @@ fn sorted(mut places: Vec<Place>) -> Vec<Place> {
     places
 }
 
-/// Puts the motion of bodies into a message: of a sphere nine numbers, in blocks with other bodies their orientation too.
+/// Nine values per sphere, plus orientation in blocks with other bodies.
 pub(super) fn put_motion(blocks: &[Block], places: &[Place], out: &mut Vec<u8>) {
     for &[b, k] in places {
         let (block, k) = (&blocks[b as usize], k as usize);
@@ -88,7 +87,7 @@ pub(super) fn put_motion(blocks: &[Block], places: &[Place], out: &mut Vec<u8>) 
     }
 }
 
-/// Reads it at the other rank; `None` where the message is not what it should be.
+/// `None` if the message is malformed.
 pub(super) fn take_motion(
     blocks: &mut [Block],
     members: &mut [Members],

@@ -1,4 +1,4 @@
-//! What a search needs of the blocks of other ranks: the bodies near one's own.
+//! Halo of a search: bodies near the blocks of other ranks.
 
 use super::ghosts::Place;
 use crate::base::Vec3;
@@ -6,10 +6,9 @@ use crate::bodies::block::Block;
 use crate::lanes::record::xyz;
 use std::ops::Range;
 
-/// Box around the bodies of a block: lower and upper corner [m]; of an empty block nothing is near it.
+/// Bounding box: lower and upper corner [m]; inverted if empty.
 pub(super) type Bounds = [Vec3; 2];
 
-/// Box around the bodies of a block.
 pub(super) fn bounds(block: &Block) -> Bounds {
     let nothing = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
     block
@@ -22,7 +21,7 @@ fn meet(a: &Bounds, b: &Bounds, reach: f64) -> bool {
     (0..3).all(|d| a[0][d] - reach <= b[1][d] && b[0][d] - reach <= a[1][d])
 }
 
-/// Bodies of the blocks `own` within `reach` of touching the box of any of the blocks `other` [m], in `out`.
+/// Bodies of `own` within `reach` of the boxes of `other` [m].
 pub(super) fn near(
     blocks: &[Block],
     boxes: &[Bounds],

@@ -1,4 +1,4 @@
-//! The first rank: the back end of a run whose blocks are shared among ranks.
+//! First rank: back end of a distributed run.
 
 use super::code::{put, put_numbers, take, take_numbers};
 use super::halo::Bounds;
@@ -17,25 +17,23 @@ use crate::engine::work::Work;
 use crate::engine::{applied, bonds, neighbours, order, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
-/// Steps on several ranks, of which this is the first. A state that they have taken over is whole again after
-/// [`BackEnd::download`].
+/// Steps on several ranks. The state is complete after [`BackEnd::download`].
 pub struct Ranks<L: Link> {
     rank: Rank<L>,
     /// Whether the other ranks are ahead of the state.
     ahead: bool,
-    /// Whether the state has what only other ranks compute.
+    /// Whether the state has the data of other ranks.
     whole: bool,
-    /// Whether bonds have broken whose spheres have not separated yet.
+    /// Whether debonded spheres are still in contact.
     debonded: bool,
-    /// What all ranks have sent up to the last download.
     traffic: Traffic,
 }
 
 impl<L: Link> Ranks<L> {
-    /// Shares a state among the ranks of `link`, each of which makes the model from `description`.
+    /// Distributes a state over the ranks of `link`; each builds the model from `description`.
     ///
     /// # Errors
-    /// A rank is lost, or makes no such model.
+    /// A rank is lost, or cannot build the model.
     pub fn new(link: L, model: &Model, state: &State, description: &[u8]) -> Result<Ranks<L>, StepError> {
         let time = state.time;
         let mut ranks = Ranks {
@@ -67,12 +65,12 @@ impl<L: Link> Ranks<L> {
         Ok(())
     }
 
-    /// What all ranks have sent up to the last download.
+    /// Messages of all ranks up to the last download.
     pub fn traffic(&self) -> &Traffic {
         &self.traffic
     }
 
-    /// How often candidates were searched and how often the near list was made from them.
+    /// Returns the numbers of searches and of neighbour-list rebuilds.
     pub fn rebuilds(&self) -> (u64, u64) {
         self.rank.work.rebuilds()
     }
@@ -87,13 +85,12 @@ impl<L: Link> Ranks<L> {
             rank.send(Kind::State, other)?;
         }
         rank.take_over(model, state, partition)?;
-        // A message of the size of a state is rare.
+        // Such large messages are rare.
         (rank.out, rank.message) = (Vec::new(), Vec::new());
         (self.ahead, self.whole, self.debonded) = (false, true, bonds::any_debonded(state));
         Ok(())
     }
 
-    /// Makes `state` whole.
     fn fetch(&mut self, state: &mut State) -> Result<(), Lost> {
         if !std::mem::take(&mut self.ahead) {
             return Ok(());
@@ -132,7 +129,7 @@ impl<L: Link> Ranks<L> {
             self.deal_out(model, state).map_err(&lost)?;
         }
         if !applied.is_empty() {
-            // Their levers need the places of the bodies, here and where they were found.
+            // Lever arms need present positions.
             self.fetch(state).map_err(&lost)?;
         }
         applied::place(model, state, applied, &mut self.rank.work.applied)?;
@@ -167,7 +164,7 @@ impl<L: Link> Ranks<L> {
             Ok(())
         };
         make().map_err(&lost)?;
-        // What a break leaves behind is settled on the whole state, and handed to all anew.
+        // Breakage is processed on the complete state, which is then distributed again.
         let look = self.debonded && state.steps.is_multiple_of(bonds::LOOKS);
         if bonded && (look || books::any_broken(&self.rank.work)) {
             self.fetch(state).map_err(&lost)?;
@@ -186,7 +183,7 @@ impl<L: Link> Ranks<L> {
     }
 }
 
-/// Has all ranks make their near lists, after a search where one of them needs it.
+/// Rebuilds the lists of all ranks, after a search if one needs it.
 fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State) -> Result<(), Lost> {
     let mut moved2 = if state.stale { f64::INFINITY } else { rank.moved2(state) };
     rank.boxes = rank.bounds(state).collect();
@@ -230,7 +227,7 @@ impl<L: Link> BackEnd for Ranks<L> {
         surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
-        // A model with a material for such a surface is refused.
+        // The model has no surface material.
         if surface.is_empty() { self.advance(model, state, applied) } else { Err(StepError::SurfaceMaterial) }
     }
 
@@ -250,13 +247,13 @@ impl<L: Link> Drop for Ranks<L> {
     }
 }
 
-/// Lets all other ranks end that [`serve`](super::serve) this one, where [`Ranks`] does not do so.
+/// Ends [`serve`](super::serve) on all other ranks, if no [`Ranks`] does.
 pub fn dismiss(link: &mut impl Link) {
     let mut end = Vec::new();
     put(&mut end, &Order::End);
     let own = link.rank();
     for other in (0..link.size()).filter(|&other| other != own) {
-        // One that is lost needs no order.
+        // Lost ranks are ignored.
         _ = link.send(other, &end);
     }
 }

@@ -1,23 +1,23 @@
-//! What ranks need of whatever carries their messages.
+//! Message transport.
 
-/// Carries messages between the ranks of a run. Those from one rank to another arrive in the order in which they were sent.
+/// Message transport between ranks, in order for each pair.
 pub trait Link: Send {
-    /// Number of this rank; the first is 0.
+    /// Rank index; the first is 0.
     fn rank(&self) -> usize;
 
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends a message, without waiting until it is received.
+    /// Sends a message without blocking.
     ///
     /// # Errors
-    /// The other rank is lost.
+    /// [`Lost`] if the other rank is lost.
     fn send(&mut self, to: usize, message: &[u8]) -> Result<(), Lost>;
 
-    /// Waits for the next message of a rank, which takes the place of what `message` held.
+    /// Receives the next message of a rank, blocking.
     ///
     /// # Errors
-    /// The other rank is lost.
+    /// [`Lost`] if the other rank is lost.
     fn receive(&mut self, from: usize, message: &mut Vec<u8>) -> Result<(), Lost>;
 }
 
@@ -39,18 +39,18 @@ impl Link for Box<dyn Link> {
     }
 }
 
-/// A rank that does not respond any more.
+/// Unresponsive rank.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("rank {rank} lost: {problem}")]
 pub struct Lost {
-    /// Its number.
+    /// Rank index.
     pub rank: usize,
-    /// What is known of it.
+    /// Cause.
     pub problem: String,
 }
 
 impl Lost {
-    /// A rank that sent what cannot be read.
+    /// Error for a malformed message.
     pub(super) fn garbled(rank: usize) -> Lost {
         Lost { rank, problem: "invalid message".into() }
     }

@@ -1,20 +1,20 @@
-//! Ranks as threads of one process, for tests: messages go through channels.
+//! Ranks as threads of one process, for tests.
 
 use super::link::{Link, Lost};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
 
-/// One rank of several in one process.
+/// Rank in a thread.
 #[derive(Debug)]
 pub struct Local {
     rank: usize,
     to: Vec<Sender<Vec<u8>>>,
     from: Vec<Receiver<Vec<u8>>>,
-    /// The rank that ended first.
+    /// First rank that ended.
     ended: Arc<OnceLock<usize>>,
 }
 
-/// So many ranks, for as many threads.
+/// Returns `size` connected ranks, one per thread.
 pub fn local(size: usize) -> Vec<Local> {
     let ended = Arc::new(OnceLock::new());
     let one = |rank| Local { rank, to: Vec::new(), from: Vec::new(), ended: ended.clone() };
@@ -49,7 +49,6 @@ impl Link for Local {
 }
 
 impl Local {
-    /// A rank does not respond, because it or another has ended.
     fn gone(&self, rank: usize) -> Lost {
         Lost { rank: *self.ended.get().unwrap_or(&rank), problem: "its thread has ended".into() }
     }

@@ -1,4 +1,4 @@
-//! What the first rank has the others do.
+//! Commands of the first rank.
 
 use super::code::{put, take};
 use crate::base::Vec3;
@@ -8,26 +8,21 @@ use crate::integrate::pace::Pace;
 use crate::shape::plane::PlaneMotion;
 use serde::{Deserialize, Serialize};
 
-/// An order; what it needs beside follows in its message, or in the next.
+/// Command; data follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Order {
-    /// Make the model that is described.
     Model {
-        /// Number of bodies, and the step that the model begins with [s].
+        /// Number of bodies, and initial time step [s].
         bodies: u64,
         dt: f64,
     },
-    /// Take a part of the state over.
     Take,
-    /// Make a step.
     Step(Now),
-    /// Send back one's part of the state.
     Give,
-    /// There is nothing left to do.
     End,
 }
 
-/// What all blocks share in a step.
+/// Step data of all blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Now {
     time: f64,
@@ -35,13 +30,11 @@ pub(super) struct Now {
     near: f64,
     drift: f64,
     wall_drift: f64,
-    /// Whether bonds have made no step yet.
+    /// Whether bonds have not been stepped.
     fresh: bool,
-    /// Whether the near list is made anew.
     pub renew: bool,
 }
 
-/// A force on a body, as ranks are given it.
 #[derive(Serialize, Deserialize)]
 struct Force {
     block: u32,
@@ -50,7 +43,7 @@ struct Force {
     torque: Vec3,
 }
 
-/// Writes the order to make a step, with the motion of planes and walls and the applied forces.
+/// With wall and plane motion.
 pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &mut Vec<u8>) {
     let &State { time, pace, near, drift, wall_drift, .. } = state;
     let fresh = state.bonds.fresh;
@@ -63,7 +56,7 @@ pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &
     }
 }
 
-/// Takes over what the order to make a step says; `None` where the message is not what it should be.
+/// `None` if the message is malformed.
 pub(super) fn read_step(
     state: &mut State,
     now: &Now,

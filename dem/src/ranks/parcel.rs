@@ -1,4 +1,4 @@
-//! Parts of a state on their way from the first rank and back.
+//! Messages of partial states.
 
 use super::code::{put, take};
 use super::partition::Partition;
@@ -9,8 +9,7 @@ use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use std::ops::Range;
 
-/// Writes what a rank needs of a state: the motion of all bodies, the contacts of its own blocks, and those of earlier blocks with
-/// them.
+/// Motion of all bodies, contacts of the rank's blocks and of earlier ones with them.
 pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut Vec<u8>) {
     let own = partition.of_rank(rank);
     put(out, &partition.bounds);
@@ -30,7 +29,7 @@ pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut
         })
         .collect();
     put(out, &earlier);
-    // Lists that are empty yet must know what their contacts will remember.
+    // Empty lists need the type of their contact history.
     let turning: Vec<bool> = state.cross[..own.start].iter().map(|cross| cross.spheres.turning).collect();
     put(out, &turning);
     let bonds = state.bonds.cross.iter().enumerate();
@@ -38,7 +37,7 @@ pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut
     put(out, &bonds);
 }
 
-/// Those bonds between blocks of a list that have an end in the blocks `own`; `b` is the block of their first ends.
+/// With an end in the blocks `own`.
 fn bonds_with(list: &BondList, b: usize, own: &Range<usize>) -> BondList {
     if own.contains(&b) {
         return list.clone();
@@ -49,7 +48,7 @@ fn bonds_with(list: &BondList, b: usize, own: &Range<usize>) -> BondList {
     part
 }
 
-/// Leaves out of a whole state what only other ranks compute.
+/// Removes data that only other ranks compute.
 pub(super) fn restrict(state: &mut State, own: &Range<usize>) {
     if own.len() == state.blocks.len() {
         return;
@@ -65,7 +64,7 @@ pub(super) fn restrict(state: &mut State, own: &Range<usize>) {
     }
 }
 
-/// Reads it; `None` where the message is not what it should be.
+/// `None` if the message is malformed.
 pub(super) fn read(rank: usize, mut rest: &[u8]) -> Option<(State, Partition)> {
     let rest = &mut rest;
     let partition = Partition { bounds: take(rest)? };
@@ -90,7 +89,6 @@ pub(super) fn read(rank: usize, mut rest: &[u8]) -> Option<(State, Partition)> {
     rest.is_empty().then_some((state, partition))
 }
 
-/// A state without its blocks.
 fn rest_of(state: &State) -> State {
     State {
         ledger: state.ledger,
@@ -107,16 +105,15 @@ fn rest_of(state: &State) -> State {
     }
 }
 
-/// Writes the blocks of a rank with their contacts.
 pub(super) fn write_back(state: &State, own: Range<usize>, out: &mut Vec<u8>) {
     put(out, &state.blocks[own.clone()]);
     put(out, &state.lists[own.clone()]);
     put(out, &state.cross[own.clone()]);
-    // Models without bonds have no such lists.
+    // Models without bonds have no lists.
     put(out, state.bonds.cross.get(own).unwrap_or_default());
 }
 
-/// Reads them at the first rank; `None` where the message is not what it should be.
+/// `None` if the message is malformed.
 pub(super) fn read_back(state: &mut State, own: Range<usize>, rest: &mut &[u8]) -> Option<()> {
     let blocks: Vec<Block> = take(rest)?;
     let (lists, cross): (Vec<BlockLists>, Vec<Cross>) = (take(rest)?, take(rest)?);

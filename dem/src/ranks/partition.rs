@@ -1,17 +1,17 @@
-//! Which blocks a rank has.
+//! Partition of blocks into ranks.
 
 use crate::engine::state::State;
 use std::ops::Range;
 
-/// The blocks of each rank: runs that follow each other.
+/// Contiguous ranges of blocks, one per rank.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Partition {
-    /// First block of each rank, and the number of blocks.
+    /// First block of each rank, and block count.
     pub bounds: Vec<u32>,
 }
 
 impl Partition {
-    /// For so many ranks, with about as much work for each: bodies, and pairs that may touch.
+    /// Balances bodies plus candidate pairs.
     pub fn of(state: &State, ranks: usize) -> Partition {
         let blocks = state.blocks.iter().zip(state.lists.iter().zip(&state.cross));
         let work = blocks.map(|(block, (lists, cross))| {
@@ -24,7 +24,7 @@ impl Partition {
         let (mut sum, mut b) = (0.0, 0);
         for rank in 1..ranks {
             let share = total * rank as f64 / ranks as f64;
-            // A block goes to the rank that its middle belongs to.
+            // A block belongs to the rank of its midpoint.
             while b < work.len() && sum + 0.5 * work[b] < share {
                 sum += work[b];
                 b += 1;
@@ -35,12 +35,10 @@ impl Partition {
         Partition { bounds }
     }
 
-    /// The blocks of a rank.
     pub fn of_rank(&self, rank: usize) -> Range<usize> {
         self.bounds[rank] as usize..self.bounds[rank + 1] as usize
     }
 
-    /// The rank that has a block.
     pub fn owner(&self, block: u32) -> usize {
         self.bounds.partition_point(|&first| first <= block) - 1
     }
@@ -51,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_block_has_the_rank_whose_run_it_is_in() {
+    fn owners_match_block_ranges() {
         let partition = Partition { bounds: vec![0, 0, 3, 3, 5] };
         for (block, rank) in [(0, 1), (1, 1), (2, 1), (3, 3), (4, 3)] {
             assert_eq!(partition.owner(block), rank);

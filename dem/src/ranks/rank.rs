@@ -1,4 +1,4 @@
-//! What every rank does: it searches and moves its own blocks, and exchanges ghosts.
+//! Work of every rank.
 
 use super::code::{put, take};
 use super::ghosts::{self, Ghosts, Place};
@@ -13,15 +13,14 @@ use crate::engine::work::Work;
 use crate::engine::{neighbours, step};
 use crate::spatial::surface::NoSurface;
 
-/// One rank with its part of a state.
 pub(super) struct Rank<L> {
     pub link: L,
     pub work: Work,
     pub partition: Partition,
     ghosts: Ghosts,
-    /// Boxes of all blocks at a search.
+    /// At a search.
     pub boxes: Vec<Bounds>,
-    /// The message that is written, and the one that is read.
+    /// Outgoing and incoming message.
     pub out: Vec<u8>,
     pub message: Vec<u8>,
     pub traffic: Traffic,
@@ -41,24 +40,21 @@ impl<L: Link> Rank<L> {
         }
     }
 
-    /// All other ranks.
     pub fn others(&self) -> impl Iterator<Item = usize> + use<L> {
         let own = self.link.rank();
         (0..self.link.size()).filter(move |&rank| rank != own)
     }
 
-    /// Sends what was written.
     pub fn send(&mut self, kind: Kind, to: usize) -> Result<(), Lost> {
         self.traffic.count(kind, self.out.len());
         self.link.send(to, &self.out)
     }
 
-    /// Waits for a message.
     pub fn receive(&mut self, from: usize) -> Result<(), Lost> {
         self.link.receive(from, &mut self.message)
     }
 
-    /// Takes a state over, of which the motion of all bodies is known.
+    /// `state` has the motion of all bodies.
     pub fn take_over(&mut self, model: &Model, state: &State, partition: Partition) -> Result<(), Lost> {
         self.partition = partition;
         self.work.follow(model, state);
@@ -67,7 +63,7 @@ impl<L: Link> Rank<L> {
         self.agree(&need)
     }
 
-    /// Agrees with all others on who sends whom what; `need` are the ghosts of this rank.
+    /// Exchanges ghost lists.
     fn agree(&mut self, need: &[Place]) -> Result<(), Lost> {
         let size = self.link.size();
         self.ghosts.from.resize_with(size, Vec::new);
@@ -89,7 +85,6 @@ impl<L: Link> Rank<L> {
         Ok(())
     }
 
-    /// Waits for the motion of ghosts after a step.
     pub fn await_ghosts(&mut self, state: &mut State) -> Result<(), Lost> {
         for rank in self.others() {
             if self.ghosts.from[rank].is_empty() {
@@ -103,7 +98,7 @@ impl<L: Link> Rank<L> {
         Ok(())
     }
 
-    /// Moves the blocks of this rank by a step, and has others know where their ghosts are.
+    /// Advances by a step and sends ghosts.
     pub fn advance(&mut self, model: &Model, state: &mut State) -> Result<(), Lost> {
         step::advance(model, state, &mut self.work, &NoSurface);
         for rank in self.others() {
@@ -116,7 +111,7 @@ impl<L: Link> Rank<L> {
         Ok(())
     }
 
-    /// How far bodies of this rank have come since the last search, squared [m²].
+    /// Largest squared displacement since the last search [m²].
     pub fn moved2(&self, state: &State) -> f64 {
         if self.work.searched.listed.is_some() {
             neighbours::moved2(state, &self.work)
@@ -125,13 +120,11 @@ impl<L: Link> Rank<L> {
         }
     }
 
-    /// Boxes around the blocks of this rank.
     pub fn bounds(&self, state: &State) -> impl Iterator<Item = Bounds> {
         state.blocks[self.work.own.clone()].iter().map(halo::bounds)
     }
 
-    /// Makes the near list anew, after partners may have come together by `approach` since the last search [m]; after another
-    /// search where that is too far. Boxes of all blocks are known then.
+    /// Rebuilds neighbour lists, after a search if pairs approached too far. Requires all boxes.
     pub fn renew(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
         let mut approach = approach;
         if neighbours::too_far(model, state, approach) {
@@ -142,10 +135,9 @@ impl<L: Link> Rank<L> {
         Ok(())
     }
 
-    /// Finds the candidates of this rank's blocks.
     fn search(&mut self, model: &Model, state: &mut State) -> Result<(), Lost> {
         let mut near = Vec::new();
-        // A little more than needed, for rounding.
+        // Margin for rounding.
         let reach = 1.01 * model.skin;
         for rank in self.others() {
             let ranges = (self.work.own.clone(), self.partition.of_rank(rank));
@@ -162,7 +154,6 @@ impl<L: Link> Rank<L> {
             let places: Vec<Place> = take(rest).ok_or(Lost::garbled(rank))?;
             let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, &places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
-            // Ranks have their runs in order.
             self.work.halo.extend(places);
         }
         candidates::search(model, state, &mut self.work, &NoSurface, Listed::All);

@@ -1,16 +1,16 @@
-//! What ranks compute: models with anything else are refused by name.
+//! Model features supported by ranks.
 
 use crate::engine::model::Model;
 
-/// What a model has and ranks do not share.
+/// Name of an unsupported feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("not supported with several ranks: {0}")]
 pub struct Unsupported(pub &'static str);
 
-/// Whether ranks share all that a model has.
+/// Checks that ranks support all features of a model.
 ///
 /// # Errors
-/// [`Unsupported`] names the first thing that they do not.
+/// [`Unsupported`] for the first unsupported feature.
 pub fn check(model: &Model) -> Result<(), Unsupported> {
     let all = [
         (model.solids, "boxes and polyhedra"),

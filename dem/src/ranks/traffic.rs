@@ -1,46 +1,43 @@
-//! What ranks send each other, counted.
+//! Message counters.
 
 use serde::{Deserialize, Serialize};
 
-/// What a message is for.
+/// Message type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// What to do, from the first rank to each other: one a step.
+    /// Command: one per step and rank.
     Order,
-    /// Motion of ghosts: one a step to each rank that has any.
+    /// Ghost motion: one per step and receiving rank.
     Ghosts,
-    /// What the blocks have booked: one a step to the first rank.
+    /// Block totals: one per step to the first rank.
     Books,
-    /// How far bodies have come: one for each near list to the first rank, and one back.
+    /// Displacements: two per neighbour list.
     NearList,
-    /// Bodies near the blocks of another rank, and which of them are its ghosts: for each search.
+    /// Halo bodies and requested ghosts: per search.
     Search,
-    /// The state, whole or in parts: at the start, for each new order of the bodies and each download.
+    /// State: at the start, re-sorting and download.
     State,
 }
 
-/// Names of the kinds, in their order.
 const NAMES: [&str; 6] = ["orders", "ghosts", "books", "near lists", "searches", "states"];
 
-/// What a rank, or several, have sent.
+/// Messages sent by one or several ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Traffic {
-    /// Messages of each kind.
+    /// Messages of each type.
     pub messages: [u64; 6],
-    /// Bytes of each kind.
+    /// Bytes of each type.
     pub bytes: [u64; 6],
-    /// Ghosts that this rank has now.
+    /// Present ghosts.
     pub ghosts: u64,
 }
 
 impl Traffic {
-    /// Counts a message.
     pub(super) fn count(&mut self, kind: Kind, bytes: usize) {
         self.messages[kind as usize] += 1;
         self.bytes[kind as usize] += bytes as u64;
     }
 
-    /// Adds what another rank has sent.
     pub(super) fn add(&mut self, other: &Traffic) {
         for k in 0..NAMES.len() {
             self.messages[k] += other.messages[k];
@@ -49,7 +46,7 @@ impl Traffic {
         self.ghosts += other.ghosts;
     }
 
-    /// A line for each kind: messages and bytes a step.
+    /// A line per type, per step.
     pub fn lines(&self, steps: u64) -> Vec<String> {
         let each = |n: u64| n as f64 / steps.max(1) as f64;
         let lines = NAMES.iter().zip(self.messages.iter().zip(&self.bytes));

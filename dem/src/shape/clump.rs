@@ -1,7 +1,4 @@
-//! Rigid clump: a stone as the union of overlapping spheres.
-//!
-//! The spheres carry the contacts; mass and inertia belong to their *union*, so that material where spheres
-//! overlap counts once (`clump/union.rs` integrates it).
+//! Rigid clump: a stone as overlapping spheres. Mass and inertia of their union: `clump/union.rs`.
 
 mod union;
 
@@ -9,51 +6,47 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use union::{Ball, union_moments};
 
-/// Why a set of spheres is not a clump.
+/// Invalid clump.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
-    /// No sphere at all.
+    /// No sphere.
     #[error("a clump needs at least one sphere")]
     Empty,
-    /// A coordinate or radius is not a finite number.
+    /// Non-finite coordinate or radius.
     #[error("sphere {0} of the clump has a coordinate or radius that is not a finite number")]
     NotFinite(usize),
-    /// A radius is zero or negative.
+    /// Radius not positive.
     #[error("sphere {index} of the clump has radius {radius} m; it must be positive")]
     Radius {
-        /// Index of the sphere, from 0.
+        /// Index of the sphere.
         index: usize,
-        /// Its radius [m].
+        /// Radius [m].
         radius: f64,
     },
-    /// The spheres form more than one piece.
+    /// Disconnected clump.
     #[error("sphere {0} of the clump is not connected to sphere 0; a clump must be connected")]
     Disconnected(usize),
 }
 
-/// A rigid union of spheres in its own frame: origin at the union's centroid, axes along its principal axes.
-///
-/// The axes are ordered by rising principal moment, so that x is the long axis of an elongated stone and z the
-/// short axis of a flat one.
+/// Rigid union of spheres about its centroid. Principal moments ascend: x is the long axis, z the short one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clump {
-    /// Centre [m] and radius [m] of each sphere in the clump's frame.
+    /// Centre [m] and radius [m] of each sphere.
     pub spheres: Vec<([f64; 3], f64)>,
     /// Volume of the union [m³].
     pub volume: f64,
-    /// Principal moments of inertia about the centroid per unit density [m⁵], rising.
+    /// Principal moments of inertia per unit density [m⁵], ascending.
     pub inertia: [f64; 3],
 }
 
 impl Clump {
-    /// Builds a clump from spheres (centre [m], radius [m]) given in any frame; their order is kept.
+    /// Builds a clump from spheres (centre [m], radius [m]); their order is kept.
     ///
     /// # Errors
-    /// [`ShapeError`] when there is no sphere, a number is not finite, a radius is not positive, or the spheres do
-    /// not form one connected piece.
+    /// [`ShapeError`] if a sphere is invalid or not connected, or none is given.
     pub fn from_spheres(spheres: &[([f64; 3], f64)]) -> Result<Clump, ShapeError> {
         check(spheres)?;
-        // Integrate about the middle of the bounding box, in units of its half-size: no cancellation, no underflow.
+        // Normalised coordinates avoid cancellation and underflow.
         let (lo, hi) = bounding_box(spheres);
         let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * (lo[k] + hi[k]));
         let unit = (0..3).map(|k| 0.5 * (hi[k] - lo[k])).fold(0.0, f64::max);
@@ -81,7 +74,7 @@ impl Clump {
         Ok(Clump { spheres, volume: m.volume * u3, inertia: moments.map(|i| i * u3 * unit * unit) })
     }
 
-    /// The same stone `s` times as large (`s` > 0, a pure number).
+    /// Scales by `s` > 0.
     pub fn scaled(&self, s: f64) -> Clump {
         let s3 = s * s * s;
         Clump {
@@ -91,24 +84,20 @@ impl Clump {
         }
     }
 
-    /// Size of the square sieve that the stone just passes [m].
-    ///
-    /// The usual approximation of a sieve test: the intermediate extent of the bounding box in the principal
-    /// frame. A stone passes a square opening end-on, so its longest extent does not matter; turning a flat stone
-    /// to the opening's diagonal, which lets it pass a slightly smaller sieve, is neglected.
+    /// Square sieve size [m]: intermediate principal extent. Diagonal passage of flat stones is neglected.
     pub fn sieve_size(&self) -> f64 {
         let mut extents = self.extents();
         extents.sort_by(f64::total_cmp);
         extents[1]
     }
 
-    /// Extents of the bounding box in the principal frame [m], along x, y, z.
+    /// Bounding box in the principal frame [m].
     pub fn extents(&self) -> [f64; 3] {
         let (lo, hi) = bounding_box(&self.spheres);
         std::array::from_fn(|k| hi[k] - lo[k])
     }
 
-    /// Radius of the smallest sphere about the centroid that holds the stone [m].
+    /// Bounding radius about the centroid [m].
     pub fn bounding_radius(&self) -> f64 {
         self.spheres.iter().map(|(c, r)| Vector3::from(*c).norm() + r).fold(0.0, f64::max)
     }
@@ -126,7 +115,7 @@ fn check(spheres: &[([f64; 3], f64)]) -> Result<(), ShapeError> {
             return Err(ShapeError::Radius { index, radius: *radius });
         }
     }
-    // Flood fill from sphere 0; the slack lets spheres that touch in one point pass.
+    // Flood fill; the slack admits spheres in point contact.
     let mut reached = vec![false; spheres.len()];
     let mut open = vec![0];
     reached[0] = true;
@@ -148,9 +137,9 @@ pub(super) fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) 
     (std::array::from_fn(|k| -fold(-1.0, k)), std::array::from_fn(|k| fold(1.0, k)))
 }
 
-/// Principal moments, rising, and a right-handed matrix whose columns are the axes.
+/// Ascending principal moments and right-handed axes (columns).
 pub(crate) fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
-    // Below the quadrature's noise a tensor counts as diagonal: a sphere keeps the axes it was given in.
+    // Below quadrature noise the tensor is diagonal: a sphere keeps its axes.
     let noise = 1e-11 * inertia.trace();
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {
         if inertia[(i, j)].abs() < noise {
@@ -163,7 +152,7 @@ pub(crate) fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     let rank = |i: usize| (eigen.eigenvalues[i] / noise).round();
     order.sort_by(|&i, &j| rank(i).total_cmp(&rank(j)));
     let column = |k: usize| {
-        // Sign convention: the largest component is positive.
+        // The largest component is positive.
         let v = eigen.eigenvectors.column(order[k]).into_owned();
         let largest = v[v.iamax()];
         v * largest.signum()
@@ -180,8 +169,7 @@ mod tests {
     use nalgebra::Rotation3;
     use std::f64::consts::PI;
 
-    /// ∫ x^n (R² − x²)^m π dx from −R to h for the integrals of a sphere cut by x < h, by antiderivatives:
-    /// volume, ∫x, ∫x², ∫y².
+    /// ∫ x^n (R² − x²)^m π dx over a sphere cut by x < h: volume, ∫x, ∫x², ∫y².
     fn cut_sphere(r: f64, h: f64) -> [f64; 4] {
         let f = |x: f64| {
             let r2 = r * r;
@@ -195,11 +183,11 @@ mod tests {
         std::array::from_fn(|k| f(h)[k] - f(-r)[k])
     }
 
-    /// Closed form of two spheres on the x axis at 0 and d: volume, centroid, moments (axial, transverse).
+    /// Two spheres at 0 and d on x: volume, centroid, moments (axial, transverse).
     fn lens(r1: f64, r2: f64, d: f64) -> (f64, f64, [f64; 2]) {
         let h = 0.5 * (d + (r1 * r1 - r2 * r2) / d);
         let a = cut_sphere(r1, h);
-        let b = cut_sphere(r2, d - h); // mirrored: its x runs from the second centre towards the first
+        let b = cut_sphere(r2, d - h); // mirrored, from the second centre
         let volume = a[0] + b[0];
         let centroid = (a[1] + d * b[0] - b[1]) / volume;
         let xx = a[2] + d * d * b[0] - 2.0 * d * b[1] + b[2] - volume * centroid * centroid;
@@ -230,7 +218,6 @@ mod tests {
                 assert_relative_eq!(c.inertia[0], axial, max_relative = 1e-8);
                 assert_relative_eq!(c.inertia[1], transverse, max_relative = 1e-8);
                 assert_relative_eq!(c.inertia[2], transverse, max_relative = 1e-8);
-                // The least moment is about the line of centres, the new x axis.
                 assert_relative_eq!(c.spheres[0].0[0].abs(), centroid, max_relative = 1e-8);
                 assert_relative_eq!(c.spheres[1].0[0].abs(), d - centroid, max_relative = 1e-8);
                 assert!(c.spheres[0].0[1].hypot(c.spheres[0].0[2]) < 1e-8 * d);
@@ -238,7 +225,7 @@ mod tests {
         }
     }
 
-    /// Twelve overlapping spheres of a stone-like shape.
+    /// Stone-like shape.
     fn stone() -> Vec<([f64; 3], f64)> {
         let golden = PI * (3.0 - 5.0_f64.sqrt());
         (0..12)
@@ -251,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn many_spheres_do_not_depend_on_the_frame_and_agree_with_voxels() {
+    fn many_spheres_match_voxels_any_frame() {
         let spheres = stone();
         let c = Clump::from_spheres(&spheres).unwrap();
         let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
@@ -265,7 +252,7 @@ mod tests {
             assert_relative_eq!(c.inertia[k], t.inertia[k], max_relative = 1e-8);
             assert!(c.inertia[k] >= c.inertia[k.saturating_sub(1)]);
         }
-        // The clump's own frame is a fixed point: centroid at the origin, axes principal.
+        // The clump frame is a fixed point.
         let again = Clump::from_spheres(&c.spheres).unwrap();
         for (a, b) in c.spheres.iter().zip(&again.spheres) {
             assert!((0..3).all(|k| (a.0[k] - b.0[k]).abs() < 1e-9), "{a:?} {b:?}");

@@ -1,61 +1,57 @@
-//! Bonded cluster: a stone as separate spheres held together by bonds, so that it can break.
-//!
-//! Spheres are distinct bodies here: mass and inertia are their sums, not those of a union as for a rigid clump.
+//! Bonded cluster: a breakable stone of spheres; mass and inertia are sums over spheres.
 
 use super::clump::{bounding_box, principal};
 use nalgebra::{Matrix3, Vector3};
 
-/// Why spheres and bonds are no cluster.
+/// Invalid cluster.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClusterError {
-    /// No sphere at all.
+    /// No sphere.
     #[error("a bonded stone needs at least one sphere")]
     Empty,
-    /// A coordinate or radius is not finite, or a radius not positive.
+    /// Non-finite value, or radius not positive.
     #[error("sphere {0} (counted from 0) of the bonded stone needs finite coordinates and a radius above 0")]
     Sphere(usize),
-    /// A bond between spheres that do not exist, of a sphere with itself, or given twice.
+    /// Unknown sphere, self-bond or duplicate bond.
     #[error("bond {index} [{a}, {b}] must join two different spheres of 0 to {last}, each pair once")]
     Bond {
-        /// Index of the bond, from 0.
+        /// Index of the bond.
         index: usize,
-        /// One sphere.
+        /// First sphere.
         a: u32,
-        /// The other.
+        /// Second sphere.
         b: u32,
-        /// The last sphere.
+        /// Last sphere.
         last: usize,
     },
-    /// The bonds leave more than one piece.
+    /// Disconnected cluster.
     #[error("no chain of bonds leads from sphere 0 to sphere {0}; a bonded stone starts in one piece")]
     Disconnected(usize),
-    /// The factor of the density is not a positive number.
+    /// Density factor not positive.
     #[error("the density factor is {0}; it must be a number above 0")]
     DensityFactor(f64),
 }
 
-/// Spheres and bonds in the stone's own frame: origin at the centre of mass, principal axes along x, y, z with moments
-/// rising, as for a clump.
+/// Spheres and bonds in the principal frame, moments ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cluster {
     /// Centre [m] and radius [m] of each sphere.
     pub spheres: Vec<([f64; 3], f64)>,
-    /// Pairs of bonded spheres, the lower index first, in the order given.
+    /// Bonded pairs, lower index first, in input order.
     pub bonds: Vec<[u32; 2]>,
-    /// Density of the spheres over that of the stone's material.
+    /// Sphere density over material density.
     pub density_factor: f64,
-    /// Volume of the spheres, summed, times the density factor: mass per density of the material [m³].
+    /// Mass per material density [m³].
     pub volume: f64,
-    /// Principal moments of inertia per density of the material [m⁵], rising.
+    /// Principal moments of inertia per material density [m⁵], ascending.
     pub inertia: [f64; 3],
 }
 
 impl Cluster {
-    /// Builds a cluster from spheres (centre [m], radius [m]) in any frame and pairs of bonded spheres.
+    /// Builds a cluster from spheres (centre [m], radius [m]) and bonded pairs.
     ///
     /// # Errors
-    /// [`ClusterError`] when there is no sphere, a number is out of range, a bond is none, or the bonds do not hold all
-    /// spheres in one piece.
+    /// [`ClusterError`] if a value or bond is invalid, or the cluster empty or disconnected.
     pub fn new(
         spheres: &[([f64; 3], f64)],
         bonds: &[[u32; 2]],
@@ -93,26 +89,25 @@ impl Cluster {
         })
     }
 
-    /// Extents of the bounding box in the principal frame [m], along x, y, z.
+    /// Bounding box in the principal frame [m].
     pub fn extents(&self) -> [f64; 3] {
         let (lo, hi) = bounding_box(&self.spheres);
         std::array::from_fn(|k| hi[k] - lo[k])
     }
 
-    /// Size of the square sieve that the stone just passes [m]: the intermediate extent, as for a clump.
+    /// Square sieve size [m]: intermediate extent.
     pub fn sieve_size(&self) -> f64 {
         let mut extents = self.extents();
         extents.sort_by(f64::total_cmp);
         extents[1]
     }
 
-    /// Radius of the smallest sphere about the centre of mass that holds the stone [m].
+    /// Bounding radius about the centre of mass [m].
     pub fn bounding_radius(&self) -> f64 {
         self.spheres.iter().map(|(c, r)| Vector3::from(*c).norm() + r).fold(0.0, f64::max)
     }
 }
 
-/// Bonds with the lower index first; each must join two spheres, once, and all of them one piece.
 fn checked(bonds: &[[u32; 2]], spheres: usize) -> Result<Vec<[u32; 2]>, ClusterError> {
     let mut seen = std::collections::HashSet::new();
     let mut ordered = Vec::with_capacity(bonds.len());
@@ -148,13 +143,13 @@ mod tests {
 
     const R: f64 = 0.1;
 
-    /// Three spheres in a row along y, far from the origin.
+    /// Along y, far from the origin.
     fn row() -> Vec<([f64; 3], f64)> {
         (0..3).map(|i| ([5.0, 3.0 + 0.2 * f64::from(i), -2.0], R)).collect()
     }
 
     #[test]
-    fn a_row_of_three_by_closed_form() {
+    fn row_of_three_matches_closed_form() {
         let c = Cluster::new(&row(), &[[1, 0], [1, 2]], 1.5).unwrap();
         let ball = 4.0 / 3.0 * PI * R.powi(3);
         assert_relative_eq!(c.volume, 1.5 * 3.0 * ball, max_relative = 1e-13);
@@ -162,7 +157,6 @@ mod tests {
         let across = 1.5 * ball * (3.0 * 0.4 * R * R + 2.0 * 0.2 * 0.2);
         assert_relative_eq!(c.inertia[1], across, max_relative = 1e-9);
         assert_relative_eq!(c.inertia[2], across, max_relative = 1e-9);
-        // The row lies along the axis of the least moment.
         assert_relative_eq!(c.extents()[0], 0.6, max_relative = 1e-12);
         assert_relative_eq!(c.sieve_size(), 0.2, max_relative = 1e-12);
         assert_relative_eq!(c.bounding_radius(), 0.3, max_relative = 1e-12);

@@ -1,9 +1,8 @@
-//! A rigid rectangular block, such as a sleeper.
+//! Rigid rectangular block, such as a sleeper.
 
 use crate::base::Vec3;
 
-/// Closest point of the block's surface to a point, in the block's frame: the point, the outward unit normal,
-/// and the signed distance, negative inside [m]. Inside, the nearest face is taken.
+/// Closest surface point, outward unit normal and signed distance, negative inside [m]; block frame.
 pub fn closest_point(half: &Vec3, p: &Vec3) -> (Vec3, Vec3, f64) {
     let inside = Vec3::from_fn(|d, _| p[d].clamp(-half[d], half[d]));
     let offset = p - inside;
@@ -27,7 +26,7 @@ pub fn inertia(half: &Vec3) -> Vec3 {
     Vec3::new(s.y + s.z, s.z + s.x, s.x + s.y) / 3.0
 }
 
-/// Corner `k` (0–7); bit d of k set means the positive side of axis d.
+/// Corner `k` (0–7): bit d selects the positive side of axis d.
 #[inline]
 pub fn corner(half: &Vec3, k: usize) -> Vec3 {
     Vec3::from_fn(|d, _| if k >> d & 1 == 1 { half[d] } else { -half[d] })

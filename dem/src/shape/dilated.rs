@@ -1,6 +1,5 @@
-//! A dilated polyhedron: a convex polyhedron, the core, rolled over by a sphere. Its faces lie one radius outside those of the
-//! core, its edges are parts of cylinders and its corners parts of spheres. So is a dilated disk, whose core is flat and round
-//! (`disk.rs`).
+//! Dilated polyhedron: a convex core dilated by a sphere (flat faces, cylindrical edges, spherical corners).
+//! The core of a dilated disk is a flat disk (`disk.rs`).
 
 pub(crate) mod circle;
 pub(crate) mod disk;
@@ -15,67 +14,67 @@ pub(crate) mod scan;
 use crate::base::Vec3;
 use nalgebra::{Matrix3, UnitQuaternion};
 
-/// Most corners of a core.
+/// Largest corner count of a core.
 pub const CORNERS: usize = 64;
 
-/// Why a dilated polyhedron cannot be made.
+/// Invalid dilated polyhedron.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DilatedError {
-    /// A coordinate or the radius is not a finite number.
+    /// Non-finite coordinate or radius.
     #[error("a coordinate or the radius is not a finite number")]
     NotFinite,
-    /// Too few or too many corners.
+    /// Invalid corner count.
     #[error("{0} corners; expected 4 to {CORNERS}")]
     Count(usize),
-    /// All corners lie in one plane, nearly.
+    /// Coplanar corners.
     #[error("the corners lie in one plane")]
     Flat,
-    /// Corners are so close to each other or to the planes of faces that these do not fit together.
+    /// Corners too close to each other or to face planes.
     #[error(
         "corners lie too close to each other, or to the planes of faces, for faces that fit together; leave some out"
     )]
     Sliver,
-    /// A corner is not one of the convex hull of all.
+    /// Corner not on the convex hull.
     #[error(
         "corner {0} is not a corner of the convex hull of all; the core must be convex, without points in faces or edges"
     )]
     NotConvex(usize),
-    /// The radius is zero or negative.
+    /// Radius not positive.
     #[error("radius {0} m; it must be positive")]
     Radius(f64),
 }
 
-/// A face of a core.
+/// Face of a core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
     /// Outward unit normal.
     pub normal: Vec3,
-    /// Distance of its plane from the origin along the normal [m].
+    /// Offset of the plane from the origin [m].
     pub offset: f64,
-    /// Its corners, counter-clockwise from outside.
+    /// Corners, counter-clockwise from outside.
     pub corners: Vec<u8>,
-    /// Outward unit normals of its sides in its plane, and where the sides lie along them [m]; the k-th begins at the k-th corner.
+    /// In-plane outward unit normals of the sides, from corner k, and their offsets [m].
     pub sides: Vec<(Vec3, f64)>,
 }
 
-/// An edge of a core.
+/// Edge of a core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// The corners that it joins.
+    /// Corner indices.
     pub ends: [u8; 2],
-    /// Unit vector from the first to the second.
+    /// Unit vector from first to second corner.
     pub direction: Vec3,
-    /// Where its ends lie along that [m].
+    /// Coordinates of the ends along it [m].
     pub levels: [f64; 2],
     /// Length [m].
     pub length: f64,
-    /// Its faces.
+    /// Adjacent faces.
     pub faces: [u8; 2],
-    /// Its side in each of these, bit for bit.
+    /// Its side in each face, bitwise identical.
     pub sides: [(Vec3, f64); 2],
 }
 
-/// A convex polyhedron as a contact needs it.
+/// Convex polyhedron with topology.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Core {
     /// Corners [m].
@@ -84,17 +83,16 @@ pub struct Core {
     pub faces: Vec<Face>,
     /// Edges.
     pub edges: Vec<Edge>,
-    /// Edges of each corner, and which of their ends it is.
+    /// Edges of each corner, and the end.
     pub spokes: Vec<Vec<(u8, u8)>>,
-    /// Edges and faces of each corner, a bit each.
+    /// Bit sets of edges and faces of each corner.
     pub at: Vec<([u64; 3], [u64; 2])>,
-    /// Radius of the smallest sphere about the origin that holds it [m].
+    /// Bounding radius about the origin [m].
     pub reach: f64,
-    /// Radius of a flat disk across the third axis, which has no corners, faces and edges of the above [m]; of no polyhedron.
+    /// Radius of a flat disk across axis 3, without corners, edges and faces [m].
     pub rim: Option<f64>,
 }
 
-/// Numbers of the bits of a set, ascending.
 fn bits<const N: usize>(words: [u64; N]) -> impl Iterator<Item = usize> {
     (0..N).flat_map(move |n| {
         let mut rest = words[n];
@@ -106,35 +104,35 @@ fn bits<const N: usize>(words: [u64; N]) -> impl Iterator<Item = usize> {
     })
 }
 
-/// A dilated polyhedron in its own frame: origin in the centre of mass, axes along the principal axes of inertia.
+/// Dilated polyhedron in the principal frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dilated {
-    /// The core.
+    /// Core.
     pub core: Core,
-    /// Radius of the sphere that is rolled over the core [m].
+    /// Dilation radius [m].
     pub radius: f64,
     /// Volume [m³].
     pub volume: f64,
-    /// Surface [m²].
+    /// Surface area [m²].
     pub area: f64,
-    /// Principal moments of inertia per unit density [m⁵], rising.
+    /// Principal moments of inertia per unit density [m⁵], ascending.
     pub inertia: [f64; 3],
 }
 
-/// Volume, surface, centre and inertia of a dilated polyhedron.
+/// Volume integrals of a dilated polyhedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DilatedMoments {
     /// Volume [m³].
     pub volume: f64,
-    /// Surface [m²].
+    /// Surface area [m²].
     pub area: f64,
     /// Centre of mass [m].
     pub centre: Vec3,
-    /// Tensor of inertia about the centre per unit density [m⁵].
+    /// Inertia tensor about the centre per unit density [m⁵].
     pub inertia: Matrix3<f64>,
 }
 
-/// The point farthest along a direction.
+/// Support point.
 #[inline]
 pub(crate) fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
     let mut best = (0, f64::NEG_INFINITY);
@@ -148,20 +146,20 @@ pub(crate) fn farthest<'a>(points: &'a [Vec3], n: &Vec3) -> &'a Vec3 {
 }
 
 impl Core {
-    /// The convex hull of its corners, all of which must be corners of it.
+    /// Convex hull; every corner must lie on it.
     ///
     /// # Errors
-    /// [`DilatedError`] for all but a convex body with volume.
+    /// [`DilatedError`] unless the body is convex with volume.
     pub fn new(corners: &[Vec3]) -> Result<Core, DilatedError> {
         hull::core(corners)
     }
 
-    /// A flat disk about the third axis, of a radius [m].
+    /// Flat disk about axis 3; radius [m].
     pub fn disk(radius: f64) -> Core {
         Core { rim: Some(radius), reach: radius, ..Core::default() }
     }
 
-    /// The same, turned and moved: every point x is taken to `turn` (x − `from`).
+    /// Maps every point x to `turn` (x − `from`).
     pub fn moved(&self, turn: &UnitQuaternion<f64>, from: &Vec3) -> Core {
         let face = |f: &Face| Face {
             normal: turn * f.normal,
@@ -173,17 +171,16 @@ impl Core {
         hull::joined(corners, self.faces.iter().map(face).collect())
     }
 
-    /// Corners of a set, a bit each.
+    /// Corners of a bit set.
     pub fn corners_of(&self, set: u64) -> impl Iterator<Item = usize> {
         bits([self.there(set)])
     }
 
-    /// Those of a set that there are.
     fn there(&self, set: u64) -> u64 {
         set & u64::MAX.checked_shr(64 - self.corners.len() as u32).unwrap_or(0)
     }
 
-    /// Edges and faces with a corner of a set, a bit each.
+    /// Bit sets of edges and faces with a corner in `set`.
     fn meeting(&self, set: u64) -> ([u64; 3], [u64; 2]) {
         let mut all = ([0; 3], [0; 2]);
         for corner in self.corners_of(set) {
@@ -194,17 +191,17 @@ impl Core {
         all
     }
 
-    /// Edges with a corner of a set, a bit each.
+    /// Edges with a corner in `set`.
     pub fn edges_of(&self, set: u64) -> impl Iterator<Item = usize> {
         bits(self.meeting(set).0)
     }
 
-    /// Faces with a corner of a set, a bit each.
+    /// Faces with a corner in `set`.
     pub fn faces_of(&self, set: u64) -> impl Iterator<Item = usize> {
         bits(self.meeting(set).1)
     }
 
-    /// Its point that is farthest along a direction [m].
+    /// Support point [m].
     #[inline]
     pub fn farthest(&self, n: &Vec3) -> Vec3 {
         match self.rim {
@@ -213,13 +210,13 @@ impl Core {
         }
     }
 
-    /// Half sides of the box about the origin, along the axes, that holds it [m].
+    /// Half lengths of the bounding box about the origin [m].
     pub fn half_extents(&self) -> Vec3 {
         let round = self.rim.map_or(Vec3::zeros(), |r| Vec3::new(r, r, 0.0));
         self.corners.iter().fold(round, |most, c| most.sup(&c.abs()))
     }
 
-    /// The longest circumference of a face [m].
+    /// Largest face circumference [m].
     pub fn circumference(&self) -> f64 {
         if let Some(radius) = self.rim {
             return std::f64::consts::TAU * radius;
@@ -231,7 +228,7 @@ impl Core {
         self.faces.iter().map(around).fold(0.0, f64::max)
     }
 
-    /// The longest edge, or arc of a rim, that is one contact [m].
+    /// Longest edge or rim arc of one contact [m].
     pub fn longest_edge(&self) -> f64 {
         match self.rim {
             Some(radius) => std::f64::consts::TAU * radius / disk::ARCS as f64,
@@ -241,11 +238,10 @@ impl Core {
 }
 
 impl Dilated {
-    /// The dilated convex hull of `corners` [m], given in any frame; also returns where its frame lies in the given one: its
-    /// centre [m] and the rotation from its axes to the given ones.
+    /// Dilates the convex hull of `corners` [m]; also returns centre [m] and rotation of its frame.
     ///
     /// # Errors
-    /// [`DilatedError`] for all but a convex core with volume and a positive radius [m].
+    /// [`DilatedError`] unless the core is convex with volume and the radius [m] positive.
     pub fn new(corners: &[Vec3], radius: f64) -> Result<(Dilated, Vec3, UnitQuaternion<f64>), DilatedError> {
         if !radius.is_finite() {
             return Err(DilatedError::NotFinite);
@@ -261,10 +257,10 @@ impl Dilated {
         Ok((Dilated { core, radius, volume: m.volume, area: m.area, inertia }, m.centre, turn))
     }
 
-    /// A disk of a radius [m], rolled over by a sphere of another: its diameter is twice the sum of both, its thickness twice the latter.
+    /// Dilated disk of diameter 2 (`radius` + `rounding`) and thickness 2 `rounding` [m].
     ///
     /// # Errors
-    /// [`DilatedError`] for radii that are not positive and finite.
+    /// [`DilatedError`] unless both radii are positive and finite.
     pub fn disk(radius: f64, rounding: f64) -> Result<Dilated, DilatedError> {
         if !(radius.is_finite() && rounding.is_finite()) {
             return Err(DilatedError::NotFinite);
@@ -282,17 +278,17 @@ impl Dilated {
         })
     }
 
-    /// Moments in the frame of the core as it is given.
+    /// Moments in the core's input frame.
     pub fn moments_of(core: &Core, radius: f64) -> DilatedMoments {
         moments::moments(core, radius)
     }
 
-    /// Half sides of the box about the origin, along the axes, that holds the body [m].
+    /// Half lengths of the bounding box about the origin [m].
     pub fn half_extents(&self) -> Vec3 {
         self.core.half_extents().add_scalar(self.radius)
     }
 
-    /// Extents of the body along its axes [m].
+    /// Bounding box along the body axes [m].
     pub fn extents(&self) -> [f64; 3] {
         if self.core.rim.is_some() {
             return (self.half_extents() * 2.0).into();
@@ -304,15 +300,15 @@ impl Dilated {
         })
     }
 
-    /// The surface with flat edges and corners in place of round ones, for pictures: points [m] and polygons, counter-clockwise from
-    /// outside. Every point lies on the surface of the body.
+    /// Chamfered surface for rendering: points [m] on the true surface, polygons counter-clockwise from
+    /// outside.
     pub fn outline(&self) -> (Vec<Vec3>, Vec<Vec<u32>>) {
         let core = &self.core;
         if let Some(big) = core.rim {
             return disk::outline(big, self.radius);
         }
         let (mut points, mut polygons) = (Vec::new(), Vec::new());
-        // Each corner once for each of its faces.
+        // One point per corner and face.
         let mut first = Vec::new();
         for face in &core.faces {
             first.push(points.len() as u32);
@@ -328,7 +324,7 @@ impl Dilated {
             polygons.push(vec![at(f, b), at(f, a), at(g, a), at(g, b)]);
         }
         for (corner, spokes) in core.spokes.iter().enumerate() {
-            // The faces around the corner in order: by angle about the mean of their normals.
+            // Sorted by angle about the mean normal.
             let faces: Vec<usize> =
                 (0..core.faces.len()).filter(|f| core.faces[*f].corners.contains(&(corner as u8))).collect();
             let axis = faces.iter().map(|f| core.faces[*f].normal).sum::<Vec3>().normalize();
@@ -345,14 +341,14 @@ impl Dilated {
         (points, polygons)
     }
 
-    /// Size of the square sieve that the body just passes [m]: the middle one of its extents.
+    /// Square sieve size [m]: intermediate extent.
     pub fn sieve_size(&self) -> f64 {
         let mut extents = self.extents();
         extents.sort_by(f64::total_cmp);
         extents[1]
     }
 
-    /// Radius of the smallest sphere about the centre that holds the body [m].
+    /// Bounding radius about the centre [m].
     pub fn bounding_radius(&self) -> f64 {
         self.core.reach + self.radius
     }

@@ -1,4 +1,4 @@
-//! Shapes of bodies.
+//! Body shapes.
 
 pub mod clump;
 pub mod cluster;
@@ -12,29 +12,28 @@ use crate::base::Vec3;
 use clump::Clump;
 use dilated::{Core, Dilated};
 
-/// Shape of a body, in its own frame.
+/// Body shape in the body frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A sphere.
+    /// Sphere.
     Sphere {
         /// Radius [m].
         radius: f64,
     },
-    /// A rigid union of spheres.
+    /// Rigid union of spheres.
     Clump(Clump),
-    /// A rigid block, such as a sleeper. It touches spheres (of clumps too), planes (with its corners) and other blocks,
-    /// but not triangles or external surfaces.
+    /// Rigid block, such as a sleeper. Contacts: spheres, planes (by corners) and blocks; no triangles or
+    /// external surfaces.
     Box {
-        /// Half of each side [m].
+        /// Half lengths [m].
         half: [f64; 3],
     },
-    /// A dilated polyhedron or disk. It touches spheres (of clumps too), planes, walls, boxes and its like.
+    /// Dilated polyhedron or disk. Contacts: spheres, planes, walls, boxes and polyhedra.
     Polyhedron(Box<Dilated>),
 }
 
 impl Shape {
-    /// Half sides of a box about the centre of mass, along the axes of the shape, that holds a shape which is not made of
-    /// spheres [m].
+    /// Half lengths of the bounding box about the centre of mass, for shapes not made of spheres [m].
     pub(crate) fn bounding_half(&self, scale: f64) -> Vec3 {
         match self {
             Shape::Polyhedron(it) => it.half_extents() * scale,
@@ -42,30 +41,29 @@ impl Shape {
         }
     }
 
-    /// Radius that a shape with faces is rounded with [m]; zero for others.
+    /// Rounding radius of a shape with faces [m]; else zero.
     pub(crate) fn rounding(&self, scale: f64) -> f64 {
         if let Shape::Polyhedron(it) = self { it.radius * scale } else { 0.0 }
     }
 
-    /// Whether it is a dilated polyhedron or disk.
     pub(crate) fn dilated(&self) -> bool {
         matches!(self, Shape::Polyhedron(_))
     }
 
-    /// Faces, edges and corners; none of shapes without faces.
+    /// Empty for shapes without faces.
     pub(crate) fn core(&self) -> Core {
         match self {
             Shape::Sphere { .. } | Shape::Clump(_) => Core::default(),
             Shape::Polyhedron(it) => it.core.clone(),
             Shape::Box { half } => {
                 let corners: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::from(*half), k)).collect();
-                // A box too flat for a core touches nothing that needs one.
+                // A degenerate box needs no core.
                 Core::new(&corners).unwrap_or_default()
             }
         }
     }
 
-    /// Number of corners of a shape with flat faces that touch planes by themselves.
+    /// Corners in direct contact with planes.
     pub(crate) fn corners(&self) -> u32 {
         match self {
             Shape::Sphere { .. } | Shape::Clump(_) | Shape::Polyhedron(_) => 0,
@@ -73,13 +71,13 @@ impl Shape {
         }
     }
 
-    /// A corner of a shape with flat faces, in its own frame, and the size of the body that laws take for a radius [m].
+    /// Corner in the body frame and body size used as contact radius [m].
     pub(crate) fn corner(&self, k: usize, scale: f64) -> (Vec3, f64) {
         let half = self.half_sides(scale);
         (cuboid::corner(&half, k), half.min())
     }
 
-    /// Half sides of a box, scaled [m]; zero for others.
+    /// Scaled half lengths of a box [m]; else zero.
     pub(crate) fn half_sides(&self, scale: f64) -> Vec3 {
         match self {
             Shape::Box { half } => Vec3::from(*half) * scale,

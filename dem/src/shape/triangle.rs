@@ -1,13 +1,13 @@
-//! Closest point of a triangle to a point (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5: the regions
-//! of the plane by signed products, so that no root and no tolerance is needed).
+//! Closest point of a triangle (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5: signed products,
+//! without root or tolerance).
 
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
 
-/// Where on the triangle a point lies. Edge k joins vertices k and k + 1 (mod 3).
+/// Feature of a triangle. Edge k joins vertices k and k + 1 (mod 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// The inside.
+    /// Interior.
     Face,
     /// Edge 0, 1 or 2.
     Edge(usize),
@@ -15,7 +15,7 @@ pub enum Region {
     Vertex(usize),
 }
 
-/// Signed products that tell the regions of the plane of a triangle apart.
+/// Signed products that classify regions.
 struct Products<R> {
     d: [R; 6],
     va: R,
@@ -33,7 +33,7 @@ impl<R: Real> Products<R> {
         Products { d, va: d3 * d6 - d5 * d4, vb: d5 * d2 - d1 * d6, vc: d1 * d4 - d3 * d2 }
     }
 
-    /// The region: 0 the inside, 1 to 3 vertices, 4 to 6 edges.
+    /// Region: 0 interior, 1–3 vertices, 4–6 edges.
     #[inline(always)]
     fn region(&self) -> R {
         let ([d1, d2, d3, d4, d5, d6], zero) = (self.d, R::zero());
@@ -47,13 +47,12 @@ impl<R: Real> Products<R> {
     }
 }
 
-/// The part of triangle `abc` that is closest to `p`: 0 the inside, 1 to 3 vertices, 4 to 6 edges.
+/// Closest feature of `abc`: 0 interior, 1–3 vertices, 4–6 edges.
 #[inline(always)]
 pub(crate) fn region<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, p: V3<R>) -> R {
     Products::new(a, b, c, p).region()
 }
 
-/// The same in words.
 #[inline(always)]
 fn named(region: f64) -> Region {
     match region as usize {
@@ -63,14 +62,14 @@ fn named(region: f64) -> Region {
     }
 }
 
-/// The part of triangle `abc` that is closest to `p`.
+/// Closest feature of `abc` to `p`.
 #[inline]
 pub(crate) fn region_of(a: &Vec3, b: &Vec3, c: &Vec3, p: &Vec3) -> Region {
     let of = V3::from_vec;
     named(region(of(a), of(b), of(c), of(p)))
 }
 
-/// The point of triangle `abc` closest to `p`, as weights of b and c, with its region.
+/// Closest point as weights of b and c, with its region.
 #[inline]
 pub fn closest_point(a: &Vec3, b: &Vec3, c: &Vec3, p: &Vec3) -> ([f64; 2], Region) {
     let of = V3::from_vec;
@@ -98,8 +97,7 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// The closest point is at least as near as every point of a dense sample, and no nearer than the sample's
-    /// spacing allows; the region agrees with the weights.
+    /// The closest point matches a dense sample within its spacing; region and weights agree.
     #[test]
     fn random_triangles_against_sampling() {
         let mut rng = Pcg64Mcg::new(11);

@@ -1,22 +1,22 @@
-//! Bounding-volume hierarchy over axis-aligned boxes: built by median splits, refitted when the boxes move.
+//! Bounding-volume hierarchy of boxes: median splits, refit for moving boxes.
 
-/// Boxes per leaf at most.
+/// Boxes per leaf.
 const LEAF: usize = 4;
 
-/// An axis-aligned box: lower and upper corner [m].
+/// Axis-aligned box: lower and upper corner [m].
 pub type Aabb = ([f64; 3], [f64; 3]);
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
     lo: [f64; 3],
     hi: [f64; 3],
-    /// Leaf: first item. Branch: the second child (the first child follows its parent).
+    /// First item of a leaf, or second child of a branch (the first follows its parent).
     start: u32,
-    /// Items of a leaf; 0 for a branch.
+    /// 0 for a branch.
     count: u32,
 }
 
-/// The hierarchy. It keeps no reference to the boxes.
+/// Hierarchy without references to the boxes.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     nodes: Vec<Node>,
@@ -24,7 +24,7 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree of `boxes` (lower corner, upper corner).
+    /// Builds the tree.
     pub fn new(boxes: &[Aabb]) -> Bvh {
         let mut tree = Bvh { nodes: Vec::new(), items: (0..boxes.len() as u32).collect() };
         if !boxes.is_empty() {
@@ -65,7 +65,7 @@ impl Bvh {
         self.nodes[node].count = 0;
     }
 
-    /// Fits the tree to moved boxes: as many, in the same order, as it was built from.
+    /// Refits the tree to moved boxes of the same order.
     pub fn refit(&mut self, boxes: &[Aabb]) {
         for k in (0..self.nodes.len()).rev() {
             let Node { start, count, .. } = self.nodes[k];
@@ -91,11 +91,10 @@ impl Bvh {
         }
     }
 
-    /// Appends the boxes' indices that may meet `[lo, hi]` to `out`, ascending: every box of a leaf whose bounds
-    /// meet it, which includes all that truly do.
+    /// Appends boxes that may overlap `[lo, hi]`, ascending: all items of overlapping leaves.
     pub fn query(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>) {
         let first = out.len();
-        // A median tree over fewer than 2³² items is at most 32 deep.
+        // A median tree of fewer than 2³² items is at most 32 deep.
         let mut stack = [0_u32; 40];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -116,8 +115,8 @@ impl Bvh {
         out[first..].sort_unstable();
     }
 
-    /// Visits the boxes' indices that may hold what is nearest to `p`. `visit` looks at one item and returns the
-    /// square of the least distance found so far [m²]; boxes further away than that are left out.
+    /// Visits boxes that may contain the item nearest to `p`; `visit` returns the least squared distance so
+    /// far [m²].
     pub fn nearest(&self, p: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
         let apart = |k: usize| -> f64 {
             let node = &self.nodes[k];
@@ -136,7 +135,7 @@ impl Bvh {
             if node.count == 0 {
                 let (one, two) = (k + 1, node.start);
                 let (to_one, to_two) = (apart(one as usize), apart(two as usize));
-                // The nearer child is looked at first.
+                // Nearer child first.
                 let pair = if to_one <= to_two {
                     [(two, to_two), (one, to_one)]
                 } else {
@@ -152,7 +151,7 @@ impl Bvh {
         }
     }
 
-    /// Bounds of everything; `None` for an empty tree.
+    /// Total bounds; `None` if empty.
     pub fn bounds(&self) -> Option<Aabb> {
         self.nodes.first().map(|n| (n.lo, n.hi))
     }

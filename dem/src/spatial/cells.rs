@@ -1,13 +1,12 @@
-//! Cell grids by counting sort, one per class of size.
+//! Cell grids by counting sort, one per size class.
 //!
-//! Spheres are sorted into classes that each span a factor of two in radius, and each class has cells as wide as
-//! its own largest sphere needs; so small spheres between large ones do not crowd into large cells. Coordinates
-//! outside the grid fall into its outermost cells: a few bodies far away must not inflate it, and clamping keeps
-//! neighbours in neighbouring cells.
+//! Each class spans a factor of two in radius with cells fitted to its largest sphere, so small spheres do
+//! not crowd large cells. Coordinates outside are clamped: far bodies do not inflate the grid, and neighbours
+//! stay in neighbouring cells.
 
 use crate::lanes::record::Record;
 
-/// Most size classes; all smaller spheres share the last.
+/// All smaller spheres share the last class.
 const CLASSES: usize = 8;
 
 #[derive(Clone, Debug, Default)]
@@ -15,13 +14,12 @@ struct Grid {
     lo: [f64; 3],
     inverse: f64,
     dims: [usize; 3],
-    /// Largest radius in the class [m].
+    /// Largest radius [m].
     radius: f64,
     start: Vec<u32>,
     items: Vec<u32>,
 }
 
-/// Spheres in cells.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cells {
     grids: Vec<Grid>,
@@ -44,7 +42,7 @@ impl Grid {
 }
 
 impl Cells {
-    /// Sorts `points` (centre and radius) for searches that reach `skin` beyond touch.
+    /// Sorts `points` (centre, radius); `skin`: search skin [m].
     pub fn build(&mut self, points: &[Record], radii: (f64, f64), skin: f64) {
         let wide = radii.1 > 3.0 * radii.0;
         let class_of = |r: f64| if wide { (libm::log2(radii.1 / r) as usize).min(CLASSES - 1) } else { 0 };
@@ -78,13 +76,13 @@ impl Cells {
                 grid.items[*slot as usize] = k as u32;
                 *slot += 1;
             }
-            // Filling advanced every start to its end: shift back.
+            // Filling advanced every start to its end.
             grid.start.rotate_right(1);
             grid.start[0] = 0;
         }
     }
 
-    /// Calls `f` with every point whose cell lies within reach of `p`: all those within `skin` of touch and others.
+    /// Calls `f` with all points within `skin` of contact, and others in their cells.
     #[inline]
     pub fn near(&self, p: &Record, skin: f64, mut f: impl FnMut(u32)) {
         for grid in &self.grids {
@@ -106,8 +104,7 @@ impl Cells {
 }
 
 impl Grid {
-    /// Places the grid over the points, or over the middle 98 % of them in each direction where a few far ones
-    /// would take too many cells.
+    /// Covers the points, or the middle 98 % per direction if outliers need too many cells.
     fn lay_out<'a>(&mut self, points: impl Iterator<Item = &'a Record> + Clone, count: usize, cell: f64) {
         let most = 8 * count + 512;
         let bounds = |d: usize| {
@@ -145,7 +142,7 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// Every pair within the skin is found, for like and very unlike sizes, with a few spheres far away.
+    /// All pairs are found, for similar and very different sizes, with outliers.
     #[test]
     fn finds_every_pair() {
         let mut rng = Pcg64Mcg::new(3);

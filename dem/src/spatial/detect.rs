@@ -1,4 +1,4 @@
-//! Geometry of a touch, per pair of shapes. Nothing here knows stiffness or storage.
+//! Contact geometry per shape pair.
 //!
 //! Theory manual: equation (1.1) of `docs/theory/contacts.md`.
 
@@ -8,7 +8,6 @@ use crate::law::ContactGeometry;
 use crate::shape::cuboid;
 use nalgebra::UnitQuaternion;
 
-/// Two spheres, as formulas need them: centres and radii.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spheres<R> {
     xa: V3<R>,
@@ -19,7 +18,7 @@ pub(crate) struct Spheres<R> {
     reach: R,
 }
 
-/// Where two spheres touch: see [`ContactGeometry`].
+/// See [`ContactGeometry`].
 pub(crate) struct Touch<R> {
     pub point: V3<R>,
     pub normal: V3<R>,
@@ -34,18 +33,17 @@ impl<R: Real> Spheres<R> {
         Spheres { xa, ra, rb, between, distance2: between.norm2(), reach: ra + rb }
     }
 
-    /// Whether they touch.
     #[inline(always)]
     pub fn on(&self) -> R::Mask {
         self.distance2.lt(self.reach * self.reach)
     }
 
-    /// Where they do. The contact point halves the overlap. Coincident centres give a normal along z.
+    /// The contact point halves the overlap. Coincident centres give a normal along z.
     #[inline(always)]
     pub fn touch(&self) -> Touch<R> {
         let &Spheres { xa, ra, rb, between, distance2, reach } = self;
         let (distance, zero, one) = (distance2.sqrt(), R::zero(), R::splat(1.0));
-        // distance/distance² rather than 1/distance: the division need not wait for the root.
+        // distance/distance² instead of 1/distance: the division need not wait for the root.
         let mut normal = between * (distance * (one / distance2));
         let apart = zero.lt(distance);
         if !R::all(apart) {
@@ -57,7 +55,7 @@ impl<R: Real> Spheres<R> {
     }
 }
 
-/// Two spheres that touch.
+/// Sphere–sphere contact.
 #[inline(always)]
 pub fn sphere_sphere(xa: &Vec3, ra: f64, xb: &Vec3, rb: f64) -> Option<ContactGeometry> {
     let both = Spheres::new(V3::from_vec(xa), ra, V3::from_vec(xb), rb);
@@ -67,7 +65,7 @@ pub fn sphere_sphere(xa: &Vec3, ra: f64, xb: &Vec3, rb: f64) -> Option<ContactGe
     })
 }
 
-/// A sphere (or, with radius 0, a point) and a plane through `origin` with unit normal `normal`.
+/// Sphere (or point of radius 0) and plane through `origin`, unit `normal`.
 #[inline(always)]
 pub fn sphere_plane(x: &Vec3, r: f64, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
     let height = (x - origin).dot(normal);
@@ -77,7 +75,7 @@ pub fn sphere_plane(x: &Vec3, r: f64, origin: &Vec3, normal: &Vec3) -> Option<Co
     Some(ContactGeometry { point: x - normal * height, normal: *normal, overlap: r - height, radius: r })
 }
 
-/// A sphere and a box at `centre`, by the closest point of the box's surface; inside, by the nearest face.
+/// Sphere and box; inside, the nearest face.
 #[inline(always)]
 pub fn sphere_box(
     x: &Vec3,

@@ -1,9 +1,8 @@
-//! Distance of points from a closed surface, with sign.
+//! Signed distance from a closed surface.
 //!
-//! The closest point is found in a hierarchy of boxes. Which side a point is on follows from the angle-weighted normal
-//! of the face, edge or vertex that is closest (J. A. Bærentzen and H. Aanæs, IEEE Trans. Visualization and Computer
-//! Graphics 11, 2005: exact for every closed manifold). Where the point stands nearly at a right angle to that normal,
-//! as on a very flat triangle, the winding number decides.
+//! The side follows from the angle-weighted normal of the closest face, edge or vertex (J. A. Bærentzen and
+//! H. Aanæs, IEEE Trans. Visualization and Computer Graphics 11, 2005: exact for closed manifolds). Near a
+//! right angle to that normal the winding number decides.
 
 use super::bvh::{Aabb, Bvh};
 use crate::shape::polyhedron::{Polyhedron, Surface};
@@ -11,21 +10,21 @@ use crate::shape::triangle::{Region, closest_point};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// Sine of the angle to the surface below which the normal's word is not taken.
+/// Sine of the angle to the surface below which the normal is unreliable.
 const DOUBTFUL: f64 = 1e-4;
 
-/// The point of a surface closest to another.
+/// Closest surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Where it is [m].
+    /// Position [m].
     pub point: [f64; 3],
-    /// Its triangle, the lowest index of equally close ones.
+    /// Triangle; lowest index of equals.
     pub triangle: usize,
-    /// How far away it is [m].
+    /// Distance [m].
     pub distance: f64,
 }
 
-/// A surface prepared for questions of distance, closed or not.
+/// Search tree of an open or closed surface.
 #[derive(Clone, Debug)]
 pub struct Nearest {
     surface: Surface,
@@ -33,7 +32,7 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// Prepares a surface with at least one triangle.
+    /// Builds the tree of a non-empty surface.
     pub fn new(surface: Surface) -> Nearest {
         let boxes: Vec<Aabb> = (0..surface.triangles.len())
             .map(|t| {
@@ -44,7 +43,7 @@ impl Nearest {
         Nearest { tree: Bvh::new(&boxes), surface }
     }
 
-    /// The point of the surface closest to `p` [m].
+    /// Surface point closest to `p` [m].
     pub fn closest(&self, p: [f64; 3]) -> Closest {
         self.search(p).0
     }
@@ -67,7 +66,7 @@ impl Nearest {
     }
 }
 
-/// A closed surface prepared for questions of distance.
+/// Signed distance from a closed surface.
 #[derive(Clone, Debug)]
 pub struct SurfaceDistance {
     nearest: Nearest,
@@ -77,7 +76,7 @@ pub struct SurfaceDistance {
 }
 
 impl SurfaceDistance {
-    /// Prepares the surface of a body.
+    /// Builds the search tree.
     pub fn new(body: &Polyhedron) -> SurfaceDistance {
         let surface = body.surface();
         let mut face_normals = Vec::with_capacity(surface.triangles.len());
@@ -98,27 +97,27 @@ impl SurfaceDistance {
         SurfaceDistance { nearest, face_normals, edge_normals, vertex_normals }
     }
 
-    /// The surface.
+    /// Surface.
     pub fn surface(&self) -> &Surface {
         &self.nearest.surface
     }
 
-    /// The point of the surface closest to `p` [m].
+    /// Surface point closest to `p` [m].
     pub fn closest(&self, p: [f64; 3]) -> Closest {
         self.nearest.closest(p)
     }
 
-    /// Distance of `p` [m] from the surface [m], positive inside the body.
+    /// Depth of `p` [m], positive inside [m].
     pub fn depth(&self, p: [f64; 3]) -> f64 {
         self.depth_and_closest(p).0
     }
 
-    /// Whether `p` [m] lies inside the body.
+    /// Returns true if `p` [m] is inside.
     pub fn contains(&self, p: [f64; 3]) -> bool {
         self.depth(p) > 0.0
     }
 
-    /// [`Self::depth`] and the closest point that it belongs to.
+    /// [`Self::depth`] and its closest point.
     pub fn depth_and_closest(&self, p: [f64; 3]) -> (f64, Closest) {
         let (closest, region) = self.nearest.search(p);
         let corners = self.surface().triangles[closest.triangle];

@@ -1,13 +1,12 @@
-//! Triangles of a surface as bodies with faces and edges press on them.
+//! Surface triangles in contact with bodies with faces.
 //!
-//! A point presses on the surface by what it does to each triangle, less what it does to every edge that triangles share, plus what it
-//! does to the corners inside: distances to the closed triangle, edge and corner. On convex sets that unite to a convex one such sums are exact
-//! (distances are a valuation: Hadwiger, Vorlesungen über Inhalt, Oberfläche und Isoperimetrie, 1957; Groemer 1978), so that flat triangles
-//! press as the polygon that they make up, ridges once, and both sides of a valley. Each term is smooth wherever the point goes, and so
-//! is the sum: a seam is not felt.
+//! A point's contact is the sum over triangles, minus shared edges, plus interior corners. For convex unions
+//! this is exact, as distances are a valuation (Hadwiger, Vorlesungen über Inhalt, Oberfläche und
+//! Isoperimetrie, 1957; Groemer 1978). Coplanar triangles thus act as their polygon, ridges count once, and
+//! the sum is smooth across seams.
 //!
-//! What presses into the bodies in return are edges where the surface bends (in full from half a degree on), its borders, and corners around
-//! which an angle is missing: not what lies flat.
+//! Bodies are indented by bent edges (fully from half a degree), boundaries, and corners with an angle
+//! defect.
 //!
 //! Theory manual: equation (2.9) of `docs/theory/shapes.md`.
 
@@ -15,36 +14,33 @@ use super::bvh::Aabb;
 use crate::base::Vec3;
 use std::collections::HashMap;
 
-/// Sine of the bend from which a ridge presses in full; less by its share. Half a degree.
+/// Sine of the bend with full indentation (half a degree); proportional below.
 const FULL: f64 = 0.01;
 
-/// Missing angle around a corner from which it presses in full [rad].
+/// Angle defect with full indentation [rad].
 const PEAK: f64 = 0.01;
 
 /// Height over length that counts as rounding.
 const LEVEL: f64 = 1e-9;
 
-/// An edge or a corner of a facet that it answers for.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Share {
-    /// How often what it does is added.
+    /// Multiplicity.
     pub count: f64,
-    /// Share of it that presses into bodies.
+    /// Indentation fraction.
     pub press: f64,
 }
 
-/// An edge of a facet, from its k-th corner to the next.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacetEdge {
-    /// Unit vector along it, and its length [m].
+    /// Unit vector, length [m].
     pub direction: Vec3,
     pub length: f64,
-    /// Outward unit normal in the plane of the facet.
+    /// Outward unit normal in the facet plane.
     pub side: Vec3,
     pub share: Share,
 }
 
-/// A triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct Facet {
     pub corners: [Vec3; 3],
@@ -66,27 +62,26 @@ impl Facet {
         Facet { corners, normal, edges, tips: [Share::default(); 3] }
     }
 
-    /// The same triangle, with the same shares, elsewhere.
+    /// The same facet at other corners.
     pub fn at(&self, corners: [Vec3; 3]) -> Facet {
         let mut moved = Facet::new(corners);
         (0..3).for_each(|k| moved.edges[k].share = self.edges[k].share);
         Facet { tips: self.tips, ..moved }
     }
 
-    /// Angle at a corner [rad].
+    /// Interior angle [rad].
     fn angle(&self, k: usize) -> f64 {
         let (out, back) = (self.edges[k].direction, -self.edges[(k + 2) % 3].direction);
         libm::atan2(out.cross(&back).norm(), out.dot(&back))
     }
 
-    /// Bounds.
     pub fn bounds(&self) -> Aabb {
         let [a, b, c] = &self.corners;
         (a.inf(b).inf(c).into(), a.sup(b).sup(c).into())
     }
 }
 
-/// Facets with what each answers for: the first that has an edge or a corner does. `same` has for each vertex the lowest at the same place.
+/// Assigns each edge and corner to its first facet; `same`: lowest coincident vertex of each vertex.
 pub(crate) fn facets(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32]) -> Vec<Facet> {
     let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
     let mut facets: Vec<Facet> = welded.iter().map(|t| Facet::new(t.map(|v| vertices[v as usize]))).collect();
@@ -122,31 +117,29 @@ pub(crate) fn facets(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32]) ->
     facets
 }
 
-/// What meets in a corner.
 #[derive(Default)]
 struct Around {
-    /// Triangles at the edges that end here, less one each.
+    /// Triangles at edges ending here, minus one each.
     seams: f64,
-    /// Ways along borders.
+    /// Directions of boundaries.
     borders: Vec<Vec3>,
 }
 
 impl Around {
-    /// Share of the corner that presses, of an angle that is missing around it [rad].
+    /// Indentation fraction for an angle defect [rad].
     fn press(&self, missing: f64) -> f64 {
         match self.borders[..] {
             [] => (missing / PEAK).clamp(0.0, 1.0),
-            // A needle's tip.
+            // Needle tip.
             [a, b] if a.dot(&b) > 0.0 => 1.0,
-            // A border that goes straight on, with nothing else to press.
+            // Straight boundary.
             [a, b] => (a.cross(&b).norm() / FULL).clamp(0.0, 1.0),
             _ => 1.0,
         }
     }
 }
 
-/// Share of an edge that presses: one for borders, by the bend for others, whichever side it is seen from: from the hollow one it is out of
-/// reach of bodies.
+/// 1 for boundaries, else by bend. The sign is irrelevant: concave edges are out of contact.
 fn ridge(facets: &[Facet], of: &[(usize, usize)], ends: [Vec3; 2]) -> f64 {
     let &[(s, i), (t, j)] = of else { return 1.0 };
     let (first, second) = (&facets[s], &facets[t]);

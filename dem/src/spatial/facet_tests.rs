@@ -10,8 +10,7 @@ fn same(vertices: &[Vec3]) -> Vec<u32> {
     (0..vertices.len() as u32).collect()
 }
 
-/// On a cube twelve edges and eight corners press, diagonals do not; what is shared is counted so that faces less edges plus corners are two, the
-/// number of a sphere.
+/// On a cube edges and corners indent, diagonals do not; counts satisfy Euler's formula (2).
 #[test]
 fn a_cube() {
     let (vertices, triangles) = cube();
@@ -25,8 +24,8 @@ fn a_cube() {
     assert_eq!((all.len() as f64 + shared + corners, shared, corners), (2.0, -18.0, 8.0));
 }
 
-/// Of an open square of two triangles the border presses with its corners, the diagonal does not; a fold of a tenth of a degree presses by its
-/// share, a fin that three triangles share in full.
+/// Open square: boundary indents, diagonal does not; a 0.1° fold indents in proportion, a three-triangle fin
+/// fully.
 #[test]
 fn borders_folds_and_fins() {
     let square = |height: f64| {
@@ -54,7 +53,6 @@ fn borders_folds_and_fins() {
     assert_eq!(fin, vec![1.0; 7]);
 }
 
-/// A border that goes straight on has no corner there.
 #[test]
 fn a_straight_border_has_no_corner() {
     let vertices = [Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0, Vec3::y()];

@@ -1,4 +1,4 @@
-//! Geometry of search and detection: trees, cells, periodic borders, surfaces of patches, and how two shapes touch.
+//! Search and contact geometry.
 
 pub mod bvh;
 pub(crate) mod cells;

@@ -1,4 +1,4 @@
-//! Walls as bodies with faces and edges see them: triangles and round patches, in frames that move as rigid wholes.
+//! Wall patches (triangles, round patches) on rigid frames, for bodies with faces.
 
 use super::bvh::{Aabb, Bvh};
 use super::facet::Facet;
@@ -7,7 +7,6 @@ use crate::base::Vec3;
 use crate::base::error::Partner;
 use nalgebra::UnitQuaternion;
 
-/// What a patch is.
 #[derive(Clone, Debug)]
 pub(crate) enum Form {
     Facet(Box<Facet>),
@@ -15,7 +14,6 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Bounds in the frame of its wall.
     pub fn bounds(&self) -> Aabb {
         match self {
             Form::Facet(it) => it.bounds(),
@@ -24,19 +22,17 @@ impl Form {
     }
 }
 
-/// A patch of a wall.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     pub wall: u32,
     pub form: Form,
-    /// The patch as a contact names it.
+    /// Contact name.
     pub partner: Partner,
-    /// A point amid it, in the frame of its wall [m].
+    /// Central point [m].
     pub middle: Vec3,
 }
 
 impl Patch {
-    /// A patch of a wall.
     pub fn new(wall: u32, form: Form, partner: Partner) -> Patch {
         let (low, high) = form.bounds();
         let middle = (Vec3::from(low) + Vec3::from(high)) * 0.5;
@@ -44,44 +40,42 @@ impl Patch {
     }
 }
 
-/// A wall where it is.
+/// Placed wall.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallNow {
-    /// Where the origin of its frame is [m], and how that is turned.
+    /// Frame origin [m] and rotation.
     pub origin: Vec3,
     pub orientation: UnitQuaternion<f64>,
-    /// The point that its moments refer to [m], its velocity [m/s], and its angular velocity [rad/s].
+    /// Moment centre [m], velocity [m/s], angular velocity [rad/s].
     pub centre: Vec3,
     pub velocity: Vec3,
     pub spin: Vec3,
     pub material: u32,
-    /// One over its mass [1/kg]; zero where its motion is prescribed.
+    /// Inverse mass [1/kg]; zero if prescribed.
     pub inverse_mass: f64,
-    /// Whether bodies pass through.
+    /// Bodies pass through.
     pub open: bool,
-    /// Whether forces set its speed.
+    /// Servo-controlled.
     pub driven: bool,
-    /// Whether it is ground that bodies scar.
+    /// Scarred ground.
     pub scarred: bool,
 }
 
-/// Trees of the patches of each wall in its own frame. Walls move as rigid wholes: the trees never change.
+/// Patch trees in wall frames; rigid motion never changes them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trees {
     each: Vec<Tree>,
 }
 
-/// Patches of one wall.
 #[derive(Clone, Debug)]
 struct Tree {
     wall: u32,
-    /// Its first patch.
+    /// First patch.
     first: u32,
     boxes: Bvh,
 }
 
 impl Trees {
-    /// Trees of patches that lie wall by wall.
     pub fn new(patches: &[Patch]) -> Trees {
         let mut first = 0;
         let tree = |own: &[Patch]| {
@@ -93,7 +87,7 @@ impl Trees {
         Trees { each: patches.chunk_by(|a, b| a.wall == b.wall).map(tree).collect() }
     }
 
-    /// Appends the patches that may come within bounds in the world to `out`; ascending.
+    /// Appends patches that may overlap world bounds; ascending.
     pub fn query(&self, walls: &[WallNow], (low, high): Aabb, out: &mut Vec<u32>) {
         let (low, high) = (Vec3::from(low), Vec3::from(high));
         let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
@@ -108,7 +102,6 @@ impl Trees {
     }
 }
 
-/// All patches, wall by wall, and the walls where they are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walls<'a> {
     pub patches: &'a [Patch],

@@ -2,10 +2,8 @@ use super::*;
 use crate::base::random::Random;
 use crate::spatial::facet::facets;
 
-/// Walls of triangles that are moved and turned: what the trees find within bounds in the world is all that is there, each under its own
-/// number, and little else.
 #[test]
-fn trees_of_walls_find_all_patches_where_the_walls_are() {
+fn trees_find_patches_of_moved_walls() {
     let mut random = Random::new(5, 0);
     let mut vector = |scale: f64| Vec3::from_fn(|_, _| scale * (2.0 * random.uniform() - 1.0));
     let (mut patches, mut walls) = (Vec::new(), Vec::new());
@@ -43,7 +41,7 @@ fn trees_of_walls_find_all_patches_where_the_walls_are() {
         for (k, patch) in patches.iter().enumerate() {
             let wall = &walls[patch.wall as usize];
             let Form::Facet(facet) = &patch.form else { unreachable!() };
-            // A corner in the box is in reach for certain.
+            // A corner in the box is certainly found.
             let within = |p: &Vec3| (wall.origin + wall.orientation * p - at).amax() <= 0.2;
             if facet.corners.iter().any(within) {
                 there += 1;

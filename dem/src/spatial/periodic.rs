@@ -1,34 +1,29 @@
-//! Periodic axes: what leaves a box on one side is back on the other.
+//! Periodic boundaries.
 //!
-//! Positions run on unbounded between two sortings (`order.rs`), which put every centre back into the box. A pair that
-//! meets across a border is an image pair: sphere i touches sphere j where j stands moved by whole box lengths. Image
-//! pairs have a list of their own; all others, far more, are those of a scene without borders. Which image j shows is
-//! found from positions put back into the box, so it does not matter how far bodies have run on.
+//! Positions are unwrapped between two sortings (`order.rs`). Contacts across a boundary are image pairs in a
+//! separate list.
 //!
-//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2: periodic boundary conditions and the
-//! nearest image.
-//! Bodies with faces have no image pairs: of their partners the nearest image counts, so that none may be longer than a third of the box.
-//! Limits: planes along the periodic axes; no bonds; walls of patches beside bodies with faces only.
+//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2 (minimum image convention).
+//!
+//! Limits: bodies with faces at most a third of the box (nearest image); planes along periodic axes; no
+//! bonds; patch walls only with bodies with faces.
 
 use super::cells::Cells;
 use crate::base::Vec3;
 use crate::lanes::record::{Record, xyz};
 
-/// Whole box lengths along x, y and z.
 pub(crate) type Turns = [i32; 3];
 
 pub(crate) const NONE: Turns = [0; 3];
 
-/// The box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Periodic {
     pub low: Vec3,
-    /// Zero along axes without borders.
+    /// Zero along other axes.
     pub length: Vec3,
 }
 
 impl Periodic {
-    /// `None` without periodic axes.
     pub fn new(borders: &[Option<[f64; 2]>; 3]) -> Option<Periodic> {
         if borders.iter().all(Option::is_none) {
             return None;
@@ -38,20 +33,20 @@ impl Periodic {
         Some(Periodic { low, length: Vec3::from_fn(|d, _| side(d)[1] - side(d)[0]) })
     }
 
-    /// How many box lengths a point lies from the box.
+    /// Box lengths from a point to the box.
     pub fn turns(&self, x: &Vec3) -> Turns {
         std::array::from_fn(|d| {
             if self.length[d] > 0.0 { ((x[d] - self.low[d]) / self.length[d]).floor() as i32 } else { 0 }
         })
     }
 
-    /// The way of so many box lengths [m].
+    /// Offset [m].
     #[inline(always)]
     pub fn way(&self, turns: &Turns) -> Vec3 {
         Vec3::from_fn(|d, _| f64::from(turns[d]) * self.length[d])
     }
 
-    /// The way that takes the image of a point which is nearest to another one from the point itself [m].
+    /// Offset of the image of `of` nearest to `to` [m].
     pub fn nearest(&self, to: &Vec3, of: &Vec3) -> Vec3 {
         Vec3::from_fn(|d, _| {
             if self.length[d] > 0.0 {
@@ -62,17 +57,16 @@ impl Periodic {
         })
     }
 
-    /// Ways to the neighbouring images of the box, and none [m].
+    /// Offsets of adjacent images, with zero [m].
     pub fn around(&self) -> Vec<Vec3> {
         let turns = |d: usize| if self.length[d] > 0.0 { -1..=1 } else { 0..=0 };
         let ways = turns(0).flat_map(|x| turns(1).flat_map(move |y| turns(2).map(move |z| [x, y, z])));
         ways.map(|t| self.way(&t)).collect()
     }
 
-    /// A point put back into the box.
     pub fn wrap(&self, x: &Vec3) -> Vec3 {
         let x = x - self.way(&self.turns(x));
-        // Just below the lower border, the rounded sum is the upper one.
+        // Just below the lower boundary, the sum rounds to the upper one.
         Vec3::from_fn(|d, _| {
             let past = self.length[d] > 0.0 && x[d] >= self.low[d] + self.length[d];
             if past { self.low[d] } else { x[d] }
@@ -80,7 +74,7 @@ impl Periodic {
     }
 }
 
-/// Spheres put back into the box, for the search.
+/// Wrapped spheres.
 pub(crate) struct Space {
     periodic: Periodic,
     pub points: Vec<Record>,
@@ -99,12 +93,12 @@ impl Space {
         Space { periodic, points, turns, largest }
     }
 
-    /// Calls `f` with every later sphere of which an image lies within `skin` of touching sphere `i`, and with the
-    /// box lengths that the image is away from the sphere itself.
+    /// Calls `f` with later spheres with an image within `skin` of contact with `i`, and the image's box
+    /// lengths.
     pub fn near(&self, cells: &Cells, i: u32, skin: f64, mut f: impl FnMut(u32, Turns)) {
         let (p, own) = (&self.points[i as usize], &self.turns[i as usize]);
         let reach = p[3] + self.largest + skin;
-        // Images that may be within reach along each axis.
+        // Possible images along each axis.
         let [x, y, z] = std::array::from_fn(|d| {
             let (from, length) = (p[d] - self.periodic.low[d], self.periodic.length[d]);
             let borders = length > 0.0;

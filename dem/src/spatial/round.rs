@@ -1,35 +1,30 @@
-//! Closest points of round patches: frusta of cones (cylinders and rings among them), discs, spheres; and of planes.
+//! Closest points of round patches (truncated cones, rings, discs, spheres) and planes.
 //!
-//! A frustum is two patches. Seen from a point at distance ρ from the axis, the *near* patch is the segment of the
-//! generator on the point's own side, the *far* patch that on the opposite side; the closest point of each is that of a
-//! segment in the half plane (ρ, z). The distance to the whole surface has one minimum only, the near one, as long as
-//! the sphere is smaller than the ring it sits in. A larger one, such as a ball resting in a cone, touches the ring all
-//! around; near and far contact together carry it with a potential that is smooth across the axis, where a single
-//! contact would flip from side to side. The far patch is not seen from outside.
+//! A frustum is two patches in the half plane (ρ, z): near generator, on the point's side of the axis, and
+//! far generator. A ball larger than its ring touches all around: both contacts together have a smooth
+//! potential across the axis, a single one would flip sides. The far patch is hidden from outside.
 
 use super::bvh::Aabb;
 use crate::base::Vec3;
 
-/// Half the size of the world, for the bounds of an infinite plane [m].
+/// Bounds of an infinite plane [m].
 const WORLD: f64 = 1e30;
-/// Distance from an axis, over the radius, below which the direction from it has no meaning.
+/// Relative distance from the axis without a defined direction.
 const ON_AXIS: f64 = 1e-13;
 
-/// What part of a round patch a point lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     Inside,
     /// First or second rim.
     Rim(usize),
     Apex,
-    /// The wall itself is in between.
+    /// Hidden by the wall.
     Hidden,
 }
 
-/// Closest point, outward unit normal there, and the part it lies on.
 pub(crate) type Closest = (Vec3, Vec3, Part);
 
-/// One round patch in the frame of its wall.
+/// In the wall frame.
 #[derive(Clone, Debug)]
 pub(crate) enum Round {
     Plane { point: Vec3, normal: Vec3 },
@@ -39,7 +34,7 @@ pub(crate) enum Round {
 }
 
 impl Round {
-    /// The closest point to `x`; its part is [`Part::Hidden`] where it cannot be seen from there.
+    /// Closest point, or [`Part::Hidden`].
     #[inline]
     pub fn closest(&self, x: &Vec3) -> Closest {
         match self {
@@ -68,7 +63,6 @@ impl Round {
         }
     }
 
-    /// Bounds.
     pub fn bounds(&self) -> Aabb {
         let ring = |c: &Vec3, k: &Vec3, r: f64| {
             let half = k.map(|k| r * (1.0 - k * k).max(0.0).sqrt());
@@ -86,12 +80,12 @@ impl Round {
         (lo.into(), hi.into())
     }
 
-    /// Whether grains are on the outward side only.
+    /// Grains are on the outward side only.
     pub fn one_sided(&self) -> bool {
         matches!(self, Round::Plane { .. })
     }
 
-    /// Whether turning about the axis through `centre` along `spin` leaves the patch where it is.
+    /// Returns true if rotation about `centre` along `spin` maps the patch to itself.
     pub fn unmoved_by(&self, centre: &Vec3, spin: &Vec3) -> bool {
         let along = |axis: &Vec3| spin.cross(axis).norm() <= 1e-12 * spin.norm();
         match self {
@@ -109,7 +103,7 @@ impl Round {
     }
 }
 
-/// Closest point of a frustum whose base is at the origin.
+/// Base at the origin.
 #[inline]
 fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> Closest {
     let z = x.dot(axis);
@@ -121,7 +115,7 @@ fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> C
         let helper = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
         axis.cross(&helper).normalize()
     };
-    // The generator from (r₀, 0) to (r₁, h) and its outward normal, in the half plane.
+    // Generator from (r₀, 0) to (r₁, h), outward normal.
     let run = radii[1] - radii[0];
     let length2 = run * run + height * height;
     let length = length2.sqrt();

@@ -8,9 +8,8 @@ fn random() -> impl FnMut() -> f64 {
     move || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// The nearer of both patches of a frustum is no further than any point of a dense sample, nor nearer than its spacing
-/// allows; the line to an inner point is the normal, to rounding; radii of all kinds, a ring and a pointed cone among
-/// them.
+/// The closest point matches a dense sample within its spacing, and the normal to rounding, also for rings
+/// and cones.
 #[test]
 fn frustum_against_sampling() {
     let mut unit = random();
@@ -65,7 +64,7 @@ fn frustum_against_sampling() {
     assert!(parts.iter().all(|&n| n > 5), "{parts:?}");
 }
 
-/// On the axis near and far contact stand against each other; outside there is no far one.
+/// On the axis near and far normals oppose; outside only the near one exists.
 #[test]
 fn far_side() {
     let cone =

@@ -1,17 +1,16 @@
-//! A direction along which two convex hulls are apart: the method of Gilbert, Johnson & Keerthi (IEEE J. Robotics and Automation
-//! 4, 1988). What is found is a bound that holds for any direction, so that nothing hangs on how exact it is.
+//! Separating direction of two convex hulls (Gilbert, Johnson & Keerthi, IEEE J. Robotics and Automation 4,
+//! 1988). Any returned bound is valid, independent of convergence.
 
 use crate::base::Vec3;
 
-/// Most rounds; two to eight are usual.
+/// Two to eight iterations are typical.
 const ROUNDS: usize = 32;
 
-/// Distance that may be missing, over the distance.
+/// Relative distance tolerance.
 const SLACK: f64 = 1e-4;
 
-/// A unit vector and a distance that two convex hulls are apart along it at least [m]; `None` where none was found: they overlap.
-/// `between` gives for a direction the way from the farthest point of one to that of the other which is farthest the other way.
-/// `guess` is a unit vector; what is found may be any direction as soon as the distance along it is `enough`.
+/// Unit vector and lower bound of the distance along it [m]; `None` if the hulls overlap. `between`: vector
+/// between opposite support points; stops once the distance is `enough`.
 pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
     let mut v = between(&guess);
     let mut simplex = Simplex::of(v);
@@ -31,9 +30,9 @@ pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f
             break;
         }
         simplex.push(w);
-        // The origin within: they overlap, or the simplex is too flat to say.
+        // Overlap, or a degenerate simplex.
         let Some(closest) = simplex.closest() else { break };
-        // Rounding: no nearer than before.
+        // Rounding: no progress.
         if closest.norm_squared() >= v.norm_squared() {
             break;
         }
@@ -42,7 +41,6 @@ pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f
     best
 }
 
-/// Up to four points.
 struct Simplex {
     points: [Vec3; 4],
     count: usize,
@@ -67,7 +65,7 @@ impl Simplex {
         self.count = points.len();
     }
 
-    /// The point of its hull that is closest to the origin; it keeps the corners that this needs. `None` where the origin lies within.
+    /// Point closest to the origin; reduces the simplex. `None` with the origin inside.
     fn closest(&mut self) -> Option<Vec3> {
         let p = self.points;
         let (point, keep) = match self.count {
@@ -99,7 +97,6 @@ fn segment(a: Vec3, b: Vec3) -> (Vec3, Simplex) {
 fn triangle([a, b, c]: [Vec3; 3]) -> (Vec3, Simplex) {
     let normal = (b - a).cross(&(c - a));
     let square = normal.norm_squared();
-    // Within: on the inner side of each side.
     let inside = |p: &Vec3, q: &Vec3| (q - p).cross(&normal).dot(p) >= 0.0;
     if square > 0.0 && inside(&a, &b) && inside(&b, &c) && inside(&c, &a) {
         let mut all = Simplex::of(a);
@@ -119,7 +116,7 @@ fn tetrahedron(p: [Vec3; 4]) -> Option<(Vec3, Simplex)> {
     for (i, j, k, l) in [(0, 1, 2, 3), (0, 3, 1, 2), (0, 2, 3, 1), (1, 3, 2, 0)] {
         let normal = (p[j] - p[i]).cross(&(p[k] - p[i]));
         let (own, origin) = (normal.dot(&(p[l] - p[i])), -normal.dot(&p[i]));
-        // The origin lies beyond this face, or the tetrahedron is flat.
+        // The origin is beyond this face, or the tetrahedron is flat.
         if own * origin <= 0.0 {
             let found = triangle([p[i], p[j], p[k]]);
             if best.as_ref().is_none_or(|(b, _)| found.0.norm_squared() < b.norm_squared()) {
@@ -135,22 +132,21 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
-    /// The point with the smallest and with the largest coordinate along a direction.
+    /// Support points.
     fn least(points: &[Vec3], n: &Vec3) -> Vec3 {
         let lower = |p: Vec3, q: &Vec3| if q.dot(n) < p.dot(n) { *q } else { p };
         points[1..].iter().fold(points[0], lower)
     }
 
-    /// See [`least`].
     fn most(points: &[Vec3], n: &Vec3) -> Vec3 {
         least(points, &-n)
     }
 
-    /// The separation of two hulls, from a poor guess.
+    /// From a poor guess.
     fn found_apart(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
         let guess = Vec3::new(-0.6, 0.0, 0.8);
         let found = separation(|n| least(a, n) - most(b, n), guess, f64::INFINITY);
-        // A distance that is enough is no more than there is.
+        // Early stop gives a lower bound.
         if let Some((_, whole)) = found {
             let (n, some) = separation(|n| least(a, n) - most(b, n), guess, 0.5 * whole).unwrap();
             assert!(some >= 0.5 * whole && some <= whole * (1.0 + 2.0 * SLACK), "{some} {whole}");
@@ -159,7 +155,6 @@ mod tests {
         found
     }
 
-    /// Cubes at a known distance: along an axis, from corner to corner, and turned by chance about the axis through their centres.
     #[test]
     fn cubes_at_known_distances() {
         let side = |k: usize, d: usize| if k >> d & 1 == 1 { 0.5 } else { -0.5 };
@@ -177,7 +172,7 @@ mod tests {
         assert!(found_apart(&cube(Vec3::new(0.9, 0.2, 0.1)), &origin).is_none());
     }
 
-    /// For random tetrahedra the bound never exceeds the distance between any two points of them, and is close to the least.
+    /// The bound never exceeds the distance and is close to it.
     #[test]
     fn bounds_of_random_tetrahedra() {
         let mut rng = Random::new(5, 1);
@@ -193,7 +188,7 @@ mod tests {
             let gap = a.iter().map(|p| p.dot(&n)).fold(f64::INFINITY, f64::min)
                 - b.iter().map(|p| p.dot(&n)).fold(f64::NEG_INFINITY, f64::max);
             assert!((gap - bound).abs() < 1e-12, "{gap} {bound}");
-            // Steps down to the closest points, slow and sure.
+            // Slow but robust descent.
             let (mut p, mut q) = (a.iter().sum::<Vec3>() / 4.0, b.iter().sum::<Vec3>() / 4.0);
             for _ in 0..3000 {
                 let v = p - q;
@@ -206,7 +201,7 @@ mod tests {
                 (p, q) = (p + (s - p) * x, q + (t - q) * x);
             }
             let distance = (p - q).norm();
-            // Those steps are too slow for what is close.
+            // The reference does not converge for close pairs.
             assert!(bound <= distance * (1.0 + 1e-12), "{bound} {distance}");
             assert!(distance < 0.3 || bound > distance * 0.99, "{bound} {distance}");
         }

@@ -1,44 +1,42 @@
-//! Triangles whose corners a host moves: the faces of a solid, as bodies with faces and edges touch them (`facet.rs`).
+//! External surface of triangles on moving nodes, for bodies with faces (`facet.rs`).
 //!
-//! Between its corners a triangle moves as linear shape functions say; a point beside it, at a height h along the normal, moves along
-//! with the turn Ω of the triangle that is nearest to the motion of its corners, Ω = A⁻¹ Σ rᵢ × vᵢ with A = Σ (rᵢ² − rᵢ rᵢᵀ), r from the
-//! middle of the corners. A force beside it, or a moment, goes to the corners the same way: the moment M as fᵢ = (A⁻¹ M) × rᵢ, whose
-//! sum is zero and whose moment is M. So force, moment and power are the same on both sides.
+//! A point on a triangle moves by linear shape functions; a point at height h above it also by the best-fit
+//! rotation Ω = A⁻¹ Σ rᵢ × vᵢ, A = Σ (rᵢ² − rᵢ rᵢᵀ), r from the centre. A moment M acts on the nodes as
+//! fᵢ = (A⁻¹ M) × rᵢ. Force, moment and power thus agree on both sides.
 
 use super::bvh::Aabb;
 use super::facet::{self, Facet};
 use crate::base::Vec3;
 use nalgebra::Matrix3;
 
-/// An external surface made of triangles, in its shape at rest: patch k is triangle k.
+/// Triangulated external surface at rest: patch k is triangle k.
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceMesh {
-    /// Corners, each once [m].
+    /// Vertices [m].
     pub vertices: Vec<Vec3>,
-    /// Corners of each triangle, counter-clockwise seen from outside.
+    /// Vertex indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What of it does not change: each triangle with what it answers for, and the numbers of its corners.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
     facets: Vec<Facet>,
     triangles: Vec<[u32; 3]>,
-    /// Place and velocity of each corner at rest.
+    /// Initial position and velocity of vertices.
     pub rest: Vec<[Vec3; 2]>,
 }
 
-/// A triangle where it is.
+/// Placed triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct SheetFacet {
     pub facet: Facet,
-    /// Velocities of its corners [m/s].
+    /// Corner velocities [m/s].
     pub velocity: [Vec3; 3],
-    /// Displacements of its corners that their velocities do not contain [m].
+    /// Corner displacements not contained in velocities [m].
     pub correction: Option<[Vec3; 3]>,
 }
 
-/// Where a force acts on a triangle: natural coordinates, the point of the triangle there [m], and the way from it to the force [m].
+/// Foot of a force: natural coordinates, point [m], offset of the force [m].
 pub(crate) struct Foot {
     pub local: [f64; 2],
     pub point: Vec3,
@@ -46,7 +44,6 @@ pub(crate) struct Foot {
 }
 
 impl Sheet {
-    /// Of a mesh; nothing of none.
     pub fn new(mesh: Option<&SurfaceMesh>) -> Sheet {
         let Some(mesh) = mesh else { return Sheet::default() };
         let own: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
@@ -61,7 +58,7 @@ impl Sheet {
         self.facets.is_empty()
     }
 
-    /// The triangles where corners with these places and velocities put them, `back` seconds ago.
+    /// Triangles `back` seconds ago.
     pub fn now(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
         out.clear();
         out.extend(self.facets.iter().zip(&self.triangles).map(|(rest, t)| {
@@ -74,7 +71,7 @@ impl Sheet {
         }));
     }
 
-    /// Gives triangles the displacements of their corners that no velocity contains [m].
+    /// Sets corner displacements not contained in velocities [m].
     pub fn correct(&self, of: impl Fn(u32) -> Option<Vec3>, out: &mut [SheetFacet]) {
         for (facet, t) in out.iter_mut().zip(&self.triangles) {
             facet.correction = of(t[0]).zip(of(t[1])).zip(of(t[2])).map(|((a, b), c)| [a, b, c]);
@@ -83,12 +80,10 @@ impl Sheet {
 }
 
 impl SheetFacet {
-    /// Bounds [m].
     pub fn bounds(&self) -> Aabb {
         self.facet.bounds()
     }
 
-    /// Where a force at `p` acts.
     pub fn foot(&self, p: &Vec3) -> Foot {
         let [a, b, c] = self.facet.corners;
         let (u, v, w) = (b - a, c - a, p - a);
@@ -100,17 +95,17 @@ impl SheetFacet {
         Foot { local, point, aside: p - point }
     }
 
-    /// Velocity at a foot, and the turn [rad/s].
+    /// Velocity [m/s] and angular velocity [rad/s].
     pub fn motion(&self, foot: &Foot) -> (Vec3, Vec3) {
         self.linear(&self.velocity, foot)
     }
 
-    /// Displacement at a foot that no velocity contains [m].
+    /// Displacement not contained in the velocity [m].
     pub fn correction(&self, foot: &Foot) -> Option<Vec3> {
         self.correction.as_ref().map(|corners| self.linear(corners, foot).0)
     }
 
-    /// A field of the corners at a foot, and its turn.
+    /// Interpolates a nodal field and its rotation.
     fn linear(&self, corners: &[Vec3; 3], foot: &Foot) -> (Vec3, Vec3) {
         let &[a, b, c] = corners;
         if a == Vec3::zeros() && b == a && c == a {
@@ -122,24 +117,24 @@ impl SheetFacet {
     }
 }
 
-/// Corners of a triangle from their middle, and A⁻¹.
+/// Corners relative to their centre; A⁻¹.
 fn levers(corners: &[Vec3; 3]) -> ([Vec3; 3], Matrix3<f64>) {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let r = corners.map(|x| x - middle);
     let a = r.iter().fold(Matrix3::zeros(), |a: Matrix3<f64>, r| {
         a + Matrix3::from_diagonal_element(r.norm_squared()) - r * r.transpose()
     });
-    // No triangle is so thin that its three moments of inertia are not positive.
+    // Even thin triangles have three positive moments of inertia.
     (r, a.try_inverse().unwrap_or_else(Matrix3::zeros))
 }
 
-/// The turn that is nearest to velocities of the corners [rad/s].
+/// Best-fit angular velocity [rad/s].
 fn turn(corners: &[Vec3; 3], velocity: &[Vec3; 3]) -> Vec3 {
     let (r, inverse) = levers(corners);
     inverse * r.iter().zip(velocity).fold(Vec3::zeros(), |sum, (r, v)| sum + r.cross(v))
 }
 
-/// Forces at the corners of a triangle [m] whose sum is zero and whose moment is `moment` [N m].
+/// Corner forces with zero sum and the given moment [N m]; corners [m].
 pub fn couple_at_corners(corners: [[f64; 3]; 3], moment: [f64; 3]) -> [[f64; 3]; 3] {
     let (r, inverse) = levers(&corners.map(Vec3::from));
     let turn = inverse * Vec3::from(moment);
@@ -151,9 +146,9 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
-    /// Forces at the corners have the moment and no sum, and the power of a moment on moving corners is that on the turn.
+    /// Corner forces reproduce moment, zero sum and power.
     #[test]
-    fn moments_go_to_corners_with_their_power() {
+    fn corner_forces_keep_moment_and_power() {
         let mut random = Random::new(3, 0);
         let mut vector = || Vec3::from_fn(|_, _| 2.0 * random.uniform() - 1.0);
         for _ in 0..200 {

@@ -1,48 +1,46 @@
-//! Surfaces of triangles that press on each other, with rounded corners and edges.
+//! Rounded triangle surfaces in mutual contact.
 //!
-//! A body's triangles are moved inwards by the radius that its corners and edges are rounded with, so that its faces, edges and corners are
-//! where they were given: a corner goes to where the faces around it meet then, in the sense of least squares where more than three do.
+//! Triangles move inwards by the rounding radius, so that the rounded surface keeps the given faces, edges
+//! and corners. Corners move to the intersection of offset planes (least squares).
 //!
-//! Limits: where faces enclose so sharp an angle that a corner would go farther than [`FARTHEST`] radii it goes that far, and what is rounded
-//! there lies a little outside of the surface.
+//! Limits: at sharp angles a corner moves at most [`FARTHEST`] radii, and the rounded corner protrudes
+//! slightly.
 
 use super::bvh::{Aabb, Bvh};
 use super::facet::{self, Facet};
 use crate::base::Vec3;
 use nalgebra::Matrix3;
 
-/// How far a corner goes at most, over the radius.
+/// Largest corner displacement over radius.
 const FARTHEST: f64 = 4.0;
 
-/// Share of the largest eigenvalue below which normals differ by rounding alone. All planes are moved by one radius, so that nearly flat ones do
-/// not meet far away.
+/// Relative eigenvalue below which normals are equal, so nearly coplanar planes do not intersect far away.
 const DISTINCT: f64 = 1e-9;
 
-/// How many triangles' planes are looked along at most for the flattest side.
+/// Most triangle planes checked for the flattest side.
 const LOOKED_AT: usize = 512;
 
-/// Area over the square of the longest side below which a triangle has none.
+/// Relative area of a degenerate triangle.
 const FLATTEST: f64 = 1e-9;
 
-/// A surface in the frame of its wall.
+/// In the wall frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Shell {
     pub facets: Vec<Facet>,
     pub tree: Bvh,
-    /// Bounds of the facets.
     pub bounds: Aabb,
-    /// Radius that corners and edges are rounded with [m].
+    /// Rounding radius [m].
     pub radius: f64,
 }
 
 impl Shell {
-    /// Triangles as they are, with sharp edges. `same` has for each vertex the lowest at the same place.
+    /// Sharp triangles; `same`: lowest coincident vertex of each vertex.
     pub fn sharp(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32]) -> Shell {
         Shell::new(facet::facets(vertices, triangles, same), 0.0)
     }
 
-    /// A surface whose corners and edges are rounded; `faces` look outwards, `same` as in [`Shell::sharp`]. `None` where a triangle would have
-    /// no area left or turn over: the radius is too large for the surface.
+    /// Rounded, from outward `faces`; `same` as [`Shell::sharp`]. `None` if a triangle vanishes or inverts:
+    /// radius too large.
     pub fn rounded(vertices: &[Vec3], faces: &[[u32; 3]], same: &[u32], radius: f64) -> Option<Shell> {
         let mut around = vec![(Matrix3::zeros(), Vec3::zeros()); vertices.len()];
         for face in faces {
@@ -81,7 +79,7 @@ impl Shell {
         Shell { tree: Bvh::new(&boxes), facets, bounds, radius }
     }
 
-    /// The most that corners, and lengths of edges [m], can press on a plane at once where those within `reach` [m] of it do.
+    /// Largest corner count and edge length [m] within `reach` [m] of one plane.
     pub fn flattest(&self, reach: f64) -> [f64; 2] {
         let mut most = [0.0_f64; 2];
         let every = self.facets.len().div_ceil(LOOKED_AT);
@@ -103,13 +101,12 @@ impl Shell {
     }
 }
 
-/// Twice the area of a triangle, along its normal.
+/// Twice the area, along the normal.
 fn area([a, b, c]: &[Vec3; 3]) -> Vec3 {
     (b - a).cross(&(c - a))
 }
 
-/// The way s to a point that lies a radius above all planes around a corner: the least that makes Σ w (n·s − r)² least, of which the sums
-/// of w n nᵀ and w n are given.
+/// Smallest s minimising Σ w (n·s − r)², from Σ w n nᵀ and Σ w n.
 fn inwards(square: &Matrix3<f64>, sum: &Vec3, radius: f64) -> Vec3 {
     let eigen = square.symmetric_eigen();
     let largest = eigen.eigenvalues.max();

@@ -1,107 +1,101 @@
-//! Surfaces made of patches: triangle walls of this crate, and surfaces that another crate owns and moves
-//! (the deformed faces of a solid). One mechanism serves both.
+//! Surfaces of patches: triangle walls, and external surfaces (deforming solid faces).
 
 use crate::base::Vec3;
 
-/// What of its patch a closest point lies on. Edge and vertex numbers are unique within the surface and shared
-/// by neighbouring patches.
+/// Feature of a closest point; edge and vertex numbers are shared by neighbouring patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
-    /// The inside of the patch.
+    /// Interior.
     Face,
-    /// An edge.
+    /// Edge.
     Edge(u32),
-    /// A vertex.
+    /// Vertex.
     Vertex(u32),
 }
 
-/// The point of a patch that is closest to a given one.
+/// Closest point of a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchPoint {
-    /// The closest point [m].
+    /// Position [m].
     pub point: [f64; 3],
-    /// Outward unit normal of the patch there.
+    /// Outward unit normal.
     pub normal: [f64; 3],
-    /// Velocity of the surface there [m/s].
+    /// Surface velocity [m/s].
     pub velocity: [f64; 3],
-    /// The patch's own coordinates of the point.
+    /// Local coordinates.
     pub local: [f64; 2],
-    /// Where on the patch it lies.
+    /// Feature.
     pub feature: Feature,
 }
 
-/// A contact with the external surface in the last step.
+/// Contact with the external surface in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceContact {
-    /// Sphere of the body, from 0; of a body with faces what of it and of the patch touch.
+    /// Sphere of the body; with faces, the feature pair.
     pub sphere: u32,
     /// Body.
     pub body: u32,
-    /// Patch of the surface.
+    /// Patch.
     pub patch: u32,
-    /// Patch coordinates of the contact point.
+    /// Local coordinates of the contact point.
     pub local: [f64; 2],
     /// Contact point [m].
     pub point: [f64; 3],
     /// Force on the surface [N].
     pub force: [f64; 3],
-    /// Moment on the surface about the point [N m]: none of spheres; of bodies with faces, whose force acts a little beside it.
+    /// Moment about the point [N m], nonzero for bodies with faces only.
     pub couple: [f64; 3],
-    /// The part of it that the contact's dashpots make [N]; in the first step of a sticky contact also what its adhesion
-    /// lacks yet.
+    /// Dashpot part of the force [N]; in a sticky contact's first step also missing adhesion.
     pub dashpot: [f64; 3],
     /// Overlap [m].
     pub overlap: f64,
 }
 
-/// A surface that grains may touch.
+/// Surface in contact with grains.
 pub trait Surface: Sync {
-    /// Appends the patches whose bounding box meets the box `[lo, hi]` to `out`, in ascending order.
+    /// Appends patches whose bounds overlap `[lo, hi]`, ascending.
     fn candidates(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>);
 
-    /// Closest point of `patch` to `centre`. `local` is a start for iterations, usually the result of the step
-    /// before; it must not change the result beyond rounding.
+    /// Closest point of `patch` to `centre`; the initial guess `local` affects rounding only.
     fn closest_point(&self, patch: u32, centre: [f64; 3], local: [f64; 2]) -> PatchPoint;
 
-    /// Bound on the speed of any point of the surface [m/s].
+    /// Bound on the surface speed [m/s].
     fn max_speed(&self) -> f64;
 
-    /// Whether grains are on the outward side only: their centres may then lie below the surface and are still
-    /// pushed outward. Otherwise the normal points from the closest point to the centre.
+    /// Returns true if grains are on the outward side only; centres below are pushed outward. Otherwise the
+    /// normal points to the centre.
     fn one_sided(&self) -> bool;
 
-    /// Whether one patch is one-sided; as the whole surface unless it says otherwise.
+    /// One-sidedness of a patch.
     fn one_sided_patch(&self, _patch: u32) -> bool {
         self.one_sided()
     }
 
-    /// A lower bound of the distance from `centre` to `patch` [m], finite, found without a search: it spares most calls
-    /// of [`Surface::closest_point`]. Zero tells nothing.
+    /// Cheap lower bound of the distance to `patch` [m], may be zero; saves [`Surface::closest_point`] calls.
     fn clearance(&self, _patch: u32, _centre: [f64; 3]) -> f64 {
         0.0
     }
 
-    /// Has the processor fetch what [`Surface::closest_point`] will read of a patch.
+    /// Prefetches data of [`Surface::closest_point`].
     fn fetch(&self, _patch: u32) {}
 
-    /// Whether [`Surface::clearance`] is near enough to the truth for lists, and normals inside a patch are exact: the
-    /// distance is then measured along them.
+    /// Returns true if [`Surface::clearance`] is tight and normals inside patches are exact: distances follow
+    /// them.
     fn sharp(&self) -> bool {
         false
     }
 
-    /// Whether two patches lie in one plane, stated without a search.
+    /// Cheap coplanarity test.
     fn level(&self, _a: u32, _b: u32) -> bool {
         false
     }
 
-    /// Of a flat patch with two sides, stated without a search: where `centre` stands above its inside, the normal, and the
-    /// velocity there. `None` tells nothing.
+    /// Foot, normal and velocity if `centre` is above the interior of a flat two-sided patch.
     fn foot(&self, _patch: u32, _centre: [f64; 3]) -> Option<[Vec3; 3]> {
         None
     }
 
-    /// Rigid wall that a patch belongs to, below [`Surface::groups`]; forces are summed for each.
+    /// Rigid wall of a patch, below [`Surface::groups`], for force sums.
     fn group(&self, _patch: u32) -> usize {
         0
     }
@@ -111,12 +105,12 @@ pub trait Surface: Sync {
         1
     }
 
-    /// Whether the forces on a rigid wall set its speed.
+    /// Returns true if a wall is servo-controlled.
     fn driven(&self, _group: usize) -> bool {
         false
     }
 
-    /// Point that moments on the patch's wall refer to [m].
+    /// Moment centre of the patch's wall [m].
     fn moment_centre(&self, _patch: u32) -> [f64; 3] {
         [0.0; 3]
     }
@@ -126,35 +120,34 @@ pub trait Surface: Sync {
         Vec3::zeros()
     }
 
-    /// One over the mass of the patch's wall [1/kg]; zero where its motion is prescribed.
+    /// Inverse mass of the patch's wall [1/kg]; zero if prescribed.
     fn inverse_mass(&self, _patch: u32) -> f64 {
         0.0
     }
 
-    /// Place [m] and velocity [m/s] of a vertex, as the model numbers them ([`SurfaceMesh`](super::sheet::SurfaceMesh)); `None` where the
-    /// surface is not made of triangles.
+    /// Position [m] and velocity [m/s] of a vertex ([`SurfaceMesh`](super::sheet::SurfaceMesh)); `None`
+    /// without triangles.
     fn vertex(&self, _vertex: u32) -> Option<[Vec3; 2]> {
         None
     }
 
-    /// Displacement [m] of a point of `patch` since the last step that its velocity does not contain: tangential springs are shortened by it.
-    /// `None` where velocities tell the whole motion.
+    /// Displacement [m] in the last step not contained in the velocity; shortens tangential springs.
     fn correction(&self, _patch: u32, _local: [f64; 2]) -> Option<[f64; 3]> {
         None
     }
 
-    /// The same of a vertex.
+    /// Vertex displacement likewise.
     fn vertex_correction(&self, _vertex: u32) -> Option<[f64; 3]> {
         None
     }
 
-    /// Whether there is nothing to touch.
+    /// Returns true without patches.
     fn is_empty(&self) -> bool {
         false
     }
 }
 
-/// No surface at all.
+/// Empty surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoSurface;
 

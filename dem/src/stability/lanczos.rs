@@ -1,16 +1,16 @@
-//! Lanczos' method for the largest eigenvalue of a symmetric operator that is nowhere negative.
+//! Lanczos method for the largest eigenvalue of a symmetric positive semidefinite operator.
 
 use super::operator::Operator;
 
-/// Iterations before the first look at convergence, between looks, and at most.
+/// Iterations before the first convergence check, between checks, at most.
 const FIRST: usize = 12;
 const EVERY: usize = 4;
 const LAST: usize = 60;
 
-/// Relative growth of the estimate over [`EVERY`] iterations at which it is taken.
+/// Relative growth over [`EVERY`] iterations at convergence.
 const CONVERGED: f64 = 0.01;
 
-/// The largest eigenvalue, from below to about [`CONVERGED`] and with that much added; zero of an operator that is zero.
+/// Largest eigenvalue, converged from below to about [`CONVERGED`] and increased by it.
 pub(super) fn largest(operator: &mut Operator) -> f64 {
     let n = operator.len();
     let mut now = start(n);
@@ -18,7 +18,7 @@ pub(super) fn largest(operator: &mut Operator) -> f64 {
     let mut next = vec![0.0; n];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::<f64>::new());
     let mut known = 0.0;
-    // In a large bed the start holds little of a mode that lives in one place.
+    // In a large bed, localised modes are weak in the start vector.
     let first = if n > 50_000 { FIRST + EVERY } else { FIRST };
     for k in 1..=LAST {
         operator.apply(&now, &mut next);
@@ -42,7 +42,7 @@ pub(super) fn largest(operator: &mut Operator) -> f64 {
     known
 }
 
-/// A unit vector that no mode is likely to be at right angles to; the same in every run.
+/// Reproducible unit vector.
 fn start(n: usize) -> Vec<f64> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     let mut v: Vec<f64> = (0..n)
@@ -63,7 +63,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on Sturm's sequence.
+/// Largest eigenvalue by bisection on Sturm's sequence.
 fn top(diagonal: &[f64], beside: &[f64]) -> f64 {
     let reach = |k: usize| {
         let left = if k > 0 { beside[k - 1].abs() } else { 0.0 };
@@ -72,7 +72,7 @@ fn top(diagonal: &[f64], beside: &[f64]) -> f64 {
     let ends = diagonal.iter().enumerate().map(|(k, a)| (a - reach(k), a + reach(k)));
     let (mut low, mut high) =
         ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (a, b)| (l.min(a), h.max(b)));
-    // Whether all eigenvalues lie below x: then all terms of the sequence of x − T are positive.
+    // Eigenvalues are below x if the sequence of x − T is positive.
     let above = |x: f64| {
         let mut q = f64::INFINITY;
         diagonal.iter().enumerate().all(|(k, a)| {
@@ -99,7 +99,7 @@ fn top(diagonal: &[f64], beside: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The second difference with fixed ends: eigenvalues 2 − 2 cos(kπ/(n + 1)).
+    /// Second difference with fixed ends: eigenvalues 2 − 2 cos(kπ/(n + 1)).
     #[test]
     fn tridiagonal_matrix_of_known_spectrum() {
         for n in [1, 2, 5, 40] {

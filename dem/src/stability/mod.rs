@@ -1,19 +1,16 @@
-//! The step of the grains, from the contacts that are there.
+//! DEM time step from current contacts and bonds ([`limit`]), usually 2 to 10 times the a-priori bound
+//! ([`crate::timestep`]). [`follow`] adjusts the step:
 //!
-//! Before anything touches, only a bound is known ([`crate::timestep`]), and it must hold for the worst that may come: many
-//! contacts in one direction, each at the farthest lever. What the contacts and bonds of a moment allow is found from them
-//! ([`limit`]), usually 2 to 10 times as much, and [`follow`] lets the step of a run go with it:
+//! * the limit is evaluated every [`LEAST`] to [`MOST`] steps, more often if it changes;
+//! * the step is a fraction of it ([`TimeStep::Measured`](crate::TimeStep::Measured)), smaller while it
+//!   changes, and grows by at most 25 % per evaluation;
+//! * a fraction of the collision time (`engine/collision.rs`) bounds it for accurate restitution, by default
+//!   four times as much in packings of lasting contacts;
+//! * steps are the first one times powers of 2^⅛: small changes have no effect.
 //!
-//! * it is looked for again every [`LEAST`] to [`MOST`] steps, more often the more it changes;
-//! * a share of it is taken ([`TimeStep::Measured`](crate::TimeStep::Measured)), a smaller one while it changes, which leaves
-//!   room for contacts that come before the next look; the step grows by a quarter at most from one look to the next;
-//! * no step is longer than a share of the time of a collision (`engine/collision.rs`), so that restitution is right; in a
-//!   packing, where most contacts last, and where nobody asks for it, four times as much;
-//! * steps are the first one times a power of 2^⅛, so that small changes leave it as it is.
+//! Steps depend on the state only: identical for any number of threads and after a restart.
 //!
-//! All of it depends on the state alone, so that a run has the same steps with any number of threads and across a restart.
-//!
-//! Theory manual: equation (3.5) of `docs/theory/motion.md`.
+//! Theory manual: eq. (3.5), `docs/theory/motion.md`.
 
 mod lanczos;
 mod operator;
@@ -22,34 +19,32 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use operator::Operator;
 
-/// Fewest and most steps between two looks at the limit.
+/// Fewest steps between evaluations of the limit.
 pub const LEAST: u64 = 64;
-/// See [`LEAST`].
+/// Most steps between evaluations.
 pub const MOST: u64 = 1024;
 
-/// Contacts per body that make a packing.
+/// Contacts per body of a packing.
 const LASTING: f64 = 1.5;
 
-/// Part of the share that is taken while the limit changes.
+/// Factor on the fraction while the limit changes.
 const UNSTEADY: f64 = 0.7;
 
-/// Largest growth of the step from one look to the next.
+/// Largest growth of the step per evaluation.
 const GROWTH: f64 = 1.25;
 
 /// Ratio of neighbouring steps: 2^⅛.
 const RUNG: f64 = 1.090_507_732_665_257_7;
 
-/// The largest stable step [s] for the contacts and bonds of a state, all of them sticking; infinite where nothing holds
-/// anything. Dashpots act with velocities of half a step ago. Rigid bodies of walls move and have their mounts;
-/// what they stand on with their vertices is left out: [`Model::longest`] knows it.
+/// Returns the critical time step [s] of current sticking contacts and bonds; infinite without any.
 ///
-/// With K and C made of these contacts the leapfrog is stable while the largest eigenvalue of M⁻¹(dt² K + 2 dt C) is below
-/// 4; Lanczos' method finds it, to a few per cent on the safe side.
+/// The leapfrog scheme is stable while the largest eigenvalue of M⁻¹(dt² K + 2 dt C) is below 4 (Lanczos
+/// method, a few per cent conservative). Dashpots use velocities of the last half step. Rigid walls move and
+/// have mounts; [`Model::longest`] covers contacts of their vertices with planes.
 pub fn limit(model: &Model, state: &State) -> f64 {
     largest_step(&mut Operator::new(model, state), state)
 }
 
-/// [`limit`], given the operator.
 fn largest_step(operator: &mut Operator, state: &State) -> f64 {
     let guess = if state.pace.limit > 0.0 { state.pace.limit } else { state.pace.dt };
     if operator.links() == 0 {
@@ -59,7 +54,7 @@ fn largest_step(operator: &mut Operator, state: &State) -> f64 {
     for _ in 0..ROUNDS {
         let largest = lanczos::largest(operator.at(dt));
         let room = if largest > 0.0 { 4.0 / largest } else { return f64::INFINITY };
-        // The eigenvalue grows with dt to dt²: far away take the smaller step that either allows, near by the mean.
+        // The eigenvalue grows with dt to dt²: the smaller step of both if far away, else the mean.
         let factor = match room {
             r if r > 1.5 => r.sqrt(),
             r if r < 0.7 => r,
@@ -73,11 +68,10 @@ fn largest_step(operator: &mut Operator, state: &State) -> f64 {
     dt
 }
 
-/// Most evaluations of the eigenvalue in one look.
+/// Most eigenvalue solves per evaluation.
 const ROUNDS: usize = 6;
 
-/// Looks at the limit if it is time to, and sets the step of `state` accordingly. Does nothing where the scene fixes the step.
-/// Returns whether it looked.
+/// Evaluates the limit if due and sets the step of `state`, unless fixed. Returns whether it was evaluated.
 pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
     if state.steps < state.pace.look || state.steps == 0 {
@@ -96,7 +90,7 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
         _ => interval,
     };
     pace.look = state.steps + pace.interval;
-    // What cannot be saved is not kept.
+    // Infinity cannot be saved.
     pace.limit = if found.is_finite() { found } else { 0.0 };
     let share = if change < 1.1 { share } else { UNSTEADY * share };
     let wanted = (share * found).min(longest).min(GROWTH * pace.wanted);
@@ -105,7 +99,6 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
     true
 }
 
-/// The largest of `first` times powers of 2^⅛ that is not above `wanted`.
 fn rung(first: f64, wanted: f64) -> f64 {
     let mut dt = first;
     while dt > wanted {
@@ -117,14 +110,14 @@ fn rung(first: f64, wanted: f64) -> f64 {
     dt
 }
 
-/// Divides a window of time [s] into equal steps of the grains, as long as [`follow`] allows; sets the step and returns their
-/// number, which is `most` where the scene fixes the step.
+/// Divides a time window [s] into equal DEM steps within [`follow`]'s limit; sets the step and returns their
+/// number, `most` for a fixed step.
 pub fn divide(model: &Model, state: &mut State, window: f64, most: u32) -> u32 {
     if model.measured().is_none() {
         return most;
     }
     follow(model, state);
-    // A window that is a whole number of steps but for rounding is that number.
+    // Tolerates rounding of a whole number of steps.
     let steps = (window / state.pace.wanted * (1.0 - 1e-12)).ceil().clamp(1.0, 1e6) as u32;
     state.pace.dt = window / f64::from(steps);
     steps
@@ -135,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_are_rungs_below_what_is_wanted() {
+    fn rung_is_largest_below_limit() {
         for wanted in [0.3, 0.999, 1.0, 1.05, 1.5, 7.0] {
             let dt = rung(1.0, wanted);
             assert!(dt <= wanted && dt * RUNG > wanted, "{wanted}: {dt}");

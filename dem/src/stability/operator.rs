@@ -1,4 +1,4 @@
-//! M^(−½) (dt² K + 2 dt C) M^(−½) of the contacts and bonds of a state, as an operator on motions of all bodies.
+//! Operator M^(−½) (dt² K + 2 dt C) M^(−½) of current contacts and bonds.
 
 use crate::base::Vec3;
 use crate::base::error::Partner;
@@ -12,7 +12,6 @@ use crate::law::lag;
 use crate::measure;
 use nalgebra::{Matrix3, UnitQuaternion};
 
-/// Springs and dashpots along an axis and across it.
 #[derive(Clone, Copy, Default)]
 struct Pair {
     along: f64,
@@ -20,32 +19,28 @@ struct Pair {
 }
 
 impl Pair {
-    /// Of a vector: the part along the unit vector `n` and the part across, each times its number.
     fn apply(&self, n: &Vec3, v: &Vec3) -> Vec3 {
         v * self.across + n * ((self.along - self.across) * n.dot(v))
     }
 }
 
-/// What joins two bodies, or a body and something that does not move.
+/// Contact or bond of two bodies, or of body and fixed partner.
 struct Link {
-    /// Numbers of the bodies; the second is [`NOTHING`] where there is none.
+    /// Bodies; [`NOTHING`] for a fixed partner.
     ends: [u32; 2],
-    /// From the centres of the bodies to the point of contact [m].
     arms: [Vec3; 2],
     normal: Vec3,
-    /// Against displacement and against relative rotation.
+    /// Translational, rotational.
     stiffness: [Pair; 2],
     damping: [Pair; 2],
-    /// C/2m* of a law's dashpot [1/s], which weakens it in long steps (`law/composed.rs`); zero of others.
+    /// C/2m* of a law's dashpot [1/s] for its half-step correction (`law/composed.rs`), else zero.
     lag: f64,
-    /// For the step in hand.
     now: [Pair; 2],
 }
 
 const NOTHING: u32 = u32::MAX;
 
 impl Link {
-    /// A contact that joins two ends.
     fn of(model: &Model, c: &ContactNow<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
         let g = &c.geometry;
         let law = model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
@@ -62,18 +57,16 @@ impl Link {
     }
 }
 
-/// The operator.
 pub(super) struct Operator {
     links: Vec<Link>,
-    /// Square roots of the inverse masses by axis, and of the inverse tensors of inertia: of bodies, then of those that walls are.
+    /// Square roots of inverse mass by axis and of inverse inertia tensor: bodies, then rigid walls.
     bodies: Vec<([f64; 3], Matrix3<f64>)>,
-    /// Number among these of the body that a wall is; [`NOTHING`] of the others.
+    /// Index in `bodies`, or [`NOTHING`].
     walls: Vec<u32>,
-    /// Bodies with a mount, and its stiffness by axis. Its dashpot does not lag: it takes nothing from the step.
+    /// Bodies with mount, stiffness by axis. Its dashpot has no delay: no reduction of the step.
     mounts: Vec<(u32, Vec3)>,
-    /// Square of the step in hand [s²].
+    /// Current step squared [s²].
     square: f64,
-    /// Motions and forces of all bodies.
     motion: Vec<[Vec3; 2]>,
     force: Vec<[Vec3; 2]>,
 }
@@ -101,19 +94,16 @@ impl Operator {
         operator
     }
 
-    /// Number of contacts and bonds.
     pub fn links(&self) -> usize {
         self.links.len()
     }
 
-    /// Length of its vectors.
     pub fn len(&self) -> usize {
         6 * self.bodies.len()
     }
 
     fn add_contacts(&mut self, model: &Model, state: &State) {
         let (links, walls) = (&mut self.links, &self.walls);
-        // What moves with a partner: its number, and its centre.
         let moving = |partner: Partner| match partner {
             Partner::Body(b) => Some((b as u32, state.position(b))),
             other => {
@@ -123,7 +113,7 @@ impl Operator {
             }
         };
         measure::visit(model, state, 0.0, |c| {
-            // Two that are both held.
+            // Both fixed.
             if c.contact.inverse_mass == 0.0 {
                 return;
             }
@@ -137,12 +127,11 @@ impl Operator {
         });
     }
 
-    /// Contacts of walls with each other.
     fn add_wall_contacts(&mut self, model: &Model, state: &State) {
         wall_contacts::visit(model, state, 0.0, |walls, c| {
             let [a, b] = walls.map(|w| w as usize);
             let arm = |w: usize| c.geometry.point - model.walls.walls[w].centre - state.walls[w].offset;
-            // A wall that keeps its motion comes second, where there is one.
+            // A wall with prescribed motion comes second.
             let [first, second] = if self.walls[a] == NOTHING { [b, a] } else { [a, b] };
             self.links.push(Link::of(
                 model,
@@ -177,7 +166,6 @@ impl Operator {
         });
     }
 
-    /// The operator for steps of `dt` [s].
     pub fn at(&mut self, dt: f64) -> &mut Operator {
         self.square = dt * dt;
         for link in &mut self.links {
@@ -192,7 +180,7 @@ impl Operator {
         self
     }
 
-    /// `out` = the operator times `v`; six numbers per body: displacement and rotation.
+    /// `out` = operator × `v`; per body displacement and rotation.
     pub fn apply(&mut self, v: &[f64], out: &mut [f64]) {
         let six = |v: &[f64]| [Vec3::new(v[0], v[1], v[2]), Vec3::new(v[3], v[4], v[5])];
         let scaled = |(root, turn): &([f64; 3], Matrix3<f64>), [x, w]: [Vec3; 2]| {
@@ -234,7 +222,7 @@ impl Operator {
     }
 }
 
-/// Square roots of a body's inverse mass by axis and of its inverse tensor of inertia, in world axes; zero where it is fixed.
+/// Square roots of inverse mass by axis and of inverse inertia tensor, world axes; zero if fixed.
 fn mobility(model: &Model, state: &State, body: usize) -> ([f64; 3], Matrix3<f64>) {
     let b = model.body(body);
     if !state.present(body) {
@@ -244,7 +232,7 @@ fn mobility(model: &Model, state: &State, body: usize) -> ([f64; 3], Matrix3<f64
     moved(b.fixed, b.mass, &b.inertia, frame)
 }
 
-/// The same of a mass and principal moments in a frame; bits of `fixed`: translation, then rotation.
+/// Bits of `fixed`: translation, then rotation.
 fn moved(
     fixed: u8,
     mass: f64,
@@ -258,6 +246,6 @@ fn moved(
         None => local,
         Some(turn) => turn.matrix() * local * turn.matrix().transpose(),
     };
-    // Fixed rotations about world axes: their rows and columns are left out, which keeps the matrix symmetric.
+    // Deletes rows and columns of fixed rotations; the matrix stays symmetric.
     (root, Matrix3::from_fn(|i, j| turned[(i, j)] * free(3 + i) * free(3 + j)))
 }

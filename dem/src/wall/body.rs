@@ -1,12 +1,8 @@
-//! Walls that are rigid bodies: mass, centre and inertia, motion, mount, and contacts of vertices of triangles with planes.
+//! Rigid-body walls: mass properties, motion (as clumps, `integrate/leapfrog.rs`, `integrate/rotation.rs`),
+//! mount, vertex–plane contacts.
 //!
-//! The body takes part in the contacts of the grains as a wall of finite mass. It moves by the same scheme as clumps
-//! (`integrate/leapfrog.rs`, `integrate/rotation.rs`): kick by the forces of the step, then drift.
-//!
-//! Other walls and other bodies are touched by bodies of triangles (`shells.rs`).
-//!
-//! Limits: infinite planes are touched by vertices of triangles, not by round shapes; two round bodies do not touch each other (the step fails
-//! when they come within each other's bounds).
+//! Not supported: round bodies on infinite planes, or in contact with each other (error on overlapping
+//! bounds).
 
 use super::enclosed::{Enclosed, enclosed};
 use super::input::{Mount, RigidBody, WallShape};
@@ -23,36 +19,35 @@ use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-/// Constants of a rigid body.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub mass: f64,
-    /// Zero when no translation is free.
+    /// Zero without free translation.
     pub inverse_mass: f64,
     pub centre: Vec3,
-    /// Principal moments [kg m²], and the principal frame at the start.
+    /// Principal moments [kg m²], initial principal frame.
     pub inertia: Vec3,
     pub axes: UnitQuaternion<f64>,
     pub velocity: Vec3,
     pub spin: Vec3,
     /// Bits 0–2 translation, 3–5 rotation.
     pub fixed: u8,
-    /// Largest distance of a vertex from the centre, and half the bounds in the starting frame [m].
+    /// Largest vertex distance from the centre, half bounds in the initial frame [m].
     pub reach: f64,
     pub half: Vec3,
-    /// Vertices that triangles use, or the corners of a round shape's bounds [m].
+    /// Triangle vertices, or bounding box corners of a round shape [m].
     pub vertices: Vec<Vec3>,
-    /// Whether planes touch the vertices.
+    /// Whether vertices contact planes.
     stands: bool,
     mount: Option<Mount>,
 }
 
 impl Body {
-    /// Resolves a body; `bounds`: corners of the bounds of its patches [m].
+    /// `bounds`: bounding box corners of its patches [m].
     ///
     /// # Errors
-    /// The wall is a plane, or encloses nothing and is not given centre and inertia, a round one turns without inertia, or the inertia is not that
-    /// of a body.
+    /// Planes, open surfaces without centre and inertia, free rotation of a round body without inertia,
+    /// invalid inertia.
     pub fn new(
         input: &RigidBody,
         shape: &WallShape,
@@ -81,7 +76,7 @@ impl Body {
                     None if input.spin != Vec3::zeros() => {
                         return Err(error("a round body rotates only if its inertia is given"));
                     }
-                    // Any will do: it does not turn.
+                    // Arbitrary: no rotation.
                     None => {
                         bits |= 0b11_1000;
                         Matrix3::identity() * input.mass
@@ -113,7 +108,7 @@ impl Body {
         })
     }
 
-    /// State at time 0, its velocities half a step earlier.
+    /// Velocities half a step earlier.
     pub fn start(&self, state: &mut WallState, gravity: &Vec3, dt: f64) {
         let damping =
             self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
@@ -125,12 +120,11 @@ impl Body {
         state.momentum = self.axes * local.component_mul(&self.inertia);
     }
 
-    /// Spin that belongs to the angular momentum.
     fn spin_of(&self, frame: &UnitQuaternion<f64>, momentum: &Vec3) -> Vec3 {
         frame * frame.inverse_transform_vector(momentum).component_div(&self.inertia)
     }
 
-    /// Kicks and moves the body by one step under `force` and `torque` about its centre, gravity not included.
+    /// Advances one step; `force` and `torque` about the centre, without gravity.
     pub fn advance(
         &self,
         state: &mut WallState,
@@ -193,18 +187,16 @@ impl Body {
         state.turned = true;
     }
 
-    /// Whether it is made of triangles.
     pub fn stands(&self) -> bool {
         self.stands
     }
 
-    /// Largest speed of a point of the body [m/s].
     pub fn speed(&self, state: &WallState) -> f64 {
         state.velocity.norm() + state.spin.norm() * self.reach
     }
 
-    /// Kinetic energy of translation and rotation, energy in gravity, and in the mount, at the last half step [J].
-    /// `back`: half of the last step [s].
+    /// Kinetic (translation, rotation), potential, mount energy at the last half step [J]. `back`: half of
+    /// the last step [s].
     pub fn energies(&self, state: &WallState, gravity: &Vec3, back: f64) -> [f64; 4] {
         let offset = state.offset - state.velocity * back;
         let x = self.centre + offset;
@@ -216,24 +208,23 @@ impl Body {
         ]
     }
 
-    /// Adds momentum and angular momentum about the origin, as [`crate::measure::momentum`] takes them.
+    /// Adds momentum as [`crate::measure::momentum`].
     pub fn momentum(&self, state: &WallState, sum: &mut Impulse) {
         sum.add(&(self.centre + state.offset), &(state.velocity * self.mass));
         sum.angular += state.momentum;
     }
 
-    /// Stiffness of the mount by axis [N/m], where there is one.
     pub fn mount_stiffness(&self) -> Option<Vec3> {
         self.mount.map(|m| m.stiffness)
     }
 
-    /// Square of the highest frequency that the mount gives the body [1/s²]; zero without one.
+    /// Square of the highest mount frequency [1/s²].
     pub fn mount_frequency(&self) -> f64 {
         self.mount.as_ref().map_or(0.0, |m| mount::highest(m, self.mass))
     }
 
-    /// Limit of the time step for a contact of stiffness `k` [N/m] and damping ratio `zeta`: as for a box of the body's
-    /// bounds with grains of radius `r` on its sides (see [`crate::engine::timestep`]), and its mount, whose dashpot does not lag, beside them.
+    /// Time step limit for contact stiffness `k` [N/m] and damping ratio `zeta`: box of the body's bounds
+    /// under grains of radius `r` (see [`crate::engine::timestep`]), plus mount, whose dashpot has no delay.
     pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
         let n = self.half.map(|h| h / r + 1.0);
         let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);
@@ -254,7 +245,7 @@ impl Body {
     }
 }
 
-/// Centre of mass [m] and tensor of inertia [kg m²] of a body of triangles.
+/// Centre of mass [m], inertia tensor [kg m²].
 fn of_triangles(
     input: &RigidBody,
     vertices: &[Vec3],
@@ -272,12 +263,11 @@ fn of_triangles(
     Ok((centre, input.inertia.map_or(own, of_six)))
 }
 
-/// A tensor of inertia from xx, yy, zz, xy, yz, zx.
 fn of_six([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
-/// Principal moments and the frame of their axes (columns), right-handed.
+/// Principal moments, right-handed axes (columns).
 fn principal(tensor: &Matrix3<f64>) -> (Vec3, UnitQuaternion<f64>) {
     let noise = 1e-13 * tensor.trace().abs();
     let mut clean = *tensor;
@@ -297,27 +287,25 @@ fn principal(tensor: &Matrix3<f64>) -> (Vec3, UnitQuaternion<f64>) {
     (eigen.eigenvalues, UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)))
 }
 
-/// The planes that a body may stand on, and what happens there.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a> {
     pub laws: &'a Laws,
     pub planes: &'a [Plane],
     pub motions: &'a [PlaneMotion],
-    /// Radius that a vertex counts with for laws with curvature [m].
+    /// Vertex radius for laws with curvature [m].
     pub tip_radius: f64,
     pub dt: f64,
 }
 
 impl Ground<'_> {
-    /// A vertex against a plane: a point, for laws with curvature one of the radius of the smallest grain.
+    /// Laws with curvature use the radius of the smallest grain.
     fn tip(&self, at: &Vec3, origin: &Vec3, normal: &Vec3) -> Option<ContactGeometry> {
         let g = detect::sphere_plane(at, 0.0, origin, normal)?;
         Some(ContactGeometry { radius: self.tip_radius, ..g })
     }
 }
 
-/// Contacts of a body's vertices with the planes: returns force and torque about the centre on the body, and books what
-/// the planes did.
+/// Vertex–plane contacts: returns force and torque about the centre, adds the planes' totals.
 pub(crate) fn stand(
     ground: &Ground<'_>,
     body: &Body,
@@ -375,7 +363,7 @@ pub(crate) fn stand(
     (force, torque)
 }
 
-/// Energy in the springs between a body's vertices and the planes at the last half step: normal, tangential [J].
+/// Vertex–plane spring energy at the last half step: normal, tangential [J].
 pub(crate) fn stored(ground: &Ground<'_>, body: &Body, material: u32, state: &WallState) -> [f64; 2] {
     let &Ground { laws, planes, motions, dt, .. } = ground;
     let back = 0.5 * dt;

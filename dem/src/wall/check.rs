@@ -1,4 +1,4 @@
-//! Checks of walls.
+//! Validation of walls.
 
 use super::input::{RigidBody, WallInput, WallShape};
 use crate::base::Vec3;
@@ -8,7 +8,6 @@ fn finite(v: &Vec3) -> bool {
     v.iter().all(|x| x.is_finite())
 }
 
-/// Ranges of all walls of patches.
 pub(crate) fn walls(input: &[WallInput], materials: usize) -> Result<(), ModelError> {
     for (index, wall) in input.iter().enumerate() {
         in_range("wall", index, "material", wall.material, materials)?;
@@ -118,7 +117,7 @@ fn mount(body: &RigidBody) -> Option<&'static str> {
     idle.then_some("its mount acts along a fixed direction")
 }
 
-/// Refuses an index that points nowhere.
+/// Rejects an index out of range.
 pub(crate) fn in_range(
     owner: &'static str,
     index: usize,

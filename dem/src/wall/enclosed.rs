@@ -1,21 +1,20 @@
-//! The solid that a closed surface encloses: sums over the tetrahedra between a point and the triangles (e.g. Tonon, J. Math. Stat. 1, 2005). The
-//! triangles are first turned to look the same way by walking across their edges, because files need not order their vertices.
+//! Solid inside a closed surface: sums over tetrahedra (e.g. Tonon, J. Math. Stat. 1, 2005). Triangles are
+//! first oriented consistently, because files need not order their vertices.
 
 use super::triangulated::welded;
 use crate::base::Vec3;
 use nalgebra::Matrix3;
 
-/// The solid that a closed surface encloses.
 pub(super) struct Enclosed {
-    /// Volume [m³], centre [m], and inertia about it per unit density [m⁵].
+    /// Volume [m³], centre [m], inertia per unit density [m⁵].
     pub volume: f64,
     pub centre: Vec3,
     pub inertia: Matrix3<f64>,
-    /// The triangles, with the lowest of vertices at one place, looking outwards; in another order.
+    /// Outward triangles of welded vertices, reordered.
     pub faces: Vec<[u32; 3]>,
 }
 
-/// What a surface encloses. `None` when an edge does not join exactly two triangles, or the volume is zero.
+/// `None` if an edge does not join exactly two triangles, or for zero volume.
 pub(super) fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<Enclosed> {
     let same = welded(vertices);
     let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
@@ -27,7 +26,7 @@ pub(super) fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<Encl
     if !edges.chunk_by(|a, b| a.0 == b.0).all(|same| same.len() == 2) {
         return None;
     }
-    // Turn neighbours to run along their common edge in opposite directions.
+    // Neighbours traverse their common edge in opposite directions.
     let mut faces: Vec<Option<[u32; 3]>> = vec![None; welded.len()];
     let (mut open, mut outwards) = (Vec::new(), Vec::with_capacity(welded.len()));
     let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());

@@ -1,8 +1,8 @@
-//! Solids that surfaces enclose.
+//! Enclosed solids.
 
 use super::*;
 
-/// A box a × b × c at `corner`; two faces are wound inwards.
+/// Box a × b × c at `corner`, two faces wound inwards.
 fn cuboid(corner: Vec3, size: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let vertices =
         (0..8).map(|k| corner + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { size[d] } else { 0.0 })).collect();
@@ -15,7 +15,7 @@ fn cuboid(corner: Vec3, size: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// Closed forms of a box, wherever it lies and however its triangles are wound; an open one encloses nothing.
+/// Closed forms of a box in any position and winding; none if open.
 #[test]
 fn enclosed_box() {
     let size = Vec3::new(0.3, 0.5, 0.7);
@@ -27,13 +27,12 @@ fn enclosed_box() {
     let s = size.component_mul(&size);
     let exact = Matrix3::from_diagonal(&Vec3::new(s.y + s.z, s.z + s.x, s.x + s.y)) * (v / 12.0);
     assert!((inertia - exact).norm() < 1e-12 * exact.norm(), "{inertia}");
-    // All look away from the middle.
     assert_eq!(faces.len(), 12);
     for face in &faces {
         let [a, b, c] = face.map(|v| vertices[v as usize]);
         assert!((b - a).cross(&(c - a)).dot(&(a - centre)) > 0.0);
     }
-    // As a soup the same.
+    // Unwelded vertices.
     let soup: Vec<Vec3> = triangles.iter().flatten().map(|&v| vertices[v as usize]).collect();
     let separate: Vec<[u32; 3]> =
         (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();

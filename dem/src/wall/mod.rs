@@ -1,11 +1,8 @@
-//! Walls: everything that is not a grain and not the solid.
+//! Walls: boundaries other than grains and the solid.
 //!
-//! * Infinite planes of constant velocity ([`crate::Plane`]) are so common that they have a kernel of their own
-//!   (`contact/planes.rs`).
-//! * All else ([`WallInput`]) is a set of patches in a frame that moves as a rigid whole: triangles, frusta of cones
-//!   with cylinders and rings among them, discs, spheres, and planes that turn, swing or are driven by a force. One
-//!   mechanism ([`crate::spatial::surface::Surface`], `contact/patches.rs`) finds their contacts. The frame follows a prescribed
-//!   [`Motion`], a [`Servo`], or, for a [`RigidBody`], the forces.
+//! Infinite planes of constant velocity ([`crate::Plane`]) have a separate kernel (`contact/planes.rs`). A
+//! [`WallInput`] is a set of patches in a rigid frame ([`crate::spatial::surface::Surface`],
+//! `contact/patches.rs`), which follows a [`Motion`], a [`Servo`], or the forces on a [`RigidBody`].
 
 pub mod body;
 pub(crate) mod check;

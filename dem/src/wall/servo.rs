@@ -1,39 +1,37 @@
-//! A wall driven so that the grains press on it with a given force.
+//! Servo-controlled wall with a target force on the grains.
 //!
-//! The speed along the drive's direction d is v = g (F* − F)/Z, where F is the force on the grains along d, F* the
-//! target, g the gain and Z = Σ (K Δt + 2C) over the contacts of the wall, with K their stiffness and C the bound
-//! 2ζ√(mK) of their dashpots: with g = 1 an elastic contact would be set right within one step. Seen from the grains
-//! this is a dashpot of impedance Z/g in series with the force F*: it takes energy out of every disturbance, so it is
-//! stable for g < 1 (at g = 1 a force may ring from step to step), and at rest the force is exact. The plate has no mass and no weight. Without a contact it moves
-//! towards the grains, from rest or from the speed at which the last contact let it go, by a tenth faster in every step up to its
-//! greatest speed: a light target does not chatter from touch to touch at that speed.
+//! Velocity along direction d: v = g (F* − F)/Z, F the force on the grains along d, F* the target, g the
+//! gain, Z = Σ (K Δt + 2C) over the wall's contacts, K their stiffness, C = 2ζ√(mK) their dashpot bound. With
+//! g = 1 an elastic contact is corrected in one step. The massless wall acts as a dashpot of impedance Z/g in
+//! series with F*: dissipative, stable for g < 1 (at g = 1 the force may oscillate), exact at rest. Without
+//! contact its velocity grows 10 % per step, which avoids chatter under a light target.
 //!
-//! Source: the idea of a gain from the sum of contact stiffnesses is that of the servo walls of Cundall's programs
-//! (P. A. Cundall and O. D. L. Strack, Géotechnique 29, 1979, and later manuals); the dashpot's share is added here.
+//! Source: gain from the sum of contact stiffnesses, P. A. Cundall and O. D. L. Strack, Géotechnique 29,
+//! 1979, and later manuals; dashpot term added.
 //!
-//! Theory manual: equation (3.11) of `docs/theory/motion.md`.
+//! Theory manual: eq. (3.11), `docs/theory/motion.md`.
 
 use crate::base::Vec3;
 
-/// Growth of the speed in a step without a contact, and the least speed there over the greatest one.
+/// Growth per step without contact; smallest over greatest speed.
 const GROWTH: f64 = 1.1;
 const LEAST: f64 = 1e-3;
 
-/// Drive of a wall by a force.
+/// Servo control of a wall force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Servo {
-    /// Direction in which the wall presses, any length but zero.
+    /// Pressing direction, nonzero.
     pub direction: Vec3,
-    /// Target force against time: (time [s], force [N]), times ascending; straight in between, constant outside.
+    /// Target force: (time [s], force [N]), ascending; linear between, constant outside.
     pub force: Vec<[f64; 2]>,
     /// Greatest speed [m/s].
     pub max_speed: f64,
-    /// Gain in (0, 1]; 0.5 suits most scenes.
+    /// Gain in (0, 1], usually 0.5.
     pub gain: f64,
 }
 
 impl Servo {
-    /// Target force at a time [N].
+    /// Returns the target force [N].
     pub fn target(&self, time: f64) -> f64 {
         let after = self.force.partition_point(|p| p[0] <= time);
         match (after.checked_sub(1).map(|k| self.force[k]), self.force.get(after)) {
@@ -44,8 +42,7 @@ impl Servo {
         }
     }
 
-    /// Speed for the next step, from the force along the direction [N], the contacts' impedance Z [N s/m] and the speed of the
-    /// last step [m/s].
+    /// Velocity [m/s] for the next step; force along the direction [N], impedance Z [N s/m].
     pub(crate) fn speed(&self, time: f64, force: f64, impedance: f64, last: f64) -> f64 {
         let missing = self.target(time) - force;
         let speed = if impedance > 0.0 {
@@ -72,7 +69,7 @@ mod tests {
         assert_eq!(servo.speed(0.0, 1e9, 100.0, 0.3), -1.0);
     }
 
-    /// From rest, or after a contact has let it go, the plate gains speed step by step.
+    /// Gradual acceleration from rest or after loss of contact.
     #[test]
     fn approach_begins_slowly() {
         let servo = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 1.0, gain: 0.5 };

@@ -1,7 +1,5 @@
-//! All walls of a model as one surface of numbered patches, wall by wall in the order given.
-//!
-//! Every wall has a tree over its patches in its own frame. Walls move as rigid wholes, so a query is carried into that
-//! frame and the trees never change (a deforming surface, such as that of a solid, refits its tree instead).
+//! All walls of a model as one surface of numbered patches. Static trees in wall frames; queries are
+//! transformed.
 
 use super::body::Body;
 use super::input::{Motion, WallInput, WallShape};
@@ -21,7 +19,7 @@ use crate::spatial::surface::{Feature, PatchPoint, Surface};
 use nalgebra::UnitQuaternion;
 use std::collections::HashMap;
 
-/// Where a patch that cannot be touched is said to be [m]: out of reach of everything.
+/// Position of unreachable patches [m].
 const FAR: f64 = 1e30;
 
 #[derive(Clone, Copy, Debug)]
@@ -34,26 +32,24 @@ enum Kind {
 struct Entry {
     wall: u32,
     kind: Kind,
-    /// Patches of one number lie in one plane.
+    /// Shared by coplanar patches.
     flat: u32,
 }
 
-/// Constants of one wall.
 #[derive(Clone, Debug)]
 pub(crate) struct Wall {
     tree: Bvh,
-    /// Its first patch.
     first: u32,
     pub material: u32,
     pub motion: Motion,
-    /// Point that moments refer to and that the wall turns about, at the start [m].
+    /// Initial reference point of moments and rotation [m].
     pub centre: Vec3,
     pub servo: Option<Servo>,
     pub scarring: Option<Scarring>,
-    /// Largest damping ratio of contacts with grains.
+    /// Largest damping ratio of grain contacts.
     pub damping: f64,
     pub body: Option<Body>,
-    /// Largest distance of a point of the wall from its centre [m]; zero where turning does not move the wall's shape.
+    /// Largest point distance from the centre [m]; zero if invariant under rotation.
     pub reach: f64,
 }
 
@@ -63,19 +59,17 @@ pub struct Walls {
     entries: Vec<Entry>,
     triangles: Vec<Triangle>,
     rounds: Vec<Round>,
-    /// Wall of each triangle.
     of_triangles: Vec<u32>,
     pub(crate) walls: Vec<Wall>,
-    /// Walls that were given as plain triangle surfaces.
+    /// Number of plain triangle surfaces.
     plain: usize,
 }
 
 impl Walls {
-    /// Numbers patches, edges and vertices, and builds the trees. The first `plain` walls are named as triangle
-    /// surfaces in messages, the others as walls.
+    /// Messages name the first `plain` walls triangle surfaces.
     ///
     /// # Errors
-    /// A shape without area or with numbers that are out of range, a body without volume.
+    /// Invalid shapes, bodies without volume.
     pub fn new(input: &[WallInput], plain: usize) -> Result<Walls, ModelError> {
         let mut walls = Walls { plain, ..Walls::default() };
         for (index, wall) in input.iter().enumerate() {
@@ -155,7 +149,6 @@ impl Walls {
         Ok(())
     }
 
-    /// Name of a wall in messages.
     pub(crate) fn name(&self, wall: usize) -> String {
         match wall.checked_sub(self.plain) {
             None => format!("surface {wall}"),
@@ -163,7 +156,6 @@ impl Walls {
         }
     }
 
-    /// Place and motion of each wall at the start, for steps of `dt`.
     pub(crate) fn start(&self, gravity: &Vec3, dt: f64) -> Vec<WallState> {
         self.walls
             .iter()
@@ -195,17 +187,15 @@ impl Walls {
             .collect()
     }
 
-    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Whether all patches are triangles.
     pub(crate) fn triangulated(&self) -> bool {
         self.rounds.is_empty()
     }
 
-    /// Walls of triangles, triangle by triangle: the wall, a number that those in one plane share, and the triangle.
+    /// Triangles with wall and a number shared by coplanar ones.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = (u32, u32, &Triangle)> {
         self.entries.iter().filter_map(|entry| match entry.kind {
             Kind::Triangle(t) => Some((entry.wall, entry.flat, &self.triangles[t as usize])),
@@ -213,13 +203,11 @@ impl Walls {
         })
     }
 
-    /// Wall of a patch.
     #[inline]
     pub(crate) fn wall_of(&self, patch: u32) -> usize {
         self.entries[patch as usize].wall as usize
     }
 
-    /// Wall of what a contact names; of no wall of patches none.
     pub(crate) fn wall_of_partner(&self, partner: Partner) -> Option<usize> {
         match partner {
             Partner::Wall(wall) => Some(wall as usize),
@@ -228,13 +216,11 @@ impl Walls {
         }
     }
 
-    /// Material (index) of a patch.
     #[inline]
     pub fn material(&self, patch: u32) -> u32 {
         self.walls[self.wall_of(patch)].material
     }
 
-    /// A patch as the partner of a contact.
     pub(crate) fn partner(&self, patch: u32) -> Partner {
         match self.entries[patch as usize].kind {
             Kind::Triangle(t) => Partner::Triangle(t),
@@ -242,7 +228,7 @@ impl Walls {
         }
     }
 
-    /// All patches as bodies with faces and edges see them; `input`: the walls as they were given.
+    /// `input`: original walls.
     pub(crate) fn patchwork(&self, input: &[WallInput]) -> Vec<Patch> {
         let mut out: Vec<Patch> = Vec::with_capacity(self.entries.len());
         for (k, wall) in input.iter().enumerate() {
@@ -261,7 +247,7 @@ impl Walls {
         out
     }
 
-    /// Where the walls are, moved back in time by `back` seconds.
+    /// Wall poses `back` seconds ago.
     pub(crate) fn now(&self, states: &[WallState], back: f64, out: &mut Vec<WallNow>) {
         out.clear();
         out.extend(self.walls.iter().zip(states).map(|(wall, state)| {
@@ -285,13 +271,11 @@ impl Walls {
         }));
     }
 
-    /// The walls where they are now.
     pub(crate) fn placed<'a>(&'a self, states: &'a [WallState]) -> PlacedWalls<'a> {
         PlacedWalls { walls: self, states }
     }
 }
 
-/// The patches of a shape without triangles.
 pub(super) fn rounds(shape: &WallShape) -> Vec<Round> {
     match shape {
         WallShape::Triangles { .. } => Vec::new(),
@@ -314,7 +298,6 @@ pub(super) fn rounds(shape: &WallShape) -> Vec<Round> {
     }
 }
 
-/// Walls together with where they are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedWalls<'a> {
     walls: &'a Walls,

@@ -1,6 +1,6 @@
-//! Which walls touch each other, and with what: bodies of triangles all other walls, with rounded corners and edges.
+//! Wall–wall contact pairs: triangulated bodies, rounded, against all walls.
 //!
-//! Limits: round bodies touch only bodies of triangles; walls of which neither can be pushed do not touch, nor does ground that is scarred.
+//! Not supported: two round bodies, immovable pairs, scarred ground.
 
 use super::enclosed::enclosed;
 use super::input::{WallInput, WallShape};
@@ -11,25 +11,20 @@ use crate::base::error::ModelError;
 use crate::spatial::round::Round;
 use crate::spatial::shell::Shell;
 
-/// Radius that the corners and edges of a body are rounded with unless one is given, over the smallest side of its bounds.
+/// Default rounding radius over the smallest side of the bounds.
 const ROUNDING: f64 = 0.02;
 
-/// How often that is halved at most where it is too large for the surface.
+/// Most halvings of a radius too large for the surface.
 const HALVED: i32 = 6;
 
-/// A wall as others touch it.
 #[derive(Clone, Debug)]
 pub(crate) enum Form {
-    /// Triangles.
     Shell(Box<Shell>),
-    /// Other patches.
     Rounds(Vec<Round>),
-    /// One that no wall touches.
     Untouched,
 }
 
-/// The forms of all walls, and the pairs that touch: numbers of a body of triangles and another wall, ascending; of two such bodies the lower
-/// number comes first.
+/// Pairs ascend; triangulated body first, of two the lower index.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shells {
     pub forms: Vec<Form>,
@@ -37,10 +32,10 @@ pub(crate) struct Shells {
 }
 
 impl Shells {
-    /// `input`: the walls as they were given.
+    /// `input`: original walls.
     ///
     /// # Errors
-    /// The corners of a body cannot be rounded as asked.
+    /// Rounding radius that does not fit.
     pub fn new(input: &[WallInput], walls: &Walls) -> Result<Shells, ModelError> {
         let free = |k: usize| walls.walls[k].body.as_ref().is_some_and(|b| b.inverse_mass > 0.0);
         let shell = |k: usize| matches!(input[k].shape, WallShape::Triangles { .. });
@@ -75,7 +70,6 @@ impl Shells {
         Ok(Shells { forms, pairs })
     }
 
-    /// The surface of a body of triangles.
     pub fn shell(&self, wall: u32) -> Option<&Shell> {
         match self.forms.get(wall as usize) {
             Some(Form::Shell(shell)) => Some(shell),
@@ -83,8 +77,7 @@ impl Shells {
         }
     }
 
-    /// Corners, and lengths of edges [m], that can press at once where a pair lies flat on each other, within `reach` [m]; of the ground that a
-    /// body lies on as much as of the body.
+    /// Corners and edge lengths [m] in contact, of ground and body, if flat within `reach` [m].
     pub fn flattest(&self, [a, b]: [u32; 2], reach: f64) -> [f64; 2] {
         let own = self.shell(a).map_or([0.0; 2], |s| s.flattest(reach));
         let other = match self.forms.get(b as usize) {
@@ -102,16 +95,14 @@ impl Shells {
         [own[0] + other[0], own[1] + other[1]]
     }
 
-    /// Radius that the corners and edges of a wall are rounded with [m].
     pub fn radius(&self, wall: u32) -> f64 {
         self.shell(wall).map_or(0.0, |s| s.radius)
     }
 }
 
-/// The surface of a body, rounded.
 fn rounded(vertices: &[Vec3], triangles: &[[u32; 3]], given: Option<f64>) -> Result<Shell, &'static str> {
     let same = welded(vertices);
-    // An open surface has no inside to go to.
+    // An open surface has no inside.
     let faces = enclosed(vertices, triangles).map(|e| e.faces);
     let round = |radius: f64| match &faces {
         Some(faces) => Shell::rounded(vertices, faces, &same, radius),

@@ -1,11 +1,11 @@
-//! Triangles as patches.
+//! Triangle patches.
 //!
-//! Triangles that lie in one plane share its bits: seed by seed in falling order of area, neighbours across edges whose
-//! vertices are in the seed's plane to rounding take over the seed's normal. So a floor of many triangles, slivers
-//! among them, has the same height and the same normal everywhere, and a sphere that crosses its seams feels no change.
+//! Coplanar triangles share one plane bitwise: from seeds in descending area, neighbours with vertices in the
+//! seed's plane (to rounding) adopt its normal. Forces then are continuous over the seams of a flat floor,
+//! slivers included.
 //!
-//! Each triangle keeps its plane and its three edges as half planes, from which a lower bound of the distance costs a
-//! few products: most patches of a near list are distinguished from those in touch by it.
+//! Plane and edge half-planes give a cheap lower bound of the distance, which excludes most neighbour-list
+//! patches.
 
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -13,28 +13,27 @@ use crate::lanes::{self, Real, V3};
 use crate::shape::triangle::{self, Region};
 use crate::spatial::bvh::Aabb;
 
-/// Relative slack of lower bounds.
+/// Relative tolerance of lower bounds.
 pub(super) const SLACK: f64 = 1e-9;
-/// Smallest height over longest side that a triangle may have: below it its normal has no meaning.
+/// Smallest valid height over longest side.
 const FLATTEST: f64 = 1e-9;
-/// Distance from a plane, over the largest coordinate of the surface, that counts as rounding.
+/// Rounding tolerance over the largest coordinate.
 const COPLANAR: f64 = 1e-12;
 
-/// A triangle in the frame of its wall. What a contact inside it needs comes first, in two lines of the cache.
+/// Triangle in its wall's frame. Interior contact data comes first, in two cache lines.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Triangle {
-    /// Unit normal and level of its plane.
+    /// Unit normal, level.
     plane: [f64; 4],
-    /// Outward normal and level of each edge, within the plane.
+    /// Outward in-plane normal and level by edge.
     rims: [[f64; 4]; 3],
     pub corners: [Vec3; 3],
-    /// Numbers of edges and vertices, unique within the surface.
+    /// Unique within the surface.
     pub edges: [u32; 3],
     pub vertices: [u32; 3],
 }
 
-/// Unit normal and level of a plane.
 pub(crate) type Level<R> = [R; 4];
 
 #[inline(always)]
@@ -42,7 +41,7 @@ fn height<R: Real>(plane: &Level<R>, x: V3<R>) -> R {
     plane[0] * x.x + plane[1] * x.y + plane[2] * x.z - plane[3]
 }
 
-/// A lower bound of the distance from a triangle to `x`: from its height above the plane and outside the edges.
+/// Lower bound of the distance to `x`.
 #[inline(always)]
 pub(crate) fn clearance<R: Real>(plane: &Level<R>, rims: &[Level<R>; 3], x: V3<R>) -> R {
     let up = height(plane, x);
@@ -51,20 +50,17 @@ pub(crate) fn clearance<R: Real>(plane: &Level<R>, rims: &[Level<R>; 3], x: V3<R
     (up * up + out * out).sqrt() * R::splat(1.0 - SLACK)
 }
 
-/// Whether the edges tell that `x` stands above the inside.
 #[inline(always)]
 pub(crate) fn inside<R: Real>([a, b, c]: &[Level<R>; 3], x: V3<R>) -> R::Mask {
     let below = R::zero();
     height(a, x).le(below) & height(b, x).le(below) & height(c, x).le(below)
 }
 
-/// Where `x` stands on a plane.
 #[inline(always)]
 pub(crate) fn foot<R: Real>(plane: &Level<R>, x: V3<R>) -> V3<R> {
     x - V3::new(plane[0], plane[1], plane[2]) * height(plane, x)
 }
 
-/// The point of the edge from `a` to `b` that is closest to `x`.
 #[inline(always)]
 pub(crate) fn on_edge<R: Real>(a: V3<R>, b: V3<R>, x: V3<R>) -> V3<R> {
     let (along, zero, one) = (b - a, R::zero(), R::splat(1.0));
@@ -74,18 +70,17 @@ pub(crate) fn on_edge<R: Real>(a: V3<R>, b: V3<R>, x: V3<R>) -> V3<R> {
 }
 
 impl Triangle {
-    /// Unit normal of its plane.
     #[inline(always)]
     pub fn normal(&self) -> Vec3 {
         Vec3::new(self.plane[0], self.plane[1], self.plane[2])
     }
 
-    /// Its plane, to compare: neighbours that lie in one plane to rounding have the same bits.
+    /// Equal for coplanar neighbours.
     pub fn plane_bits(&self) -> [u64; 4] {
         self.plane.map(f64::to_bits)
     }
 
-    /// Plane, planes of the edges, corners.
+    /// Plane, edge planes, corners.
     pub fn numbers(&self) -> [f64; 25] {
         let corners = self.corners.iter().flat_map(|c| c.iter());
         let all = self.plane.iter().chain(self.rims.as_flattened()).chain(corners);
@@ -94,27 +89,24 @@ impl Triangle {
         out
     }
 
-    /// Has the processor fetch the lines that a contact inside it needs.
     #[inline(always)]
     pub fn fetch(&self) {
         lanes::prefetch(std::slice::from_ref(&self.plane));
         lanes::prefetch(&self.rims[2..]);
     }
 
-    /// A lower bound of the distance to `x`: from its height above the plane and outside the edges.
+    /// Lower bound of the distance.
     #[inline(always)]
     pub fn clearance(&self, x: &Vec3) -> f64 {
         clearance(&self.plane, &self.rims, V3::from_vec(x))
     }
 
-    /// Where `x` stands above the inside, if the edges tell that it does.
     #[inline(always)]
     pub fn foot(&self, x: &Vec3) -> Option<Vec3> {
         let x = V3::from_vec(x);
         inside(&self.rims, x).then(|| foot(&self.plane, x).to_vec())
     }
 
-    /// Closest point, and where on the triangle it lies.
     #[inline(always)]
     pub fn closest(&self, x: &Vec3) -> (Vec3, Region) {
         match self.foot(x) {
@@ -123,7 +115,7 @@ impl Triangle {
         }
     }
 
-    /// The closest point where the edges do not state that it is inside.
+    /// Closest point if not known to be inside.
     #[inline(never)]
     fn beside(&self, x: &Vec3) -> (Vec3, Region) {
         let [a, b, c] = &self.corners;
@@ -132,7 +124,7 @@ impl Triangle {
         let point = match region {
             Region::Face => foot(&self.plane, of(x)).to_vec(),
             Region::Vertex(k) => self.corners[k],
-            // From the lower vertex, so that both triangles of an edge find the same bits.
+            // From the lower vertex: bitwise identical for both triangles.
             Region::Edge(k) => {
                 let (first, second) = (k, (k + 1) % 3);
                 let (first, second) = if self.vertices[first] < self.vertices[second] {
@@ -146,22 +138,20 @@ impl Triangle {
         (point, region)
     }
 
-    /// Bounds.
     pub fn bounds(&self) -> Aabb {
         let [a, b, c] = &self.corners;
         (a.inf(b).inf(c).into(), a.sup(b).sup(c).into())
     }
 }
 
-/// The three sides of a triangle as sorted vertex pairs.
 fn sides(t: &[u32; 3]) -> [[u32; 2]; 3] {
     [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
-/// For each vertex the lowest one at the same place.
+/// For each vertex the lowest coincident one.
 pub(crate) fn welded(vertices: &[Vec3]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
-    // Adding zero makes −0 and 0 the same.
+    // Adding zero merges −0 and 0.
     let key = |v: u32| vertices[v as usize].map(|x| x + 0.0);
     let compare = |a: &u32, b: &u32| {
         let (p, q) = (key(*a), key(*b));
@@ -179,10 +169,10 @@ pub(crate) fn welded(vertices: &[Vec3]) -> Vec<u32> {
     same
 }
 
-/// The patches of a surface; `name` goes before messages.
+/// `name` prefixes messages.
 ///
 /// # Errors
-/// A triangle that names a vertex which does not exist, has a vertex that is not finite, or no area.
+/// Vertex out of range or not finite, zero area.
 pub(crate) fn triangles(
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
@@ -229,7 +219,7 @@ pub(crate) fn triangles(
         .collect())
 }
 
-/// Plane of each triangle, the same bits for neighbours that lie in one plane to rounding.
+/// Bitwise equal for coplanar neighbours.
 fn planes(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32], normals: &[Vec3]) -> Vec<[f64; 4]> {
     let welded: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| same[v as usize])).collect();
     let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());

@@ -1,13 +1,13 @@
 use super::*;
 
-/// A tilted floor with slivers, its vertices rounded, as separate triangles: one plane for all, to the last bit; a
-/// roof beside it keeps its own.
+/// Tilted floor of separate triangles, with slivers and rounded vertices: bitwise one plane; an adjacent roof
+/// differs.
 #[test]
 fn coplanar_triangles_share_their_plane() {
     let turn = nalgebra::UnitQuaternion::from_euler_angles(0.3, -0.7, 1.1);
     let n = 12;
     let at = |i: usize, j: usize| {
-        // Rows that nearly meet make slivers.
+        // Nearly coincident rows make slivers.
         let y = if j.is_multiple_of(2) { j as f64 } else { j as f64 - 1.0 + 1e-6 };
         turn * Vec3::new(i as f64 * 0.1, y * 0.1, 0.0) + Vec3::new(5.0, -3.0, 2.0)
     };
@@ -31,7 +31,7 @@ fn coplanar_triangles_share_their_plane() {
     assert!(roof[0].normal().dot(&floor[0].normal()).abs() < 0.999);
 }
 
-/// The cheap test never rejects what is within reach, and rejects most of what is not.
+/// Keeps everything within reach, rejects most of the rest.
 #[test]
 fn rejection_is_safe_and_sharp() {
     use rand_core::Rng;

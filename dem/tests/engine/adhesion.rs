@@ -1,4 +1,4 @@
-//! Adhesion: pull-off force, friction under it, and the speed below which an impact sticks.
+//! Adhesion: pull-off force, friction, sticking impacts.
 
 use crate::scene::{Random, Run, plane, sphere, stone, weightless};
 use std::f64::consts::PI;
@@ -27,10 +27,10 @@ fn ceiling() -> TriangleSurface {
     TriangleSurface { vertices, triangles: vec![[0, 1, 2]], ..TriangleSurface::default() }
 }
 
-/// A sphere below a plane, a triangle or a fixed sphere hangs under 0.99 of the pull-off force 2π w R*, in the overlap of
-/// the closed form, and falls under 1.01 of it (Derjaguin, Muller & Toporov 1975). R* is R, R and R/2.
+/// Holds under 0.99 of the pull-off force 2π w R* and falls under 1.01 of it (Derjaguin, Muller & Toporov
+/// 1975). Plane, triangle: R* = R; sphere: R/2.
 #[test]
-fn hangs_up_to_the_pull_off_force() {
+fn holds_up_to_pull_off_force() {
     for (law, material) in [stone(), glass()].into_iter().enumerate() {
         for (partner, reduced) in [("plane", R), ("triangle", R), ("sphere", 0.5 * R)] {
             let pull = 2.0 * PI * W * reduced;
@@ -69,7 +69,7 @@ fn hangs_up_to_the_pull_off_force() {
     }
 }
 
-/// Without any load a contact that adheres bears friction up to μ F: the pressure in it is F (Derjaguin 1934).
+/// Without load, friction reaches μF under the adhesive pressure F (Derjaguin 1934).
 #[test]
 fn friction_without_a_load() {
     let pull = 2.0 * PI * W * R;
@@ -92,9 +92,8 @@ fn friction_without_a_load() {
     }
 }
 
-/// Speed after an impact at speed `v` with the linear law, spring K, dashpot C = 2ζ√(mK), pull F; zero where it sticks.
-/// The overlap swings about F/K, x(t) = e^(−ζωt)(−d₀ cos pt + B sin pt) + d₀, until spring and dashpot together no
-/// longer push; from then on F alone slows the parting over what is left of the overlap.
+/// Rebound speed with spring K, dashpot C = 2ζ√(mK) and pull F; zero if it sticks. The overlap is
+/// x(t) = e^(−ζωt)(−d₀ cos pt + B sin pt) + d₀ until spring and dashpot stop pushing; then F acts alone.
 fn rebound(v: f64, mass: f64, stiffness: f64, zeta: f64, pull: f64) -> f64 {
     let omega = (stiffness / mass).sqrt();
     let p = omega * (1.0 - zeta * zeta).sqrt();
@@ -120,8 +119,7 @@ fn rebound(v: f64, mass: f64, stiffness: f64, zeta: f64, pull: f64) -> f64 {
     (rate * rate - 2.0 * pull * d.max(0.0) / mass).max(0.0).sqrt()
 }
 
-/// Impacts on a plane and of two spheres: below the speed of the closed form they stick, above they part with its speed. What
-/// sticks has its energy accounted for.
+/// Sticking limit and rebound speed in closed form; sticking impacts dissipate their energy.
 #[test]
 fn slow_impacts_stick() {
     let material = Material { friction: 0.0, ..stone() };
@@ -165,7 +163,7 @@ fn slow_impacts_stick() {
             };
             if share < 1.0 {
                 assert!(apart < 0.0, "{pair} {share}: {apart:e}");
-                // The first force counts for its part of the step, whatever that is.
+                // The first force counts for its part of the step.
                 let open = (energy(&run) / before - 1.0).abs();
                 println!("{share} of it: sticks, energy open {open:.1e}");
                 assert!(open < 5e-4, "{pair} {share}: {open:e}");
@@ -181,10 +179,9 @@ fn slow_impacts_stick() {
     }
 }
 
-/// A cloud of spheres that stick together: what adhesion holds is in the energies, so that they close with the ledger;
-/// momentum is kept; the bits are those of any number of threads, restart included.
+/// Energies include adhesion; bits are independent of threads and restart.
 #[test]
-fn a_cloud_sticks_and_its_balances_close() {
+fn sticking_cloud_closes_balances() {
     let input = || {
         let mut random = Random::new(3);
         let mut input = sticky(Material { friction: 0.3, ..stone() });
@@ -230,7 +227,7 @@ fn a_cloud_sticks_and_its_balances_close() {
 }
 
 #[test]
-fn what_adhesion_does_not_go_with_is_refused() {
+fn rejects_adhesion_conflicts() {
     let mut input = sticky(stone());
     input.shapes.push(Shape::Box { half: [R; 3] });
     input.bodies.push(BodyInput { shape: 1, ..BodyInput::default() });

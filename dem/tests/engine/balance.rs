@@ -1,4 +1,4 @@
-//! Balances of energy and momentum of whole scenes.
+//! Energy and momentum balances of whole scenes.
 
 use crate::scene::{Random, Run, pile, plane, sphere, stone, weightless};
 use trackbed_dem::ledger::Impulse;
@@ -20,7 +20,6 @@ fn gap(run: &Run, before: &Impulse) -> (f64, f64) {
     )
 }
 
-/// A settling pile of clumps and spheres: what is lost in contacts is what the bodies and springs have lost.
 #[test]
 fn ledger_of_a_settling_pile_closes() {
     let mut closure = Vec::new();
@@ -51,7 +50,7 @@ fn ledger_of_a_settling_pile_closes() {
     assert!(closure[0] > 4.0 * closure[1], "{closure:?}");
 }
 
-/// As above with a block on top, applied forces, a moving wall and local damping: every entry of the ledger.
+/// Every term of the balance: block, applied forces, moving wall, local damping.
 #[test]
 fn ledger_with_every_source_closes() {
     let mut input = pile(4, true);
@@ -89,7 +88,7 @@ fn ledger_with_every_source_closes() {
     assert_eq!(run.state.velocity(8), Vec3::new(0.0, 0.05, 0.0));
 }
 
-/// A sphere pressed between two planes: the floor carries weight and load, and the mean stress is −F 2r/V.
+/// Sphere between two planes: mean stress −F 2r/V.
 #[test]
 fn squeezed_sphere_has_its_stress() {
     let mut input = weightless(Material { tangential_damping_ratio: 1.0, restitution: 0.2, ..stone() });
@@ -111,7 +110,6 @@ fn squeezed_sphere_has_its_stress() {
     assert!(measure::contact_forces(&run.model, &run.state)[0].norm() < 1e-6);
 }
 
-/// A block on four spheres on a plane: each carries a quarter, the floor all.
 #[test]
 fn block_rests_on_spheres() {
     let mut input = weightless(Material { tangential_damping_ratio: 1.0, restitution: 0.2, ..stone() });
@@ -140,7 +138,7 @@ fn block_rests_on_spheres() {
     );
 }
 
-/// At 0.9 of the stability limit a pile of clumps, spheres and a block still settles and keeps its accounts.
+/// 0.9 of the critical time step.
 #[test]
 fn pile_settles_just_below_the_limit() {
     let mut input = pile(4, true);
@@ -161,15 +159,14 @@ fn pile_settles_just_below_the_limit() {
     assert!((energy_left(&run) - start).abs() < 1e-2 * lost);
 }
 
-/// A cloud of spheres of unlike sizes, several blocks of them, that rub against each other: angular momentum is kept to
-/// rounding. Across blocks each partner's torque needs its own lever.
+/// To rounding: across blocks, each partner's torque needs its own lever arm.
 #[test]
-fn unlike_spheres_of_several_blocks_keep_their_angular_momentum() {
+fn unequal_spheres_conserve_angular_momentum() {
     let mut random = Random::new(17);
     let mut input = weightless(Material { restitution: 0.8, ..stone() });
     for k in 0..2744_usize {
         let cell = Vec3::new((k % 14) as f64, (k / 14 % 14) as f64, (k / 196) as f64) - Vec3::repeat(6.5);
-        // As on a chessboard, so that neighbours are unlike.
+        // Chessboard of two sizes.
         let scale = if (k + k / 14 + k / 196).is_multiple_of(2) { 1.0 } else { 0.4 };
         let velocity = random.vector() * 0.5 - cell * 0.1;
         let spin = random.vector() * 50.0;

@@ -1,11 +1,11 @@
-//! Body forces: drag against closed forms, and the accounts of energy and momentum with it.
+//! Drag against closed forms, with energy and momentum balances.
 
 use crate::scene::{Run, pile, sphere, stone, weightless};
 use trackbed_dem::{BodyForce, ModelInput, Shape, TimeStep, Vec3, Wind, measure};
 
 const AIR: f64 = 1.2;
 
-/// Seven spheres of three sizes, so that the last group of four is not full, each alone.
+/// Seven distant spheres of three sizes: an incomplete group of four.
 fn apart(wind: Wind, dt: f64) -> ModelInput {
     let mut input = weightless(stone());
     input.bodies = (0..7)
@@ -20,7 +20,7 @@ fn apart(wind: Wind, dt: f64) -> ModelInput {
     input
 }
 
-/// From rest in still air v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ). The error is of first order in the step.
+/// v = v∞ tanh(g t/v∞), v∞² = 8 r g ρₛ/(3 C ρ). First order in the step.
 #[test]
 fn falls_as_the_closed_form_says() {
     let wind = Wind { velocity: Vec3::zeros(), density: AIR, drag: 0.8 };
@@ -36,7 +36,7 @@ fn falls_as_the_closed_form_says() {
         for b in 0..7 {
             let r = 0.01 * run.model.scale(b);
             let end = (8.0 * r * 9.81 * 2600.0 / (3.0 * 0.8 * AIR)).sqrt();
-            // Velocities are those of half a step ago.
+            // Velocities are half a step old.
             let t = run.state.time - 0.5 * dt;
             let exact = end * (9.81 * t / end).tanh();
             worst = worst.max((-run.state.velocity(b).z / exact - 1.0).abs());
@@ -47,7 +47,7 @@ fn falls_as_the_closed_form_says() {
     assert!(errors[1] < 5e-5 && (1.8..2.2).contains(&(errors[0] / errors[1])), "{errors:?}");
 }
 
-/// Taken along from rest by a wind U: v = U k U t/(1 + k U t), k = 3 C ρ/(8 r ρₛ).
+/// v = U k U t/(1 + k U t), k = 3 C ρ/(8 r ρₛ).
 #[test]
 fn wind_takes_stones_along() {
     let velocity = Vec3::new(12.0, -9.0, 20.0);
@@ -65,8 +65,6 @@ fn wind_takes_stones_along() {
     }
 }
 
-/// A heap of clumps and spheres under a gale: work and impulse of the drag are what motion and contacts show, and clumps
-/// have the drag of their own volume.
 #[test]
 fn accounts_close_with_drag() {
     let mut input = pile(4, false);
@@ -96,9 +94,9 @@ fn accounts_close_with_drag() {
     );
 }
 
-/// The first step from rest: a clump gets ½ ρ C π r² U² with the radius of the sphere of its volume.
+/// First step from rest: ½ ρ C π r² U² with the volume-equivalent radius.
 #[test]
-fn clumps_have_the_drag_of_their_volume() {
+fn clump_drag_uses_equivalent_radius() {
     let mut input = pile(3, false);
     let wind = Wind { velocity: Vec3::new(10.0, 0.0, 0.0), density: AIR, drag: 1.0 };
     input.body_forces = vec![BodyForce::Wind(wind)];

@@ -1,4 +1,4 @@
-//! Bonds against closed forms: a single bond to fracture, a cantilever of spheres, objectivity.
+//! Bonds against closed forms: single bond, cantilever, objectivity.
 
 use crate::scene::{Run, plane, rigid, sphere, stone, weightless};
 use std::f64::consts::PI;
@@ -12,7 +12,7 @@ use trackbed_dem::{AppliedForce, BodyInput, LocalDamping, ModelInput, TimeStep, 
 /// Radius of the spheres [m].
 const R: f64 = 0.01;
 
-/// A cement without surprises: E = 1 GPa, strengths 0.2 and 0.4 MPa.
+/// E = 1 GPa, strengths 0.2 and 0.4 MPa.
 pub fn cement() -> ParallelBond {
     ParallelBond {
         radius_factor: 1.0,
@@ -26,13 +26,13 @@ pub fn cement() -> ParallelBond {
     }
 }
 
-/// Area, second and polar moment of the bond's disk.
+/// Area, second moment, polar moment.
 fn section(r: f64) -> (f64, f64, f64) {
     (PI * r * r, PI * r.powi(4) / 4.0, PI * r.powi(4) / 2.0)
 }
 
-/// Two spheres that touch along a skew direction, the first driven against the fixed second until the bond breaks.
-/// Returns the last record before the break, the steps it took, and how it broke.
+/// Drives a sphere against a fixed one along a skew direction until the bond breaks. Returns the last record
+/// before the break and the mode.
 fn drive(
     kind: Bond,
     motion: impl Fn(Vec3, Vec3) -> (Vec3, Vec3, Vec3),
@@ -66,9 +66,9 @@ pub fn near(found: f64, expected: f64, relative: f64) {
     assert!((found / expected - 1.0).abs() < relative, "found {found}, expected {expected}");
 }
 
-/// Loads at break in the four pure modes; the drive takes about 4000 steps, so a step is 0.025 % of the load.
+/// About 4000 steps to the break: a step is 0.025 % of the load.
 #[test]
-fn single_bond_to_fracture_in_each_mode() {
+fn single_bond_breaks_in_each_mode() {
     let (a, i, j) = section(R);
     let kind = || Bond::Parallel(cement());
     let zero = Vec3::zeros();
@@ -76,7 +76,7 @@ fn single_bond_to_fracture_in_each_mode() {
     let (r, mode) = drive(kind(), |n, _| (n * 1e-3, zero, zero));
     near(r.tension, 2e5 * a, 1e-3);
     assert_eq!(mode, BreakMode::Tension);
-    // Slip 2e-5 m; the line of centres turns by 0.001 and stretches by 1e-8 m.
+    // Slip 2e-5 m; rotation 0.001, stretch 1e-8 m.
     let (r, mode) = drive(kind(), |_, t| (t * 5e-3, zero, zero));
     near(r.shear.norm(), 4e5 * a, 1e-3);
     assert_eq!(mode, BreakMode::Shear);
@@ -90,7 +90,7 @@ fn single_bond_to_fracture_in_each_mode() {
     assert_eq!(mode, BreakMode::Shear);
 }
 
-/// Half the bending moment counted: twice the load. Half the radius: an eighth.
+/// Half the moment: twice the load. Half the radius: an eighth.
 #[test]
 fn moment_factor_and_radius() {
     let bend = |_: Vec3, t: Vec3| (Vec3::zeros(), t * 0.1, t * -0.1);
@@ -101,14 +101,14 @@ fn moment_factor_and_radius() {
     near(r.bending, 2e5 * i / R / 8.0, 2e-3);
 }
 
-/// Under pressure p = 0.5 MPa a Mohr–Coulomb bond holds c + p tan φ; a stretched one breaks earlier.
+/// Mohr–Coulomb: c + p tan φ at p = 0.5 MPa.
 #[test]
 fn shear_strength_grows_with_pressure() {
     let (a, _, _) = section(R);
     let shear_strength = ShearStrength::MohrCoulomb { cohesion: 4e5, friction: 0.7 };
     let kind = Bond::Parallel(ParallelBond { tensile_strength: f64::INFINITY, shear_strength, ..cement() });
     for normal in [-2e-4, 2e-4] {
-        // Pressed (or pulled) along with the shear: the ratio of the two is fixed.
+        // Fixed ratio of compression (or tension) to shear.
         let (r, mode) = drive(kind.clone(), |n, t| (t * 5e-3 + n * normal, Vec3::zeros(), Vec3::zeros()));
         assert_eq!(mode, BreakMode::Shear);
         near(r.shear.norm(), 4e5 * a - 0.7 * r.tension, 1e-3);
@@ -116,7 +116,6 @@ fn shear_strength_grows_with_pressure() {
     }
 }
 
-/// By sum: tension and shear each at a part of their strength, together 1.
 #[test]
 fn criterion_by_sum() {
     let (a, _, _) = section(R);
@@ -128,7 +127,7 @@ fn criterion_by_sum() {
 }
 
 #[test]
-fn contact_point_bond_breaks_at_its_forces_and_does_not_bend() {
+fn contact_point_bond_has_no_moment() {
     let kind = || {
         Bond::ContactPoint(ContactPoint {
             normal: 1e7,
@@ -145,13 +144,12 @@ fn contact_point_bond_breaks_at_its_forces_and_does_not_bend() {
     let (r, mode) = drive(kind(), |_, t| (t * 1e-3, Vec3::zeros(), Vec3::zeros()));
     near(r.shear.norm(), 30.0, 1e-3);
     assert_eq!(mode, BreakMode::Shear);
-    // Rolling against each other: slip, but no moment.
+    // Rolling: slip without moment.
     let (r, _) = drive(kind(), |_, t| (Vec3::zeros(), t, Vec3::zeros()));
     assert_eq!((r.bending, r.twisting), (0.0, 0.0));
     near(r.shear.norm(), 30.0, 2e-3);
 }
 
-/// A cantilever of spheres under local damping, its tip loaded.
 fn cantilever(bonds: usize, kind: ParallelBond) -> Run {
     let mut input = weightless(stone());
     for k in 0..=bonds {
@@ -168,9 +166,8 @@ fn cantilever(bonds: usize, kind: ParallelBond) -> Run {
     Run::new(input)
 }
 
-/// Deflection of a beam of ten bonds. Each bond turns by M/(kₙI) and slips by P/(kₛA), so with the arms
-/// (k − ½) l of the load: δ = Σ P (k − ½)² l²/(kₙI) + N P/(kₛA), which is Timoshenko's P L³/3EI + P L/kₛAl but for a
-/// share 1/(4N²) of the first.
+/// Each of ten bonds rotates by M/(kₙI) and slips by P/(kₛA): δ = Σ P (k − ½)² l²/(kₙI) + N P/(kₛA). This is
+/// Timoshenko's P L³/3EI + P L/kₛAl, less 1/(4N²) of the first term.
 #[test]
 fn cantilever_deflects_as_a_beam() {
     let (n, load) = (10, Vec3::new(0.0, 0.3, -0.4));
@@ -196,9 +193,9 @@ fn cantilever_deflects_as_a_beam() {
     assert!((tip - load * (found / p)).norm() < 1e-3 * found);
 }
 
-/// The load at which it breaks: at the root, P (N − ½) l R/I = strength.
+/// P (N − ½) l R/I = strength.
 #[test]
-fn cantilever_breaks_at_the_root_under_the_load_predicted() {
+fn cantilever_breaks_at_predicted_load() {
     let n = 10;
     let mut run = cantilever(n, cement());
     let (_, i, _) = section(R);
@@ -218,9 +215,9 @@ fn cantilever_breaks_at_the_root_under_the_load_predicted() {
     panic!("the beam holds");
 }
 
-/// A bonded pair thrown while turning: what it stores besides the tension of its turning is nothing.
+/// Only the centrifugal tension stores energy.
 #[test]
-fn free_pair_turns_without_shear_or_bending() {
+fn free_pair_rotates_without_shear() {
     let mut input = weightless(stone());
     let w = Vec3::new(20.0, -35.0, 50.0);
     for x in [Vec3::new(0.006, 0.0, 0.008), Vec3::new(-0.006, 0.0, -0.008)] {
@@ -244,13 +241,12 @@ fn free_pair_turns_without_shear_or_bending() {
     }
     let turned = w.norm() * run.state.time / std::f64::consts::TAU;
     println!("free pair: {turned} turns, shear, bending and twisting hold {worst:e} of the kinetic energy");
-    // What is there comes from the line of centres, which slows down as the turning stretches it.
+    // Residual: the stretching line of centres slows down.
     assert!(worst < 1e-6 && turned > 5.0);
 }
 
-/// A bond begins with the model: what its spheres did before the first step is no slip.
 #[test]
-fn motion_before_the_start_does_not_count() {
+fn initial_motion_causes_no_slip() {
     let mut input = weightless(stone());
     input.bodies = vec![sphere(Vec3::x() * 0.02, Vec3::y() * 0.01), sphere(Vec3::zeros(), Vec3::zeros())];
     input.bond_kinds.push(Bond::Parallel(cement()));
@@ -263,7 +259,7 @@ fn motion_before_the_start_does_not_count() {
 }
 
 #[test]
-fn inputs_that_make_no_bond_are_refused() {
+fn rejects_inputs_without_bond() {
     let base = || {
         let mut input = weightless(stone());
         input.bodies = vec![sphere(Vec3::zeros(), Vec3::zeros()), sphere(Vec3::x() * 0.02, Vec3::zeros())];
@@ -302,8 +298,7 @@ fn inputs_that_make_no_bond_are_refused() {
     kind(|b| b.stiffness = ParallelStiffness::Modulus { young: 1e9, ratio: 0.0 }, "stiffness ratio is 0");
 }
 
-/// The limit of the step counts the bonds: just above it is refused, at nine tenths a bonded cube rings on without
-/// gaining energy, and at twice the limit it blows up.
+/// Rejected above the critical time step; stable at 0.9 of it; unstable at twice.
 #[test]
 fn step_limit_of_a_bonded_cube() {
     let cube = |time_step| {

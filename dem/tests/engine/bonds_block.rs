@@ -1,9 +1,9 @@
-//! A block of 6331 bonded spheres in compression against another program.
+//! Compression of a block of 6331 bonded spheres against other programs.
 //!
-//! The block is that of `inputs/geo/rock-ucs`: 0.36 m cube cut from a settled bed, 19,480 bonds between spheres nearer
-//! than 1 mm, grips of fixed spheres at both ends. LAMMPS (2025-07-22, `bond_style bpm/rotational`, the same bonds, step
-//! and speed 0.01 m/s) finds (F_top − F_bottom)/2 = 7.858e7 N per unit of strain between strains 6.94e-5 and 2.22e-4,
-//! and a peak of 2.906e4 N at 4.03e-4. YADE finds 7.61e7 N, Kratos 8.89e7 N.
+//! Block of `inputs/geo/rock-ucs`: 0.36 m cube, 19,480 bonds at gaps below 1 mm, fixed grips. LAMMPS
+//! (2025-07-22, `bond_style bpm/rotational`, same bonds, step and speed 0.01 m/s):
+//! (F_top − F_bottom)/2 = 7.858e7 N per unit strain between 6.94e-5 and 2.22e-4, peak 2.906e4 N at 4.03e-4.
+//! YADE: 7.61e7 N, Kratos: 8.89e7 N.
 
 use crate::scene::Run;
 use std::path::Path;
@@ -48,7 +48,7 @@ fn block(speed: f64) -> ModelInput {
     let pairs = within_gap(&spheres, 1e-3, |_, _| true);
     assert_eq!((spheres.len(), pairs.len()), (6331, 19480));
     input.bonds = pairs.iter().map(|&[a, b]| BondInput::new(a, b, 0)).collect();
-    // LAMMPS's rolling coefficient 0.004 acts with ½ r, its twisting coefficient with ½.
+    // LAMMPS: rolling coefficient 0.004 acts with ½ r, twisting coefficient with ½.
     input.bond_kinds.push(Bond::Direct(DirectBond {
         stiffness: [1.5708e7, 6.2832e6, 392.70, 314.16],
         strength: [62.83, 125.66, 0.15708, 0.31416],
@@ -59,7 +59,7 @@ fn block(speed: f64) -> ModelInput {
     input
 }
 
-/// Strain and mean force of the grips, every 25 steps.
+/// Strain and mean grip force, every 25 steps.
 fn compress(speed: f64, to: f64) -> (Run, Vec<(f64, f64)>) {
     let mut run = Run::new(block(speed));
     let parts: Vec<u32> = (0..run.model.body_count()).map(|b| run.model.part(b)).collect();
@@ -75,7 +75,7 @@ fn compress(speed: f64, to: f64) -> (Run, Vec<(f64, f64)>) {
     (run, curve)
 }
 
-/// Slope of the straight line that fits best between two strains.
+/// Least-squares slope between two strains.
 fn slope(curve: &[(f64, f64)], from: f64, to: f64) -> f64 {
     let points: Vec<_> = curve.iter().filter(|p| p.0 >= from && p.0 <= to).collect();
     let n = points.len() as f64;
@@ -117,7 +117,7 @@ fn strength_of_a_bonded_block() {
         println!("{:.4e} {:.1}", p.0, p.1);
     }
     assert!((found / LAMMPS_SLOPE - 1.0).abs() < 0.05, "{found:e}");
-    // LAMMPS gives broken pairs the contact of their whole overlap at once, and prints every tenth of these rows.
+    // LAMMPS gives broken pairs the contact of their total overlap, and prints every tenth of these rows.
     assert!((peak.1 / LAMMPS_PEAK - 1.0).abs() < 0.1, "{}", peak.1);
     assert!((peak.0 / 4.03e-4 - 1.0).abs() < 0.1, "{}", peak.0);
 }

@@ -1,4 +1,4 @@
-//! Bonds that fill the faces between bodies that are no spheres: a row of slabs against closed forms, pieces that fly, and what is refused.
+//! Face bonds: row of slabs against closed forms, flying pieces, errors.
 
 use crate::bonds::near;
 use crate::scene::{Random, Run, stone, weightless};
@@ -11,7 +11,7 @@ use trackbed_dem::{
     AppliedForce, BodyForce, BodyInput, LocalDamping, Model, ModelInput, Shape, TimeStep, Vec3, measure,
 };
 
-/// Width and thickness of the slabs [m], Young's modulus [Pa], kₙ/kₛ, strength [Pa].
+/// Slab width, thickness [m]; Young's modulus [Pa]; kₙ/kₛ; strength [Pa].
 const W: f64 = 0.8;
 const T: f64 = 0.5;
 const YOUNG: f64 = 1e8;
@@ -29,7 +29,7 @@ fn ice() -> FaceBond {
     }
 }
 
-/// A slab from `from` to `to` along x, a little shorter than that, and its edges rounded.
+/// Slab along x with rounded edges, shortened by the gap.
 fn slab(from: f64, to: f64, (gap, radius): (f64, f64), input: &mut ModelInput) {
     let half = [0.5 * (to - from) - gap - radius, 0.5 * W - radius, 0.5 * T - radius];
     let middle = Vec3::x() * (0.5 * (from + to));
@@ -45,7 +45,7 @@ fn add(corners: &[Vec3], radius: f64, input: &mut ModelInput) {
     input.bodies.push(BodyInput { shape: shape_number, position, orientation, ..BodyInput::default() });
 }
 
-/// A row of slabs of unequal length, held at one end: the model's input, the places of the faces and of the centres.
+/// Cantilever of unequal slabs: input, positions of faces and centres.
 fn row(kind: FaceBond) -> (ModelInput, Vec<f64>, Vec<f64>) {
     let lengths = [1.0, 0.7, 1.2, 0.6, 1.0, 0.9];
     let mut input = ModelInput { shapes: Vec::new(), ..weightless(stone()) };
@@ -70,10 +70,10 @@ fn row(kind: FaceBond) -> (ModelInput, Vec<f64>, Vec<f64>) {
     (input, faces, centres)
 }
 
-/// Under a load P at the last centre each bond turns by M/(E I/l) and slips by P/(E A/(r l)), with the moment and the arm in its face, l from centre
-/// to centre: δ = Σ P a² l/(E I) + Σ P r l/(E A).
+/// Load P at the last centre: rotation M/(E I/l) and slip P/(E A/(r l)) per bond, a the face's lever arm, l
+/// between centres: δ = Σ P a² l/(E I) + Σ P r l/(E A).
 #[test]
-fn slabs_in_a_row_are_a_beam() {
+fn slab_row_matches_beam_theory() {
     let (input, faces, centres) = row(FaceBond { tensile_strength: f64::INFINITY, ..ice() });
     let (tip, end) = (centres.len() - 1, centres[centres.len() - 1]);
     let mut run = Run::new(input);
@@ -95,15 +95,15 @@ fn slabs_in_a_row_are_a_beam() {
     let sunk = start.z - run.state.position(tip).z;
     println!("slabs: {sunk:e} m, chain {expected:e} m");
     near(sunk, expected, 1e-4);
-    // A beam of the same section from the first face on, with the bonds' lengths as they are: the chain is coarse, but near.
+    // Continuous beam from the first face: only a rough check of the coarse chain.
     let beam = p * (end - faces[0]).powi(3) / (3.0 * YOUNG * second);
     near(expected, beam, 0.5);
 }
 
-/// A long strip of level ice, loaded at its end, is a beam on an elastic foundation, the water (Hetényi, Beams on Elastic Foundation, 1946):
-/// with k = ρ g W and λ⁴ = k/4EI the end sinks by 2 P λ/k, and the largest moment is P e^(−π/4) sin(π/4)/λ, π/4λ from the end. It breaks there.
+/// Beam on elastic foundation (Hetényi, Beams on Elastic Foundation, 1946), k = ρ g W, λ⁴ = k/4EI: end
+/// settles by 2 P λ/k, largest moment P e^(−π/4) sin(π/4)/λ at π/4λ from the end.
 #[test]
-fn a_floating_strip_is_a_beam_on_an_elastic_foundation() {
+fn floating_strip_matches_elastic_foundation() {
     let (density, young, length, count) = (1025.0, 1e9, 0.5, 80);
     let water = crate::water::still(density);
     let strip = |strength: f64| {
@@ -139,7 +139,7 @@ fn a_floating_strip_is_a_beam_on_an_elastic_foundation() {
         run.step_under(&[AppliedForce { body: 0, force: -Vec3::z() * p, point }]);
     }
     let sunk = before - run.state.position(0).z;
-    // Where the first centre lies, not the end.
+    // At the first centre, not the end.
     let at = lambda * 0.5 * length;
     let expected = 2.0 * p * lambda / k * (-at).exp() * at.cos();
     let moments: Vec<f64> = records(&run.model, &run.state).iter().map(|r| r.bending).collect();
@@ -149,7 +149,6 @@ fn a_floating_strip_is_a_beam_on_an_elastic_foundation() {
     near(sunk, expected, 0.02);
     near(largest, moment, 0.02);
 
-    // The load that breaks it, put on slowly.
     let strength = 5e4;
     let holds = strength * W * T * T / 6.0 / (moment / p);
     let mut run = strip(strength);
@@ -171,7 +170,7 @@ fn a_floating_strip_is_a_beam_on_an_elastic_foundation() {
     }
 }
 
-/// It breaks at the root under P = σ W T²/(6 a), and the pieces part from there on.
+/// P = σ W T²/(6 a).
 #[test]
 fn the_row_breaks_at_its_root() {
     let (input, faces, centres) = row(ice());
@@ -193,7 +192,7 @@ fn the_row_breaks_at_its_root() {
     panic!("the row holds");
 }
 
-/// Twisting at one end: T = τ J/b at the break, with J and b of the section.
+/// T = τ J/b, with J and b of the section.
 #[test]
 fn a_twisted_bond_breaks_in_shear() {
     let tau = 3e5;
@@ -216,9 +215,9 @@ fn a_twisted_bond_breaks_in_shear() {
     assert_eq!(run.state.take_breaks()[0].mode, BreakMode::Shear);
 }
 
-/// Two irregular bodies that are bonded, thrown while turning, far from balance: energy, momentum and angular momentum stay.
+/// Irregular bodies, far from equilibrium.
 #[test]
-fn bonded_bodies_that_fly_keep_energy_and_angular_momentum() {
+fn flying_bonded_bodies_conserve_energy() {
     let mut random = Random::new(5);
     let mut input = ModelInput { shapes: Vec::new(), ..weightless(stone()) };
     for x in [-0.5, 0.5] {

@@ -1,4 +1,4 @@
-//! Many bonds: balances, threads, restarts, breaks and what they leave.
+//! Many bonds: balances, threads, restarts, breakage.
 
 use crate::bonds::cement;
 use crate::scene::{Random, Run, plane, rigid, sphere, stone, weightless};
@@ -8,7 +8,7 @@ use trackbed_dem::bond::{
 use trackbed_dem::measure::{bond_records as records, force_on, fragments};
 use trackbed_dem::{BodyInput, ModelInput, TimeStep, Vec3, Work, measure};
 
-/// Adds a cube of n³ spheres of radius 1 cm at a pitch, with bonds of kind 0 between neighbours along the axes.
+/// Cube of n³ spheres of radius 1 cm, bonded along the axes.
 pub fn cube(input: &mut ModelInput, n: usize, pitch: f64) {
     for k in 0..n * n * n {
         let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64);
@@ -17,14 +17,13 @@ pub fn cube(input: &mut ModelInput, n: usize, pitch: f64) {
     join(input, 0.001);
 }
 
-/// Bonds of kind 0 between all bodies nearer than a gap.
 fn join(input: &mut ModelInput, gap: f64) {
     let spheres: Vec<_> = input.bodies.iter().map(|b| (b.position, 0.01)).collect();
     let pairs = within_gap(&spheres, gap, |_, _| true);
     input.bonds.extend(pairs.iter().map(|&[a, b]| BondInput::new(a, b, 0)));
 }
 
-/// A cube that tumbles onto a floor and breaks; irregular, so that no two bonds break at once by symmetry.
+/// Irregular, so that no two bonds break simultaneously by symmetry.
 fn falling(n: usize, kind: ParallelBond, speed: f64) -> ModelInput {
     let mut input = weightless(stone());
     input.materials.push(rigid(stone()));
@@ -47,7 +46,7 @@ fn falling(n: usize, kind: ParallelBond, speed: f64) -> ModelInput {
     input
 }
 
-/// Energy and momentum of a falling cube, with all that takes energy: dashpots of bonds, breaks, contacts, friction.
+/// All dissipation: bond dashpots, breakage, contacts, friction.
 #[test]
 fn energy_balance_through_impact_and_breaking() {
     let error = |fraction: f64, damping: BondDamping, criterion| {
@@ -95,9 +94,9 @@ fn energy_balance_through_impact_and_breaking() {
     assert!(error(0.2, BondDamping::Fraction(0.2), Criterion::Sum) < 2e-3);
 }
 
-/// Without breaks the balance closes to second order: a quarter of the error at half the step. Dashpots included.
+/// Half the step, a quarter of the error; dashpots included.
 #[test]
-fn energy_balance_of_a_ringing_cube_is_of_second_order() {
+fn ringing_cube_energy_is_second_order() {
     let error = |fraction: f64, damping| {
         let kind = ParallelBond {
             tensile_strength: f64::INFINITY,
@@ -117,7 +116,7 @@ fn energy_balance_of_a_ringing_cube_is_of_second_order() {
         let mut run = Run::new(input);
         let energy =
             |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
-        // The first step starts the leapfrog; the balance counts from there.
+        // The first step starts the leapfrog.
         run.step();
         let e0 = energy(&run);
         let (mut worst, kinetic) = (0.0_f64, measure::energies(&run.model, &run.state).kinetic());
@@ -141,7 +140,7 @@ fn energy_balance_of_a_ringing_cube_is_of_second_order() {
     }
 }
 
-/// A cluster that flies and tumbles: momentum and angular momentum to rounding.
+/// To rounding.
 #[test]
 fn flying_cluster_keeps_its_momenta() {
     let mut input = falling(5, cement(), 1.0);
@@ -163,7 +162,7 @@ fn flying_cluster_keeps_its_momenta() {
     assert!(run.state.ledger.dissipated_bonds > 0.0 && run.state.bond_count() > 0);
 }
 
-/// Everything that a user can see of a state, as bits.
+/// All observable values, as bits.
 fn bits(run: &mut Run) -> Vec<u64> {
     let mut out = Vec::new();
     for b in 0..run.model.body_count() {
@@ -185,7 +184,7 @@ pub fn crash() -> ModelInput {
 }
 
 #[test]
-fn breaking_gives_the_same_bits_for_any_number_of_threads() {
+fn breakage_is_independent_of_threads() {
     let run_in = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
@@ -197,7 +196,6 @@ fn breaking_gives_the_same_bits_for_any_number_of_threads() {
             };
             let before = momentum(&run);
             run.steps(700);
-            // Also across blocks.
             let after = momentum(&run);
             assert!((after.0 - before.0).norm() < 1e-10 && (after.1 - before.1).norm() < 1e-10);
             let (searches, lists) = run.work.rebuilds();
@@ -216,7 +214,7 @@ fn breaking_gives_the_same_bits_for_any_number_of_threads() {
     }
 }
 
-/// A clone of the state with new scratch goes on bit for bit, with broken pairs held and handed over on the way.
+/// Bitwise, with debonded pairs and re-sorting on the way.
 #[test]
 fn restart_changes_nothing() {
     let mut run = Run::new(falling(6, cement(), 2.0));
@@ -246,25 +244,25 @@ fn skin_changes_nothing() {
     assert!(a == b, "the skin shows");
 }
 
-/// Overlapping spheres pressed together by their bond alone, which breaks in shear. The contact takes the pressure
-/// over: without a jump when it is the stiffer, and never with more energy than the bond had in it.
+/// Overlapping spheres held by a bond that breaks in shear: no force jump with the stiffer contact, and never
+/// more energy than the bond stored.
 #[test]
 fn contact_takes_over_without_creating_energy() {
-    // Stiffness of the contact over that of the bond: 100 and 0.01.
+    // Contact over bond stiffness.
     for (ratio, expected) in [(100.0, 1.0), (0.01, 0.1)] {
         let k = 1e6;
         let material =
             trackbed_dem::Material { stiffness: ratio * k, friction: 0.0, restitution: 1.0, ..stone() };
         let mut input = weightless(material);
         let held = BodyInput { fixed: [true; 6], ..BodyInput::default() };
-        // Overlap 0.4 mm when bonded.
+        // Overlap when bonded: 0.4 mm.
         input.bodies.push(BodyInput {
             position: Vec3::z() * 0.0196,
             velocity: Vec3::new(0.05, 0.0, -0.02),
             ..held.clone()
         });
         input.bodies.push(BodyInput { velocity: Vec3::zeros(), ..held });
-        // Only the first is held, or the pair would have no mass to touch with.
+        // Only one is fixed: a contact needs mass.
         input.bodies[1].fixed = [true, true, false, true, true, true];
         input.bond_kinds.push(Bond::Direct(DirectBond {
             stiffness: [k, k, 0.0, 0.0],
@@ -292,15 +290,14 @@ fn contact_takes_over_without_creating_energy() {
         assert!(pressure > 5.0);
         let elastic = 0.5 * ratio * k * contact.overlap * contact.overlap;
         assert!((ratio * k * contact.overlap / pressure - expected).abs() < 0.01 * expected.max(ratio * 0.1));
-        // The bond's energy is split between the event and the contact.
+        // The bond's energy is released or passes to the contact.
         assert!(elastic <= 0.5 * pressure * pressure / k * 1.02);
         assert!((event.energy + elastic - stored).abs() < 0.01 * stored && event.energy > 0.0);
         assert_eq!(event.energy, run.state.ledger.released_by_breaks);
     }
 }
 
-/// Overlapping spheres pulled apart: no contact as long as they overlap by less than when the bond broke, an ordinary
-/// one once they have been apart.
+/// No contact below the overlap at breakage; an ordinary one after separation.
 #[test]
 fn broken_pair_separates_and_meets_again() {
     let mut input = weightless(trackbed_dem::Material { restitution: 1.0, ..stone() });
@@ -320,7 +317,6 @@ fn broken_pair_separates_and_meets_again() {
         assert!(measure::contacts(&run.model, &run.state).is_empty());
         run.step();
     }
-    // Back towards each other.
     for b in 0..2 {
         let v = run.state.velocity(b);
         run.state.set_velocity(&run.model, b, -v, Vec3::zeros());
@@ -337,7 +333,7 @@ fn broken_pair_separates_and_meets_again() {
     assert!((energy(&run) - start).abs() < 1e-3 * start);
 }
 
-/// Beside the bond when asked for: the contact of overlapping spheres pushes from the start.
+/// Option: overlapping spheres push from the start.
 #[test]
 fn contact_beside_the_bond() {
     let mut input = weightless(stone());
@@ -350,7 +346,6 @@ fn contact_beside_the_bond() {
     assert!((measure::contacts(&run.model, &run.state)[0].normal_force - 1e5 * 1e-4).abs() < 0.5);
 }
 
-/// Ends of a bonded column, pulled by a prescribed motion: the force on the grip is that of every bond of the column.
 #[test]
 fn force_on_a_grip() {
     let mut input = weightless(stone());
@@ -366,12 +361,12 @@ fn force_on_a_grip() {
     while run.state.time < 0.01 {
         run.step();
     }
-    // Three springs EA/l in a row.
+    // Three springs EA/l in series.
     let stretch = run.state.position(3).z - 0.06;
     let expected = 1e9 * std::f64::consts::PI * 1e-4 / 0.06 * stretch;
     let top = force_on(&run.model, &run.state, |b| b == 3);
     assert!((top.z / -expected - 1.0).abs() < 0.01, "{top} {expected}");
-    // Work of the grip is what the bonds hold and the dashpots took.
+    // Grip work: bond energy and dashpot loss.
     let l = &run.state.ledger;
     let held = measure::energies(&run.model, &run.state).elastic_bonds;
     assert!(
@@ -382,7 +377,7 @@ fn force_on_a_grip() {
 }
 
 #[test]
-fn fragments_are_numbered_by_their_smallest_body() {
+fn fragments_follow_smallest_body() {
     let mut input = weightless(stone());
     for x in [0.0, 1.0, 0.02, 1.02, 5.0, 0.04] {
         input.bodies.push(sphere(Vec3::x() * x, Vec3::zeros()));

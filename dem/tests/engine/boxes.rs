@@ -1,4 +1,4 @@
-//! Boxes on boxes: springs of faces that lie on each other, sliding, tipping, and collisions of edges and corners.
+//! Boxes on boxes: face springs, sliding, tipping, collisions.
 
 use crate::scene::{Random, Run, body, plane, rigid, stone, weightless};
 use nalgebra::UnitQuaternion;
@@ -7,14 +7,14 @@ use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 
-/// Stiffness of contacts between two of the same material [N/m].
+/// Contact stiffness of two equal materials [N/m].
 const K: f64 = 1e6;
 
 fn material() -> Material {
     Material { stiffness: K, tangential_damping_ratio: 1.0, ..stone() }
 }
 
-/// Boxes of the given half sides [m].
+/// Boxes of half sides [m].
 fn boxes(material: Material, halves: &[[f64; 3]]) -> ModelInput {
     let mut input = weightless(material);
     input.shapes = halves.iter().map(|half| Shape::Box { half: *half }).collect();
@@ -26,7 +26,7 @@ fn fixed(shape: usize, position: Vec3) -> BodyInput {
     BodyInput { fixed: [true; 6], ..body(shape, position) }
 }
 
-/// Steps until the kinetic energy has died down.
+/// Runs until kinetic energy has decayed.
 fn rest(run: &mut Run, seconds: f64) {
     while run.state.time < seconds {
         run.step();
@@ -35,8 +35,7 @@ fn rest(run: &mut Run, seconds: f64) {
     assert!(moving < 1e-9, "kinetic energy {moving}");
 }
 
-/// A face carries four whole springs, however the upper box is turned on it: aligned with equal sides (all edges coincide),
-/// as an octagon, crossed with no corner of either on the other, and hanging over by a third.
+/// Four full springs per face: aligned, octagon, cross without inner corners, overhang of a third.
 #[test]
 fn faces_carry_four_springs_however_turned() {
     let cases = [
@@ -63,7 +62,6 @@ fn faces_carry_four_springs_however_turned() {
     }
 }
 
-/// A column of four on a plane: each joint carries what lies above it.
 #[test]
 fn a_column_stands() {
     let half = [0.1, 0.08, 0.05];
@@ -87,7 +85,7 @@ fn a_column_stands() {
     }
 }
 
-/// Down an incline that is a box a block slides with g (sin α − μ cos α).
+/// Acceleration g (sin α − μ cos α).
 #[test]
 fn a_block_slides_on_a_block() {
     let (angle, mu) = (0.5_f64, 0.3);
@@ -107,9 +105,9 @@ fn a_block_slides_on_a_block() {
     assert!(run.state.spin(1).norm() < 1e-2, "{}", run.state.spin(1).norm());
 }
 
-/// A block twice as high as wide stands on an incline up to tan α = 1/2 and tips above.
+/// Height twice the width: tips above tan α = 1/2.
 #[test]
-fn a_block_tips_at_the_slope_of_its_diagonal() {
+fn block_tips_at_its_diagonal() {
     for (slope, tips) in [(0.48, false), (0.52, true)] {
         let (sine, cosine) = f64::atan(slope).sin_cos();
         let mut input = boxes(
@@ -128,9 +126,9 @@ fn a_block_tips_at_the_slope_of_its_diagonal() {
     }
 }
 
-/// Two boxes thrown at each other in 200 random poses, without friction or damping: momentum and angular momentum to
-/// rounding, and the energy after they have parted. Where the deepest axis goes over from a face to edges while they touch
-/// the stiffness jumps: at overlaps of 2 % of the boxes' sides one collision in twenty changes its energy by more than 2 %.
+/// 200 random poses, elastic: momentum to rounding. The stiffness jumps when the deepest axis changes from a
+/// face to edges: at overlaps of 2 % of the sides, one collision in twenty changes its energy by more than
+/// 2 %.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let mut random = Random::new(5);
@@ -176,7 +174,7 @@ fn collisions_keep_momentum_and_energy() {
     assert!(large <= 12 && worst < 0.2 && mean.abs() < 0.005, "{large} {worst:e} {mean:e}");
 }
 
-/// Two boxes of infinite stiffness cannot be resolved any more: they touch now.
+/// Both are infinitely stiff and in contact.
 #[test]
 fn two_rigid_boxes_are_refused() {
     let mut input = boxes(rigid(material()), &[[0.1, 0.1, 0.1]]);
@@ -185,8 +183,8 @@ fn two_rigid_boxes_are_refused() {
     assert!(trackbed_dem::Model::new(input).unwrap_err().to_string().contains("body 1"));
 }
 
-/// A box turned by 45 degrees on another touches it in eight points of half a spring each. A slope of 1 in 20 stretches their
-/// tangential springs: these hold ½ F²/(4 Kₜ), weights counted (to 2 %: the points turn a little, and share F not quite alike).
+/// Rotated by 45°: eight points of half a spring. On a slope of 1 in 20 the tangential springs store
+/// ½ F²/(4 Kₜ), to 2 %: points rotate and share F unevenly.
 #[test]
 fn shared_springs_hold_their_share_of_energy() {
     let mut input = boxes(material(), &[[0.1, 0.1, 0.05], [0.1, 0.1, 0.05]]);

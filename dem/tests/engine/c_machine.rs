@@ -1,6 +1,6 @@
-//! A device of the system's C compiler: the text of the kernels as a library, its threads one after another.
+//! Device compiled by the system's C compiler: kernels as a library, with sequential threads.
 //!
-//! With the feature `cuda`, `TRACKBED_DEVICE=cuda` has the same tests run on a CUDA device.
+//! With feature `cuda` and `TRACKBED_DEVICE=cuda`, the tests use a CUDA device.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,14 +10,12 @@ use trackbed_dem::device::{Arguments, Call, Machine};
 
 type Kernel = unsafe extern "C" fn(*const Arguments, u32, i32);
 
-/// A buffer: of numbers, or of counts.
 enum Buffer {
     Numbers(Vec<f64>),
     Counts(Vec<u32>),
 }
 
-/// The device. Threads run from the first to the last and from the last to the first by turns: whatever depended on their
-/// order would show.
+/// Threads run forwards and backwards alternately, which reveals dependence on their order.
 struct CMachine {
     library: libloading::Library,
     folder: PathBuf,
@@ -25,7 +23,7 @@ struct CMachine {
     launches: u32,
 }
 
-/// Whether there is a device, or a C compiler in its place; says so where there is none.
+/// Whether a device or C compiler exists; prints a note if not.
 pub fn device_is_there() -> bool {
     if on_cuda() {
         return true;
@@ -37,15 +35,13 @@ pub fn device_is_there() -> bool {
     there
 }
 
-/// Whether the tests run on a CUDA device.
 fn on_cuda() -> bool {
     std::env::var("TRACKBED_DEVICE").is_ok_and(|v| v == "cuda")
 }
 
-/// What carries the kernels of a text out.
 pub struct TestMachine {
     machine: Box<dyn Machine>,
-    /// Numbers and counts that were read.
+    /// Numbers and counts read.
     pub read: usize,
 }
 
@@ -109,7 +105,6 @@ impl Machine for TestMachine {
 }
 
 impl CMachine {
-    /// Compiles a text.
     fn new(text: &str) -> CMachine {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let name =
@@ -119,7 +114,7 @@ impl CMachine {
         let (source, library) = (folder.join("kernels.c"), folder.join("kernels.so"));
         std::fs::write(&source, text).unwrap();
         compile(&source, &library);
-        // SAFETY: the library is the one just compiled, whose loading runs no code.
+        // SAFETY: the library was just compiled, and loading it runs no code.
         let library = unsafe { libloading::Library::new(&library) }.unwrap();
         CMachine { library, folder, buffers: Vec::new(), launches: 0 }
     }
@@ -167,13 +162,12 @@ impl Machine for CMachine {
     }
 
     fn reserve(&mut self, buffer: usize, numbers: usize) -> Result<(), String> {
-        // Whatever is read before it is written spoils the result.
+        // Reading before writing spoils the result.
         self.set(buffer, Buffer::Numbers(vec![f64::NAN; numbers]));
         Ok(())
     }
 
     fn reserve_counts(&mut self, buffer: usize, counts: usize) -> Result<(), String> {
-        // Likewise.
         self.set(buffer, Buffer::Counts(vec![0x00ab_cdef; counts]));
         Ok(())
     }
@@ -221,7 +215,7 @@ impl Machine for CMachine {
             .collect();
         let arguments = call.arguments(|buffer| addresses.get(buffer).copied().unwrap_or(0));
         self.launches += 1;
-        // SAFETY: the function has this signature, and reads and writes within the buffers as the device has laid them out.
+        // SAFETY: the function has this signature and stays within the buffers laid out by the device.
         unsafe {
             let kernel = self.library.get::<Kernel>(kernel.as_bytes()).map_err(|e| e.to_string())?;
             kernel(&arguments, threads as u32, (self.launches % 4 > 1) as i32);

@@ -1,4 +1,4 @@
-//! The same bits whatever the threads, the skin, or a restart.
+//! Bitwise identical results for any threads, skin or restart.
 
 use crate::device::{gas, smooth, with_clumps};
 use crate::scene::{Run, pile, sphere, stone, weightless};
@@ -9,7 +9,7 @@ use trackbed_dem::{
     WallShape, Work, step,
 };
 
-/// Everything that a user can see of a state, as bits.
+/// All observable values, as bits.
 fn bits(run: &Run) -> Vec<u64> {
     let mut out = Vec::new();
     for b in 0..run.model.body_count() {
@@ -29,13 +29,13 @@ fn bits(run: &Run) -> Vec<u64> {
     out
 }
 
-/// Large enough to be shared among threads: over 2500 spheres in clumps, with planes, triangles and a block.
+/// Over 2500 spheres in clumps: shared among threads; planes, triangles, block.
 fn scene() -> ModelInput {
     pile(10, true)
 }
 
 #[test]
-fn pools_of_one_two_and_three_threads() {
+fn bits_are_independent_of_threads() {
     let run_in = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
@@ -67,7 +67,7 @@ fn skin_changes_nothing() {
     assert!(a == b, "the skin shows");
 }
 
-/// A clone of the state with new scratch goes on bit for bit, also across a sorting of the bodies (every 5000 steps).
+/// Also across re-sorting (every 5000 steps).
 #[test]
 fn restart_changes_nothing() {
     let mut run = Run::new(pile(4, true));
@@ -80,9 +80,8 @@ fn restart_changes_nothing() {
     assert!(bits(&run) == bits(&again), "the restart shows");
 }
 
-/// A run that begins with bodies that touch goes on as with new scratch after its contacts have been found.
 #[test]
-fn a_look_at_contacts_leaves_nothing_behind() {
+fn finding_contacts_has_no_effect() {
     let mut settled = Run::new(pile(4, true));
     settled.steps(3000);
     let Run { model, mut state, .. } = settled;
@@ -98,7 +97,6 @@ fn a_look_at_contacts_leaves_nothing_behind() {
     assert!(bits(&one) == bits(&other), "the look shows");
 }
 
-/// Sorting the bodies anew keeps every contact: a settled pile does not feel it.
 #[test]
 fn sorting_keeps_contacts() {
     let mut run = Run::new(pile(3, true));
@@ -118,7 +116,7 @@ fn sorting_keeps_contacts() {
     assert!(worst < 0.05, "tangential energy jumps by {worst}");
 }
 
-/// A turning mill of `n`³ grains with a swinging floor of triangles, a driven lid and a free block of triangles in it.
+/// Mill of `n`³ grains: oscillating triangle floor, servo lid, free triangle block.
 pub fn mill(n: usize) -> ModelInput {
     let width = 0.021 * n as f64;
     let mut input = ModelInput {
@@ -179,7 +177,7 @@ pub fn mill(n: usize) -> ModelInput {
     };
     let other = RigidBody { velocity: Vec3::new(-2.0, 0.0, -1.0), rounding: Some(0.015), ..body.clone() };
     input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block.clone(), 0) });
-    // One that flies into it.
+    // Flying block.
     let WallShape::Triangles { vertices, triangles } = block else { return input };
     let vertices = vertices.iter().map(|v| v + Vec3::new(0.115, 0.01, 0.005)).collect();
     input.walls.push(WallInput {
@@ -189,7 +187,7 @@ pub fn mill(n: usize) -> ModelInput {
     input
 }
 
-/// Walls of all kinds: the same bits for 1, 2, 3 and 7 threads, and for new scratch half way.
+/// 1, 2, 3 and 7 threads; new scratch half-way.
 #[test]
 fn walls_of_all_kinds() {
     let run_in = |threads: usize| {
@@ -218,7 +216,6 @@ fn walls_of_all_kinds() {
     }
 }
 
-/// Nor do the skin and the time of a search show in contacts with walls.
 #[test]
 fn skin_changes_nothing_at_walls() {
     let run_with = |skin: f64, kind: usize| {
@@ -232,7 +229,7 @@ fn skin_changes_nothing_at_walls() {
             .collect();
         let mut run = Run::new(input);
         run.steps(4000);
-        // The sums of the ledger add up in the groups that contacts happen to lie in: their last bits may differ.
+        // Sums follow the grouping of contacts: last bits may differ.
         let l = run.state.ledger;
         let sums = [l.dissipated_dashpot, l.dissipated_friction, l.work_walls, l.work_servo];
         run.state.ledger = trackbed_dem::ledger::Ledger::default();
@@ -247,9 +244,8 @@ fn skin_changes_nothing_at_walls() {
     assert!(seen.iter().all(|s| s.1 && s.2), "the skin shows: {seen:?}");
 }
 
-/// Clumps that are set elsewhere between two steps have their spheres there in the next.
 #[test]
-fn clumps_that_were_shifted_step_as_with_new_scratch() {
+fn shifted_clumps_update_member_spheres() {
     let input = with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 != 1);
     let model = Model::new(input).unwrap();
     let mut state = State::new(&model);

@@ -1,4 +1,4 @@
-//! The kernels that a device is given, compiled by the system's C compiler: every bit of the state is the engine's.
+//! Device kernels, compiled by the system's C compiler: bitwise identical to the engine.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device_changes::assert_detected;
@@ -19,7 +19,6 @@ use trackbed_dem::{
 };
 
 pub(crate) const STEPS: usize = 1000;
-/// Both materials of a scene.
 const PAIR: PairOverride = PairOverride {
     a: 0,
     b: 1,
@@ -34,7 +33,7 @@ const PAIR: PairOverride = PairOverride {
     twisting_friction: None,
 };
 
-/// Spheres of unlike sizes thrown about in a box of planes, the floor of which comes up; more than a block of them.
+/// Unequal flying spheres in a box of planes with a rising floor; more than a block.
 pub(crate) fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> ModelInput {
     let mut random = Random::new(7);
     let mut input = ModelInput {
@@ -71,8 +70,8 @@ pub(crate) fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> Mode
     input
 }
 
-/// What differs between the state on a device and that of the engine after so many steps, each compared as a whole every
-/// seventh step; and the engine's state.
+/// First difference between device and engine in `steps` steps, compared completely every seventh; and the
+/// engine's state.
 fn compare(
     input: ModelInput,
     steps: usize,
@@ -81,7 +80,7 @@ fn compare(
     compare_events(input, steps, change, |_, _| false)
 }
 
-/// As [`compare`]; `event` may do something to both states before a step, and says whether it has.
+/// As [`compare`]; `event` may modify both states before a step and returns whether it did.
 pub(crate) fn compare_events(
     input: ModelInput,
     steps: usize,
@@ -92,7 +91,7 @@ pub(crate) fn compare_events(
     let text = change(source(&model).expect("a model for a device"));
     let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
     let mut work = Work::new(&model, &theirs);
-    // Within these steps the bodies are put in a new order.
+    // Includes a re-sorting of bodies.
     (ours.steps, theirs.steps) = (4750, 4750);
     let mut device = Device::new(TestMachine::new(&text, &model), &model, &ours).expect("memory");
     let mut differs = None;
@@ -103,7 +102,7 @@ pub(crate) fn compare_events(
             device.upload(&model, &ours).expect("memory");
         }
         step(&model, &mut theirs, &mut work, &NoSurface, &[]).expect("a good step");
-        // What is wrong may end there.
+        // May fail after a difference.
         if let Err(e) = device.step(&model, &mut ours, &NoSurface, &[]) {
             println!("step {k} on the device: {e}");
             differs = Some(k);
@@ -122,7 +121,7 @@ pub(crate) fn compare_events(
     (differs, theirs, device.rebuilds())
 }
 
-/// Prints what differs most plainly.
+/// Prints the largest difference.
 fn explain(model: &Model, ours: &State, theirs: &State) {
     let motion = |s: &State, b: usize| [s.position(b), s.velocity(b), s.spin(b)];
     let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
@@ -158,7 +157,6 @@ fn elastic(m: Material) -> Material {
     Material { young: Some(4e7), poisson: 0.25, stiffness: f64::INFINITY, ..m }
 }
 
-/// A name in the table of laws.
 fn named(name: &str) -> Option<LawName> {
     Some(table::normal_named(name).expect("a normal law"))
 }
@@ -228,7 +226,7 @@ fn local_damping_and_fixed_motions() {
     }
 }
 
-/// The gas, with clumps of two sizes in place of the spheres that `which` picks.
+/// The gas, with clumps of two sizes for the spheres selected by `which`.
 pub(crate) fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) -> ModelInput {
     let three = [([0.0, 0.0, 0.0], 0.006), ([0.0035, 0.001, 0.0], 0.005), ([-0.003, 0.002, 0.002], 0.0045)];
     let two = [([0.003, 0.0, 0.0], 0.0055), ([-0.003, 0.001, 0.0], 0.005)];
@@ -238,7 +236,7 @@ pub(crate) fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) 
     let mut random = Random::new(11);
     for (k, body) in input.bodies.iter_mut().enumerate().filter(|(k, _)| which(*k)) {
         body.shape = 1 + k % 2;
-        // They are smaller, and steps are shorter: all the faster they come together.
+        // Smaller bodies, shorter steps: faster approach.
         body.velocity *= 8.0;
         body.spin *= 8.0;
         body.orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
@@ -246,12 +244,10 @@ pub(crate) fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) 
     input
 }
 
-/// Whether a body of the gas is one of the few in a corner.
 fn in_a_corner(k: usize) -> bool {
     [k % 11, k / 11 % 11, k / 121].iter().all(|n| *n < 3)
 }
 
-/// How far a body has turned at most [rad].
 fn largest_turn(state: &State, input: &ModelInput) -> f64 {
     let model = Model::new(input.clone()).expect("a good input");
     let turned = |k: usize| state.orientation(&model, k).angle_to(&input.bodies[k].orientation);
@@ -267,7 +263,7 @@ fn clumps() {
         println!("a clump has turned by {turn:.2} rad");
         assert!(turn > 0.3);
         same_bits("clumps among spheres", with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 == 1));
-        // Blocks without a clump, in a model with some: contacts across blocks have the formulas of clumps, those within do not.
+        // Blocks without clumps: clump formulas for cross-block contacts only.
         same_bits("few clumps", with_clumps(gas([stone(), smooth()], Vec::new()), in_a_corner));
         let elastic = [turning(elastic(stone())), turning(elastic(smooth()))];
         same_bits("clumps, hertz, rolling", with_clumps(gas(elastic, Vec::new()), |k| k % 2 == 1));
@@ -275,7 +271,7 @@ fn clumps() {
 }
 
 #[test]
-fn clumps_with_local_damping_and_fixed_motions() {
+fn clumps_with_damping_and_constraints() {
     if device_is_there() {
         let mut input = with_clumps(gas([turning(stone()), smooth()], Vec::new()), |k| k % 3 != 1);
         input.damping = Some(LocalDamping { factor: 0.3 });
@@ -289,9 +285,8 @@ fn clumps_with_local_damping_and_fixed_motions() {
     }
 }
 
-/// A rotation that is fixed about some axes only is refused by name.
 #[test]
-fn clumps_that_turn_about_some_axes_are_refused() {
+fn rejects_partly_fixed_clump_rotation() {
     let mut input = with_clumps(gas([stone(), smooth()], Vec::new()), |k| k == 5);
     input.bodies[5].fixed[3] = true;
     let model = Model::new(input).expect("a good input");
@@ -299,7 +294,7 @@ fn clumps_that_turn_about_some_axes_are_refused() {
     assert_eq!(why, "not supported on a GPU: clumps that rotate about some axes only");
 }
 
-/// A square of triangles, `n` to a side, around a middle; `height` along the normal of each vertex.
+/// Square mesh of `n` cells per side; `height` along each vertex normal.
 pub(crate) fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMut() -> f64) -> WallShape {
     let normal = sides[0].cross(&sides[1]).normalize();
     let at = |k: u32| f64::from(k) / f64::from(n) - 0.5;
@@ -315,7 +310,7 @@ pub(crate) fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMu
     WallShape::Triangles { vertices, triangles: triangles.collect() }
 }
 
-/// The gas between walls of triangles in place of some planes: a rough floor that comes up, a flat lid that swings, a side that turns.
+/// Triangle walls instead of some planes: rough rising floor, flat oscillating lid, rotating side.
 pub(crate) fn between_triangles(mut input: ModelInput) -> ModelInput {
     let (far, mut random) = (0.0206 * 11.0, Random::new(3));
     let (middle, wide) = (0.5 * far, 1.6 * far);
@@ -360,7 +355,7 @@ fn walls_of_triangles() {
     }
 }
 
-/// The gas with periodic borders in place of the planes at its sides, blown along.
+/// The gas with periodic sides and a mean velocity.
 pub(crate) fn with_borders(mut input: ModelInput) -> ModelInput {
     let far = 0.0206 * 11.0;
     input.planes.retain(|p| p.normal.z.abs() > 0.9);
@@ -369,7 +364,7 @@ pub(crate) fn with_borders(mut input: ModelInput) -> ModelInput {
     input
 }
 
-/// A wall that is a body: a block of triangles that is thrown onto the gas, tumbles, and stands on planes.
+/// Rigid body of triangles, thrown at the gas.
 #[test]
 fn a_body_of_triangles() {
     if device_is_there() {
@@ -406,7 +401,7 @@ fn periodic_borders() {
     }
 }
 
-/// A plate in place of one of the planes, which a force presses onto the gas along `way`.
+/// Servo-controlled plate instead of a plane, pressed along `way`.
 pub(crate) fn pressed(mut input: ModelInput, way: Vec3) -> ModelInput {
     input.planes.retain(|p| p.normal.dot(&way) < 0.5);
     let side = |b: &BodyInput| b.position.dot(&way) - 0.01 * b.scale;
@@ -417,7 +412,7 @@ pub(crate) fn pressed(mut input: ModelInput, way: Vec3) -> ModelInput {
     input
 }
 
-/// The gas in a cone with a bottom that comes up and a shell that turns, beside triangles, under a plate that a force drives.
+/// Cone with rising bottom and rotating shell, triangles, servo-controlled plate.
 fn in_a_cone(input: ModelInput) -> ModelInput {
     let mut input = pressed(input, -Vec3::z());
     input.planes.retain(|p| p.normal.z.abs() < 0.5);
@@ -440,7 +435,7 @@ fn in_a_cone(input: ModelInput) -> ModelInput {
     input
 }
 
-/// Contacts with walls that are round, or driven, are the processor's part of a step.
+/// Round and servo-controlled walls belong to the CPU part.
 #[test]
 fn round_and_driven_walls() {
     if device_is_there() {
@@ -467,7 +462,7 @@ fn round_and_driven_walls() {
     }
 }
 
-/// A block of bonded spheres, pressed and torn by the planes that shut in on it, in which bonds break and broken pairs part.
+/// Bonded spheres crushed by closing planes, with breakage and separation.
 pub(crate) fn bonded(kind: Bond, material: Material) -> ModelInput {
     let mut input = gas([material, smooth()], Vec::new());
     input.bodies.iter_mut().for_each(|b| b.velocity *= 0.4);
@@ -478,7 +473,7 @@ pub(crate) fn bonded(kind: Bond, material: Material) -> ModelInput {
     input
 }
 
-/// Bonds of which some break.
+/// Some of these bonds break.
 pub(crate) fn parallel() -> ParallelBond {
     ParallelBond {
         radius_factor: 0.8,
@@ -517,8 +512,8 @@ fn bonds_that_break() {
     }
 }
 
-/// A step that fails on the device fails as the engine's does: the same step, body, partner and numbers. From step 40 on a body is faster
-/// than a step allows. The words of the error.
+/// Device errors equal engine errors: step, body, partner, values. From step 40 on a body is too fast.
+/// Returns the message.
 pub(crate) fn fails_alike(
     input: ModelInput,
     (body, velocity): (usize, Vec3),
@@ -548,14 +543,14 @@ pub(crate) fn fails_alike(
 }
 
 #[test]
-fn a_failing_step_says_what_the_engine_says() {
+fn failing_step_has_engine_message() {
     if device_is_there() {
         let input = gas([stone(), smooth()], Vec::new());
         fails_alike(input, (3, Vec3::new(0.0, 900.0, 0.0)), &NoSurface);
     }
 }
 
-/// The comparison sees a last bit: one operation of the text changed in a way that rounding alone shows.
+/// An operation changed at rounding level.
 #[test]
 fn a_changed_operation_is_seen() {
     if device_is_there() {

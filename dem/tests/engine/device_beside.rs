@@ -1,4 +1,4 @@
-//! Steps that a device shares with the processor: spheres and clumps on a surface that moves, among blocks that the processor moves.
+//! Device steps with a CPU part: spheres and clumps on a moving surface, among solid bodies.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{STEPS, bonded, fails_alike, gas, mesh, parallel, pressed, smooth, turning, with_clumps};
@@ -13,7 +13,7 @@ use trackbed_dem::{
     AppliedForce, BackEnd, BodyInput, Model, ModelInput, Motion, Shape, State, Vec3, WallInput, Work, step,
 };
 
-/// Ground of triangles that comes up.
+/// Rising ground of triangles.
 struct Ground {
     mesh: Arc<SurfaceMesh>,
     height: f64,
@@ -21,7 +21,7 @@ struct Ground {
 }
 
 impl Ground {
-    /// Hollows and bumps under the gas, `N` cells to a side.
+    /// Bumpy ground, `N` cells per side.
     fn new() -> Ground {
         const N: u32 = 9;
         let all = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j)));
@@ -96,10 +96,9 @@ impl Surface for Ground {
     }
 }
 
-/// First of the blocks that are thrown into the gas; the first of them only moves up and down.
+/// First of the thrown blocks; it only moves vertically.
 const FIRST: usize = 1085;
 
-/// The gas on such ground in place of its floor.
 pub(crate) fn on_ground(mut input: ModelInput) -> ModelInput {
     input.planes.remove(0);
     input.bodies.iter_mut().for_each(|b| b.position.z += 1e-3);
@@ -107,7 +106,7 @@ pub(crate) fn on_ground(mut input: ModelInput) -> ModelInput {
     input
 }
 
-/// The same with a box and stones that fall into it, stones on the ground in a corner that is cleared for them, and the lid higher up.
+/// Adds a falling box and stones, stones on cleared ground, and a higher lid.
 pub(crate) fn among_blocks(input: ModelInput) -> ModelInput {
     let mut input = on_ground(input);
     input.surface_mesh = Some(Ground::new().mesh);
@@ -139,7 +138,7 @@ pub(crate) fn among_blocks(input: ModelInput) -> ModelInput {
     input
 }
 
-/// The same with a side that turns.
+/// Adds a rotating side.
 fn beside_a_wall(mut input: ModelInput) -> ModelInput {
     let sides = [Vec3::y() * 0.4, Vec3::z() * 0.7];
     let side = mesh(4, Vec3::new(0.002, 0.11, 0.12), sides, || 0.0);
@@ -148,23 +147,23 @@ fn beside_a_wall(mut input: ModelInput) -> ModelInput {
     input
 }
 
-/// What differs first between device and engine, and what has happened by then.
+/// First difference, and events up to it.
 pub(crate) struct Compared {
     pub differs: Option<usize>,
     state: State,
-    /// Contacts with the surface of spheres, and of blocks.
+    /// Surface contacts of spheres and of blocks.
     met: [usize; 2],
-    /// Numbers and counts that were read a step.
+    /// Numbers and counts read per step.
     read: usize,
 }
 
-/// As the engine's own comparison, on ground that comes up, with forces on the first block and, for a while, on a sphere.
+/// Compares on rising ground, with forces on the first block and temporarily on a sphere.
 pub(crate) fn compare(input: ModelInput, change: impl Fn(String) -> String) -> Compared {
     let model = Model::new(input).expect("a good input");
     let text = change(source(&model).expect("a model for a device"));
     let (mut ours, mut theirs) = (State::new(&model), State::new(&model));
     let mut work = Work::new(&model, &theirs);
-    // Within these steps the bodies are put in a new order.
+    // Includes a re-sorting of bodies.
     (ours.steps, theirs.steps) = (4750, 4750);
     let mut device = Device::new(TestMachine::new(&text, &model), &model, &ours).expect("memory");
     let (mut ground, mut met, mut differs) = (Ground::new(), [0; 2], None);
@@ -201,7 +200,7 @@ pub(crate) fn compare(input: ModelInput, change: impl Fn(String) -> String) -> C
 }
 
 #[test]
-fn spheres_clumps_and_blocks_on_ground_that_moves() {
+fn spheres_and_blocks_on_moving_ground() {
     if device_is_there() {
         let materials = [turning(stone()), smooth()];
         let clumps = |k: usize| k % 3 == 1;
@@ -238,7 +237,6 @@ fn spheres_clumps_and_blocks_on_ground_that_moves() {
     }
 }
 
-/// The comparison sees what is wrong with the processor's part.
 #[test]
 fn a_changed_part_is_seen() {
     if device_is_there() {
@@ -258,9 +256,9 @@ fn a_changed_part_is_seen() {
     }
 }
 
-/// A step that fails says what the engine says, whether the device finds it or the processor.
+/// Failures found by the device or by the CPU.
 #[test]
-fn a_failing_step_says_what_the_engine_says() {
+fn failing_step_has_engine_message() {
     if device_is_there() {
         for body in [3, FIRST + 1] {
             let input = among_blocks(gas([stone(), smooth()], Vec::new()));
@@ -271,7 +269,6 @@ fn a_failing_step_says_what_the_engine_says() {
     }
 }
 
-/// What stays the processor's alone is refused by name.
 #[test]
 fn what_has_no_spheres_is_refused() {
     let mut input = among_blocks(gas([stone(), smooth()], Vec::new()));

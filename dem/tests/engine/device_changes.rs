@@ -1,37 +1,37 @@
-//! Changes of the text of the kernels that a comparison must detect. Each runs in a process of its own: a changed kernel may write beyond
-//! its buffers, which would end the process of the tests or spoil the memory of other tests.
+//! Kernel changes that a comparison must detect. Each runs in its own process, as a changed kernel may write
+//! outside its buffers.
 
 use crate::c_machine::device_is_there;
 use crate::device::{STEPS, compare_events, gas, smooth};
 use crate::scene::stone;
 use std::process::{Command, ExitStatus};
 
-/// Environment variable with the number of the change that a child process runs.
+/// Environment variable with the index of a child's change.
 const CHANGE: &str = "TRACKBED_KERNEL_CHANGE";
-/// Line of a child process whose changed kernels are compiled and loaded.
+/// Output of a child after loading its changed kernels.
 const LOADED: &str = "changed kernels loaded";
-/// Exit code of a child process whose comparison has detected the change.
+/// Exit code of a child that detected the change.
 const DETECTED: i32 = 42;
 
-/// End of the comparison with one changed kernel.
+/// Result of a changed kernel.
 #[derive(Debug, PartialEq)]
 enum End {
-    /// The states or the ledgers differ, or a step fails.
+    /// State, balance or error differs.
     Differs,
-    /// The changed kernel has ended its process by a signal or a panic.
+    /// Ended by a signal or panic.
     Crashes,
-    /// Every bit is as it was.
+    /// Bitwise identical.
     Same,
 }
 
-/// Reports that kernels are compiled and loaded, where this is the process of a change: a crash after this is that of the kernels.
+/// Marks kernels as loaded, in a child: later crashes are theirs.
 pub(crate) fn report_loaded() {
     if std::env::var_os(CHANGE).is_some() {
         println!("\n{LOADED}");
     }
 }
 
-/// Runs `compare` for each change of a text, `from` and `to` of its first place, in a process of its own: that of `test` alone, which
+/// Runs `compare` for each change (`from`, `to`, first place) in a child that executes only `test`, which
 /// must call this function with the same changes.
 fn ends(
     test: &str,
@@ -46,7 +46,7 @@ fn ends(
             text.replacen(from, to, 1)
         });
         println!("{from} -> {to}: {differs:?}");
-        // Nothing is freed: the kernel may have spoiled what the allocator keeps.
+        // Skips freeing: the heap may be corrupt.
         std::process::exit(if differs.is_some() { DETECTED } else { 0 });
     }
     let program = std::env::current_exe().expect("the path of the tests");
@@ -64,7 +64,7 @@ fn ends(
     (0..changes.len()).map(run).collect()
 }
 
-/// End of a comparison by the status and the output of its process; `None` where no changed kernel has run.
+/// `None` if no changed kernel ran.
 fn end_of(status: ExitStatus, text: &str) -> Option<End> {
     if !text.lines().any(|line| line == LOADED) {
         return None;
@@ -76,7 +76,6 @@ fn end_of(status: ExitStatus, text: &str) -> Option<End> {
     })
 }
 
-/// Fails where a comparison does not detect one of the changes.
 pub(crate) fn assert_detected(
     test: &str,
     changes: &[(&str, &str)],
@@ -88,7 +87,7 @@ pub(crate) fn assert_detected(
     }
 }
 
-/// A kernel that crashes is detected, and one that differs in a blank is not. A device of CUDA has other words for a crash.
+/// A blank changes nothing. CUDA reports crashes differently.
 #[test]
 fn crash_of_changed_kernel_is_detected() {
     if device_is_there() && std::env::var_os("TRACKBED_DEVICE").is_none() {

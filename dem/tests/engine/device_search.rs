@@ -1,4 +1,4 @@
-//! The search for neighbours on a device: the lists, their order and the memory of their contacts are the engine's.
+//! Neighbour search on a device: lists, order and contact history equal the engine's.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{
@@ -13,7 +13,7 @@ use trackbed_dem::device::{Device, kernels, source};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BackEnd, Model, ModelInput, State, Vec3, Work, step};
 
-/// Large spheres between which small ones of unlike sizes fly, three at a time, or stand still and overlap; one is very far away.
+/// Large spheres; small unequal ones fly in threes, or overlap at rest; one is far away.
 fn unlike() -> ModelInput {
     let mut random = Random::new(5);
     let mut input = gas([turning(stone()), smooth()], Vec::new());
@@ -27,7 +27,7 @@ fn unlike() -> ModelInput {
             body.scale = 0.1 + 0.17 * random.unit().powi(3);
             let still = k % 7 == 0;
             body.fixed = [still, still, still, false, false, false];
-            // Just beside the next sphere, or beside each other.
+            // Next to the next sphere, or to each other.
             let way = if still { 0.05 * body.scale } else { 1.02 - body.scale };
             body.position = middle + axis * way * 0.01;
             body.velocity = if still { Vec3::zeros() } else { random.vector() * 4.0 };
@@ -38,14 +38,13 @@ fn unlike() -> ModelInput {
     input.bodies.extend(more);
     input.bodies.push(sphere(Vec3::new(1e6, 3e5, 7e5), Vec3::new(-1.0, 0.0, 0.0)));
     input.planes.truncate(3);
-    // Large ones lie on the plane that rises, and on one that opens.
+    // On a rising plane, and on one that opens.
     for plane in &mut input.planes[..2] {
         plane.point += plane.normal * 1.5e-3;
     }
     input
 }
 
-/// Opens a plane for a while.
 fn events(k: usize, state: &mut State) -> bool {
     match k {
         300 => state.open_plane(1, true),
@@ -67,12 +66,12 @@ fn unlike_sizes_have_the_same_bits() {
     }
 }
 
-/// Between downloads a device is asked for no more than what its steps book, and for the size of what a search has found.
+/// Downloads only block totals and sizes of search results.
 #[test]
 fn the_state_stays_on_the_device() {
     if device_is_there() {
         let spheres = gas([stone(), smooth()], Vec::new());
-        // How much of a state a search may read: where the processor lists contacts with triangles, places and these.
+        // Fraction of a state read per search; CPU triangle contacts need positions.
         for (input, share) in [
             (spheres.clone(), 0.125),
             (with_clumps(unlike(), |k| k % 3 == 1), 0.125),
@@ -99,7 +98,7 @@ fn the_state_stays_on_the_device() {
     }
 }
 
-/// The comparison sees what is wrong with a list: a memory lost, a partner twice, one that may not touch.
+/// Lost history, repeated partner, forbidden partner.
 #[test]
 fn a_changed_search_is_seen() {
     if device_is_there() {
@@ -116,7 +115,7 @@ fn a_changed_search_is_seen() {
     }
 }
 
-/// Spheres in a lattice that press each other, several blocks of them, across borders too: they have contacts of all kinds at once.
+/// Compressed lattice of several blocks, also periodic: all contact types.
 fn packed() -> ModelInput {
     let (mut random, count, wide) = (Random::new(9), 14, 0.0199);
     let mut input = with_borders(gas([stone(), smooth()], Vec::new()));
@@ -133,7 +132,7 @@ fn packed() -> ModelInput {
 }
 
 #[test]
-fn a_lattice_across_borders_has_the_same_bits() {
+fn periodic_lattice_matches_engine_bits() {
     if device_is_there() {
         let (differs, state, (searches, _)) = compare_events(packed(), 400, |text| text, |_, _| false);
         let (friction, couple) = (state.ledger.dissipated_friction, state.ledger.periodic.angular.norm());
@@ -143,9 +142,8 @@ fn a_lattice_across_borders_has_the_same_bits() {
     }
 }
 
-/// A contact whose triangle is open from one step to the next is the engine's to end.
 #[test]
-fn a_contact_without_its_pair_ends_as_the_engine_ends_it() {
+fn orphaned_contact_ends_on_cpu() {
     if device_is_there() {
         let opens = |k: usize, state: &mut State| {
             matches!(k % 40, 0 | 2).then(|| state.open_wall(0, k.is_multiple_of(40))).is_some()
@@ -157,8 +155,7 @@ fn a_contact_without_its_pair_ends_as_the_engine_ends_it() {
     }
 }
 
-/// The comparison sees what is wrong with the place of what the processor lists among the sums: across blocks, before and behind contacts
-/// within; and with whom the device lists.
+/// Wrong order of CPU entries in the sums; wrong partners.
 #[test]
 fn a_changed_place_of_the_rest_is_seen() {
     if device_is_there() {

@@ -1,4 +1,4 @@
-//! Dilated disks: at rest, in stacks, bouncing, colliding, rolling, wobbling like a coin, afloat.
+//! Dilated disks: rest, stacks, impacts, rolling, coin wobble, flotation.
 
 use crate::scene::{FOLLOWED, Random, Run, body, plane, stone, weightless};
 use crate::tables::read;
@@ -11,7 +11,7 @@ use trackbed_dem::{BodyInput, Material, ModelInput, Shape, TimeStep, Vec3};
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
 
-/// Stiffness of contacts between two of the same material [N/m].
+/// Contact stiffness of two equal materials [N/m].
 const K: f64 = 1e6;
 
 fn material() -> Material {
@@ -22,7 +22,6 @@ fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
 }
 
-/// The same as an elastic body after Hertz.
 fn hertz(material: Material) -> Material {
     Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..material }
 }
@@ -39,8 +38,7 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// A disk sinks into a plane by its weight over the springs of its rim, or after Hertz over a quarter of the modulus per unit of its length, and
-/// nothing moves any more.
+/// Settles by weight over rim springs, or after Hertz by a quarter of the modulus per unit length.
 #[test]
 fn a_disk_at_rest() {
     let (big, r) = (0.1, 0.02);
@@ -63,7 +61,7 @@ fn a_disk_at_rest() {
     }
 }
 
-/// Ten disks of two sizes, put on each other a little aside, come to rest and stand; the lowest joint carries all.
+/// Two sizes, slightly offset; the lowest joint bears all.
 #[test]
 fn ten_disks_stand() {
     let (big, r) = (0.1, 0.01);
@@ -93,8 +91,7 @@ fn ten_disks_stand() {
     assert!((lowest / weight - 1.0).abs() < 1e-4, "{lowest} of {weight}");
 }
 
-/// Bounces on the face, on the rim and askew, on a plane and on a disk that is held, keep their energy; on the face the restitution is the one
-/// that was set.
+/// Face, rim, oblique; plane or fixed disk: energy conserved. Face impact: prescribed restitution.
 #[test]
 fn bounces_on_face_and_rim() {
     let turns = [
@@ -131,15 +128,15 @@ fn bounces_on_face_and_rim() {
     }
 }
 
-/// A stone with corners at random on an ellipsoid.
+/// Random points on an ellipsoid.
 fn stone_of(random: &mut Random, half: [f64; 3], radius: f64) -> Shape {
     let mut corner = || random.vector().normalize().component_mul(&Vec3::from(half));
     let corners: Vec<Vec3> = (0..14).map(|_| corner()).collect();
     Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a convex body").0))
 }
 
-/// Collisions of disks with disks, stones, boxes and spheres: momentum and angular momentum to rounding, energy to the step's error; with friction and
-/// dashpots what is left and what was dissipated add up to what there was.
+/// With disks, stones, boxes, spheres: momentum to rounding, energy to the step's error. With friction and
+/// dashpots, dissipation balances.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let springs = [(elastic(), 160, 2e-3), (material(), 60, 0.01)];
@@ -185,7 +182,6 @@ fn collisions_keep_momentum_and_energy() {
     }
 }
 
-/// Upright disks roll down an incline without slip, as they should.
 #[test]
 fn disks_roll_down_an_incline() {
     for row in read("tests/data/disks/disk_incline.csv") {
@@ -207,7 +203,7 @@ fn disks_roll_down_an_incline() {
     }
 }
 
-/// A disk that leans rolls without slip along the path that the constraint gives: 1 % of the way after a second.
+/// Rolling constraint: error 1 % of the path after a second.
 #[test]
 fn a_leaning_disk_rolls_its_path() {
     let rows = read("tests/data/disks/disk_rolling.csv");
@@ -237,14 +233,14 @@ fn a_leaning_disk_rolls_its_path() {
     assert!(way > 1.0 && worst < 0.01 * way, "{worst} of {way}");
 }
 
-/// A disk that wobbles like a coin, its centre at rest, keeps tilt and precession over three turns.
+/// Tilt and precession over three revolutions, centre at rest.
 #[test]
 fn coins_wobble_steadily() {
     for row in read("tests/data/disks/coin_steady.csv") {
         let [big, r, tilt, mass, axial, other, precession] = row[..7].try_into().unwrap();
         let tilt = f64::to_radians(tilt);
         let mut material = material();
-        // The same small overlap for light and heavy ones.
+        // Equal overlap for any mass.
         (material.density, material.friction, material.stiffness) = (2500.0, 1.0, 8e6 * mass);
         let mut input = scene(material, vec![disk(big, r)]);
         input.gravity = DOWN;
@@ -277,12 +273,11 @@ fn coins_wobble_steadily() {
     }
 }
 
-/// Angle about the vertical from one direction to another.
 fn libm_angle(a: &Vec3, b: &Vec3) -> f64 {
     (a.x * b.y - a.y * b.x).atan2(a.x * b.x + a.y * b.y)
 }
 
-/// Disks, stones, a sphere and a block dropped into a box of planes: the account of energy closes, and the bits are the same with 1, 2, 3, and 7 threads.
+/// Energy balance; same bits with 1, 2, 3 and 7 threads.
 #[test]
 fn a_heap_of_disks() {
     let mut random = Random::new(9);
@@ -327,17 +322,16 @@ fn a_heap_of_disks() {
     }
 }
 
-/// A round floe of radii 1 m and 0.2 m, of a share of the water's density.
+/// Round floe, radii 1 m and 0.2 m, with its density ratio.
 const BIG: f64 = 1.0;
 const SMALL: f64 = 0.2;
 const RATIO: f64 = 0.8927;
 
-/// Radius of its slice at a height.
 fn slice(z: f64) -> f64 {
     BIG + (SMALL * SMALL - z * z).max(0.0).sqrt()
 }
 
-/// Height at which it floats, up to which its volume is that of the water of its mass: by slices in equal angles.
+/// Archimedes' level, by slices in equal angles.
 fn waterline(volume: f64) -> f64 {
     let below = |z: f64| -> f64 {
         let n = 20_000;
@@ -356,7 +350,6 @@ fn waterline(volume: f64) -> f64 {
     low
 }
 
-/// It afloat, with steps of `dt`.
 fn afloat(added: f64, position: Vec3, orientation: UnitQuaternion<f64>, dt: f64) -> Run {
     let water = Water {
         level: 0.0,
@@ -387,7 +380,7 @@ fn afloat(added: f64, position: Vec3, orientation: UnitQuaternion<f64>, dt: f64)
     })
 }
 
-/// Mean of a signal over some steps, and its period by its zeros.
+/// Mean, and period from zero crossings.
 fn swing(run: &mut Run, steps: u32, dt: f64, signal: impl Fn(&Run) -> f64) -> (f64, f64) {
     let (mut sum, mut zeros, mut before) = (0.0, Vec::new(), signal(run));
     for step in 0..steps {
@@ -402,7 +395,7 @@ fn swing(run: &mut Run, steps: u32, dt: f64, signal: impl Fn(&Run) -> f64) -> (f
     (sum / f64::from(steps), period)
 }
 
-/// A pancake floe floats as deep as its volume says, and heaves and rolls in the time that its waterplane gives.
+/// Draught from volume; heave and roll periods from the waterplane.
 #[test]
 fn pancakes_float_heave_and_roll() {
     let (added, dt) = (0.5, 1e-3);
@@ -419,7 +412,7 @@ fn pancakes_float_heave_and_roll() {
     let period = TAU * ((1.0 + added) * displaced / stiffness).sqrt();
     println!("draft {:.5} m, heave {found:.4} s for {period:.4} s", draft - mean);
     assert!((found / period - 1.0).abs() < 0.01, "{found} for {period}");
-    // Roll without added mass: metacentric height from the waterplane and the depth of the centre of buoyancy.
+    // No added mass; metacentric height from waterplane and centre of buoyancy.
     let n = 20_000;
     let at = |k: i32| -SMALL + draft * (f64::from(k) + 0.5) / f64::from(n);
     let moment: f64 = (0..n).map(at).map(|z| z * PI * slice(z).powi(2)).sum::<f64>() * draft / f64::from(n);

@@ -1,4 +1,4 @@
-//! At, near and beyond the edges of what the engine takes: the right answer or a named refusal, never a NaN.
+//! Limits of the engine: correct result or a specific error, never NaN.
 
 use crate::scene::{Random, Run, clump, plane, rigid, sphere, stone, weightless};
 use trackbed_dem::shape::clump::Clump;
@@ -17,8 +17,8 @@ fn finite(model: &Model, state: &State) -> bool {
     })
 }
 
-/// Face-centred cubic crystal of 5³ cells, pressed together by 1 % and stirred, between six planes: twelve contacts
-/// on each sphere, the stiffest arrangement that spheres have.
+/// Face-centred cubic crystal of 5³ cells, compressed by 1 %: twelve contacts per sphere, the stiffest
+/// packing.
 fn crystal(time_step: TimeStep) -> ModelInput {
     let mut input = weightless(Material { tangential_ratio: 2.0 / 7.0, restitution: 0.9, ..stone() });
     input.time_step = time_step;
@@ -43,9 +43,8 @@ fn step_limit() -> f64 {
     Model::new(crystal(TimeStep::Auto { fraction: 1.0 })).unwrap().dt_limit().dt
 }
 
-/// Up to the limit a pressed crystal keeps the energy it has; what it loses is in the ledger.
 #[test]
-fn crystal_is_stable_up_to_the_limit() {
+fn crystal_is_stable_below_limit() {
     for fraction in [0.9, 1.0] {
         let mut run = Run::new(crystal(TimeStep::Fixed(fraction * step_limit())));
         run.steps(50);
@@ -60,10 +59,9 @@ fn crystal_is_stable_up_to_the_limit() {
     }
 }
 
-/// Above it, a step is refused by name; taken all the same, it ends in an error that names a body, long before
-/// anything is not a number.
+/// Rejected by the model, or stopped by an error naming a body before any NaN.
 #[test]
-fn crystal_beyond_the_limit_is_refused_or_stopped() {
+fn crystal_fails_above_limit() {
     let limit = step_limit();
     for factor in [1.0 + 1e-9, 1.1, 1.5] {
         match Model::new(crystal(TimeStep::Fixed(factor * limit))) {
@@ -73,7 +71,7 @@ fn crystal_beyond_the_limit_is_refused_or_stopped() {
             other => panic!("{factor}: {other:?}"),
         }
     }
-    // 1.1 is still within what the bound gives away; 1.5 and 3 are not.
+    // 1.1 is within the conservatism of the bound; 1.5 and 3 are not.
     for (factor, fails) in [(1.1, false), (1.5, true), (3.0, true)] {
         let model = Model::new(crystal(TimeStep::FixedAboveLimit(factor * limit))).unwrap();
         let mut state = State::new(&model);
@@ -91,7 +89,7 @@ fn crystal_beyond_the_limit_is_refused_or_stopped() {
     }
 }
 
-/// A sphere on a slope of 45°: without friction it slides, with μ = 10 it rolls with 5/7 of that acceleration.
+/// 45°: sliding without friction; 5/7 of that acceleration by rolling with μ = 10.
 #[test]
 fn friction_of_nought_and_of_ten() {
     for (friction, share) in [(0.0, 1.0), (10.0, 5.0 / 7.0)] {
@@ -99,7 +97,7 @@ fn friction_of_nought_and_of_ten() {
         input.gravity = WEIGHT;
         let normal = Vec3::new(1.0, 0.0, 1.0).normalize();
         input.planes.push(plane(Vec3::zeros(), normal));
-        // Pressed in by as much as its weight presses.
+        // Overlap in equilibrium with the weight.
         let press = 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6 * 9.81 / 2.0_f64.sqrt() / 1e5;
         input.bodies.push(sphere(normal * (0.01 - press), Vec3::zeros()));
         let mut run = Run::new(input);
@@ -113,14 +111,14 @@ fn friction_of_nought_and_of_ten() {
 }
 
 #[test]
-fn restitution_of_almost_nought_and_of_one() {
+fn restitution_near_zero_and_one() {
     for (restitution, low, high) in [(1e-3, 0.0, 5e-3), (1.0, 0.999, 1.001)] {
         let mut input = weightless(Material { restitution, ..stone() });
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
         input.planes.push(plane(Vec3::new(0.0, 0.0, 0.03), -Vec3::z()));
         input.bodies.push(sphere(Vec3::new(0.0, 0.0, 0.0105), Vec3::new(0.0, 0.0, -1.0)));
         let mut run = Run::new(input);
-        // A single impact when it is soft, some sixty between two planes when it is not.
+        // One soft impact, or about sixty between two planes.
         while run.state.time < if restitution < 0.5 { 0.005 } else { 1.0 } {
             run.step();
         }
@@ -129,9 +127,9 @@ fn restitution_of_almost_nought_and_of_one() {
     }
 }
 
-/// Two spheres that start half a radius inside each other fly apart with what the spring held, ½ K δ².
+/// Released: ½ K δ².
 #[test]
-fn overlap_of_half_a_radius_at_the_start() {
+fn large_initial_overlap_releases_its_energy() {
     let mut input = weightless(Material { restitution: 1.0, ..stone() });
     input.bodies.push(sphere(Vec3::zeros(), Vec3::zeros()));
     input.bodies.push(sphere(Vec3::new(0.015, 0.0, 0.0), Vec3::zeros()));
@@ -154,10 +152,10 @@ fn plate() -> TriangleSurface {
     }
 }
 
-/// 1000 m/s on a plane and on a plate without thickness: a contact stiff enough for it (overlap v √(m/K), a tenth of
-/// the radius) throws the sphere back with e v; a soft one is stopped with its name. Neither lets it through.
+/// Plane, and plate without thickness. Sufficient stiffness (overlap v √(m/K), a tenth of the radius):
+/// rebound e v. Too soft: error. No penetration.
 #[test]
-fn impact_at_a_thousand_metres_per_second() {
+fn impact_at_extreme_speed() {
     let impact = |stiffness: f64, thin: bool, offset: f64| {
         let mut input = weightless(Material { stiffness, ..stone() });
         if thin {
@@ -176,7 +174,7 @@ fn impact_at_a_thousand_metres_per_second() {
         Ok::<_, StepError>((state.velocity(0), state.position(0)))
     };
     for thin in [false, true] {
-        // In a face, and on the seam of two.
+        // Face, and seam of two faces.
         for offset in [0.3, 0.02] {
             let (velocity, position) = impact(1.1e10, thin, offset).unwrap();
             assert!(
@@ -195,7 +193,7 @@ fn impact_at_a_thousand_metres_per_second() {
     }
 }
 
-/// Uniform motion of a single body under no force is exact but for the rounding of its sums.
+/// Exact to rounding of sums.
 #[test]
 fn one_body_alone() {
     let mut input = weightless(stone());
@@ -211,7 +209,7 @@ fn one_body_alone() {
     assert_eq!(run.state.spin(0), Vec3::new(1.0, 2.0, 3.0));
 }
 
-/// Stiffnesses 10⁶ apart: K = 2 k₁k₂/(k₁ + k₂), and the weight rests on it.
+/// Series stiffness K = 2 k₁k₂/(k₁ + k₂).
 #[test]
 fn stiffnesses_a_million_apart() {
     let soft = Material { stiffness: 1e4, restitution: 0.1, ..stone() };
@@ -229,10 +227,9 @@ fn stiffnesses_a_million_apart() {
     assert!((found / expected - 1.0).abs() < 1e-6, "{found:e} {expected:e}");
 }
 
-/// Masses 10⁶ and radii 100 apart: a grain that hits a boulder comes back with e v, momentum kept; a boulder at rest
-/// on a grain presses with its weight.
+/// Grain on boulder: rebound e v. Boulder on grain: equilibrium.
 #[test]
-fn masses_a_million_and_radii_a_hundred_apart() {
+fn extreme_mass_and_radius_ratios() {
     let mut input = weightless(stone());
     input.bodies.push(BodyInput { scale: 100.0, ..sphere(Vec3::zeros(), Vec3::zeros()) });
     input.bodies.push(sphere(Vec3::new(0.0, 0.0, 1.0101), Vec3::new(0.0, 0.0, -1.0)));
@@ -244,7 +241,7 @@ fn masses_a_million_and_radii_a_hundred_apart() {
     let momentum = 1e6 * boulder + grain;
     assert!((momentum + 1.0).abs() < 1e-9, "{momentum}");
 
-    // A dashpot of the grain's mass hardly brakes the boulder: local damping does.
+    // The dashpot scales with the grain's mass: local damping needed.
     let mut input = weightless(Material { stiffness: 1e9, restitution: 0.1, ..stone() });
     input.damping = Some(LocalDamping { factor: 0.7 });
     input.gravity = WEIGHT;
@@ -266,15 +263,14 @@ fn masses_a_million_and_radii_a_hundred_apart() {
     assert!((on_floor / weight - 1.0).abs() < 1e-3, "{on_floor} {weight}");
 }
 
-/// Grains of a hundredth of a boulder's radius are all found on it, wherever they touch.
 #[test]
-fn grains_around_a_boulder_are_all_found() {
+fn finds_all_grains_on_boulder() {
     let mut input = weightless(stone());
     input.bodies.push(BodyInput { scale: 100.0, ..sphere(Vec3::zeros(), Vec3::zeros()) });
     let tilt = nalgebra::UnitQuaternion::from_scaled_axis(Vec3::new(0.3, 0.5, 0.7));
     for k in 0..600_u32 {
         let gap = if k % 3 == 0 { 1e-4 } else { -1e-4 };
-        // A spiral of golden angles, turned: apart by a tenth of the boulder's radius.
+        // Golden-angle spiral: spacing of a tenth of the boulder's radius.
         let (z, turn) = (1.0 - (2.0 * f64::from(k) + 1.0) / 600.0, 2.399_963_229_728_653 * f64::from(k));
         let direction =
             tilt * Vec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z);
@@ -290,8 +286,7 @@ fn grains_around_a_boulder_are_all_found() {
     assert_eq!(found, 400);
 }
 
-/// Drops a clump, tilted by `tilt`, from a small height for `time`, and checks its energy balance (against what the
-/// fall gives).
+/// Drops a tilted clump and checks its energy balance relative to the fall.
 fn drop_clump(spheres: &[([f64; 3], f64)], restitution: f64, tilt: f64, time: f64) -> (Model, State) {
     let clump = Clump::from_spheres(spheres).unwrap();
     let material = Material { stiffness: 1e4, restitution, ..stone() };
@@ -323,8 +318,7 @@ fn drop_clump(spheres: &[([f64; 3], f64)], restitution: f64, tilt: f64, time: f6
     (run.model, run.state)
 }
 
-/// A needle 1:50 of 50 spheres: moment of inertia across its axis that of 50 balls in a row (they overlap by 1 %),
-/// and it comes to rest on its side, on all of them.
+/// 50 spheres, 1 % overlap: moment of inertia of 50 balls; rests on all of them.
 #[test]
 fn needle_of_one_to_fifty() {
     let (r, pitch) = (0.002, 0.99 * 0.004);
@@ -339,8 +333,7 @@ fn needle_of_one_to_fifty() {
     assert_eq!(measure::contacts(&model, &state).len(), 50);
 }
 
-/// A plate 1:50 of 50 × 50 spheres, tilted: it lands on an edge, slaps down on all of them and bounces. The step that
-/// 24 contacts allow, enough for a stone, would be far too long for its 2,500.
+/// Lands tilted on an edge, then on all 2,500 spheres: a step for 24 contacts would be too long.
 #[test]
 fn plate_of_one_to_fifty() {
     let (r, pitch) = (0.002, 0.99 * 0.004);
@@ -352,11 +345,10 @@ fn plate_of_one_to_fifty() {
     assert!((inertia.max() / inertia.min() - 2.0).abs() < 2e-3, "a thin square: twice about its normal");
 }
 
-/// Ten million steps of a bed at rest: its energy and heights stay.
 #[test]
 #[ignore = "ten million steps of 27 spheres: 40 s"]
 fn quiet_bed_for_ten_million_steps() {
-    // A sphere on a floor would roll on for ever without resistance.
+    // Rolling resistance: a sphere on a floor rolls forever without it.
     let resistance = Material { rolling_friction: 0.05, twisting_friction: 0.05, ..stone() };
     let mut input = weightless(Material { restitution: 0.3, tangential_damping_ratio: 0.5, ..resistance });
     input.gravity = WEIGHT;
@@ -386,8 +378,7 @@ fn quiet_bed_for_ten_million_steps() {
     assert!(end.kinetic() < 1e-20 && moved < 1e-9, "{end:?} {moved:e}");
 }
 
-/// Ten million steps of a free clump with three unlike moments of inertia, turning about the unstable axis: kinetic
-/// energy and angular momentum stay to rounding, and so does the norm of the orientation (design figure: 1e-10).
+/// Unstable axis of three moments of inertia; orientation norm to 1e-10 (design).
 #[test]
 #[ignore = "ten million steps of one clump: 10 s"]
 fn tumbling_for_ten_million_steps() {

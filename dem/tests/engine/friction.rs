@@ -5,7 +5,7 @@ use trackbed_dem::{BodyInput, Material, Plane, Shape, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 
-/// A stiff sphere at rest on a plane, in balance with its weight along z.
+/// Stiff sphere in equilibrium on a plane.
 fn on_plane(friction: f64, velocity: f64, gravity: Vec3) -> Run {
     let material = Material { stiffness: 1e7, friction, tangential_damping_ratio: 1.0, ..stone() };
     let mut input = weightless(material);
@@ -18,7 +18,7 @@ fn on_plane(friction: f64, velocity: f64, gravity: Vec3) -> Run {
     Run::new(input)
 }
 
-/// A sphere set sliding ends up rolling at 5/7 of its speed, after t = 2 v₀/(7 μ g).
+/// Ends rolling at 5/7 of its speed after t = 2 v₀/(7 μ g).
 #[test]
 fn sliding_sphere_rolls_at_five_sevenths() {
     let (v0, mu) = (0.2, 0.3);
@@ -37,7 +37,7 @@ fn sliding_sphere_rolls_at_five_sevenths() {
     assert!((speed - 5.0 / 7.0).abs() < 1e-4, "{speed}");
 }
 
-/// Down an incline without slip the acceleration is 5/7 g sin α.
+/// Acceleration 5/7 g sin α.
 #[test]
 fn sphere_rolls_down_an_incline() {
     let angle = 0.2_f64;
@@ -50,7 +50,7 @@ fn sphere_rolls_down_an_incline() {
     assert!((found / expected - 1.0).abs() < 1e-3, "{found} against {expected}");
 }
 
-/// A block pushed along a plane stops after v²/(2 μ g), and stays.
+/// Stops after v²/(2 μ g).
 #[test]
 fn block_slides_to_rest() {
     let (v0, mu) = (0.5, 0.4);
@@ -74,9 +74,9 @@ fn block_slides_to_rest() {
     assert!((run.state.position(0).z - position.z).abs() < 1e-6);
 }
 
-/// On a slope below the friction angle a block stays; above, it slides with g (sin α − μ cos α).
+/// Sliding acceleration g (sin α − μ cos α).
 #[test]
-fn block_on_a_slope_stays_or_slides() {
+fn block_on_slope_obeys_friction() {
     let mu = 0.4_f64;
     for (angle, slides) in [(0.9 * mu.atan(), false), (1.2 * mu.atan(), true)] {
         let material = Material { stiffness: 1e6, friction: mu, tangential_damping_ratio: 1.0, ..stone() };

@@ -1,16 +1,16 @@
-//! Contact after Hertz and Mindlin against closed forms.
+//! Hertz–Mindlin contact against closed forms.
 
 use crate::scene::{Run, pile, plane, sphere, stone, weightless};
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BodyInput, Material, PairOverride, Shape, TimeStep, Vec3, find_contacts, measure};
 
-/// [`stone`] with moduli in place of a stiffness.
+/// [`stone`] with elastic moduli.
 pub fn elastic() -> Material {
     Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..stone() }
 }
 
-/// E* of two like materials.
+/// E* of two equal materials.
 fn modulus() -> f64 {
     5e7 / (2.0 * (1.0 - 0.0625))
 }
@@ -19,7 +19,7 @@ fn mass(radius: f64) -> f64 {
     2600.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }
 
-/// A sphere of radius 1 cm thrown at one twice as large, or at a plane.
+/// Sphere of radius 1 cm against one twice as large, or a plane.
 fn impact(restitution: f64, speed: f64, on_plane: bool, gap: f64) -> Run {
     let mut input = weightless(Material { restitution, ..elastic() });
     input.impact_speed = Some(speed);
@@ -33,7 +33,7 @@ fn impact(restitution: f64, speed: f64, on_plane: bool, gap: f64) -> Run {
     Run::new(input)
 }
 
-/// Runs to the end of the contact; returns its time, to a fraction of a step by the speeds around it.
+/// Contact duration, interpolated within a step.
 fn through(run: &mut Run) -> f64 {
     let touching = |run: &Run| !measure::contacts(&run.model, &run.state).is_empty();
     while !touching(run) {
@@ -79,7 +79,7 @@ fn time_of_an_elastic_impact() {
     }
 }
 
-/// The restitution asked for, whatever the speed, between unlike spheres and on a plane.
+/// Unequal spheres, and plane.
 #[test]
 fn restitution_does_not_depend_on_speed() {
     for e in [0.2, 0.5, 0.8, 0.95] {
@@ -95,8 +95,8 @@ fn restitution_does_not_depend_on_speed() {
     }
 }
 
-/// An oblique impact that slides throughout: the tangential speed falls by μ(1 + e)v, the spin grows by 5/2 of that
-/// over r (Maw, Barber & Fawcett, Wear 38, 1976, beyond their limit of sticking). A steep one sticks: it slides less.
+/// Sliding: speed falls by μ(1 + e)v, angular velocity grows by 5/2 of it over r (Maw, Barber & Fawcett, Wear
+/// 38, 1976, beyond their limit of sticking). Steep: sticks, with less slip.
 #[test]
 fn oblique_impacts_slide_or_stick() {
     let (e, mu, v) = (0.8, 0.3, 1.0);
@@ -109,7 +109,7 @@ fn oblique_impacts_slide_or_stick() {
         let lost = tangential - run.state.velocity(0).x;
         let full = mu * (1.0 + e) * v;
         let spin = run.state.spin(0).y * 0.01;
-        // The lever is the radius less the overlap.
+        // Lever arm: radius less overlap.
         assert!((spin / (2.5 * lost) - 1.0).abs() < 0.05, "{spin} {lost}");
         if slides {
             assert!((lost / full - 1.0).abs() < 5e-3, "{lost} against {full}");
@@ -119,7 +119,6 @@ fn oblique_impacts_slide_or_stick() {
     }
 }
 
-/// A settling pile: energy and momentum are accounted for.
 #[test]
 fn ledger_of_a_settling_pile_closes() {
     let mut closure = Vec::new();
@@ -153,9 +152,8 @@ fn ledger_of_a_settling_pile_closes() {
     assert!(closure[0] < 5e-3 && closure[1] < 5e-4 && closure[0] > 2.0 * closure[1], "{closure:?}");
 }
 
-/// Materials of unlike laws need one named for their pair.
 #[test]
-fn unlike_laws_need_one_for_the_pair() {
+fn unequal_laws_need_pair_law() {
     let mut input = weightless(elastic());
     input.materials.push(stone());
     let error = trackbed_dem::Model::new(input.clone()).expect_err("two laws").to_string();
@@ -166,7 +164,7 @@ fn unlike_laws_need_one_for_the_pair() {
     trackbed_dem::Model::new(input).expect("a law for every pair");
 }
 
-/// What meets a sleeper has the radius of a stone, whatever the size of the sleeper; a clump touches with its spheres, not with its outline.
+/// A sleeper contact uses the stone's radius; a clump uses its spheres.
 #[test]
 fn radii_are_those_of_contacts() {
     let model = |shapes: Vec<Shape>| {
@@ -190,7 +188,7 @@ fn radii_are_those_of_contacts() {
     let (with, alone) = (model(vec![stone.clone(), sleeper]), model(vec![stone]));
     assert_eq!(with.dt_limit().body, 1, "so many stones fit under the sleeper that it decides");
     assert_eq!(with.dt_limit().stiffness, alone.dt_limit().stiffness);
-    // A row of nine: the radius of one, the mass of all.
+    // Row of nine: radius of one, mass of all.
     let row: Vec<_> = (0..9).map(|k| ([0.015 * k as f64, 0.0, 0.0], 0.01)).collect();
     let clump = Clump::from_spheres(&row).expect("a clump");
     let mass = 2600.0 * clump.volume;
@@ -200,10 +198,10 @@ fn radii_are_those_of_contacts() {
     assert!((found / (0.2 * (0.5 * mass / stiffness).sqrt()) - 1.0).abs() < 1e-9, "{found:e}");
 }
 
-/// A harder or a faster impact takes a smaller step, and an impact speed overrides the estimate.
+/// An impact speed overrides the estimate.
 #[test]
 fn step_follows_the_expected_overlap() {
     let dt = |speed: f64| impact(0.5, speed, true, 1e-5).model.dt();
-    // d ~ v^(4/5), limit ~ d^(-1/4): sixteen times as fast, a step smaller by 16^(1/5).
+    // d ~ v^(4/5), limit ~ d^(-1/4): 16 times the speed, step smaller by 16^(1/5).
     assert!((dt(1.0) / dt(16.0) / 16.0_f64.powf(0.2) - 1.0).abs() < 1e-9);
 }

@@ -1,11 +1,11 @@
-//! Single impacts against the closed forms of the contact law.
+//! Single impacts against closed forms.
 
 use crate::scene::{Run, plane, rigid, sphere, stone, weightless};
 use trackbed_dem::{BodyInput, Material, Plane, TimeStep, Vec3, measure};
 
 const RESTITUTIONS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
 
-/// Runs until the bodies fly apart.
+/// Runs until separation.
 fn until_apart(run: &mut Run) {
     let touching = |run: &Run| !measure::contacts(&run.model, &run.state).is_empty();
     let mut steps = 0;
@@ -25,7 +25,7 @@ fn until_apart(run: &mut Run) {
 #[test]
 fn restitution_as_requested_between_unequal_spheres() {
     for e in RESTITUTIONS {
-        // Gaps that meet the steps at different phases.
+        // Different phases of contact within a step.
         for gap in [1e-4, 1.37e-4, 2.11e-4] {
             let mut input = weightless(Material { restitution: e, ..stone() });
             input.bodies.push(sphere(Vec3::zeros(), Vec3::x()));
@@ -56,7 +56,7 @@ fn restitution_as_requested_on_a_plane() {
     }
 }
 
-/// The error of the restitution falls with the square of the step: no first-order trace of lagged dashpots.
+/// No first-order error from half-step-old dashpot velocities.
 #[test]
 fn restitution_error_is_of_second_order() {
     let error = |dt: f64| {
@@ -76,7 +76,7 @@ fn restitution_error_is_of_second_order() {
 }
 
 #[test]
-fn momentum_and_angular_momentum_of_an_oblique_impact() {
+fn oblique_impact_conserves_momentum() {
     let mut input = weightless(stone());
     input.bodies.push(BodyInput {
         spin: Vec3::new(3.0, -50.0, 20.0),
@@ -94,10 +94,10 @@ fn momentum_and_angular_momentum_of_an_oblique_impact() {
     assert!(linear < 1e-13 && angular < 1e-12, "{linear:e} {angular:e}");
 }
 
-/// Sliding all through the impact: the tangential velocity falls by μ(1 + e) vₙ and the spin gains 5/2 of it over r
-/// (Walton 1993; Maw, Barber & Fawcett 1976).
+/// Tangential velocity falls by μ(1 + e) vₙ, angular velocity gains 5/2 of it over r (Walton 1993; Maw,
+/// Barber & Fawcett 1976).
 #[test]
-fn sliding_impact_changes_the_tangential_velocity_by_the_closed_form() {
+fn sliding_impact_matches_closed_form() {
     let mu = 0.1;
     for e in RESTITUTIONS {
         let mut input = weightless(Material { restitution: e, friction: mu, ..stone() });
@@ -108,16 +108,15 @@ fn sliding_impact_changes_the_tangential_velocity_by_the_closed_form() {
         let change = 40.0 - run.state.velocity(0).x;
         let expected = mu * (1.0 + e);
         assert!((change / expected - 1.0).abs() < 5e-3, "e {e}: {change} against {expected}");
-        // The lever arm is the radius less the overlap.
+        // Lever arm: radius less overlap.
         let spin = run.state.spin(0).y * 0.01;
         assert!((spin / (2.5 * expected) - 1.0).abs() < 0.05, "spin {spin}");
     }
 }
 
-/// Sticking all through: the contact point's velocity turns as cos(ωₜT) of the tangential spring, ωₜ² = 7/2 Ks/m,
-/// T = π √(m/Kn): reversed wholly for Ks/Kn = 2/7.
+/// Contact point velocity follows cos(ωₜT), ωₜ² = 7/2 Ks/m, T = π √(m/Kn): full reversal for Ks/Kn = 2/7.
 #[test]
-fn sticking_impact_turns_the_contact_point_by_the_closed_form() {
+fn sticking_impact_matches_closed_form() {
     for ratio in [2.0 / 7.0_f64, 0.5, 0.1] {
         let material =
             Material { restitution: 1.0, friction: 1e6, tangential_ratio: ratio, stiffness: 1e7, ..stone() };

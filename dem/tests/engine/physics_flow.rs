@@ -1,7 +1,7 @@
-//! Granular flows with published scalings: collapse of a column, discharge through an orifice.
+//! Granular flows with published scalings: column collapse, orifice discharge.
 //!
-//! Grains: spheres of diameter d = 10 mm ± 10 %, 2600 kg/m³, μ = 0.5 among themselves and on all walls, e = 0.5,
-//! K = 1e4 N/m (overlap in the beds below 0.5 % of d), step half the limit.
+//! Spheres, d = 10 mm ± 10 %, 2600 kg/m³, μ = 0.5 (walls too), e = 0.5, K = 1e4 N/m (overlap below 0.5 % of
+//! d), half the critical time step.
 
 use crate::scene::{Random, Run, plane, stone, weightless};
 use std::f64::consts::{PI, TAU};
@@ -18,7 +18,7 @@ fn grains() -> ModelInput {
     input
 }
 
-/// Adds `layers` loose layers of grains whose centres pass `inside`, over x, y in ± `half`.
+/// Adds loose layers of grains with centres `inside`, x, y in ± `half`.
 fn pour(input: &mut ModelInput, half: f64, layers: u32, inside: impl Fn(f64, f64) -> bool) {
     let mut random = Random::new(5);
     let pitch = 1.13 * D;
@@ -45,7 +45,7 @@ fn advance(model: &Model, state: &mut State, work: &mut Work, until: f64) {
     }
 }
 
-/// Root-mean-square speed of what has not fallen out [m/s].
+/// RMS speed of the remaining grains [m/s].
 fn speed(model: &Model, state: &State) -> f64 {
     let squares = (0..model.body_count())
         .filter(|&b| state.position(b).z > -D)
@@ -54,7 +54,7 @@ fn speed(model: &Model, state: &State) -> f64 {
     f64::sqrt(sum / count)
 }
 
-/// Height of the pile if its solid were spread evenly to twice the height of its centre of mass [m].
+/// Pile height of equal solid volume: twice the centre of mass [m].
 fn height(model: &Model, state: &State) -> f64 {
     let (mut mass, mut moment) = (0.0, 0.0);
     for b in (0..model.body_count()).filter(|&b| model.part(b) == 0) {
@@ -64,7 +64,7 @@ fn height(model: &Model, state: &State) -> f64 {
     2.0 * moment / mass
 }
 
-/// A ring (or a strip of wall) of `n` quadrilaterals between two closed lines of points.
+/// Ring or strip of `n` quadrilaterals between two closed lines.
 fn ring(n: u32, inner: impl Fn(u32) -> Vec3, outer: impl Fn(u32) -> Vec3) -> TriangleSurface {
     let vertices = (0..n).map(&inner).chain((0..n).map(&outer)).collect();
     let quad = |k: u32| {
@@ -74,7 +74,7 @@ fn ring(n: u32, inner: impl Fn(u32) -> Vec3, outer: impl Fn(u32) -> Vec3) -> Tri
     TriangleSurface { vertices, triangles: (0..n).flat_map(quad).collect(), ..TriangleSurface::default() }
 }
 
-/// Corner `k` of a regular polygon of `n` corners with the area of a circle of radius `r`.
+/// Corner `k` of a regular `n`-gon with the area of a circle of radius `r`.
 fn corner(k: u32, n: u32, r: f64) -> Vec3 {
     let turn = TAU / f64::from(n);
     let r = r * (turn / turn.sin()).sqrt();
@@ -82,10 +82,10 @@ fn corner(k: u32, n: u32, r: f64) -> Vec3 {
     Vec3::new(r * angle.cos(), r * angle.sin(), 0.0)
 }
 
-/// Height of the bumps of [`rough_floor`] above the centres of its grains, as a grain between three of them feels it.
+/// Height of bumps of [`rough_floor`] for a grain between three of them.
 const BUMP: f64 = 0.3 * D;
 
-/// Fixed grains side by side, centres `BUMP` below z = 0: spheres would roll on and on over a smooth floor.
+/// Fixed grains, centres `BUMP` below z = 0: on a smooth floor spheres roll on.
 fn rough_floor(input: &mut ModelInput, radius: f64) {
     let pitch = 1.01 * D;
     let n = (radius / pitch).ceil() as i32 + 1;
@@ -107,11 +107,10 @@ fn rough_floor(input: &mut ModelInput, radius: f64) {
     }
 }
 
-/// Aspect ratio h₀/r₀ of a column, and its run-out (r∞ − r₀)/r₀ when its wall is gone.
+/// Aspect ratio h₀/r₀ and run-out (r∞ − r₀)/r₀ of a column.
 ///
-/// The edge r∞ of the deposit is where the straight slope of its outer part meets the floor. The slope is taken where
-/// grains cover the floor half to twice (their discs over the area of rings one diameter wide): a deposit of grains
-/// that are not small has no other edge, and single grains roll beyond it.
+/// The deposit edge r∞ extrapolates the outer slope to the floor, where coverage (disc area per ring of one
+/// diameter) is 0.5 to 2: single grains roll beyond it.
 fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
     let mut input = grains();
     let top = Vec3::new(0.0, 0.0, f64::from(layers + 2) * 1.2 * D);
@@ -137,7 +136,7 @@ fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
         let number = (0..count).filter(|&b| (radius(b) / D - ring - 0.5).abs() <= 0.5).count();
         number as f64 * 0.25 / ((ring + 1.0).powi(2) - ring * ring)
     };
-    // Straight line through the rings that are covered half to twice, by least squares, down to nothing.
+    // Least-squares line through these rings.
     let (mut r, mut c) = (Vec::new(), Vec::new());
     for ring in (0..100).map(f64::from) {
         let covered = coverage(ring);
@@ -157,9 +156,9 @@ fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
     (aspect, (edge - r0) / r0)
 }
 
-/// Run-out of columns: 1.24 a for a < 1.7, 1.6 √a above (Lube, Huppert, Sparks & Hallworth 2004, J. Fluid Mech.
-/// 508, 175), whatever the grains; Lajeunesse, Mangeney-Castelnau & Vilotte 2004 (Phys. Fluids 16, 2371) find the
-/// same powers for glass beads. Tolerance 25 %: the scatter between these experiments, and r₀ is ten grains only.
+/// Run-out 1.24 a for a < 1.7, 1.6 √a above (Lube, Huppert, Sparks & Hallworth 2004, J. Fluid Mech. 508,
+/// 175); Lajeunesse, Mangeney-Castelnau & Vilotte 2004 (Phys. Fluids 16, 2371): same powers. Tolerance 25 %:
+/// scatter between the experiments, and r₀ of ten grains.
 #[test]
 #[ignore = "three columns of up to 11,000 grains: 60 s"]
 fn columns_run_out_as_published() {
@@ -171,14 +170,14 @@ fn columns_run_out_as_published() {
     }
 }
 
-/// Mass flow rates [kg/s] through orifices of the given diameters [m], and bulk density of the bed at rest [kg/m³].
+/// Mass flow rates [kg/s] by orifice diameter [m], and bulk density at rest [kg/m³].
 fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
     const N: u32 = 48;
     let mut input = grains();
     for (point, normal) in [(-half, Vec3::x()), (-half, Vec3::y()), (half, -Vec3::x()), (half, -Vec3::y())] {
         input.planes.push(plane(Vec3::repeat(point), normal));
     }
-    // Surface 0 is the lid of the smallest orifice, 1.. the rings that widen it, the last one the floor around.
+    // Surface 0: smallest lid; 1..: widening rings; last: floor.
     let smallest = 0.5 * diameters[0];
     let mut lid = ring(N, |_| Vec3::zeros(), |k| corner(k, N, smallest));
     lid.vertices = std::iter::once(Vec3::zeros()).chain((0..N).map(|k| corner(k, N, smallest))).collect();
@@ -226,10 +225,10 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
     (rates.collect(), bulk)
 }
 
-/// Beverloo's law for a flat bottom: W = C ρ √g (D − k d)^(5/2) with C = 0.55 to 0.65 and k = 1.2 to 1.8 for spheres
-/// (Beverloo, Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260: C = 0.58, k = 1.4; ranges after Nedderman 1992,
-/// sec. 10.2, and Mankoc et al. 2007, Granular Matter 9, 407). W^(2/5) is linear in D: the line gives k and C; the
-/// exponent is that of W over D − 1.4 d on logarithmic axes.
+/// Beverloo's law, flat bottom: W = C ρ √g (D − k d)^(5/2), C = 0.55 to 0.65, k = 1.2 to 1.8 (Beverloo,
+/// Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260: C = 0.58, k = 1.4; ranges: Nedderman 1992, sec.
+/// 10.2, and Mankoc et al. 2007, Granular Matter 9, 407). W^(2/5) is linear in D; exponent of
+/// W over D − 1.4 d on log axes.
 #[test]
 #[ignore = "11,000 grains, four orifices: 150 s"]
 fn orifices_discharge_by_beverloos_law() {
@@ -245,7 +244,7 @@ fn orifices_discharge_by_beverloos_law() {
     assert!((exponent - 2.5).abs() < 0.1, "exponent {exponent}");
 }
 
-/// Least-squares line y = slope x + cut.
+/// Least squares: y = slope x + cut.
 fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
     let n = x.len() as f64;
     let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
@@ -254,7 +253,6 @@ fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
     (slope, my - slope * mx)
 }
 
-/// The wall of a column of the smallest kind holds it, and its volume is what its grains need.
 #[test]
 fn column_stands_within_its_wall() {
     let r0 = 5.0 * D;

@@ -1,4 +1,4 @@
-//! Packing fraction and coordination of poured spheres against friction.
+//! Packing fraction and coordination of poured spheres by friction.
 
 use crate::scene::{Random, Run, plane, stone, weightless};
 use trackbed_dem::{BodyInput, Material, Partner, Shape, TimeStep, Vec3, measure};
@@ -6,8 +6,8 @@ use trackbed_dem::{BodyInput, Material, Partner, Shape, TimeStep, Vec3, measure}
 const D: f64 = 0.01;
 const WIDTH: f64 = 0.12;
 
-/// Packing fraction and coordination (without rattlers: spheres of fewer than `least` contacts) of the inside of a bed
-/// poured with friction `mu`, at least two diameters from all walls and the top.
+/// Packing fraction and coordination, without rattlers (fewer than `least` contacts), at least two diameters
+/// from walls and top.
 fn pour(mu: f64, least: usize) -> (f64, f64) {
     let mut input = weightless(Material { stiffness: 1e5, friction: mu, restitution: 0.5, ..stone() });
     input.gravity = Vec3::new(0.0, 0.0, -9.81);
@@ -47,7 +47,7 @@ fn pour(mu: f64, least: usize) -> (f64, f64) {
     let (low, high) = (Vec3::repeat(2.0 * D), Vec3::new(WIDTH - 2.0 * D, WIDTH - 2.0 * D, top - D));
     let inside = |p: &Vec3| (0..3).all(|k| p[k] > low[k] && p[k] < high[k]);
 
-    // Solid part of the region, by points.
+    // Solid fraction by points.
     let near: Vec<_> =
         centres.iter().filter(|c| (0..3).all(|k| c.0[k] > low[k] - D && c.0[k] < high[k] + D)).collect();
     let mut inside_solid = 0;
@@ -58,7 +58,7 @@ fn pour(mu: f64, least: usize) -> (f64, f64) {
     }
     let fraction = f64::from(inside_solid as u32) / f64::from(points);
 
-    // Contacts, until no rattler is left.
+    // Removes rattlers iteratively.
     let pairs: Vec<[usize; 2]> = measure::contacts(&run.model, &run.state)
         .iter()
         .filter_map(|c| if let Partner::Body(b) = c.b { Some([c.a, b]) } else { None })
@@ -86,9 +86,9 @@ fn pour(mu: f64, least: usize) -> (f64, f64) {
     (fraction, coordination)
 }
 
-/// Frictionless spheres stop at random close packing, φ = 0.64 and Z = 6 (isostatic); friction holds them earlier:
-/// φ ≈ 0.59, Z ≈ 4.6 poured at μ = 0.5 (Silbert, Ertaş, Grest, Halsey & Levine 2002, Phys. Rev. E 65, 031304; Silbert
-/// 2010, Soft Matter 6, 2918). Tolerance 0.015 and 0.35: sampling of 700 spheres, and the way of pouring.
+/// Frictionless: random close packing, φ = 0.64, Z = 6 (isostatic). μ = 0.5: φ ≈ 0.59, Z ≈ 4.6 (Silbert,
+/// Ertaş, Grest, Halsey & Levine 2002, Phys. Rev. E 65, 031304; Silbert 2010, Soft Matter 6, 2918). Tolerance
+/// 0.015 and 0.35: 700 spheres, and the pouring method.
 #[test]
 #[ignore = "two beds of 2,500 spheres for 1 s: 30 s"]
 fn friction_loosens_packings_as_published() {

@@ -1,14 +1,13 @@
-//! A cloud of 1,000 spheres falls into a box: the fall, the impact, the decay and the heap against LAMMPS, YADE and
-//! Kratos from the same starts.
+//! Deposition of 1,000 spheres in a box against LAMMPS, YADE and Kratos.
 //!
-//! `tests/data/cloud_{1,2,3}.csv` are the starts, `tests/data/settling_peers.csv` what LAMMPS 2025.7.22.4 (`granular
-//! hooke`, `coeff_restitution`), YADE 2023.02a (`viscel`: one dashpot constant for all pairs) and Kratos 10.4.4
-//! (`DEM_D_Linear_Custom_Constants`, walls of triangles, tangential dashpots) made of them, step 2e-5 s:
+//! Starts: `tests/data/cloud_{1,2,3}.csv`; results: `tests/data/settling_peers.csv` of LAMMPS 2025.7.22.4
+//! (`granular hooke`, `coeff_restitution`), YADE 2023.02a (`viscel`: one dashpot constant for all pairs) and
+//! Kratos 10.4.4 (`DEM_D_Linear_Custom_Constants`, triangle walls, tangential dashpots). Step 2e-5 s,
 //! K = 1e5 N/m, tangential 2/7 of it, e = 0.5, μ = 0.5, 2600 kg/m³.
 //!
-//! Until most of the cloud has landed (0.15 s) the programs differ by their dashpots only (ours never pulls, theirs
-//! does): translation within their range ± 3 %, rotation, which friction alone makes, ± 10 %. Later, single
-//! rearrangements decide: within a factor 3 of their range while the energy falls by four orders of magnitude. The heap forgets how it was made: packing fraction in their range ± 0.003, coordination ± 0.06.
+//! Up to 0.15 s only dashpots differ (trackbed's never pull): translation within the peers' range ± 3 %,
+//! rotation ± 10 %. Later rearrangements dominate: a factor of 3 over four orders of magnitude. Heap: packing
+//! fraction ± 0.003, coordination ± 0.06.
 
 use crate::scene::{Run, plane, stone};
 use crate::tables;
@@ -45,7 +44,7 @@ fn cloud(number: u32) -> Run {
     Run::new(input)
 }
 
-/// Solid over gross volume up to twice the height of the centre of mass, and contacts between spheres per sphere.
+/// Solid fraction up to twice the centre of mass; sphere contacts per sphere.
 fn heap(model: &Model, state: &State) -> (f64, f64) {
     let (mut volume, mut moment) = (0.0, 0.0);
     for body in 0..model.body_count() {
@@ -56,7 +55,7 @@ fn heap(model: &Model, state: &State) -> (f64, f64) {
     (volume / (WIDTH * WIDTH * 2.0 * moment / volume), 2.0 * pairs as f64 / model.body_count() as f64)
 }
 
-/// Smallest and largest of the peers' values in a column of the rows that `which` picks.
+/// Range of the peers in a column, rows by `which`.
 fn range(peers: &[Vec<f64>], column: usize, which: impl Fn(&[f64]) -> bool) -> (f64, f64) {
     let values: Vec<f64> = peers.iter().filter(|r| which(r)).map(|r| r[column]).collect();
     assert_eq!(values.len(), 3, "one row of each program");
@@ -99,14 +98,14 @@ fn advance(model: &Model, state: &mut State, work: &mut Work, until: f64) {
 }
 
 #[test]
-fn falling_cloud_lands_as_in_other_programs() {
+fn falling_cloud_matches_other_programs() {
     let (fraction, _) = settle(1, 0.25);
     assert!((0.45..0.6).contains(&fraction));
 }
 
 #[test]
 #[ignore = "150,000 steps of 1,000 spheres: 15 s"]
-fn heaps_of_fallen_clouds_are_those_of_other_programs() {
+fn heaps_match_other_programs() {
     let heaps = tables::read("tests/data/heap_peers.csv");
     for number in 1..=3 {
         let (fraction, coordination) = settle(number, 1.0);

@@ -1,30 +1,30 @@
-//! A bed of 10,000 spheres in motion against LAMMPS, under both laws.
+//! Bed of 10,000 moving spheres against LAMMPS, both laws.
 
 use crate::scene::{Run, plane, stone};
 use crate::tables;
 use trackbed_dem::{BodyInput, Material, ModelInput, Partner, Shape, TimeStep, Vec3, measure};
 
-/// Step, kinetic energy of translation and of rotation [J], contacts between spheres.
+/// Step, translational and rotational energy [J], sphere contacts.
 type Row = [f64; 4];
 
-/// LAMMPS 2025.7.22.4: `granular hooke 1e5 0.5 tangential linear_history 28571.43 0 0.5 damping coeff_restitution
-/// limit_damping`.
+/// LAMMPS 2025.7.22.4: `granular hooke 1e5 0.5 tangential linear_history 28571.43 0 0.5 damping
+/// coeff_restitution limit_damping`.
 const HOOKE: [Row; 3] = [
     [100.0, 2.518890e-3, 2.843043e-3, 22613.0],
     [300.0, 1.396416e-3, 1.246152e-3, 22729.0],
     [500.0, 1.048952e-3, 6.700455e-4, 22976.0],
 ];
 
-/// LAMMPS 2025.7.22.4: `granular hertz/material 5e7 0.5 0.25 tangential mindlin NULL 0 0.5 damping coeff_restitution
-/// limit_damping`.
+/// LAMMPS 2025.7.22.4: `granular hertz/material 5e7 0.5 0.25 tangential mindlin NULL 0 0.5 damping
+/// coeff_restitution limit_damping`.
 const HERTZ: [Row; 3] = [
     [100.0, 1.363379e-2, 4.757038e-4, 22985.0],
     [300.0, 1.019664e-1, 1.276847e-3, 22857.0],
     [500.0, 2.415534e-1, 3.270692e-3, 22757.0],
 ];
 
-/// The restitution that a contact with LAMMPS' dashpot for 0.5 really has when it never pulls (`limit_damping`):
-/// its ζ = −ln e/√(π² + ln² e) is that of a contact that does. 0.550 (Schwager & Pöschel 2007).
+/// Restitution of LAMMPS' dashpot for 0.5 without tension (`limit_damping`), ζ = −ln e/√(π² + ln² e): 0.550
+/// (Schwager & Pöschel 2007).
 fn restitution() -> f64 {
     let log = 0.5_f64.ln();
     let zeta = -log / std::f64::consts::PI.hypot(log);
@@ -69,10 +69,10 @@ fn compare(material: Material, lammps: &[Row], rotation_tolerance: f64) {
     }
 }
 
-/// Energies of 10,000 spheres that rearrange at their own pace; the contacts' laws are the same.
+/// Rearrangements of 10,000 spheres differ; the contact laws do not.
 const TOLERANCE: f64 = 0.02;
 
-/// The bed starts without tangential springs, slides a little, and comes to rest again.
+/// Without initial tangential springs the bed slides a little and comes to rest.
 #[test]
 fn linear_bed_moves_as_in_lammps() {
     compare(
@@ -82,8 +82,8 @@ fn linear_bed_moves_as_in_lammps() {
     );
 }
 
-/// Another law than the one it was settled with: the bed springs apart. Ours keeps the tangential force while the overlap
-/// grows, LAMMPS' `mindlin` the spring's length, which may be why the rotation is 3 % off.
+/// Changed law: the bed expands. Under growing overlap trackbed keeps the tangential force, LAMMPS' `mindlin`
+/// the spring length: possible cause of 3 % in rotation.
 #[test]
 fn hertzian_bed_moves_as_in_lammps() {
     let material = Material { young: Some(5e7), poisson: 0.25, restitution: restitution(), ..stone() };

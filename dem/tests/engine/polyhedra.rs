@@ -1,4 +1,4 @@
-//! Dilated polyhedra: at rest on planes, on each other and on boxes, sliding, tipping, bouncing, and collisions of all kinds.
+//! Dilated polyhedra: rest, sliding, tipping, bouncing, collisions.
 
 use crate::scene::{FOLLOWED, Random, Run, block, body, plane, stone, weightless};
 use crate::tables::read;
@@ -11,7 +11,7 @@ use trackbed_dem::{flow, measure};
 const G: f64 = 9.81;
 const DOWN: Vec3 = Vec3::new(0.0, 0.0, -G);
 
-/// Stiffness of contacts between two of the same material [N/m].
+/// Contact stiffness of two equal materials [N/m].
 const K: f64 = 1e6;
 
 fn material() -> Material {
@@ -22,15 +22,15 @@ fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
 }
 
-/// Ice after Hertz, as in the tables of forces.
+/// Hertzian ice, as in the force tables.
 fn hertz() -> Material {
     Material { young: Some(1e9), poisson: 0.3, stiffness: f64::INFINITY, ..material() }
 }
 
-/// Effective modulus of two of it [Pa].
+/// Effective modulus of two equal bodies [Pa].
 const MODULUS: f64 = 1e9 / (2.0 * (1.0 - 0.09));
 
-/// The same for elastic springs and elastic bodies after Hertz.
+/// Linear and Hertzian.
 fn laws() -> [(&'static str, Material); 2] {
     let smooth = Material { friction: 0.0, restitution: 1.0, ..hertz() };
     [("springs", elastic()), ("Hertz", Material { young: Some(1e8), ..smooth })]
@@ -40,7 +40,7 @@ fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(corners, radius).expect("a convex body").0))
 }
 
-/// A stone with corners at random on an ellipsoid.
+/// Random points on an ellipsoid.
 fn stone_of(random: &mut Random, corners: usize, half: [f64; 3], radius: f64) -> Shape {
     let mut corner = || random.vector().normalize().component_mul(&Vec3::from(half));
     polyhedron(&(0..corners).map(|_| corner()).collect::<Vec<_>>(), radius)
@@ -54,7 +54,6 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// What a model of polyhedra and spheres says of its loops.
 #[test]
 fn loops_name_the_shapes() {
     let shapes = vec![Shape::Sphere { radius: 0.1 }, block([0.1; 3], 0.01)];
@@ -68,7 +67,7 @@ fn loops_name_the_shapes() {
     assert!(loops(vec![far(0)]).contains(", single spheres,") && !loops(vec![far(0)]).contains("poly"));
 }
 
-/// A cube sinks into a plane by its weight over the springs of four corners and four edges, and nothing moves any more.
+/// Settlement: weight over springs of four corners and four edges.
 #[test]
 fn a_cube_at_rest() {
     let (half, radius) = (0.1, 0.01);
@@ -81,7 +80,7 @@ fn a_cube_at_rest() {
     let springs = 4.0 + 4.0 * (2.0 * (half - radius)) / (2.0 * radius);
     let weight = run.model.mass(0) * G;
     let sunk = half - run.state.position(0).z;
-    // The ends of the upright edges carry a little as well.
+    // Ends of the upright edges bear a little.
     let share = sunk / (weight / (springs * K));
     assert!((share - 1.0).abs() < 1e-3, "{share}");
     assert!(run.state.velocity(0).norm() < 1e-9 && run.state.spin(0).norm() < 1e-9);
@@ -89,8 +88,8 @@ fn a_cube_at_rest() {
     assert!((carried / weight - 1.0).abs() < 1e-9, "{carried}");
 }
 
-/// Ten cubes, put on each other a little aside and turned, stand for ten seconds; what their fall leaves of swaying, which dashpots of stiff
-/// contacts hardly damp, dies away; the lowest joint carries all.
+/// Offset and rotated cubes for ten seconds; stiff contacts barely damp the swaying. The lowest joint bears
+/// all.
 #[test]
 fn ten_cubes_stand() {
     let half = 0.05;
@@ -119,8 +118,7 @@ fn ten_cubes_stand() {
     assert!((lowest / weight - 1.0).abs() < 1e-4, "{lowest} of {weight}");
 }
 
-/// Round plates, which touch in dozens of points, stand on each other on a slope that friction holds: no point goes without the force and
-/// the memory that it has a right to.
+/// Dozens of contact points: each needs its force and history.
 #[test]
 fn round_plates_on_a_slope() {
     let corner = |k: u32| {
@@ -144,7 +142,7 @@ fn round_plates_on_a_slope() {
     for joint in 0..3 {
         let there = |z: f64| (z - 0.03 * f64::from(joint)).abs() < 0.01;
         let forces: Vec<Vec3> = contacts.iter().filter(|c| there(c.point.z)).map(|c| c.force).collect();
-        // Between two, what one presses up is counted as pressed down where the upper one comes second.
+        // Pairs may be listed either way: compression counts by magnitude.
         let carried =
             forces.iter().map(|f| f.z.abs()).sum::<f64>() / (f64::from(3 - joint) * weight * slope.cos());
         let held =
@@ -156,8 +154,7 @@ fn round_plates_on_a_slope() {
     assert!(drift < 1e-6, "{drift:e}");
 }
 
-/// On an incline a block stays below the angle of friction and slides above with g (sin α − μ cos α); twice as high as the flat part of
-/// its base is wide it tips above 1/2.
+/// Slides with g (sin α − μ cos α); tips above 1/2 for a height of twice the flat base.
 #[test]
 fn a_block_on_an_incline() {
     let mu = 0.4;
@@ -178,7 +175,7 @@ fn a_block_on_an_incline() {
         assert_eq!(run.state.velocity(0).x > 1e-3, slides);
     }
     let radius = 0.01;
-    // The face ends where its rounding begins: tan α = (w/2 − r)/(h/2).
+    // The flat face ends at the rounding: tan α = (w/2 − r)/(h/2).
     let limit = (0.05 - radius) / 0.1;
     for (slope, tips) in [(limit - 0.02, false), (limit + 0.02, true)] {
         let (sine, cosine) = f64::atan(slope).sin_cos();
@@ -195,8 +192,7 @@ fn a_block_on_an_incline() {
     }
 }
 
-/// A cube bounces elastically on a face, an edge, a corner and askew: its energy stays, and with e = 0.5 on a face it comes back with half of
-/// its speed.
+/// Face, edge, corner, oblique: elastic; with e = 0.5 on a face, half the speed.
 #[test]
 fn bounces_on_face_edge_and_corner() {
     let half = 0.05;
@@ -239,8 +235,7 @@ fn bounces_on_face_edge_and_corner() {
     }
 }
 
-/// Two hundred collisions of random stones, blocks and boxes without friction or damping: momentum and angular momentum to rounding, energy
-/// to the step's error.
+/// 200 elastic collisions with stones, blocks, boxes: momentum to rounding, energy to the step's error.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     for (name, elastic) in laws() {
@@ -292,7 +287,7 @@ fn collisions(name: &str, elastic: Material) {
     assert!(touched > 150 && worst < 1e-3 && mean.abs() < 1e-4, "{name}: {touched} {worst:e} {mean:e}");
 }
 
-/// Collisions with friction, with dashpots, and with both: what is left and what was dissipated add up to what there was.
+/// Friction, dashpots, both.
 #[test]
 fn collisions_keep_their_account() {
     let pairs = [(0.0, 0.5), (0.5, 1.0), (0.5, 0.5)];
@@ -334,8 +329,7 @@ fn collisions_keep_their_account() {
     }
 }
 
-/// Stones of many sizes, a sphere and a block dropped into a box of planes: the account of energy closes, and the bits are the same with one
-/// and with three threads.
+/// Energy balance; same bits with one and three threads.
 #[test]
 fn a_heap_of_stones() {
     let mut random = Random::new(9);
@@ -350,7 +344,7 @@ fn a_heap_of_stones() {
     }
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     for k in 0..18_usize {
-        // Four to a level; the sphere and the block last, the block with room between the planes.
+        // Four per level; the block last, clear of the planes.
         let aside = if k == 17 { 0.03 } else { 0.045 };
         let side = |bit: usize| if k >> bit & 1 == 0 { -aside } else { aside };
         let position = Vec3::new(side(0), side(1), 0.06 + 0.1 * (k / 4 + k / 17) as f64);
@@ -378,7 +372,7 @@ fn a_heap_of_stones() {
     assert_eq!(places, run_on(3).0);
 }
 
-/// Radius and length of the edges of a cube of the tables [m].
+/// Edge radius and length of the table's cubes [m].
 const RADIUS: f64 = 0.04;
 const LENGTH: f64 = 0.5;
 
@@ -386,7 +380,7 @@ fn about(axis: nalgebra::Unit<Vec3>, angle: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&axis, angle.to_radians())
 }
 
-/// Force of what touches the first body of a scene of cubes where they are, along the vertical [N].
+/// Vertical contact force on the first body of cubes at given positions [N].
 fn lift(material: Material, change: impl Fn(&mut ModelInput)) -> f64 {
     let mut input = scene(material, vec![block([0.5 * LENGTH + RADIUS; 3], RADIUS)]);
     input.time_step = TimeStep::FixedAboveLimit(1e-12);
@@ -396,7 +390,7 @@ fn lift(material: Material, change: impl Fn(&mut ModelInput)) -> f64 {
     measure::contacts(&run.model, &run.state).iter().filter(|c| c.a == 0).map(|c| c.force.z).sum()
 }
 
-/// The same of a cube whose lowest corner or edge lies at a distance from its middle, pressed into a plane.
+/// As `lift`, for a cube with its lowest corner or edge at `low` from the centre, pressed into a plane.
 fn pressed(edge_factor: f64, orientation: UnitQuaternion<f64>, low: f64, overlap: f64) -> f64 {
     lift(Material { edge_factor, ..hertz() }, |input| {
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
@@ -409,24 +403,24 @@ fn sphere_on_plane(overlap: f64) -> f64 {
     4.0 / 3.0 * MODULUS * (RADIUS * overlap).sqrt() * overlap
 }
 
-/// Elastic bodies after Hertz: a corner on a plane has the force of a sphere, an edge a quarter of the modulus per unit of its length, or π/4 where that
-/// is asked for. Beside the half-space (a column of the table) an edge is up to 1.4 times as stiff or 0.9 times.
+/// Hertz: corner as a sphere; edge a quarter of the modulus per unit length, or π/4 with that factor.
+/// Relative to the half-space table an edge is 0.9 to 1.4 times as stiff.
 #[test]
-fn corners_and_edges_on_planes_after_hertz() {
+fn corner_and_edge_forces_match_hertz() {
     let diagonal = UnitQuaternion::rotation_between(&Vec3::repeat(1.0), &Vec3::z()).expect("not opposite");
     let low = 0.5 * LENGTH * f64::sqrt(2.0);
     for row in read("tests/data/shapes/laws/halfspace_edge_face.csv") {
         let [overlap, half_space, popov] = [row[0], row[1], row[3]];
         let sphere = sphere_on_plane(overlap);
         let corner = pressed(1.0, diagonal, 0.5 * LENGTH * f64::sqrt(3.0), overlap) / sphere;
-        // Without the two corners at its ends.
+        // Without its two end corners.
         let edge = |factor| pressed(factor, about(Vec3::x_axis(), 45.0), low, overlap) - 2.0 * sphere;
         let share = edge(1.0) / (0.25 * MODULUS * LENGTH * overlap);
         let beside = 0.25 * MODULUS * LENGTH * overlap / half_space;
         println!(
             "overlap {overlap:.0e}: corner over sphere {corner:.4}, edge {share:.4}; over half-space {beside:.3}"
         );
-        // Edges that begin at the corner, or at its ends, press a little as well.
+        // Adjacent edges or ends bear a little.
         assert!(corner > 1.0 && corner < 1.0 + 0.6 * (overlap / RADIUS).sqrt(), "{corner}");
         assert!(share > 1.0 && share < 1.0 + 4.0 * overlap / LENGTH + 0.2 * overlap / RADIUS, "{share}");
         let share = edge(PI) / popov;
@@ -438,8 +432,8 @@ fn corners_and_edges_on_planes_after_hertz() {
     }
 }
 
-/// Edges that cross at right angles have the force of crossing cylinders after Hertz, others that over the sine of their angle, until they lie along each
-/// other. Beside the half-space up to 2.5 times as much.
+/// Perpendicular edges: crossed cylinders after Hertz, otherwise divided by the sine of their angle up to
+/// parallel. Up to 2.5 times the half-space.
 #[test]
 fn edges_that_cross_after_hertz() {
     for row in read("tests/data/shapes/laws/halfspace_edge_edge.csv") {
@@ -463,7 +457,6 @@ fn edges_that_cross_after_hertz() {
     }
 }
 
-/// What cannot be combined is refused by name.
 #[test]
 fn refusals() {
     let refused = |change: &dyn Fn(&mut ModelInput)| {
@@ -487,13 +480,12 @@ fn refusals() {
     assert!(refused(&absent).contains("it is a box"));
 }
 
-/// A stone that was not there is put in beside one that lies on a plane, falls by 0.1 m at 1 m/s and bounces; another is taken out. The
-/// accounts of energy and momentum close.
+/// An inserted stone falls by 0.1 m at 1 m/s next to another and bounces; one is removed. Balances close.
 #[test]
 fn stones_come_and_go() {
     let mut input = scene(elastic(), vec![block([0.05; 3], 0.01)]);
     input.gravity = DOWN;
-    // Short ones: a bounce keeps its energy to the square of the step, 0.3 % with half of the limit.
+    // Second-order energy error of a bounce: 0.3 % at half the critical time step.
     input.time_step = TimeStep::Auto { fraction: 0.1 };
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(body(0, Vec3::new(0.0, 0.0, 0.0501)));
@@ -522,8 +514,8 @@ fn stones_come_and_go() {
     assert!(error.abs() < 1e-3 * brought, "{error:e}");
 }
 
-/// With steps that follow the contacts: blocks that stand on an edge, so that the limit is that of few springs, tip over and hit the plane with a
-/// face between two looks; the account of energy closes. Without a limit for that they fly off at 16 m/s.
+/// Blocks tip from an edge (few springs) to a face between two stability checks; without an impact limit they
+/// fly off at 16 m/s.
 #[test]
 fn blocks_that_fall_flat() {
     let mut input = scene(Material { restitution: 0.9, ..material() }, vec![block([0.1, 0.05, 0.02], 0.003)]);
@@ -548,7 +540,7 @@ fn blocks_that_fall_flat() {
     assert!(flat >= 2 && error.abs() < 0.01, "{flat} {error:e}");
 }
 
-/// Cores that meet stop the run with the pair and the overlap.
+/// The error names pair and overlap.
 #[test]
 fn cores_that_meet_are_named() {
     let mut input = scene(elastic(), vec![block([0.05; 3], 0.001)]);

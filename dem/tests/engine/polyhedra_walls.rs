@@ -1,4 +1,4 @@
-//! Dilated polyhedra on walls of triangles and on round ones, and across periodic borders.
+//! Dilated polyhedra on triangle and round walls, and across periodic borders.
 
 use crate::scene::{Random, Run, block, body, plane, stone, weightless};
 use nalgebra::UnitQuaternion;
@@ -35,7 +35,7 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// A floor of `n` × `n` squares of a side, cut along either diagonal, in the plane z = 0 about the origin.
+/// Floor of `n` × `n` squares about the origin, cut along alternating diagonals.
 fn floor(n: u32, side: f64) -> TriangleSurface {
     let at = |i: u32| side * (f64::from(i) - 0.5 * f64::from(n));
     let corners = (0..=n).flat_map(|j| (0..=n).map(move |i| [i, j]));
@@ -52,7 +52,7 @@ fn floor(n: u32, side: f64) -> TriangleSurface {
     TriangleSurface { vertices, triangles, ..TriangleSurface::default() }
 }
 
-/// A closed mesh: an octahedron, each side of which is cut `n` times and moved out to a sphere of a radius.
+/// Octahedron refined `n` times, projected to a sphere.
 fn ball(n: u32, radius: f64) -> WallShape {
     let mut vertices = vec![Vec3::x(), Vec3::y(), Vec3::z(), -Vec3::x(), -Vec3::y(), -Vec3::z()];
     let mut triangles: Vec<[u32; 3]> =
@@ -78,20 +78,19 @@ fn frustum(radii: [f64; 2], height: f64, caps: [bool; 2]) -> WallShape {
     WallShape::Frustum { base: Vec3::z() * (-0.5 * height), axis: Vec3::z(), height, radii, caps }
 }
 
-/// Stones thrown at walls of all kinds without friction or damping keep their energy; with both, the account closes.
+/// Elastic: energy conserved; with friction and dashpots: balance closes.
 #[test]
 fn bounces_off_walls_keep_the_energy() {
     bounces(4, 2);
 }
 
-/// The same with more throws.
 #[test]
 #[ignore = "minutes"]
-fn many_bounces_off_walls_keep_the_energy() {
+fn many_wall_bounces_conserve_energy() {
     bounces(16, 9);
 }
 
-/// `throws` at each wall, of which at least `least` touch it.
+/// `throws` per wall, at least `least` in contact.
 fn bounces(throws: u32, least: i32) {
     let walls: [(&str, WallShape); 6] = [
         ("mesh", ball(2, 0.1)),
@@ -113,13 +112,13 @@ fn bounces(throws: u32, least: i32) {
                 };
                 let mut m = if rough { Material { restitution: 0.5, ..material() } } else { elastic() };
                 if k % 4 == 2 {
-                    // Every fourth one after Hertz.
+                    // Every fourth: Hertz.
                     (m.young, m.poisson, m.stiffness) = (Some(1e8), 0.3, f64::INFINITY);
                 }
                 let mut input = scene(m, vec![stone]);
                 input.walls.push(WallInput::fixed(shape.clone(), 0));
                 let way = random.vector();
-                // The pile has no ends within reach.
+                // The pile's ends are out of reach.
                 let way = if name == "pile" { Vec3::new(way.x, way.y, 0.0) } else { way }.normalize();
                 let aside = random.vector() * 0.03;
                 let orientation = UnitQuaternion::from_scaled_axis(random.vector() * 3.0);
@@ -148,11 +147,10 @@ fn bounces(throws: u32, least: i32) {
     }
 }
 
-/// A block that slides on a floor of many triangles and is braked by friction goes as far as on a plane, and stands as still. Springs of
-/// friction belong to facets and begin anew at seams: measured 1.1e-3 of the way and 4.2e-3 rad on triangles larger than the block,
-/// 1.8e-2 and 3.1e-2 rad on some of 0.4 of its length.
+/// Friction springs are per facet and restart at seams. Measured: 1.1e-3 of the distance and 4.2e-3 rad on
+/// triangles larger than the block; 1.8e-2 and 3.1e-2 rad at 0.4 of its length.
 #[test]
-fn a_block_slides_over_seams_as_on_a_plane() {
+fn block_slides_smoothly_over_seams() {
     let slide = |triangles: Option<TriangleSurface>| {
         let mut input =
             scene(Material { friction: 0.3, ..material() }, vec![block([0.05, 0.04, 0.02], 0.004)]);
@@ -175,7 +173,7 @@ fn a_block_slides_over_seams_as_on_a_plane() {
         (run.state.position(0), run.state.orientation(&run.model, 0))
     };
     let (on_plane, turned) = slide(None);
-    // v²/(2 μ g) = 0.058 m, and farther while it turns.
+    // v²/(2 μ g) = 0.058 m, longer while rotating.
     assert!((0.055..0.075).contains(&on_plane.xy().norm()), "{on_plane}");
     for (n, of_way, of_turn) in [(9, 3e-3, 1e-2), (30, 3e-2, 5e-2)] {
         let (x, q) = slide(Some(floor(n, 1.2 / f64::from(n))));
@@ -185,17 +183,15 @@ fn a_block_slides_over_seams_as_on_a_plane() {
     }
 }
 
-/// Stones poured into a funnel of triangles come to rest and weigh on it what they weigh; a wall that pushes them does the work that
-/// the account says.
+/// The funnel bears the weight; a moving wall's work balances.
 #[test]
-fn stones_rest_in_a_funnel_and_are_pushed() {
+fn funnel_bears_weight_of_stones() {
     stones_in_funnel("triangles");
 }
 
-/// The same in a round one.
 #[test]
 #[ignore = "minutes"]
-fn stones_rest_in_a_round_funnel_and_are_pushed() {
+fn round_funnel_bears_weight_of_stones() {
     stones_in_funnel("cone");
 }
 
@@ -235,7 +231,7 @@ fn stones_in_funnel(kind: &str) {
         let weight: f64 = (0..4).map(|b| run.model.mass(b) * G).sum();
         println!("{name}: {force} for a weight of {weight}");
         assert!((force + Vec3::z() * weight).norm() < 1e-2 * weight, "{name}: {force} {weight}");
-        // All go up with the wall.
+        // All move with the wall.
         for b in 0..4 {
             assert!(
                 (run.state.velocity(b) - Vec3::z() * 0.1).norm() < 2e-3,
@@ -251,7 +247,7 @@ fn stones_in_funnel(kind: &str) {
     }
 }
 
-/// Stones and boxes in a column that is periodic in x and y, on a plane and beside a pile.
+/// Periodic in x and y, on a plane, next to a pile.
 fn column() -> ModelInput {
     let mut random = Random::new(33);
     let mut shapes: Vec<Shape> =
@@ -285,8 +281,7 @@ fn column() -> ModelInput {
     input
 }
 
-/// The border does not show: with all moved along, wall and bodies, they do the same; and contacts across it carry forces, keep momentum, and
-/// the account.
+/// Moved scene, same motion; periodic contacts conserve momentum and energy.
 #[test]
 fn a_border_does_not_show() {
     let input = column();
@@ -299,7 +294,7 @@ fn a_border_does_not_show() {
     }
     let [mut one, mut two] = [Run::new(input), Run::new(moved)];
     let before = total(&one);
-    // Rounding differs and grows with every collision: a short time.
+    // Short: rounding grows with each collision.
     one.until(0.06);
     two.until(0.06);
     let mut worst = 0.0_f64;
@@ -323,7 +318,7 @@ fn a_border_does_not_show() {
     assert!((up / weight - 1.0).abs() < 0.1, "{up} {weight}");
 }
 
-/// What would touch two images of one body is refused by name, as are spheres beside walls between borders.
+/// Bodies in contact with two images of one body; spheres with walls between borders.
 #[test]
 fn what_cannot_be_periodic_is_named() {
     let problem = |input: ModelInput| match Model::new(input) {
@@ -337,7 +332,7 @@ fn what_cannot_be_periodic_is_named() {
     spheres.shapes.push(Shape::Sphere { radius: 0.01 });
     spheres.bodies.push(body(4, Vec3::repeat(0.4)));
     assert!(problem(spheres).contains("spheres with walls"));
-    // Across waves that run along the border, and along those of which two lie between the borders; not one and a half.
+    // Waves along the border, or two per period; not one and a half.
     let waves = |length: f64, direction: f64| {
         let mut input = column();
         let measured = Measured::Length(length);

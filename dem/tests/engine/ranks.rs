@@ -1,4 +1,4 @@
-//! One model on several ranks, here threads that send each other messages: every bit of the state is the engine's.
+//! Ranks (threads with messages): bitwise identical to the engine.
 
 use crate::bonds_many::crash;
 use crate::determinism::mill;
@@ -10,10 +10,10 @@ use trackbed_dem::{
     Wind, Work, stability,
 };
 
-/// Numbers of ranks; of seven, some have no block.
+/// Of seven ranks, some have no block.
 const RANKS: [usize; 5] = [1, 2, 3, 4, 7];
 
-/// Spheres of unlike sizes and two materials thrown about in a box of planes, the floor of which comes up; six blocks of them.
+/// Unequal flying spheres of two materials, box with rising floor, six blocks.
 fn gas() -> ModelInput {
     let mut random = Random::new(11);
     let smooth = Material { friction: 0.2, restitution: 0.8, density: 2000.0, ..stone() };
@@ -31,7 +31,7 @@ fn gas() -> ModelInput {
         body.material = usize::from(k % 3 == 0);
         body.scale = 0.8 + 0.2 * random.unit();
         body.spin = random.vector() * 40.0;
-        // A few are held, or do not turn.
+        // Some are fixed, or do not rotate.
         body.fixed = if k % 97 == 0 { [true; 6] } else { [false, false, false, k % 50 == 0, false, false] };
         if body.fixed[0] {
             (body.velocity, body.spin) = (Vec3::zeros(), Vec3::zeros());
@@ -53,15 +53,14 @@ fn gas() -> ModelInput {
     input
 }
 
-/// How a model is stepped.
 #[derive(Clone, Copy, Default)]
 struct How {
     steps: usize,
-    /// Steps between two looks at the whole state.
+    /// Steps between downloads.
     look: usize,
-    /// Steps follow the contacts, as far as looks show them.
+    /// Step size control by contacts, at downloads.
     follows: bool,
-    /// A body that is pushed in every fifth step.
+    /// Body pushed in every fifth step.
     pushed: Option<usize>,
 }
 
@@ -79,14 +78,14 @@ fn bytes(state: &State) -> Vec<u8> {
     postcard::to_stdvec(state).expect("a state that can be written")
 }
 
-/// The states at each look, from `steps` on, and what is known at the end.
+/// States at each download, and final data.
 fn states<B: BackEnd>(model: &Model, state: &mut State, work: &mut B, how: How) -> Vec<Vec<u8>> {
     let mut seen = Vec::new();
     for k in 1..=how.steps {
         if how.follows && (k - 1).is_multiple_of(how.look) {
             stability::follow(model, state);
         }
-        // Forces are found from a state that is whole.
+        // Forces need a complete state.
         let applied = push(how, state, k);
         work.step(model, state, &NoSurface, &applied).expect("a good step");
         if k.is_multiple_of(how.look) || (how.pushed.is_some() && (k + 1).is_multiple_of(5)) {
@@ -97,7 +96,7 @@ fn states<B: BackEnd>(model: &Model, state: &mut State, work: &mut B, how: How) 
     seen
 }
 
-/// Runs `lead` as the first of so many ranks; the others serve it.
+/// Runs `lead` as the first of `size` ranks.
 fn with_ranks<T>(model: &Model, size: usize, lead: impl FnOnce(Local) -> T) -> T {
     let mut links = local(size);
     let first = links.remove(0);
@@ -111,7 +110,7 @@ fn with_ranks<T>(model: &Model, size: usize, lead: impl FnOnce(Local) -> T) -> T
 
 fn start(model: &Model) -> State {
     let mut state = State::new(model);
-    // Within these steps the bodies are put in a new order.
+    // Includes a re-sorting of bodies.
     state.steps = 4750;
     state
 }
@@ -153,7 +152,7 @@ fn spheres() {
     assert!(l.dissipated_dashpot > 0.0 && l.dissipated_friction > 0.0 && l.work_walls != 0.0, "{l:?}");
 }
 
-/// Clumps and spheres on triangles, with steps that follow the contacts and a wind.
+/// With step size control.
 #[test]
 fn clumps_in_wind() {
     let wind = Wind { velocity: Vec3::new(3.0, 1.0, 0.0), density: 1.2, drag: 0.5 };
@@ -169,7 +168,6 @@ fn clumps_in_wind() {
     assert!(state.wall_contact_count() > 10, "{}", state.wall_contact_count());
 }
 
-/// Walls that turn, swing, are driven, or are bodies.
 #[test]
 fn walls_that_move() {
     let state = same_bits("walls", mill(15), How { steps: 1000, look: 100, ..How::default() });
@@ -178,7 +176,6 @@ fn walls_that_move() {
     assert!(state.wall_offset(lid).norm() > 0.0, "the lid is driven");
 }
 
-/// A bonded cube that breaks on a floor.
 #[test]
 fn bonds_that_break() {
     let state = same_bits("bonds", crash(), How { steps: 800, look: 100, ..How::default() });
@@ -194,7 +191,7 @@ fn pushed_bodies() {
     assert!(state.ledger.work_applied != 0.0);
 }
 
-/// A rank that is lost after so many messages.
+/// Fails after a number of messages.
 struct Failing(Local, usize);
 
 impl Link for Failing {
@@ -239,7 +236,7 @@ fn a_lost_rank_ends_all() {
             steps.find_map(Result::err).expect("a rank that is lost")
         };
         for (k, other) in others.into_iter().enumerate() {
-            // One that had nothing to do with it may have been sent home.
+            // Uninvolved ranks may have ended.
             match other.join().expect("a thread") {
                 Ok(()) => assert_ne!(k + 1, 2),
                 Err(lost) => assert_eq!(lost.rank, 2, "{lost}"),
@@ -268,7 +265,6 @@ fn other_models_and_features_are_refused() {
     assert!(text.ends_with("periodic borders"), "{text}");
 }
 
-/// Books by kind.
 #[test]
 fn traffic_is_counted_by_kind() {
     let lines = Traffic { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);

@@ -1,4 +1,4 @@
-//! Bad input and failing steps: refused by name.
+//! Errors for bad input and failing steps.
 
 use crate::scene::{Run, plane, rigid, sphere, stone, weightless};
 use trackbed_dem::surface::NoSurface;
@@ -78,7 +78,7 @@ fn degenerate_shapes_bodies_and_walls() {
 fn two_rigid_partners() {
     let error = refused(|i| i.materials[0] = rigid(stone()));
     assert_eq!(error, ModelError::RigidPair { a: "body 0".into(), b: "plane 0".into() });
-    // A rigid wall that the body cannot feel as rigid is fine, and so is a fixed rigid body on a rigid plane.
+    // Allowed: a rigid wall out of the body's reach, a fixed rigid body on a rigid plane.
     let mut input = weightless(rigid(stone()));
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(BodyInput { fixed: [true; 6], ..sphere(Vec3::zeros(), Vec3::zeros()) });
@@ -124,13 +124,13 @@ fn bodies_inside_each_other_are_named() {
         }
         other => panic!("{other}"),
     }
-    // Coincident centres too: no division by zero, no NaN.
+    // Coincident centres: no division by zero.
     let mut input = weightless(stone());
     input.bodies.extend([sphere(Vec3::zeros(), Vec3::zeros()), sphere(Vec3::zeros(), Vec3::zeros())]);
     assert!(matches!(fails(input, 1), StepError::Overlap { .. }));
 }
 
-/// A sphere far too fast for its contact goes through the plane: stopped, with its name.
+/// Too fast for its contact: stopped by an error naming it.
 #[test]
 fn impacts_beyond_the_law_are_stopped() {
     let mut input = weightless(stone());
@@ -144,7 +144,7 @@ fn impacts_beyond_the_law_are_stopped() {
     assert!(matches!(fails(input, 1000), StepError::Speed { body: 0, .. }));
 }
 
-/// A sphere shot through a triangle is noticed although the wall is two-sided.
+/// Also for two-sided walls.
 #[test]
 fn passing_through_a_triangle_is_stopped() {
     let mut input = weightless(stone());
@@ -158,7 +158,7 @@ fn passing_through_a_triangle_is_stopped() {
 }
 
 #[test]
-fn unstable_step_ends_in_an_error_not_in_nan() {
+fn unstable_step_fails_before_nan() {
     let mut input = weightless(stone());
     input.time_step = TimeStep::FixedAboveLimit(2e-3);
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));

@@ -6,8 +6,8 @@ use trackbed_dem::{Material, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 
-/// A sphere of radius 1 cm at rest on a plane with rolling friction 0.1 and twisting friction 0.05, under either law;
-/// gravity leans by `slope` towards x.
+/// Sphere of radius 1 cm on a plane, rolling friction 0.1, twisting friction 0.05, gravity inclined by
+/// `slope` in x.
 fn on_plane(hertz: bool, slope: f64, velocity: f64, spin: Vec3) -> Run {
     let law = if hertz { elastic() } else { Material { stiffness: 1e6, ..stone() } };
     let material = Material {
@@ -31,7 +31,7 @@ fn on_plane(hertz: bool, slope: f64, velocity: f64, spin: Vec3) -> Run {
     Run::new(input)
 }
 
-/// Rolling without slip against the moment μᵣ r N: the deceleration is 5/7 μᵣ g, and in the end the ball stands.
+/// Moment μᵣ r N: deceleration 5/7 μᵣ g, then rest.
 #[test]
 fn ball_rolls_to_rest() {
     for hertz in [false, true] {
@@ -57,9 +57,9 @@ fn ball_rolls_to_rest() {
     }
 }
 
-/// On a slope it stays below tan α = μᵣ, and above it rolls with 5/7 g (sin α − μᵣ cos α).
+/// Rest below tan α = μᵣ; above, 5/7 g (sin α − μᵣ cos α).
 #[test]
-fn ball_on_a_slope_rolls_when_steeper_than_the_coefficient() {
+fn ball_rolls_above_critical_slope() {
     for hertz in [false, true] {
         for slope in [0.095, 0.105, 0.2] {
             let mut run = on_plane(hertz, slope, 0.0, Vec3::zeros());
@@ -71,7 +71,7 @@ fn ball_on_a_slope_rolls_when_steeper_than_the_coefficient() {
             if slope < 0.1 {
                 assert!(found.abs() < 1e-5, "{found}");
             } else {
-                // Against what it would gain without resistance: the springs take a little while to wind up.
+                // Relative to free rolling: springs need some rotation to load.
                 let free = 5.0 / 7.0 * G * slope * run.state.time;
                 assert!((found - expected).abs() < 3e-3 * free, "slope {slope}: {found} against {expected}");
             }
@@ -79,7 +79,7 @@ fn ball_on_a_slope_rolls_when_steeper_than_the_coefficient() {
     }
 }
 
-/// A ball that spins about the normal stops after 2/5 r ω/(μₜ g).
+/// Stops after 2/5 r ω/(μₜ g).
 #[test]
 fn twisting_ball_stops() {
     for hertz in [false, true] {
@@ -98,7 +98,6 @@ fn twisting_ball_stops() {
     }
 }
 
-/// Without the coefficients nothing is kept and nothing resists.
 #[test]
 fn no_resistance_without_coefficients() {
     let mut input = weightless(Material { friction: 0.8, ..stone() });

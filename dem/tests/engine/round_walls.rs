@@ -1,4 +1,4 @@
-//! Cylinders, cones, spheres and turning planes against closed forms.
+//! Round walls and rotating planes against closed forms.
 
 use crate::scene::{Run, sphere, stone, weightless};
 use trackbed_dem::{BodyInput, Material, ModelInput, Motion, Partner, Vec3, WallInput, WallShape, measure};
@@ -11,8 +11,7 @@ fn heavy(material: Material) -> ModelInput {
     ModelInput { gravity: Vec3::new(0.0, 0.0, -9.81), ..weightless(material) }
 }
 
-/// A ball at rest in a cone of half angle α touches it all around: the contact forces along the normals add up to
-/// W/sin α, the wall carries W, and the centre lies (r − d)/sin α above the apex, d = W/(2 K sin α).
+/// Half angle α: normal forces sum to W/sin α; centre (r − d)/sin α above the apex, d = W/(2 K sin α).
 #[test]
 fn ball_in_a_cone() {
     for degrees in [20.0_f64, 45.0, 70.0] {
@@ -44,7 +43,7 @@ fn ball_in_a_cone() {
     }
 }
 
-/// Small swings of a ball that rolls inside a horizontal cylinder: T = 2π √(7 (R − r)/(5 g)).
+/// T = 2π √(7 (R − r)/(5 g)).
 #[test]
 fn rolling_inside_a_cylinder() {
     let mut input = heavy(Material { friction: 0.9, restitution: 1.0, ..stone() });
@@ -80,9 +79,8 @@ fn rolling_inside_a_cylinder() {
     assert_eq!(run.state.wall_contact_count(), 1);
 }
 
-/// A grain that is held while a wall turns under it slides at the Coulomb limit: friction μN against the surface's
-/// velocity, moment μN R about the axis, and work μN Rω t that all goes to sliding. A turntable, a drum, a mill's
-/// bottom and a sphere.
+/// Fixed grain on a rotating wall at the Coulomb limit: friction μN, moment μN R about the axis, work μN Rω t
+/// dissipated.
 #[test]
 fn turning_walls_drag_at_the_limit() {
     let omega = 3.0;
@@ -135,7 +133,7 @@ fn turning_walls_drag_at_the_limit() {
     }
 }
 
-/// Where a bin's side meets its bottom both count; outside a rim counts once; a closed can holds a grain in.
+/// Side and bottom of a bin both count, the outside of a rim once; a closed can retains a grain.
 #[test]
 fn pieces_that_meet() {
     let at = |x: Vec3| {

@@ -1,4 +1,4 @@
-//! Ground that bodies scar: how deep they sink, the drag of the soil, the friction that grows, accounts and bits.
+//! Scarring: sinkage, soil drag, growing friction, balances.
 
 use crate::scene::{Random, Run, block, body, stone, weightless};
 use nalgebra::UnitQuaternion;
@@ -9,17 +9,17 @@ use trackbed_dem::{
 };
 
 const G: f64 = 9.81;
-/// Steps that follow the contacts.
+/// Step size control by contacts.
 const FOLLOWS: TimeStep = TimeStep::Measured { share: 0.1, longest: 2e-4, collisions: true };
-/// Half sides of a slab, and the radius that its edges are rounded with [m].
+/// Half sides of a slab, edge radius [m].
 const HALF: [f64; 3] = [0.4, 0.4, 0.2];
 const ROUND: f64 = 0.05;
 
-/// Soil that neither drags nor rubs.
+/// Soil without drag and friction.
 const SOFT: Scarring =
     Scarring { strength: 15e6, drag: 0.0, density: 1700.0, friction: [0.0; 2], growth: 3.0, decay: 185.0 };
 
-/// Ground of two triangles that falls along x by an angle [rad].
+/// Two triangles inclined along x [rad].
 fn ground(angle: f64, scarring: Scarring) -> WallInput {
     let at = |x: f64, y: f64| Vec3::new(x, y, -x * angle.tan());
     let vertices = vec![at(-50.0, -50.0), at(200.0, -50.0), at(-50.0, 50.0), at(200.0, 50.0)];
@@ -42,14 +42,14 @@ fn scene(scarring: Scarring) -> ModelInput {
     input
 }
 
-/// A slab that comes down flat on the ground with a velocity.
+/// Slab landing flat.
 fn slab(scarring: Scarring, velocity: Vec3) -> Run {
     let mut input = scene(scarring);
     input.bodies.push(BodyInput { velocity, ..body(0, Vec3::z() * (HALF[2] + 1e-4)) });
     Run::new(input)
 }
 
-/// How far the lower side of a slab is below the surface [m].
+/// Sinkage of a slab [m].
 fn depth(run: &Run) -> f64 {
     HALF[2] - run.state.position(0).z
 }
@@ -59,9 +59,8 @@ fn account(run: &Run) -> f64 {
         - run.state.ledger.work()
 }
 
-/// A slab sinks by what the law says for its mass and its speed, and rests there.
 #[test]
-fn sinks_as_deep_as_its_speed_says() {
+fn sinkage_matches_impact_speed() {
     for (strength, speed) in [(15e6, 5.0), (15e6, 2.0), (5e6, 4.0)] {
         let law = Scarring { strength, ..SOFT };
         let mut run = slab(law, Vec3::z() * -speed);
@@ -75,16 +74,16 @@ fn sinks_as_deep_as_its_speed_says() {
     }
 }
 
-/// Once it lies on the hard ground, a slab without friction loses speed by the drag on its front alone: 1/u grows with ½ C ρ A t/m.
+/// Frictionless slab on hard ground: 1/u grows with ½ C ρ A t/m, A its front.
 #[test]
-fn drag_is_that_of_the_front_in_the_soil() {
+fn drag_matches_front_in_soil() {
     let law = Scarring { drag: 2.5, ..SOFT };
     let mut run = slab(law, Vec3::new(12.0, 0.0, -5.0));
     let mass = run.model.mass(0);
     run.follow_until(0.25);
     let (t, u, deep) = (run.state.time, run.state.velocity(0).x, depth(&run));
     run.follow_until(0.75);
-    // Two of the edges that are seen are round.
+    // Two visible edges are rounded.
     let front = 2.0 * HALF[1] * deep - (2.0 - std::f64::consts::FRAC_PI_2) * ROUND * ROUND;
     let rate = 0.5 * law.drag * law.density * front / mass;
     let found = (1.0 / run.state.velocity(0).x - 1.0 / u) / (run.state.time - t);
@@ -97,12 +96,12 @@ fn drag_is_that_of_the_front_in_the_soil() {
     assert!((depth(&run) - deep).abs() < 1e-4);
 }
 
-/// On its way on the hard ground a slab loses m g ∫ μ ds, with μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s), s counted from its first touch.
+/// Loss m g ∫ μ ds, μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s), s from the first contact.
 #[test]
 fn friction_grows_with_the_way() {
     let law = Scarring { friction: [0.1, 0.6], growth: 2.0, ..SOFT };
     let mut run = slab(law, Vec3::new(6.0, 0.0, -0.3));
-    // It has bounced no more, and touched ever since.
+    // Bouncing is over; contact since then.
     run.follow_until(0.2);
     let (x, u) = (run.state.position(0).x, run.state.velocity(0).x);
     run.follow_until(0.9);
@@ -124,7 +123,6 @@ fn friction_grows_with_the_way() {
     assert!((lost / expected - 1.0).abs() < 0.01, "{lost} {expected}");
 }
 
-/// Slabs, stones and disks tumble down a slope that they scar.
 fn tumbling() -> ModelInput {
     let mut input = scene(SOFT);
     input.materials[0].restitution = 0.5;
@@ -149,9 +147,9 @@ fn bits(state: &State) -> Vec<u8> {
     postcard::to_allocvec(state).expect("a state")
 }
 
-/// The same bits on any number of threads and when the run goes on from a checkpoint; energy and momentum are accounted for.
+/// Threads and restart from a checkpoint.
 #[test]
-fn accounts_close_and_bits_are_the_same() {
+fn balances_close_and_bits_agree() {
     let run_in = |threads: usize, restart: bool| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
@@ -185,7 +183,6 @@ fn accounts_close_and_bits_are_the_same() {
     assert!(one == run_in(1, true), "a restart differs");
 }
 
-/// What cannot be is refused by name.
 #[test]
 fn refusals() {
     let refused = |input: ModelInput, what: &str| match Model::new(input) {

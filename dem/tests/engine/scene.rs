@@ -1,4 +1,4 @@
-//! Small scenes to start from.
+//! Small base scenes.
 
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -10,7 +10,7 @@ use trackbed_dem::{
     TriangleSurface, Vec3, WallShape, Work,
 };
 
-/// A stone material without surprises.
+/// Ordinary stone material.
 pub fn stone() -> Material {
     Material {
         density: 2600.0,
@@ -23,24 +23,24 @@ pub fn stone() -> Material {
     }
 }
 
-/// A rigid counterpart of [`stone`]: contacts have twice its stiffness.
+/// Rigid counterpart of [`stone`], doubling contact stiffness.
 pub fn rigid(m: Material) -> Material {
     Material { stiffness: f64::INFINITY, ..m }
 }
 
-/// A plane of material 0 at rest.
+/// Fixed plane of material 0.
 pub fn plane(point: Vec3, normal: Vec3) -> Plane {
     Plane { point, normal, material: 0, velocity: Vec3::zeros() }
 }
 
-/// A block with rounded edges of the given half sides, rounding included [m], the longest first.
+/// Block of half sides [m], rounding included, longest first.
 pub fn block(half: [f64; 3], radius: f64) -> Shape {
     let core = |k: usize| Vec3::from_fn(|d, _| (half[d] - radius) * if k >> d & 1 == 1 { 1.0 } else { -1.0 });
     let corners: Vec<Vec3> = (0..8).map(core).collect();
     Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a convex body").0))
 }
 
-/// A wall of twelve triangles: a box of the given half sides [m].
+/// Box wall of twelve triangles, half sides [m].
 pub fn cuboid(centre: Vec3, half: Vec3) -> WallShape {
     let vertices = (0..8)
         .map(|k| centre + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { half[d] } else { -half[d] }))
@@ -50,7 +50,7 @@ pub fn cuboid(centre: Vec3, half: Vec3) -> WallShape {
     WallShape::Triangles { vertices, triangles }
 }
 
-/// The body of a wall that moves freely, at rest.
+/// Freely moving wall, at rest.
 pub fn free(mass: f64) -> RigidBody {
     RigidBody {
         mass,
@@ -64,17 +64,16 @@ pub fn free(mass: f64) -> RigidBody {
     }
 }
 
-/// A body of a shape, at rest.
+/// Body at rest.
 pub fn body(shape: usize, position: Vec3) -> BodyInput {
     BodyInput { shape, position, ..BodyInput::default() }
 }
 
-/// A sphere of shape 0.
 pub fn sphere(position: Vec3, velocity: Vec3) -> BodyInput {
     BodyInput { position, velocity, ..BodyInput::default() }
 }
 
-/// One material, spheres of radius 1 cm as shape 0, no gravity.
+/// One material, spheres of radius 1 cm (shape 0), no gravity.
 pub fn weightless(material: Material) -> ModelInput {
     ModelInput {
         materials: vec![material],
@@ -84,10 +83,10 @@ pub fn weightless(material: Material) -> ModelInput {
     }
 }
 
-/// Steps that follow the contacts.
+/// Step size control by contacts.
 pub const FOLLOWED: TimeStep = TimeStep::Measured { share: 0.5, longest: f64::INFINITY, collisions: false };
 
-/// Model, state and work of one run without an external surface.
+/// Run without an external surface.
 pub struct Run {
     pub model: Model,
     pub state: State,
@@ -112,7 +111,7 @@ impl Run {
             .expect("a good step");
     }
 
-    /// A step as long as the contacts of the moment allow; of models whose step is [`FOLLOWED`].
+    /// Step of a model that is [`FOLLOWED`].
     pub fn follow(&mut self) {
         trackbed_dem::stability::follow(&self.model, &mut self.state);
         self.step();
@@ -152,7 +151,7 @@ impl Random {
     }
 }
 
-/// A lopsided clump of four spheres, about 4 cm long.
+/// Asymmetric clump of four spheres, about 4 cm long.
 pub fn clump() -> Clump {
     Clump::from_spheres(&[
         ([0.0, 0.0, 0.0], 0.012),
@@ -163,8 +162,7 @@ pub fn clump() -> Clump {
     .expect("a connected clump")
 }
 
-/// Clumps and spheres thrown into a box of five planes, the floor doubled by a triangulated ramp; `n`³ bodies, and a
-/// block on top when asked for.
+/// `n`³ clumps and spheres thrown into five planes and a triangle ramp; optionally a block on top.
 pub fn pile(n: usize, with_block: bool) -> ModelInput {
     let mut random = Random::new(42);
     let pitch = 0.05;

@@ -1,4 +1,4 @@
-//! Triangle surfaces: no seam may be felt.
+//! Triangle surfaces: seams have no effect.
 
 use crate::scene::{Random, Run, plane, sphere, stone, weightless};
 use trackbed_dem::{BodyInput, Material, ModelInput, Plane, Shape, TriangleSurface, Vec3, measure};
@@ -15,7 +15,7 @@ fn on_planes(planes: Vec<Plane>, body: BodyInput) -> ModelInput {
     ModelInput { planes, ..of_one(body) }
 }
 
-/// A run under gravity that keeps its forces.
+/// Run under gravity with stored forces.
 fn heavy(mut input: ModelInput) -> Run {
     input.gravity = Vec3::new(0.0, 0.0, -9.81);
     let mut run = Run::new(input);
@@ -33,8 +33,7 @@ fn on_triangles(vertices: &[[f64; 3]], triangles: &[[u32; 3]], body: BodyInput) 
     input
 }
 
-/// A rough floor of many triangles of random shape, vertices shared or not: the same motion as on a plane, to
-/// rounding, sliding and rolling over all its seams, for a sphere and for a clump.
+/// Sliding and rolling sphere and clump, vertices shared or not: motion equals a plane's to rounding.
 #[test]
 fn triangulated_floor_is_a_plane() {
     let mut random = Random::new(5);
@@ -73,7 +72,7 @@ fn triangulated_floor_is_a_plane() {
         let mut reference = heavy(on_planes(vec![plane(Vec3::zeros(), Vec3::z())], body.clone()));
         let mut runs = [(&vertices, &triangles), (&soup_vertices, &soup_triangles)]
             .map(|(v, t)| heavy(on_triangles(v, t, body.clone())));
-        // Contact by contact the difference is rounding; a tumbling clump doubles it with each bounce.
+        // Rounding differences double with each bounce of a clump.
         let bounce = if body.shape == 0 { 1e-10 } else { 1e-6 };
         let mut forces = 0.0_f64;
         while reference.state.time < 0.2 {
@@ -103,7 +102,7 @@ fn contact_count(vertices: &[[f64; 3]], triangles: &[[u32; 3]], centre: Vec3) ->
     (contacts.len(), run.work.contact_force(&run.state, 0))
 }
 
-/// A ridge, touched on its edge, counts once and pushes straight up; a valley counts both sides.
+/// Ridge edge: one vertical contact; valley: two.
 #[test]
 fn ridge_counts_once_and_valley_twice() {
     let roof = |h: f64| {
@@ -129,7 +128,7 @@ fn ridge_counts_once_and_valley_twice() {
     assert!((force.z - 2.0 * 1e6 * overlap * slope.cos()).abs() < 1e-6 && force.x.abs() < 1e-6, "{force}");
 }
 
-/// The tip of a pyramid counts once, the corner of a room three times, the diagonal of a square once.
+/// Pyramid tip 1, room corner 3, square's diagonal 1.
 #[test]
 fn corners_and_diagonals() {
     let base = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
@@ -150,14 +149,13 @@ fn corners_and_diagonals() {
     assert!((force - Vec3::repeat(100.0)).norm() < 1e-6, "{force}");
 }
 
-/// A floor and two walls, eight triangles a side: a ball that slides over the floor into their corner and back meets them as
-/// it meets three planes, at every step.
+/// Eight triangles per side; a ball slides into the corner and back as on three planes.
 #[test]
-fn corner_of_triangles_is_one_of_planes() {
+fn triangle_corner_matches_planes() {
     let n = 8_u32;
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
-    // Right-handed pairs of sides, so that all normals point into the room.
+    // Right-handed: normals point inwards.
     for (u, v, corner) in [
         (Vec3::x(), Vec3::y(), Vec3::zeros()),
         (Vec3::z(), Vec3::y(), Vec3::x() * 0.1),
@@ -199,7 +197,6 @@ fn corner_of_triangles_is_one_of_planes() {
     assert!(walls.iter().all(|&steps| steps > 10), "both walls are hit");
 }
 
-/// From below the same triangles push down: two-sided.
 #[test]
 fn both_sides_push() {
     let square = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
@@ -211,10 +208,10 @@ fn both_sides_push() {
     }
 }
 
-/// A fine, irregular floor on a slope: a ball slides, then rolls, with its tangential spring loaded, over several
-/// hundred seams; at every step its force is the plane's to 1e-10 of itself.
+/// Sliding, then rolling over several hundred seams, with a loaded tangential spring: force to 1e-10
+/// (relative).
 #[test]
-fn force_on_a_slope_equals_that_of_a_plane_at_every_step() {
+fn slope_force_matches_plane() {
     let mut random = Random::new(77);
     let (nx, ny, pitch) = (90, 8, 0.0021);
     let tilt = nalgebra::UnitQuaternion::from_euler_angles(0.03, 0.25, 0.4);
@@ -274,7 +271,7 @@ fn force_on_a_slope_equals_that_of_a_plane_at_every_step() {
     assert_eq!(seams, 0, "never more than one contact");
 }
 
-/// Just beside a seam, nearer than what counts as one point: the face goes before the edge of its lower neighbour.
+/// Closer to a seam than the point tolerance: the face precedes its neighbour's edge.
 #[test]
 fn face_before_edge_beside_a_seam() {
     let square = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
@@ -286,9 +283,9 @@ fn face_before_edge_beside_a_seam() {
     }
 }
 
-/// Two plates in one plane with a slot between them: a sphere beside it, pressed down on one, comes to touch the rim of the other.
+/// A sphere next to a slot between coplanar plates touches the opposite rim.
 #[test]
-fn a_slot_in_a_floor_is_felt() {
+fn finds_slot_in_floor() {
     let plate = |from: f64, to: f64| [[from, -0.1, 0.0], [to, -0.1, 0.0], [to, 0.1, 0.0], [from, 0.1, 0.0]];
     let vertices = [plate(-0.1, 0.0005), plate(0.0025, 0.1)].concat();
     let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
@@ -302,7 +299,7 @@ fn a_slot_in_a_floor_is_felt() {
         let gap = x.z.hypot(x.x - 0.0025);
         let count = measure::contacts(&run.model, &run.state).len();
         let expected = contact_count(&vertices, &triangles, x).0;
-        // Contacts are those of the step before the last motion.
+        // Contacts precede the last motion.
         if (gap - 0.01).abs() > 1e-4 {
             assert_eq!(count, expected, "{x}");
             seen[count - 1] = true;

@@ -1,10 +1,8 @@
-//! The step that contacts allow (`trackbed_dem::stability`) against the truth: the step at which the engine itself begins to
-//! multiply a disturbance.
+//! Critical time step by contacts (`trackbed_dem::stability`) against the engine's own stability limit.
 //!
-//! Of a settled bed two copies are made, one with velocities disturbed by 1e-13 of what gravity does in a millisecond, and
-//! both take 100 steps. Below the limit the difference stays what it was or dies out; 2 % above it grows a thousandfold. So
-//! bisection finds the true limit without any knowledge of stiffnesses, levers or dashpots. Contacts that slide hold less than
-//! the estimate, which lets all of them stick: it must lie below the truth, and not far.
+//! Two copies of a settled bed, one with velocities disturbed by 1e-13 of gravity in a millisecond, take 100
+//! steps. Below the limit the difference does not grow, 2 % above it grows a thousandfold; bisection gives
+//! the true limit. The estimate assumes sticking contacts, so it must be slightly lower.
 
 use crate::scene::{Random, clump, plane, rigid, stone};
 use nalgebra::UnitQuaternion;
@@ -16,7 +14,7 @@ use trackbed_dem::{
     measure, stability,
 };
 
-/// A level external surface at height 0, as large as needed.
+/// Level external surface at height 0.
 struct Level;
 
 impl Surface for Level {
@@ -48,7 +46,7 @@ impl Surface for Level {
 
 const WIDTH: f64 = 0.2;
 
-/// Bodies of several shapes in a box of planes, on a grid with small random shifts and turns.
+/// Bodies on a grid with small random shifts and rotations, in a box of planes.
 fn bed(shapes: Vec<Shape>, sizes: impl Fn(f64) -> f64, material: Material, reach: f64) -> ModelInput {
     let mut random = Random::new(7);
     let mut input = ModelInput {
@@ -94,7 +92,7 @@ struct Bed<S> {
 }
 
 impl<S: Surface> Bed<S> {
-    /// Lets a bed come to rest with the steps that its contacts allow.
+    /// Bed at rest, stepped by its contacts.
     fn settled(input: ModelInput, surface: S, seconds: f64) -> Bed<S> {
         let model = Model::new(input).expect("a good input");
         let mut state = State::new(&model);
@@ -106,7 +104,7 @@ impl<S: Surface> Bed<S> {
         Bed { model, state, surface }
     }
 
-    /// The factor by which a disturbance has grown after some steps of `dt`.
+    /// Growth factor of a disturbance over steps of `dt`.
     fn growth(&self, dt: f64) -> f64 {
         let (mut calm, mut other) = (self.state.clone(), self.state.clone());
         let mut random = Random::new(3);
@@ -133,7 +131,7 @@ impl<S: Surface> Bed<S> {
         differ(&calm, &other) / start
     }
 
-    /// The step at which disturbances begin to grow without end [s].
+    /// True stability limit [s].
     fn true_limit(&self) -> f64 {
         let found = stability::limit(&self.model, &self.state);
         let (mut low, mut high) = (0.3 * found, 4.0 * found);
@@ -145,7 +143,7 @@ impl<S: Surface> Bed<S> {
         low
     }
 
-    /// Compares the two limits and the one known before anything touches.
+    /// Compares both limits, and the bound without contacts.
     fn compare(&self, name: &str) {
         let (found, truth) = (stability::limit(&self.model, &self.state), self.true_limit());
         let moving = measure::energies(&self.model, &self.state).kinetic();
@@ -206,7 +204,7 @@ fn ballast_of_clumps() {
 fn sizes_of_one_to_twenty() {
     let shapes = vec![Shape::Sphere { radius: 0.001 }];
     let sizes = |x: f64| if x < 0.5 { 20.0 } else { 1.0 + 4.0 * (x - 0.5) };
-    // Small spheres roll on and on without resistance, and contacts that come and go have no limit to compare with.
+    // Resistance stops rolling: changing contacts have no limit to compare with.
     let material = Material { rolling_friction: 0.2, ..stone() };
     Bed::settled(bed(shapes, sizes, material, 0.021), NoSurface, 3.0).compare("sizes 1:20");
 }
@@ -269,9 +267,8 @@ fn bonded_stones() {
     }
 }
 
-/// From one look at the limit to the next the step grows by a quarter at most.
 #[test]
-fn steps_grow_by_a_quarter_at_most() {
+fn step_growth_is_limited() {
     let model = Model::new(bed(balls(), same, stone(), 0.02)).expect("a good input");
     let mut state = State::new(&model);
     let mut work = Work::new(&model, &state);
@@ -288,7 +285,7 @@ fn steps_grow_by_a_quarter_at_most() {
     assert!(grown >= 3, "{grown}");
 }
 
-/// Momentum balances to rounding and the energy account as well as with steps of one length when the length changes often.
+/// Momentum to rounding; energy as with constant steps.
 #[test]
 fn steps_of_changing_length() {
     let mut errors = Vec::new();
@@ -319,10 +316,9 @@ fn steps_of_changing_length() {
     assert!(errors[1] < 3.0 * errors[0] + 1e-4, "{errors:?}");
 }
 
-/// The restitution that a scene finds at the step it takes by itself, from 64 heights each: within 1 % in the mean and 2.5 %
-/// wherever in a step the hit begins.
+/// 64 heights each, automatic step: 1 % in the mean, 2.5 % for any phase of impact in a step.
 #[test]
-fn restitution_at_the_step_that_is_chosen() {
+fn restitution_at_automatic_step() {
     for given in [0.3, 0.5, 0.7, 0.9] {
         let (mut sum, mut worst) = (0.0, 0.0_f64);
         for k in 0..64 {
@@ -349,7 +345,7 @@ fn restitution_at_the_step_that_is_chosen() {
     }
 }
 
-/// Spheres that lose nothing, in a box: their energy after 10 s (0.1 % is the aim).
+/// Energy after 10 s (target 0.1 %).
 #[test]
 fn an_elastic_gas_does_not_heat() {
     let material = Material { restitution: 1.0, friction: 0.0, ..stone() };
@@ -369,10 +365,9 @@ fn an_elastic_gas_does_not_heat() {
     assert!(change.abs() < 1e-3, "{change}");
 }
 
-/// Of one sphere on a plane all frequencies are known. With K = Kₜ and 1/I = 5/(2 m r²) in units of K/m: 1 across the plane;
-/// 1 + 5/2 along it, where the tangential spring turns the sphere as well; 5/2 where it can only turn; with a rolling spring
-/// of stiffness Kₜ r² the larger root of λ² − 6 λ + 5/2; a twisting spring, about the normal, adds 5/2 apart from these. The
-/// limit is 2/ω, less what the estimate adds to ω² to be on the safe side, a hundredth.
+/// Frequencies with K = Kₜ and 1/I = 5/(2 m r²), in K/m: 1 normal; 1 + 5/2 tangential; 5/2 rotation only;
+/// with a rolling spring Kₜ r² the larger root of λ² − 6 λ + 5/2; twisting adds a separate 5/2. Limit 2/ω,
+/// with a safety of 1 % of ω².
 #[test]
 fn one_sphere_on_a_plane_has_its_closed_form() {
     let (free, held) = (false, true);
@@ -404,9 +399,8 @@ fn one_sphere_on_a_plane_has_its_closed_form() {
     }
 }
 
-/// Two planes close on a sphere after Hertz twice as fast from look to look, so that the overlap doubles and the limit falls by
-/// a sixth each time: while it changes by more than a tenth, the step is 0.7 of the usual share of it. When they stand it comes
-/// back to that share.
+/// Two planes (Hertz) double the overlap and reduce the limit by a sixth per check. While it changes by more
+/// than a tenth, the step is 0.7 of its usual fraction.
 #[test]
 fn a_changing_limit_is_used_with_care() {
     let material =
@@ -453,7 +447,6 @@ fn a_changing_limit_is_used_with_care() {
     );
 }
 
-/// Windows are divided into steps no longer than the share of the limit, and into no more than that takes.
 #[test]
 fn a_window_has_as_few_steps_as_the_limit_allows() {
     let mut input = crate::scene::weightless(Material { friction: 0.0, ..stone() });
@@ -471,9 +464,8 @@ fn a_window_has_as_few_steps_as_the_limit_allows() {
     }
 }
 
-/// What is known before anything touches, of one sphere: six contacts on either side, each with the stiffer of K across it and
-/// Kₜ (1 + 5/2) along it, where the tangential spring pushes the sphere and turns it; with as much again of 5/2 where it
-/// resists rolling. ω² = 12 K/m · max(1, 7/2 α or 6 α).
+/// Six contacts per side, each the stiffer of K normal and Kₜ (1 + 5/2) tangential, plus 5/2 with rolling
+/// resistance: ω² = 12 K/m · max(1, 7/2 α or 6 α).
 #[test]
 fn the_bound_of_a_sphere_has_its_closed_form() {
     for (alpha, rolling, expected) in [(0.1, 0.0, 1.0), (0.5, 0.0, 1.75), (1.0, 0.0, 3.5), (0.5, 0.1, 3.0)] {
@@ -491,8 +483,8 @@ fn the_bound_of_a_sphere_has_its_closed_form() {
     }
 }
 
-/// A dumbbell of two spheres of radius r at ±a: a contact may lie r from its long axis and a + r from the others, so that the
-/// bound is ω² = 24 K (1/m + (a + r)²/I) where that is the larger.
+/// Spheres of radius r at ±a, lever arm up to a + r about the transverse axes: ω² = 24 K (1/m + (a + r)²/I)
+/// if larger.
 #[test]
 fn the_bound_of_a_dumbbell_has_its_closed_form() {
     let (a, r) = (0.006, 0.008);
@@ -508,7 +500,7 @@ fn the_bound_of_a_dumbbell_has_its_closed_form() {
     assert!((model.dt_limit().dt / exact - 1.0).abs() < 1e-9, "{} {exact}", model.dt_limit().dt);
 }
 
-/// Contacts and bonds hold a body together: their bounds of ω² add up.
+/// Bounds of ω² add up.
 #[test]
 fn the_bounds_of_contacts_and_bonds_add_up() {
     let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
@@ -533,8 +525,7 @@ fn the_bounds_of_contacts_and_bonds_add_up() {
     assert!((found / exact - 1.0).abs() < 1e-12, "{found} against {exact}");
 }
 
-/// The time of a collision is that of both masses: 0.08 √(m*/K) where nothing is lost, m* = m₁ m₂/(m₁ + m₂) of a light and a
-/// heavy sphere on the stiffest contact of the scene.
+/// 0.08 √(m*/K) without loss, m* = m₁ m₂/(m₁ + m₂), stiffest contact.
 #[test]
 fn the_time_of_a_collision_is_that_of_both_masses() {
     let light = Material { restitution: 1.0, ..stone() };
@@ -557,7 +548,7 @@ fn the_time_of_a_collision_is_that_of_both_masses() {
     assert!((model.longest(false) / exact - 1.0).abs() < 1e-12, "{} {exact}", model.longest(false));
 }
 
-/// Bodies that fall through the height of the scene meet at √(2 g H): the limit is that of this speed given.
+/// Impact speed √(2 g H), H the height of the scene.
 #[test]
 fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
     let material = Material { young: Some(2e7), poisson: 0.2, stiffness: f64::INFINITY, ..stone() };
@@ -569,7 +560,7 @@ fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
         let input = ModelInput { impact_speed, ..input.clone() };
         Model::new(input).expect("a good input").dt_limit().dt
     };
-    // From the top of the upper sphere to the foot of the lower one.
+    // Top of the upper sphere to the bottom of the lower.
     let height = 0.48 + 2.0 * 0.01;
     let (found, exact) = (limit(None), limit(Some(f64::sqrt(2.0 * 9.81 * height))));
     assert!((found / exact - 1.0).abs() < 1e-12, "{found} against {exact}");

@@ -1,8 +1,8 @@
-//! Committed tables of numbers.
+//! Committed tables.
 
 use std::path::Path;
 
-/// The rows of a CSV of this crate, by its path there; comments and the line of names are left out. Words become NaN.
+/// Rows of a CSV of this crate, without comments and header; words become NaN.
 pub fn read(name: &str) -> Vec<Vec<f64>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

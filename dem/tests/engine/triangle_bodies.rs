@@ -6,7 +6,7 @@ use trackbed_dem::{
     WallShape, measure,
 };
 
-/// A box with its centre at `centre`, its sides split into triangles, that moves freely.
+/// Free box of triangles.
 fn cuboid(centre: Vec3, half: Vec3, mass: f64) -> WallInput {
     WallInput { body: Some(free(mass)), ..WallInput::fixed(crate::scene::cuboid(centre, half), 0) }
 }
@@ -19,7 +19,6 @@ fn body_of(wall: &mut WallInput) -> &mut RigidBody {
     wall.body.as_mut().expect("a body")
 }
 
-/// Free flight of a tumbling box: kinetic energy and angular momentum stay, the centre flies a parabola.
 #[test]
 fn free_flight() {
     let mut input = with(stone());
@@ -32,7 +31,7 @@ fn free_flight() {
     let start = measure::momentum(&run.model, &run.state);
     let kinetic = |run: &Run| measure::energies(&run.model, &run.state).kinetic_rotation;
     let (first, mut worst) = (kinetic(&run), 0.0_f64);
-    // m/12 (b² + c²) …, about the second axis.
+    // Moments m/12 (b² + c²).
     let exact = 0.5 * 50.0 / 3.0 * ((0.04 + 0.01) * 0.01 + (0.09 + 0.01) * 49.0 + (0.09 + 0.04) * 0.04);
     assert!((first / exact - 1.0).abs() < 1e-12, "{first} {exact}");
     for _ in 0..20_000 {
@@ -48,13 +47,12 @@ fn free_flight() {
     assert!((end.angular - start.angular - impulse.angular).norm() < 1e-9 * 50.0);
     let fall = Vec3::new(1.0, 0.0, 2.0) * t - Vec3::z() * 4.905 * t * t;
     assert!((run.state.wall_offset(0) - fall).norm() < 1e-9 * fall.norm());
-    // The intermediate axis tumbles.
+    // The intermediate axis is unstable.
     let up = run.state.wall_orientation(0) * Vec3::y();
     assert!(t > 1.0 && (up - Vec3::y()).norm() > 1e-3, "{t} {up}");
 }
 
-/// A cube of triangles laid on four held spheres carries its weight onto them, whatever its diagonals; with a fifth
-/// grain on top it carries both.
+/// The spheres bear its weight, and a fifth grain on top.
 #[test]
 fn cube_at_rest_on_spheres() {
     let mut input = with(Material { restitution: 0.2, tangential_damping_ratio: 0.5, ..stone() });
@@ -63,7 +61,7 @@ fn cube_at_rest_on_spheres() {
     }
     let mass = 2.0;
     input.walls.push(cuboid(Vec3::new(0.002, 0.001, 0.06), Vec3::repeat(0.05), mass));
-    // It must not roll, or it would never come to rest on the slightly tilted top.
+    // Free to roll, it would never come to rest on the tilted top.
     let fixed = [true, true, false, true, true, true];
     input.bodies.push(BodyInput { fixed, ..sphere(Vec3::new(0.0, 0.0, 0.1201), Vec3::zeros()) });
     let mut run = Run::new(input);
@@ -88,8 +86,7 @@ fn cube_at_rest_on_spheres() {
     );
 }
 
-/// A box falls on a plane: it comes to rest on four vertices that carry a quarter of the weight each, and energy and
-/// momentum balance on the way.
+/// Each vertex bears a quarter of the weight.
 #[test]
 fn box_stands_on_its_vertices() {
     let mut input = with(Material { restitution: 0.3, ..stone() });
@@ -117,11 +114,10 @@ fn box_stands_on_its_vertices() {
     assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
     let rise = run.state.wall_offset(0).z + 0.06 - 0.04 + 1.5 * 9.81 / (4.0 * 1e5);
     assert!(rise.abs() < 1e-9, "{rise:e}");
-    // It still twists on its tangential springs, which nothing damps.
+    // Twisting on tangential springs is undamped.
     assert!(after.linear.norm() < 1e-6 && after.angular.norm() < 1e-3, "{after:?}");
 }
 
-/// A grain hits a free box: momentum is shared, and nothing comes from outside.
 #[test]
 fn collision_conserves_momentum() {
     let mut input = weightless(Material { restitution: 1.0, friction: 0.6, ..stone() });
@@ -142,7 +138,7 @@ fn collision_conserves_momentum() {
     assert_eq!(run.state.ledger.work(), 0.0);
 }
 
-/// A central impact gives the restitution asked for: the contact knows the masses of both.
+/// The contact uses both masses.
 #[test]
 fn central_impact_has_its_restitution() {
     for mass in [0.002, 0.02, 2.0] {
@@ -158,7 +154,6 @@ fn central_impact_has_its_restitution() {
     }
 }
 
-/// Fixed motions keep their speed and what holds them is booked.
 #[test]
 fn held_body_stays() {
     let mut input = with(stone());
@@ -231,11 +226,11 @@ fn refusals() {
         assert!(run.state.time < 1.0);
     };
     assert!(matches!(error, StepError::WallsMeet { walls: [0, 1], .. }), "{error}");
-    // Round bodies do not touch each other. They were 0.11 m apart and close at 1 m/s, gravity pulling both.
+    // Round bodies ignore each other; gap 0.11 m, 1 m/s, common gravity.
     assert!((run.state.time - 0.11).abs() < 1e-3, "{}", run.state.time);
 }
 
-/// A light body needs a shorter step than its grains, and the message names it.
+/// Its error names it.
 #[test]
 fn a_light_body_sets_the_step() {
     let mut input = with(stone());

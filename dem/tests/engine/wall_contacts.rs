@@ -1,4 +1,4 @@
-//! Walls that touch each other: bodies of triangles and all other walls.
+//! Contacts between walls: triangle bodies and all others.
 
 use crate::scene::{FOLLOWED, Random, Run, block, body, cuboid, free, stone, weightless};
 use nalgebra::UnitQuaternion;
@@ -13,7 +13,7 @@ fn material() -> Material {
     Material { stiffness: 1e6, tangential_damping_ratio: 1.0, ..stone() }
 }
 
-/// Springs and elastic bodies after Hertz, without friction or damping.
+/// Linear and Hertzian, without friction or damping.
 fn elastic() -> [(&'static str, Material); 2] {
     let smooth = Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() };
     let hertz = Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..smooth };
@@ -28,7 +28,7 @@ fn rigid(shape: WallShape, body: RigidBody) -> WallInput {
     WallInput { body: Some(body), ..WallInput::fixed(shape, 0) }
 }
 
-/// An angle of two legs, 0.2 m long and high, 0.05 m thick, 0.1 m wide; its inner corner lies in the origin.
+/// Angle with two legs of 0.2 m, 0.05 m thick, 0.1 m wide; inner corner at the origin.
 fn angle(turn: &UnitQuaternion<f64>, at: Vec3) -> WallShape {
     let outline = [[-0.05, -0.05], [0.15, -0.05], [0.15, 0.0], [0.0, 0.0], [0.0, 0.15], [-0.05, 0.15]];
     let corner = |y: f64, p: [f64; 2]| turn * Vec3::new(p[0], y, p[1]) + at;
@@ -49,7 +49,6 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// A closed mesh about the origin: an octahedron.
 fn octahedron(radius: f64) -> WallShape {
     let vertices = [Vec3::x(), Vec3::y(), Vec3::z(), -Vec3::x(), -Vec3::y(), -Vec3::z()].map(|v| v * radius);
     let triangles =
@@ -60,7 +59,6 @@ fn octahedron(radius: f64) -> WallShape {
 const HALF: [f64; 3] = [0.05, 0.04, 0.03];
 const ROUNDING: f64 = 0.006;
 
-/// How a block is thrown.
 struct Throw {
     position: Vec3,
     orientation: UnitQuaternion<f64>,
@@ -85,7 +83,7 @@ impl Throw {
         BodyInput { orientation, velocity, spin, ..body(0, self.position) }
     }
 
-    /// The same block of triangles, with mass and inertia of the grain.
+    /// The same block of triangles, with the grain's mass and inertia.
     fn wall(&self, mass: f64, inertia: Vec3) -> WallInput {
         let WallShape::Triangles { vertices, triangles } = cuboid(Vec3::zeros(), Vec3::from(HALF)) else {
             panic!("triangles")
@@ -103,8 +101,8 @@ impl Throw {
     }
 }
 
-/// What a block of triangles does at walls of triangles, round ones and another block is what the same block does as a polyhedron, whose
-/// contacts have references of their own (`docs/guide/verification.md`): the same velocity and spin after the hit.
+/// A triangle block moves as the same polyhedron, whose contacts have separate references
+/// (`docs/guide/verification.md`).
 #[test]
 fn as_polyhedra_with_the_same_faces() {
     let frustum = |radii, height: f64, caps| WallShape::Frustum {
@@ -132,7 +130,7 @@ fn as_polyhedra_with_the_same_faces() {
             let law = if k == 2 { hertz } else { material() };
             let mut throw = Throw::at_random(&mut random, name == "pile");
             match name {
-                // Outwards, from within.
+                // From inside.
                 "bowl" => throw.velocity = -throw.velocity,
                 "plane" => (throw.position.z, throw.velocity.z) = (0.12, -0.8),
                 _ => {}
@@ -143,7 +141,6 @@ fn as_polyhedra_with_the_same_faces() {
                 velocity: Vec3::zeros(),
                 spin: random.vector(),
             };
-            // As grains.
             let mut input = ModelInput { shapes: vec![block(HALF, ROUNDING)], ..scene(law) };
             input.bodies.push(throw.grain());
             match &shape {
@@ -154,7 +151,6 @@ fn as_polyhedra_with_the_same_faces() {
             let dt = grains.model.dt().min(2e-5);
             grains.state.set_dt(dt);
             let (mass, inertia) = (grains.model.mass(0), grains.model.inertia(0));
-            // As bodies of triangles.
             let mut input = scene(law);
             input.walls.push(throw.wall(mass, inertia));
             match &shape {
@@ -180,7 +176,7 @@ fn as_polyhedra_with_the_same_faces() {
     }
 }
 
-/// Hollow bodies thrown at each other: momentum stays to rounding, energy without friction and damping; with both the account closes.
+/// Momentum to rounding, energy without losses; with friction and damping the balance.
 #[test]
 fn hollow_bodies_collide() {
     let laws = elastic().into_iter().chain([("rough springs", material())]);
@@ -220,14 +216,13 @@ fn hollow_bodies_collide() {
     }
 }
 
-/// An angle hangs in another one that is held, upside down: it comes to rest, and the other carries its weight.
 #[test]
 fn an_angle_hangs_in_another() {
     let mut input = scene(Material { restitution: 0.2, ..material() });
     input.gravity = Vec3::new(0.0, 0.0, -G);
     input.time_step = FOLLOWED;
     let half_turn = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), std::f64::consts::PI);
-    // Its legs point up and to the right; those of the other down and to the left, its lower side on the upper side of the first's foot.
+    // Legs point up and right, the other's down and left, resting on the first's foot.
     let held = RigidBody { fixed: [true; 6], ..free(3.0) };
     input.walls.push(rigid(angle(&UnitQuaternion::identity(), Vec3::zeros()), held));
     let hung = angle(&half_turn, Vec3::new(0.1, 0.0, 0.151));
@@ -245,7 +240,7 @@ fn an_angle_hangs_in_another() {
     assert!((left - start).abs() < 1e-2 * run.state.ledger.dissipated());
 }
 
-/// Three blocks on a floor of triangles, each of another mesh, stand with steps that follow the contacts; each carries what lies above.
+/// Different meshes, step size control; each bears the load above.
 #[test]
 fn blocks_stand_on_each_other() {
     let mut input = scene(Material { restitution: 0.2, ..material() });
@@ -261,11 +256,11 @@ fn blocks_stand_on_each_other() {
     for k in 1..4 {
         let (v, w) = run.state.wall_velocity(k);
         assert!(v.norm() < 1e-5 && w.norm() < 1e-4, "{k}: {v} {w}");
-        // What is left of weight and what lies above.
+        // Weight plus load above.
         let force = run.state.wall_force(k).0.z;
         assert!((force / (4.0 * G) - 1.0).abs() < 1e-5, "{k}: {force}");
     }
-    // What the contacts allow is measured from them.
+    // From the contacts.
     let measured = run.state.measured_limit().expect("steps follow the contacts");
     assert!((1.0..20.0).contains(&(measured / run.model.dt())), "{measured} {}", run.model.dt());
     let floor = run.state.wall_force(0).0.z / (-12.0 * G);
@@ -273,12 +268,11 @@ fn blocks_stand_on_each_other() {
     assert!((floor - 1.0).abs() < 1e-5);
 }
 
-/// A plate that a force drives presses a block onto a plane: both carry what they should.
 #[test]
 fn a_driven_plate_presses_a_block() {
     let mut input = scene(Material { restitution: 0.3, ..material() });
     input.gravity = Vec3::new(0.0, 0.0, -G);
-    // A plane that takes part as other walls do.
+    // A plane wall like the others.
     input.walls.push(WallInput::fixed(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, 0));
     input.walls.push(rigid(cuboid(Vec3::z() * 0.051, Vec3::new(0.1, 0.08, 0.05)), free(4.0)));
     let servo =
@@ -293,7 +287,6 @@ fn a_driven_plate_presses_a_block() {
     assert!((block - 4.0 * G).abs() < 1e-3);
 }
 
-/// A belt of triangles carries a block along, and books what it does.
 #[test]
 fn a_belt_drags_a_block() {
     let mut input = scene(Material { restitution: 0.3, ..material() });
@@ -313,15 +306,15 @@ fn a_belt_drags_a_block() {
     let ledger = run.state.ledger;
     let left = total(&run) + ledger.dissipated() - ledger.work();
     println!("{:.6} m/s, work of the belt {:.4} J, account {:.1e} J", v.x, ledger.work_walls, left - start);
-    // m v² of the belt: one half is the block's, one goes into sliding.
+    // Belt work m v²: half kinetic energy, half sliding.
     assert!((v.x - 0.5).abs() < 1e-4 && (ledger.work_walls / (4.0 * 0.25) - 1.0).abs() < 1e-3);
     assert!((left - start).abs() < 2e-3 * ledger.work_walls);
 }
 
-/// A pontoon drifts beam-on against a dolphin on a spring that it meets off its centre: the spring takes the share K²/(K² + R²) of its energy,
-/// K its radius of gyration and R the way from its centre to where it touches (Vasco Costa 1964; BS 6349-4, "eccentricity coefficient").
+/// Eccentric berthing on a sprung dolphin: energy fraction K²/(K² + R²), K radius of gyration, R distance
+/// from centre to contact (Vasco Costa 1964; BS 6349-4, "eccentricity coefficient").
 #[test]
-fn a_dolphin_takes_its_share_of_a_berthing_pontoon() {
+fn dolphin_absorbs_eccentric_berthing_energy() {
     let half = Vec3::new(15.0, 4.0, 1.5);
     let (mass, speed, stiffness) = (3.0e5, 0.2, 2.0e6);
     for off in [0.0_f64, 6.0, 10.0] {
@@ -342,7 +335,7 @@ fn a_dolphin_takes_its_share_of_a_berthing_pontoon() {
         let mut run = Run::new(input);
         let mut most = 0.0_f64;
         while run.state.time < 1.5 {
-            // Loads on a structure are those that the next step finds.
+            // Structure loads belong to the next step.
             let mut load = Vec3::zeros();
             measure::loads_on(&run.model, &run.state, (|_| false, |w| w == 1), |_, f| load += f);
             run.step();
@@ -359,7 +352,6 @@ fn a_dolphin_takes_its_share_of_a_berthing_pontoon() {
     }
 }
 
-/// What is refused, and what ends a run.
 #[test]
 fn refusals_and_failures() {
     let on_floor = |law: Material, body: RigidBody, height: f64| {
@@ -404,7 +396,7 @@ fn refusals_and_failures() {
     assert!(error.to_string().contains("or `rounding`"), "{error}");
     let (error, _) = fails(on_floor(Material { stiffness: 1e3, ..material() }, thrown(400.0), 0.02));
     assert!(matches!(error, StepError::WallSpeed { wall: 1, .. }), "{error}");
-    // Edges that pass through an edge, or through a pile, where no corner touches.
+    // Edges through an edge or pile, away from corners.
     let turned = |axis: Vec3, at: Vec3| {
         let WallShape::Triangles { vertices, triangles } = cuboid(Vec3::zeros(), Vec3::new(0.1, 0.1, 0.1))
         else {
@@ -421,7 +413,7 @@ fn refusals_and_failures() {
         radii: [0.04; 2],
         caps: [false; 2],
     };
-    // The rounding, 4 mm, takes √2 of it off the edge.
+    // The 4 mm rounding shortens the edge by √2 of it.
     let edge = 0.3 - 2.0_f64.sqrt() * (0.1 - 0.004);
     for (below, top) in [(low, 2.0_f64.sqrt() * 0.1), (pile, 0.14)] {
         let mut input = scene(soft);
@@ -431,7 +423,7 @@ fn refusals_and_failures() {
         input.walls.push(rigid(above, RigidBody { fixed, ..thrown(1.0) }));
         let (error, offset) = fails(input);
         assert!(matches!(error, StepError::WallsOverlap { walls: [1, 0], .. }), "{error}");
-        // Not after edge and edge, or edge and pile, have crossed, and not long before.
+        // Close to the moment of crossing.
         assert!((-1e-3..2e-3).contains(&(offset + edge - top)), "{offset} {}", top - edge);
     }
 }

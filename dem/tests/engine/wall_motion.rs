@@ -1,4 +1,4 @@
-//! Walls that swing, turn and are driven.
+//! Oscillating, rotating and servo-controlled walls.
 
 use crate::scene::{Random, Run, clump, plane, sphere, stone, weightless};
 use trackbed_dem::{
@@ -6,7 +6,7 @@ use trackbed_dem::{
     measure,
 };
 
-/// Grains in a box that is open at the top, `width` wide.
+/// Grains in an open box.
 pub fn heap(count: usize, width: f64, material: Material) -> ModelInput {
     let mut random = Random::new(9);
     let mut input = ModelInput {
@@ -26,7 +26,7 @@ pub fn heap(count: usize, width: f64, material: Material) -> ModelInput {
     input
 }
 
-/// A square of two triangles at height `z`.
+/// Two triangles at height `z`.
 pub fn square(width: f64, z: f64) -> WallShape {
     let (a, b) = (-0.1 * width, 1.1 * width);
     WallShape::Triangles {
@@ -35,8 +35,7 @@ pub fn square(width: f64, z: f64) -> WallShape {
     }
 }
 
-/// A shaking table, a paddle that turns and a drum that moves on stir a heap: the wall is where its law says, energy
-/// and momentum balance, and the energy error falls as dt².
+/// Shaking table, rotating paddle, drum: prescribed positions, balances; energy error ~ dt².
 #[test]
 fn stirred_heap_balances() {
     let run = |fraction: f64| {
@@ -99,8 +98,8 @@ fn stirred_heap_balances() {
     assert!(coarse < 2e-2 * turnover && fine < 0.25 * coarse, "{coarse:e} {fine:e} {turnover:e}");
 }
 
-/// A driven lid presses a small packing: after a preload of 5 kPa (a fresh packing slips and lets the lid down now and
-/// then) it holds 1 kPa within 1 % at every step, and the work of the drive is in the account.
+/// After a preload of 5 kPa (a fresh packing slips) it holds 1 kPa within 1 % at every step; its work
+/// balances.
 #[test]
 fn servo_holds_its_pressure() {
     let width = 0.09;
@@ -140,8 +139,7 @@ fn servo_holds_its_pressure() {
     }
 }
 
-/// A ball rides a table that swings with less than gravity: the energy error falls as dt², so the table's work is that of
-/// its mean velocity over each step.
+/// Table acceleration below gravity. Energy error ~ dt²: work uses the mean velocity of each step.
 #[test]
 fn ball_rides_a_swinging_table() {
     let error = |fraction: f64| {
@@ -174,13 +172,12 @@ fn ball_rides_a_swinging_table() {
     assert!(fine < coarse / 8.0, "{coarse:e} {fine:e}");
 }
 
-/// What slides over a grain stretches no spring beyond what friction holds: the energy of springs does not depend on how fast a smooth
-/// gate is drawn past a grain, and with friction the account closes.
+/// Springs are capped by friction: their energy is independent of the gate's speed.
 #[test]
-fn a_gate_drawn_past_grains_leaves_no_energy_in_springs() {
+fn sliding_gate_stores_no_spring_energy() {
     for friction in [0.0, 0.3] {
         let mut input = heap(1, 0.09, Material { friction, ..stone() });
-        // So wide that it lies under the grain throughout.
+        // Wide enough to stay under the grain.
         let motion = Motion { velocity: Vec3::new(-3.0, 0.0, 0.0), ..Motion::default() };
         input.walls.push(WallInput { motion, ..WallInput::fixed(square(1.0, 0.0), 0) });
         let mut run = Run::new(input);

@@ -1,4 +1,4 @@
-//! Walls that move or open, fixed bodies, applied forces, an external surface.
+//! Moving or opening walls, fixed bodies, applied forces, external surface.
 
 use crate::scene::{Run, plane, sphere, stone, weightless};
 use trackbed_dem::material::PairOverride;
@@ -7,7 +7,7 @@ use trackbed_dem::{
     AppliedForce, BodyInput, Model, Shape, State, StepError, TimeStep, TriangleSurface, Vec3, Work, measure,
 };
 
-/// A sphere on a belt is dragged along until it rolls with 2/7 of the belt's speed.
+/// Until it rolls with 2/7 of the belt's speed.
 #[test]
 fn belt_drags_a_sphere() {
     for triangles in [false, true] {
@@ -107,7 +107,7 @@ fn applied_force_and_its_torque() {
     assert!((run.state.ledger.work_applied / e - 1.0).abs() < 1e-12);
 }
 
-/// One flat patch at a height that rises with time: what a solid's surface looks like to the grains.
+/// Flat surface at a height rising with time.
 struct Lift {
     height: f64,
     speed: f64,
@@ -136,9 +136,8 @@ impl Surface for Lift {
     }
 }
 
-/// A contact with an external surface tells which part of its force dashpots make: the power of that part, at the speeds
-/// of the contact's instant, is what the ledger loses to them; and without dashpots there is none, sticking, sliding, sticky
-/// or not.
+/// The power of the reported dashpot force equals the recorded loss; zero without dashpots. Sticking,
+/// sliding, adhesive.
 #[test]
 fn the_force_of_dashpots_is_distinguished() {
     let young =
@@ -176,7 +175,7 @@ fn the_force_of_dashpots_is_distinguished() {
                 for c in work.surface_contacts() {
                     let dashpot = Vec3::from(c.dashpot);
                     power += dashpot.dot(&(0.5 * (before + motion(&state)))) * model.dt();
-                    // Adhesion comes up within the first step.
+                    // Adhesion develops within the first step.
                     if adhesion.is_none() || met {
                         force = force.max(dashpot.norm() / Vec3::from(c.force).norm());
                     }
@@ -195,7 +194,7 @@ fn the_force_of_dashpots_is_distinguished() {
 }
 
 #[test]
-fn external_surface_lifts_a_grain_and_books_it() {
+fn external_surface_lifts_grain() {
     let mut input = weightless(trackbed_dem::Material { tangential_damping_ratio: 0.5, ..stone() });
     input.gravity = Vec3::new(0.0, 0.0, -9.81);
     input.surface_material = Some(0);
@@ -218,7 +217,7 @@ fn external_surface_lifts_a_grain_and_books_it() {
     assert_eq!((contacts[0].body, contacts[0].sphere, contacts[0].patch), (0, 0, 0));
     let weight = model.mass(0) * 9.81;
     assert!((contacts[0].force[2] / weight + 1.0).abs() < 1e-3, "{contacts:?}");
-    // Picking the grain up from rest costs m v², half of which its impact on the surface takes.
+    // Lifting from rest costs m v², half of it in the impact.
     let lifted = weight * 0.1 * (state.time - 0.2) + model.mass(0) * 0.01;
     assert!((state.ledger.work_surface / lifted - 1.0).abs() < 5e-3, "{}", state.ledger.work_surface);
     assert!((total(&state) - start).abs() < 2e-3 * lifted, "{} {lifted}", total(&state) - start);

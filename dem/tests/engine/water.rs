@@ -1,4 +1,4 @@
-//! Water: bodies that rise, fall, float, heave, roll, drift, and waves, against closed forms in tables.
+//! Bodies in water against tables of closed forms.
 
 use crate::scene::{Run, stone};
 use crate::tables::read;
@@ -21,8 +21,8 @@ pub fn still(density: f64) -> Water {
     }
 }
 
-/// One body of a density in water, with steps of `dt`. Forces other than gravity act with their first full kick (see `State::new`): it
-/// starts with `lift` [m/s²] of them less.
+/// One body in water. Other forces act with their first full kick (see `State::new`): it starts with `lift`
+/// [m/s²] less.
 fn one(shape: Shape, density: f64, body: BodyInput, water: Water, (dt, lift): (f64, f64)) -> Run {
     let mut material = stone();
     material.density = density;
@@ -43,9 +43,9 @@ fn block(sides: [f64; 3]) -> Shape {
     Shape::Box { half: sides.map(|s| 0.5 * s) }
 }
 
-/// From rest, deeply submerged, with the mass of water that is taken along: v = v∞ tanh(a t/v∞).
+/// Submerged from rest, with added mass: v = v∞ tanh(a t/v∞).
 #[test]
-fn rises_and_falls_as_the_closed_form_says() {
+fn terminal_velocity_matches_closed_form() {
     let mut worst = 0.0_f64;
     for row in read("tests/data/water/terminal_speed.csv") {
         let [d, density, water, drag, added, end, start, t, speed, distance] = row[..10].try_into().unwrap();
@@ -56,7 +56,7 @@ fn rises_and_falls_as_the_closed_form_says() {
         let mut run = one(Shape::Sphere { radius: 0.5 * d }, density, body, water, (dt, lift));
         let steps = (t / dt).round();
         run.steps(steps as usize);
-        // Velocities are those of half a step ago; the table's time is no whole number of steps.
+        // Velocities are half a step old; the table's time is not a multiple of the step.
         let late = t - (steps - 0.5) * dt;
         let slope = start * (1.0 - (speed / end).powi(2));
         let found = run.state.velocity(0).z.abs() + slope * late;
@@ -67,7 +67,7 @@ fn rises_and_falls_as_the_closed_form_says() {
     assert!(worst < 1e-4);
 }
 
-/// A floe taken along by a current with both areas of drag, and turning that dies away.
+/// Both reference areas of drag; decaying rotation.
 #[test]
 fn a_current_takes_floes_along() {
     let mut worst = 0.0_f64;
@@ -81,16 +81,16 @@ fn a_current_takes_floes_along() {
         let body = BodyInput {
             position: Vec3::new(0.0, 0.0, 0.5 * thickness - draft),
             velocity: Vec3::new(v0, 0.0, 0.0),
-            // The drag acts at the middle of the wet part; pitching, which the table leaves out, would show more to the flow.
+            // The table excludes pitching by the drag's lever arm, which would increase the projected area.
             fixed: [false, false, false, true, true, false],
             ..BodyInput::default()
         };
         let dt = 5e-4;
-        // The drag as well acts with its first full kick.
+        // Drag also acts with its first full kick.
         let past = current - v0;
         let drawn = 0.5 * drag * row[9] * past.abs() * past / (draft * length * width * (1.0 + added));
         let body = BodyInput { velocity: Vec3::new(v0 - 0.5 * dt * drawn, 0.0, 0.0), ..body };
-        // Turning by itself: a floe that turns shows other sides to the flow.
+        // Separate rotation: it changes the projected area.
         let mut turning = one(
             block([length, width, thickness]),
             ratio * 1025.0,
@@ -114,7 +114,7 @@ fn a_current_takes_floes_along() {
     assert!(worst < 1e-4);
 }
 
-/// Times between zeros of a signal that starts off zero, in steps.
+/// Periods from zero crossings, in steps.
 fn period(run: &mut Run, dt: f64, signal: impl Fn(&Run) -> f64) -> f64 {
     let mut zeros = Vec::new();
     let mut before = signal(run);
@@ -131,9 +131,9 @@ fn period(run: &mut Run, dt: f64, signal: impl Fn(&Run) -> f64) -> f64 {
     (zeros[4] - zeros[0]) * 0.5 * dt
 }
 
-/// Heave with the mass of water that is taken along, roll and pitch, at a hundredth of the draft.
+/// With added mass; amplitude a hundredth of the draught.
 #[test]
-fn floes_heave_and_roll_as_they_should() {
+fn floes_have_expected_periods() {
     for row in read("tests/data/water/box_periods.csv") {
         let [l, w, h, ratio, added, _, draft, heave, gm_roll, gm_pitch, roll, pitch] =
             row[..12].try_into().unwrap();
@@ -159,7 +159,7 @@ fn floes_heave_and_roll_as_they_should() {
     }
 }
 
-/// A long box settles at one of its stable tilts (Gilbert 1991; Erdős, Schibler & Herndon 1992), half a degree off at most.
+/// Stable tilts (Gilbert 1991; Erdős, Schibler & Herndon 1992), within half a degree.
 #[test]
 fn boxes_float_at_their_stable_tilts() {
     let text = include_str!("../data/water/box_stability.csv");
@@ -171,7 +171,7 @@ fn boxes_float_at_their_stable_tilts() {
         let body = BodyInput {
             position: Vec3::new(0.0, 0.0, h * (0.5 - ratio)),
             orientation: nalgebra::UnitQuaternion::from_axis_angle(&Vec3::y_axis(), 10_f64.to_radians()),
-            // About its long axis only.
+            // Long axis only.
             fixed: [false, true, false, true, false, true],
             ..BodyInput::default()
         };
@@ -184,9 +184,9 @@ fn boxes_float_at_their_stable_tilts() {
     }
 }
 
-/// Floes with rounded edges float as deep as they should: 0.44587 m for the source's, 0.44634 without the rounding. Within a ten-thousandth of the thickness.
+/// 0.44587 m for the source's floe, 0.44634 without rounding; to 1e-4 of the thickness.
 #[test]
-fn rounded_floes_float_as_deep_as_they_should() {
+fn rounded_floes_have_expected_draught() {
     let prisms = read("tests/data/water/draft_corners.csv");
     for (sides, core, r, ratio, draft) in [
         (6.0, 0.42, 0.04, 0.892682926829, 0.4458697527),
@@ -204,7 +204,7 @@ fn rounded_floes_float_as_deep_as_they_should() {
         };
         let water = Water { drag: 5.0, ..still(1025.0) };
         let mut run = one(Shape::Polyhedron(Box::new(shape)), ratio * 1025.0, body, water, (2e-3, 9.81));
-        // It heaves on: the drag of so slow a motion is next to nothing.
+        // Mean of the heave: drag hardly damps slow motion.
         let mut sum = 0.0;
         for _ in 0..50_000 {
             run.step();
@@ -216,7 +216,7 @@ fn rounded_floes_float_as_deep_as_they_should() {
     }
 }
 
-/// A small floe on waves rises and falls with them, and drifts along with the water's mean drift at the surface.
+/// Vertical motion with the waves, and Stokes drift at the surface.
 #[test]
 fn small_floes_follow_the_waves() {
     let (height, period) = (0.3, 4.0);
@@ -234,15 +234,15 @@ fn small_floes_follow_the_waves() {
         run.step();
         highest = highest.max(run.state.position(0).z);
     }
-    // The floe drifts, so that its own period is a little longer.
+    // Drift lengthens its period.
     let drift = (run.state.position(0).x - from) / (20.0 * period);
     println!("drift {drift:.5} m/s, highest {highest:.4} m");
     assert!((drift / 0.00888941 - 1.0).abs() < 0.2, "{drift}");
-    // Its centre lies 29.7 mm below the surface where it floats: a cap of a tenth of its volume is dry.
+    // Centre 30.4 mm below the surface: a cap of a tenth of the volume is dry.
     assert!((highest - (0.15 - 0.0304)).abs() < 0.003, "{highest}");
 }
 
-/// Floes that roll and heave in a current: the work of the water is what their energy shows; the impulses balance.
+/// Work of the water equals the change of energy.
 #[test]
 fn accounts_close_in_water() {
     let water = Water {

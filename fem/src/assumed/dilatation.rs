@@ -1,14 +1,11 @@
-//! The volume strain of an element as its projection on a few terms.
+//! Projects the volumetric strain of an element on few terms against volumetric locking.
 //!
-//! Under a rule with many points the volume strain of a quadratic element has more terms than an incompressible material
-//! leaves degrees of freedom: the element locks. Its projection on the constant (mean dilatation) or on the linear
-//! functions of place, by least squares over the volume, has few enough. The hex20 takes the linear functions, which keep its
-//! order; with them the wedge15 still wavers in its stresses and the pyramid13 locks, so the others take the constant.
+//! Least squares on a constant (mean dilatation); the hex20 keeps linear functions. With these, wedge15
+//! stresses oscillate and the pyramid13 locks. Constant stress gives unchanged nodal forces, so the patch
+//! test is passed.
 //!
-//! Source: Hughes, Int. J. Numer. Methods Eng. 15 (1980) 1413-1418 (B-bar); Simo, Taylor and Pister, Comput. Methods Appl. Mech. Eng.
-//! 51 (1985) 177-208 (its variational form); de Souza Neto, Perić and Owen, Computational Methods for Plasticity (2008),
-//! section 15.1. A projection on terms that hold the constant keeps the mean of every gradient, so constant stress has
-//! the nodal forces of the plain element and the patch test is passed where that passes it.
+//! Source: Hughes (1980) (B-bar); Simo, Taylor and Pister (1985) (variational form); de Souza Neto, Perić and
+//! Owen (2008), section 15.1.
 //!
 //! Theory manual: equation (4.3) of `docs/theory/solid.md`.
 
@@ -17,28 +14,24 @@ use crate::kinematics::ElementCoordinates;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
-/// How quadratic kinds take their volume strain.
+/// Volumetric strain of quadratic kinds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dilatation {
-    /// At the points of the rule.
+    /// At the integration points.
     #[default]
     Pointwise,
-    /// Its mean over the element, in the hex20 together with its mean slope.
+    /// Element mean; the hex20 adds its mean slope.
     Mean,
 }
 
-/// Terms of a projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Terms {
-    /// The constant.
     Constant,
-    /// The linear functions of place.
     Linear,
 }
 
-/// Terms that the volume strain of a kind is projected on; none where it is taken at the points. `bends`: a hex8 whose modes give
-/// it a linear volume strain.
+/// Projection terms of a kind, if any. `bends`: a hex8 with modes, whose volumetric strain is linear.
 pub(super) fn terms(kind: ElementKind, dilatation: Dilatation, bends: bool) -> Option<Terms> {
     if kind.is_linear() {
         return Some(if bends { Terms::Linear } else { Terms::Constant });
@@ -50,15 +43,13 @@ pub(super) fn terms(kind: ElementKind, dilatation: Dilatation, bends: bool) -> O
     }
 }
 
-/// Gradients projected: for each term of the polynomial its coefficients.
 pub(super) struct Projection {
     mean: ElementCoordinates,
-    /// The mean place [m] and the slopes [1/m²] along the axes.
     slope: Option<([f64; 3], [ElementCoordinates; 3])>,
 }
 
 impl Projection {
-    /// Projects the gradients of points, each a place [m], its gradients and its volume [m³].
+    /// Projects gradients from position [m], gradients, volume [m³].
     pub fn new(
         terms: Terms,
         points: impl Iterator<Item = ([f64; 3], ElementCoordinates, f64)> + Clone,
@@ -85,7 +76,7 @@ impl Projection {
         self.slope.is_none()
     }
 
-    /// The projected gradients at a place.
+    /// Projected gradients at a position.
     pub fn at(&self, place: [f64; 3]) -> ElementCoordinates {
         let mut g = self.mean;
         if let Some((centre, slope)) = &self.slope {
@@ -100,7 +91,7 @@ impl Projection {
     }
 }
 
-/// Slopes of the least-squares fit about `centre`, where the linear terms are orthogonal to the constant.
+/// Slopes of the least-squares fit about `centre`.
 fn slope(
     points: impl Iterator<Item = ([f64; 3], ElementCoordinates, f64)>,
     centre: [f64; 3],
@@ -117,7 +108,7 @@ fn slope(
             }
         }
     }
-    // The points of every rule span a volume, so the matrix can be inverted.
+    // Invertible: the points of every rule span a volume.
     let inverse = square.try_inverse()?;
     let mut slope = [ElementCoordinates::default(); 3];
     for i in 0..3 {

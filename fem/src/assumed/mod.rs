@@ -1,11 +1,8 @@
-//! Assumed strains: what an element takes for its strain in place of the gradient of its displacement, so that it neither
-//! locks where the volume hardly changes nor where it bends.
+//! Assumed strains against volumetric and shear locking.
 //!
-//! The strain at a point is `B̄ u`, the force `∫ B̄^T s dV`, the stiffness `∫ B̄^T D B̄ dV`: one operator, fixed by the shape of
-//! the element and its Poisson's ratio, for every constitutive law. It has no memory, and the tangent that is formed with it
-//! is the derivative of the force.
-//!
-//! Two parts: the volume strain as its projection ([`Dilatation`]) and the incompatible modes of the hex8 ([`modes`]).
+//! Strain `B̄ u`, force `∫ B̄^T s dV`, stiffness `∫ B̄^T D B̄ dV`; B̄ depends only on element shape and
+//! Poisson's ratio. It combines projected volumetric strain ([`Dilatation`]) and incompatible modes
+//! ([`modes`]).
 
 pub mod dilatation;
 pub mod modes;
@@ -18,26 +15,26 @@ use dilatation::Projection;
 use modes::{HEX8_TERMS, Internal};
 use serde::{Deserialize, Serialize};
 
-/// Which strains the elements assume. The volume strain of linear kinds is always its mean.
+/// Assumed strains; linear kinds always use the mean volumetric strain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AssumedStrain {
-    /// Volume strain of the quadratic kinds.
+    /// Volumetric strain of the quadratic kinds.
     pub dilatation: Dilatation,
     /// Whether the hex8 has incompatible modes.
     pub incompatible_modes: bool,
 }
 
-/// The gradients at a point of an element.
+/// Gradients at a point of an element.
 pub struct PointGradients {
-    /// Gradients of the shape functions, then of the incompatible modes [1/m]; zero beyond them.
+    /// Gradients of shape functions, then of incompatible modes [1/m].
     pub gradients: ElementCoordinates,
-    /// In their place for the volume strain, if it is not taken at the point [1/m].
+    /// Projected volumetric gradients [1/m].
     pub dilatation: Option<ElementCoordinates>,
     /// det J [m³].
     pub determinant: f64,
 }
 
-/// The assumed strains of one element.
+/// Assumed strains of one element.
 pub struct ElementStrains {
     kind: ElementKind,
     coordinates: ElementCoordinates,
@@ -47,8 +44,7 @@ pub struct ElementStrains {
 }
 
 impl ElementStrains {
-    /// The strains of an element with nodes at `coordinates` [m] that is integrated by `rule`. `poisson` is its Poisson's ratio;
-    /// `yields`: its material can flow without a change of volume, whatever that ratio.
+    /// Builds the strains for nodes at `coordinates` [m]. `yields`: flow can be isochoric for any `poisson`.
     pub fn new(
         kind: ElementKind,
         coordinates: ElementCoordinates,
@@ -83,17 +79,17 @@ impl ElementStrains {
         self.kind.node_count() + if self.internal.is_some() { modes::COUNT } else { 0 }
     }
 
-    /// The incompatible modes.
+    /// Incompatible modes.
     pub fn internal(&self) -> Option<&Internal> {
         self.internal.as_ref()
     }
 
-    /// Whether the volume strain is the same in all of the element.
+    /// Whether the volumetric strain is constant in the element.
     pub fn has_mean_dilatation(&self) -> bool {
         self.projection.as_ref().is_some_and(Projection::is_constant)
     }
 
-    /// Gradients at an integration point of the rule.
+    /// Gradients at an integration point.
     pub fn at_point(&self, point: &IntegrationPoint) -> PointGradients {
         self.with(point.xi, &point.shape, &point.gradients)
     }
@@ -121,7 +117,7 @@ impl ElementStrains {
         std::array::from_fn(|k| shape.iter().zip(&self.coordinates).map(|(n, x)| n * x[k]).sum())
     }
 
-    /// Strain (engineering shear) under nodal displacements `u` [m] where the gradients are `at`.
+    /// Strain (engineering shear) of nodal displacements `u` [m].
     pub fn strain(&self, at: &PointGradients, u: &ElementCoordinates) -> [f64; 6] {
         let mut moved = *u;
         if let Some(internal) = &self.internal {
@@ -140,7 +136,6 @@ impl ElementStrains {
         strain
     }
 
-    /// Products of the gradients, and those of the volume strain, over the rule. N is the number of terms.
     pub(crate) fn products<const N: usize>(&self) -> Products<N> {
         let mut sums = Products { all: [[[0.0; N]; N]; 6], volume: Vec::with_capacity(self.rule.len()) };
         for point in self.rule {
@@ -152,7 +147,7 @@ impl ElementStrains {
         sums
     }
 
-    /// Block of the terms a and b of `∫ B̄^T D B̄ dV` [N/m], row by row, before the modes are eliminated.
+    /// Block (a, b) of `∫ B̄^T D B̄ dV` [N/m], before elimination of the modes.
     pub(crate) fn block<const N: usize>(
         &self,
         products: &Products<N>,
@@ -174,10 +169,7 @@ impl ElementStrains {
     }
 }
 
-/// Sums over the points of a rule.
 pub(crate) struct Products<const N: usize> {
-    /// Products of the gradients at the points.
     all: GradientProducts<N>,
-    /// Gradients of the volume strain at each point [1/m], and its volume [m³].
     volume: Vec<(ElementCoordinates, f64)>,
 }

@@ -1,34 +1,31 @@
-//! The incompatible modes of the hex8, with which it bends without parasitic shear.
+//! Incompatible modes of the hex8 against parasitic shear in bending.
 //!
-//! Three displacements that vanish at the nodes, quadratic along one natural axis each, give the strain nine more terms.
-//! Their gradients are taken with the Jacobian of the middle and scaled so that they vanish in the mean; the patch test is
-//! then passed by elements of any shape. Their amplitudes are those that leave elastic energy least, `α = A u`, which
-//! makes the element that of the enhanced assumed strain (nine terms) as long as it is elastic. A material that yields keeps the
-//! same A, worked out for constant volume; no amplitude has to be remembered, and the volume strain stays constant in the element.
+//! Three displacements, zero at the nodes, add nine strain terms. Their gradients use the central Jacobian,
+//! scaled to zero mean: the patch test is passed by any shape. Amplitudes `α = A u` minimise the elastic
+//! energy (enhanced assumed strain, nine terms); yielding materials keep A of constant volume, without state.
 //!
-//! Source: Taylor, Beresford and Wilson, Int. J. Numer. Methods Eng. 10 (1976) 1211-1219; Simo and Rifai, Int. J. Numer. Methods
-//! Eng. 29 (1990) 1595-1638. Limits: trapezoidal elements stay stiff in bending (MacNeal, Finite Elements in Analysis and Design 3
-//! (1987) 175-181); an elastic part of a body whose material yields bends as one of Poisson's ratio 1/2 within each element.
+//! Source: Taylor, Beresford and Wilson (1976); Simo and Rifai (1990). Limits: trapezoidal elements stay
+//! stiff in bending (MacNeal 1987); elastic regions of a yielding material bend as if Poisson's ratio were
+//! 1/2.
 //!
 //! Theory manual: equation (4.4) of `docs/theory/solid.md`.
 
 use crate::kinematics::ElementCoordinates;
 use nalgebra::SMatrix;
 
-/// Nodes of the element.
 const NODES: usize = 8;
-/// Incompatible displacements.
+/// Number of incompatible displacements.
 pub const COUNT: usize = 3;
 /// Nodes and incompatible displacements.
 pub const HEX8_TERMS: usize = NODES + COUNT;
 
-/// Blocks of the amplitudes: `α_m = sum_a A[m][a] u_a`, row by row.
+/// Amplitude blocks: `α_m = sum_a A[m][a] u_a`, row-major.
 pub type Amplitudes = [[[f64; 9]; NODES]; COUNT];
 
-/// The modes of one element.
+/// Modes of one element.
 #[derive(Clone, Debug)]
 pub struct Internal {
-    /// Rows of the inverse Jacobian of the middle times its determinant [m²]: direction of the gradient of each mode.
+    /// Adjugate of the Jacobian at the centre [m²].
     direction: [[f64; 3]; 3],
     pub(super) amplitudes: Amplitudes,
 }
@@ -44,7 +41,6 @@ impl Internal {
                 }
             }
         }
-        // Row m of the adjugate: the cross product of the other two columns of J.
         let direction = std::array::from_fn(|m| {
             let (p, q) = ((m + 1) % 3, (m + 2) % 3);
             std::array::from_fn(|i| {
@@ -55,25 +51,24 @@ impl Internal {
         Internal { direction, amplitudes: [[[0.0; 9]; NODES]; COUNT] }
     }
 
-    /// The blocks of the amplitudes.
+    /// Amplitude blocks.
     pub fn amplitudes(&self) -> &Amplitudes {
         &self.amplitudes
     }
 
-    /// Puts the gradients of the modes at the natural point `xi` after those of the nodes.
     pub(super) fn add_gradients(&self, xi: [f64; 3], determinant: f64, gradients: &mut ElementCoordinates) {
         for m in 0..COUNT {
             gradients[NODES + m] = self.direction[m].map(|d| xi[m] * d / determinant);
         }
     }
 
-    /// Puts the amplitudes [m] after the displacements of the nodes.
+    /// Appends the amplitudes [m] to the nodal displacements.
     pub fn extend(&self, u: &mut ElementCoordinates) {
         extend(&self.amplitudes, u);
     }
 }
 
-/// Puts the amplitudes [m] after the displacements of the nodes.
+/// Appends the amplitudes [m] to the nodal displacements.
 #[inline]
 pub fn extend(amplitudes: &Amplitudes, u: &mut ElementCoordinates) {
     for (m, of_mode) in amplitudes.iter().enumerate() {
@@ -87,7 +82,7 @@ pub fn extend(amplitudes: &Amplitudes, u: &mut ElementCoordinates) {
     }
 }
 
-/// Adds the forces on the amplitudes, which stand after those on the nodes, to the nodes: the transposed of [`extend`].
+/// Distributes the forces on the amplitudes to the nodes: transpose of [`extend`].
 #[inline]
 pub fn condense(amplitudes: &Amplitudes, force: &mut ElementCoordinates) {
     for (m, of_mode) in amplitudes.iter().enumerate() {
@@ -100,7 +95,7 @@ pub fn condense(amplitudes: &Amplitudes, force: &mut ElementCoordinates) {
     }
 }
 
-/// Amplitudes of the least energy, from the blocks of the stiffness: `A = -K_αα^-1 K_αu`.
+/// Amplitudes of least energy, `A = -K_αα^-1 K_αu`.
 pub(super) fn amplitudes(block: impl Fn(usize, usize) -> [f64; 9]) -> Amplitudes {
     let mut own = SMatrix::<f64, 9, 9>::zeros();
     let mut with_nodes = SMatrix::<f64, 9, 24>::zeros();
@@ -118,7 +113,7 @@ pub(super) fn amplitudes(block: impl Fn(usize, usize) -> [f64; 9]) -> Amplitudes
         }
     }
     let mut amplitudes = [[[0.0; 9]; NODES]; COUNT];
-    // Positive definite in every element with a volume: no amplitude is without strain.
+    // Positive definite for positive volume.
     if let Some(factor) = own.cholesky() {
         let solved = factor.solve(&with_nodes);
         for (m, of_mode) in amplitudes.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
-//! Checks shared by the tests of all elements. Each panics where the element breaks the property.
+//! Checks shared by the element tests; each panics on failure.
 
 use super::quadrature::{FACE2, FACE3, FacePoint, TRIANGLE3, TRIANGLE6, VolumePoint};
 use super::{quad4, quad8, tri3, tri6};
 
-/// Points inside the element that no symmetry singles out: convex combinations of the nodes.
+/// Generic interior points.
 fn interior<const D: usize, const N: usize>(natural: &[[f64; D]; N]) -> [[f64; D]; 4] {
     [1.0, 2.3, 4.1, 5.6].map(|phase: f64| {
         let weights: [f64; N] = std::array::from_fn(|a| 1.2 + libm::sin(phase * (a + 1) as f64));
@@ -12,7 +12,6 @@ fn interior<const D: usize, const N: usize>(natural: &[[f64; D]; N]) -> [[f64; D
     })
 }
 
-/// N_a is one at node a and zero at the others.
 pub fn nodal<const D: usize, const N: usize>(natural: &[[f64; D]; N], shape: fn([f64; D]) -> [f64; N]) {
     for (b, &xi) in natural.iter().enumerate() {
         for (a, value) in shape(xi).into_iter().enumerate() {
@@ -22,7 +21,6 @@ pub fn nodal<const D: usize, const N: usize>(natural: &[[f64; D]; N], shape: fn(
     }
 }
 
-/// Mid-side node `first + m` lies halfway between the corners of side m.
 pub fn mid_sides<const D: usize, const N: usize>(
     natural: &[[f64; D]; N],
     first: usize,
@@ -36,7 +34,6 @@ pub fn mid_sides<const D: usize, const N: usize>(
     }
 }
 
-/// The gradients are the central differences of the shape functions.
 pub fn differences<const D: usize, const N: usize>(
     natural: &[[f64; D]; N],
     shape: fn([f64; D]) -> [f64; N],
@@ -58,8 +55,7 @@ pub fn differences<const D: usize, const N: usize>(
     }
 }
 
-/// On an affine element (sheared, stretched, moved) the interpolation of every monomial of total degree up to `degree`
-/// is exact (degree 0: partition of unity), and some monomial of the next degree is not.
+/// On an affine element, monomials up to `degree` are interpolated exactly, some of the next degree not.
 pub fn complete<const D: usize, const N: usize>(
     natural: &[[f64; D]; N],
     shape: fn([f64; D]) -> [f64; N],
@@ -88,7 +84,6 @@ pub fn complete<const D: usize, const N: usize>(
     assert!(worst_beyond > 1e-3, "degree {} should not be complete: {worst_beyond:e}", degree + 1);
 }
 
-/// Exponents of all monomials of total degree up to `degree`.
 pub fn monomials(degree: i32) -> Vec<[i32; 3]> {
     let up_to = move |n: i32| 0..=n;
     up_to(degree)
@@ -114,7 +109,6 @@ fn face_gradients(nodes: usize, xi: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// A rule that integrates x · (dx/dxi × dx/deta) exactly on a curved face.
 fn face_rule(nodes: usize) -> &'static [FacePoint] {
     match nodes {
         3 => &TRIANGLE3,
@@ -124,7 +118,6 @@ fn face_rule(nodes: usize) -> &'static [FacePoint] {
     }
 }
 
-/// Position and area vector at a natural point of a face.
 fn point_and_area<const N: usize>(x: &[[f64; 3]; N], face: &[usize], xi: [f64; 2]) -> ([f64; 3], [f64; 3]) {
     let (n, d) = (face_shape(face.len(), xi), face_gradients(face.len(), xi));
     let sum = |w: &dyn Fn(usize) -> f64| -> [f64; 3] {
@@ -138,8 +131,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// On each face the functions of its nodes are the functions of the 2-D element and all others vanish; each area
-/// vector points away from the middle of the element; every mid-side node of a face follows the corner before it.
+/// On each face, functions equal the 2-D element's, area vectors point outward, mid-side nodes follow their
+/// corner.
 pub fn faces<const N: usize>(natural: &[[f64; 3]; N], shape: fn([f64; 3]) -> [f64; N], faces: &[&[usize]]) {
     let middle: [f64; 3] = std::array::from_fn(|k| natural.iter().map(|x| x[k]).sum::<f64>() / N as f64);
     for face in faces {
@@ -165,10 +158,8 @@ pub fn faces<const N: usize>(natural: &[[f64; 3]; N], shape: fn([f64; 3]) -> [f6
     }
 }
 
-/// Volume of a distorted element (curved where it has mid-side nodes): by `rule` it agrees within the relative
-/// `tolerance` with the surface integral of x · n / 3 over `faces` (divergence theorem), whose rules are exact. The
-/// area vectors sum to zero, and the determinant is positive at every point. On the natural element the two agree to
-/// round-off for every rule.
+/// Volume of a distorted element equals the surface integral of x · n / 3 over `faces` within `tolerance`;
+/// area vectors sum to zero; determinants are positive.
 pub fn volume<const N: usize>(
     natural: &[[f64; 3]; N],
     gradients: fn([f64; 3]) -> [[f64; 3]; N],

@@ -1,12 +1,12 @@
-//! The kinds of faces of volume elements.
+//! Faces of volume elements.
 
 use super::quadrature::{FACE2, FACE3, FacePoint, TRIANGLE3, TRIANGLE7};
 use super::{quad4, quad8, tri3, tri6};
 
-/// Nodes of the largest face.
+/// Largest number of nodes of a face.
 pub const MAX_FACE_NODES: usize = 8;
 
-/// A kind of face.
+/// Kind of face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FaceShape {
     /// 8-node quadrilateral.
@@ -20,7 +20,7 @@ pub enum FaceShape {
 }
 
 impl FaceShape {
-    /// The face with this number of nodes.
+    /// Face shape with `count` nodes.
     pub const fn with_nodes(count: usize) -> FaceShape {
         match count {
             8 => FaceShape::Quad8,
@@ -30,7 +30,7 @@ impl FaceShape {
         }
     }
 
-    /// Number of nodes.
+    /// Node count.
     #[inline]
     pub const fn node_count(self) -> usize {
         match self {
@@ -50,7 +50,7 @@ impl FaceShape {
         }
     }
 
-    /// The middle of the natural shape.
+    /// Centre of the natural shape.
     pub const fn natural_centre(self) -> [f64; 2] {
         match self {
             FaceShape::Quad8 | FaceShape::Quad4 => [0.0; 2],
@@ -58,7 +58,7 @@ impl FaceShape {
         }
     }
 
-    /// Values of the shape functions; zero beyond the nodes of the face.
+    /// Shape functions, padded with zeros.
     pub fn shape_functions(self, xi: [f64; 2]) -> [f64; MAX_FACE_NODES] {
         match self {
             FaceShape::Quad8 => quad8::shape_functions(xi),
@@ -68,7 +68,7 @@ impl FaceShape {
         }
     }
 
-    /// Derivatives of the shape functions with respect to (xi, eta); zero beyond the nodes of the face.
+    /// Derivatives by (xi, eta), padded with zeros.
     pub fn gradients(self, xi: [f64; 2]) -> [[f64; 2]; MAX_FACE_NODES] {
         match self {
             FaceShape::Quad8 => quad8::gradients(xi),
@@ -78,8 +78,8 @@ impl FaceShape {
         }
     }
 
-    /// The rule for loads on the face: exact for a uniform load on a flat face with straight sides, and for the
-    /// product of two shape functions there.
+    /// Integration rule for face loads: exact for products of two shape functions on flat faces with straight
+    /// sides.
     pub fn points(self) -> &'static [FacePoint] {
         match self {
             FaceShape::Quad8 => &FACE3,

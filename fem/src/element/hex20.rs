@@ -1,4 +1,4 @@
-//! The 20-node serendipity hexahedron (SOLID186 order).
+//! 20-node serendipity hexahedron (SOLID186 order).
 //!
 //! ```text
 //!            M────U────N           natural axes: xi along I→J, eta along J→K, zeta along I→M
@@ -11,22 +11,21 @@
 //!          L────S────K
 //! ```
 //!
-//! Corner a:   `N = (1 + x_a x)(1 + y_a y)(1 + z_a z)(x_a x + y_a y + z_a z - 2) / 8`
+//! Corner a: `N = (1 + x_a x)(1 + y_a y)(1 + z_a z)(x_a x + y_a y + z_a z - 2) / 8`
 //! Mid-side a: `N = (1 - x²)(1 + y_a y)(1 + z_a z) / 4` for a side along x, and cyclically.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 8.9 (serendipity family).
-//! The functions hold complete quadratic polynomials, so the error of a smooth field falls as h³ (in the mean of
-//! squares) while mid-side nodes stay near the middle of straight sides.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 8.9. Order h³ in L2 if mid-side nodes are near the
+//! middle of straight sides.
 //!
 //! Theory manual: equation (4.1) of `docs/theory/solid.md`.
 
-/// Number of nodes of the serendipity hexahedron.
+/// Node count.
 pub const HEX20_NODES: usize = 20;
 
-/// Nodes of each face of a hex20, in local indices (0-based), by SOLID186 face number minus one.
+/// Face nodes (0-based), by SOLID186 face number minus one: corners counter-clockwise from outside, then
+/// mid-sides.
 ///
-/// The four corners come first, counter-clockwise seen from outside, then the mid-side node after each
-/// corner. SOLID186 faces: 1 J-I-L-K, 2 I-J-N-M, 3 J-K-O-N, 4 K-L-P-O, 5 L-I-M-P, 6 M-N-O-P.
+/// SOLID186 faces: 1 J-I-L-K, 2 I-J-N-M, 3 J-K-O-N, 4 K-L-P-O, 5 L-I-M-P, 6 M-N-O-P.
 pub const FACE_NODES: [[usize; 8]; 6] = [
     [1, 0, 3, 2, 8, 11, 10, 9],
     [0, 1, 5, 4, 8, 17, 12, 16],
@@ -36,7 +35,7 @@ pub const FACE_NODES: [[usize; 8]; 6] = [
     [4, 5, 6, 7, 12, 13, 14, 15],
 ];
 
-/// Natural coordinates of the nodes, in SOLID186 order. Shape `[20][3]`, no unit.
+/// Natural node coordinates, in SOLID186 order. Shape `[20][3]`.
 pub const NATURAL: [[f64; 3]; HEX20_NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
@@ -60,7 +59,6 @@ pub const NATURAL: [[f64; 3]; HEX20_NODES] = [
     [-1.0, 1.0, 0.0],
 ];
 
-/// Axis along which the side of mid-side node `node` (8–19) runs.
 #[inline]
 fn side_axis(node: usize) -> usize {
     match node {
@@ -69,7 +67,7 @@ fn side_axis(node: usize) -> usize {
     }
 }
 
-/// Values of the 20 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; HEX20_NODES] {
     let mut n = [0.0; HEX20_NODES];
     for (a, c) in NATURAL.iter().enumerate() {
@@ -84,7 +82,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; HEX20_NODES] {
     n
 }
 
-/// Derivatives of the 20 shape functions with respect to the natural coordinates, at `xi`. Shape `[20][3]`.
+/// Derivatives by the natural coordinates. Shape `[20][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; HEX20_NODES] {
     let mut d = [[0.0; 3]; HEX20_NODES];
     for (a, c) in NATURAL.iter().enumerate() {
@@ -115,9 +113,9 @@ fn cyclic(k: usize) -> (usize, usize, usize) {
 mod tests {
     use super::*;
 
-    /// V0.1: a wrong order of axes keeps the sum at one, so only this property finds it.
+    /// V0.1: a wrong axis order keeps the sum at one.
     #[test]
-    fn shape_functions_are_one_at_their_own_node_and_zero_at_the_others() {
+    fn shape_functions_are_nodal() {
         for (b, &xi) in NATURAL.iter().enumerate() {
             for (a, value) in shape_functions(xi).into_iter().enumerate() {
                 let expected = if a == b { 1.0 } else { 0.0 };
@@ -126,9 +124,8 @@ mod tests {
         }
     }
 
-    /// The sides of the node picture: each mid-side node lies halfway between its two corners.
     #[test]
-    fn mid_side_nodes_lie_between_the_corners_of_their_side() {
+    fn mid_side_nodes_bisect_sides() {
         let sides =
             [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)];
         for (m, (a, b)) in sides.into_iter().enumerate() {
@@ -139,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn gradients_are_the_central_differences_of_the_shape_functions() {
+    fn gradients_match_central_differences() {
         let (xi, h) = ([0.31, -0.72, 0.55], 1e-5);
         let exact = gradients(xi);
         for k in 0..3 {

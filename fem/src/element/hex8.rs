@@ -1,4 +1,4 @@
-//! The 8-node hexahedron: the corners of the hex20.
+//! 8-node hexahedron: corners of the hex20.
 //!
 //! ```text
 //!            4─────────5       natural axes: xi along 0→1, eta along 1→2, zeta along 0→4
@@ -12,13 +12,12 @@
 //!
 //! `N = (1 + x_a x)(1 + y_a y)(1 + z_a z) / 8`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (rectangular prisms).
-//! Limits: trilinear; with full integration too stiff in bending (shear locking) and near incompressibility.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: locks with full integration.
 
-/// Number of nodes.
+/// Node count.
 pub const HEX8_NODES: usize = 8;
 
-/// Natural coordinates of the nodes. Shape `[8][3]`, no unit.
+/// Natural node coordinates. Shape `[8][3]`.
 pub const NATURAL: [[f64; 3]; HEX8_NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
@@ -30,17 +29,16 @@ pub const NATURAL: [[f64; 3]; HEX8_NODES] = [
     [-1.0, 1.0, 1.0],
 ];
 
-/// Local nodes of each face, counter-clockwise seen from outside, by SOLID186 face number minus one: the corners of
-/// [`super::hex20::FACE_NODES`] (a [`super::quad4`] each).
+/// Face nodes, counter-clockwise from outside, by SOLID186 face number minus one.
 pub const FACES: [&[usize]; 6] =
     [&[1, 0, 3, 2], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7], &[4, 5, 6, 7]];
 
-/// Values of the 8 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; HEX8_NODES] {
     NATURAL.map(|c| (1.0 + c[0] * xi[0]) * (1.0 + c[1] * xi[1]) * (1.0 + c[2] * xi[2]) / 8.0)
 }
 
-/// Derivatives of the 8 shape functions with respect to the natural coordinates, at `xi`. Shape `[8][3]`.
+/// Derivatives by the natural coordinates. Shape `[8][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; HEX8_NODES] {
     NATURAL.map(|c| {
         let s = [1.0 + c[0] * xi[0], 1.0 + c[1] * xi[1], 1.0 + c[2] * xi[2]];
@@ -56,7 +54,7 @@ mod tests {
     use crate::element::{checks, hex20};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);
@@ -64,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_are_quad4_in_the_numbering_of_the_hex20() {
+    fn faces_are_quad4() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &GAUSS2, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &GAUSS3, 1e-13);
@@ -73,8 +71,7 @@ mod tests {
         }
     }
 
-    /// The same checks must hold for the hex20 in its own face numbering, which ties the shared checks to an element
-    /// that is verified elsewhere.
+    /// Ties the shared checks to a verified element.
     #[test]
     fn the_hex20_passes_the_shared_checks() {
         checks::nodal(&hex20::NATURAL, hex20::shape_functions);

@@ -1,13 +1,13 @@
-//! The kinds of volume elements.
+//! Kinds of volume elements.
 
 use super::hex20::FACE_NODES;
 use super::{hex8, hex20, pyramid5, pyramid13, tet4, tet10, wedge6, wedge15};
 use serde::{Deserialize, Serialize};
 
-/// Nodes of the largest kind.
+/// Largest number of nodes of a kind.
 pub const MAX_NODES: usize = 20;
 
-/// A kind of volume element. The order of its nodes is stated in the module of the same name.
+/// Kind of volume element; node order as in its module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ElementKind {
@@ -19,21 +19,20 @@ pub enum ElementKind {
     Pyramid13,
     /// 10-node tetrahedron.
     Tet10,
-    /// 8-node hexahedron, with mean dilatation.
+    /// 8-node hexahedron.
     Hex8,
-    /// 6-node wedge, with mean dilatation.
+    /// 6-node wedge.
     Wedge6,
-    /// 5-node pyramid, with mean dilatation.
+    /// 5-node pyramid.
     Pyramid5,
     /// 4-node tetrahedron.
     Tet4,
 }
 
-/// Faces of the 20-node hexahedron as slices.
 const HEX20_FACES: [&[usize]; 6] =
     [&FACE_NODES[0], &FACE_NODES[1], &FACE_NODES[2], &FACE_NODES[3], &FACE_NODES[4], &FACE_NODES[5]];
 
-/// The edges of each shape, in the order of the mid-side nodes of its quadratic kind.
+/// Edges in the order of mid-side nodes.
 const HEX_EDGES: [[usize; 2]; 12] =
     [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 const WEDGE_EDGES: [[usize; 2]; 9] = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]];
@@ -92,7 +91,7 @@ impl ElementKind {
         ElementKind::Tet4,
     ];
 
-    /// Number of nodes.
+    /// Node count.
     #[inline]
     pub const fn node_count(self) -> usize {
         match self {
@@ -107,7 +106,7 @@ impl ElementKind {
         }
     }
 
-    /// Number of corners: the first nodes.
+    /// Number of corners.
     pub const fn corner_count(self) -> usize {
         self.linear().node_count()
     }
@@ -118,7 +117,7 @@ impl ElementKind {
         matches!(self, ElementKind::Hex8 | ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4)
     }
 
-    /// The kind of the same shape without mid-side nodes.
+    /// Kind of the same shape without mid-side nodes.
     pub const fn linear(self) -> ElementKind {
         match self {
             ElementKind::Hex20 | ElementKind::Hex8 => ElementKind::Hex8,
@@ -128,7 +127,7 @@ impl ElementKind {
         }
     }
 
-    /// The kind of the same shape with mid-side nodes.
+    /// Kind of the same shape with mid-side nodes.
     pub const fn quadratic(self) -> ElementKind {
         match self {
             ElementKind::Hex20 | ElementKind::Hex8 => ElementKind::Hex20,
@@ -138,7 +137,7 @@ impl ElementKind {
         }
     }
 
-    /// Name, as in scenes and reports.
+    /// Name in scenes and reports.
     pub const fn name(self) -> &'static str {
         match self {
             ElementKind::Hex20 => "hex20",
@@ -152,14 +151,13 @@ impl ElementKind {
         }
     }
 
-    /// Natural coordinates of the nodes. Shape `[nodes][3]`.
+    /// Natural node coordinates. Shape `[nodes][3]`.
     pub fn natural(self) -> &'static [[f64; 3]] {
         on_kind!(self, element => &element::NATURAL)
     }
 
-    /// Where the map of the element is looked at for local node `node`: the node itself. At the apex of a pyramid the
-    /// gradients depend on the direction, and the four points just below it on the uprights stand for it: the
-    /// determinant there is bilinear in the direction, so that it is positive around the apex when it is at these four.
+    /// Points at which the Jacobian of local node `node` is checked. For an apex, four points just below:
+    /// there the determinant is bilinear in direction, hence positive around the apex.
     pub fn limits_at_node(self, node: usize) -> &'static [[f64; 3]] {
         if matches!(self.linear(), ElementKind::Pyramid5) && node == 4 {
             &pyramid13::APEX_LIMITS
@@ -168,7 +166,7 @@ impl ElementKind {
         }
     }
 
-    /// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner.
+    /// Face nodes: corners counter-clockwise from outside, then mid-sides.
     pub fn faces(self) -> &'static [&'static [usize]] {
         match self {
             ElementKind::Hex20 => &HEX20_FACES,
@@ -182,7 +180,7 @@ impl ElementKind {
         }
     }
 
-    /// Corners of each edge, in the order of the mid-side nodes of the quadratic kind.
+    /// Corners of each edge, in the order of mid-side nodes.
     pub fn edges(self) -> &'static [[usize; 2]] {
         match self.linear() {
             ElementKind::Hex8 => &HEX_EDGES,
@@ -192,13 +190,13 @@ impl ElementKind {
         }
     }
 
-    /// Values of the shape functions at the natural point `xi`; zero beyond the nodes of the kind.
+    /// Shape functions at the natural point `xi`, padded with zeros.
     #[inline]
     pub fn shape_functions(self, xi: [f64; 3]) -> [f64; MAX_NODES] {
         on_kind!(self, element => padded(element::shape_functions(xi)))
     }
 
-    /// Derivatives of the shape functions with respect to the natural coordinates; zero beyond the nodes of the kind.
+    /// Derivatives by the natural coordinates, padded with zeros.
     #[inline]
     pub fn gradients(self, xi: [f64; 3]) -> [[f64; 3]; MAX_NODES] {
         on_kind!(self, element => padded(element::gradients(xi)))
@@ -214,7 +212,7 @@ impl ElementKind {
         }
     }
 
-    /// The middle of the natural shape.
+    /// Centre of the natural shape.
     pub fn natural_centre(self) -> [f64; 3] {
         const THIRD: f64 = 1.0 / 3.0;
         match self.linear() {
@@ -225,7 +223,7 @@ impl ElementKind {
         }
     }
 
-    /// Whether a natural point lies in the shape, with `slack` to spare.
+    /// Whether a natural point is inside the shape, with tolerance `slack`.
     pub fn contains(self, [r, s, t]: [f64; 3], slack: f64) -> bool {
         let low = -slack;
         match self.linear() {
@@ -237,7 +235,6 @@ impl ElementKind {
     }
 }
 
-/// Copies the values of a kind into an array of the largest kind.
 #[inline]
 fn padded<T: Copy + Default, const N: usize>(values: [T; N]) -> [T; MAX_NODES] {
     let mut all = [T::default(); MAX_NODES];
@@ -267,7 +264,6 @@ mod tests {
         }
     }
 
-    /// The mid-side nodes lie in the middle of the edges, in the order of the edges.
     #[test]
     fn mid_sides_follow_the_edges() {
         for kind in ElementKind::ALL.into_iter().filter(|k| !k.is_linear()) {
@@ -281,9 +277,8 @@ mod tests {
         }
     }
 
-    /// Every edge of every face has the mid-side node of that edge.
     #[test]
-    fn faces_hold_the_mid_sides_of_their_edges() {
+    fn faces_contain_mid_sides_of_edges() {
         for kind in ElementKind::ALL.into_iter().filter(|k| !k.is_linear()) {
             for face in kind.faces() {
                 let corners = face.len() / 2;

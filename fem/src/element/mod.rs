@@ -1,8 +1,7 @@
 //! Elements: shape functions, faces and integration rules.
 //!
-//! [`ElementKind`] names the kinds of volume elements and [`FaceShape`] those of their faces; both lead to the module of
-//! the element. Values of shape functions come in arrays for the largest kind, zero beyond the nodes of a smaller
-//! one, so that element loops need no allocation.
+//! Shape function arrays have the size of the largest kind, padded with zeros, so element loops need no
+//! allocation.
 
 #[cfg(test)]
 mod checks;

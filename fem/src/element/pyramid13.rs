@@ -1,4 +1,4 @@
-//! The 13-node pyramid: joins the quadrilateral face of a hex20 or wedge15 to tet10.
+//! 13-node pyramid: connects hex20 or wedge15 to tet10.
 //!
 //! ```text
 //!              4             natural axes: x along 0→1, y along 1→2, t from the base to the apex;
@@ -11,21 +11,19 @@
 //!       0─────5──────1
 //! ```
 //!
-//! With `u = 1 - t`, `p = x / u`, `q = y / u` (natural coordinates of the section at height t, both in [-1, 1]):
+//! With `u = 1 - t`, `p = x / u`, `q = y / u` (section coordinates, in [-1, 1]):
 //! corner `N = u (x_a x + y_a y - 1)(1 + x_a p)(1 + y_a q) / 4`, apex `N = t (2 t - 1)`,
 //! mid-side of the base along x `N = u² (1 - p²)(1 + y_a q) / 2` (along y: p and q exchanged),
-//! mid-side of an upright `N = t u (1 + x_a p)(1 + y_a q)` with the signs of its corner.
+//! mid-side of an upright `N = t u (1 + x_a p)(1 + y_a q)` (signs of its corner).
 //!
-//! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108 (13-node pyramid).
-//! Limits: rational functions, which hold complete quadratic polynomials; conforming to quad8 and tri6. Their values
-//! are continuous at the apex, their gradients depend on the direction from which the apex is reached: nearer to the
-//! apex than `1 - t` = 1e-10 this module takes the limit along the axis (p = q = 0). Gradients of quadratic fields
-//! are exact there all the same. Rules with points inside never meet that case.
+//! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108.
+//! Limits: gradients at the apex depend on direction. Closer than `1 - t` = 1e-10 the limit along the axis
+//! (p = q = 0) is used, exact for quadratic fields.
 
-/// Number of nodes.
+/// Node count.
 pub const PYRAMID13_NODES: usize = 13;
 
-/// Natural coordinates of the nodes. Shape `[13][3]`, no unit.
+/// Natural node coordinates. Shape `[13][3]`.
 pub const NATURAL: [[f64; 3]; PYRAMID13_NODES] = [
     [-1.0, -1.0, 0.0],
     [1.0, -1.0, 0.0],
@@ -42,8 +40,8 @@ pub const NATURAL: [[f64; 3]; PYRAMID13_NODES] = [
     [-0.5, 0.5, 0.5],
 ];
 
-/// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner.
-/// Base ([`super::quad8`]), then the sides 0-1, 1-2, 2-3, 3-0 ([`super::tri6`]).
+/// Face nodes: corners counter-clockwise from outside, then mid-sides. Base ([`super::quad8`]), then sides
+/// 0-1, 1-2, 2-3, 3-0 ([`super::tri6`]).
 pub const FACES: [&[usize]; 5] = [
     &[0, 3, 2, 1, 8, 7, 6, 5],
     &[0, 1, 4, 5, 10, 9],
@@ -52,23 +50,23 @@ pub const FACES: [&[usize]; 5] = [
     &[3, 0, 4, 8, 9, 12],
 ];
 
-/// Height `u = 1 - t` below which a point counts as the apex.
+/// Height `u = 1 - t` that counts as the apex.
 const APEX: f64 = 1e-10;
 
-/// Points just below the apex on the four uprights 0-4, 1-4, 2-4, 3-4: far enough that the section still has sides.
+/// Points below the apex on the uprights 0-4, 1-4, 2-4, 3-4.
 pub(super) const APEX_LIMITS: [[f64; 3]; 4] = {
     const U: f64 = 1e-7;
     [[-U, -U, 1.0 - U], [U, -U, 1.0 - U], [U, U, 1.0 - U], [-U, U, 1.0 - U]]
 };
 
-/// (u, p, q) of the natural point `xi`: distance below the apex and natural coordinates of the section.
+/// Returns (u, p, q).
 #[inline]
 pub(super) fn section(xi: [f64; 3]) -> (f64, f64, f64) {
     let u = 1.0 - xi[2];
     if u.abs() < APEX { (u, 0.0, 0.0) } else { (u, xi[0] / u, xi[1] / u) }
 }
 
-/// Values of the 13 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
     let (u, p, q) = section(xi);
     let t = xi[2];
@@ -87,11 +85,10 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
     n
 }
 
-/// Derivatives of the 13 shape functions with respect to (x, y, t), at `xi`; finite at the apex, where they are the
-/// limit along the axis. Shape `[13][3]`.
+/// Derivatives by (x, y, t); at the apex the limit along the axis. Shape `[13][3]`.
 ///
-/// By the chain rule for F(p, q, u): `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`. Every F,p and F,q
-/// holds a factor u, which is cancelled by hand, so that nothing is divided by u.
+/// Chain rule: `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`. The factor u of F,p and F,q is
+/// cancelled analytically.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID13_NODES] {
     let (u, p, q) = section(xi);
     let t = xi[2];
@@ -123,7 +120,7 @@ mod tests {
     use crate::element::quadrature::{PYRAMID8, PYRAMID18, PYRAMID27};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 2);
         checks::differences(&NATURAL, shape_functions, gradients);
@@ -131,19 +128,18 @@ mod tests {
         checks::mid_sides(&NATURAL, 5, &sides);
     }
 
-    /// In (p, q, t) the determinant of a curved pyramid13 is a polynomial of degree 5 in p and q and 3 in t, so that
-    /// 18 points are exact; 8 points are near.
+    /// In (p, q, t) the determinant is a polynomial of degree 5 in p and q and 3 in t: 18 points are exact, 8
+    /// nearly.
     #[test]
-    fn faces_are_quad8_and_tri6_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &PYRAMID27, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &PYRAMID18, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &PYRAMID8, 1e-3);
     }
 
-    /// At the apex the gradients are the limit along the axis, and those of the fields x y, x t and t² are exact.
     #[test]
-    fn gradients_at_the_apex_are_finite_and_exact_for_quadratic_fields() {
+    fn apex_gradients_are_exact_for_quadratics() {
         let apex = gradients([0.0, 0.0, 1.0]);
         for (at_apex, below) in apex.iter().zip(gradients([0.0, 0.0, 1.0 - 1e-8])) {
             assert!((0..3).all(|k| (at_apex[k] - below[k]).abs() < 1e-7));

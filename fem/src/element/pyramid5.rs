@@ -1,4 +1,4 @@
-//! The 5-node pyramid: the corners of the pyramid13.
+//! 5-node pyramid: corners of the pyramid13.
 //!
 //! ```text
 //!            4             natural axes: x along 0→1, y along 1→2, t from the base to the apex;
@@ -8,29 +8,27 @@
 //!       0───────1
 //! ```
 //!
-//! With `u = 1 - t`, `p = x / u`, `q = y / u` (natural coordinates of the section at height t, both in [-1, 1]):
+//! With `u = 1 - t`, `p = x / u`, `q = y / u` (section coordinates, in [-1, 1]):
 //! base `N = u (1 + x_a p)(1 + y_a q) / 4`, apex `N = t`.
 //!
-//! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108 (5-node pyramid).
-//! Limits: rational functions. Their values are continuous at the apex, their gradients depend on the direction from
-//! which the apex is reached: there, this module takes the limit along the axis (p = q = 0), as
-//! [`super::pyramid13`] does. Gradients of linear fields are exact at the apex all the same. A mesh of pyramids alone
-//! still locks to some degree near incompressibility, in spite of mean dilatation.
+//! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108.
+//! Limits: at the apex the limit along the axis (p = q = 0) is used, exact for linear fields. Meshes of
+//! pyramids only lock slightly near incompressibility.
 
 use super::pyramid13::section;
 
-/// Number of nodes.
+/// Node count.
 pub const PYRAMID5_NODES: usize = 5;
 
-/// Natural coordinates of the nodes. Shape `[5][3]`, no unit.
+/// Natural node coordinates. Shape `[5][3]`.
 pub const NATURAL: [[f64; 3]; PYRAMID5_NODES] =
     [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Local nodes of each face, counter-clockwise seen from outside: base ([`super::quad4`]), then the sides 0-1, 1-2,
-/// 2-3, 3-0 ([`super::tri3`]).
+/// Face nodes, counter-clockwise from outside: base ([`super::quad4`]), then sides 0-1, 1-2, 2-3, 3-0
+/// ([`super::tri3`]).
 pub const FACES: [&[usize]; 5] = [&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
 
-/// Values of the 5 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID5_NODES] {
     let (u, p, q) = section(xi);
     let mut n = [0.0; PYRAMID5_NODES];
@@ -41,8 +39,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID5_NODES] {
     n
 }
 
-/// Derivatives of the 5 shape functions with respect to (x, y, t), at `xi`; finite at the apex, where they are the
-/// limit along the axis. Shape `[5][3]`.
+/// Derivatives by (x, y, t); at the apex the limit along the axis. Shape `[5][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID5_NODES] {
     let (_, p, q) = section(xi);
     let mut d = [[0.0; 3]; PYRAMID5_NODES];
@@ -61,22 +58,21 @@ mod tests {
     use crate::element::quadrature::{PYRAMID8, PYRAMID27};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);
     }
 
     #[test]
-    fn faces_are_quad4_and_tri3_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &PYRAMID8, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &PYRAMID27, 1e-13);
     }
 
-    /// At the apex the gradients are those of a point on the axis just below it.
     #[test]
-    fn gradients_at_the_apex_are_the_limit_along_the_axis() {
+    fn apex_gradients_are_axis_limit() {
         assert_eq!(gradients([0.0, 0.0, 1.0]), gradients([0.0, 0.0, 1.0 - 1e-6]));
         assert_eq!(shape_functions([0.0, 0.0, 1.0]), [0.0, 0.0, 0.0, 0.0, 1.0]);
     }

@@ -1,4 +1,4 @@
-//! The 4-node quadrilateral: the face of a hex8, and the quadrilateral faces of a wedge6 and a pyramid5.
+//! 4-node quadrilateral: face of hex8, wedge6 and pyramid5.
 //!
 //! ```text
 //!      3─────────2        natural axes: xi along 0→1, eta along 1→2
@@ -8,22 +8,21 @@
 //!
 //! `N = (1 + x_a x)(1 + y_a y) / 4`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (rectangular elements).
-//! Limits: bilinear; complete linear polynomials only.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
-/// Number of nodes.
+/// Node count.
 pub const QUAD4_NODES: usize = 4;
 
-/// Natural coordinates of the nodes. Shape `[4][2]`, no unit.
+/// Natural node coordinates. Shape `[4][2]`.
 pub const NATURAL: [[f64; 2]; QUAD4_NODES] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Values of the 4 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 #[inline]
 pub fn shape_functions(xi: [f64; 2]) -> [f64; QUAD4_NODES] {
     NATURAL.map(|c| (1.0 + c[0] * xi[0]) * (1.0 + c[1] * xi[1]) / 4.0)
 }
 
-/// First derivatives of the 4 shape functions with respect to (xi, eta). Shape `[4][2]`.
+/// Derivatives by (xi, eta). Shape `[4][2]`.
 #[inline]
 pub fn gradients(xi: [f64; 2]) -> [[f64; 2]; QUAD4_NODES] {
     NATURAL.map(|c| [c[0] * (1.0 + c[1] * xi[1]) / 4.0, c[1] * (1.0 + c[0] * xi[0]) / 4.0])
@@ -35,7 +34,7 @@ mod tests {
     use crate::element::checks;
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);

@@ -1,4 +1,4 @@
-//! The 8-node serendipity quadrilateral: the face of a hex20.
+//! 8-node serendipity quadrilateral: face of the hex20.
 //!
 //! ```text
 //!      3────6────2        natural axes: xi along 0→1, eta along 1→2
@@ -6,17 +6,17 @@
 //!      0────4────1        so that dx/dxi × dx/deta points outward
 //! ```
 //!
-//! Node order as in [`crate::mesh::Face`]. Restricted to a face, the hex20 functions are exactly these.
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 8.5.
+//! Node order as in [`crate::mesh::Face`].
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 8.5.
 
-/// Number of nodes of a face.
+/// Node count.
 pub const QUAD8_NODES: usize = 8;
 
-/// Natural coordinates of the nodes. Shape `[8][2]`, no unit.
+/// Natural node coordinates. Shape `[8][2]`.
 pub const NATURAL: [[f64; 2]; QUAD8_NODES] =
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
 
-/// Values of the 8 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 #[inline]
 pub fn shape_functions(xi: [f64; 2]) -> [f64; QUAD8_NODES] {
     let mut n = [0.0; QUAD8_NODES];
@@ -31,7 +31,7 @@ pub fn shape_functions(xi: [f64; 2]) -> [f64; QUAD8_NODES] {
     n
 }
 
-/// First derivatives of the 8 shape functions with respect to (xi, eta). Shape `[8][2]`.
+/// First derivatives of the shape functions by (xi, eta). Shape `[8][2]`.
 #[inline]
 pub fn gradients(xi: [f64; 2]) -> [[f64; 2]; QUAD8_NODES] {
     let mut d = [[0.0; 2]; QUAD8_NODES];
@@ -46,7 +46,7 @@ pub fn gradients(xi: [f64; 2]) -> [[f64; 2]; QUAD8_NODES] {
     d
 }
 
-/// Second derivatives (d²/dxi², d²/deta², d²/dxi deta) of the 8 shape functions. Shape `[8][3]`.
+/// Second derivatives (d²/dxi², d²/deta², d²/dxi deta) of the shape functions. Shape `[8][3]`.
 #[inline]
 pub fn second_gradients(xi: [f64; 2]) -> [[f64; 3]; QUAD8_NODES] {
     let mut d = [[0.0; 3]; QUAD8_NODES];
@@ -68,7 +68,7 @@ mod tests {
     use crate::element::hex20::FACE_NODES;
 
     #[test]
-    fn shape_functions_are_one_at_their_own_node_and_zero_at_the_others() {
+    fn shape_functions_are_nodal() {
         for (b, &xi) in NATURAL.iter().enumerate() {
             for (a, value) in shape_functions(xi).into_iter().enumerate() {
                 let expected = if a == b { 1.0 } else { 0.0 };
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn first_and_second_derivatives_are_the_central_differences() {
+    fn derivatives_match_central_differences() {
         let (xi, h) = ([0.37, -0.61], 1e-5);
         let (first, second) = (gradients(xi), second_gradients(xi));
         let at = |dx: f64, dy: f64| [xi[0] + dx, xi[1] + dy];
@@ -95,7 +95,6 @@ mod tests {
         }
     }
 
-    /// On every side the hex20 functions restricted to the face are the quad8 functions in the face's node order.
     #[test]
     fn faces_of_the_hex20_are_quad8() {
         for nodes in FACE_NODES {

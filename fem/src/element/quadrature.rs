@@ -1,36 +1,33 @@
-//! Integration rules of the hexahedron, wedge, pyramid and tetrahedron and of their faces.
+//! Integration rules of hexahedron, wedge, pyramid, tetrahedron and their faces.
 //!
-//! Source of the Gauss rules: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), table 9.1. A rule of n
-//! points per axis is exact for polynomials of degree 2n - 1 per axis. The 14-point rule: Irons, Int. J. Numer. Methods
-//! Eng. 3 (1971) 293-294, table I; exact for polynomials of total degree 5.
+//! Gauss: Zienkiewicz and Taylor (2000), vol. 1, table 9.1; exact to degree 2n - 1 per axis. 14 points: Irons
+//! (1971), table I; exact to total degree 5.
 //!
-//! Limits for the 20-node hexahedron: the 27-point rule has full rank and passes the patch test on curved elements.
-//! The 8-point rule ("reduced", softer and usually nearer to the exact solution) leaves modes without stiffness in a
-//! single element, and in a straight row of elements that is one element wide and one deep, even when its end is
-//! clamped; from two elements in one direction on, a clamped side removes them. A static solve names the node where such
-//! a mode is left. The 14-point rule has full rank at half the cost of 27 points, and misses the curved patch test
-//! by some 1e-3.
+//! Limits for the hex20: 27 points have full rank and pass the curved patch test. 8 points ("reduced") are
+//! usually more accurate, but leave zero-energy modes in a single element or a row one element wide and deep,
+//! even if clamped. Two elements across with a clamped side suppress them. 14 points have full rank at half
+//! the cost; the curved patch test error is about 1e-3.
 //!
-//! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant, Int. J.
-//! Numer. Methods Eng. 21 (1985) 1129-1148 (6 and 7 points). Tetrahedron: Hammer, Marlowe and Stroud (1956) (4 points);
-//! Walkington, Quadrature on simplices of arbitrary dimension (2000) (14 points); Keast, Comput. Methods Appl. Mech.
-//! Eng. 55 (1986) 339-348 (24 points). Their decimals are solved anew to 20 digits from the moment equations. Wedge:
-//! products of triangle and line. Pyramid: conical products, after Hammer, Marlowe and Stroud (1956): Gauss-Jacobi
-//! points for the weight (1 - t)² along the axis, Gauss points across. All weights are positive and all points inside.
+//! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant,
+//! Int. J. Numer. Methods Eng. 21 (1985) 1129-1148 (6, 7). Tetrahedron: Hammer, Marlowe and Stroud (1956)
+//! (4); Walkington, Quadrature on simplices of arbitrary dimension (2000) (14); Keast, Comput. Methods Appl.
+//! Mech. Eng. 55 (1986) 339-348 (24); 20 digits from the moment equations. Wedge: triangle × line. Pyramid:
+//! conical products after Hammer, Marlowe and Stroud (1956) with Gauss-Jacobi points for (1 - t)². Weights
+//! are positive, points inside.
 
 use serde::{Deserialize, Serialize};
 
 const A: f64 = 0.577_350_269_189_625_764_5; // 1/sqrt(3)
 const B: f64 = 0.774_596_669_241_483_377_0; // sqrt(3/5)
 
-/// Abscissae and weights of the two-point rule on [-1, 1].
+/// Two-point rule on [-1, 1]: abscissae, weights.
 pub const LINE2: [(f64, f64); 2] = [(-A, 1.0), (A, 1.0)];
-/// Abscissae and weights of the three-point rule on [-1, 1].
+/// Three-point rule on [-1, 1]: abscissae, weights.
 pub const LINE3: [(f64, f64); 3] = [(-B, 5.0 / 9.0), (0.0, 8.0 / 9.0), (B, 5.0 / 9.0)];
 
-/// A point of a rule in a hexahedron: natural coordinates and weight.
+/// Natural coordinates and weight.
 pub type VolumePoint = ([f64; 3], f64);
-/// A point of a rule on a face: natural coordinates and weight.
+/// Natural coordinates and weight.
 pub type FacePoint = ([f64; 2], f64);
 
 const fn volume_rule<const N: usize, const P: usize>(line: [(f64, f64); N]) -> [VolumePoint; P] {
@@ -76,16 +73,16 @@ const fn irons14() -> [VolumePoint; 14] {
     points
 }
 
-/// The 8 points of the 2×2×2 rule; the third coordinate runs fastest.
+/// 2×2×2 Gauss points; third coordinate fastest.
 pub static GAUSS2: [VolumePoint; 8] = volume_rule(LINE2);
-/// The 27 points of the 3×3×3 rule; the third coordinate runs fastest.
+/// 3×3×3 Gauss points; third coordinate fastest.
 pub static GAUSS3: [VolumePoint; 27] = volume_rule(LINE3);
-/// The 14 points of Irons' rule: six on the axes, eight on the diagonals.
+/// 14 points of Irons: six on the axes, eight on the diagonals.
 pub static IRONS14: [VolumePoint; 14] = irons14();
-/// The 9 points of the 3×3 rule on a face; the second coordinate runs fastest.
+/// 3×3 Gauss points of a face; second coordinate fastest.
 pub static FACE3: [FacePoint; 9] = face_rule(LINE3);
 
-/// The rule that integrates the stiffness (the mass always takes 3×3×3).
+/// Integration rule of the stiffness (the mass always uses 3×3×3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quadrature {
     /// 2×2×2 points ("reduced").
@@ -98,7 +95,7 @@ pub enum Quadrature {
 }
 
 impl Quadrature {
-    /// The points of the rule: natural coordinates and weights, whose sum is 8.
+    /// Natural coordinates and weights, of sum 8.
     pub fn points(self) -> &'static [VolumePoint] {
         match self {
             Quadrature::Gauss2 => &GAUSS2,
@@ -108,20 +105,20 @@ impl Quadrature {
     }
 }
 
-/// Points and weights of the Gauss-Jacobi rule of two points for the weight (1 - t)² on [0, 1]: exact to degree 3.
+/// Two-point Gauss-Jacobi rule for the weight (1 - t)² on [0, 1]: exact to degree 3.
 const CONE2: [(f64, f64); 2] = [
     (0.122_514_822_655_441_377_87, 0.232_547_451_253_507_902_75), // 1/3 - sqrt(2/45)
     (0.544_151_844_011_225_288_80, 0.100_785_882_079_825_430_58), // 1/3 + sqrt(2/45)
 ];
-/// The same of three points: exact to degree 5.
+/// Three-point rule: exact to degree 5.
 const CONE3: [(f64, f64); 3] = [
     (0.072_994_024_073_149_732_16, 0.157_136_361_064_886_613_32),
     (0.347_003_766_038_351_884_72, 0.146_246_269_259_866_022_00),
     (0.705_002_209_888_498_312_24, 0.029_950_703_008_580_698_01),
 ];
 
-/// Triangle rule from the weight of the centroid (none where zero) and from orbits (a, w) of three points each, with
-/// area coordinates (a, a, 1 - 2a). The weights are of unit sum; the rule's sum is 1/2.
+/// Triangle rule from centroid weight and orbits (a, w) with area coordinates (a, a, 1 - 2a). Input weights
+/// sum to 1, rule weights to 1/2.
 const fn triangle_rule<const P: usize>(centroid: f64, orbits: &[(f64, f64)]) -> [FacePoint; P] {
     let mut points = [([1.0 / 3.0; 2], centroid / 2.0); P];
     let mut p = 0;
@@ -136,9 +133,8 @@ const fn triangle_rule<const P: usize>(centroid: f64, orbits: &[(f64, f64)]) -> 
     points
 }
 
-/// Tetrahedron rule from orbits with weights of unit sum; the rule's sum is 1/6. `vertex` (a, w): four points with
-/// volume coordinates (a, a, a, 1 - 3a); `edge` (a, w): six points (a, a, 1/2 - a, 1/2 - a); `twelve` (a, b, w): the
-/// twelve points (a, a, b, 1 - 2a - b).
+/// Tetrahedron rule from orbits of weight sum 1; rule weights sum to 1/6. `vertex` (a, w): (a, a, a, 1 - 3a);
+/// `edge` (a, w): (a, a, 1/2 - a, 1/2 - a); `twelve` (a, b, w): (a, a, b, 1 - 2a - b).
 const fn tet_rule<const P: usize>(
     vertex: &[(f64, f64)],
     edge: &[(f64, f64)],
@@ -147,7 +143,7 @@ const fn tet_rule<const P: usize>(
     let mut points = [([0.0; 3], 0.0); P];
     let mut p = 0;
     while p < P {
-        // Volume coordinates 1, 2, 3 are the natural coordinates; coordinate 0 is what is left to one.
+        // Coordinate 0 completes the sum to one.
         let mut l;
         let w;
         if p < 4 * vertex.len() {
@@ -206,11 +202,11 @@ const fn pyramid_rule<const N: usize, const L: usize, const P: usize>(
     points
 }
 
-/// The 4 points of the 2×2 rule on a face; the second coordinate runs fastest. Exact to degree 3 per axis.
+/// 2×2 points of a face; second coordinate fastest. Exact to degree 3 per axis.
 pub static FACE2: [FacePoint; 4] = face_rule(LINE2);
-/// 3 points inside a triangle; weights sum to 1/2. Exact to degree 2.
+/// Triangle, 3 points; weights sum to 1/2. Exact to degree 2.
 pub static TRIANGLE3: [FacePoint; 3] = triangle_rule(0.0, &[(1.0 / 6.0, 1.0 / 3.0)]);
-/// 6 points inside a triangle; weights sum to 1/2. Exact to degree 4.
+/// Triangle, 6 points; weights sum to 1/2. Exact to degree 4.
 pub static TRIANGLE6: [FacePoint; 6] = triangle_rule(
     0.0,
     &[
@@ -218,7 +214,7 @@ pub static TRIANGLE6: [FacePoint; 6] = triangle_rule(
         (0.091_576_213_509_770_743_46, 0.109_951_743_655_321_867_64),
     ],
 );
-/// 7 points inside a triangle; weights sum to 1/2. Exact to degree 5.
+/// Triangle, 7 points; weights sum to 1/2. Exact to degree 5.
 pub static TRIANGLE7: [FacePoint; 7] = triangle_rule(
     9.0 / 40.0,
     &[
@@ -226,11 +222,11 @@ pub static TRIANGLE7: [FacePoint; 7] = triangle_rule(
         (0.101_286_507_323_456_338_80, 0.125_939_180_544_827_152_60), // (6 - sqrt(15))/21, (155 - sqrt(15))/1200
     ],
 );
-/// The centroid of a tetrahedron; weight 1/6. Exact to degree 1.
+/// Tetrahedron centroid; weight 1/6. Exact to degree 1.
 pub static TET1: [VolumePoint; 1] = [([0.25; 3], 1.0 / 6.0)];
-/// 4 points inside a tetrahedron; weights sum to 1/6. Exact to degree 2.
+/// Tetrahedron, 4 points; weights sum to 1/6. Exact to degree 2.
 pub static TET4: [VolumePoint; 4] = tet_rule(&[(0.138_196_601_125_010_515_18, 0.25)], &[], &[]); // (5 - sqrt(5))/20
-/// 14 points inside a tetrahedron (Walkington); weights sum to 1/6. Exact to degree 5.
+/// Tetrahedron, 14 points (Walkington); weights sum to 1/6. Exact to degree 5.
 pub static TET14: [VolumePoint; 14] = tet_rule(
     &[
         (0.310_885_919_263_300_609_80, 0.112_687_925_718_015_850_80),
@@ -239,7 +235,7 @@ pub static TET14: [VolumePoint; 14] = tet_rule(
     &[(0.045_503_704_125_649_649_49, 0.042_546_020_777_081_466_44)],
     &[],
 );
-/// 24 points inside a tetrahedron (Keast); weights sum to 1/6. Exact to degree 6.
+/// Tetrahedron, 24 points (Keast); weights sum to 1/6. Exact to degree 6.
 pub static TET24: [VolumePoint; 24] = tet_rule(
     &[
         (0.214_602_871_259_152_027_83, 0.039_922_750_258_167_474_79),
@@ -249,18 +245,18 @@ pub static TET24: [VolumePoint; 24] = tet_rule(
     &[],
     &[(0.063_661_001_875_017_521_75, 0.269_672_331_458_315_799_14, 27.0 / 560.0)],
 );
-/// 6 points inside a wedge: 3 in the triangle × 2 along t; weights sum to 1. Exact to degree 2 in (r, s), 3 in t.
+/// Wedge, 3 × 2 points; weights sum to 1. Exact to degree 2 in (r, s), 3 in t.
 pub static WEDGE6: [VolumePoint; 6] = wedge_rule(TRIANGLE3, LINE2);
-/// 9 points inside a wedge: 3 in the triangle × 3 along t; weights sum to 1. Exact to degree 2 in (r, s), 5 in t.
+/// Wedge, 3 × 3 points; weights sum to 1. Exact to degree 2 in (r, s), 5 in t.
 pub static WEDGE9: [VolumePoint; 9] = wedge_rule(TRIANGLE3, LINE3);
-/// 21 points inside a wedge: 7 in the triangle × 3 along t; weights sum to 1. Exact to degree 5 in (r, s), 5 in t.
+/// Wedge, 7 × 3 points; weights sum to 1. Exact to degree 5.
 pub static WEDGE21: [VolumePoint; 21] = wedge_rule(TRIANGLE7, LINE3);
-/// 8 points inside a pyramid: 2×2 across × 2 along t; weights sum to 4/3. Exact to total degree 3.
+/// Pyramid, 2×2×2 points; weights sum to 4/3. Exact to total degree 3.
 pub static PYRAMID8: [VolumePoint; 8] = pyramid_rule(LINE2, CONE2);
-/// 18 points inside a pyramid: 3×3 across × 2 along t; weights sum to 4/3. Exact to total degree 3
-/// (degree 5 across). The lean rule of the pyramid13, which under 8 points has a mode without stiffness where its base is a parallelogram.
+/// Pyramid, 3×3×2 points; weights sum to 4/3. Exact to total degree 3 (5 across). With 8 points the pyramid13
+/// has a zero-energy mode over a parallelogram.
 pub static PYRAMID18: [VolumePoint; 18] = pyramid_rule(LINE3, CONE2);
-/// 27 points inside a pyramid: 3×3 across × 3 along t; weights sum to 4/3. Exact to total degree 5.
+/// Pyramid, 3×3×3 points; weights sum to 4/3. Exact to total degree 5.
 pub static PYRAMID27: [VolumePoint; 27] = pyramid_rule(LINE3, CONE3);
 
 #[cfg(test)]

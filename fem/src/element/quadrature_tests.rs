@@ -1,6 +1,5 @@
-//! Exactness of the rules of the wedge, pyramid, tetrahedron and of their faces against closed-form integrals of
-//! monomials (on simplices by the formula for area and volume coordinates: Zienkiewicz and Taylor, The Finite Element
-//! Method, vol. 1 (2000), chapter 8).
+//! Exactness of integration rules against closed-form monomial integrals (simplices: Zienkiewicz and Taylor
+//! (2000), vol. 1, chapter 8).
 
 use super::*;
 use crate::element::checks::monomials;
@@ -9,7 +8,6 @@ fn factorial(n: i32) -> f64 {
     (1..=n).map(f64::from).product()
 }
 
-/// Integral of x^i over [-1, 1].
 fn line(i: i32) -> f64 {
     if i % 2 == 1 { 0.0 } else { 2.0 / f64::from(i + 1) }
 }
@@ -26,20 +24,18 @@ fn wedge(powers: [i32; 3]) -> f64 {
     triangle(powers) * line(powers[2])
 }
 
-/// The section at height t scales x and y by 1 - t, which leaves a beta function of t.
+/// Scaling of x and y by 1 - t leaves a beta function of t.
 fn pyramid([i, j, k]: [i32; 3]) -> f64 {
     line(i) * line(j) * factorial(k) * factorial(i + j + 2) / factorial(i + j + k + 3)
 }
 
-/// Error of the rule for a monomial.
 fn error(rule: &[VolumePoint], exact: fn([i32; 3]) -> f64, powers: [i32; 3]) -> f64 {
     let [i, j, k] = powers;
     let sum: f64 = rule.iter().map(|(x, w)| w * x[0].powi(i) * x[1].powi(j) * x[2].powi(k)).sum();
     (sum - exact(powers)).abs()
 }
 
-/// Exact to 1e-14 for all monomials with `degree(powers)` up to `limit`; wrong for some monomial of the next degree;
-/// all weights positive.
+/// Exact to 1e-14 up to `limit`, wrong for the next degree; positive weights.
 fn assert_degree(
     name: &str,
     rule: &[VolumePoint],
@@ -65,8 +61,7 @@ fn lift<const P: usize>(rule: &[FacePoint; P]) -> [VolumePoint; P] {
 }
 
 #[test]
-fn triangle_and_quadrilateral_rules_integrate_their_degree_exactly() {
-    // Powers of the third coordinate are kept out by an infinite degree.
+fn face_rules_are_exact_to_degree() {
     let total: fn([i32; 3]) -> i32 = |[i, j, k]| if k > 0 { i32::MAX } else { i + j };
     assert_degree("triangle 3", &lift(&TRIANGLE3), triangle, total, 2);
     assert_degree("triangle 6", &lift(&TRIANGLE6), triangle, total, 4);
@@ -90,7 +85,6 @@ fn tetrahedron_rules_integrate_their_degree_exactly() {
     }
 }
 
-/// A wedge rule has a degree in each of its two factors: in the triangle and along t.
 #[test]
 fn wedge_rules_integrate_their_degree_exactly() {
     let rules: [(&str, &[VolumePoint], i32, i32); 3] =

@@ -1,9 +1,8 @@
-//! Integration points of each kind of element, with the shape functions there worked out once.
+//! Integration points with precomputed shape functions.
 //!
-//! The stiffness of the 20-node hexahedron takes the rule that the user names. The companions have two rules: the lean
-//! one that leaves no mode without stiffness (9 points for the wedge, 18 for the pyramid, 4 for the tetrahedron), and
-//! under the full rule one that is exact for the products of linear strains. Linear elements have
-//! one rule. The mass takes a rule that is exact for products of shape functions on elements with flat faces.
+//! Wedge15, pyramid13 and tet10 use 9, 18 or 4 points (the fewest without zero-energy modes), or a rule exact
+//! for products of linear strains ("full"). The mass rule is exact for products of shape functions on
+//! flat-faced elements.
 
 use super::kind::{ElementKind, MAX_NODES};
 use super::quadrature::{
@@ -12,27 +11,27 @@ use super::quadrature::{
 };
 use std::sync::OnceLock;
 
-/// An integration point and the shape functions there.
+/// Integration point with shape functions.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegrationPoint {
     /// Natural coordinates.
     pub xi: [f64; 3],
-    /// Weight; the sum is the volume of the natural shape.
+    /// Weight; sums to the natural volume.
     pub weight: f64,
-    /// Values of the shape functions; zero beyond the nodes of the kind.
+    /// Shape functions, zero-padded.
     pub shape: [f64; MAX_NODES],
-    /// Natural gradients of the shape functions; zero beyond the nodes of the kind.
+    /// Natural gradients, zero-padded.
     pub gradients: [[f64; 3]; MAX_NODES],
 }
 
-/// Points that integrate the stiffness of a kind of element under a rule.
+/// Integration points of the stiffness.
 #[inline]
 pub fn stiffness_points(kind: ElementKind, rule: Quadrature) -> &'static [IntegrationPoint] {
     static TABLES: [[OnceLock<Vec<IntegrationPoint>>; 3]; 8] = [const { [const { OnceLock::new() }; 3] }; 8];
     TABLES[kind as usize][rule as usize].get_or_init(|| table(kind, stiffness_rule(kind, rule)))
 }
 
-/// Points that integrate the mass of a kind of element.
+/// Integration points of the mass.
 #[inline]
 pub fn mass_points(kind: ElementKind) -> &'static [IntegrationPoint] {
     static TABLES: [OnceLock<Vec<IntegrationPoint>>; 8] = [const { OnceLock::new() }; 8];
@@ -84,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn weights_add_up_to_the_natural_volume() {
+    fn weights_sum_to_natural_volume() {
         for kind in ElementKind::ALL {
             let rules = [Quadrature::Gauss2, Quadrature::Irons14, Quadrature::Gauss3]
                 .map(|rule| stiffness_points(kind, rule));

@@ -1,4 +1,4 @@
-//! The 10-node tetrahedron.
+//! 10-node tetrahedron.
 //!
 //! ```text
 //!      3
@@ -8,19 +8,18 @@
 //!      0───4──1        mid-sides 4 (0-1), 5 (1-2), 6 (2-0), 7 (0-3), 8 (1-3), 9 (2-3)
 //! ```
 //!
-//! With the volume coordinates `L = (1 - r - s - t, r, s, t)`: corner `N = L (2 L - 1)`, mid-side of i and j
+//! With the volume coordinates `L = (1 - r - s - t, r, s, t)`: corner `N = L (2 L - 1)`, mid-side
 //! `N = 4 L_i L_j`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (tetrahedral elements).
-//! Limits: complete quadratic polynomials while mid-side nodes stay near the middle of straight sides. With straight
-//! sides the 4-point rule integrates the stiffness exactly; the mass needs degree 4.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. With straight sides, 4 points integrate the
+//! stiffness exactly; the mass needs degree 4.
 
 use super::tet4;
 
-/// Number of nodes.
+/// Node count.
 pub const TET10_NODES: usize = 10;
 
-/// Natural coordinates of the nodes. Shape `[10][3]`, no unit.
+/// Natural node coordinates. Shape `[10][3]`.
 pub const NATURAL: [[f64; 3]; TET10_NODES] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
@@ -34,15 +33,13 @@ pub const NATURAL: [[f64; 3]; TET10_NODES] = [
     [0.0, 0.5, 0.5],
 ];
 
-/// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner
-/// (a [`super::tri6`] each).
+/// Face nodes: corners counter-clockwise from outside, then mid-sides.
 pub const FACES: [&[usize]; 4] =
     [&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[2, 0, 3, 6, 7, 9]];
 
-/// Corners of the side of each mid-side node 4–9.
 const SIDES: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)];
 
-/// Values of the 10 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; TET10_NODES] {
     let l = tet4::shape_functions(xi);
     let mut n = [0.0; TET10_NODES];
@@ -55,7 +52,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; TET10_NODES] {
     n
 }
 
-/// Derivatives of the 10 shape functions with respect to (r, s, t), at `xi`. Shape `[10][3]`.
+/// Derivatives by (r, s, t). Shape `[10][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; TET10_NODES] {
     let (l, dl) = (tet4::shape_functions(xi), tet4::gradients(xi));
     let mut d = [[0.0; 3]; TET10_NODES];
@@ -77,16 +74,16 @@ mod tests {
     use crate::element::quadrature::{TET14, TET24};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 2);
         checks::differences(&NATURAL, shape_functions, gradients);
         checks::mid_sides(&NATURAL, 4, &SIDES);
     }
 
-    /// The Jacobian determinant of a curved tet10 is of degree 3, so that both rules are exact.
+    /// Determinant of degree 3: both rules are exact.
     #[test]
-    fn faces_are_tri6_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &TET14, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &TET24, 1e-13);

@@ -1,4 +1,4 @@
-//! The 4-node tetrahedron.
+//! 4-node tetrahedron.
 //!
 //! ```text
 //!      3
@@ -8,28 +8,28 @@
 //!      0──────1
 //! ```
 //!
-//! `N = 1 - r - s - t, r, s, t` (the volume coordinates).
+//! `N = 1 - r - s - t, r, s, t`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (tetrahedral elements).
-//! Limits: constant strain; far too stiff in bending and near incompressibility. Use tet10 where accuracy counts.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: too stiff in bending and near
+//! incompressibility; use tet10 for accuracy.
 
-/// Number of nodes.
+/// Node count.
 pub const TET4_NODES: usize = 4;
 
-/// Natural coordinates of the nodes. Shape `[4][3]`, no unit.
+/// Natural node coordinates. Shape `[4][3]`.
 pub const NATURAL: [[f64; 3]; TET4_NODES] =
     [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Local nodes of each face, counter-clockwise seen from outside (a [`super::tri3`] each).
+/// Face nodes, counter-clockwise from outside.
 pub const FACES: [&[usize]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
 
-/// Values of the 4 shape functions (the volume coordinates) at the natural point `xi`.
+/// Shape functions (volume coordinates) at the natural point `xi`.
 #[inline]
 pub fn shape_functions(xi: [f64; 3]) -> [f64; TET4_NODES] {
     [1.0 - xi[0] - xi[1] - xi[2], xi[0], xi[1], xi[2]]
 }
 
-/// Derivatives of the 4 shape functions with respect to (r, s, t): the same at every point. Shape `[4][3]`.
+/// Derivatives by (r, s, t), constant. Shape `[4][3]`.
 #[inline]
 pub fn gradients(_xi: [f64; 3]) -> [[f64; 3]; TET4_NODES] {
     [[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -42,14 +42,14 @@ mod tests {
     use crate::element::quadrature::{TET1, TET4};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);
     }
 
     #[test]
-    fn faces_are_tri3_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &TET1, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &TET4, 1e-13);

@@ -1,4 +1,4 @@
-//! The 3-node triangle: the face of a tet4, and the triangular faces of a wedge6 and a pyramid5.
+//! 3-node triangle: face of tet4, wedge6 and pyramid5.
 //!
 //! ```text
 //!      2
@@ -9,22 +9,21 @@
 //!
 //! `N = 1 - r - s, r, s`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular element family).
-//! Limits: the gradient is constant.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
-/// Number of nodes.
+/// Node count.
 pub const TRI3_NODES: usize = 3;
 
-/// Natural coordinates of the nodes. Shape `[3][2]`, no unit.
+/// Natural node coordinates. Shape `[3][2]`.
 pub const NATURAL: [[f64; 2]; TRI3_NODES] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// Values of the 3 shape functions (the area coordinates) at the natural point `xi`.
+/// Shape functions (area coordinates) at the natural point `xi`.
 #[inline]
 pub fn shape_functions(xi: [f64; 2]) -> [f64; TRI3_NODES] {
     [1.0 - xi[0] - xi[1], xi[0], xi[1]]
 }
 
-/// First derivatives of the 3 shape functions with respect to (r, s): the same at every point. Shape `[3][2]`.
+/// Derivatives by (r, s), constant. Shape `[3][2]`.
 #[inline]
 pub fn gradients(_xi: [f64; 2]) -> [[f64; 2]; TRI3_NODES] {
     [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]
@@ -36,7 +35,7 @@ mod tests {
     use crate::element::checks;
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);

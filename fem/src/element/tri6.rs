@@ -1,4 +1,4 @@
-//! The 6-node triangle: the face of a tet10, and the triangular faces of a wedge15 and a pyramid13.
+//! 6-node triangle: face of tet10, wedge15 and pyramid13.
 //!
 //! ```text
 //!      2
@@ -8,21 +8,20 @@
 //!      0──3──1     mid-sides 3 (0-1), 4 (1-2), 5 (2-0)
 //! ```
 //!
-//! With the area coordinates `L = (1 - r - s, r, s)`: corner `N = L (2 L - 1)`, mid-side of i and j `N = 4 L_i L_j`.
+//! With the area coordinates `L = (1 - r - s, r, s)`: corner `N = L (2 L - 1)`, mid-side `N = 4 L_i L_j`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular element family).
-//! Limits: complete quadratic polynomials while mid-side nodes stay near the middle of straight sides.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
 use super::tri3;
 
-/// Number of nodes.
+/// Node count.
 pub const TRI6_NODES: usize = 6;
 
-/// Natural coordinates of the nodes. Shape `[6][2]`, no unit.
+/// Natural node coordinates. Shape `[6][2]`.
 pub const NATURAL: [[f64; 2]; TRI6_NODES] =
     [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
 
-/// Values of the 6 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 #[inline]
 pub fn shape_functions(xi: [f64; 2]) -> [f64; TRI6_NODES] {
     let l = tri3::shape_functions(xi);
@@ -34,7 +33,7 @@ pub fn shape_functions(xi: [f64; 2]) -> [f64; TRI6_NODES] {
     n
 }
 
-/// First derivatives of the 6 shape functions with respect to (r, s). Shape `[6][2]`.
+/// Derivatives by (r, s). Shape `[6][2]`.
 #[inline]
 pub fn gradients(xi: [f64; 2]) -> [[f64; 2]; TRI6_NODES] {
     let (l, dl) = (tri3::shape_functions(xi), tri3::gradients(xi));
@@ -55,7 +54,7 @@ mod tests {
     use crate::element::checks;
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 2);
         checks::differences(&NATURAL, shape_functions, gradients);

@@ -1,4 +1,4 @@
-//! The 15-node serendipity wedge (triangular prism).
+//! 15-node serendipity wedge (triangular prism).
 //!
 //! ```text
 //!            5
@@ -13,19 +13,18 @@
 //!        0───6────1
 //! ```
 //!
-//! With the area coordinates `L = (1 - r - s, r, s)` and `t_a = -1` below, `+1` above:
-//! corner `N = L (1 + t_a t)(2 L + t_a t - 2) / 2`, mid-side of i and j in a triangle `N = 2 L_i L_j (1 + t_a t)`,
+//! With the area coordinates `L = (1 - r - s, r, s)` and `t_a = ±1`:
+//! corner `N = L (1 + t_a t)(2 L + t_a t - 2) / 2`, mid-side of a triangle `N = 2 L_i L_j (1 + t_a t)`,
 //! mid-side of an upright `N = L (1 - t²)`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms, serendipity).
-//! Limits: complete quadratic polynomials while mid-side nodes stay near the middle of straight sides.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
 use super::tri3;
 
-/// Number of nodes.
+/// Node count.
 pub const WEDGE15_NODES: usize = 15;
 
-/// Natural coordinates of the nodes. Shape `[15][3]`, no unit.
+/// Natural node coordinates. Shape `[15][3]`.
 pub const NATURAL: [[f64; 3]; WEDGE15_NODES] = [
     [0.0, 0.0, -1.0],
     [1.0, 0.0, -1.0],
@@ -44,8 +43,8 @@ pub const NATURAL: [[f64; 3]; WEDGE15_NODES] = [
     [0.0, 1.0, 0.0],
 ];
 
-/// Local nodes of each face: corners counter-clockwise seen from outside, then the mid-side node after each corner.
-/// Bottom, top ([`super::tri6`]), then the sides 0-1, 1-2, 2-0 ([`super::quad8`]).
+/// Face nodes: corners counter-clockwise from outside, then mid-sides. Bottom, top ([`super::tri6`]), sides
+/// 0-1, 1-2, 2-0 ([`super::quad8`]).
 pub const FACES: [&[usize]; 5] = [
     &[0, 2, 1, 8, 7, 6],
     &[3, 4, 5, 9, 10, 11],
@@ -54,7 +53,7 @@ pub const FACES: [&[usize]; 5] = [
     &[2, 0, 3, 5, 8, 12, 11, 14],
 ];
 
-/// Values of the 15 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE15_NODES] {
     let (l, t) = (tri3::shape_functions([xi[0], xi[1]]), xi[2]);
     let mut n = [0.0; WEDGE15_NODES];
@@ -69,7 +68,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE15_NODES] {
     n
 }
 
-/// Derivatives of the 15 shape functions with respect to (r, s, t), at `xi`. Shape `[15][3]`.
+/// Derivatives by (r, s, t). Shape `[15][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE15_NODES] {
     let (l, dl) = (tri3::shape_functions([xi[0], xi[1]]), tri3::gradients([xi[0], xi[1]]));
     let t = xi[2];
@@ -100,7 +99,7 @@ mod tests {
     use crate::element::quadrature::{WEDGE9, WEDGE21};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 2);
         checks::differences(&NATURAL, shape_functions, gradients);
@@ -108,10 +107,9 @@ mod tests {
         checks::mid_sides(&NATURAL, 6, &sides);
     }
 
-    /// The determinant of a curved wedge15 is of degree 4 in (r, s) and 5 in t: 21 points are exact, 9 points (degree
-    /// 2 in the triangle) are near.
+    /// Determinant of degree 4 in (r, s) and 5 in t: 21 points are exact, 9 points nearly.
     #[test]
-    fn faces_are_tri6_and_quad8_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &WEDGE21, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &WEDGE9, 1e-3);

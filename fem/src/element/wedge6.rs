@@ -1,4 +1,4 @@
-//! The 6-node wedge (triangular prism): the corners of the wedge15.
+//! 6-node wedge (triangular prism): corners of the wedge15.
 //!
 //! ```text
 //!          5
@@ -12,24 +12,24 @@
 //!
 //! With the area coordinates `L = (1 - r - s, r, s)`: `N = L (1 + t_a t) / 2`.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapter 8 (triangular prisms).
-//! Limits: complete linear polynomials only; too stiff in bending. The strain in the plane of its triangle is constant, so
-//! that mean dilatation does not keep it from locking near incompressibility. Use wedge15 where accuracy counts.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: too stiff in bending; locks near
+//! incompressibility in spite of mean dilatation, as the triangle's in-plane strain is constant. Use wedge15
+//! for accuracy.
 
 use super::tri3;
 
-/// Number of nodes.
+/// Node count.
 pub const WEDGE6_NODES: usize = 6;
 
-/// Natural coordinates of the nodes. Shape `[6][3]`, no unit.
+/// Natural node coordinates. Shape `[6][3]`.
 pub const NATURAL: [[f64; 3]; WEDGE6_NODES] =
     [[0.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
 
-/// Local nodes of each face, counter-clockwise seen from outside: bottom, top ([`super::tri3`]), then the sides
-/// 0-1, 1-2, 2-0 ([`super::quad4`]).
+/// Face nodes, counter-clockwise from outside: bottom, top ([`super::tri3`]), sides 0-1, 1-2, 2-0
+/// ([`super::quad4`]).
 pub const FACES: [&[usize]; 5] = [&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
 
-/// Values of the 6 shape functions at the natural point `xi`.
+/// Shape functions at `xi`.
 pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE6_NODES] {
     let l = tri3::shape_functions([xi[0], xi[1]]);
     let mut n = [0.0; WEDGE6_NODES];
@@ -40,7 +40,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE6_NODES] {
     n
 }
 
-/// Derivatives of the 6 shape functions with respect to (r, s, t), at `xi`. Shape `[6][3]`.
+/// Derivatives by (r, s, t). Shape `[6][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE6_NODES] {
     let (l, dl) = (tri3::shape_functions([xi[0], xi[1]]), tri3::gradients([xi[0], xi[1]]));
     let mut d = [[0.0; 3]; WEDGE6_NODES];
@@ -62,14 +62,14 @@ mod tests {
     use crate::element::quadrature::{WEDGE6, WEDGE21};
 
     #[test]
-    fn shape_functions_are_nodal_complete_and_consistent_with_their_gradients() {
+    fn shape_functions_are_valid() {
         checks::nodal(&NATURAL, shape_functions);
         checks::complete(&NATURAL, shape_functions, 1);
         checks::differences(&NATURAL, shape_functions, gradients);
     }
 
     #[test]
-    fn faces_are_tri3_and_quad4_and_close_the_element() {
+    fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);
         checks::volume(&NATURAL, gradients, &FACES, &WEDGE6, 1e-13);
         checks::volume(&NATURAL, gradients, &FACES, &WEDGE21, 1e-13);

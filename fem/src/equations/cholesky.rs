@@ -1,12 +1,7 @@
-//! Cholesky factorization `P A P^T = L L^T` of `A = k K + m M + d D` on the free dofs.
+//! Cholesky factorisation `P A P^T = L L^T` of `A = k K + m M + d D` on the free dofs.
 //!
-//! Ordering and symbolic analysis depend on the mesh and the supports alone ([`Equations::analysis`], made once per model); numbers are
-//! factored when k, m, d change ([`Cholesky::factor`]); solves allocate nothing. The bits are the same on any number of
-//! threads. See [`crate::solver::multifrontal`] for the method.
-//!
-//! Limits: A must be positive definite. A pivot of zero or below is reported with its node and direction. A pivot that
-//! is only *tiny* does not stop a factorization; its size against the diagonal is kept in [`Cholesky::weakest_pivot`]
-//! for the caller to judge.
+//! Solves allocate nothing. Method: [`crate::solver::multifrontal`]. Limits: A must be positive definite;
+//! tiny positive pivots are only reported by [`Cholesky::weakest_pivot`].
 
 use super::pattern::values;
 use super::system::{Equations, NO_STIFFNESS, SystemSolver};
@@ -14,16 +9,16 @@ use crate::error::SolveError;
 use crate::solver::multifrontal::DirectSolver;
 use crate::supports::Supports;
 
-/// The smallest pivot of a factor against the diagonal entry of its dof.
+/// Smallest pivot relative to the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeakestPivot {
-    /// Pivot over diagonal [-]; 1 for a diagonal matrix, rounding (1e-16 to 1e-13) for a singular one.
+    /// Pivot over diagonal [-]; rounding (1e-16 to 1e-13) for a singular matrix.
     pub ratio: f64,
-    /// The equation; 0 where there is none.
+    /// Equation; 0 if there are no equations.
     pub equation: usize,
 }
 
-/// A factor, ready to solve.
+/// Cholesky factor.
 pub struct Cholesky {
     solver: DirectSolver,
     weakest: WeakestPivot,
@@ -33,7 +28,7 @@ impl Cholesky {
     /// Factors a combination of matrices on the free dofs.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is not positive.
+    /// [`SolveError::NoStiffness`] with node and direction of a pivot that is not positive.
     pub fn factor(equations: &Equations<'_>) -> Result<Cholesky, SolveError> {
         let analysis = equations.analysis()?;
         let a = values(&analysis, equations.matrices, equations.supports, equations.combination);
@@ -43,10 +38,10 @@ impl Cholesky {
         Ok(Cholesky { solver, weakest: WeakestPivot { ratio, equation } })
     }
 
-    /// As [`Cholesky::factor`], for a stiffness that must be left everywhere.
+    /// Like [`Cholesky::factor`], and requires stiffness at every dof.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] names the node and direction of a pivot below 1e-11 of its diagonal.
+    /// [`SolveError::NoStiffness`] with node and direction of a pivot below 1e-11 of its diagonal.
     pub fn of_stiffness(equations: &Equations<'_>) -> Result<Cholesky, SolveError> {
         let factor = Cholesky::factor(equations)?;
         let WeakestPivot { ratio, equation } = factor.weakest;
@@ -56,12 +51,12 @@ impl Cholesky {
         Ok(factor)
     }
 
-    /// The smallest pivot against its diagonal entry; the last dof with ratio 1 when there are no equations.
+    /// Smallest pivot relative to its diagonal entry.
     pub fn weakest_pivot(&self) -> WeakestPivot {
         self.weakest
     }
 
-    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    /// Solves in place. Shape `[equations]`.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
         self.solver.solve_in_place(x);
     }
@@ -124,9 +119,8 @@ mod tests {
         assert!(found.iter().zip(&exact).all(|(f, e)| (f - e).abs() < 1e-11));
     }
 
-    /// A matrix that is not positive: the message leads back through the ordering to the dof.
     #[test]
-    fn a_pivot_that_is_not_positive_is_named() {
+    fn reports_dof_of_nonpositive_pivot() {
         let (mesh, matrices) = block();
         let supports = Supports::new(&mesh, &[]).unwrap();
         let (factor, analysis) = factor((&mesh, &matrices), &supports, [-1.0, 0.0]);
@@ -136,9 +130,8 @@ mod tests {
         assert_eq!(error, SolveError::NoStiffness { node, direction, pivot: 0.0 });
     }
 
-    /// A plain dense factorization in the same order finds the same smallest pivot, at the same dof.
     #[test]
-    fn the_weakest_pivot_is_found_and_named() {
+    fn finds_weakest_pivot() {
         let mesh = Mesh::block([1, 1, 2], [1.0, 1.0, 2.0]);
         let soil = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
         let matrices = Arc::new(Matrices::assemble(&mesh, Quadrature::Gauss3, |_| &soil));

@@ -1,4 +1,4 @@
-//! Equations `A x = b` on the free dofs, solved by conjugate gradients.
+//! Conjugate gradients for `A x = b` on the free dofs.
 
 use super::system::{Added, Counts, Equations, SystemSolver};
 use crate::assembly::{Combination, Matrices};
@@ -10,26 +10,25 @@ use crate::solver::conjugate::{ConjugateGradients, Operator, Preconditioner};
 use crate::supports::{Supports, name};
 use std::sync::Arc;
 
-/// Iterations at most. The window matrix takes tens.
+/// Iteration limit; window matrices need tens.
 const LIMIT: u32 = 2000;
 
-/// A matrix, its preconditioner and work space; [`SystemSolver::solve`] allocates nothing.
+/// Matrix, preconditioner and work space; solves allocate nothing.
 pub struct Iteration<P> {
     matrix: Product,
     preconditioner: P,
     gradients: ConjugateGradients,
     tolerance: f64,
-    /// Right-hand side and solution. Shapes `[3 * nodes]`.
     load: Vec<f64>,
     solution: Vec<f64>,
     counts: Counts,
 }
 
 impl Iteration<BlockJacobi> {
-    /// A combination of matrices, preconditioned by the inverse blocks of the nodes.
+    /// Builds an iteration with block-Jacobi preconditioner.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] names a node without stiffness and mass in some direction.
+    /// [`SolveError::NoStiffness`] for a node without stiffness and mass.
     pub fn block_jacobi(
         equations: &Equations<'_>,
         tolerance: f64,
@@ -42,18 +41,17 @@ impl Iteration<BlockJacobi> {
 }
 
 impl Iteration<Aggregation> {
-    /// The stiffness, or another combination without a large mass, preconditioned by smoothed aggregation.
+    /// Builds an iteration with smoothed aggregation, for stiffness-dominated matrices.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] names a node without stiffness in some direction, [`SolveError::Singular`] says that a larger
-    /// part of the body has none.
+    /// [`SolveError::NoStiffness`] for a node, [`SolveError::Singular`] for a larger part without stiffness.
     pub fn aggregation(
         equations: &Equations<'_>,
         tolerance: f64,
     ) -> Result<Iteration<Aggregation>, SolveError> {
         let Equations { matrices, supports, combination, .. } = *equations;
         let matrix = Product::new(matrices.clone(), supports, combination);
-        // Near the inverse is near enough for a preconditioner.
+        // Reduced precision suffices for a preconditioner.
         let rounded = Product::rounded(matrices.clone(), supports, combination);
         let jacobi = jacobi(equations, &matrix)?;
         let preconditioner = Aggregation::new(rounded, &jacobi, &equations.mesh.coordinates)
@@ -61,7 +59,7 @@ impl Iteration<Aggregation> {
         Ok(Iteration::new(matrix, preconditioner, 3 * equations.mesh.node_count(), tolerance))
     }
 
-    /// Rows of each level of the aggregation, from the finest on.
+    /// Rows of each aggregation level, finest first.
     pub fn levels(&self) -> Vec<usize> {
         self.preconditioner.sizes()
     }
@@ -74,11 +72,11 @@ fn jacobi(equations: &Equations<'_>, matrix: &Product) -> Result<BlockJacobi, So
     })
 }
 
-/// Memory of an iteration with the inverse blocks of the nodes beside that of the model [bytes].
+/// Additional memory of a block-Jacobi iteration [bytes].
 pub fn block_jacobi_memory(matrices: Arc<Matrices>, supports: &Supports) -> usize {
     let values = 3 * matrices.node_count();
     let product = Product::new(matrices, supports, Combination::default());
-    // The product, inverse blocks, two vectors of the equations and four of the gradients.
+    // Product, inverse blocks, six vectors.
     product.memory() + 16 * values + 6 * 8 * values
 }
 
@@ -140,7 +138,6 @@ impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
     }
 }
 
-/// A matrix and another that is added.
 struct Sum<'a, 'b> {
     matrix: &'a mut Product,
     added: Added<'b>,

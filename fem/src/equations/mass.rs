@@ -1,23 +1,22 @@
-//! Conjugate gradients with the diagonal as preconditioner, for the mass matrix on the free dofs.
+//! Solves the mass matrix by conjugate gradients with diagonal preconditioner.
 //!
-//! A consistent mass matrix scaled by its diagonal has a condition number that depends on the element's shape only, not
-//! on the mesh or the density (Wathen, IMA J. Numer. Anal. 7 (1987) 449-457), so a few dozen products reach rounding:
-//! much cheaper than a factor that would be used once. Limits: not for stiffness matrices.
+//! The condition depends on the element shape only (Wathen, IMA J. Numer. Anal. 7 (1987) 449-457): a few
+//! dozen products reach rounding, cheaper than a factor.
 
 use crate::assembly::Matrices;
 use crate::error::SolveError;
 use crate::supports::Supports;
 
-/// Residual [-] at which the solution counts as found.
+/// Relative residual of convergence [-].
 const TOLERANCE: f64 = 1e-14;
-/// Residual [-] that is accepted when rounding stops further progress.
+/// Relative residual [-] accepted at stagnation by rounding.
 const ACCEPTED: f64 = 1e-11;
 const ITERATIONS: usize = 2000;
 
-/// Solves `M x = b` on the free dofs; `x` is 0 at the constrained ones. Shapes `[3 * nodes]`.
+/// Solves `M x = b` on the free dofs; `x` is 0 at constrained dofs. Shapes `[3 * nodes]`.
 ///
 /// # Errors
-/// [`SolveError::MassNotSolved`] when the residual stays above 1e-11 of the load.
+/// [`SolveError::MassNotSolved`] if the residual stays above 1e-11 of the load.
 pub fn solve_mass(
     matrices: &Matrices,
     supports: &Supports,
@@ -75,7 +74,7 @@ mod tests {
     use crate::mesh::{Constraint, Mesh};
 
     #[test]
-    fn the_mass_of_a_graded_two_density_block_is_solved_to_rounding() {
+    fn solves_graded_mass_to_rounding() {
         let mut mesh = Mesh::block([4, 3, 3], [1.0; 3]);
         mesh.coordinates.iter_mut().for_each(|c| c[0] = c[0].powf(1.5));
         let (light, heavy) = (

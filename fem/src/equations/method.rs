@@ -1,4 +1,4 @@
-//! The choice of a method for the equations of an elastic model, and all that is known of each: its solver, memory and source.
+//! Solution methods for the linear equations of an elastic model.
 
 use super::cholesky::Cholesky;
 use super::iteration::{Iteration, block_jacobi_memory};
@@ -8,53 +8,53 @@ use crate::error::SolveError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How linear equations with a constant matrix are solved.
+/// Solution method for a constant matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// A factor that is kept.
+    /// Cholesky factor.
     #[default]
     Direct,
     /// Conjugate gradients.
     Iterative {
-        /// Residual over right-hand side at which a solution counts as found [-], both measured as
-        /// [`crate::solver::conjugate`] says: near the error in energy over the energy of the solution, as a root.
+        /// Relative residual [-] as in [`crate::solver::conjugate`], close to the energy-norm error.
         tolerance: f64,
     },
-    /// A factor that the library MUMPS makes and keeps; only in programs that are built with the feature `mumps`.
+    /// Factor by MUMPS; requires the feature `mumps`.
     Mumps(MumpsMethod),
 }
 
-/// How MUMPS factors.
+/// Options of MUMPS.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MumpsMethod {
-    /// Whether the factor lies in files, in the folder for temporary files.
+    /// Whether the factor is stored in temporary files.
     pub out_of_core: bool,
 }
 
-/// Which equations are solved.
+/// Type of equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
-    /// The stiffness alone.
+    /// Stiffness only.
     Statics,
-    /// Stiffness and mass together: steps in time.
+    /// Stiffness and mass: time steps.
     Dynamics,
 }
 
 /// Methods by regime.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Methods {
-    /// For the stiffness alone.
+    /// For stiffness only.
     pub statics: Method,
-    /// For stiffness and mass together: steps in time.
+    /// For time steps.
     pub dynamics: Method,
 }
 
 impl Method {
-    /// Residual for steps in time: the energy balance misses the square of it, or what rounding leaves, some 1e-11 of the work.
+    /// Residual tolerance of time steps; its square, or rounding (about 1e-11 of the work), is the energy
+    /// error.
     pub const WINDOW_TOLERANCE: f64 = 1e-8;
 
-    /// Name of the method in scenes and records.
+    /// Name in scenes and records.
     pub fn name(self) -> &'static str {
         match self {
             Method::Direct => "direct",
@@ -63,7 +63,7 @@ impl Method {
         }
     }
 
-    /// Sources of the method, for the list of a run.
+    /// References of the method.
     pub fn source(self, regime: Regime) -> &'static str {
         match (self, regime) {
             (Method::Direct, _) => {
@@ -83,15 +83,14 @@ impl Method {
         }
     }
 
-    /// Residual over right-hand side that is left [-]; 0 for a factor, which leaves rounding alone.
     pub(crate) fn tolerance(self) -> f64 {
         if let Method::Iterative { tolerance } = self { tolerance } else { 0.0 }
     }
 
-    /// A solver of the equations; in statics one that finds a lack of stiffness.
+    /// Solver; in statics it detects missing stiffness.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`], [`SolveError::Singular`], [`SolveError::Library`], or no memory.
+    /// [`SolveError::NoStiffness`], [`SolveError::Singular`], [`SolveError::Library`], or out of memory.
     pub(crate) fn solver(
         self,
         equations: &Equations<'_>,
@@ -113,11 +112,11 @@ impl Method {
         })
     }
 
-    /// Memory that a solver of the equations takes, known before it is made [bytes]. That of conjugate gradients for statics is known from
-    /// embankments (2.5 to 2.75 kB a node at 7,500 to 100,000 nodes).
+    /// Predicted memory [bytes]. CG in statics: from embankments (2.5 to 2.75 kB per node at 7,500 to 100,000
+    /// nodes).
     ///
     /// # Errors
-    /// The equations cannot be analysed; [`SolveError::Library`].
+    /// Failed analysis; [`SolveError::Library`].
     pub(crate) fn memory(self, equations: &Equations<'_>, regime: Regime) -> Result<usize, SolveError> {
         Ok(match (self, regime) {
             (Method::Direct, _) => equations.analysis()?.memory(true),
@@ -130,7 +129,6 @@ impl Method {
     }
 }
 
-/// The method in a few words, after "by".
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

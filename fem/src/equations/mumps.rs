@@ -1,10 +1,7 @@
-//! The equations of a model by the library MUMPS: a factor of `S A S`, A = k K + m M + d D on the free dofs, S the root of the inverse
-//! diagonal, in the order of elimination of the mesh.
+//! MUMPS factor of `S A S`, A = k K + m M + d D, in the elimination order of the mesh.
 //!
-//! The scaled diagonal is 1, so that pivots that count as zero are shares of their diagonal.
-//!
-//! Limits: the factor is made anew with its analysis for each combination; a pivot near zero is reported with its node and direction, a
-//! negative one without.
+//! S scales the diagonal to 1, so null pivots are relative. Limits: no reuse of the analysis; negative pivots
+//! are reported without node.
 
 use super::method::MumpsMethod;
 use super::pattern::order;
@@ -14,7 +11,7 @@ use crate::error::SolveError;
 use crate::solver::mumps::{self, Coordinates, MumpsError, Settings};
 use crate::supports::Supports;
 
-/// A factor of MUMPS, ready to solve.
+/// Factor of MUMPS.
 pub struct Factor {
     factor: mumps::Factor,
     /// Root of the inverse diagonal. Shape `[equations]`.
@@ -25,8 +22,8 @@ impl Factor {
     /// Factors a combination; pivots below `null_pivot` of their diagonal count as zero.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] names the node and direction of a pivot that is zero, [`SolveError::Singular`] says that one is
-    /// negative, [`SolveError::Library`] any other failure of the library, or that the program was built without it.
+    /// [`SolveError::NoStiffness`] for a zero pivot, [`SolveError::Singular`] for a negative one,
+    /// [`SolveError::Library`] for other failures or a missing library.
     pub fn new(
         equations: &Equations<'_>,
         method: MumpsMethod,
@@ -50,7 +47,6 @@ impl SystemSolver for Factor {
         Ok(())
     }
 
-    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included.
     fn memory(&self) -> Option<usize> {
         Some(self.factor.memory())
     }
@@ -62,10 +58,10 @@ impl From<MumpsError> for SolveError {
     }
 }
 
-/// Memory that MUMPS expects to take for the equations, their entries included [bytes].
+/// Memory predicted by MUMPS [bytes].
 ///
 /// # Errors
-/// No memory, no stiffness at a dof, or a program that was built without the library.
+/// Out of memory, a dof without stiffness, or a missing library.
 pub fn demand(equations: &Equations<'_>, method: MumpsMethod) -> Result<usize, SolveError> {
     let (matrix, _) = scaled(equations)?;
     Ok(mumps::demand(matrix, settings(method, 0.0))?)
@@ -75,7 +71,6 @@ fn settings(method: MumpsMethod, null_pivot: f64) -> Settings {
     Settings { out_of_core: method.out_of_core, null_pivot }
 }
 
-/// The scaled matrix and its scale.
 fn scaled(equations: &Equations<'_>) -> Result<(Coordinates, Vec<f64>), SolveError> {
     let Equations { mesh, matrices, supports, combination, .. } = *equations;
     let order = order(mesh, supports);

@@ -1,27 +1,23 @@
-//! Ordering of the nodes by geometric nested dissection.
+//! Orders the nodes by geometric nested dissection.
 //!
-//! The elements are split in two by a plane across an axis; the nodes that both halves share are the separator. Each
-//! half is numbered first, in the same way, the separator last: the factor then couples the halves through the separator
-//! alone. Because the cut runs between *elements*, it takes whole sheets of corner and mid-side nodes and never passes
-//! through an element, however distorted the mesh. Several cuts near the middle of every axis are tried, and the one with
-//! the smallest separator for its balance is kept; so layers of unlike thickness are cut between layers.
+//! A plane splits the elements; shared nodes form the separator, numbered last. Cuts between elements
+//! separate whole sheets of nodes. Of several cuts per axis, the smallest separator for its balance wins;
+//! layered meshes are cut between layers.
 //!
-//! Source: George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973) 345-363. On cubes the
-//! factor has O(n^(4/3)) entries, about half of what minimum degree gives. Limits: only geometry is used, so a mesh
-//! folded onto itself is still ordered correctly, but with larger separators.
+//! Source: George (1973). On cubes the factor has O(n^(4/3)) entries, about half of minimum degree.
 
 use crate::mesh::Mesh;
 
-/// Parts of this many elements or fewer are not cut any more.
+/// Elements of an undivided part.
 const LEAF: usize = 2;
 
-/// Positions of the cuts that are tried, as fractions of the elements of a part.
+/// Trial cuts as fractions.
 const CUTS: [f64; 7] = [0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65];
 
-/// How much an uneven cut costs against a larger separator.
+/// Weight of imbalance.
 const UNEVENNESS: f64 = 1.0;
 
-/// Order of elimination: entry i is the node (by index) that comes i-th. Every node occurs once.
+/// Elimination order: entry i is the index of the i-th node.
 pub fn nested_dissection(mesh: &Mesh) -> Vec<u32> {
     let centres = (0..mesh.element_count())
         .map(|e| {
@@ -40,7 +36,7 @@ pub fn nested_dissection(mesh: &Mesh) -> Vec<u32> {
     };
     let mut elements: Vec<u32> = (0..mesh.element_count() as u32).collect();
     dissection.part(&mut elements);
-    // Nodes of no element, if a caller has any, come last.
+    // Nodes without elements come last.
     let left = (0..nodes as u32).filter(|&n| !dissection.numbered[n as usize]).collect::<Vec<_>>();
     dissection.order.extend(left);
     dissection.order
@@ -49,9 +45,8 @@ pub fn nested_dissection(mesh: &Mesh) -> Vec<u32> {
 struct Dissection<'m> {
     mesh: &'m Mesh,
     centres: Vec<[f64; 3]>,
-    /// Nodes that already belong to a separator or have been numbered.
     numbered: Vec<bool>,
-    /// Last stamp under which a node was seen; avoids clearing.
+    /// Last stamp; avoids clearing.
     mark: Vec<u32>,
     stamp: u32,
     order: Vec<u32>,
@@ -75,7 +70,7 @@ impl Dissection<'_> {
         self.order.extend(separator);
     }
 
-    /// Axis and number of elements of the lower half, or nothing when the part is small enough.
+    /// Axis and size of the lower half, if divided.
     fn best_cut(&mut self, elements: &mut [u32]) -> Option<(usize, usize)> {
         let count = elements.len();
         if count <= LEAF {
@@ -103,7 +98,7 @@ impl Dissection<'_> {
         best.map(|(_, axis, cut)| (axis, cut))
     }
 
-    /// The cut near `aim` (within a tenth of the part) where the centres leave the widest gap: between two layers.
+    /// Widest gap of centres near `aim` (within a tenth): between layers.
     fn widest_gap(&self, elements: &[u32], axis: usize, aim: usize) -> usize {
         let count = elements.len();
         let reach = count / 10;
@@ -112,7 +107,7 @@ impl Dissection<'_> {
         let mut best = (f64::NEG_INFINITY, aim.clamp(1, count - 1));
         for cut in first..=last {
             let gap = centre(cut) - centre(cut - 1);
-            // Among gaps that are equal but for rounding, the one nearest to the aim.
+            // Among equal gaps, nearest to the aim.
             let nearer = cut.abs_diff(aim) < best.1.abs_diff(aim);
             if gap > best.0 * (1.0 + 1e-6) || (nearer && gap >= best.0 * (1.0 - 1e-6)) {
                 best = (gap, cut);
@@ -128,7 +123,7 @@ impl Dissection<'_> {
         });
     }
 
-    /// Nodes, not yet numbered, that elements of both halves use, ascending.
+    /// Unnumbered nodes shared by both halves.
     fn separator(&mut self, low: &[u32], high: &[u32]) -> Vec<u32> {
         self.stamp += 1;
         for &e in low {
@@ -151,7 +146,7 @@ impl Dissection<'_> {
         shared
     }
 
-    /// Nodes of a leaf that no separator has taken: those of one element alone first, they couple least.
+    /// Unnumbered nodes of a leaf; weakly coupled ones first.
     fn unnumbered(&mut self, elements: &[u32]) -> Vec<u32> {
         let mut nodes = Vec::new();
         for &e in elements {
@@ -181,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_node_is_numbered_once_and_the_last_sheet_cuts_the_mesh() {
+    fn last_sheet_separates_mesh() {
         let mesh = Mesh::block([8, 4, 3], [8.0, 4.0, 3.0]);
         let order = nested_dissection(&mesh);
         let mut sorted = order.clone();
@@ -189,13 +184,12 @@ mod tests {
         assert!(
             sorted.iter().enumerate().all(|(i, &n)| i == n as usize) && sorted.len() == mesh.node_count()
         );
-        // The sheet x = 4: corners, sides along y, sides along z.
         let sheet = 5 * 4 + 4 * 4 + 5 * 3;
         assert!(order[order.len() - sheet..].iter().all(|&n| mesh.coordinates[n as usize][0] == 4.0));
     }
 
     #[test]
-    fn a_layered_mesh_is_cut_between_layers() {
+    fn cuts_between_layers() {
         let mut mesh = Mesh::block([9, 1, 1], [9.0, 1.0, 1.0]);
         mesh.coordinates.iter_mut().for_each(|c| c[0] = c[0].powf(1.5));
         let order = nested_dissection(&mesh);

@@ -7,10 +7,10 @@ use crate::mesh::Mesh;
 use crate::solver::analysis::Analysis;
 use crate::supports::{CONSTRAINED, Supports};
 
-/// Orders and analyses the free dofs of a model.
+/// Orders and analyses the free dofs.
 ///
 /// # Errors
-/// Only when memory runs out.
+/// Out of memory.
 pub fn analyse(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<Analysis, SolveError> {
     let equations = supports.free().len();
     let (mut column_start, mut row) = (vec![0; equations + 1], Vec::new());
@@ -21,7 +21,6 @@ pub fn analyse(mesh: &Mesh, matrices: &Matrices, supports: &Supports) -> Result<
     Ok(Analysis::from_pattern(column_start, row, order(mesh, supports))?)
 }
 
-/// The equations in the order of elimination. Shape `[equations]`.
 pub(super) fn order(mesh: &Mesh, supports: &Supports) -> Vec<usize> {
     let index = supports.free_index();
     nested_dissection(mesh)
@@ -32,8 +31,7 @@ pub(super) fn order(mesh: &Mesh, supports: &Supports) -> Vec<usize> {
         .collect()
 }
 
-/// The values of a combination of matrices on the free dofs, in the order of [`Analysis::pattern`], for the model that was
-/// analysed.
+/// Values of a combination of matrices in the order of [`Analysis::pattern`].
 pub fn values(
     analysis: &Analysis,
     matrices: &Matrices,

@@ -1,4 +1,4 @@
-//! The equations `A x = b` of a model on its free dofs, and the trait of all that solves them.
+//! Equations `A x = b` on the free dofs, and the trait of their solvers.
 
 use super::pattern::analyse;
 use crate::assembly::{Combination, Matrices};
@@ -9,34 +9,33 @@ use crate::supports::{Supports, name};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
-/// Pivot over diagonal below which a dof counts as having no stiffness.
+/// Relative pivot without stiffness.
 ///
-/// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as its elements
-/// has 4e-9.
+/// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as
+/// its elements has 4e-9.
 pub(crate) const NO_STIFFNESS: f64 = 1e-11;
-/// Iterations on a factor at most.
 const ITERATIONS: u32 = 100;
 
-/// `A = k K + m M + d D` of a model on its free dofs, from which a solver is made.
+/// `A = k K + m M + d D` on the free dofs of a model.
 #[derive(Clone, Copy)]
 pub struct Equations<'a> {
-    /// The mesh, for the order of elimination and for names of nodes.
+    /// Mesh, for ordering and node names.
     pub mesh: &'a Mesh,
     /// K, M and D.
     pub matrices: &'a Arc<Matrices>,
-    /// Which dofs are free.
+    /// Constrained dofs.
     pub supports: &'a Supports,
     /// k, m and d.
     pub combination: Combination,
-    /// Ordering and symbolic factorization of the model, empty until the first factor.
+    /// Symbolic factorisation, set once.
     pub analysis: &'a OnceLock<Arc<Analysis>>,
 }
 
 impl Equations<'_> {
-    /// The ordering and symbolic factorization, made once for all factors of a model.
+    /// Symbolic factorisation, shared by all factors of a model.
     ///
     /// # Errors
-    /// Only when memory runs out.
+    /// Out of memory.
     pub fn analysis(&self) -> Result<Arc<Analysis>, SolveError> {
         if let Some(analysis) = self.analysis.get() {
             return Ok(analysis.clone());
@@ -45,7 +44,7 @@ impl Equations<'_> {
         Ok(self.analysis.get_or_init(|| analysis).clone())
     }
 
-    /// The error that names node and direction of an equation whose pivot [-] is too small against its diagonal.
+    /// Error with node and direction of a weak pivot [-].
     pub fn no_stiffness(&self, equation: usize, pivot: f64) -> SolveError {
         let (node, direction) = name(self.mesh, self.supports.free()[equation] as usize);
         SolveError::NoStiffness { node, direction, pivot }
@@ -57,26 +56,25 @@ impl Equations<'_> {
 pub struct Counts {
     /// Systems solved.
     pub solves: u64,
-    /// Iterations of all.
+    /// Total iterations.
     pub iterations: u64,
-    /// Iterations of the one that took most.
+    /// Most iterations of a solve.
     pub most: u32,
 }
 
-/// A symmetric matrix `factor C`, positive semidefinite, that is added to the one of a solver and known by its products.
+/// Positive semidefinite matrix `factor C`, added to a solver's and given by its products.
 pub struct Added<'a> {
     /// Factor of the products.
     pub factor: f64,
     /// `times(x, y)` sets `y += C x`. Shapes `[3 * nodes]`.
     pub times: &'a mut dyn FnMut(&[f64], &mut [f64]),
-    /// Two nodal vectors. Shapes `[3 * nodes]`.
+    /// Work vectors. Shapes `[3 * nodes]`.
     pub scratch: [&'a mut [f64]; 2],
 }
 
-/// A solver of the equations of a model, with its factor or its iteration.
+/// Solver of the equations of a model.
 pub trait SystemSolver: Send + Sync {
-    /// Solves in place: the right-hand side comes in, the solution goes out. `guess` gives a value near the solution by
-    /// dofs; only an iteration looks at it. Shape `[equations]`.
+    /// Solves in place. `guess` gives nodal start values for iterative solvers. Shape `[equations]`.
     ///
     /// # Errors
     /// [`SolveError::NotConverged`], [`SolveError::Library`].
@@ -87,12 +85,11 @@ pub trait SystemSolver: Send + Sync {
         guess: &dyn Fn(usize) -> f64,
     ) -> Result<(), SolveError>;
 
-    /// Solves `(A + factor C) x = b` in place, from zero, to a residual of `tolerance` [-], and returns the iterations. Shape
+    /// Solves `(A + factor C) x = b` in place from zero to `tolerance` [-]; returns the iterations. Shape
     /// `[equations]`.
     ///
-    /// A factor is the preconditioner of conjugate gradients that need no product with the matrix, since `A z = r` where z is the
-    /// preconditioned residual r, and as many iterations as C has directions that are stiff against A. Residuals after the last
-    /// iteration are accepted.
+    /// With a factor as CG preconditioner, no product with A is needed. Residuals after the last iteration
+    /// are accepted.
     ///
     /// # Errors
     /// [`SolveError::NotConverged`] of an iteration without a factor, [`SolveError::Library`].
@@ -142,13 +139,12 @@ pub trait SystemSolver: Send + Sync {
         Ok(iterations)
     }
 
-    /// Counts of an iteration so far.
+    /// Counts of an iterative solver.
     fn counts(&self) -> Option<Counts> {
         None
     }
 
-    /// Memory beside the model's, of an iteration or of a library [bytes]; that of the program's own factor is known from its
-    /// analysis.
+    /// Memory of an iteration or a library [bytes].
     fn memory(&self) -> Option<usize> {
         None
     }

@@ -1,57 +1,55 @@
-//! What a solver remembers from step to step beside the state of the body: with both of them a run goes on as if it had not
-//! been stopped, in its results and in its counts.
+//! Solver state in checkpoints, so that resumed runs are identical.
 
 use super::step_control::StepLength;
 use crate::assembly::Combination;
 use serde::{Deserialize, Serialize};
 
-/// Memory of a solver of an elastoplastic body; part of a checkpoint.
+/// Checkpointed state of an elastoplastic solver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// Counts and times so far.
     pub(crate) statistics: Statistics,
-    /// Length of the next step and when it may grow; none where the steps are given.
+    /// Next step length, unless prescribed.
     pub(crate) length: Option<StepLength>,
-    /// The matrix that the elastic factor at hand is of.
+    /// Matrix of the current elastic factor.
     pub(crate) factored: Option<Combination>,
 }
 
 impl Memory {
-    /// Counts and times so far.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.statistics
     }
 }
 
-/// Counts and times of a run. Seconds are those of the clock.
+/// Counts and wall times [s].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// Steps accepted.
+    /// Accepted steps.
     pub steps: u64,
-    /// Steps given up and repeated with half the length.
+    /// Rejected and halved steps.
     pub halvings: u64,
-    /// Iterations, those of steps given up included.
+    /// Iterations, including rejected steps.
     pub iterations: u64,
-    /// Evaluations of the stresses.
+    /// Stress evaluations.
     pub evaluations: u64,
-    /// Factorizations L L^T.
+    /// Factorisations L L^T.
     pub factorizations_symmetric: u64,
-    /// Factorizations L U.
+    /// Factorisations L U.
     pub factorizations_unsymmetric: u64,
-    /// Symmetric tangents that were not positive definite, and taken by L U.
+    /// Indefinite symmetric tangents (L U used).
     pub not_positive: u64,
-    /// Tangents that L U failed on, and the elastic matrix replaced.
+    /// Singular tangents (elastic matrix used).
     pub singular: u64,
-    /// Solves with a factor, those within GMRES not counted.
+    /// Solves, without those in GMRES.
     pub solves: u64,
-    /// Iterations of GMRES.
+    /// GMRES iterations.
     pub krylov_iterations: u64,
-    /// Systems that GMRES did not solve well enough, and L U took over.
+    /// GMRES failures (L U used).
     pub krylov_failures: u64,
-    /// Seconds of stresses, internal forces and tangents.
+    /// Stresses, forces and tangents.
     pub assembly_seconds: f64,
-    /// Seconds of factorizations.
+    /// Factorisations.
     pub factor_seconds: f64,
-    /// Seconds of solves.
+    /// Solves.
     pub solve_seconds: f64,
 }

@@ -1,8 +1,4 @@
-//! Methods that carry a body through time, behind one trait: linear and elastoplastic, dynamic and quasi-static.
-//!
-//! [`NewmarkSolver`](crate::newmark::NewmarkSolver) (Newmark and HHT-α with one factor), the elastoplastic
-//! [`Dynamics`](crate::nonlinear::Dynamics) and [`QuasiStatic`](crate::nonlinear::QuasiStatic), and the methods of
-//! [`theta`](crate::theta). A new method is one that implements [`TimeIntegrator`].
+//! Time integrators behind one trait, [`TimeIntegrator`].
 
 mod memory;
 mod step_control;
@@ -15,19 +11,16 @@ use serde::{Deserialize, Serialize};
 pub use step_control::StepControl;
 pub(crate) use step_control::StepLength;
 
-/// Loads and prescribed displacements as functions of time.
-///
-/// A closure `|time, load|` is a loading that leaves the supports at the values of the model.
+/// Loads and prescribed displacements as functions of time; a closure `|time, load|` has constant supports.
 pub trait Loading {
-    /// Adds the nodal forces [N] at `time` to `load`, which comes in as zeros. Shape `[3 * nodes]`.
+    /// Adds the nodal forces [N] at `time` to the zeroed `load`. Shape `[3 * nodes]`.
     fn load(&mut self, time: f64, load: &mut [f64]);
 
-    /// Sets the displacements [m] of the constrained dofs at `time`, in the order of
-    /// [`Supports::fixed`](crate::supports::Supports::fixed); they come in with the values of the model.
+    /// Sets the displacements [m] of constrained dofs at `time`, ordered as
+    /// [`Supports::fixed`](crate::supports::Supports::fixed).
     fn prescribed(&mut self, _time: f64, _values: &mut [f64]) {}
 
-    /// Whether a step is to be given up: a look between two iterations. The step then fails with
-    /// [`SolveError::Stopped`], and the state is that of the last accepted one.
+    /// Whether to abort the step: [`SolveError::Stopped`], with the last accepted state.
     fn stopped(&self) -> bool {
         false
     }
@@ -39,11 +32,11 @@ impl<F: FnMut(f64, &mut [f64])> Loading for F {
     }
 }
 
-/// A loading of two closures.
+/// Loading by two closures.
 pub struct Driven<L, P> {
-    /// As [`Loading::load`].
+    /// See [`Loading::load`].
     pub load: L,
-    /// As [`Loading::prescribed`].
+    /// See [`Loading::prescribed`].
     pub prescribed: P,
 }
 
@@ -57,40 +50,38 @@ impl<L: FnMut(f64, &mut [f64]), P: FnMut(f64, &mut [f64])> Loading for Driven<L,
     }
 }
 
-/// How one step converged.
+/// Convergence of one step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepReport {
-    /// Time at the end of the step.
+    /// End time of the step.
     pub time: f64,
-    /// Length of the step.
+    /// Step length.
     pub dt: f64,
-    /// Solves with a matrix in this step.
+    /// Number of solves.
     pub iterations: u32,
-    /// Residual on the free dofs over the forces: at the start, then after each iteration.
+    /// Relative residuals: at the start, then after each iteration.
     pub residuals: Vec<f64>,
-    /// Gauss points that yielded in the step.
+    /// Gauss points that yielded.
     pub plastic_points: usize,
 }
 
 impl StepReport {
-    /// The report of a step that is one linear solve.
     pub(crate) fn linear(time: f64, dt: f64) -> StepReport {
         StepReport { time, dt, iterations: 1, ..StepReport::default() }
     }
 }
 
-/// Called after every accepted step with the state, how the step converged, and its energies where the method balances them.
+/// Called after every accepted step with state, report, and balanced energies.
 pub type OnStep<'a> = &'a mut dyn FnMut(&State, &StepReport, Option<&StepAudit>);
 
-/// A method of time integration.
+/// Time integration method.
 pub trait TimeIntegrator: Send + Sync {
-    /// Carries `state` to the time `to`, which it reaches exactly.
+    /// Advances `state` to the time `to` exactly; after errors, to the last accepted step.
     ///
-    /// A dynamic method starts from the acceleration of the state, which must be that of its equations of motion.
+    /// Dynamic methods require the initial acceleration of the equations of motion.
     ///
     /// # Errors
-    /// A load, a displacement or a result that is not finite; a step that does not converge; for a method with one length of
-    /// step an end that is not a whole number of steps ahead. The state is that of the last accepted step then.
+    /// Values not finite; no convergence; for fixed steps, `to` not a whole number of steps ahead.
     fn integrate(
         &mut self,
         model: &Model,
@@ -100,37 +91,35 @@ pub trait TimeIntegrator: Send + Sync {
         on_step: OnStep<'_>,
     ) -> Result<(), SolveError>;
 
-    /// Memory of a method with Newton's iteration beside the state, for a checkpoint; none of the others.
+    /// Checkpointed state of methods with Newton iteration.
     fn memory(&self) -> Option<Memory> {
         None
     }
 
-    /// Goes on with the memory of a method of the same model and options.
+    /// Restores checkpointed state of the same model and options.
     ///
     /// # Errors
-    /// A matrix cannot be factored.
+    /// Failed factorisation.
     fn recall(&mut self, _model: &Model, _memory: &Memory) -> Result<(), SolveError> {
         Ok(())
     }
 
-    /// Forces of the supports on the body [N] after the last accepted step, where the method keeps them; 0 at free dofs. Shape
-    /// `[3 * nodes]`.
+    /// Support reactions [N] after the last accepted step, if stored; 0 at free dofs. Shape `[3 * nodes]`.
     fn reactions(&self) -> Option<&[f64]> {
         None
     }
 }
 
-/// Loads at both ends of a step and the displacements of the supports at its end; the memory serves all steps.
 #[derive(Default)]
 pub(crate) struct Conditions {
-    /// Loads [N] at the start and the end. Shape `[3 * nodes]`.
+    /// Loads [N] at start and end. Shape `[3 * nodes]`.
     pub loads: [Vec<f64>; 2],
     prescribed: Vec<f64>,
     moved: bool,
 }
 
 impl Conditions {
-    /// Evaluates a loading for the step of `state` that has these `ends` [s].
+    /// Evaluates a loading at these `ends` [s].
     pub fn evaluate(&mut self, model: &Model, state: &State, ends: [f64; 2], loading: &mut dyn Loading) {
         for (load, time) in self.loads.iter_mut().zip(ends) {
             load.clear();
@@ -145,16 +134,16 @@ impl Conditions {
         self.moved = values.any(|((dof, _), value)| state.u[*dof as usize] != *value);
     }
 
-    /// The displacements [m] of the constrained dofs at the end; none where all stay where they are.
+    /// Final displacements [m] of constrained dofs, unless fixed.
     pub fn prescribed(&self) -> Option<&[f64]> {
         self.moved.then_some(&self.prescribed)
     }
 }
 
-/// Both ends [s] of each step of length `dt` from `from` to `to`.
+/// Ends [s] of each step.
 ///
 /// # Errors
-/// The end is not a whole number of steps ahead.
+/// The interval is not a whole number of steps.
 pub(crate) fn steps_of(from: f64, to: f64, dt: f64) -> Result<impl Iterator<Item = [f64; 2]>, SolveError> {
     let count = ((to - from) / dt).round();
     let whole = (from + count * dt - to).abs() <= 1e-9 * dt.max(to.abs());

@@ -1,29 +1,28 @@
-//! Length of steps: halved when a step fails, grown again when steps converge with ease.
+//! Step length control: halving after failures, growth after fast convergence.
 
 use crate::error::SolveError;
 use serde::{Deserialize, Serialize};
 
-/// Limits of the step length. Times are those of the loading, seconds or pseudo-time.
+/// Limits of the step length [s] or pseudo-time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
-    /// Length of the first step.
+    /// First step.
     pub initial: f64,
-    /// Smallest length: a failure at this length ends the run.
+    /// Minimum; failure there ends the run.
     pub min: f64,
-    /// Largest length.
+    /// Maximum.
     pub max: f64,
-    /// Iterations that a step should take: with fewer the next one grows by up to 2, with more it shrinks by the square
-    /// root of the ratio.
+    /// Target iterations: with fewer, steps grow by up to 2, with more they shrink by the root of the ratio.
     pub target_iterations: u32,
 }
 
 impl StepControl {
-    /// Steps of the length `dt` that may be halved ten times, and never grow beyond it.
+    /// Steps of length `dt`, which may be halved ten times.
     pub fn fixed(dt: f64) -> StepControl {
         StepControl { initial: dt, min: dt / 1024.0, max: dt, target_iterations: 12 }
     }
 
-    /// Refuses lengths that are not above 0 or out of order.
+    /// Checks that lengths are positive and ordered.
     ///
     /// # Errors
     /// [`SolveError::Option`].
@@ -47,15 +46,13 @@ impl StepControl {
     }
 }
 
-/// Lengths that differ by this share are the same.
 const ROUNDING: f64 = 1e-9;
 
-/// The length of the next step, from the course of those before.
+/// Adaptive length of the next step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepLength {
     control: StepControl,
     length: f64,
-    /// Steps to pass before it may grow again.
     wait: u32,
 }
 
@@ -64,9 +61,9 @@ impl StepLength {
         StepLength { control, length: control.initial, wait: 0 }
     }
 
-    /// Length of the step from `time`, and the time that it ends at, not beyond `end`. The last two steps share what is left.
+    /// Length and end time of the step from `time`, up to `end`. The last two steps share the remainder.
     ///
-    /// A rest that differs from the length by rounding alone gives a step of the length itself: factors belong to one length.
+    /// Remainders equal within rounding give the length itself, so that its factor is reused.
     pub fn next(&self, time: f64, end: f64) -> (f64, f64) {
         let left = end - time;
         let dt = self.unrounded(left);
@@ -85,7 +82,7 @@ impl StepLength {
         }
     }
 
-    /// After a step of length `dt` converged.
+    /// Updates after convergence.
     pub fn accept(&mut self, dt: f64, iterations: u32) {
         if self.wait > 0 {
             self.wait -= 1;
@@ -93,12 +90,12 @@ impl StepLength {
         }
         let target = f64::from(self.control.target_iterations);
         let ratio = (target / f64::from(iterations.max(1))).sqrt().clamp(0.5, 2.0);
-        // A step cut short by the end of the run says nothing against the length.
+        // A shortened final step must not reduce the length.
         let base = if ratio >= 1.0 { self.length } else { dt };
         self.length = (base * ratio).clamp(self.control.min, self.control.max);
     }
 
-    /// After a step of length `dt` failed: whether there is a shorter one to try.
+    /// Halves after failure; returns whether a shorter step is allowed.
     pub fn halve(&mut self, dt: f64) -> bool {
         if dt <= self.control.min * (1.0 + 1e-9) {
             return false;
@@ -114,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_end_exactly_and_halve_down_to_the_smallest() {
+    fn steps_end_exactly_and_halve() {
         let control = StepControl { initial: 0.4, min: 0.1, max: 0.8, target_iterations: 4 };
         let mut length = StepLength::new(control);
         assert_eq!(length.next(0.0, 1.0), (0.4, 0.4));
@@ -135,7 +132,6 @@ mod tests {
         assert!(StepControl { target_iterations: 0, ..control }.check().is_err());
     }
 
-    /// Steps of 0.1 to 0.1, 0.2, …: what is left differs from the length by rounding, the step does not, and the time is that asked for.
     #[test]
     fn rounding_makes_no_other_length() {
         let length = StepLength::new(StepControl::fixed(0.1));

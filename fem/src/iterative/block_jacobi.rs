@@ -1,13 +1,12 @@
-//! The inverse of the 3x3 blocks of the nodes as preconditioner.
+//! Block-Jacobi preconditioner: inverse 3x3 blocks of the nodes.
 //!
-//! Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), section 10.2. It takes out differences of size and
-//! stiffness among elements and the coupling of directions; iterations grow with the condition of what is left.
+//! Source: Saad (2003), section 10.2.
 
 use crate::solver::conjugate::Preconditioner;
 use crate::solver::conjugate::vectors::NODES;
 use rayon::prelude::*;
 
-/// Inverse blocks, upper halves row by row: xx, xy, xz, yy, yz, zz.
+/// Inverse blocks by nodes: xx, xy, xz, yy, yz, zz.
 pub struct BlockJacobi {
     inverse: Vec<[f64; 6]>,
 }
@@ -16,19 +15,18 @@ impl BlockJacobi {
     /// Inverts symmetric blocks by nodes.
     ///
     /// # Errors
-    /// The dof, `3 * node + direction`, whose pivot is not above rounding.
+    /// Dof `3 * node + direction` of a pivot not above rounding.
     pub fn new(blocks: &[[f64; 9]]) -> Result<BlockJacobi, usize> {
         let inverse = blocks.iter().enumerate().map(|(n, b)| invert(b).map_err(|k| 3 * n + k));
         Ok(BlockJacobi { inverse: inverse.collect::<Result<_, _>>()? })
     }
 
-    /// The inverse blocks by nodes: xx, xy, xz, yy, yz, zz.
+    /// Inverse blocks: xx, xy, xz, yy, yz, zz.
     pub fn inverse(&self) -> &[[f64; 6]] {
         &self.inverse
     }
 }
 
-/// Product of a symmetric block, given by its upper half, with a vector.
 #[inline]
 pub(super) fn times(a: &[f64; 6], x: &[f64; 3]) -> [f64; 3] {
     [
@@ -38,7 +36,7 @@ pub(super) fn times(a: &[f64; 6], x: &[f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Inverse by L D Lᵀ, whose pivots say whether the block is positive definite; else the direction of the one that is not.
+/// Inverse by L D Lᵀ, or the direction of a nonpositive pivot.
 fn invert(b: &[f64; 9]) -> Result<[f64; 6], usize> {
     const ROUNDING: f64 = 1e-14;
     let good = |pivot: f64, diagonal: f64| pivot.is_finite() && pivot > ROUNDING * diagonal;
@@ -57,7 +55,7 @@ fn invert(b: &[f64; 9]) -> Result<[f64; 6], usize> {
     if !good(d2, b[8]) {
         return Err(2);
     }
-    // Inverse of the unit triangle: rows of L⁻¹ are (1), (-l1, 1), (m, -l3, 1).
+    // Rows of L⁻¹: (1), (-l1, 1), (m, -l3, 1).
     let m = l1 * l3 - l2;
     let (i0, i1, i2) = (1.0 / d0, 1.0 / d1, 1.0 / d2);
     Ok([i0 + l1 * l1 * i1 + m * m * i2, -l1 * i1 - m * l3 * i2, m * i2, i1 + l3 * l3 * i2, -l3 * i2, i2])
@@ -95,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_that_is_not_positive_is_named() {
+    fn rejects_nonpositive_block() {
         let good = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         let flat = [1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         assert_eq!(BlockJacobi::new(&[good, flat]).err(), Some(4));

@@ -1,8 +1,6 @@
-//! Products with `A = k K + m M + d D` on the free dofs, from the half-stored matrices of a model.
+//! Parallel products with `A = k K + m M + d D` on the free dofs from half-stored matrices.
 //!
-//! Each entry of the upper half is read once and serves its row and its column. A part of the rows, computed by one thread,
-//! collects what belongs to columns of later parts aside; these are added afterwards, each node by the thread of its own part, in the
-//! order of the parts. Constrained dofs take no part: x has to be 0 there and y is.
+//! Parts of rows buffer contributions to later parts, added in part order. x and y are 0 at constrained dofs.
 
 use super::upper::Upper;
 use crate::assembly::{Combination, Matrices};
@@ -13,37 +11,35 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The matrix of a combination, with scratch for its products.
+/// Matrix of a combination, with scratch.
 pub struct Product {
     matrices: Arc<Matrices>,
     combination: Combination,
-    /// All entries of the combination, rounded; without, those of the matrices count.
+    /// Combined entries in single precision, if rounded.
     single: Option<Vec<[f32; 9]>>,
     parts: Vec<Part>,
-    /// Where contributions from other parts begin for each node; shape `[nodes + 1]`.
+    /// First buffered contribution of each node; shape `[nodes + 1]`.
     start: Vec<u32>,
-    /// Part and place there of each contribution, in the order of parts.
+    /// Part and position of each contribution, in part order.
     from: Vec<[u32; 2]>,
-    /// Whether a dof is free. Shape `[nodes]`.
+    /// Free dofs. Shape `[nodes]`.
     free: Vec<[bool; 3]>,
 }
 
-/// Some rows of the upper half.
 struct Part {
     nodes: Range<usize>,
-    /// Nodes of later parts that the rows reach, ascending.
+    /// Nodes of later parts in the rows, ascending.
     beyond: Vec<u32>,
-    /// Place of the column of each slot: among the own nodes, then among `beyond`.
+    /// Column position of each slot: own nodes, then `beyond`.
     place: Vec<u32>,
-    /// Blocks of the dashpots: places of row and column.
     dashpots: Vec<([u32; 2], [f64; 9])>,
-    /// Padded to four lanes; x times the factor of the stiffness.
+    /// Four lanes; x times the stiffness factor.
     x: Vec<[f64; 4]>,
     y: Vec<[f64; 4]>,
 }
 
 impl Product {
-    /// The matrix `combination` on the free dofs.
+    /// Matrix `combination` on the free dofs.
     pub fn new(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> Product {
         let nodes = matrices.node_count();
         let mut parts: Vec<Part> = (0..nodes)
@@ -71,8 +67,8 @@ impl Product {
         Product { matrices, combination, single: None, parts, start, from, free }
     }
 
-    /// The same, its entries rounded to single precision and kept apart: half as much to read in a product. Vectors and sums are
-    /// double. A value beyond single precision becomes infinite, which the iteration reports.
+    /// Matrix in single precision, which halves memory traffic; vectors and sums are double. Overflow becomes
+    /// infinite, which the iteration reports.
     pub fn rounded(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> Product {
         let mut product = Product::new(matrices, supports, combination);
         let (matrices, c) = (product.matrices.clone(), combination);
@@ -90,7 +86,7 @@ impl Product {
         product
     }
 
-    /// The diagonal blocks by nodes, rows and columns of constrained dofs being those of the identity.
+    /// Diagonal blocks by nodes, identity at constrained dofs.
     pub fn diagonal_blocks(&self) -> Vec<[f64; 9]> {
         let (m, c) = (&self.matrices, self.combination);
         let mut blocks: Vec<[f64; 9]> = (0..m.node_count())
@@ -120,17 +116,17 @@ impl Product {
         blocks
     }
 
-    /// The matrices of the model.
+    /// Matrices of the model.
     pub fn matrices(&self) -> &Matrices {
         &self.matrices
     }
 
-    /// Whether each dof is free, by nodes.
+    /// Free dofs by nodes.
     pub fn free(&self) -> &[[bool; 3]] {
         &self.free
     }
 
-    /// Memory that it holds beside the matrices of the model [bytes].
+    /// Additional memory [bytes].
     pub fn memory(&self) -> usize {
         let of_part =
             |p: &Part| 4 * (p.beyond.len() + p.place.len()) + 80 * p.dashpots.len() + 64 * p.x.len();
@@ -161,7 +157,6 @@ impl Part {
         Part { nodes, beyond, place, dashpots: Vec::new(), x: all.clone(), y: all }
     }
 
-    /// Takes over the values of x, times a factor.
     fn gather(&mut self, x: &[[f64; 3]], factor: f64) {
         let own = self.nodes.len();
         let scaled = |x: &[f64; 3]| [factor * x[0], factor * x[1], factor * x[2], 0.0];
@@ -172,7 +167,7 @@ impl Part {
         self.y.fill([0.0; 4]);
     }
 
-    /// The products of the own rows and columns with these blocks of all slots. `MASS`: further multiples of the identity.
+    /// `MASS`: adds multiples of the identity.
     fn multiply<T: Copy + Into<f64>, const MASS: bool>(
         &mut self,
         matrices: &Matrices,
@@ -190,7 +185,6 @@ impl Part {
         rows.times::<MASS>(&self.x, &mut self.y);
     }
 
-    /// Adds the products with the dashpots, times a factor.
     fn multiply_dashpots(&mut self, factor: f64) {
         for &([p, q], d) in &self.dashpots {
             let ([xp, xq], p, q) = ([self.x[p as usize], self.x[q as usize]], p as usize, q as usize);

@@ -1,24 +1,21 @@
-//! The innermost loop: products with rows of the upper half of a symmetric matrix of 3x3 blocks.
+//! Products with the upper half of a symmetric 3x3 block matrix.
 //!
-//! Compiled for AVX2 and for the plain target, and chosen at run time. Limits: results on processors of unlike kind differ by
-//! rounding, since only some multiply and add at once.
+//! AVX2 or plain code, selected at run time. Limits: results differ by rounding without fused multiply-add.
 
-/// Some rows of the upper half, in double or single precision, columns by places in the vectors of a part.
+/// Rows of the upper half; columns are positions in the vectors of a part.
 pub struct Upper<'a, T> {
-    /// Where rows begin, and the last one ends; counted from any number on.
+    /// Row bounds with any offset.
     pub start: &'a [usize],
-    /// Place of the column of each entry; the diagonal comes first in its row.
+    /// Column position of each entry, diagonal first.
     pub place: &'a [u32],
-    /// Blocks, row by row.
     pub blocks: &'a [[T; 9]],
-    /// Further multiples of the identity by entries, times `inertia`.
+    /// Multiples of the identity, times `inertia`.
     pub mass: &'a [f64],
-    /// Their factor.
     pub inertia: f64,
 }
 
 impl<T: Copy + Into<f64>> Upper<'_, T> {
-    /// `y += A x` with the rows and with their mirror below the diagonal. The fourth lane of x is 0, that of y without meaning.
+    /// `y += A x` with the rows and their transpose. Fourth lane: 0 in x, undefined in y.
     pub fn times<const MASS: bool>(&self, x: &[[f64; 4]], y: &mut [[f64; 4]]) {
         #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
         {
@@ -31,7 +28,7 @@ impl<T: Copy + Into<f64>> Upper<'_, T> {
                 rows.add::<MASS, true>(x, y);
             }
             if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                // SAFETY: the processor has the features that `wide` is compiled for.
+                // SAFETY: the CPU supports the features that `wide` is compiled for.
                 return unsafe { wide::<T, MASS>(self, x, y) };
             }
         }
@@ -59,7 +56,6 @@ impl<T: Copy + Into<f64>> Upper<'_, T> {
                 if MASS {
                     inertia = fma::<FUSED>(&[m; 4], &xq, &inertia);
                 }
-                // The diagonal has no mirror.
                 if i > 0 {
                     let y = &mut y[place as usize];
                     let mut sum = *y;
@@ -79,7 +75,6 @@ impl<T: Copy + Into<f64>> Upper<'_, T> {
     }
 }
 
-/// `a b + c` by lanes, fused where the target can.
 #[inline(always)]
 fn fma<const FUSED: bool>(a: &[f64; 4], b: &[f64; 4], c: &[f64; 4]) -> [f64; 4] {
     std::array::from_fn(|l| if FUSED { a[l].mul_add(b[l], c[l]) } else { a[l] * b[l] + c[l] })

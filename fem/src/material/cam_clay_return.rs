@@ -1,21 +1,20 @@
-//! Return to the ellipse of modified Cam clay, in compression-positive stress and strain.
+//! Return mapping of modified Cam clay, compression positive.
 //!
-//! Pressure and preconsolidation pressure follow their exponentials exactly, the shear stiffness is that of the secant bulk
-//! modulus of the step, and the flow is that at the end. The multiplier is the root of one equation, the elastic volume
-//! strain that of another inside it; both have a bracket, so the return always ends.
+//! Pressure and preconsolidation pressure follow their exponentials exactly; shear uses the secant bulk
+//! modulus. Nested bracketed roots: multiplier, then elastic volumetric strain.
 //!
-//! Source: Borja and Lee, Comput. Methods Appl. Mech. Eng. 78 (1990) 49-72.
+//! Source: Borja and Lee (1990).
 
 use super::law::ReturnError;
 use super::spectral::Voigt;
 use serde::{Deserialize, Serialize};
 
-/// Yield function over its terms at which a return counts as found.
+/// Relative convergence tolerance.
 const TOLERANCE: f64 = 1e-14;
-/// Iterations of either equation; bisection alone needs fewer.
+/// Iteration limit; bisection alone needs fewer.
 const ITERATIONS: u32 = 200;
 
-/// Elastic stiffness in shear.
+/// Elastic shear stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shear {
     /// Constant Poisson's ratio [-].
@@ -24,7 +23,6 @@ pub enum Shear {
     Modulus(f64),
 }
 
-/// Constants as a step needs them.
 pub(super) struct Clay {
     /// `kappa / v`.
     pub swelling: f64,
@@ -33,11 +31,11 @@ pub(super) struct Clay {
     /// `M²`.
     pub square: f64,
     pub shear: Shear,
-    /// Pressure below which the bulk modulus falls no further.
+    /// Pressure of the minimum bulk modulus.
     pub floor: f64,
 }
 
-/// Pressure after an elastic volume strain `x`: pressure and tangent, then the secant modulus and its derivative by `x`.
+/// Pressure and tangent after an elastic volumetric strain `x`; secant modulus and its derivative.
 #[derive(Clone, Copy)]
 pub(super) struct Bulk {
     pub p: f64,
@@ -46,18 +44,17 @@ pub(super) struct Bulk {
     pub secant_rate: f64,
 }
 
-/// A step in compression-positive stress and strain.
 pub(super) struct Step<'a> {
     pub clay: &'a Clay,
     pub p: f64,
     pub deviator: Voigt,
     pub pc: f64,
     pub volume: f64,
-    /// Deviator of the strain increment, shear not doubled.
+    /// Deviatoric strain increment, tensor shear.
     pub shear: Voigt,
 }
 
-/// All that depends on the two unknowns of a return: the elastic volume strain `x` and the multiplier.
+/// Functions of elastic volumetric strain `x` and multiplier.
 pub(super) struct Trial {
     pub x: f64,
     pub multiplier: f64,
@@ -71,7 +68,7 @@ pub(super) struct Trial {
     /// `1 + 6 G multiplier / M²`.
     pub fade: f64,
     pub s: Voigt,
-    /// Yield function [Pa²], the size of its terms, its derivatives by `x` and by the multiplier.
+    /// Yield function [Pa²], magnitude of its terms, derivatives.
     pub f: f64,
     pub size: f64,
     pub f_x: f64,
@@ -82,7 +79,7 @@ pub(super) fn contract(a: &Voigt, b: &Voigt) -> f64 {
     (0..6).map(|k| if k < 3 { 1.0 } else { 2.0 } * a[k] * b[k]).sum()
 }
 
-/// Pressure, deviator of a stress, both positive in compression.
+/// Pressure and deviator, compression positive.
 pub(super) fn split(stress: &Voigt) -> (f64, Voigt) {
     let p = -(stress[0] + stress[1] + stress[2]) / 3.0;
     (p, std::array::from_fn(|k| -stress[k] - if k < 3 { p } else { 0.0 }))
@@ -100,7 +97,7 @@ fn mean_exponential(t: f64) -> (f64, f64) {
 }
 
 impl Clay {
-    /// Shear modulus at a bulk modulus, and its derivative by that.
+    /// Shear modulus and its derivative by the bulk modulus.
     pub fn shear_modulus(&self, bulk: f64) -> (f64, f64) {
         match self.shear {
             Shear::Poisson(nu) => {
@@ -111,7 +108,7 @@ impl Clay {
         }
     }
 
-    /// Elastic volume strain from the pressure `start` to `end`: logarithmic above the minimum, linear below.
+    /// Elastic volumetric strain from pressure `start` to `end`.
     fn elastic_strain(&self, start: f64, end: f64) -> f64 {
         let floor = self.floor;
         let from_floor = |p: f64| if p >= floor { libm::log(p / floor) } else { p / floor - 1.0 };
@@ -163,16 +160,15 @@ impl Step<'_> {
             fade,
             s,
             f: shear + p * (p - pc),
-            // Below the minimum the pressure is a difference of numbers of that size.
+            // Size of the cancelling terms below the minimum.
             size: shear + p * p + pc * if p < clay.floor { clay.floor } else { p },
             f_x: 3.0 / (m2 * fade) * along + (2.0 * p - pc) * bulk.tangent + p * hardening,
             f_multiplier: -18.0 * g * square / (m2 * m2 * fade),
         }
     }
 
-    /// The elastic volume strain of a multiplier: `x + multiplier (2 p - pc) = volume`. The left side rises with `x`, and the root
-    /// lies between the whole volume strain (no flow) and the one at which `p` is half the old `pc`, since beyond it `2 p - pc`
-    /// would have the other sign.
+    /// Solves `x + multiplier (2 p - pc) = volume` for x, increasing on the left. Root: between total strain
+    /// (no flow) and the strain at half the old `pc`, where `2 p - pc` changes sign.
     fn balance(&self, multiplier: f64, start: f64) -> Result<Trial, ReturnError> {
         let enough = |x: f64| 1e-16 * self.clay.swelling + 2.0 * f64::EPSILON * x.abs();
         let rest = |t: &Trial| self.volume - t.x - multiplier * (2.0 * t.bulk.p - t.pc);
@@ -200,7 +196,7 @@ impl Step<'_> {
         Ok(trial)
     }
 
-    /// The return to the yield surface of a trial outside it.
+    /// Returns a trial state to the yield surface.
     pub fn solve(&self, kappa: f64) -> Result<Trial, ReturnError> {
         let mut trial = self.balance(0.0, self.volume)?;
         let (mut low, mut high) = (0.0, f64::INFINITY);
@@ -222,7 +218,7 @@ impl Step<'_> {
             let newton = trial.multiplier - trial.f / slope;
             let middle = if high.is_finite() { 0.5 * (low + high) } else { 2.0 * low };
             let next = if slope < 0.0 && newton > low && newton < high { newton } else { middle };
-            // The bracket is one unit in the last place wide: no better multiplier exists.
+            // No better multiplier: the bracket is one ulp wide.
             if next <= low || next >= high || next == trial.multiplier {
                 break;
             }
@@ -231,7 +227,7 @@ impl Step<'_> {
         if best <= 1e-9 { Ok(trial) } else { Err(ReturnError::NotConverged { kappa }) }
     }
 
-    /// `2 p - pc`: volume strain of the flow per multiplier.
+    /// `2 p - pc`: volumetric flow per multiplier.
     fn dilation(&self, t: &Trial) -> f64 {
         2.0 * t.bulk.p - t.pc
     }
@@ -241,7 +237,6 @@ impl Step<'_> {
         1.0 + t.multiplier * (2.0 * t.bulk.tangent + t.hardening)
     }
 
-    /// Consistent tangent of an elastic step.
     pub fn elastic_tangent(&self, t: &Trial) -> [[f64; 6]; 6] {
         let spread: Voigt = std::array::from_fn(|i| {
             2.0 * t.g_rate * self.shear[i] + if i < 3 { t.bulk.tangent } else { 0.0 }
@@ -249,14 +244,13 @@ impl Step<'_> {
         tangent(2.0 * t.g, |i, j| if j < 3 { spread[i] } else { 0.0 })
     }
 
-    /// Consistent tangent of a return: the two equations linearised about their solution.
+    /// Consistent tangent of a return, from both linearised equations.
     pub fn plastic_tangent(&self, t: &Trial) -> [[f64; 6]; 6] {
         let m2 = self.clay.square;
         let (d, r) = (self.dilation(t), self.resistance(t));
         let (beta, push) = (6.0 * t.g / (m2 * t.fade), t.bulk.p * t.hardening);
         let own = 1.0 + t.multiplier * t.hardening;
         let determinant = r * t.f_multiplier - d * t.f_x;
-        // Derivatives of x and of the multiplier by the volume strain and by `s : d e`.
         let x_v = (own * t.f_multiplier - d * push) / determinant;
         let x_s = d * beta / determinant;
         let multiplier_v = (r * push - t.f_x * own) / determinant;
@@ -273,7 +267,7 @@ impl Step<'_> {
     }
 }
 
-/// `shear I_dev` and what `rest(i, j)` adds.
+/// `shear I_dev + rest(i, j)`.
 pub(super) fn tangent(shear: f64, rest: impl Fn(usize, usize) -> f64) -> [[f64; 6]; 6] {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {

@@ -1,10 +1,9 @@
-//! Drucker–Prager plasticity: a cone about the hydrostatic axis, exact return on cone and apex, an optional cap on the
-//! mean stress, non-associated flow, hardening of cohesion and friction angle. Zero friction is von Mises.
+//! Drucker–Prager plasticity with exact return to cone and apex, optional mean-stress cap, non-associated
+//! flow and hardening. Zero friction: von Mises.
 //!
-//! `sqrt(J2) + eta p - xi c <= 0`, `p <= tension`, `p = tr(sigma)/3`; flow by `sqrt(J2) + eta_bar p` with `eta_bar` from
-//! psi by the formula of `eta`. Source: de Souza Neto, Peric and Owen (2008), section 8.3 and equations 6.122 to 6.126
-//! for `eta` and `xi`. Limits: `0 <= psi <= phi < 90°`. A cap that comes to lie beyond the apex as `c cot(phi)` falls is
-//! not active; the apex holds there.
+//! `sqrt(J2) + eta p - xi c <= 0`, `p <= tension`, `p = tr(sigma)/3`; flow by `sqrt(J2) + eta_bar p`. Source:
+//! de Souza Neto, Peric and Owen (2008), section 8.3, equations 6.122 to 6.126. Limits:
+//! `0 <= psi <= phi < 90°`; a cap beyond the apex is inactive.
 //!
 //! Theory manual: equation (4.12) of `docs/theory/solid.md`.
 
@@ -17,19 +16,20 @@ use super::spectral::{Voigt, invariants};
 use super::strength;
 use serde::{Deserialize, Serialize};
 
-/// Where the cone meets Mohr–Coulomb of the same cohesion and friction angle.
+/// Match of cone and Mohr–Coulomb surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cone {
-    /// At the compression edges (outer cone): `eta = 6 sin / (sqrt(3) (3 - sin))`, `xi = 6 cos / (sqrt(3) (3 - sin))`.
+    /// Compression edges (outer cone): `eta = 6 sin / (sqrt(3) (3 - sin))`,
+    /// `xi = 6 cos / (sqrt(3) (3 - sin))`.
     Compression,
-    /// At the extension edges (inner cone): the same with `3 + sin`.
+    /// Extension edges (inner cone), with `3 + sin`.
     Extension,
-    /// The same limit load in plane strain: `eta = 3 tan / sqrt(9 + 12 tan²)`, `xi = 3 / sqrt(9 + 12 tan²)`.
+    /// Equal plane-strain limit load: `eta = 3 tan / sqrt(9 + 12 tan²)`, `xi = 3 / sqrt(9 + 12 tan²)`.
     PlaneStrain,
 }
 
 impl Cone {
-    /// `eta` and `xi` of an angle [rad], then their derivatives by the angle.
+    /// `eta`, `xi` and their derivatives by the angle [rad].
     pub fn coefficients(self, angle: f64) -> [f64; 4] {
         let (sin, cos) = libm::sincos(angle);
         match self {
@@ -50,29 +50,28 @@ impl Cone {
     }
 }
 
-/// Constants of Drucker–Prager.
+/// Drucker–Prager constants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DruckerPrager {
-    /// Cohesion c [Pa], 0 or above; above 0 where the friction angle is 0.
+    /// Cohesion c [Pa], 0 or above; positive without friction.
     pub cohesion: Hardening,
     /// Friction angle phi [rad], in [0, pi/2).
     pub friction: Hardening,
-    /// Dilation angle psi [rad], between 0 and the smallest friction angle.
+    /// Dilation angle psi [rad], 0 to the smallest friction angle.
     pub dilation: f64,
-    /// How the cone is matched to Mohr–Coulomb.
+    /// Match to Mohr–Coulomb.
     pub cone: Cone,
-    /// Largest mean stress [Pa], between 0 and the apex `c cot(phi)`; none for no cap.
+    /// Cap of the mean stress [Pa], 0 to the apex `c cot(phi)`.
     pub tension: Option<f64>,
 }
 
-/// Elastic constants: shear and bulk modulus [Pa].
 #[derive(Clone, Copy)]
 struct Moduli {
     shear: f64,
     bulk: f64,
 }
 
-/// Strength at one `kappa`: `q <= top - eta p` with `top = xi c`, with the derivatives by `kappa`.
+/// Strength at `kappa`: `q <= top - eta p` with `top = xi c`; derivatives by `kappa`.
 #[derive(Clone, Copy)]
 struct Strength {
     eta: f64,
@@ -83,11 +82,11 @@ struct Strength {
     tension: Option<f64>,
 }
 
-/// Mean stress `p` and `q = sqrt(J2)`.
+/// `p` and `q = sqrt(J2)`.
 type Meridian = [f64; 2];
 
 impl DruckerPrager {
-    /// Von Mises: `sqrt(3 J2)` reaches `yield_stress` [Pa].
+    /// Von Mises with `yield_stress` [Pa] for `sqrt(3 J2)`.
     pub fn von_mises(yield_stress: f64) -> DruckerPrager {
         DruckerPrager {
             cohesion: Hardening::Constant(0.5 * yield_stress),
@@ -98,9 +97,9 @@ impl DruckerPrager {
         }
     }
 
-    /// The slope `dc/dkappa` [Pa] (below 0) at or below which the return may have no unique solution. On the cone it is
-    /// `-(G + K eta eta_bar) / (xi sqrt(1/3 + 2 eta_bar²/9))`, at the apex `-3 K eta / (sqrt(2) xi)`, at the corner with
-    /// the cap `-sqrt(3) G / xi`.
+    /// Softening slope `dc/dkappa` [Pa] of nonunique returns: cone
+    /// `-(G + K eta eta_bar) / (xi sqrt(1/3 + 2 eta_bar²/9))`, apex `-3 K eta / (sqrt(2) xi)`, cap corner
+    /// `-sqrt(3) G / xi`.
     pub fn softening_limit(&self, elastic: &Elastic) -> f64 {
         let moduli = Moduli::new(elastic);
         let (low, high) = self.friction.range();
@@ -174,7 +173,7 @@ impl DruckerPrager {
                 (equivalent(&moduli, &t, &s), -by_stress(&moduli, &t, &s, &rate))
             })?;
         }
-        // Direction of the deviator, of norm sqrt(2); without one there is no shear to return.
+        // Deviator direction of norm sqrt(2); zero without shear.
         let direction: Voigt = std::array::from_fn(|k| {
             let deviator = if k < 3 { trial[k] - p } else { trial[k] };
             if t[1] > 0.0 { deviator / t[1] } else { 0.0 }
@@ -212,8 +211,7 @@ impl ConstitutiveLaw for DruckerPrager {
         strength::SOURCE
     }
 
-    /// Softening of the cohesion must stay above [`DruckerPrager::softening_limit`]; softening of the friction angle can only
-    /// be judged at a stress and fails in [`ConstitutiveLaw::update`] with [`ReturnError::Softening`].
+    /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
     fn fault(&self, elastic: &Elastic) -> Option<Fault> {
         self.shared().fault(|| self.softening_limit(elastic))
     }
@@ -222,8 +220,8 @@ impl ConstitutiveLaw for DruckerPrager {
         self.shared().is_associated()
     }
 
-    /// Hardening by the norm of the plastic strain makes the tangent unsymmetric at the apex also where the flow is
-    /// associated; von Mises has no apex.
+    /// Strain-norm hardening makes the apex tangent unsymmetric even for associated flow; von Mises has no
+    /// apex.
     fn has_symmetric_tangent(&self) -> bool {
         let von_mises = self.friction == Hardening::Constant(0.0) && self.tension.is_none();
         self.is_associated() && (self.cohesion.is_constant() || von_mises)
@@ -241,7 +239,7 @@ impl ConstitutiveLaw for DruckerPrager {
         self.return_map(elastic, old.state, &trial, want_tangent)
     }
 
-    /// `max(sqrt(J2) + eta p - xi c, p - tension)` with the strength of the point's `kappa`.
+    /// `max(sqrt(J2) + eta p - xi c, p - tension)`.
     fn yield_function(&self, point: Point<'_>) -> f64 {
         let strength = self.strength(point.state.kappa, 0.0);
         let (p, j2) = invariants(&point.state.stress);
@@ -262,17 +260,14 @@ impl Moduli {
 }
 
 impl Strength {
-    /// The cone's function [Pa].
     fn cone(&self, s: &Meridian) -> f64 {
         s[1] + self.eta * s[0] - self.top
     }
 
-    /// Stiffness along the flow of the cone.
     fn stiffness(&self, moduli: &Moduli) -> f64 {
         moduli.shear + moduli.bulk * self.eta * self.flow
     }
 
-    /// Returned `p`, `q` and region of a trial outside the surface.
     fn project(&self, t: &Meridian, moduli: &Moduli) -> (Meridian, Region) {
         let f = self.cone(t);
         let multiplier = f.max(0.0) / self.stiffness(moduli);
@@ -284,13 +279,13 @@ impl Strength {
             }
             _ => {
                 let q = self.top - self.eta * p;
-                // Not `q < 0`: on the axis of the cone the apex is the limit.
+                // Not `q < 0`: on the axis the apex is the limit.
                 if q > 0.0 { ([p, q], Region::Cone) } else { ([self.top / self.eta, 0.0], Region::ConeApex) }
             }
         }
     }
 
-    /// Derivative of the returned `p` and `q` by `kappa` at fixed trial stress.
+    /// Derivative of the returned stress by `kappa` at fixed trial.
     fn rate(&self, region: Region, s: &Meridian, moduli: &Moduli) -> Meridian {
         let top = self.top_rate - self.eta_rate * s[0];
         match region {
@@ -304,7 +299,7 @@ impl Strength {
         }
     }
 
-    /// Derivative of the returned `(p, q)` by the trial `(p, q)` at fixed strength.
+    /// Derivative of the returned by the trial `(p, q)` at fixed strength.
     fn tangent(&self, region: Region, moduli: &Moduli) -> [[f64; 2]; 2] {
         match region {
             Region::Cone => {
@@ -318,13 +313,12 @@ impl Strength {
     }
 }
 
-/// Equivalent plastic strain of the step, `sqrt(2/3 (e:e + (tr eps_p)²/3))` with the plastic deviator `e`.
+/// Equivalent plastic strain, `sqrt(2/3 (e:e + (tr eps_p)²/3))` with plastic deviator `e`.
 fn equivalent(moduli: &Moduli, t: &Meridian, s: &Meridian) -> f64 {
     let (volume, shear) = ((t[0] - s[0]) / moduli.bulk, (t[1] - s[1]) / moduli.shear);
     (shear * shear / 3.0 + 2.0 / 9.0 * volume * volume).sqrt()
 }
 
-/// Derivative of the equivalent plastic strain along a change `x` of `t - s`.
 fn by_stress(moduli: &Moduli, t: &Meridian, s: &Meridian, x: &Meridian) -> f64 {
     let h = equivalent(moduli, t, s);
     if h == 0.0 {
@@ -335,7 +329,7 @@ fn by_stress(moduli: &Moduli, t: &Meridian, s: &Meridian, x: &Meridian) -> f64 {
     (shear * x[1] / 3.0 + 2.0 / 9.0 * volume * x[0]) / h
 }
 
-/// Adds `d(p,q)/dkappa dkappa/d(trial)`; the latter follows from `kappa - h(trial, kappa) = const`.
+/// Adds `d(p,q)/dkappa dkappa/d(trial)`, from `kappa - h(trial, kappa) = const`.
 fn add_hardening(
     a: &mut [[f64; 2]; 2],
     t: &Meridian,
@@ -354,8 +348,7 @@ fn add_hardening(
     }
 }
 
-/// `d sigma = 1 dp + n dq + (q / q_trial) (2 G I_dev - G n n) d eps`, `n` the direction of the deviator, with
-/// `dp_trial = K tr(d eps)` and `dq_trial = G n : d eps`.
+/// `d sigma = 1 dp + n dq + (q / q_trial) (2 G I_dev - G n n) d eps`, n deviator direction.
 fn stiffness(n: &Voigt, a: &[[f64; 2]; 2], ratio: f64, moduli: &Moduli) -> [[f64; 6]; 6] {
     let (k, g) = (moduli.bulk, moduli.shear);
     std::array::from_fn(|i| {

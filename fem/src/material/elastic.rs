@@ -1,27 +1,26 @@
 //! Isotropic linear elasticity (Hooke).
 //!
-//! `sigma = lambda tr(eps) 1 + 2 mu eps`, `lambda = E nu / ((1 + nu)(1 - 2 nu))`, `mu = E / (2 (1 + nu))`.
-//! Source: Timoshenko and Goodier, Theory of Elasticity (1970), section 6. Limits: small strain; nu in (-1, 0.5). Near
-//! 0.5 the displacement element locks under the full rule; the reduced rule is the remedy.
+//! `sigma = lambda tr(eps) 1 + 2 mu eps`. Source: Timoshenko and Goodier, Theory of Elasticity (1970),
+//! section 6. Limits: nu in (-1, 0.5); near 0.5 use the reduced rule against locking.
 
 use serde::{Deserialize, Serialize};
 
-/// An unusable constant: its name, its value, and what is expected of it.
+/// Invalid constant: name, value, expectation.
 pub type Fault = (&'static str, f64, &'static str);
 
-/// An isotropic elastic material.
+/// Isotropic elastic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Elastic {
     /// Young's modulus E [Pa], above 0.
     pub young: f64,
     /// Poisson's ratio nu [-], in (-1, 0.5).
     pub poisson: f64,
-    /// Density [kg/m³]; 0 is accepted where no inertia is needed (statics).
+    /// Density [kg/m³]; 0 allowed in statics.
     pub density: f64,
 }
 
 impl Elastic {
-    /// Lamé's first constant lambda and the shear modulus mu [Pa].
+    /// Lamé constants lambda and mu [Pa].
     pub fn lame(&self) -> (f64, f64) {
         let (e, nu) = (self.young, self.poisson);
         (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)))
@@ -41,7 +40,7 @@ impl Elastic {
         ]
     }
 
-    /// The elastic matrix D [Pa] between stress and strain with engineering shear.
+    /// Elastic matrix D [Pa], engineering shear.
     pub fn matrix(&self) -> [[f64; 6]; 6] {
         let (lambda, mu) = self.lame();
         let mut matrix = [[0.0; 6]; 6];
@@ -55,7 +54,7 @@ impl Elastic {
         matrix
     }
 
-    /// Elastic energy of a stress over a volume, `s : D^-1 s / 2` [J/m³].
+    /// Elastic energy `s : D^-1 s / 2` [J/m³].
     pub fn stored_energy(&self, s: &[f64; 6]) -> f64 {
         let trace = s[0] + s[1] + s[2];
         let square =
@@ -63,13 +62,13 @@ impl Elastic {
         0.5 * ((1.0 + self.poisson) * square - self.poisson * trace * trace) / self.young
     }
 
-    /// Speed of the compression wave, `sqrt((lambda + 2 mu) / rho)` [m/s].
+    /// Compression wave speed, `sqrt((lambda + 2 mu) / rho)` [m/s].
     pub fn compression_wave_speed(&self) -> f64 {
         let (lambda, mu) = self.lame();
         ((lambda + 2.0 * mu) / self.density).sqrt()
     }
 
-    /// What makes the constants unusable, if anything: the name of the constant, its value and what is expected of it.
+    /// First invalid constant.
     pub fn fault(&self) -> Option<Fault> {
         if !(self.young > 0.0 && self.young.is_finite()) {
             return Some(("Young's modulus", self.young, "a finite number above 0"));
@@ -89,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn uniaxial_stress_gives_young_and_poisson_back() {
+    fn uniaxial_stress_recovers_constants() {
         let steel = Elastic { young: 210e9, poisson: 0.3, density: 7850.0 };
         let s = steel.stress(&[1e-3, -0.3e-3, -0.3e-3, 2e-4, 0.0, -1e-4]);
         assert!((s[0] - 210e6).abs() < 1e-3 && s[1].abs() < 1e-3 && s[2].abs() < 1e-3);

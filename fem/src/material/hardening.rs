@@ -1,28 +1,28 @@
-//! Strength against accumulated plastic strain.
+//! Strength as a function of accumulated plastic strain.
 //!
-//! The hardening variable is `kappa`, `d kappa = sqrt(2/3 d eps_p : d eps_p)` (strain hardening; de Souza Neto, Peric
-//! and Owen 2008, section 6.3.4). In uniaxial flow without volume change it is the plastic part of the axial strain.
+//! `d kappa = sqrt(2/3 d eps_p : d eps_p)` (strain hardening; de Souza Neto, Peric and Owen 2008, section
+//! 6.3.4).
 //!
 //! Theory manual: equation (4.11) of `docs/theory/solid.md`.
 
 use super::elastic::Fault;
 use serde::{Deserialize, Serialize};
 
-/// A strength parameter (cohesion [Pa] or friction angle [rad]) as a function of `kappa` [-].
+/// Cohesion [Pa] or friction angle [rad] as a function of `kappa` [-].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Hardening {
-    /// The same at every `kappa`: perfect plasticity.
+    /// Perfect plasticity.
     Constant(f64),
-    /// `initial + modulus * kappa`, held at `limit` once that is reached.
+    /// `initial + modulus * kappa`, up to `limit`.
     Linear {
-        /// Value at `kappa` = 0.
+        /// Initial value.
         initial: f64,
-        /// Slope per unit `kappa`; below 0 is softening.
+        /// Slope; negative for softening.
         modulus: f64,
-        /// Where the growth (or fall) ends. Needed for softening and for a friction angle that changes.
+        /// Final value; required for softening and friction angles.
         limit: Option<f64>,
     },
-    /// Points `(kappa, value)` with ascending `kappa`; straight between them, constant before the first and after the last.
+    /// Points `(kappa, value)`, ascending; linear between, constant outside.
     Table(Vec<(f64, f64)>),
 }
 
@@ -33,7 +33,7 @@ impl From<f64> for Hardening {
 }
 
 impl Hardening {
-    /// Value and slope at `kappa`. At a kink the slope is that of the side towards larger `kappa`.
+    /// Value and slope at `kappa`; at a kink the slope of the larger side.
     pub fn at(&self, kappa: f64) -> (f64, f64) {
         match self {
             Hardening::Constant(value) => (*value, 0.0),
@@ -57,7 +57,7 @@ impl Hardening {
         }
     }
 
-    /// Whether the value never changes.
+    /// Whether the value is constant.
     pub fn is_constant(&self) -> bool {
         match self {
             Hardening::Constant(_) => true,
@@ -66,7 +66,7 @@ impl Hardening {
         }
     }
 
-    /// Smallest and largest value over all `kappa`; infinite where the growth has no limit.
+    /// Smallest and largest value; infinite without limit.
     pub fn range(&self) -> (f64, f64) {
         match self {
             Hardening::Constant(value) => (*value, *value),
@@ -80,7 +80,7 @@ impl Hardening {
         }
     }
 
-    /// The steepest fall per unit `kappa` (0 or below).
+    /// Steepest fall per unit `kappa` (0 or below).
     pub fn steepest_fall(&self) -> f64 {
         match self {
             Hardening::Constant(_) => 0.0,
@@ -91,8 +91,7 @@ impl Hardening {
         }
     }
 
-    /// Every value passed through `change`, the same `kappa`. A line with a limit keeps the `kappa` at which the limit is
-    /// reached; a line without one gets the slope that `change` has at the initial value.
+    /// Maps values by `change`, keeping `kappa`; a line without limit uses its initial slope.
     pub fn map(&self, change: impl Fn(f64) -> f64) -> Hardening {
         match self {
             Hardening::Constant(value) => Hardening::Constant(change(*value)),
@@ -113,8 +112,7 @@ impl Hardening {
         }
     }
 
-    /// What makes the law unusable as such: a table out of order, a limit on the wrong side, values that are not finite.
-    /// `name` is that of the strength parameter, `bounded` asks for a limit of growth too.
+    /// First invalid value; `bounded`: growth needs a limit.
     pub(super) fn fault(&self, name: &'static str, bounded: bool) -> Option<Fault> {
         match self {
             Hardening::Constant(value) => (!value.is_finite()).then_some((name, *value, "a finite number")),

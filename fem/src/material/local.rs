@@ -1,14 +1,11 @@
-//! The local problem of a hardening material: one scalar equation.
+//! Scalar equation of hardening: `g(kappa) = kappa - kappa_n - h(kappa) = 0`.
 //!
-//! At a given `kappa` the return to the yield surface is that of perfect plasticity with the strength of that `kappa`,
-//! in closed form. Let `h(kappa) = sqrt(2/3 d eps_p : d eps_p)` be the plastic strain of this return. What is left is
-//! `g(kappa) = kappa - kappa_n - h(kappa) = 0`. With hardening `h` falls and the root is unique. With softening it is
-//! unique as long as `dh/dkappa < 1`; beyond that the point snaps back and no equilibrium path exists.
+//! `h(kappa)` is the equivalent plastic strain of the perfectly plastic return. The root is unique if
+//! `dh/dkappa < 1`; beyond that the point snaps back.
 
 use super::law::ReturnError;
 
-/// Root of `g`, by Newton steps kept inside a bracket. `plastic(kappa)` returns `h` and `dh/dkappa`. On success the
-/// returned `kappa` is the last one passed to `plastic`.
+/// Root of `g` by bracketed Newton; `plastic(kappa)` returns `h` and `dh/dkappa`.
 pub(super) fn solve_kappa(
     start: f64,
     mut plastic: impl FnMut(f64) -> (f64, f64),
@@ -41,7 +38,7 @@ pub(super) fn solve_kappa(
         } else {
             start + 2.0 * (kappa - start) + h
         };
-        // The bracket is one unit in the last place wide: no better kappa exists.
+        // No better kappa: the bracket is one ulp wide.
         if next == kappa || next <= low || next >= high {
             plastic(kappa);
             return if g.abs() <= 1e-9 * h { Ok(kappa) } else { Err(ReturnError::NotConverged { kappa }) };
@@ -56,15 +53,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn root_of_smooth_kinked_and_snapping_laws() {
-        // h = h0 - r (kappa - start): linear.
+    fn finds_root_or_reports_snapback() {
         let linear = solve_kappa(0.5, |k| (0.1 - 3.0 * (k - 0.5), -3.0)).unwrap();
         assert!((linear - 0.525).abs() < 1e-15);
-        // A kink: falls, then constant.
         let kinked =
             solve_kappa(0.0, |k| if k < 0.01 { (1.0 - 50.0 * k, -50.0) } else { (0.5, 0.0) }).unwrap();
         assert!((kinked - 0.5).abs() < 1e-15);
-        // Softening below and above the limit.
         let soft = solve_kappa(0.0, |k| (0.1 + 0.9 * k, 0.9)).unwrap();
         assert!((soft - 1.0).abs() < 1e-13);
         let snap = solve_kappa(0.0, |k| (0.1 + 1.1 * k, 1.1));

@@ -1,17 +1,11 @@
-//! Constitutive laws at an integration point. Symmetric tensors are ordered xx, yy, zz, xy, yz, zx; tension is positive;
-//! shear strains are engineering strains.
+//! Constitutive laws; tensors xx, yy, zz, xy, yz, zx, tension positive, engineering shear.
 //!
-//! A [`Material`] is isotropic elasticity with a [`Law`]; a law is whatever implements [`ConstitutiveLaw`] and stands in
-//! the list of this module. The plastic laws integrate a strain increment by the implicit (backward Euler) rule: elastic
-//! trial, then return to the yield surface of the strength at the end of the step. Source: Simo and Hughes, Computational
-//! Inelasticity (1998), chapters 3 and 5; de Souza Neto, Peric and Owen, Computational Methods for Plasticity (2008),
-//! chapters 7 and 8. Limits: small strain, isotropy.
+//! Implicit (backward Euler) return mapping: Simo and Hughes (1998), chapters 3 and 5; de Souza Neto, Peric
+//! and Owen (2008), chapters 7 and 8. Limits: small strain, isotropy.
 //!
-//! The tangent of [`update`] is the consistent one: the exact derivative of the returned stress with respect to the
-//! strain increment. It is singular where the strength fixes the stress: at every apex and corner, and on the edges of
-//! Mohr–Coulomb, where the split of the flow between two principal directions is not unique (triaxial compression with
-//! two equal lateral stresses under load control is the well-known case). [`regularise`] mixes in a small part of the
-//! elastic matrix for use in a global Newton iteration; this changes the path of the iteration, not its solution.
+//! The consistent tangent of [`update`] is singular at apexes, corners and Mohr–Coulomb edges (triaxial
+//! compression under load control). [`regularise`] mixes in the elastic matrix; this changes the Newton path,
+//! not the solution.
 mod cam_clay_return;
 pub mod drucker_prager;
 pub mod elastic;
@@ -38,13 +32,13 @@ pub use point::{Point, PointState, Points, Region};
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// The share of the elastic matrix that [`regularise`] needs for a global Newton iteration to pass singular tangents.
+/// Elastic fraction for [`regularise`] in a global Newton iteration.
 pub const REGULARISATION: f64 = 1e-6;
 
-/// Makes the enum of all laws. The update, which a run calls most, is dispatched by a match; the rest by a table.
+/// Enum of all laws; `update`, the most frequent call, uses a match.
 macro_rules! laws {
     ($($(#[$doc:meta])* $law:ident,)*) => {
-        /// One of the constitutive laws.
+        /// Constitutive laws.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Law {
             $($(#[$doc])* $law($law),)*
@@ -63,10 +57,10 @@ macro_rules! laws {
                 }
             }
 
-            /// As [`ConstitutiveLaw::update`].
+            /// See [`ConstitutiveLaw::update`].
             ///
             /// # Errors
-            /// See [`ReturnError`].
+            /// [`ReturnError`].
             #[inline]
             pub fn update(
                 &self,
@@ -81,7 +75,7 @@ macro_rules! laws {
                 }
             }
 
-            /// As [`ConstitutiveLaw::reduced`].
+            /// See [`ConstitutiveLaw::reduced`].
             #[must_use]
             pub fn reduced(&self, factor: f64) -> Law {
                 match self {
@@ -103,20 +97,20 @@ impl Deref for Law {
 laws! {
     /// No yield surface.
     LinearElastic,
-    /// Mohr–Coulomb (and Tresca), with a Rankine tension cut-off.
+    /// Mohr–Coulomb (and Tresca) with Rankine tension cut-off.
     MohrCoulomb,
-    /// Drucker–Prager (and von Mises), with a cap on the mean stress.
+    /// Drucker–Prager (and von Mises) with mean-stress cap.
     DruckerPrager,
-    /// Modified Cam clay: ellipse, volumetric hardening, stiffness in proportion to the pressure.
+    /// Modified Cam clay.
     ModifiedCamClay,
 }
 
-/// What a mesh's material number stands for.
+/// Material of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Elastic constants and density; for a law with an elasticity of its own those at its reference state.
+    /// Elastic constants and density (at the reference state).
     pub elastic: Elastic,
-    /// The constitutive law.
+    /// Constitutive law.
     pub law: Law,
 }
 
@@ -127,15 +121,15 @@ impl From<Elastic> for Material {
 }
 
 impl Material {
-    /// A material with a law that is not linear.
+    /// Material with a nonlinear law.
     pub fn plastic(elastic: Elastic, law: impl Into<Law>) -> Self {
         Material { elastic, law: law.into() }
     }
 
-    /// What makes the constants unusable, if anything: the name of the constant, its value and what is expected of it.
+    /// First invalid constant: name, value, expectation.
     pub fn fault(&self) -> Option<Fault> {
         let (law, elastic) = (|| self.law.fault(&self.elastic), || self.elastic.fault());
-        // Reference constants that a law derives are faulty only where its own are.
+        // Derived constants are invalid only if the law's are.
         if self.law.has_constant_elasticity() { elastic().or_else(law) } else { law().or_else(elastic) }
     }
 
@@ -144,22 +138,21 @@ impl Material {
         self.law.is_linear()
     }
 
-    /// Whether the consistent tangent is symmetric wherever a step ends.
+    /// Whether the tangent is always symmetric.
     pub fn symmetric_tangent(&self) -> bool {
         self.law.has_symmetric_tangent()
     }
 
-    /// The material with its strength divided by `factor` (above 0), see [`ConstitutiveLaw::reduced`].
+    /// Material with strength divided by `factor`, see [`ConstitutiveLaw::reduced`].
     pub fn reduced(&self, factor: f64) -> Material {
         Material { elastic: self.elastic, law: self.law.reduced(factor) }
     }
 }
 
-/// Stress, history and, if `want_tangent`, the consistent tangent after a strain increment from an old, committed state
-/// of a law without values of its own; with them see [`ConstitutiveLaw::update`].
+/// Updates a point of a law without state values, as [`ConstitutiveLaw::update`].
 ///
 /// # Errors
-/// See [`ReturnError`]; perfect plasticity only fails on numbers that are not finite.
+/// [`ReturnError`]; perfect plasticity only fails on values not finite.
 pub fn update(
     material: &Material,
     old: &PointState,
@@ -169,14 +162,13 @@ pub fn update(
     material.law.update(&material.elastic, old.into(), increment, want_tangent, &mut [])
 }
 
-/// Value of the yield function of a law without values of its own, see [`ConstitutiveLaw::yield_function`].
+/// Yield function of a law without state values, see [`ConstitutiveLaw::yield_function`].
 pub fn yield_function(material: &Material, state: &PointState) -> f64 {
     material.law.yield_function(state.into())
 }
 
-/// `tangent` becomes `(1 - fraction) tangent + fraction D`, `D` the elastic matrix [Pa]. [`REGULARISATION`] as the
-/// fraction is enough for a global Newton iteration to pass singular tangents, at the price of a linear rate of that
-/// order.
+/// Sets `tangent` to `(1 - fraction) tangent + fraction D` [Pa]. With [`REGULARISATION`], Newton converges
+/// linearly at a rate of that order.
 pub fn regularise(tangent: &mut [[f64; 6]; 6], elastic: &Elastic, fraction: f64) {
     let matrix = elastic.matrix();
     for (row, elastic_row) in tangent.iter_mut().zip(&matrix) {

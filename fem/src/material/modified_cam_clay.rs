@@ -1,21 +1,18 @@
-//! Modified Cam clay: an elliptic yield surface in mean stress and shear, associated flow, volumetric hardening, and
-//! elasticity in proportion to the pressure.
+//! Modified Cam clay: elliptic yield surface, associated flow, volumetric hardening, pressure-dependent
+//! elasticity.
 //!
-//! With the effective pressure `p = -tr(sigma)/3`, `q = sqrt(3 J2)` and the specific volume `v = 1 + e` of the start:
+//! With `p = -tr(sigma)/3`, `q = sqrt(3 J2)` and initial specific volume `v = 1 + e`:
 //!
 //! ```text
 //! q²/M² + p (p - pc) <= 0,   d pc / pc = v d eps_v^p / (lambda - kappa),   K = v p / kappa
 //! ```
 //!
-//! so that a normally consolidated clay follows `v0 - v = lambda ln(p/p0)` and an unloaded one `kappa ln(p/p0)`, strains
-//! being those of the undeformed volume. Shear is elastic with a constant Poisson's ratio or a constant shear modulus; with a
-//! constant Poisson's ratio a closed elastic cycle does not give back all its work (Zytynski, Randolph, Nova and Wroth, Int. J.
-//! Numer. Anal. Methods Geomech. 2 (1978) 87-93), with a constant modulus it does.
+//! Shear has constant Poisson's ratio, which is not conservative (Zytynski, Randolph, Nova and Wroth 1978),
+//! or constant modulus.
 //!
-//! Source: Roscoe and Burland, On the generalised stress-strain behaviour of wet clay, in Engineering Plasticity (1968)
-//! 535-609; Borja and Lee, Comput. Methods Appl. Mech. Eng. 78 (1990) 49-72 for the integration and its tangent. Limits: below the
-//! `minimum_pressure` the bulk modulus is that of this pressure and `pc` falls no further, so that ground without
-//! stress can be computed; the circle of the deviatoric plane gives too much strength in extension.
+//! Source: Roscoe and Burland (1968); Borja and Lee (1990) (integration, tangent). Limits: below
+//! `minimum_pressure`, bulk modulus and `pc` are constant; the circular deviatoric section overestimates
+//! strength in extension.
 //!
 //! Theory manual: equation (4.14) of `docs/theory/solid.md`.
 
@@ -27,38 +24,38 @@ use super::point::{Point, PointState, Region};
 use super::spectral::{Voigt, invariants};
 use serde::{Deserialize, Serialize};
 
-/// Pressure of the constant matrices where no preconsolidation pressure is given [Pa]: that of the atmosphere.
+/// Reference pressure without preconsolidation [Pa].
 const REFERENCE_PRESSURE: f64 = 100e3;
-/// Size of the yield surface at the start.
+/// Initial size of the yield surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Consolidation {
     /// Preconsolidation pressure `pc` [Pa].
     Pressure(f64),
-    /// `pc` over the pressure `p + q²/(M² p)` of the yield surface through the initial stress, 1 or more.
+    /// Overconsolidation ratio: `pc` over initial `p + q²/(M² p)`, 1 or more.
     Ratio(f64),
 }
 
-/// Constants of modified Cam clay.
+/// Modified Cam clay constants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModifiedCamClay {
-    /// Slope lambda of the normal compression line, volume against ln p [-].
+    /// Slope lambda of the normal compression line, v against ln p [-].
     pub lambda: f64,
-    /// Slope kappa of the swelling lines [-], above 0, below lambda.
+    /// Swelling slope kappa [-], above 0, below lambda.
     pub kappa: f64,
-    /// Stress ratio q/p at the critical state, M [-].
+    /// Critical stress ratio M = q/p [-].
     pub critical_ratio: f64,
-    /// Void ratio e at the start [-].
+    /// Initial void ratio e [-].
     pub void_ratio: f64,
-    /// Elastic stiffness in shear.
+    /// Elastic shear stiffness.
     pub shear: Shear,
-    /// Size of the yield surface at the start.
+    /// Initial size of the yield surface.
     pub consolidation: Consolidation,
-    /// Pressure [Pa] below which the bulk modulus falls no further.
+    /// Pressure of the minimum bulk modulus [Pa].
     pub minimum_pressure: f64,
 }
 
 impl ModifiedCamClay {
-    /// Elasticity at the reference state: the preconsolidation pressure, or 100 kPa.
+    /// Elasticity at the preconsolidation pressure, or 100 kPa.
     pub fn reference(&self, density: f64) -> Elastic {
         let p = match self.consolidation {
             Consolidation::Pressure(pc) => pc,
@@ -170,7 +167,6 @@ impl ConstitutiveLaw for ModifiedCamClay {
         values: &mut [f64],
     ) -> Result<Response, ReturnError> {
         let (p, deviator) = split(&old.state.stress);
-        // Strain splits as stress does; its mean is a third of the volume strain and its shear is doubled.
         let (mean, mut shear) = split(increment);
         shear[3..].iter_mut().for_each(|s| *s *= 0.5);
         let clay = self.clay();
@@ -216,7 +212,7 @@ impl ConstitutiveLaw for ModifiedCamClay {
         tangent(2.0 * self.clay().shear_modulus(bulk).0, |i, j| if i < 3 && j < 3 { bulk } else { 0.0 })
     }
 
-    /// `kappa p / v` in compression, and the energy of the shear at the shear modulus of the pressure.
+    /// `kappa p / v` in compression, plus shear energy at the current modulus.
     fn stored_energy(&self, _: &Elastic, point: Point<'_>) -> f64 {
         let (p, j2) = invariants(&point.state.stress);
         let (p, floor, slope) = (-p, self.minimum_pressure, self.clay().swelling);
@@ -228,7 +224,7 @@ impl ConstitutiveLaw for ModifiedCamClay {
         self.surface(&point.state.stress, point.values[0])
     }
 
-    /// The friction angle of triaxial compression, `sin(phi) = 3 M / (6 + M)`, with its tangent divided by the factor.
+    /// Reduces the tangent of the triaxial friction angle, `sin(phi) = 3 M / (6 + M)`.
     fn reduced(&self, factor: f64) -> ModifiedCamClay {
         let phi = libm::asin(3.0 * self.critical_ratio / (6.0 + self.critical_ratio));
         let sin = libm::sin(libm::atan(libm::tan(phi) / factor));

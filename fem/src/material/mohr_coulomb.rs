@@ -1,10 +1,9 @@
-//! Mohr–Coulomb plasticity: six planes in principal stresses, exact return on planes, edges and apex, an optional
-//! Rankine tension cut-off, non-associated flow, hardening of cohesion and friction angle. Zero friction is Tresca.
+//! Mohr–Coulomb plasticity with exact return to planes, edges and apex, optional Rankine cut-off,
+//! non-associated flow and hardening. Zero friction: Tresca.
 //!
-//! `(s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi) <= 0`, `s1 <= tension`; flow by the same functions, with psi in place
-//! of phi in the first. Source: de Souza Neto, Peric and Owen (2008), section 8.2; see also the sibling module with the
-//! return at fixed strength. Limits: `0 <= psi <= phi < 90°`. A cut-off that comes to lie beyond the apex as `c cot(phi)`
-//! falls is not active; the apex holds there.
+//! `(s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi) <= 0`, `s1 <= tension`; flow with psi instead of phi.
+//! Source: de Souza Neto, Peric and Owen (2008), section 8.2. Limits: `0 <= psi <= phi < 90°`; a cut-off
+//! beyond the apex is inactive.
 //!
 //! Theory manual: equation (4.13) of `docs/theory/solid.md`.
 
@@ -18,23 +17,23 @@ use super::spectral::{self, Voigt, invariants};
 use super::strength;
 use serde::{Deserialize, Serialize};
 
-/// Constants of Mohr–Coulomb.
+/// Mohr–Coulomb constants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MohrCoulomb {
-    /// Cohesion c [Pa], 0 or above; above 0 where the friction angle is 0.
+    /// Cohesion c [Pa], 0 or above; positive without friction.
     pub cohesion: Hardening,
     /// Friction angle phi [rad], in [0, pi/2).
     pub friction: Hardening,
-    /// Dilation angle psi [rad], between 0 and the smallest friction angle.
+    /// Dilation angle psi [rad], 0 to the smallest friction angle.
     pub dilation: f64,
-    /// Largest principal stress [Pa], between 0 and the apex `c cot(phi)`; none for no cut-off.
+    /// Tension cut-off [Pa], 0 to the apex `c cot(phi)`.
     pub tension: Option<f64>,
 }
 
 const ROOT_TWO_THIRDS: f64 = 0.816496580927726;
 
 impl MohrCoulomb {
-    /// Tresca: the difference of the largest and smallest principal stress reaches `yield_stress` [Pa].
+    /// Tresca with `yield_stress` [Pa] as principal stress difference.
     pub fn tresca(yield_stress: f64) -> MohrCoulomb {
         MohrCoulomb {
             cohesion: Hardening::Constant(0.5 * yield_stress),
@@ -44,9 +43,9 @@ impl MohrCoulomb {
         }
     }
 
-    /// The slope `dc/dkappa` [Pa] (below 0) at or below which the return may have no unique solution: in some region
-    /// `dh/dkappa = sqrt(2/3) |D^-1 ds/dc| |dc/dkappa|` reaches 1. On the plane it is
-    /// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)` with the normal `n` and the flow `m`.
+    /// Softening slope `dc/dkappa` [Pa] of nonunique returns:
+    /// `dh/dkappa = sqrt(2/3) |D^-1 ds/dc| |dc/dkappa|` reaches 1; plane
+    /// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)` with normal `n` and flow `m`.
     pub fn softening_limit(&self, elastic: &Elastic) -> f64 {
         let moduli = Moduli::new(elastic);
         let (low, high) = self.friction.range();
@@ -158,8 +157,7 @@ impl ConstitutiveLaw for MohrCoulomb {
         strength::SOURCE
     }
 
-    /// Softening of the cohesion must stay above [`MohrCoulomb::softening_limit`]; softening of the friction angle can only
-    /// be judged at a stress and fails in [`ConstitutiveLaw::update`] with [`ReturnError::Softening`].
+    /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
     fn fault(&self, elastic: &Elastic) -> Option<Fault> {
         self.shared().fault(|| self.softening_limit(elastic))
     }
@@ -168,8 +166,7 @@ impl ConstitutiveLaw for MohrCoulomb {
         self.shared().is_associated()
     }
 
-    /// Hardening by the norm of the plastic strain makes the tangent unsymmetric on edges and at the apex also where the
-    /// flow is associated.
+    /// Strain-norm hardening makes edge and apex tangents unsymmetric even for associated flow.
     fn has_symmetric_tangent(&self) -> bool {
         self.cohesion.is_constant() && self.is_associated()
     }
@@ -186,7 +183,7 @@ impl ConstitutiveLaw for MohrCoulomb {
         self.return_map(elastic, old.state, &trial, want_tangent)
     }
 
-    /// `max((s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi), s1 - tension)` with the strength of the point's `kappa`.
+    /// `max((s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi), s1 - tension)`.
     fn yield_function(&self, point: Point<'_>) -> f64 {
         let strength = self.strength(point.state.kappa);
         let s = spectral::principal(&point.state.stress).values;
@@ -199,7 +196,7 @@ impl ConstitutiveLaw for MohrCoulomb {
     }
 }
 
-/// A bound without principal values: with `q = sqrt(J2)`, `s1 <= p + 2 q / sqrt(3)`, and over all Lode angles
+/// Bound without principal values, `q = sqrt(J2)`: `s1 <= p + 2 q / sqrt(3)`,
 /// `f <= q sqrt(1 + sin²(phi)/3) + p sin(phi) - c cos(phi)`.
 fn clearly_inside(t: &Voigt, strength: &Strength) -> bool {
     let (p, j2) = invariants(t);
@@ -209,7 +206,6 @@ fn clearly_inside(t: &Voigt, strength: &Strength) -> bool {
         && strength.tension.is_none_or(|cut| p + 1.1547005383792517 * q <= cut)
 }
 
-/// Principal plastic strain of the step.
 fn plastic(moduli: &Moduli, trial: &[f64; 3], s: &[f64; 3]) -> [f64; 3] {
     moduli.scaled_strain(&[trial[0] - s[0], trial[1] - s[1], trial[2] - s[2]]).map(|x| x / (2.0 * moduli.mu))
 }
@@ -218,7 +214,6 @@ fn equivalent(flow: &[f64; 3]) -> f64 {
     ROOT_TWO_THIRDS * (flow[0] * flow[0] + flow[1] * flow[1] + flow[2] * flow[2]).sqrt()
 }
 
-/// Derivative of the equivalent plastic strain along a plastic strain `D^-1 x`.
 fn by_stress(moduli: &Moduli, flow: &[f64; 3], x: &[f64; 3]) -> f64 {
     let h = equivalent(flow);
     if h == 0.0 {
@@ -229,7 +224,7 @@ fn by_stress(moduli: &Moduli, flow: &[f64; 3], x: &[f64; 3]) -> f64 {
     product / (3.0 * moduli.mu * h)
 }
 
-/// Adds `ds/dkappa dkappa/de`; `dkappa/de` follows from `kappa - h(e, kappa) = const`.
+/// Adds `ds/dkappa dkappa/de`, from `kappa - h(e, kappa) = const`.
 fn add_hardening(
     a: &mut [[f64; 3]; 3],
     s: &[f64; 3],
@@ -254,8 +249,8 @@ fn add_hardening(
     }
 }
 
-/// Shear moduli in the planes of the principal axes, `mu (s_i - s_j) / (t_i - t_j)`: the spin terms of the tangent.
-/// Where two trial values coincide, the limit: 0 where the region keeps them equal, else `mu`.
+/// Spin terms of the tangent, `mu (s_i - s_j) / (t_i - t_j)`; for equal trial values 0 if kept equal, else
+/// `mu`.
 fn shear_moduli(t: &[f64; 3], s: &[f64; 3], region: Region, mu: f64) -> [f64; 3] {
     let (first, second) = principal_return::equal_pairs(region);
     let size = t[0].abs().max(t[2].abs());

@@ -1,9 +1,9 @@
-//! State of the integration points: what all laws have in common, and the values that a law keeps of its own.
+//! State of the integration points.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
 
-/// Stress and history of one integration point, as every law has them.
+/// Stress and history common to all laws.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct PointState {
     /// Stress [Pa], `[xx, yy, zz, xy, yz, zx]`.
@@ -14,26 +14,22 @@ pub struct PointState {
     pub kappa: f64,
 }
 
-/// The state of one point as a law reads it.
+/// State of one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
-    /// What all laws have.
+    /// Common state.
     pub state: &'a PointState,
-    /// The law's own values, in the order of [`super::ConstitutiveLaw::state_values`].
+    /// State values, ordered as [`super::ConstitutiveLaw::state_values`].
     pub values: &'a [f64],
 }
 
 impl<'a> From<&'a PointState> for Point<'a> {
-    /// A point of a law without values of its own.
     fn from(state: &'a PointState) -> Point<'a> {
         Point { state, values: &[] }
     }
 }
 
-/// States of all integration points of a body; a part of a checkpoint.
-///
-/// Dereferences to the slice of the states. The values of the laws lie point by point; where those of an element begin
-/// is known to [`crate::Model::values`].
+/// States of all integration points, stored in checkpoints; dereferences to the common states.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Points {
     states: Vec<PointState>,
@@ -41,22 +37,22 @@ pub struct Points {
 }
 
 impl Points {
-    /// Points without stress and history; `values` is the number of the laws' own values of all points together.
+    /// Unstressed points with `values` state values in total.
     pub fn new(count: usize, values: usize) -> Points {
         Points { states: vec![PointState::default(); count], values: vec![0.0; values] }
     }
 
-    /// The laws' own values of all points.
+    /// State values of all points.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// States and values, to be written.
+    /// Mutable states and state values.
     pub fn split_mut(&mut self) -> (&mut [PointState], &mut [f64]) {
         (&mut self.states, &mut self.values)
     }
 
-    /// Adds points without stress and history, or removes points from the end.
+    /// Resizes; new points are unstressed.
     pub fn resize(&mut self, count: usize, values: usize) {
         self.states.resize(count, PointState::default());
         self.values.resize(values, 0.0);
@@ -95,16 +91,16 @@ impl<'a> IntoIterator for &'a mut Points {
     }
 }
 
-/// The part of the yield surface to which the trial stress returned. `s1 >= s2 >= s3` are principal stresses.
+/// Region of the yield surface; principal stresses `s1 >= s2 >= s3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Region {
-    /// Inside the yield surface.
+    /// Elastic.
     Elastic,
-    /// Mohr–Coulomb: the plane of `s1` and `s3`.
+    /// Mohr–Coulomb: plane of `s1` and `s3`.
     Plane,
-    /// Mohr–Coulomb: the edge `s1 = s2` (triaxial compression).
+    /// Mohr–Coulomb: edge `s1 = s2` (triaxial compression).
     EdgeCompression,
-    /// Mohr–Coulomb: the edge `s2 = s3` (triaxial extension).
+    /// Mohr–Coulomb: edge `s2 = s3` (triaxial extension).
     EdgeExtension,
     /// Mohr–Coulomb: `s1 = s2 = s3 = c cot(phi)`.
     Apex,
@@ -114,21 +110,21 @@ pub enum Region {
     TensionEdge,
     /// Rankine cut-off: all three at `tension`.
     TensionCorner,
-    /// The line where the Mohr–Coulomb plane meets the cut-off.
+    /// Plane and cut-off.
     PlaneTension,
-    /// The point where the compression edge meets the cut-off: `s1 = s2 = tension`, `s3` from Mohr–Coulomb.
+    /// Compression edge and cut-off: `s1 = s2 = tension`.
     EdgeCompressionTension,
-    /// The point where the extension edge meets the cut-off: `s1 = tension`, `s2 = s3` from Mohr–Coulomb.
+    /// Extension edge and cut-off: `s1 = tension`, `s2 = s3`.
     EdgeExtensionTension,
-    /// Drucker–Prager: the cone (von Mises: the cylinder).
+    /// Drucker–Prager: cone (von Mises: cylinder).
     Cone,
-    /// Drucker–Prager: the apex of the cone.
+    /// Drucker–Prager: apex.
     ConeApex,
-    /// Drucker–Prager: the cap, mean stress = `tension`.
+    /// Drucker–Prager: cap, mean stress = `tension`.
     Cap,
-    /// Drucker–Prager: the circle where the cone meets the cap.
+    /// Drucker–Prager: cone and cap.
     ConeCap,
-    /// A part of a yield surface that a law names itself.
+    /// Region named by its law.
     Named(&'static str),
 }
 

@@ -1,21 +1,16 @@
-//! Return to the Mohr–Coulomb surface with a Rankine cut-off, in principal stresses and at fixed strength.
+//! Return to the Mohr–Coulomb surface with Rankine cut-off, in principal stresses at fixed strength.
 //!
-//! Each region of the return is an affine piece of the surface (plane, line or point) together with the cone of its
-//! flow directions. With `L` the directions inside the piece and `W` the directions at right angles to all its flow
-//! vectors, the returned stress fulfils `W^T D^-1 (s_trial - s) = 0` on the piece, in closed form, and its derivative is
-//! `A = L (W^T D^-1 L)^-1 W^T`. A region is the right one when its stress lies on the piece (order of the principal
-//! stresses kept) and the plastic strain lies in its cone (multipliers not negative). For `0 <= psi <= phi` the regions
-//! cover the stress space without overlap, except that for `psi = 0` the cone of the apex shrinks to a plane; its region
-//! is then the limit for `psi -> 0`, a half-space.
+//! Each region is an affine piece of the surface with a cone of flow directions. With `L` in the piece and
+//! `W` orthogonal to its flow, `W^T D^-1 (s_trial - s) = 0` and `A = L (W^T D^-1 L)^-1 W^T`. Admissible:
+//! principal order, multipliers not negative. Regions are disjoint for `0 <= psi <= phi`; at `psi = 0` the
+//! apex region is a half-space.
 //!
-//! Source: Clausen, Damkilde and Andersen, Engineering Computations 23 (2006) 1–22 and Computers and Structures 85
-//! (2007) 1795–1807 for lines and points; de Souza Neto, Peric and Owen (2008), section 8.2; the regions of the cut-off
-//! follow the same construction.
+//! Source: Clausen, Damkilde and Andersen (2006, 2007) (lines, points); de Souza Neto, Peric and Owen (2008),
+//! section 8.2.
 
 use super::elastic::Elastic;
 use super::point::Region;
 
-/// Elastic constants in the form the return needs.
 #[derive(Clone, Copy)]
 pub(super) struct Moduli {
     pub lambda: f64,
@@ -30,22 +25,21 @@ impl Moduli {
         Moduli { lambda, mu, ratio: lambda / (3.0 * lambda + 2.0 * mu) }
     }
 
-    /// `D x` of principal strains.
     fn stress(&self, x: &[f64; 3]) -> [f64; 3] {
         let mean = self.lambda * (x[0] + x[1] + x[2]);
         x.map(|x| mean + 2.0 * self.mu * x)
     }
 
-    /// `2 mu D^-1 x` of principal stresses.
+    /// `2 mu D^-1 x`.
     pub fn scaled_strain(&self, x: &[f64; 3]) -> [f64; 3] {
         let mean = self.ratio * (x[0] + x[1] + x[2]);
         x.map(|x| x - mean)
     }
 }
 
-/// Strength at one `kappa`, with the derivatives by `kappa` (names with `_rate`).
+/// Strength at `kappa` and its derivatives (`_rate`).
 ///
-/// Plane: `a s1 - b s3 = k` with `a = 1 + sin(phi)`, `b = 1 - sin(phi)`, `k = 2 c cos(phi)`. Flow: the same with psi.
+/// Plane: `a s1 - b s3 = k` with `a = 1 + sin(phi)`, `b = 1 - sin(phi)`, `k = 2 c cos(phi)`; flow with psi.
 #[derive(Clone, Copy)]
 pub(super) struct Strength {
     pub sin: f64,
@@ -57,7 +51,7 @@ pub(super) struct Strength {
     /// `1 + sin(psi)` and `1 - sin(psi)`.
     pub flow_a: f64,
     pub flow_b: f64,
-    /// Cut-off, only where it lies below the apex.
+    /// Cut-off, if below the apex.
     pub tension: Option<f64>,
 }
 
@@ -79,18 +73,18 @@ impl Strength {
         }
     }
 
-    /// The plane's function, `a s1 - b s3 - k` [Pa], twice the usual one.
+    /// `a s1 - b s3 - k` [Pa], twice the usual yield function.
     pub fn plane(&self, s: &[f64; 3]) -> f64 {
         self.a * s[0] - self.b * s[2] - self.k
     }
 
-    /// `s3` where the plane meets the cut-off `t`.
+    /// `s3` at plane and cut-off `t`.
     fn corner(&self, t: f64) -> f64 {
         (self.a * t - self.k) / self.b
     }
 }
 
-/// The best region so far. A margin [Pa] is the smallest of a region's conditions; 0 or above means all hold.
+/// Best region; margin [Pa]: smallest condition.
 struct Choice {
     stress: [f64; 3],
     region: Region,
@@ -98,7 +92,6 @@ struct Choice {
 }
 
 impl Choice {
-    /// True when the region is admissible.
     #[inline(always)]
     fn offer(&mut self, region: Region, stress: [f64; 3], conditions: [f64; 4]) -> bool {
         let margin = conditions[0].min(conditions[1]).min(conditions[2].min(conditions[3]));
@@ -109,9 +102,8 @@ impl Choice {
     }
 }
 
-/// Returned principal stress and region of a sorted trial stress outside the surface. Between two regions rounding may
-/// leave none admissible; then the one that fails by least is taken, which is why a region also states the conditions that
-/// the regions tried before it already exclude.
+/// Returned stress and region of a sorted trial stress. If rounding rejects all regions, the least violated
+/// is selected; hence conditions repeat.
 pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], Region) {
     let mut choice = Choice { stress: *trial, region: Region::Elastic, margin: f64::NEG_INFINITY };
     let _ = plane_and_edges(trial, strength, moduli, &mut choice)
@@ -122,7 +114,7 @@ pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) ->
     (choice.stress, choice.region)
 }
 
-/// Twice the shear modulus times the plastic strain.
+/// `2 mu` times the plastic strain.
 fn flow(moduli: &Moduli, trial: &[f64; 3], s: &[f64; 3]) -> [f64; 3] {
     moduli.scaled_strain(&[trial[0] - s[0], trial[1] - s[1], trial[2] - s[2]])
 }
@@ -133,7 +125,7 @@ fn dot(x: &[f64; 3], y: &[f64; 3]) -> f64 {
 
 fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
     let cut = q.tension.unwrap_or(f64::INFINITY);
-    // Plane. s1 is taken from s3, so that the stress stays on the surface after very large steps.
+    // s1 follows from s3, so that large steps stay on the surface.
     let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
     let f = q.plane(trial);
     let multiplier = f / (q.a * r[0] - q.b * r[2]);
@@ -142,7 +134,7 @@ fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     if choice.offer(Region::Plane, s, [f, s[0] - s[1], s[1] - s[2], cut - s[0]]) {
         return true;
     }
-    // Edges: s = start + s3 * line. Both lie on the same side of the apex as long as s1 >= s3.
+    // Edges: s = start + s3 * line, on one side of the apex if s1 >= s3.
     let (start, slope) = (q.k / q.a, q.b / q.a);
     let u = moduli.scaled_strain(&[q.flow_b, q.flow_b, q.flow_a]);
     let s3 = (dot(&u, trial) - (u[0] + u[1]) * start) / ((u[0] + u[1]) * slope + u[2]);
@@ -175,13 +167,11 @@ fn apex(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) ->
 fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
     let s3 = q.corner(t);
     let steep = q.flow_a / q.flow_b;
-    // s1 = t alone.
     let drop = (trial[0] - t) * moduli.lambda / (moduli.lambda + 2.0 * moduli.mu);
     let s = [t, trial[1] - drop, trial[2] - drop];
     if choice.offer(Region::TensionPlane, s, [trial[0] - t, t - s[1], s[2] - s3, trial[0] - t]) {
         return true;
     }
-    // Line of s1 = t and the plane: no plastic strain along axis 2.
     let (d1, d3) = (trial[0] - t, trial[2] - s3);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d3);
     let s = [t, trial[1] - drop, s3];
@@ -189,7 +179,6 @@ fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     if choice.offer(Region::PlaneTension, s, [-e3, e1 + steep * e3, t - s[1], s[1] - s3]) {
         return true;
     }
-    // s1 = s2 = t: no plastic strain along axis 3.
     let (d1, d2) = (trial[0] - t, trial[1] - t);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d2);
     let s = [t, t, trial[2] - drop];
@@ -211,7 +200,7 @@ fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     choice.offer(Region::TensionCorner, s, [e[2], e[1], e[0], e[2]])
 }
 
-/// Which neighbouring pairs of principal stresses a region makes equal: (1,2) and (2,3).
+/// Equal pairs of principal stresses: (1,2) and (2,3).
 pub(super) fn equal_pairs(region: Region) -> (bool, bool) {
     match region {
         Region::EdgeCompression | Region::TensionEdge | Region::EdgeCompressionTension => (true, false),
@@ -221,7 +210,7 @@ pub(super) fn equal_pairs(region: Region) -> (bool, bool) {
     }
 }
 
-/// How fast the piece of the surface moves with `kappa` at the stress `s`, along any direction.
+/// Velocity of the surface with `kappa` at `s`.
 fn drift(region: Region, s: &[f64; 3], q: &Strength) -> [f64; 3] {
     // a' = sin', b' = -sin'.
     let along_s1 = (q.k_rate - q.sin_rate * (s[0] + s[2])) / q.a;
@@ -236,7 +225,7 @@ fn drift(region: Region, s: &[f64; 3], q: &Strength) -> [f64; 3] {
     }
 }
 
-/// Direction `l` of a line region and its partner `w`, at right angles to the flow vectors.
+/// Direction `l` of a line and `w`, orthogonal to the flow.
 fn line(region: Region, q: &Strength) -> Option<([f64; 3], [f64; 3])> {
     match region {
         Region::EdgeCompression => Some(([q.b, q.b, q.a], [q.flow_b, q.flow_b, q.flow_a])),
@@ -247,7 +236,7 @@ fn line(region: Region, q: &Strength) -> Option<([f64; 3], [f64; 3])> {
     }
 }
 
-/// Derivative of the returned stress by `kappa` at fixed trial stress.
+/// Derivative of the returned stress by `kappa` at fixed trial.
 pub(super) fn rate(region: Region, s: &[f64; 3], q: &Strength, moduli: &Moduli) -> [f64; 3] {
     if region == Region::Plane {
         let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
@@ -265,7 +254,7 @@ pub(super) fn rate(region: Region, s: &[f64; 3], q: &Strength, moduli: &Moduli) 
     rate
 }
 
-/// `A[i][j] = d s_i / d e_j` at fixed strength, `e` the principal strain of the trial.
+/// `A[i][j] = d s_i / d e_j` at fixed strength, `e` trial principal strain.
 pub(super) fn tangent(region: Region, q: &Strength, moduli: &Moduli) -> [[f64; 3]; 3] {
     if let Some((l, w)) = line(region, q) {
         let scale = 2.0 * moduli.mu / dot(&moduli.scaled_strain(&w), &l);

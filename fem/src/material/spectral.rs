@@ -1,13 +1,13 @@
-//! Principal values and axes of a symmetric 3×3 tensor, and tensors built back from them.
+//! Principal values and axes of symmetric 3×3 tensors.
 //!
-//! Source: cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 2013, section 8.5); the derivative of an
-//! isotropic tensor function in its principal axes (de Souza Neto, Peric and Owen, Computational Methods for
-//! Plasticity, 2008, appendix A). Limits: squares of the components must neither overflow nor underflow.
+//! Source: cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 2013, section 8.5); derivative
+//! of isotropic tensor functions (de Souza Neto, Peric and Owen 2008, appendix A). Limits: squares must not
+//! overflow or underflow.
 
-/// Stress or stiffness in Voigt order xx yy zz xy yz zx.
+/// Voigt order xx yy zz xy yz zx.
 pub(super) type Voigt = [f64; 6];
 
-/// Mean stress and the second invariant of the deviator.
+/// Mean stress and J2.
 pub(super) fn invariants(t: &Voigt) -> (f64, f64) {
     let p = (t[0] + t[1] + t[2]) / 3.0;
     let d = [t[0] - p, t[1] - p, t[2] - p];
@@ -15,13 +15,11 @@ pub(super) fn invariants(t: &Voigt) -> (f64, f64) {
     (p, j2)
 }
 
-/// Principal values, largest first, and the unit axes that belong to them.
 pub(super) struct Principal {
     pub values: [f64; 3],
     pub axes: [[f64; 3]; 3],
 }
 
-/// One Jacobi rotation that clears `a[p][q]`; `r` is the third index.
 #[inline(always)]
 fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize, r: usize) {
     let apq = a[p][q];
@@ -41,7 +39,6 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize, r: u
     a[p][r] = a[r][p];
     a[r][q] = s * arp + c * arq;
     a[q][r] = a[r][q];
-    // Axes are kept as rows.
     for k in 0..3 {
         let (vp, vq) = (v[p][k], v[q][k]);
         v[p][k] = c * vp - s * vq;
@@ -49,12 +46,12 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize, r: u
     }
 }
 
-/// Spectral decomposition of a stress in Voigt order. The axes are orthonormal also where values are equal.
+/// Spectral decomposition with orthonormal axes.
 pub(super) fn principal(t: &Voigt) -> Principal {
     let mut a = [[t[0], t[3], t[5]], [t[3], t[1], t[4]], [t[5], t[4], t[2]]];
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let size: f64 = t.iter().map(|x| x.abs()).sum();
-    // Convergence is quadratic: more than six sweeps never occur; the bound only guards against NaN.
+    // Converges within six sweeps; the bound guards against NaN.
     for _ in 0..12 {
         let off = a[0][1].abs() + a[1][2].abs() + a[0][2].abs();
         if off <= 1e-17 * size {
@@ -74,7 +71,7 @@ pub(super) fn principal(t: &Voigt) -> Principal {
     Principal { values, axes: v }
 }
 
-/// The symmetric part of the dyad `a b` in Voigt order, without doubled shear.
+/// Symmetric part of `a b`, tensor shear.
 #[inline]
 fn dyad(a: &[f64; 3], b: &[f64; 3]) -> Voigt {
     [
@@ -87,14 +84,12 @@ fn dyad(a: &[f64; 3], b: &[f64; 3]) -> Voigt {
     ]
 }
 
-/// The tensor with given principal values, in Voigt order without doubled shear.
 pub(super) fn tensor(values: &[f64; 3], axes: &[[f64; 3]; 3]) -> Voigt {
     let m: [Voigt; 3] = std::array::from_fn(|i| dyad(&axes[i], &axes[i]));
     std::array::from_fn(|k| values[0] * m[0][k] + values[1] * m[1][k] + values[2] * m[2][k])
 }
 
-/// Stiffness from its principal form: `a[i][j] = d s_i / d e_j` and `shear[k]`, the modulus between shear stress and
-/// engineering shear strain in the plane of axes (1,2), (2,3), (3,1).
+/// Stiffness from `a[i][j] = d s_i / d e_j` and shear moduli `shear[k]` in the planes (1,2), (2,3), (3,1).
 pub(super) fn stiffness(axes: &[[f64; 3]; 3], a: &[[f64; 3]; 3], shear: &[f64; 3]) -> [[f64; 6]; 6] {
     let m: [Voigt; 3] = std::array::from_fn(|i| dyad(&axes[i], &axes[i]));
     let am: [Voigt; 3] = std::array::from_fn(|i| {
@@ -120,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tensors_are_built_back_from_their_principal_form() {
+    fn rebuilds_tensor_from_principal_form() {
         let cases: [Voigt; 5] = [
             [1.0, -2.0, 3.0, 0.5, -0.7, 1.1],
             [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
@@ -143,9 +138,8 @@ mod tests {
         }
     }
 
-    /// Hooke's matrix has the same form in all axes.
     #[test]
-    fn isotropic_stiffness_does_not_depend_on_the_axes() {
+    fn isotropic_stiffness_is_axis_independent() {
         let (lambda, mu) = (3.0, 2.0);
         let a =
             std::array::from_fn(|i| std::array::from_fn(|j| lambda + if i == j { 2.0 * mu } else { 0.0 }));

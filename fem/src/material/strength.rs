@@ -1,15 +1,13 @@
-//! Cohesion, friction, dilation and tension cut-off, as the criteria of Coulomb's kind share them.
+//! Strength parameters shared by Coulomb-type criteria.
 //!
 //! Theory manual: equation (4.16) of `docs/theory/solid.md`.
 
 use super::elastic::Fault;
 use super::hardening::Hardening;
 
-/// Source of the criteria of Coulomb's kind and their returns, for the list of sources of a run.
 pub(super) const SOURCE: &str = "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, \
                                  Damkilde & Andersen 2006";
 
-/// The constants that both criteria share.
 pub(super) struct Strength<'a> {
     pub cohesion: &'a Hardening,
     pub friction: &'a Hardening,
@@ -17,7 +15,6 @@ pub(super) struct Strength<'a> {
     pub tension: Option<f64>,
 }
 
-/// Cohesion, friction angle, dilation angle and tension cut-off of reduced strength.
 pub(super) struct Reduced {
     pub cohesion: Hardening,
     pub friction: Hardening,
@@ -26,8 +23,8 @@ pub(super) struct Reduced {
 }
 
 impl Strength<'_> {
-    /// The strength divided by `factor`: `c / F`, `tan(phi) / F`, tension cut-off `/ F`. The dilation angle is kept, but
-    /// never above the reduced friction angle. Source: Griffiths and Lane, Géotechnique 49(3), 1999, equations 1 and 2.
+    /// Strength divided by `factor`: `c / F`, `tan(phi) / F`, cut-off `/ F`; dilation angle capped by the
+    /// reduced friction angle. Source: Griffiths and Lane (1999), equations 1 and 2.
     pub fn reduced(&self, factor: f64) -> Reduced {
         let friction = self.friction.map(|phi| libm::atan(libm::tan(phi) / factor));
         Reduced {
@@ -38,12 +35,11 @@ impl Strength<'_> {
         }
     }
 
-    /// Whether the plastic flow is normal to the yield surface.
     pub fn is_associated(&self) -> bool {
         *self.friction == Hardening::Constant(self.dilation)
     }
 
-    /// The constant that cannot be used, if any. Softening of the cohesion must stay above `softening_limit` [Pa].
+    /// First invalid constant; cohesion softening must exceed `softening_limit` [Pa].
     pub fn fault(&self, softening_limit: impl FnOnce() -> f64) -> Option<Fault> {
         let Strength { cohesion, friction, dilation, tension } = *self;
         if let Some(fault) =

@@ -1,58 +1,49 @@
-//! The largest eigenvalues of `A^-1 M` by a block Krylov space with thick restarts.
+//! Largest eigenvalues of `A^-1 M` by block Krylov iteration with thick restarts.
 //!
-//! The basis V is orthonormal in the product of M, and each new block is orthogonalized against all of it, twice or more;
-//! the projected matrix `T = V·M A^-1 M V` is kept whole. When the basis is full, the best Ritz vectors and the last block
-//! stay, the rest is dropped (thick restart). A block finds an eigenvalue of as many copies as it has vectors at once;
-//! further copies come up through rounding, or in the caller's check. All sums are sequential and start vectors come from
-//! a fixed generator, so the bits never change.
-//!
-//! Limits: the basis is full in memory: about `2 modes + 8 blocks` nodal vectors.
+//! M-orthonormal basis V with full reorthogonalisation, `T = V·M A^-1 M V`. Multiple eigenvalues beyond the
+//! block size appear by rounding or in the caller's check. Sequential sums and fixed start vectors make
+//! results bitwise reproducible. Memory: about `2 modes + 8 blocks` nodal vectors.
 
 use super::ModalError;
 use crate::equations::cholesky::Cholesky;
 use crate::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-/// Residual over the eigenvalue at which a Ritz pair counts as converged. The error of the eigenvalue is its square.
+/// Relative residual of a converged pair; eigenvalue error is its square.
 const TOLERANCE: f64 = 1e-10;
-/// What orthogonalization may leave of a vector, below which there is nothing new in it.
+/// Relative norm of a dependent vector.
 const NOTHING: f64 = 1e-13;
 const RESTARTS: usize = 200;
 
-/// An eigenvalue of `A^-1 M` and its vector, normalized with M, 0 at constrained dofs.
+/// Eigenpair of `A^-1 M`, M-normalised, 0 at constrained dofs.
 pub struct Ritz {
-    /// The eigenvalue `1/(w² + s)` [s²].
+    /// Eigenvalue `1/(w² + s)` [s²].
     pub value: f64,
-    /// Shape `[3 * nodes]`.
     pub vector: Vec<f64>,
 }
 
-/// `A^-1 M` and scratch.
 pub struct Operator<'m> {
     model: &'m Model,
     factor: Cholesky,
     product: Vec<f64>,
-    /// Right-hand sides and solutions of a block, one after the other.
     equations: Vec<f64>,
     seed: u64,
 }
 
-/// Basis and projected matrix.
 struct Space {
     basis: Vec<Vec<f64>>,
-    /// Vectors whose columns of `projected` are known; those after them are the last block.
+    /// Vectors with known columns of `projected`.
     done: usize,
     projected: DMatrix<f64>,
 }
 
 impl<'m> Operator<'m> {
-    /// The operator of a model with the factor of A.
     pub fn new(model: &'m Model, factor: Cholesky) -> Operator<'m> {
         let product = vec![0.0; model.dof_count()];
         Operator { model, factor, product, equations: Vec::new(), seed: 0x9e37_79b9_7f4a_7c15 }
     }
 
-    /// The `wanted` largest eigenvalues in the space orthogonal to `locked`, descending; fewer when there are no more.
+    /// Computes the `wanted` largest eigenvalues orthogonal to `locked`, descending; fewer if exhausted.
     ///
     /// # Errors
     /// [`ModalError::NotConverged`].
@@ -68,7 +59,6 @@ impl<'m> Operator<'m> {
             return Ok(Vec::new());
         }
         let limit = room.min((2 * wanted).max(wanted + 8 * block));
-        // The block that takes the basis past the limit, and the one that follows it.
         let size = limit + 2 * block;
         let mut space = Space { basis: Vec::new(), done: 0, projected: DMatrix::zeros(size, size) };
         self.add_random(locked, &mut space, block);
@@ -81,7 +71,6 @@ impl<'m> Operator<'m> {
                 space.projected.view((0, 0), (space.done, space.done)).clone_owned().symmetric_eigen();
             let mut order: Vec<usize> = (0..space.done).collect();
             order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-            // What the last block still takes up of each Ritz vector.
             let tail = space.basis.len() - space.done;
             let coupling = space.projected.view((space.done, 0), (tail, space.done)) * &eigen.eigenvectors;
             let converged = |k: &&usize| coupling.column(**k).norm() <= TOLERANCE * eigen.eigenvalues[**k];
@@ -92,14 +81,14 @@ impl<'m> Operator<'m> {
                 let ritz = |(&k, vector)| Ritz { value: eigen.eigenvalues[k], vector };
                 return Ok(chosen.iter().zip(vectors).map(ritz).collect());
             }
-            // Keep more than is wanted: what is near the wanted ones would come back slowly.
+            // Neighbours of wanted vectors reappear slowly.
             let keep = (wanted + (limit - wanted) / 2).min(space.done - 1);
             let kept: Vec<usize> = order[..keep].to_vec();
             let mut basis = combine(&space.basis[..space.done], &eigen.eigenvectors, &kept);
             basis.extend(space.basis.drain(space.done..));
             let mut projected = DMatrix::zeros(size, size);
             for (i, &k) in kept.iter().enumerate() {
-                // How they couple with the last block shows when that block is expanded.
+                // Coupling with the last block follows from its expansion.
                 projected[(i, i)] = eigen.eigenvalues[k];
             }
             space = Space { basis, done: keep, projected };
@@ -107,7 +96,6 @@ impl<'m> Operator<'m> {
         Err(ModalError::NotConverged { found, wanted, restarts: RESTARTS })
     }
 
-    /// Applies the operator to the last block, and adds what is new as the next one.
     fn expand(&mut self, locked: &[&[f64]], space: &mut Space, room: usize, size: usize) {
         let (start, end) = (space.done, space.basis.len());
         let images = self.apply(&space.basis[start..]);
@@ -128,12 +116,11 @@ impl<'m> Operator<'m> {
         }
         space.done = end;
         if space.basis.len() == end && end < room.min(size) {
-            // The space is closed under the operator: go on in a new direction.
+            // Invariant subspace: continue in a random direction.
             self.add_random(locked, space, 1);
         }
     }
 
-    /// Adds vectors of random entries, orthonormal to all others.
     fn add_random(&mut self, locked: &[&[f64]], space: &mut Space, count: usize) {
         for _ in 0..count {
             let mut z = vec![0.0; self.model.dof_count()];
@@ -147,7 +134,6 @@ impl<'m> Operator<'m> {
         }
     }
 
-    /// `A^-1 M x` of each vector of a block.
     fn apply(&mut self, block: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let (supports, size) = (self.model.supports(), self.model.free_dof_count());
         self.equations.resize(block.len() * size, 0.0);
@@ -168,8 +154,8 @@ impl<'m> Operator<'m> {
         self.model.matrices().mass_form(x).sqrt()
     }
 
-    /// Takes out of z its parts along the locked vectors and the basis; returns the coefficients of the basis and the
-    /// norm of what is left. Repeated while much is lost, so that rounding leaves nothing (Daniel and others 1976).
+    /// Orthogonalises z, repeatedly on cancellation (Daniel and others 1976); returns basis coefficients and
+    /// remaining norm.
     fn orthogonalize(&mut self, z: &mut [f64], locked: &[&[f64]], basis: &[Vec<f64>]) -> (DVector<f64>, f64) {
         let mut coefficients = DVector::zeros(basis.len());
         let mut norm = self.norm(z);
@@ -203,7 +189,6 @@ fn subtract(z: &mut [f64], factor: f64, v: &[f64]) {
     z.iter_mut().zip(v).for_each(|(z, v)| *z -= factor * v);
 }
 
-/// The vectors of a basis combined with the chosen columns of a matrix.
 fn combine(basis: &[Vec<f64>], matrix: &DMatrix<f64>, columns: &[usize]) -> Vec<Vec<f64>> {
     columns
         .iter()

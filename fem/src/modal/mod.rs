@@ -1,15 +1,12 @@
-//! Natural frequencies and mode shapes: `K phi = w² M phi` on the free dofs, boundary springs included.
+//! Natural frequencies and mode shapes: `K phi = w² M phi` on the free dofs, with boundary springs.
 //!
-//! Shift and invert: the eigenvalues of `(K + s M)^-1 M` are `1/(w² + s)`, so the lowest modes come first. A held body
-//! takes s = 0; a body that can move freely a small s > 0, which keeps the matrix positive definite and lets its rigid
-//! motions through as modes of 0 Hz. The modes come from a block Krylov space with thick restarts (`krylov.rs`); each
-//! is checked by its residual, and a further run in the space orthogonal to all of them, from a fresh start, looks for a
-//! mode that was missed, until there is none. The frequencies depend on no random choice: the start vectors are fixed.
+//! Shift and invert, `(K + s M)^-1 M`, s = 0 without rigid-body motion. Further runs in the orthogonal
+//! complement check completeness.
 //!
-//! Source: Ericsson and Ruhe, Math. Comp. 35 (1980) 1251-1268 (shift and invert); Stewart, SIAM J. Matrix Anal. Appl. 23
-//! (2001) 601-614, and Wu and Simon, ibid. 22 (2000) 602-616 (restarts); Clough and Penzien, Dynamics of Structures
-//! (1993), chapter 13 (participation, effective mass). Limits: no damping: Rayleigh damping and dashpots are left out;
-//! frequencies below a thousandth of that of the lowest smooth strain count as rigid, when the body is not held.
+//! Source: Ericsson and Ruhe (1980) (shift and invert); Stewart (2001), and Wu and Simon, SIAM J. Matrix
+//! Anal. Appl. 22 (2000) 602-616 (restarts); Clough and Penzien (1993), chapter 13 (participation, effective
+//! mass). Limits: no damping; in free bodies, frequencies below a thousandth of the lowest smooth strain's
+//! count as rigid.
 //!
 //! Theory manual: equation (4.18) of `docs/theory/solid.md`.
 
@@ -25,68 +22,67 @@ use krylov::{Operator, Ritz};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-/// Shift over the square of the frequency of the lowest smooth strain, for bodies that are not held.
+/// Shift over the lowest smooth squared frequency.
 const SHIFT: f64 = 1e-3;
-/// Square of a frequency over that of the lowest smooth strain, below which a mode counts as rigid.
+/// Squared rigid frequency over the lowest smooth one.
 const RIGID: f64 = 1e-6;
-/// Residual above which a mode is refused.
+/// Largest accepted residual.
 const REFUSE: f64 = 1e-5;
-/// Excess of an eigenvalue of the check over the last one wanted, that rounding may cause.
+/// Relative rounding of eigenvalues.
 const TIE: f64 = 1e-8;
 
-/// Why there are no modes.
+/// Modal analysis errors.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModalError {
-    /// The matrix could not be made or factored.
+    /// Matrix not assembled or factored.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// The iteration did not come to an end.
+    /// No convergence.
     #[error("not converged: {found} of {wanted} modes after {restarts} restarts")]
     NotConverged {
-        /// Modes that converged.
+        /// Converged modes.
         found: usize,
-        /// Modes wanted.
+        /// Requested modes.
         wanted: usize,
-        /// Restarts made.
+        /// Restarts.
         restarts: usize,
     },
-    /// A mode misses its equation.
+    /// Residual too large.
     #[error("residual of mode {mode}: {}", size(*residual))]
     Inaccurate {
-        /// Number of the mode, from 1.
+        /// Mode, from 1.
         mode: usize,
         /// Residual [-].
         residual: f64,
     },
 }
 
-/// The lowest modes, by ascending frequency.
+/// Lowest modes by ascending frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modes {
     /// Frequencies [Hz]. Shape `[modes]`.
     pub frequencies: Vec<f64>,
     /// Circular frequencies w [1/s]. Shape `[modes]`.
     pub circular: Vec<f64>,
-    /// Shapes with `phi·M phi = 1` [kg^-1/2], largest entry positive. Shape `[modes][3 * nodes]`.
+    /// M-normalised shapes [kg^-1/2], largest entry positive. Shape `[modes][3 * nodes]`.
     pub shapes: Vec<Vec<f64>>,
-    /// `|K phi - w² M phi| / ((w² + w_s²) |M phi|)` over the free dofs [-], w_s being 0 for a held body, else the
-    /// frequency of the lowest smooth strain, so that rigid motions have a measure. Shape `[modes]`.
+    /// `|K phi - w² M phi| / ((w² + w_s²) |M phi|)` [-]; w_s is 0 or, for free bodies, the lowest smooth
+    /// frequency. Shape `[modes]`.
     pub residuals: Vec<f64>,
-    /// `phi·M r` with the unit motion r along x, y, z [kg^1/2]. Shape `[modes][3]`.
+    /// `phi·M r` for unit motion r along x, y, z [kg^1/2]. Shape `[modes][3]`.
     pub participation: Vec<[f64; 3]>,
-    /// Squares of the participation [kg]; over all modes they add up to the mass that the supports do not carry
-    /// themselves. Shape `[modes][3]`.
+    /// Squared participation [kg]; the total is the mass not at supports. Shape `[modes][3]`.
     pub effective_mass: Vec<[f64; 3]>,
-    /// Modes without stiffness, the first ones: rigid motions, and mechanisms of the reduced rule.
+    /// Number of rigid and hourglass modes.
     pub zero_modes: usize,
-    /// The shift s [1/s²]; 0 when the body is held.
+    /// Shift s [1/s²]; 0 without rigid-body motion.
     pub shift: f64,
 }
 
-/// The `count` lowest modes; fewer when the model has fewer free dofs.
+/// Computes the `count` lowest modes, limited by the free dofs.
 ///
 /// # Errors
-/// A material without density, not enough memory, or modes that do not converge.
+/// Material without density, out of memory, or no convergence.
 pub fn solve(model: &Model, count: usize) -> Result<Modes, ModalError> {
     check_density(model)?;
     let count = count.min(model.free_dof_count());
@@ -117,12 +113,11 @@ pub fn solve(model: &Model, count: usize) -> Result<Modes, ModalError> {
     }
 }
 
-/// Factor of K when the body is held, else of K + s M; and s.
 fn shifted_factor(model: &Model, scale: f64) -> Result<(Cholesky, f64), SolveError> {
     if check_held(model).is_ok() {
         match Cholesky::of_stiffness(&model.equations(Combination::STIFFNESS)) {
             Ok(factor) => return Ok((factor, 0.0)),
-            // A mechanism that the geometry does not show.
+            // Mechanism not visible in the geometry.
             Err(SolveError::NoStiffness { .. }) => {}
             Err(error) => return Err(error),
         }
@@ -132,7 +127,7 @@ fn shifted_factor(model: &Model, scale: f64) -> Result<(Cholesky, f64), SolveErr
     Cholesky::factor(&model.equations(combination)).map(|factor| (factor, shift))
 }
 
-/// A measure of the lowest squares of frequencies [1/s²]: the least Rayleigh quotient of nine linear displacement fields.
+/// Lowest smooth squared frequency [1/s²]: least Rayleigh quotient of nine linear fields.
 fn smooth_scale(model: &Model) -> f64 {
     let (low, high) = model.mesh().bounding_box();
     let mut least = f64::INFINITY;
@@ -150,7 +145,6 @@ fn smooth_scale(model: &Model) -> f64 {
     least
 }
 
-/// Searches the space orthogonal to what was found for modes that belong among the first `count`, and adds them.
 fn check_for_missed(
     operator: &mut Operator<'_>,
     ritz: &mut Vec<Ritz>,
@@ -171,7 +165,7 @@ fn check_for_missed(
     }
 }
 
-/// Diagonalizes K within the space of the vectors: squares of the circular frequencies and shapes, ascending.
+/// Rayleigh–Ritz: squared frequencies and shapes, ascending.
 fn separate(model: &Model, ritz: &[Ritz]) -> Vec<(f64, Vec<f64>)> {
     let (n, count) = (model.dof_count(), ritz.len());
     let mut small = DMatrix::zeros(count, count);
@@ -197,7 +191,6 @@ fn separate(model: &Model, ritz: &[Ritz]) -> Vec<(f64, Vec<f64>)> {
     order.into_iter().map(|k| (eigen.eigenvalues[k], shape(k))).collect()
 }
 
-/// Turns a shape so that the first of its largest entries, within a margin for rounding, is positive.
 fn with_positive_peak(mut shape: Vec<f64>) -> Vec<f64> {
     let size = shape.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let peak = shape.iter().find(|v| v.abs() > 0.999 * size).copied().unwrap_or(1.0);
@@ -241,9 +234,9 @@ mod tests {
     use crate::mesh::Mesh;
     use crate::model::ModelInput;
 
-    /// Two modes taken away from the result, one of them of a pair, are found again.
+    /// One of the two removed modes belongs to a pair.
     #[test]
-    fn a_missed_mode_is_found_by_the_check() {
+    fn check_finds_missed_mode() {
         let model = Model::new(ModelInput {
             mesh: Mesh::block([2, 2, 3], [1.0, 1.0, 1.6]),
             materials: [(1, Elastic { young: 20e6, poisson: 0.3, density: 2000.0 }.into())].into(),

@@ -1,4 +1,4 @@
-//! What is checked of a mesh and its materials before anything is assembled, and where points begin.
+//! Checks of mesh and materials before assembly.
 
 use crate::element::quadrature::Quadrature;
 use crate::element::{mass_points, stiffness_points};
@@ -88,7 +88,6 @@ pub(super) fn value_start(mesh: &Mesh, rule: Quadrature, materials: &BTreeMap<u3
     start
 }
 
-/// Every Gauss point of the mass and of the stiffness must have a positive volume.
 pub(super) fn check_shape(mesh: &Mesh, rule: Quadrature) -> Result<(), ModelError> {
     for e in 0..mesh.element_count() {
         let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));

@@ -1,8 +1,8 @@
-//! The parameters of Newmark's method and of HHT-α, and which of them are stable.
+//! Parameters and stability of Newmark and HHT-α.
 
 use crate::error::NewmarkError;
 
-/// The two parameters of Newmark's method, in the notation of Hughes (1987); scenes call them `alpha` and `delta`.
+/// Newmark parameters (Hughes 1987); scenes name them `alpha` and `delta`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newmark {
     /// Weight of the new acceleration in the displacement [-].
@@ -12,32 +12,31 @@ pub struct Newmark {
 }
 
 impl Newmark {
-    /// beta = 1/4, gamma = 1/2: second order, conserves energy.
+    /// beta = 1/4, gamma = 1/2: second order, energy-conserving.
     pub const AVERAGE_ACCELERATION: Newmark = Newmark { beta: 0.25, gamma: 0.5 };
 
-    /// The pair that HHT-α goes with: `beta = (1 - a)²/4`, `gamma = 1/2 - a` for its parameter a in [-1/3, 0].
+    /// HHT-α pair `beta = (1 - a)²/4`, `gamma = 1/2 - a`, a in [-1/3, 0].
     pub fn of_hht(a: f64) -> Newmark {
         Newmark { beta: 0.25 * (1.0 - a) * (1.0 - a), gamma: 0.5 - a }
     }
 
-    /// [`Newmark::of_hht`], for a parameter that is checked.
     pub(crate) fn of_hht_in_range(alpha: f64) -> Result<Newmark, NewmarkError> {
-        // A last digit lost in a scene file must not refuse -1/3.
+        // Tolerates a rounded -1/3 in scene files.
         if !(-1.0 / 3.0 - 1e-12..=0.0).contains(&alpha) {
             return Err(NewmarkError::Hht { alpha });
         }
         Ok(Newmark::of_hht(alpha))
     }
 
-    /// Checks that the method is stable for every step size.
+    /// Checks unconditional stability.
     ///
     /// # Errors
-    /// [`NewmarkError`], with the beta that would be enough.
+    /// [`NewmarkError`] with the smallest sufficient beta.
     pub fn check(self) -> Result<(), NewmarkError> {
         let Newmark { beta, gamma } = self;
         self.check_range()?;
         let least_beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
-        // A last digit lost in a scene file must not refuse 0.3025 for 0.6.
+        // Tolerates a rounded 0.3025 for 0.6.
         if gamma >= 0.5 && beta >= least_beta * (1.0 - 1e-12) {
             Ok(())
         } else {
@@ -45,7 +44,7 @@ impl Newmark {
         }
     }
 
-    /// Checks only that both parameters are finite and 0 or above; the method may be stable for small steps alone.
+    /// Checks only that both parameters are finite and 0 or above.
     ///
     /// # Errors
     /// [`NewmarkError::Range`].

@@ -1,4 +1,4 @@
-//! Newmark's implicit time integration, acceleration form, and its extension HHT-α.
+//! Newmark's implicit time integration (acceleration form) and HHT-α.
 //!
 //! ```text
 //! u1 = u0 + dt v0 + dt² ((1/2 - beta) a0 + beta a1)
@@ -6,19 +6,14 @@
 //! M a1 + C vw + K uw = Fw,  C = alpha_m M + beta_k K + D,  xw = (1 + a) x1 - a x0 for x = u, v, F
 //! ```
 //!
-//! a = 0 is Newmark's method; HHT-α takes a in [-1/3, 0] with beta = (1 - a)²/4, gamma = 1/2 - a: it damps what the step
-//! cannot follow and stays of second order. D are the boundary dashpots. One solve per step with
-//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a, factored once per step size.
+//! a = 0 is Newmark; HHT-α has a in [-1/3, 0], beta = (1 - a)²/4, gamma = 1/2 - a. System matrix:
+//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a. Prescribed
+//! displacements determine acceleration and velocity.
 //!
-//! Prescribed motion: a constrained dof whose displacement at the end of the step is given has the acceleration
-//! that the first line asks for, and the velocity of the second.
-//!
-//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hughes, The Finite Element Method (1987), section 9.1.
-//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. The pair 1/4, 1/2 conserves the energy of a free linear body exactly and lengthens a period
-//! by the fraction (w dt)²/12; larger gamma damps the modes that the step cannot follow, and loses one order. HHT-α:
-//! Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292; the load at the weighted time as in Hughes
-//! (1987), section 9.3. Limits: a prescribed displacement that jumps leaves an acceleration that swings from step to step
-//! when gamma = 1/2; smooth histories are the remedy.
+//! Source: Newmark (1959); Hughes (1987), sections 9.1 and 9.3 (loads); Hilber, Hughes and Taylor (1977).
+//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. 1/4, 1/2 conserves energy; period
+//! error (w dt)²/12. Limits: for gamma = 1/2, jumps of prescribed displacement leave oscillating
+//! accelerations.
 //!
 //! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
@@ -39,33 +34,29 @@ pub use method::Newmark;
 pub(crate) use start::accelerate;
 pub use start::{initial_acceleration, initial_acceleration_prescribed};
 
-/// What acts on the body during one step.
+/// Loads and prescribed motion of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive<'a> {
-    /// Load [N] at the start, shape `[3 * nodes]`. HHT-α needs it. Newmark's method does without: the load there then
-    /// follows from the equations of motion, and at moved supports counts as that of the end, in the audit.
+    /// Initial load [N], shape `[3 * nodes]`; required by HHT-α only.
     pub load_start: Option<&'a [f64]>,
-    /// Load [N] at the end, shape `[3 * nodes]`.
+    /// Final load [N], shape `[3 * nodes]`.
     pub load_end: &'a [f64],
-    /// Displacement [m] of each constrained dof at the end, in the order of [`crate::supports::Supports::fixed`]; without
-    /// it they stay where they are.
+    /// Final displacements [m] ordered as [`crate::supports::Supports::fixed`]; `None`: unchanged.
     pub prescribed: Option<&'a [f64]>,
 }
 
-/// Holds the factor for one step size, and scratch.
+/// Newmark solver with the factor of one step size.
 pub struct NewmarkSolver {
     method: Newmark,
-    /// HHT's α; 0 for Newmark's method.
     hht: f64,
     dt: f64,
     system: Box<dyn SystemSolver>,
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
-    /// Inner forces at both ends and their scratch; for moved supports only, so empty until then.
+    /// For moved supports only.
     inner: Vec<f64>,
     equations: Vec<f64>,
-    /// Loads of the steps of [`TimeIntegrator::integrate`], empty until then.
     conditions: Conditions,
 }
 
@@ -73,16 +64,16 @@ impl NewmarkSolver {
     /// Factors the matrix of the step `dt` [s].
     ///
     /// # Errors
-    /// A method that is not unconditionally stable, a step that is not above 0, a material without density.
+    /// Conditionally stable method, step not above 0, or material without density.
     pub fn new(model: &Model, method: Newmark, dt: f64) -> Result<NewmarkSolver, SolveError> {
         method.check()?;
         NewmarkSolver::conditionally_stable(model, method, dt)
     }
 
-    /// As [`NewmarkSolver::new`], but accepts methods that are stable for small steps only; the caller answers for `dt`.
+    /// Like [`NewmarkSolver::new`], for conditionally stable methods.
     ///
     /// # Errors
-    /// Parameters below 0, a step that is not above 0, a material without density or with plasticity.
+    /// Parameters below 0, step not above 0, material without density or with plasticity.
     pub fn conditionally_stable(
         model: &Model,
         method: Newmark,
@@ -92,11 +83,10 @@ impl NewmarkSolver {
         NewmarkSolver::build(model, method, 0.0, dt)
     }
 
-    /// HHT-α with the parameter `alpha` in [-1/3, 0]: 0 is Newmark's average acceleration, -1/3 damps most. Steps are
-    /// made by [`NewmarkSolver::advance`], with the load at both ends.
+    /// HHT-α with `alpha` in [-1/3, 0]; use [`NewmarkSolver::advance`] with loads at both ends.
     ///
     /// # Errors
-    /// A parameter out of range, a step that is not above 0, a material without density or with plasticity.
+    /// Parameter out of range, step not above 0, material without density or with plasticity.
     pub fn hht(model: &Model, alpha: f64, dt: f64) -> Result<NewmarkSolver, SolveError> {
         NewmarkSolver::build(model, Newmark::of_hht_in_range(alpha)?, alpha, dt)
     }
@@ -125,34 +115,32 @@ impl NewmarkSolver {
         })
     }
 
-    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// The step [s].
+    /// Step [s].
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// The pair of parameters; for HHT-α that of [`Newmark::of_hht`].
+    /// Parameter pair, for HHT-α from [`Newmark::of_hht`].
     pub fn method(&self) -> Newmark {
         self.method
     }
 
-    /// HHT's α, 0 for Newmark's method.
+    /// HHT α; 0 for Newmark.
     pub fn hht_alpha(&self) -> f64 {
         self.hht
     }
 
-    /// One step of Newmark's method, from `state` to `state.time + dt`, under the load [N] at the *end* of the step, shape
-    /// `[3 * nodes]`, on supports that stay where they are.
+    /// Advances `state` by `dt` under the final load [N], shape `[3 * nodes]`, with fixed supports.
     ///
-    /// The audit's work is that of the mean of the loads at both ends (the load at the start follows from the equations
-    /// of motion there); with 1/4, 1/2 the numerical dissipation is then zero to rounding.
+    /// The audit uses mean loads: with 1/4, 1/2 numerical dissipation is zero to rounding.
     ///
     /// # Errors
-    /// A load or a result that is not finite; the state is untouched then. HHT-α needs [`NewmarkSolver::advance`].
+    /// Load or result not finite (state unchanged); HHT-α needs [`NewmarkSolver::advance`].
     pub fn step(
         &mut self,
         model: &Model,
@@ -162,13 +150,10 @@ impl NewmarkSolver {
         self.advance(model, state, Drive { load_start: None, load_end, prescribed: None })
     }
 
-    /// One step, from `state` to `state.time + dt`, under loads and prescribed motion.
-    ///
-    /// The audit's work is that of the mean of the loads and of the reactions at both ends.
+    /// Advances `state` by `dt` under loads and prescribed motion; the audit uses mean forces.
     ///
     /// # Errors
-    /// A load, a displacement or a result that is not finite; no load at the start for HHT-α; prescribed motion for
-    /// beta = 0. The state is untouched then.
+    /// Values not finite, missing initial load (HHT-α), or prescribed motion for beta = 0; state unchanged.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -180,12 +165,12 @@ impl NewmarkSolver {
         let (new, old) = (1.0 + self.hht, -self.hht);
         let (supports, free) = (model.supports(), model.supports().free());
         let next = &mut self.next;
-        // 1. Predict: the part of u1 and v1 that does not depend on a1.
+        // Predictor: terms without a1.
         for d in 0..state.u.len() {
             next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - beta) * state.a[d];
             next.v[d] = state.v[d] + dt * (1.0 - gamma) * state.a[d];
         }
-        // 2. Supports: their a1 follows from where they are at the end.
+        // At supports, a1 follows from the final displacement.
         next.a.fill(0.0);
         let mut accelerated = false;
         for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
@@ -199,7 +184,7 @@ impl NewmarkSolver {
                 accelerated = true;
             }
         }
-        // 3. Residual at the weighted time, with C v = alpha_m M v + beta_k K v folded into one product each.
+        // Residual at the weighted time, C v = alpha_m M v + beta_k K v.
         for d in 0..state.u.len() {
             let (u, v) = (new * next.u[d] + old * state.u[d], new * next.v[d] + old * state.v[d]);
             self.work[d] = u + c.beta_k * v;
@@ -225,7 +210,6 @@ impl NewmarkSolver {
             model.dashpot_times(&self.work, &mut self.product);
             subtract(&mut self.equations, &self.product, free);
         }
-        // 4. Solve for a1 and correct.
         self.system.solve(supports, &mut self.equations, &|d| state.a[d])?;
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;
@@ -255,13 +239,12 @@ impl NewmarkSolver {
         Ok(())
     }
 
-    /// Energy that entered and left during the step, under the mean of the forces at both ends.
+    /// Energy terms with mean forces.
     fn audit(&mut self, model: &Model, old: &State, drive: &Drive<'_>) -> StepAudit {
         let (new, c, n) = (&self.next, model.rayleigh(), old.u.len());
         let (work, product) = (&mut self.work, &mut self.product);
         let dot = |a: &dyn Fn(usize) -> f64, p: &[f64]| (0..n).map(|d| a(d) * p[d]).sum::<f64>();
         let mean_v = |d: usize| 0.5 * (old.v[d] + new.v[d]);
-        // K du and M du serve every term, because the matrices are symmetric.
         for d in 0..n {
             work[d] = new.u[d] - old.u[d];
         }
@@ -319,7 +302,6 @@ impl NewmarkSolver {
 }
 
 impl TimeIntegrator for NewmarkSolver {
-    /// Steps of the one length that was factored; `to` must lie a whole number of them ahead.
     fn integrate(
         &mut self,
         model: &Model,
@@ -344,7 +326,6 @@ impl TimeIntegrator for NewmarkSolver {
     }
 }
 
-/// Takes the entries of the free dofs of a nodal vector from the equations.
 fn subtract(equations: &mut [f64], nodal: &[f64], free: &[u32]) {
     for (slot, &d) in equations.iter_mut().zip(free) {
         *slot -= nodal[d as usize];

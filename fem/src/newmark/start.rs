@@ -1,4 +1,4 @@
-//! The acceleration at the start, from the equations of motion there.
+//! Initial acceleration from the equations of motion.
 
 use super::check_density;
 use crate::energy::inner_force;
@@ -8,19 +8,19 @@ use crate::model::Model;
 use crate::state::State;
 use crate::statics::{check_linear, check_load, check_prescribed};
 
-/// Sets `state.a` from the equations of motion at the start: `M a = F - C v - K u` on the free dofs, 0 on the others.
+/// Sets `state.a`: `M a = F - C v - K u` on the free dofs, 0 on the others.
 ///
 /// # Errors
-/// A load of the wrong length or not finite, a material without density, or a mass matrix that cannot be solved.
+/// Load of wrong length or not finite, material without density, or failed mass solution.
 pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
     initial_acceleration_prescribed(model, state, load, None)
 }
 
-/// As [`initial_acceleration`], with accelerations [m/s²] of the constrained dofs, in the order of
-/// [`crate::supports::Supports::fixed`]; their displacements and velocities are those of the state.
+/// Like [`initial_acceleration`], with accelerations [m/s²] of constrained dofs, ordered as
+/// [`crate::supports::Supports::fixed`].
 ///
 /// # Errors
-/// As [`initial_acceleration`], for the accelerations too.
+/// As [`initial_acceleration`].
 pub fn initial_acceleration_prescribed(
     model: &Model,
     state: &mut State,
@@ -44,7 +44,6 @@ pub fn initial_acceleration_prescribed(
     accelerate(model, &force, state)
 }
 
-/// Accelerations of the free dofs under forces on them; those of the others stay.
 pub(crate) fn accelerate(model: &Model, force: &[f64], state: &mut State) -> Result<(), SolveError> {
     let mut free = vec![0.0; force.len()];
     if let Some(masses) = model.matrices().lumped_mass() {

@@ -1,4 +1,4 @@
-//! What a step starts from: loads, prescribed displacements, boundary springs, and the checks of a state.
+//! Initial conditions and state checks of a step.
 
 use crate::error::SolveError;
 use crate::integrator::Loading;
@@ -7,7 +7,6 @@ use crate::state::State;
 use crate::statics::check_finite;
 use crate::supports::name;
 
-/// Takes the forces of the boundary springs at the displacement `u` from the right-hand side.
 pub(crate) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
     if !model.matrices().springs().is_empty() {
         rhs.iter_mut().for_each(|r| *r = -*r);
@@ -16,7 +15,6 @@ pub(crate) fn subtract_springs(model: &Model, u: &[f64], rhs: &mut [f64]) {
     }
 }
 
-/// Prescribed increments from `state` to `time`, in the order of the constrained dofs.
 pub(crate) fn prescribe(
     model: &Model,
     state: &State,
@@ -38,7 +36,6 @@ pub(crate) fn prescribe(
     Ok(())
 }
 
-/// Refuses a state of another model or with numbers that are not finite.
 pub(crate) fn check_state(model: &Model, state: &State) -> Result<(), SolveError> {
     let n = model.dof_count();
     for (what, found) in [
@@ -57,7 +54,7 @@ pub(crate) fn check_state(model: &Model, state: &State) -> Result<(), SolveError
     check_finite(model, "the displacement", &state.u, state.time)
 }
 
-/// Gives a linear model without point states those of its displacement.
+/// Adds missing point states of a linear model.
 pub(crate) fn ensure_points(model: &Model, state: &mut State) {
     if state.points.is_empty() {
         let mut points = model.new_points();

@@ -1,15 +1,14 @@
-//! Dynamics of elastoplastic bodies: Newmark's method and HHT-α with Newton's iteration in residual form.
+//! Elastoplastic dynamics: Newmark and HHT-α with Newton iteration.
 //!
 //! ```text
-//! M a1 + (1 + h) (f(s1) + S u1 + C v1 - F1) - h (f(s0) + S u0 + C v0 - F0) = 0,   C = alpha_m M + beta_k K + D
+//! M a1 + (1 + h) (f(s1) + S u1 + C v1 - F1) - h (f(s0) + S u0 + C v0 - F0) = 0
+//! C = alpha_m M + beta_k K + D
 //! ```
 //!
-//! Unknown is the displacement increment; acceleration and velocity follow from it by Newmark's formulas. h is HHT's α in
-//! [-1/3, 0], 0 for Newmark. K in the damping is the elastic stiffness: damping does not fade where the soil yields.
+//! Unknown: displacement increment; h is HHT's α in [-1/3, 0], 0 for Newmark. Damping uses the elastic K.
 //!
-//! Source: Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94; Hilber, Hughes and Taylor, Earthq. Eng. Struct. Dyn. 5 (1977) 283-292;
-//! Simo and Hughes, Computational Inelasticity (1998), section 1.6 for the plastic case. Limits: those of Newmark's
-//! method; a step that is halved takes its loads at the time that it reaches.
+//! Source: Newmark (1959); Hilber, Hughes and Taylor (1977); Simo and Hughes (1998), section 1.6
+//! (plasticity). Limits: halved steps evaluate loads at their own end.
 //!
 //! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
@@ -27,10 +26,7 @@ use crate::newmark::{Newmark, accelerate, check_dynamics};
 use crate::state::{State, StepAudit};
 use crate::statics::check_load;
 
-/// Moves an elastoplastic body in time.
-///
-/// The acceleration of the state that it starts from must be that of its equations of motion: [`initial_acceleration`]. The work of
-/// its audits is that of the mean of the loads, and of the reactions, at both ends of a step.
+/// Elastoplastic dynamics solver; requires an initial acceleration ([`initial_acceleration`]).
 pub struct Dynamics {
     method: Newmark,
     hht: f64,
@@ -45,10 +41,10 @@ pub struct Dynamics {
 }
 
 impl Dynamics {
-    /// Newmark's method, unconditionally stable parameters only.
+    /// Newmark with unconditionally stable parameters.
     ///
     /// # Errors
-    /// Parameters, options or step lengths out of range; a material without density.
+    /// Parameters, options or step lengths out of range; material without density.
     pub fn newmark(
         model: &Model,
         method: Newmark,
@@ -59,7 +55,7 @@ impl Dynamics {
         Dynamics::build(model, method, 0.0, options, control)
     }
 
-    /// HHT-α with its parameter in [-1/3, 0].
+    /// HHT-α with parameter in [-1/3, 0].
     ///
     /// # Errors
     /// As [`Dynamics::newmark`].
@@ -96,7 +92,7 @@ impl Dynamics {
         })
     }
 
-    /// Counts and times since the solver was made.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }
@@ -161,7 +157,6 @@ impl Halving for Dynamics {
 }
 
 impl Dynamics {
-    /// The part of a1 and v1 that does not depend on the increment, left in `next`.
     fn predict(&mut self, model: &Model, state: &State, dt: f64) {
         let Newmark { beta, gamma } = self.method;
         inner_force(model, &mut self.newton.force, state, &mut self.inner[0], &mut self.scratch);
@@ -173,7 +168,7 @@ impl Dynamics {
         }
     }
 
-    /// `F1 - S u0 - M a_p/(1 + h) - C v_p`, and with HHT what is out of balance at the start but for the inertia.
+    /// `F1 - S u0 - M a_p/(1 + h) - C v_p`, for HHT plus the initial imbalance.
     fn right_hand_side(&mut self, model: &Model, state: &State) {
         let (c, n, new) = (model.rayleigh(), state.u.len(), 1.0 + self.hht);
         let old = -self.hht / new;
@@ -205,7 +200,7 @@ impl Dynamics {
         }
     }
 
-    /// The ledger of the step from `state` to `next`, under the mean of the forces at both ends.
+    /// Energy terms with mean forces.
     fn audit(&mut self, model: &Model, state: &State) -> StepAudit {
         let ([load_start, load_end], [start, end]) = (&self.load, &mut self.inner);
         let (next, n) = (&self.next, state.u.len());
@@ -227,11 +222,10 @@ impl Dynamics {
     }
 }
 
-/// Sets `state.a` from the equations of motion of a state with stresses: `M a = F - C v - f - S u` on the free dofs, 0 on the
-/// others.
+/// Sets `state.a`: `M a = F - C v - f - S u` on the free dofs, 0 on the others.
 ///
 /// # Errors
-/// A load or a state that does not fit, a material without density, or a mass matrix that cannot be solved.
+/// Invalid load or state, material without density, or failed mass solution.
 pub fn initial_acceleration(model: &Model, state: &mut State, load: &[f64]) -> Result<(), SolveError> {
     check_load(model, load, state.time)?;
     check_state(model, state)?;

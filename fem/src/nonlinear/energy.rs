@@ -1,15 +1,14 @@
-//! Plastic work at the Gauss points.
+//! Plastic work at the Gauss points, `∫ (sigma_0 + sigma_1)/2 : d eps_p dV`.
 //!
-//! `∫ (sigma_0 + sigma_1)/2 : d eps_p dV` of a step: with the mean of both ends the work of the internal force splits into
-//! the change of elastic energy and the plastic work without remainder, because the elastic law is linear. The elastic
-//! energy is [`crate::energy::of_points`].
+//! With mean stresses and linear elasticity, internal work splits exactly into elastic energy
+//! ([`crate::energy::of_points`]) and plastic work.
 
 use crate::element::stiffness_points;
 use crate::kinematics::jacobian;
 use crate::material::PointState;
 use crate::model::Model;
 
-/// Plastic work [J] from the states `old` to `new`. Shapes `[points]`.
+/// Plastic work [J] from `old` to `new`. Shapes `[points]`.
 pub fn plastic_work(model: &Model, old: &[PointState], new: &[PointState]) -> f64 {
     let mesh = model.mesh();
     let mut total = 0.0;

@@ -1,4 +1,4 @@
-//! The march of the methods that choose the length of their steps: halved where the iteration does not converge.
+//! Time marching with steps halved after divergence.
 
 use super::conditions::{check_state, ensure_points};
 use super::newton::{Failure, Newton};
@@ -7,15 +7,13 @@ use crate::integrator::{Loading, Memory, OnStep, StepLength, TimeIntegrator};
 use crate::model::Model;
 use crate::state::{State, StepAudit};
 
-/// A method with Newton's iteration and a length of step of its own.
+/// Newton method with adaptive steps.
 pub(crate) trait Halving: Send + Sync {
-    /// The iteration, and the length of the next step.
     fn parts(&self) -> (&Newton, &StepLength);
 
-    /// The same, to be changed.
     fn parts_mut(&mut self) -> (&mut Newton, &mut StepLength);
 
-    /// One step of length `dt` to `time` [s], with its energies where they are balanced. The state is as it was where it fails.
+    /// Steps by `dt` to `time` [s]; failed steps leave the state unchanged.
     fn step(
         &mut self,
         model: &Model,
@@ -25,7 +23,6 @@ pub(crate) trait Halving: Send + Sync {
         loading: &mut dyn Loading,
     ) -> Result<Option<StepAudit>, Failure>;
 
-    /// As [`TimeIntegrator::reactions`].
     fn reactions(&self) -> Option<&[f64]> {
         None
     }
@@ -33,8 +30,8 @@ pub(crate) trait Halving: Send + Sync {
 
 impl<M: Halving> TimeIntegrator for M {
     /// # Errors
-    /// [`SolveError::Diverged`] when a step of the smallest length fails; `state` is then that of the last accepted step, bit for
-    /// bit. A load or displacement that is not finite; a state of another model; a matrix that cannot be factored.
+    /// [`SolveError::Diverged`] if the smallest step fails (state of the last accepted step); values not
+    /// finite; foreign state; failed factorisation.
     fn integrate(
         &mut self,
         model: &Model,

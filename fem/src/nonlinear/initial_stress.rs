@@ -1,11 +1,8 @@
-//! The stress that the ground has before anything is built on it.
+//! Initial ground stress: uniform, K0, or gravity in steps.
 //!
-//! Three ways: a given constant stress; the K0 state, vertical stress from the weight above and horizontal stress K0 times that; or
-//! gravity turned on in steps. The last two are brought to equilibrium by Newton's iteration, and the displacements are
-//! set to zero afterwards (on boundary springs they stay), so that what follows starts from undeformed ground under stress.
+//! K0 and gravity states are equilibrated; displacements are then zeroed (kept on boundary springs).
 //!
-//! Source: Potts and Zdravković, Finite Element Analysis in Geotechnical Engineering: Theory (1999), section 10.3. Limits: K0 is
-//! exact for level ground alone; under a slope the equilibrium changes it.
+//! Source: Potts and Zdravković (1999), section 10.3. Limits: K0 is exact for level ground only.
 //!
 //! Theory manual: equation (4.15) of `docs/theory/solid.md`.
 
@@ -20,17 +17,16 @@ use crate::model::Model;
 use crate::state::State;
 use std::collections::BTreeMap;
 
-/// What lies above a point.
+/// Overburden of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Overburden {
-    /// Level ground at this height [m] against the direction of gravity, of one density: that of the element of the point.
+    /// Ground level [m] against gravity; density of the point's element.
     Level(f64),
-    /// Level layers, from the top down: height of the top [m] and density [kg/m³]. The last goes down without end.
+    /// Layers from the top: height of the top [m], density [kg/m³]; the last is unbounded.
     Layers(Vec<(f64, f64)>),
 }
 
 impl Overburden {
-    /// Mass above a square metre at the height `z` [kg/m²]; `density` is that of the place itself.
     fn mass(&self, z: f64, density: f64) -> f64 {
         match self {
             Overburden::Level(top) => density * (top - z).max(0.0),
@@ -42,32 +38,31 @@ impl Overburden {
     }
 }
 
-/// How an initial state came about.
+/// Report of an initial state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InitialReport {
-    /// Points whose stress lay outside the yield surface and was returned to it.
+    /// Points returned to the yield surface.
     pub returned: usize,
-    /// Largest displacement [m] on the way to equilibrium, set to zero afterwards.
+    /// Largest displacement [m] before zeroing.
     pub largest_displacement: f64,
     /// Counts and times.
     pub statistics: Statistics,
 }
 
-/// Gives every point the stress `stress` [Pa] (xx yy zz xy yz zx, tension positive), returned to the yield surface where it lies outside.
-/// Equilibrium is not sought. Returns the number of points returned.
+/// Sets a uniform stress [Pa] (xx yy zz xy yz zx, tension positive) without equilibrium; returns the number
+/// of points returned to the yield surface.
 ///
 /// # Errors
-/// A stress that is not finite.
+/// Stress not finite.
 pub fn set_uniform(model: &Model, state: &mut State, stress: [f64; 6]) -> Result<usize, SolveError> {
     set(model, state, |_, _| stress)
 }
 
-/// Gives every point the K0 state: vertical stress from what lies above, horizontal stress `k0` (by material number; 1 - sin phi or
-/// what was measured) times that, along and across the direction of gravity. Returns the number of points returned to the yield
-/// surface.
+/// Sets the K0 state with horizontal stress `k0` (by material number) times vertical; returns the number of
+/// points returned to yield.
 ///
 /// # Errors
-/// A K0 that is missing or out of [0, 10], no gravity, layers that do not descend.
+/// K0 missing or out of [0, 10], no gravity, or layers not descending.
 pub fn set_k0(
     model: &Model,
     state: &mut State,
@@ -118,7 +113,6 @@ pub fn set_k0(
     })
 }
 
-/// Sets the stresses given by element and position; history starts at zero.
 fn set(
     model: &Model,
     state: &mut State,
@@ -148,7 +142,7 @@ fn set(
                     SolveError::Diverged { time, iterations: 0, residual, element, point, xi, region }
                 })?;
                 returned += usize::from(response.region != Region::Elastic);
-                // What returned it is no history of the ground.
+                // This return is not part of the ground's history.
                 new.stress = response.state.stress;
             }
             states[model.point_start(e) + i] = new;
@@ -158,13 +152,11 @@ fn set(
     Ok(returned)
 }
 
-/// Brings a state to equilibrium with `load` [N] (shape `[3 * nodes]`; gravity goes in here), from whatever stresses it has. The
-/// part of the load that the stresses do not carry is applied in steps. Displacements, velocities and accelerations are
-/// then set to zero but for the prescribed displacements, time to what it was. On boundary springs the displacements stay,
-/// because it is by them that the springs carry the body.
+/// Equilibrates a state with `load` [N] (shape `[3 * nodes]`, including gravity), then resets displacements
+/// (except prescribed ones or on boundary springs), velocities, accelerations and time.
 ///
 /// # Errors
-/// As [`QuasiStatic::advance`]; the state is that of before then.
+/// As [`QuasiStatic::advance`], with unchanged state.
 pub fn equilibrate(
     model: &Model,
     state: &mut State,
@@ -176,7 +168,7 @@ pub fn equilibrate(
     next.time = 0.0;
     ensure_points(model, &mut next);
     let mut solver = QuasiStatic::new(model, options, StepControl::fixed(1.0 / f64::from(steps.max(1))))?;
-    // What the stresses carry already stays on from the start.
+    // The part already in equilibrium acts from the start.
     let carried = solver.carried(model, &next);
     let fixed: Vec<f64> = model.supports().fixed().iter().map(|(dof, _)| next.u[*dof as usize]).collect();
     let mut loading = Driven {
@@ -198,7 +190,7 @@ pub fn equilibrate(
     Ok(InitialReport { returned: 0, largest_displacement, statistics: solver.statistics() })
 }
 
-/// Turns gravity on in `steps` steps from the state as it is, and sets the displacements to zero.
+/// Applies gravity in `steps` steps and zeroes displacements.
 ///
 /// # Errors
 /// As [`equilibrate`].
@@ -211,7 +203,7 @@ pub fn turn_on_gravity(
     equilibrate(model, state, &model.gravity_load(), options, steps)
 }
 
-/// The K0 state, brought to equilibrium under gravity.
+/// K0 state, equilibrated under gravity.
 ///
 /// # Errors
 /// As [`set_k0`] and [`equilibrate`].

@@ -1,8 +1,6 @@
-//! Internal force: strain increments at the Gauss points, return to the yield surface, and `f_a = ∫ sigma·g_a dV`.
+//! Internal force `f_a = ∫ sigma·g_a dV` with return mapping and assumed strains ([`crate::assumed`]).
 //!
-//! Elements take the strains that they assume ([`crate::assumed`]), and the transposed of it for the force. Elements without
-//! plasticity skip the return. Elements are worked on in
-//! fixed halves as tasks and their forces added in element order, so the bits do not depend on the number of threads.
+//! Fixed chunks are added in element order: bitwise independent of the number of threads.
 
 use super::points::{Moved, PointTable};
 use crate::element::MAX_NODES;
@@ -10,43 +8,37 @@ use crate::material::{Point, PointState, Points, Region};
 use crate::mesh::Mesh;
 use crate::model::Model;
 
-/// Elements that one task works on.
 const CHUNK: usize = 32;
 
-/// A Gauss point whose return failed: element (index) and point in the element.
+/// Failed return: element (index) and local point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PointFailure {
     pub element: usize,
     pub point: usize,
 }
 
-/// Stresses and forces of a trial displacement increment, with their buffers.
 pub(crate) struct InternalForce {
     pub table: PointTable,
-    /// State of the points at the trial. Shape `[points]`.
+    /// Trial state of the points. Shape `[points]`.
     pub points: Points,
-    /// Where each point ended. Shape `[points]`.
+    /// Region of each point. Shape `[points]`.
     pub regions: Vec<Region>,
     /// Nodal forces [N]. Shape `[3 * nodes]`.
     pub force: Vec<f64>,
-    /// Number of points that yielded.
     pub plastic: usize,
     element_force: Vec<[f64; 3]>,
 }
 
-/// What a range of elements writes.
 struct Slice<'a> {
     first: usize,
     end: usize,
     points: &'a mut [PointState],
-    /// The laws' own values, which begin at `first_value` among those of all points.
     values: &'a mut [f64],
     first_value: usize,
     regions: &'a mut [Region],
     forces: &'a mut [[f64; 3]],
 }
 
-/// What all elements read.
 struct Input<'a> {
     model: &'a Model,
     table: &'a PointTable,
@@ -67,7 +59,7 @@ impl InternalForce {
         }
     }
 
-    /// Stresses and forces after the displacement increment `increment` [m] (shape `[3 * nodes]`) from the states `old`.
+    /// Evaluates the increment `increment` [m] (shape `[3 * nodes]`) from `old`.
     pub fn evaluate(&mut self, model: &Model, old: &Points, increment: &[f64]) -> Result<(), PointFailure> {
         let input = Input { model, table: &self.table, old, increment };
         let (points, values) = self.points.split_mut();
@@ -85,7 +77,7 @@ impl InternalForce {
         Ok(())
     }
 
-    /// Forces of given stresses, without any return. Shape of `states` `[points]`.
+    /// Forces of given stresses, shape `[points]`.
     pub fn of_states(&mut self, model: &Model, states: &[PointState]) {
         for e in 0..model.mesh().element_count() {
             let mut forces = Moved::default();
@@ -110,7 +102,7 @@ impl InternalForce {
         }
     }
 
-    /// Whether any point of element `e` has another tangent than the assembled elastic matrix.
+    /// Whether element `e` has an inelastic tangent.
     pub fn leaves_elastic_matrix(&self, model: &Model, e: usize) -> bool {
         let yields = || self.regions[self.table.points(e)].iter().any(|r| *r != Region::Elastic);
         !model.material(e).law.has_constant_elasticity() || (self.plastic > 0 && yields())
@@ -194,7 +186,6 @@ impl Input<'_> {
     }
 }
 
-/// The increments at the nodes of element `e`.
 #[inline]
 pub(crate) fn element_increment(mesh: &Mesh, e: usize, increment: &[f64]) -> Moved {
     let mut moved = [[0.0; 3]; MAX_NODES];

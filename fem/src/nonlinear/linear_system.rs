@@ -1,8 +1,8 @@
-//! The equation systems of an iteration: a kept factor of the elastic matrix, and the factor of the tangent.
+//! Linear systems of an iteration, with elastic and tangent factors.
 //!
-//! A symmetric tangent takes L L^T; if a pivot is not positive (softening), that is counted and L U takes over. An
-//! unsymmetric one takes L U, or, for large systems, GMRES with the elastic factor as preconditioner, as far as an inexact
-//! Newton iteration needs (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19 (1982) 400-408). Should that fail too, the iteration falls back on the elastic matrix, which is counted as well.
+//! Symmetric tangents use L L^T, or L U if indefinite (softening). Unsymmetric tangents use L U or, if large,
+//! inexact GMRES with the elastic factor (Dembo, Eisenstat and Steihaug, SIAM J. Numer. Anal. 19 (1982)
+//! 400-408), then the elastic matrix.
 
 use super::options::LinearMethod;
 use super::tangent::Tangent;
@@ -17,27 +17,22 @@ use crate::solver::multifrontal::DirectSolver;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Free dofs above which `Auto` solves unsymmetric systems by iteration.
+/// Free dofs above which `Auto` uses GMRES.
 const DIRECT_LIMIT: usize = 30_000;
-/// Iterations of GMRES before it restarts.
 const RESTART: usize = 60;
-/// Iterations of GMRES at most.
 const LIMIT: usize = 180;
-/// Residual that GMRES aims at, over the right-hand side.
+/// GMRES tolerance over the right-hand side.
 const TOLERANCE: f64 = 1e-3;
-/// Residual that a Newton iteration can still use.
+/// Largest residual useful to Newton.
 const ACCEPTED: f64 = 1e-1;
 
-/// The matrix of the next solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Matrix {
     Elastic,
     Tangent,
-    /// The tangent as it was assembled, without a factor.
     Iterated,
 }
 
-/// Factors of one model and their buffers.
 pub(crate) struct LinearSystem {
     analysis: Arc<Analysis>,
     elastic: DirectSolver,
@@ -49,7 +44,6 @@ pub(crate) struct LinearSystem {
     krylov: Option<Krylov>,
 }
 
-/// Buffers of GMRES.
 struct Krylov {
     gmres: Gmres,
     solution: Vec<f64>,
@@ -73,15 +67,14 @@ impl LinearSystem {
         })
     }
 
-    /// The matrix that the elastic factor at hand is of.
     pub fn elastic_of(&self) -> Option<Combination> {
         self.elastic_of
     }
 
-    /// Factors the elastic matrix, unless it is at hand. Leaves it in `tangent` when it had to be formed.
+    /// Factors the elastic matrix unless current.
     ///
     /// # Errors
-    /// [`SolveError::NoStiffness`] where the body is not held; with a mass that cannot be.
+    /// [`SolveError::NoStiffness`] without constraints; impossible with mass.
     pub fn factor_elastic(
         &mut self,
         model: &Model,
@@ -112,7 +105,7 @@ impl LinearSystem {
         Ok(())
     }
 
-    /// Makes the assembled tangent ready: factors it, or leaves it to GMRES. The matrix that may be solved with.
+    /// Prepares the tangent: factors it or selects GMRES.
     pub fn take_tangent(
         &mut self,
         model: &Model,
@@ -154,7 +147,6 @@ impl LinearSystem {
         if done { Matrix::Tangent } else { Matrix::Elastic }
     }
 
-    /// Solves in place with a matrix that is ready.
     pub fn solve(
         &mut self,
         model: &Model,
@@ -182,7 +174,7 @@ impl LinearSystem {
         statistics.solve_seconds += start.elapsed().as_secs_f64();
     }
 
-    /// Solves with the tangent by GMRES; false, with `x` as it was, when too much is left.
+    /// GMRES solve; on failure false, `x` unchanged.
     fn iterate(
         &mut self,
         model: &Model,
@@ -200,7 +192,7 @@ impl LinearSystem {
         krylov.solution.fill(0.0);
         let outcome = krylov.gmres.solve(
             |v, y| {
-                // The constrained dofs stay 0.
+                // Constrained dofs stay 0.
                 supports.scatter(v, from);
                 tangent.times(model, from, to);
                 supports.gather(to, y);

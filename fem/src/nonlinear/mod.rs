@@ -1,9 +1,8 @@
-//! Elastoplastic bodies: internal force, tangent, Newton's iteration, and the drivers on top of it.
+//! Elastoplastic bodies: internal force, tangent, Newton iteration and drivers.
 //!
-//! Stress and history live at the Gauss points of [`State::points`](crate::State::points); a step starts from the committed
-//! ones, so that a step given up leaves no trace. Source of the structure: Simo and Hughes, Computational Inelasticity (1998),
-//! chapters 1 and 4; de Souza Neto, Peric and Owen, Computational Methods for Plasticity (2008), chapter 4. Limits: small strain
-//! and rotation.
+//! Steps start from committed Gauss point states, so failed steps leave no trace. Source: Simo and Hughes
+//! (1998), chapters 1 and 4; de Souza Neto, Peric and Owen (2008), chapter 4. Limits: small strain and
+//! rotation.
 pub(crate) mod conditions;
 pub mod dynamics;
 pub mod energy;

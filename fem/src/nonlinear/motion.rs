@@ -1,8 +1,7 @@
-//! What the drivers of motion share: inner forces of a state with stresses, energies of the points, the ledger of a step.
+//! Inner forces and energy terms shared by the time integrators.
 //!
-//! With the mean of the stresses at both ends of a step the work of the internal forces splits without remainder,
-//! `(s0 + s1)/2 : d eps = d(s : C^-1 s)/2 + (s0 + s1)/2 : d eps_p`, so that what the ledger leaves over is the time
-//! integration's alone.
+//! With mean stresses, `(s0 + s1)/2 : d eps = d(s : C^-1 s)/2 + (s0 + s1)/2 : d eps_p` exactly; the energy
+//! residual is due to time integration only.
 
 use super::internal_force::InternalForce;
 use super::points::PointTable;
@@ -10,7 +9,7 @@ use crate::material::Points;
 use crate::model::Model;
 use crate::state::{State, StepAudit};
 
-/// Change of the elastic energy of the points, and their plastic dissipation, in one step [J].
+/// Elastic energy change and plastic dissipation [J].
 pub(crate) fn point_energies(model: &Model, table: &PointTable, old: &Points, new: &Points) -> (f64, f64) {
     let (mut elastic, mut plastic) = (0.0, 0.0);
     for e in 0..model.mesh().element_count() {
@@ -28,7 +27,7 @@ pub(crate) fn point_energies(model: &Model, table: &PointTable, old: &Points, ne
     (elastic, plastic)
 }
 
-/// `f + S u + M a + C v` of a state [N], f from its stresses. Shapes `[3 * nodes]`; `scratch` has the length of two.
+/// `f + S u + M a + C v` [N]. Shapes `[3 * nodes]`; `scratch` twice as long.
 pub(crate) fn inner_force(
     model: &Model,
     internal: &mut InternalForce,
@@ -56,9 +55,7 @@ pub(crate) fn inner_force(
     model.dashpot_times(&state.v, force);
 }
 
-/// Completes the ledger of a step: what is left when everything else is accounted for is the time integration's.
-///
-/// `velocity` [m/s] is the one that the damping acts on; shape `[3 * nodes]`. `scratch` has the length of two nodal vectors.
+/// Completes the energy terms; `velocity` [m/s] for damping. Shape `[3 * nodes]`; `scratch` twice as long.
 pub(crate) fn close(
     model: &Model,
     table: &PointTable,

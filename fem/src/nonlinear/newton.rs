@@ -1,25 +1,19 @@
-//! Newton's iteration for the equilibrium of one step: full, modified, or with the elastic matrix; with or without line
-//! search; force and energy criteria.
-//!
-//! Unknown is the displacement increment `w` of the step; its part at the constrained dofs is prescribed:
+//! Newton iteration (full, modified or elastic) with optional line search.
 //!
 //! ```text
 //! r(w) = rhs - f(w) - S w - (stiffness K + mass M + dashpots D) w = 0 on the free dofs
 //! ```
 //!
-//! f is the internal force of the stresses after w, S the boundary springs, K the elastic stiffness with the springs. The last
-//! part is empty in a quasi-static step. The first iteration of a step goes out from the committed stresses with the elastic matrix (whether a
-//! point that lies exactly on the yield surface counts as yielding would be left to rounding), so the prescribed increments
-//! spread over the body before any stress is returned. A step without a yielding point needs no other.
+//! w is the displacement increment, f the internal force, S the boundary springs, K the elastic stiffness
+//! with springs. The first iteration uses the elastic matrix, as yielding exactly on the surface would depend
+//! on rounding.
 //!
-//! Converged when the residual on the free dofs is at most `force_tolerance` of the forces (the larger of |rhs| and |f| over all
-//! dofs, so that reactions count) *and* the work of the residual on the last correction is at most `energy_tolerance` of the largest
-//! such work before a correction in the step; a residual a tenth of its tolerance needs no second criterion.
+//! Convergence: residual at most `force_tolerance` of the forces (larger of |rhs| and |f|, all dofs), *and*
+//! residual work on the last correction at most `energy_tolerance` of its maximum in the step. A residual
+//! below a tenth suffices.
 //!
-//! Line search: the step length is sought for which the work of the residual on the correction falls to
-//! half of that before it (Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), section 9.2), within bounds.
-//! Where an unsymmetric tangent gives a correction along which the residual does no positive work, the size of the
-//! residual decides instead.
+//! Line search: the residual work is halved (Crisfield 1991, vol. 1, section 9.2), or, for corrections
+//! without positive work, the residual norm is reduced.
 //!
 //! Theory manual: equation (4.10) of `docs/theory/solid.md`.
 
@@ -37,7 +31,6 @@ use crate::model::Model;
 use crate::state::State;
 use std::time::Instant;
 
-/// Where a step got stuck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stuck {
     pub residual: f64,
@@ -47,16 +40,14 @@ pub(crate) struct Stuck {
     region: Region,
 }
 
-/// Why a step has no result.
 pub(crate) enum Failure {
-    /// No convergence: a smaller step may pass.
+    /// No convergence; a smaller step may succeed.
     Stuck(Stuck),
-    /// Not a matter of the step's size.
     Fatal(SolveError),
 }
 
 impl Stuck {
-    /// The error that names the place, as the user's files number it.
+    /// Error with the element number of the files.
     pub fn error(&self, model: &Model, time: f64) -> SolveError {
         let mesh = model.mesh();
         let points = stiffness_points(mesh.connectivity.kind(self.element), model.quadrature());
@@ -72,57 +63,48 @@ impl Stuck {
     }
 }
 
-/// One step to be solved.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
-    /// Committed states of the points. Shape `[points]`.
+    /// Committed point states. Shape `[points]`.
     pub old: &'a Points,
     /// Right-hand side [N]. Shape `[3 * nodes]`.
     pub rhs: &'a [f64],
-    /// Prescribed increments [m] in the order of the constrained dofs.
     pub fixed: &'a [f64],
-    /// What is added to the internal force.
+    /// Matrices added to the internal force.
     pub linear: Combination,
-    /// Size of the forces [N] that the residual is measured by, where it is larger than the internal force; the size of `rhs` if none.
+    /// Reference force [N], if larger than the internal force; default: `rhs`.
     pub forces: Option<f64>,
-    /// Whether the step is to be given up.
     pub stop: &'a dyn Fn() -> bool,
 }
 
-/// An iteration that leaves more than this part of the smallest residual of its step so far makes no progress.
+/// Residual ratio without progress.
 const PROGRESS: f64 = 0.5;
-/// Iterations without progress after which a step counts as stalled.
+/// Stalled after these iterations.
 const STALLED: u32 = 3;
-/// Part of the force tolerance below which the energy criterion is not asked any more.
+/// Fraction of the force tolerance that waives the energy criterion.
 const WELL_BELOW: f64 = 0.1;
-/// Smallest length of a correction.
 const SHORTEST: f64 = 0.1;
-/// Longest length of a correction with a matrix that is not the tangent.
+/// Longest step without tangent.
 const LONGEST: f64 = 4.0;
-/// Share of the work that ends a line search.
 const ENOUGH: f64 = 0.5;
-/// Evaluations of a line search at most.
 const SEARCHES: u32 = 5;
-/// Residual over the forces at which an iteration is given up.
+/// Relative residual of an aborted iteration.
 const HOPELESS: f64 = 1e6;
 
-/// Share of the inertia of the predicted motion that counts as a force in the criterion of convergence: rounding of the velocity
-/// in a step then stays below 1e-8 at a tolerance of 1e-6 where no other force is left.
+/// Inertia fraction in the force norm: velocity rounding stays below 1e-8 at a tolerance of 1e-6.
 pub(crate) const INERTIA: f64 = 1e-3;
 
-/// The iteration with its matrices and buffers.
 pub(crate) struct Newton {
     pub options: NewtonOptions,
     pub force: InternalForce,
     pub system: LinearSystem,
     pub tangent: Tangent,
-    /// The increment [m]. Shape `[3 * nodes]`.
+    /// Increment [m]. Shape `[3 * nodes]`.
     pub w: Vec<f64>,
-    /// Residual [N] over all dofs; at the constrained ones minus the reaction.
+    /// Residual [N] over all dofs.
     pub residual: Vec<f64>,
     pub statistics: Statistics,
     pub report: StepReport,
-    /// Iterations of the step without progress so far.
     stalls: u32,
     base: Vec<f64>,
     correction: Vec<f64>,
@@ -155,7 +137,7 @@ impl Newton {
         })
     }
 
-    /// Solves a step; the increment is left in `w`, the states in `force.points`, the course in `report`.
+    /// Solves a step; results are in `w`, `force.points` and `report`.
     pub fn solve(&mut self, model: &Model, problem: &Problem<'_>) -> Result<(), Failure> {
         self.system
             .factor_elastic(model, &mut self.tangent, problem.linear, &mut self.statistics)
@@ -190,7 +172,7 @@ impl Newton {
             let (work, norm) = (self.work(model), self.size(model));
             self.base.copy_from_slice(&self.w);
             self.evaluate(model, problem, 1.0)?;
-            // The prescribed increments of the first iteration are not to be scaled.
+            // Prescribed increments are not scaled.
             if self.options.line_search && iteration > 1 {
                 self.search(model, problem, work, norm, matrix)?;
             }
@@ -214,7 +196,7 @@ impl Newton {
         Err(Failure::Stuck(self.stuck(model, problem, size)))
     }
 
-    /// Right-hand side of the first iteration: the prescribed increments act through the elastic matrix.
+    /// Prescribed increments act through the elastic matrix.
     fn predict(&mut self, model: &Model, problem: &Problem<'_>, moving: bool) {
         if moving {
             for (&(dof, _), value) in model.supports().fixed().iter().zip(problem.fixed) {
@@ -226,7 +208,6 @@ impl Newton {
         model.supports().gather(&self.residual, &mut self.equations);
     }
 
-    /// `residual -= (stiffness K + mass M + dashpots D) w`.
     fn add_linear(&mut self, model: &Model, linear: Combination) {
         let Combination { stiffness, mass, dashpots } = linear;
         if dashpots != 0.0 && !model.matrices().dashpots().is_empty() {
@@ -244,7 +225,6 @@ impl Newton {
         }
     }
 
-    /// Forms and factors the tangent if its turn has come.
     fn choose(&mut self, model: &Model, problem: &Problem<'_>, iteration: u32, last: Matrix) -> Matrix {
         let due = match self.options.variant {
             Variant::Full => true,
@@ -271,7 +251,7 @@ impl Newton {
         self.system.take_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
     }
 
-    /// Stresses, forces and residual at `base + length * correction`; at `w` as it is for length 0.
+    /// Residual at `base + length * correction`, or at `w`.
     fn evaluate(&mut self, model: &Model, problem: &Problem<'_>, length: f64) -> Result<(), Failure> {
         if length > 0.0 {
             for d in 0..self.w.len() {
@@ -295,7 +275,6 @@ impl Newton {
         Ok(())
     }
 
-    /// Residual on the free dofs over the forces; appends it to the report.
     fn measure(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
         let given = problem.forces.unwrap_or_else(|| square(problem.rhs).sqrt());
@@ -311,14 +290,12 @@ impl Newton {
         free.iter().map(|&d| self.residual[d as usize].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Work of the residual on the correction.
     fn work(&self, model: &Model) -> f64 {
         let free = model.supports().free();
         free.iter().map(|&d| self.residual[d as usize] * self.correction[d as usize]).sum()
     }
 
-    /// Searches the length of the correction; stands at length 1 when called. `before` is the work at length 0,
-    /// `size` that of the residual there.
+    /// `before` and `size`: work and norm of the residual at length 0.
     fn search(
         &mut self,
         model: &Model,
@@ -361,7 +338,6 @@ impl Newton {
         Ok(())
     }
 
-    /// Halves the correction while the residual is larger than without it.
     fn search_by_size(&mut self, model: &Model, problem: &Problem<'_>, before: f64) -> Result<(), Failure> {
         let mut length = 1.0;
         while length > 2.0 * SHORTEST && self.size(model) > before {
@@ -371,8 +347,7 @@ impl Newton {
         Ok(())
     }
 
-    /// The place to be named: among the elements at the node with the largest residual, the point whose equivalent plastic
-    /// strain grew most in the step.
+    /// Position for error messages: largest residual, then largest plastic strain growth.
     fn stuck(&self, model: &Model, problem: &Problem<'_>, residual: f64) -> Stuck {
         let mut worst = (0.0, 0);
         for &d in model.supports().free() {
@@ -399,7 +374,6 @@ impl Newton {
 }
 
 impl Newton {
-    /// Takes the solved step over into the state.
     pub fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
         state.u.iter_mut().zip(&self.w).for_each(|(u, w)| *u += w);
         std::mem::swap(&mut state.points, &mut self.force.points);
@@ -409,15 +383,14 @@ impl Newton {
         self.report.dt = dt;
     }
 
-    /// The memory of a solver with this iteration.
     pub fn memory(&self, length: Option<StepLength>) -> Memory {
         Memory { statistics: self.statistics, length, factored: self.system.elastic_of() }
     }
 
-    /// Takes a memory over; factors the elastic matrix that was at hand, so that no later count differs.
+    /// Restores checkpointed state, including the elastic factor.
     ///
     /// # Errors
-    /// The matrix cannot be factored.
+    /// Failed factorisation.
     pub fn recall(
         &mut self,
         model: &Model,

@@ -1,53 +1,53 @@
-//! Choices of Newton's iteration, and its counts.
+//! Options of the Newton iteration.
 
 use crate::error::SolveError;
 use serde::{Deserialize, Serialize};
 
-/// Which matrix the iterations after the first of a step take.
+/// Matrix after the first iteration of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Variant {
-    /// The consistent tangent of every iteration: quadratic convergence.
+    /// Consistent tangent in every iteration.
     Full,
-    /// The tangent after the first iteration, renewed after every so many further ones (0: kept to the end of the step).
+    /// Tangent after the first iteration, updated every n further ones (0: never).
     Modified(u32),
-    /// The elastic matrix: factored once, linear convergence.
+    /// Elastic matrix: one factor, linear convergence.
     InitialStiffness,
 }
 
-/// How systems with an unsymmetric tangent are solved.
+/// Solver of unsymmetric systems.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearMethod {
-    /// L U up to 30,000 free dofs, iteration above.
+    /// L U up to 30,000 free dofs, then GMRES.
     #[default]
     Auto,
     /// L U.
     Direct,
-    /// GMRES, preconditioned with the elastic factor.
+    /// GMRES with the elastic factor.
     Krylov,
 }
 
-/// Choices of the iteration.
+/// Options of the iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonOptions {
-    /// Matrix of the iterations.
+    /// Iteration matrix.
     pub variant: Variant,
-    /// Whether the length of each correction is searched.
+    /// Line search.
     pub line_search: bool,
-    /// Residual at convergence, over the forces [-].
+    /// Relative force residual [-].
     pub force_tolerance: f64,
-    /// Work of the residual on the last correction at convergence, over the largest work before a correction [-].
+    /// Work of the last correction over the largest in the step [-].
     pub energy_tolerance: f64,
-    /// Iterations after which a step has failed.
+    /// Iteration limit of a step.
     pub max_iterations: u32,
     /// Solver of unsymmetric systems.
     pub linear: LinearMethod,
 }
 
 impl NewtonOptions {
-    /// The usual choices for a variant: tolerances 1e-6 and 1e-8, line search, 50 iterations (full), 60 (modified) or 400
-    /// (elastic matrix).
+    /// Default options: tolerances 1e-6 and 1e-8, line search, 50 (full), 60 (modified) or 400 (elastic)
+    /// iterations.
     pub fn new(variant: Variant) -> NewtonOptions {
         let max_iterations = match variant {
             Variant::Full => 50,
@@ -64,7 +64,7 @@ impl NewtonOptions {
         }
     }
 
-    /// Refuses tolerances that are not above 0 and no iterations.
+    /// Checks for positive tolerances and iterations.
     ///
     /// # Errors
     /// [`SolveError::Option`].

@@ -1,50 +1,43 @@
-//! Gradients and volumes of all Gauss points, worked out once.
+//! Precomputed gradients and volumes of all Gauss points.
 //!
-//! Memory: 24 bytes per node and point, and 8 per point, so 3.9 kB per hex20 under the reduced rule and 13.2 kB under the
-//! full one, twice that with mean dilatation; 4 kB per hex8 with incompatible modes: a few per cent of the factor of the same
-//! mesh. Reading them takes a fifth of the time of forming them anew.
+//! Memory per hex20: 3.9 kB (reduced) or 13.2 kB (full), twice that with mean dilatation; hex8 with modes 4
+//! kB: a few per cent of the factor. Reading takes a fifth of recomputation.
 
 use crate::assumed::modes::{self, Amplitudes};
 use crate::element::{MAX_NODES, stiffness_points};
 use crate::model::Model;
 
-/// Nodal triples of one element, those of incompatible modes after them; only the first ones of its kind are used.
 pub(crate) type Moved = [[f64; 3]; MAX_NODES];
 
-/// Gradients of the volume strain of an element, if it is not taken at the points.
 #[derive(Clone, Copy, Debug)]
 enum Volume {
     /// At the points.
     Pointwise,
-    /// The same in all of the element, from this place on.
+    /// Constant in the element; start index.
     Mean(usize),
-    /// Of each point, from this place on.
+    /// Per point; start index.
     Projected(usize),
 }
 
-/// Geometry of the Gauss points of a model.
 #[derive(Clone, Debug)]
 pub(crate) struct PointTable {
-    /// First point of each element. Shape `[elements + 1]`.
+    /// Shape `[elements + 1]`.
     start: Vec<u32>,
-    /// First gradient of each element. Shape `[elements + 1]`.
+    /// Shape `[elements + 1]`.
     gradient_start: Vec<usize>,
-    /// Gradients of the shape functions and modes [1/m], term by term, point by point, element by element.
+    /// Gradients of nodes and modes [1/m] by element, point, term.
     gradients: Vec<[f64; 3]>,
-    /// Volume of each point [m³].
     volume: Vec<f64>,
-    /// First node of each element in the list of all. Shape `[elements + 1]`.
+    /// Shape `[elements + 1]`.
     node_start: Vec<u32>,
-    /// Where the gradients of the volume strain are. Shape `[elements]`.
+    /// Shape `[elements]`.
     dilatation: Vec<Volume>,
-    /// Gradients of the volume strain [1/m].
     means: Vec<[f64; 3]>,
-    /// Place of the amplitudes of each element, [`NONE`] without modes. Shape `[elements]`.
+    /// Amplitude index, or [`NONE`]. Shape `[elements]`.
     modes: Vec<u32>,
     amplitudes: Vec<Amplitudes>,
 }
 
-/// No amplitudes.
 const NONE: u32 = u32::MAX;
 
 impl PointTable {
@@ -88,31 +81,27 @@ impl PointTable {
         table
     }
 
-    /// Points of element `e`.
     #[inline]
     pub fn points(&self, e: usize) -> std::ops::Range<usize> {
         self.start[e] as usize..self.start[e + 1] as usize
     }
 
-    /// Position of the nodes of element `e` in the list of the nodes of all elements.
+    /// Nodes of element `e`, concatenated.
     #[inline]
     pub fn nodes(&self, e: usize) -> std::ops::Range<usize> {
         self.node_start[e] as usize..self.node_start[e + 1] as usize
     }
 
-    /// Number of nodes and modes of element `e`.
     #[inline]
     fn terms(&self, e: usize) -> usize {
         self.nodes(e).len() + if self.modes[e] == NONE { 0 } else { modes::COUNT }
     }
 
-    /// Blocks of the amplitudes of the incompatible modes of element `e`, if it has any.
     #[inline]
     pub fn amplitudes(&self, e: usize) -> Option<&Amplitudes> {
         self.amplitudes.get(self.modes[e] as usize)
     }
 
-    /// Puts the amplitudes of the modes of element `e` after the displacements of its nodes.
     #[inline]
     pub fn extend(&self, e: usize, u: &mut Moved) {
         if let Some(amplitudes) = self.amplitudes(e) {
@@ -120,7 +109,6 @@ impl PointTable {
         }
     }
 
-    /// Brings the forces on the modes of element `e` to its nodes.
     #[inline]
     pub fn condense(&self, e: usize, force: &mut Moved) {
         if let Some(amplitudes) = self.amplitudes(e) {
@@ -128,14 +116,14 @@ impl PointTable {
         }
     }
 
-    /// Gradients at point `i` of element `e`. Shape `[terms]`.
+    /// Gradients of point `i`. Shape `[terms]`.
     #[inline]
     pub fn gradients(&self, e: usize, i: usize) -> &[[f64; 3]] {
         let terms = self.terms(e);
         &self.gradients[self.gradient_start[e] + i * terms..][..terms]
     }
 
-    /// Gradients of the volume strain at point `i` of element `e`; empty where it is taken at the points. Shape `[terms]`.
+    /// Volumetric gradients of point `i`; empty if pointwise. Shape `[terms]`.
     #[inline]
     pub fn means(&self, e: usize, i: usize) -> &[[f64; 3]] {
         match self.dilatation[e] {
@@ -148,13 +136,12 @@ impl PointTable {
         }
     }
 
-    /// Volume of a point [m³].
     #[inline]
     pub fn volume(&self, point: usize) -> f64 {
         self.volume[point]
     }
 
-    /// Strain (engineering shear) at point `i` of element `e` under displacements `u` [m] of its nodes and modes.
+    /// Strain (engineering shear) of displacements `u` [m].
     #[inline]
     pub fn strain(&self, e: usize, i: usize, u: &Moved) -> [f64; 6] {
         let mut s = [0.0; 6];
@@ -175,7 +162,7 @@ impl PointTable {
         s
     }
 
-    /// Adds `dV B^T sigma` of a point to the forces [N] on the nodes and modes of its element: the transpose of [`PointTable::strain`].
+    /// Adds `dV B^T sigma` [N] of a point: transpose of [`PointTable::strain`].
     #[inline]
     pub fn add_force(&self, e: usize, i: usize, volume: f64, stress: &[f64; 6], force: &mut [[f64; 3]]) {
         let s = stress.map(|s| volume * s);

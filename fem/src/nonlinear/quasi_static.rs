@@ -1,8 +1,7 @@
-//! Quasi-static loading in steps of time or pseudo-time, with automatic step lengths.
+//! Quasi-static loading with automatic step lengths.
 //!
-//! Forces and prescribed displacements are functions of time. The residual of a step is that of the whole equilibrium, so
-//! what one step leaves within the tolerance is taken up by the next and does not add up. Limits: no path following: beyond
-//! a limit load only prescribed displacements go on.
+//! Residuals refer to total equilibrium, so tolerances do not accumulate. Limits: no path following beyond a
+//! limit load.
 
 use super::conditions::{prescribe, subtract_springs};
 use super::halving::Halving;
@@ -15,7 +14,7 @@ use crate::model::Model;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_held, check_load};
 
-/// Steps a model through a loading.
+/// Quasi-static solver.
 pub struct QuasiStatic {
     newton: Newton,
     length: StepLength,
@@ -25,10 +24,10 @@ pub struct QuasiStatic {
 }
 
 impl QuasiStatic {
-    /// Checks that the body is held, and makes the buffers.
+    /// Checks against rigid-body motion and allocates buffers.
     ///
     /// # Errors
-    /// A body that is not held; options out of range.
+    /// Insufficient constraints; options out of range.
     pub fn new(
         model: &Model,
         options: NewtonOptions,
@@ -45,17 +44,17 @@ impl QuasiStatic {
         })
     }
 
-    /// Counts and times since the solver was made.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }
 
-    /// Forces of the supports on the body [N] after the last accepted step; 0 at free dofs. Shape `[3 * nodes]`.
+    /// Support reactions [N] after the last accepted step; 0 at free dofs. Shape `[3 * nodes]`.
     pub fn reactions(&self) -> &[f64] {
         &self.reactions
     }
 
-    /// Forces [N] that the stresses of a state and the boundary springs carry. Shape `[3 * nodes]`.
+    /// Forces [N] of stresses and boundary springs. Shape `[3 * nodes]`.
     pub(super) fn carried(&mut self, model: &Model, state: &State) -> Vec<f64> {
         self.newton.force.of_states(model, &state.points);
         let mut carried = self.newton.force.force.clone();
@@ -63,7 +62,6 @@ impl QuasiStatic {
         carried
     }
 
-    /// Loads and prescribed increments of the step from `state` to `time`.
     fn conditions(
         &mut self,
         model: &Model,

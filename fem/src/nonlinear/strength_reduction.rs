@@ -1,10 +1,9 @@
-//! Factor of safety by reduction of strength: the largest factor F by which cohesion and tan(phi) can be divided with the body still in
-//! equilibrium.
+//! Factor of safety by strength reduction.
 //!
-//! Each trial starts from the same state and takes the whole load; a trial without convergence is a failure of the body. F is
-//! bracketed in steps of a factor 1.5, then halved. Source: Griffiths and Lane, Géotechnique 49(3) (1999) 387-403; Zienkiewicz, Humpheson and Lewis,
-//! Géotechnique 25(4) (1975) 671-689. Limits: failure is judged by the iteration, so the bracket depends on its limits to some
-//! per cent; the displacements of the trials, which rise steeply near failure, are recorded to judge it by.
+//! Trials with cohesion and tan(phi) divided by F apply the whole load from one state; divergence means
+//! failure. F is bracketed by factors of 1.5, then bisected. Source: Griffiths and Lane (1999); Zienkiewicz,
+//! Humpheson and Lewis (1975). Limits: the bracket depends on the iteration limit by some per cent;
+//! displacements rise steeply near failure.
 
 use super::options::NewtonOptions;
 use super::quasi_static::QuasiStatic;
@@ -14,19 +13,18 @@ use crate::model::Model;
 use crate::state::State;
 use serde::{Deserialize, Serialize};
 
-/// Choices of a strength reduction.
+/// Options of a strength reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReductionOptions {
-    /// First factor tried.
+    /// First trial factor.
     pub start: f64,
-    /// Width of the bracket at the end.
+    /// Final width of the bracket.
     pub tolerance: f64,
-    /// Factors beyond this and below its reciprocal are not tried.
+    /// Largest trial factor; its reciprocal is the smallest.
     pub largest: f64,
-    /// The iteration. More iterations than usual are worth their while near failure; a looser tolerance than usual keeps the
-    /// search from taking a slow iteration for a failure of the body.
+    /// Newton options: many iterations and a loose tolerance, as slow convergence is not failure.
     pub newton: NewtonOptions,
-    /// Steps of the load, from 0 to 1.
+    /// Load steps, from 0 to 1.
     pub control: StepControl,
 }
 
@@ -42,36 +40,36 @@ impl Default for ReductionOptions {
     }
 }
 
-/// One trial.
+/// Trial.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// Factor.
     pub factor: f64,
-    /// Whether the whole load was carried.
+    /// Whether the whole load was applied.
     pub converged: bool,
-    /// Share of the load that was carried.
+    /// Fraction of the load applied.
     pub share: f64,
-    /// Iterations, those of steps given up included.
+    /// Iterations, including rejected steps.
     pub iterations: u64,
-    /// Largest displacement [m] since the state at the start, at the last share that was carried.
+    /// Largest displacement [m] at the last converged load.
     pub largest_displacement: f64,
 }
 
-/// The bracket of the factor of safety and how it was found.
+/// Bracket of the factor of safety.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FactorOfSafety {
-    /// Largest factor with equilibrium.
+    /// Largest stable factor.
     pub converged: f64,
-    /// Smallest factor without.
+    /// Smallest unstable factor.
     pub failed: f64,
-    /// All trials, in the order of their factors.
+    /// Trials by factor.
     pub trials: Vec<Trial>,
 }
 
-/// Brackets the factor of safety of `model` under `load` [N] (shape `[3 * nodes]`; gravity goes in here), each trial from `state`.
+/// Brackets the factor of safety under `load` [N] (shape `[3 * nodes]`, including gravity), from `state`.
 ///
 /// # Errors
-/// Options out of range; a model without plasticity; no failure up to the largest factor, or no equilibrium down to the smallest.
+/// Options out of range; no plasticity; no failure at the largest or no equilibrium at the smallest factor.
 pub fn factor_of_safety(
     model: &Model,
     state: &State,
@@ -137,11 +135,10 @@ pub fn factor_of_safety(
     Ok(FactorOfSafety { converged: low, failed: high, trials })
 }
 
-/// The body with its strength divided by `factor`, and its state under the whole load: what a trial of
-/// [`factor_of_safety`] found.
+/// Model with strength divided by `factor`, and its state under the whole load.
 ///
 /// # Errors
-/// As [`QuasiStatic::advance`]; it carries the load at any factor that converged.
+/// As [`QuasiStatic::advance`]; none at stable factors.
 pub fn at_factor(
     model: &Model,
     state: &State,
@@ -163,7 +160,7 @@ fn reduced(model: &Model, factor: f64) -> Result<Model, SolveError> {
     })
 }
 
-/// Applies the load from `state` on: the last state that carried its share, how that was found, and whether it is the whole.
+/// Returns the last converged state, its trial, and whether the load is complete.
 fn carry(
     reduced: &Model,
     state: &State,

@@ -1,15 +1,10 @@
-//! The global tangent: elastic matrix plus, at every Gauss point that yields, `∫ B^T (D_ep - D) B dV`.
+//! Global tangent: elastic matrix plus `∫ B^T (D_ep - D) B dV` at yielding Gauss points.
 //!
-//! Elastic points cost nothing, because the elastic blocks are at hand in [`Matrices`](crate::assembly::Matrices). Values are 3×3
-//! blocks of node pairs on the same pattern: (p, q) with p <= q, and for an unsymmetric tangent the transposed of the block (q, p) as well,
-//! so that both have the layout of the symmetric elastic block. Slots of the pairs of every plastic element are
-//! worked out once.
+//! Unsymmetric tangents also store the transpose of block (q, p), so that both halves share a layout.
 //!
-//! Source: Zienkiewicz and Taylor, The Finite Element Method, vol. 2 (2000), chapter 3; B-bar as in the internal force.
-//! Where the strength fixes the stress the consistent tangent is singular: a share of the elastic matrix is mixed in at every
-//! yielding point, which slows the last digits of the iteration and does not move its solution. [`REGULARISATION`] is
-//! enough for that; an unsymmetric tangent whose iteration stalls takes [`STABILISATION`], with which it no longer runs in
-//! circles between neighbouring sets of yielding points.
+//! Source: Zienkiewicz and Taylor (2000), vol. 2, chapter 3. An elastic fraction removes singularity:
+//! [`REGULARISATION`], or [`STABILISATION`] for stalled unsymmetric tangents, which cycle between sets of
+//! yielding points. The solution is unaffected.
 
 use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
@@ -19,25 +14,19 @@ use crate::material::{Points, REGULARISATION, Region};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
-/// Share of the elastic matrix in an unsymmetric tangent whose iteration has stalled. Measured on footings without dilation:
-/// with less a step stalls by luck, with more it converges slowly.
+/// Elastic fraction of a stalled unsymmetric tangent; on footings, less stalls and more converges slowly.
 const STABILISATION: f64 = 1e-2;
 
-/// Rows of an element matrix in memory.
 const ROWS: usize = 3 * MAX_NODES;
 const ELEMENT: usize = ROWS * ROWS;
-/// Element matrices formed before they are added.
 const CHUNK: usize = 64;
-/// Element matrices that one task forms.
 const TASK: usize = 8;
-/// No slots: an element without plasticity.
 const NONE: u32 = u32::MAX;
 
-/// The tangent of a model, with its buffers.
 pub(crate) struct Tangent {
     symmetric: bool,
     upper: Vec<[f64; 9]>,
-    /// Transposed blocks (q, p); empty when symmetric.
+    /// Transposed blocks (q, p); empty if symmetric.
     mirrored: Vec<[f64; 9]>,
     slot_start: Vec<u32>,
     slots: Vec<u32>,
@@ -71,12 +60,12 @@ impl Tangent {
         }
     }
 
-    /// Whether the tangent is symmetric whatever yields.
+    /// Whether the tangent is always symmetric.
     pub fn symmetric(&self) -> bool {
         self.symmetric
     }
 
-    /// Sets the elastic matrix `(1 + stiffness) K + mass M + dashpots D`, boundary springs within K.
+    /// Sets `(1 + stiffness) K + mass M + dashpots D`, K with boundary springs.
     pub fn set_elastic(&mut self, model: &Model, linear: Combination) {
         let (matrices, factor) = (model.matrices(), 1.0 + linear.stiffness);
         for ((block, k), m) in
@@ -95,7 +84,7 @@ impl Tangent {
         self.mirrored.copy_from_slice(if self.symmetric { &[] } else { &self.upper });
     }
 
-    /// Sets the tangent at the trial that `force` was evaluated for: `increment` from `old`.
+    /// Assembles the tangent at the trial `increment` from `old`.
     pub fn assemble(
         &mut self,
         model: &Model,
@@ -162,8 +151,8 @@ impl Tangent {
         }
     }
 
-    /// Writes the entries of the free dofs in the order of the lower triangle by columns: `lower` those of (row, column),
-    /// and, where the tangent is unsymmetric, `upper` those of (column, row).
+    /// Writes free-dof entries in lower column order: `lower` (row, column); if unsymmetric, `upper` (column,
+    /// row).
     pub fn write(&self, model: &Model, lower: &mut [f64], upper: &mut [f64]) {
         let (matrices, index) = (model.matrices(), model.supports().free_index());
         let mut at = 0;
@@ -186,7 +175,6 @@ impl Tangent {
         }
     }
 
-    /// `y = A x` over all dofs. Shapes `[3 * nodes]`.
     pub fn times(&self, model: &Model, x: &[f64], y: &mut [f64]) {
         let matrices = model.matrices();
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
@@ -213,14 +201,12 @@ impl Tangent {
     }
 }
 
-/// What all element matrices read.
 struct Input<'a> {
     model: &'a Model,
     force: &'a InternalForce,
     old: &'a Points,
     increment: &'a [f64],
     symmetric: bool,
-    /// Share of the elastic matrix at yielding points.
     share: f64,
 }
 
@@ -237,7 +223,7 @@ impl Input<'_> {
         }
     }
 
-    /// Sum over the yielding points of `B^T (D_ep - D) B dV`; only the upper blocks when symmetric.
+    /// Sum of `B^T (D_ep - D) B dV`; upper blocks only if symmetric.
     fn element(&self, e: usize, matrix: &mut [f64]) {
         let (table, material) = (&self.force.table, self.model.material(e));
         let mut moved = element_increment(self.model.mesh(), e, self.increment);
@@ -249,7 +235,7 @@ impl Input<'_> {
             if constant && self.force.regions[p] == Region::Elastic {
                 continue;
             }
-            // The same call has succeeded for the force.
+            // Succeeded for the force.
             let (old, strain) = (self.model.point(self.old, e, i), table.strain(e, i, &moved));
             let Ok(response) = material.law.update(&material.elastic, old, &strain, true, &mut values) else {
                 continue;
@@ -266,7 +252,7 @@ impl Input<'_> {
     }
 }
 
-/// Brings the rows and columns of the modes, which stand after those of the nodes, to the nodes: `T^T K T` with `T = [1; A]`.
+/// Condenses the modes: `T^T K T`, `T = [1; A]`.
 fn eliminate_modes(matrix: &mut [f64], nodes: usize, amplitudes: &Amplitudes, symmetric: bool) {
     let (first, end) = (3 * nodes, 3 * (nodes + modes::COUNT));
     if symmetric {
@@ -289,7 +275,7 @@ fn eliminate_modes(matrix: &mut [f64], nodes: usize, amplitudes: &Amplitudes, sy
     }
 }
 
-/// Adds `B^T d B`, using the zeros of B; with mean gradients the B of mean dilatation.
+/// Adds `B^T d B`; `means` give mean dilatation.
 fn add_point(matrix: &mut [f64], g: &[[f64; 3]], means: &[[f64; 3]], d: &[[f64; 6]; 6], symmetric: bool) {
     let mut c = [[0.0; ROWS]; 6];
     for (r, d) in d.iter().enumerate() {
@@ -308,7 +294,6 @@ fn add_point(matrix: &mut [f64], g: &[[f64; 3]], means: &[[f64; 3]], d: &[[f64; 
     let end = 3 * g.len();
     for (a, g) in g.iter().enumerate() {
         let first = if symmetric { 3 * a } else { 0 };
-        // Which rows of B^T hold which gradient.
         let rows = [[(0, 0), (3, 1), (5, 2)], [(1, 1), (3, 0), (4, 2)], [(2, 2), (4, 1), (5, 0)]];
         for (i, row) in rows.iter().enumerate() {
             let out = &mut matrix[(3 * a + i) * ROWS..][first..end];

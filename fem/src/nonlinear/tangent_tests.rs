@@ -7,7 +7,6 @@ use crate::model::ModelInput;
 
 const SOIL: Elastic = Elastic { young: 2e7, poisson: 0.3, density: 1000.0 };
 
-/// Reproducible numbers in [-1, 1).
 struct Random(u64);
 
 impl Random {
@@ -17,7 +16,7 @@ impl Random {
     }
 }
 
-/// Two distorted elements of a kind, their nodes numbered backwards so that pairs p > q occur; the second is elastic.
+/// Two distorted elements, pairs p > q included; the second is elastic.
 fn model(kind: ElementKind, material: Material, assumed: AssumedStrain) -> Model {
     let mut random = Random(3);
     let mut mesh = Mesh::default();
@@ -55,17 +54,16 @@ fn materials() -> [Material; 4] {
     [mohr_coulomb(0.5), mohr_coulomb(0.1), cone(0.5), cone(0.0)]
 }
 
-/// The assembled tangent is the derivative of the internal force, for every kind of element, with and without mean dilatation,
-/// symmetric or not; and the entries for the solver are those of the same matrix.
+/// Solver entries belong to the same matrix.
 #[test]
-fn tangent_is_the_derivative_of_the_internal_force() {
+fn tangent_differentiates_internal_force() {
     let assumed = AssumedStrain { dilatation: Dilatation::Mean, incompatible_modes: true };
     let cases = ElementKind::ALL.into_iter().flat_map(|k| materials().map(|m| (k, m)));
     for ((kind, material), assumed) in cases.flat_map(|c| [(c.clone(), assumed), (c, Default::default())]) {
         let model = model(kind, material.clone(), assumed);
         let n = model.dof_count();
         let mut random = Random(11);
-        // Compression with shear, beyond yield in every point.
+        // Beyond yield at every point.
         let mut w = vec![0.0; n];
         for (node, x) in model.mesh().coordinates.iter().enumerate() {
             let uniform = [-0.0005 * x[0] + 0.006 * x[2], 0.0004 * x[1], -0.001 * x[2]];
@@ -94,7 +92,6 @@ fn tangent_is_the_derivative_of_the_internal_force() {
             let miss = (product[d] - difference).abs() / size;
             assert!(miss < 1e-5, "{} dof {d}: {} {difference}", kind.name(), product[d]);
         }
-        // The two triangles on the free dofs.
         let mut equations = vec![0.0; model.free_dof_count()];
         let (supports, analysis) = (model.supports(), model.analysis().unwrap());
         let entries = analysis.pattern().1.len();
@@ -122,9 +119,8 @@ fn tangent_is_the_derivative_of_the_internal_force() {
     }
 }
 
-/// Forces are the transposed of strains: the work of any displacement is that of its strains.
 #[test]
-fn force_is_the_transposed_of_the_strain() {
+fn force_operator_is_strain_transpose() {
     for kind in ElementKind::ALL {
         let model = model(kind, SOIL.into(), AssumedStrain::default());
         let mut random = Random(5);

@@ -1,4 +1,4 @@
-//! The shapes and the matrices of a reduction.
+//! Basis vectors and matrices of a reduction.
 //!
 //! Theory manual: equation (4.19) of `docs/theory/solid.md`.
 
@@ -12,23 +12,22 @@ use crate::statics::StaticSolver;
 use crate::supports::CONSTRAINED;
 use nalgebra::{DMatrix, DVector};
 
-/// A shape whose part outside the span of those before is smaller than this fraction of it adds nothing.
+/// Relative part of a dependent vector.
 const DEPENDENT: f64 = 1e-7;
-/// Modes of the full solid that the estimate compares with at least.
 const COMPARED: usize = 10;
 
-/// Numbers that a step reads.
+/// Values read per step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Shapes of the reduced solid.
+    /// Basis vectors.
     pub shapes: usize,
-    /// Of the reduced solid.
+    /// Reduced solid.
     pub reduced: f64,
-    /// Of the full one.
+    /// Full solid.
     pub full: f64,
 }
 
-/// A reduced solid: the shapes, orthonormal to the mass, and what a step needs of them. Rows are dofs.
+/// Reduced solid with mass-orthonormal basis; rows are dofs.
 #[derive(Clone, Debug)]
 pub struct Reduced {
     count: usize,
@@ -38,18 +37,18 @@ pub struct Reduced {
     pub(crate) force: Vec<f64>,
     /// M V. Shape `[3 * nodes][shapes]`.
     pub(crate) momentum: Vec<f64>,
-    /// Squares of the circular frequencies, the diagonal of VᵀK V [1/s²], rising. Shape `[shapes]`.
+    /// Squared circular frequencies [1/s²], ascending. Shape `[shapes]`.
     pub(crate) square: Vec<f64>,
-    /// VᵀD V of the boundary dashpots; none without dashpots.
+    /// VᵀD V.
     pub(crate) dashpots: Option<DMatrix<f64>>,
     estimate: Estimate,
 }
 
 impl Reduced {
-    /// Numbers that a step of the reduced solid and one of the full solid read: what their time goes with. Known without any solve.
+    /// Predicts the values read per step, which determine the time.
     ///
     /// # Errors
-    /// The equations cannot be analysed.
+    /// Failed analysis.
     pub fn cost(model: &Model, faces: &[Face], reduction: Reduction) -> Result<Cost, ReductionError> {
         let shapes = match reduction {
             Reduction::Surface { modes } => surface_dofs(model, faces).len() + modes,
@@ -59,18 +58,18 @@ impl Reduced {
         let blocks = model.matrices().stiffness_blocks().len() as f64;
         Ok(Cost {
             shapes,
-            // Shapes twice, their forces and their momenta once.
+            // Vectors twice, their forces and momenta once.
             reduced: 4.0 * (model.dof_count() * shapes) as f64,
-            // The factor forwards and back; stiffness and mass for the right-hand side and for the account.
+            // Factor twice; stiffness and mass for right-hand side and energy balance.
             full: 2.0 * demand.factor_len as f64 + 2.0 * 10.0 * blocks,
         })
     }
 
-    /// Reduces a model whose contact surface consists of `faces`, and estimates the error.
+    /// Reduces a model with contact surface `faces` and estimates the error.
     ///
     /// # Errors
-    /// A plastic material, a body that is not held, a material without density, a surface without free dofs, more shapes than
-    /// pay, or modes that do not converge.
+    /// Plasticity, insufficient constraints, no density, no free surface dofs, too many basis vectors,
+    /// unconverged modes.
     pub fn new(model: &Model, faces: &[Face], reduction: Reduction) -> Result<Reduced, ReductionError> {
         check_density(model)?;
         let dofs = surface_dofs(model, faces);
@@ -93,7 +92,7 @@ impl Reduced {
             span.add(shape.clone());
         }
         for load in static_loads(model, faces, &dofs, reduction) {
-            // Supports that are moved belong to the state, not to the shapes.
+            // Moved supports belong to the state, not to the basis.
             let zero = vec![0.0; model.supports().fixed().len()];
             span.add(solver.solve_prescribed(model, &load, Some(&zero))?.u);
         }
@@ -102,23 +101,22 @@ impl Reduced {
         Ok(reduced)
     }
 
-    /// Number of shapes.
+    /// Number of basis vectors.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Frequencies of the reduced solid [Hz], rising. Shape `[shapes]`.
+    /// Reduced frequencies [Hz], ascending. Shape `[shapes]`.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> {
         self.square.iter().map(|s| s.sqrt() / std::f64::consts::TAU)
     }
 
-    /// What the reduction costs in accuracy.
+    /// Error estimate.
     pub fn estimate(&self) -> &Estimate {
         &self.estimate
     }
 }
 
-/// Free dofs of the nodes of the faces, ascending.
 fn surface_dofs(model: &Model, faces: &[Face]) -> Vec<usize> {
     let free = |dof: &usize| model.supports().free_index()[*dof] != CONSTRAINED;
     let mut dofs: Vec<usize> =
@@ -129,7 +127,7 @@ fn surface_dofs(model: &Model, faces: &[Face]) -> Vec<usize> {
     dofs
 }
 
-/// Loads whose static displacements are shapes. Shape `[loads][3 * nodes]`, made one by one.
+/// Loads of static basis vectors. Shape `[loads][3 * nodes]`.
 fn static_loads<'a>(
     model: &'a Model,
     faces: &'a [Face],
@@ -160,7 +158,6 @@ fn static_loads<'a>(
     }
 }
 
-/// Shapes under way, orthonormal to the mass.
 struct Span<'m> {
     model: &'m Model,
     shapes: Vec<Vec<f64>>,
@@ -172,7 +169,7 @@ impl<'m> Span<'m> {
         Span { model, shapes: Vec::new(), momenta: Vec::new() }
     }
 
-    /// Adds a shape, less its part in the span: Gram and Schmidt, twice.
+    /// Adds a vector by Gram–Schmidt, twice.
     fn add(&mut self, mut shape: Vec<f64>) {
         let mut momentum = vec![0.0; shape.len()];
         let norm = |model: &Model, x: &[f64], m: &mut [f64]| {
@@ -196,7 +193,6 @@ impl<'m> Span<'m> {
         self.momenta.push(momentum);
     }
 
-    /// Turns the shapes so that the stiffness is diagonal.
     fn finish(self, natural: &Modes) -> Result<Reduced, ReductionError> {
         let (n, count) = (self.model.dof_count(), self.shapes.len());
         let columns = DMatrix::from_fn(n, count, |d, k| self.shapes[k][d]);
@@ -242,7 +238,6 @@ impl<'m> Span<'m> {
     }
 }
 
-/// The matrix row by row.
 fn by_rows(matrix: &DMatrix<f64>) -> Vec<f64> {
     matrix.transpose().as_slice().to_vec()
 }

@@ -1,4 +1,4 @@
-//! What a reduction costs in accuracy, known before a run.
+//! A-priori error estimate of a reduction.
 
 use super::ReductionError;
 use crate::loads;
@@ -9,31 +9,29 @@ use crate::statics::StaticSolver;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Excess of a frequency that counts as right.
 const RIGHT: f64 = 0.01;
 
-/// Errors of a reduced solid against the full one.
+/// Errors of the reduced against the full solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Free dofs of the full solid.
     pub dofs: usize,
-    /// Shapes of the reduced one.
+    /// Basis vectors.
     pub shapes: usize,
-    /// Part of the mean deflection under a uniform pressure on the contact surface that is lost [-].
+    /// Relative loss of mean deflection under uniform surface pressure [-].
     pub pressure: f64,
-    /// Part of the deflection under a vertical force at a corner, in the middle of a side and in the middle of the face nearest to
-    /// the surface's middle that is lost [-].
+    /// Relative loss of deflection under vertical point forces at corner, mid-side and centre of the central
+    /// face [-].
     pub point: [f64; 3],
-    /// Excess of the lowest natural frequency over that of the full solid [-].
+    /// Relative excess of the lowest natural frequency [-].
     pub lowest: f64,
-    /// Natural frequency of the full solid up to which none of the reduced one's is more than 1 % off [Hz]; 0 if the lowest is.
+    /// Frequency up to which errors are at most 1 % [Hz]; 0 if none.
     pub right_up_to: f64,
-    /// Whether the comparison ended there only because it had no more modes.
+    /// Whether all compared modes are accurate.
     pub open: bool,
 }
 
 impl Estimate {
-    /// Compares the frequencies; the static errors follow.
     pub(super) fn of_frequencies(model: &Model, square: &[f64], natural: &Modes) -> Estimate {
         let excess = |k: usize| (square[k].sqrt() / natural.circular[k] - 1.0).abs();
         let compared = natural.circular.len().min(square.len());
@@ -48,7 +46,7 @@ impl Estimate {
         }
     }
 
-    /// Static deflections under a pressure and under point forces: 1 − reduced/full.
+    /// 1 − reduced/full.
     pub(super) fn static_errors(
         &mut self,
         model: &Model,
@@ -86,7 +84,6 @@ impl Estimate {
     }
 }
 
-/// One line for a summary.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |x: f64| 100.0 * x.max(0.0);

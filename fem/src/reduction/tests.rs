@@ -35,7 +35,6 @@ fn top(model: &Model) -> Vec<Face> {
     mesh.boundary_faces().into_iter().filter(|f| f.centre(mesh)[2] > 0.5 - 1e-9).collect()
 }
 
-/// A load on the nodes of the top that follows no pattern.
 fn load_on(model: &Model, faces: &[Face], t: f64) -> Vec<f64> {
     let mut load = vec![0.0; model.dof_count()];
     for (k, n) in faces.iter().flat_map(|f| f.nodes()).enumerate() {
@@ -51,9 +50,9 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / top
 }
 
-/// Condensed to its surface, a solid has the full one's static displacements under any load there, at all nodes.
+/// Exact at all nodes for any surface load.
 #[test]
-fn condensation_to_the_surface_is_exact_in_statics() {
+fn surface_condensation_is_statically_exact() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());
     let faces = top(&model);
     let reduced = Reduced::new(&model, &faces, Reduction::Surface { modes: 0 }).unwrap();
@@ -72,17 +71,16 @@ fn condensation_to_the_surface_is_exact_in_statics() {
     assert!(difference(&state.u, &rest) < 1e-8);
 }
 
-/// What the full solver does with a motion in one natural mode, the reduced one does too: damped, and
-/// from a state that carries a static displacement outside the span.
+/// Damped motion in one mode, from a static displacement outside the basis.
 #[test]
-fn a_motion_in_the_span_is_that_of_the_full_solid() {
+fn motion_in_span_matches_full_solid() {
     let model = block(Rayleigh { alpha_m: 30.0, beta_k: 2e-4 }, Vec::new());
     let faces = top(&model);
     let reduced = Arc::new(Reduced::new(&model, &faces, Reduction::Modes { modes: 12 }).unwrap());
     let modes = crate::modal::solve(&model, 12).unwrap();
     let mut pushed = vec![0.0; model.dof_count()];
     model.mass_times(&modes.shapes[7], &mut pushed);
-    // A load in the middle of the block: its displacement is outside the span, and stays as it is.
+    // This displacement is outside the basis and remains.
     let inner = model.mesh().coordinates.iter().position(|x| x[2] == 0.25).unwrap();
     let mut dead = vec![0.0; model.dof_count()];
     dead[3 * inner] = 5.0;
@@ -111,7 +109,6 @@ fn a_motion_in_the_span_is_that_of_the_full_solid() {
     }
 }
 
-/// Energy: the work of the load is what is stored and what damping, dashpots and the scheme took, to rounding.
 #[test]
 fn energy_balances_in_the_span() {
     let sides =
@@ -150,9 +147,9 @@ fn energy_balances_in_the_span() {
     }
 }
 
-/// More modes leave a smaller error, and the estimate says what a run shows: the static deflection under a point force.
+/// Estimate matches the deflection under a point force.
 #[test]
-fn the_estimate_is_what_a_run_shows() {
+fn estimate_matches_run() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());
     let faces = top(&model);
     let middle = faces

@@ -1,7 +1,7 @@
-//! Ordering, pattern and symbolic factorization of an equation system; made once, used by every factorization.
+//! Ordering, pattern and symbolic factorisation of an equation system.
 //!
-//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, fundamental supernodes with relaxed amalgamation) on
-//! a postordered elimination tree. Limits: fewer than 2^31 entries in the pattern.
+//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, relaxed amalgamation) on a postordered
+//! elimination tree. Limits: fewer than 2^31 entries.
 
 use super::AnalysisError;
 use super::pattern::{MIRRORED, Upper, postorder};
@@ -17,10 +17,10 @@ use faer::sparse::linalg::cholesky::supernodal::{
     factorize_supernodal_symbolic_cholesky_scratch,
 };
 
-/// Supernodes are merged while they have at most so many columns and less than this share of zeros.
+/// Amalgamation limits: columns and fraction of zeros.
 const AMALGAMATION: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::MAX, 0.05)];
 
-/// Ordering, pattern and symbolic factor of an equation system.
+/// Symbolic factorisation.
 #[derive(Debug)]
 pub struct Analysis {
     column_start: Vec<usize>,
@@ -33,13 +33,12 @@ pub struct Analysis {
 impl Analysis {
     /// Analyses a structurally symmetric matrix.
     ///
-    /// * `column_start` `[equations + 1]`, `row` `[entries]`: the lower triangle in compressed columns; the rows of a column
-    ///   ascend from its diagonal, which is always stored.
-    /// * `order` `[equations]`: the equation that is to be eliminated i-th. Equations may still be moved where that
-    ///   leaves the factor as it is (postorder of the elimination tree).
+    /// * `column_start` `[equations + 1]`, `row` `[entries]`: lower columns, ascending from the stored
+    ///   diagonal.
+    /// * `order` `[equations]`: elimination order, possibly postordered.
     ///
     /// # Errors
-    /// [`AnalysisError::Pattern`] when the pattern or the order is not as described, [`AnalysisError::Memory`] when the factor cannot be
+    /// [`AnalysisError::Pattern`] if the input is invalid, [`AnalysisError::Memory`] if the factor cannot be
     /// addressed.
     pub fn from_pattern(
         column_start: Vec<usize>,
@@ -72,35 +71,33 @@ impl Analysis {
         Ok(Analysis { column_start, row, order, structure })
     }
 
-    /// Number of equations.
+    /// Equation count.
     pub fn size(&self) -> usize {
         self.order.len()
     }
 
-    /// Number of values that the factor of a symmetric matrix stores.
+    /// Values in a symmetric factor.
     pub fn factor_len(&self) -> usize {
         self.structure.panel[self.structure.count()]
     }
 
-    /// Floating-point operations of the factorization of a symmetric matrix, additions and multiplications: the sum of
-    /// the squared lengths of the factor's columns. An unsymmetric one takes twice as many.
+    /// Flops of a symmetric factorisation; twice as many if unsymmetric.
     pub fn flops(&self) -> f64 {
         self.structure.flops
     }
 
-    /// Column starts `[equations + 1]` and rows `[entries]` of the lower triangle: the order in which values are given.
+    /// Column starts `[equations + 1]` and rows `[entries]` of the lower triangle.
     pub fn pattern(&self) -> (&[usize], &[usize]) {
         (&self.column_start, &self.row)
     }
 
-    /// Equations in the order of elimination.
+    /// Elimination order of the equations.
     pub fn order(&self) -> &[usize] {
         &self.order
     }
 
-    /// Bytes that a [`super::multifrontal::DirectSolver`] holds once it has factored (`symmetric`: L L^T, else L U) and
-    /// solved for one right-hand side at a time, with the threads of the present pool (each adds a few per cent). All of
-    /// it is taken before the first front, so this is the peak, too.
+    /// Peak memory [bytes] of a [`super::multifrontal::DirectSolver`] (`symmetric`: L L^T, else L U) with
+    /// single solves; each thread adds a few per cent.
     pub fn memory(&self, symmetric: bool) -> usize {
         let structure = &self.structure;
         let triangles = if symmetric { 1 } else { 2 };
@@ -108,7 +105,7 @@ impl Analysis {
         let places = structure.work_len + structure.handed_len + threads * structure.branch_len;
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
-        // Scratch of the kernels: at most 8 bytes for faer and 20 for exchanges of rows, by pivot column.
+        // Kernel scratch per pivot column: at most 8 bytes for faer, 20 for row exchanges.
         let scratch = 28 * (threads * structure.branch_width + structure.max_width);
         let vectors = self.size() + structure.rows.len();
         8 * (self.factor_len() + second + triangles * places + vectors) + rows + scratch
@@ -118,17 +115,16 @@ impl Analysis {
         &self.structure
     }
 
-    /// Number of entries of the pattern.
+    /// Number of entries.
     pub fn entries(&self) -> usize {
         self.row.len()
     }
 
-    /// The equation at a position in the elimination.
     pub(super) fn equation(&self, position: usize) -> usize {
         self.order[position]
     }
 
-    /// Largest absolute value of every column of an unsymmetric matrix; 1 for a column of zeros.
+    /// Largest entry of each unsymmetric column; 1 for zero columns.
     pub(super) fn column_scale(&self, lower: &[f64], upper: &[f64]) -> Vec<f64> {
         let mut scale = vec![0.0_f64; self.size()];
         for c in 0..self.size() {

@@ -1,8 +1,6 @@
-//! Dense blocks of a front: tiles, triangular factors, products. Every kernel runs with `Par::Seq`; large fronts are cut in
-//! tiles of fixed size, so the bits do not depend on the number of threads.
+//! Dense kernels of a front on tiles of fixed size, bitwise independent of the number of threads.
 //!
-//! An update (symmetric, or one triangle of an unsymmetric one) is stored in block columns of [`TILE`] columns, each from its
-//! diagonal block down, column-major: little more than half of the square.
+//! Updates are stored in block columns of [`TILE`] columns from the diagonal down, column-major.
 
 use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place};
@@ -12,30 +10,25 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place};
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// Columns of a block of an update.
 pub(super) const TILE: usize = 128;
-/// Rows of a tile that one task of a large front works on.
 const ROWS: usize = 384;
-/// Columns that a large front eliminates at a time.
 const PANEL: usize = 128;
 
-/// Number of values of the update of a front with `below` rows, in whole cache lines.
+/// Update length in whole cache lines.
 pub(super) fn update_len(below: usize) -> usize {
     let blocks = below.div_ceil(TILE);
     (0..blocks).map(|b| (below - b * TILE) * TILE.min(below - b * TILE)).sum::<usize>().next_multiple_of(8)
 }
 
-/// Start of block column `block` of the update.
 pub(super) fn block_start(below: usize, block: usize) -> usize {
     TILE * (block * below) - TILE * TILE * (block * block.saturating_sub(1) / 2)
 }
 
-/// A column of a column-major view.
 pub(super) fn column<'a>(tile: &'a mut MatMut<'_, f64>, j: usize) -> &'a mut [f64] {
     tile.as_mut().col_mut(j).try_as_col_major_mut().expect("views are column-major").as_slice_mut()
 }
 
-/// Runs `f(first column, first row, tile)` for every tile of the update; rows and columns count from the update's first.
+/// `f(first column, first row, tile)` on every tile of the update.
 pub(super) fn for_update_tiles<F>(update: &mut [f64], below: usize, parallel: bool, f: &F)
 where
     F: Fn(usize, usize, MatMut<'_, f64>) + Sync,
@@ -73,7 +66,7 @@ where
     }
 }
 
-/// Runs `f(first row, rows)` on chunks of rows, or on all rows at once where the work is not shared.
+/// `f(first row, rows)` on row chunks, or all rows if sequential.
 pub(super) fn for_rows<F>(matrix: MatMut<'_, f64>, first: usize, parallel: bool, f: &F)
 where
     F: Fn(usize, MatMut<'_, f64>) + Sync,
@@ -88,7 +81,7 @@ where
     rayon::join(|| for_rows(top, first, true, f), || for_rows(bottom, first + middle, true, f));
 }
 
-/// Runs `f(first column, columns)` on chunks of columns, or on all columns at once where the work is not shared.
+/// `f(first column, columns)` on column chunks, or all columns if sequential.
 pub(super) fn for_columns<F>(matrix: MatMut<'_, f64>, first: usize, parallel: bool, f: &F)
 where
     F: Fn(usize, MatMut<'_, f64>) + Sync,
@@ -112,7 +105,7 @@ fn both(parallel: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
     }
 }
 
-/// `tile = -a b^T`, the lower triangle only where the tile lies on the diagonal.
+/// `tile = -a b^T`; lower triangle on the diagonal.
 pub(super) fn product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>, diagonal: bool) {
     if diagonal {
         use BlockStructure::{Rectangular, TriangularLower};
@@ -123,11 +116,10 @@ pub(super) fn product(tile: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f
     }
 }
 
-/// Factors the pivot columns of a symmetric front in place: `[L11; L21]`. Only the lower triangle of the pivot block
-/// is read or written.
+/// Factors `[L11; L21]` of a symmetric front in place.
 ///
 /// # Errors
-/// The pivot column whose pivot is not positive.
+/// Column of a nonpositive pivot.
 pub(super) fn cholesky(
     mut panel: MatMut<'_, f64>,
     parallel: bool,
@@ -141,7 +133,7 @@ pub(super) fn cholesky(
         let (_, mut now) = right.subcols_mut(0, next - j).split_at_row_mut(j);
         let done = done.as_ref().subrows(j, now.nrows());
         if j > 0 {
-            // Left-looking: all finished columns act on these at once.
+            // Left-looking: all finished columns update these together.
             let pivots = done.subrows(0, next - j);
             for_rows(now.as_mut(), 0, parallel, &|row, tile| {
                 let rows = done.subrows(row, tile.nrows());
@@ -161,7 +153,6 @@ pub(super) fn cholesky(
     Ok(())
 }
 
-/// Buffers of the unsymmetric kernels, each as long as the widest pivot block.
 pub(super) struct Exchange {
     found: Vec<u32>,
     inverse: Vec<u32>,
@@ -180,8 +171,7 @@ impl Exchange {
     }
 }
 
-/// Factors the pivot block of an unsymmetric front in place, `P A = L U`, with the rows exchanged inside the block:
-/// row i changes places with row `exchanges[i] >= i`, for i in turn.
+/// Factors a pivot block in place, `P A = L U`; row i is exchanged with `exchanges[i] >= i`, in order.
 pub(super) fn lu(
     mut block: MatMut<'_, f64>,
     exchanges: &mut [u32],
@@ -224,7 +214,8 @@ pub(super) fn lu(
             solve_unit_lower_triangular_in_place(pivots, top.as_mut(), Par::Seq);
             matmul(bottom, Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
         });
-    } // From the order of the rows to exchanges in turn: `found` is the row now at a place, `inverse` its place.
+    }
+    // Converts the row order to successive exchanges.
     let (found, place) = (&mut exchange.found[..width], &mut exchange.inverse[..width]);
     for i in 0..width {
         (found[i], place[i]) = (i as u32, i as u32);
@@ -238,7 +229,7 @@ pub(super) fn lu(
     }
 }
 
-/// `second = (L11^-1 P A12)^T`: exchanged rows of A12 are exchanged columns of its transpose.
+/// `second = (L11^-1 P A12)^T`.
 pub(super) fn solve_second(
     mut second: MatMut<'_, f64>,
     block: MatRef<'_, f64>,

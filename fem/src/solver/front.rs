@@ -1,6 +1,6 @@
-//! One front: assembly from the matrix and the children's updates, elimination of its pivots, its own update.
+//! Assembly, elimination and update of one front.
 //!
-//! Sums are made in one order whatever the threads do: children in the order of the tree, then the matrix.
+//! Fixed summation order: children in tree order, then the matrix.
 
 use super::dense::{self, Exchange, TILE, block_start, column, for_columns, for_update_tiles};
 use super::pattern::MIRRORED;
@@ -9,23 +9,20 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::{MatMut, MatRef, Par};
 use std::ops::Range;
 
-/// Fronts that cost more flops than this are cut in tiles that threads share.
+/// Flops above which threads share a front.
 const SHARED_FLOPS: f64 = 2e7;
 
-/// Where the updates of a front's children lie.
 #[derive(Clone, Copy)]
 pub(super) struct Updates<'a> {
-    /// Part of the work space, and the place where it begins.
     pub work: &'a [f64],
     pub work_start: usize,
-    /// Updates that branches handed to the upper fronts.
+    /// Updates from branches to upper fronts.
     pub handed: &'a [f64],
-    /// Number of triangles of an update: 1 or 2.
+    /// Triangles per update: 1 or 2.
     pub triangles: usize,
 }
 
 impl<'a> Updates<'a> {
-    /// The triangle `which` of the update of front `c`.
     fn get(&self, structure: &Structure, c: usize, which: usize) -> &'a [f64] {
         let len = dense::update_len(structure.below(c));
         let start = self.triangles * structure.update[c] + which * len;
@@ -37,7 +34,6 @@ impl<'a> Updates<'a> {
     }
 }
 
-/// Buffers of one task.
 pub(super) struct Scratch {
     memory: MemBuffer,
     exchange: Exchange,
@@ -60,7 +56,7 @@ impl Scratch {
 /// Factors a symmetric front.
 ///
 /// # Errors
-/// The pivot column whose pivot is not positive.
+/// Column of a nonpositive pivot.
 pub(super) fn factor_symmetric(
     structure: &Structure,
     s: usize,
@@ -104,19 +100,18 @@ pub(super) fn factor_symmetric(
     Ok(())
 }
 
-/// The panels of an unsymmetric front: `first` holds the pivot block and the rows below it, `second` the transpose of
-/// the columns to the right of the pivot block.
+/// `first`: pivot block and rows below; `second`: transposed columns right of it.
 pub(super) struct Panels<'a> {
     pub first: &'a mut [f64],
     pub second: &'a mut [f64],
-    /// Row that changes places with the i-th of the pivot block, in turn.
+    /// Row exchanges in the pivot block, in order.
     pub rows: &'a mut [u32],
 }
 
 /// Factors an unsymmetric front.
 ///
 /// # Errors
-/// The pivot column whose pivot is zero or not finite.
+/// Column of a zero or nonfinite pivot.
 pub(super) fn factor_unsymmetric(
     structure: &Structure,
     s: usize,
@@ -200,14 +195,13 @@ fn scatter_unsymmetric(
     }
 }
 
-/// Rows of the update of `c` that fall into rows `range` of its parent's front.
 fn overlap(structure: &Structure, c: usize, range: Range<usize>) -> Range<usize> {
     let local = structure.local(c);
     let at = |bound: usize| local.partition_point(|&p| (p as usize) < bound);
     at(range.start)..at(range.end)
 }
 
-/// Adds one triangle of the update of child `c` to the tile of its parent's front that starts at `origin` = (row, column).
+/// Adds a triangle of child `c` to the parent's tile at `origin` = (row, column).
 fn add(
     structure: &Structure,
     c: usize,
@@ -226,7 +220,7 @@ fn add(
     let from = rows.start.max(columns.start);
     let mut first = runs.partition_point(|run| ((run.own + run.len) as usize) <= from);
     for j in columns {
-        // The triangle begins at its diagonal; the second triangle leaves the diagonal to the first.
+        // Only the first triangle contains the diagonal.
         let from = rows.start.max(if diagonal { j } else { j + 1 });
         if from >= rows.end {
             break;
@@ -248,8 +242,7 @@ fn add(
     }
 }
 
-/// Adds the second triangle of the update of `c` to the part of the pivot block above the diagonal; the tile holds whole
-/// columns from `start` on.
+/// Adds the second triangle of `c`; the tile has whole columns from `start`.
 fn add_mirrored(structure: &Structure, c: usize, update: &[f64], tile: &mut MatMut<'_, f64>, start: usize) {
     let (local, below) = (structure.local(c), structure.below(c));
     let end = start + tile.ncols();
@@ -263,14 +256,13 @@ fn add_mirrored(structure: &Structure, c: usize, update: &[f64], tile: &mut MatM
     }
 }
 
-/// Column `j` of a triangle of an update, from its diagonal on.
+/// Column `j` of an update triangle, from its diagonal.
 fn update_column(update: &[f64], below: usize, j: usize) -> &[f64] {
     let (block, rows) = (j / TILE, below - j / TILE * TILE);
     let at = j - block * TILE;
     &update[block_start(below, block) + at * rows + at..][..below - j]
 }
 
-/// The factor of a front as matrices, for the inspection of pivots.
 pub(super) fn pivots<'a>(structure: &Structure, s: usize, values: &'a [f64]) -> MatRef<'a, f64> {
     let (width, rows) = (structure.width(s), structure.width(s) + structure.below(s));
     MatRef::from_column_major_slice(&values[structure.panel[s]..][..rows * width], rows, width)

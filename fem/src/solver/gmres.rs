@@ -1,42 +1,36 @@
-//! Restarted GMRES with a right preconditioner: solves with a matrix near one whose factor is kept.
+//! Restarted GMRES with right preconditioner, which keeps the true residual norm.
 //!
-//! The method minimises the norm of the true residual `b - A x` over `x0 + M^-1 K`, K the Krylov space of `A M^-1`; with a right
-//! preconditioner M the recurrence knows that norm, so that the tolerance means what it says. Arnoldi vectors are
-//! made orthogonal by modified Gram-Schmidt, a second time where much is cancelled, and the least-squares problem is
-//! solved by Givens rotations.
-//!
-//! Source: Saad and Schultz, GMRES, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869; Saad, Iterative Methods for Sparse
-//! Linear Systems, 2nd ed. (2003), algorithm 9.5; second orthogonalization: Daniel, Gragg, Kaufman and Stewart, Math.
-//! Comp. 30 (1976) 772-795. Limits: a restart may stagnate for matrices far from the factored one; this is reported.
+//! Modified Gram-Schmidt, repeated on cancellation; Givens rotations. Source: Saad and Schultz (1986); Saad
+//! (2003), algorithm 9.5; reorthogonalisation: Daniel, Gragg, Kaufman and Stewart, Math. Comp. 30 (1976)
+//! 772-795. Limits: may stagnate far from the factored matrix, which is reported.
 
-/// Work space for systems of one size; solves allocate nothing.
+/// Work space; solves allocate nothing.
 pub struct Gmres {
     size: usize,
     restart: usize,
     /// Arnoldi vectors `[(restart + 1) x size]`.
     basis: Vec<f64>,
-    /// Triangular factor of the Hessenberg matrix, by columns `[restart x (restart + 1)]`.
+    /// Triangular Hessenberg factor, by columns `[restart x (restart + 1)]`.
     hessenberg: Vec<f64>,
     cosine: Vec<f64>,
     sine: Vec<f64>,
-    /// Right-hand side of the least-squares problem.
     rotated: Vec<f64>,
     direction: Vec<f64>,
 }
 
-/// How a solve ended.
+/// Outcome of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Products with the matrix in Arnoldi steps; the preconditioner is applied once in each, and once a cycle.
+    /// Arnoldi steps; the preconditioner is applied once more per cycle.
     pub iterations: usize,
-    /// |b - A x| / |b|, formed from `x`; 0 for b = 0.
+    /// True |b - A x| / |b|; 0 for b = 0.
     pub residual: f64,
-    /// Whether the residual is at or below the tolerance.
+    /// Whether the tolerance is met.
     pub converged: bool,
 }
 
 impl Gmres {
-    /// Work space for `size` equations and a restart after `restart` iterations (at least 1): `restart + 2` vectors.
+    /// Work space for `size` equations and `restart` iterations (at least 1): `restart + 2` vectors.
     pub fn new(size: usize, restart: usize) -> Gmres {
         let restart = restart.max(1);
         Gmres {
@@ -51,13 +45,13 @@ impl Gmres {
         }
     }
 
-    /// Solves `A x = b` from the initial guess in `x`, until `|b - A x| <= tolerance |b|` or after `limit` iterations, or when a
-    /// whole cycle brings no progress.
+    /// Solves `A x = b` from the guess in `x` until `|b - A x| <= tolerance |b|`, `limit` iterations, or no
+    /// progress.
     ///
-    /// `times(v, y)` sets `y = A v`, `precondition(z)` solves `M z = z` in place. All vectors have shape `[size]`.
+    /// `times(v, y)` sets `y = A v`, `precondition(z)` solves `M z = z` in place. Shapes `[size]`.
     ///
     /// # Panics
-    /// When the sizes differ.
+    /// If the sizes differ.
     pub fn solve(
         &mut self,
         mut times: impl FnMut(&[f64], &mut [f64]),
@@ -84,7 +78,7 @@ impl Gmres {
             let length = norm(first);
             let residual = length / scale;
             let converged = residual <= tolerance;
-            // A cycle that gains nothing would be followed by one just like it.
+            // The next cycle would be identical.
             if converged || iterations >= limit || !residual.is_finite() || residual > 0.999 * former {
                 return Outcome { iterations, residual, converged };
             }
@@ -105,7 +99,7 @@ impl Gmres {
         }
     }
 
-    /// One Arnoldi step; false when the space cannot grow any more.
+    /// Returns false if the space is exhausted.
     fn step(
         &mut self,
         j: usize,
@@ -143,7 +137,7 @@ impl Gmres {
         }
         let (a, b) = (column[j], if grows { length } else { 0.0 });
         let r = libm::hypot(a, b);
-        // A column of zeros happens for singular matrices only; it is left out of the correction.
+        // Zero columns, of singular matrices, do not contribute.
         (self.cosine[j], self.sine[j]) = if r > 0.0 { (a / r, b / r) } else { (1.0, 0.0) };
         column[j] = r;
         self.rotated[j + 1] = -self.sine[j] * self.rotated[j];
@@ -168,7 +162,7 @@ impl Gmres {
     }
 }
 
-/// Lanes of a dot product: its order of sums is fixed by this.
+/// Fixes the summation order.
 const LANES: usize = 8;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -195,7 +189,6 @@ mod tests {
     use crate::solver::multifrontal::DirectSolver;
     use std::sync::Arc;
 
-    /// Convection and diffusion on a line, eliminated from end to end: -1 - c below, 2.1 on, -1 + c above the diagonal.
     struct Line {
         n: usize,
         convection: f64,
@@ -210,7 +203,6 @@ mod tests {
             }
         }
 
-        /// Factor of the matrix without convection.
         fn diffusion(&self) -> DirectSolver {
             let n = self.n;
             let (mut start, mut row, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -241,12 +233,11 @@ mod tests {
     }
 
     #[test]
-    fn an_unsymmetric_system_is_solved_with_the_factor_of_its_symmetric_part() {
+    fn solves_with_symmetric_part_factor() {
         let (outcome, error) = Line { n: 500, convection: 0.2 }.solve(40, 1e-12, 200);
         assert!(outcome.converged && outcome.residual <= 1e-12, "{outcome:?}");
         assert!(error < 1e-10, "{error:.1e}");
         assert!(outcome.iterations < 60, "{outcome:?}");
-        // Restarts cost iterations, but it still converges.
         let (short, error) = Line { n: 500, convection: 0.2 }.solve(6, 1e-12, 400);
         assert!(short.converged && error < 1e-10 && short.iterations > outcome.iterations, "{short:?}");
     }
@@ -258,10 +249,10 @@ mod tests {
         assert!(error < 1e-12);
     }
 
-    /// Without restart and preconditioner GMRES ends after as many iterations as there are distinct eigenvalues
-    /// (Saad and Schultz 1986, proposition 2 and corollary 3).
+    /// Unrestarted, the iterations equal the distinct eigenvalues (Saad and Schultz 1986, proposition 2 and
+    /// corollary 3).
     #[test]
-    fn it_ends_with_the_degree_of_the_minimal_polynomial() {
+    fn ends_at_minimal_polynomial_degree() {
         let n = 60;
         let b = vec![1.0; n];
         let mut x = vec![0.0; n];
@@ -271,7 +262,7 @@ mod tests {
         assert!(x.iter().enumerate().all(|(i, x)| (x - 1.0 / (1 + i % 3) as f64).abs() < 1e-14));
     }
 
-    /// A cyclic shift: no iterate gets nearer before the n-th iteration (Saad 2003, section 6.5.9), so that restarts earlier stagnate.
+    /// Cyclic shift: no progress before iteration n (Saad 2003, section 6.5.9), so earlier restarts stagnate.
     #[test]
     fn stagnation_and_the_limit_are_reported() {
         let n = 12;
@@ -289,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_of_zero_and_a_good_guess_need_no_iteration() {
+    fn zero_load_needs_no_iteration() {
         let line = Line { n: 50, convection: 0.3 };
         let (mut solver, mut gmres) = (line.diffusion(), Gmres::new(50, 10));
         let mut x = vec![1.0; 50];

@@ -1,12 +1,9 @@
-//! Kernels of a solve on column-major blocks, for `K` interleaved right-hand sides: products and small triangles.
+//! Solve kernels on column-major blocks for `K` interleaved right-hand sides.
 //!
-//! They are compiled for AVX-512, for AVX2 and for the plain target, and chosen at run time, because the plain target has
-//! neither wide vectors nor fused multiply-add. Limits: results on processors of unlike kind differ by rounding.
+//! AVX-512, AVX2 or plain code, selected at run time. Limits: results differ by rounding between CPU types.
 
-/// Lanes that one dot product is spread over when there is one right-hand side.
 const LANES: usize = 8;
 
-/// `a b + c`, fused where the target can.
 #[inline(always)]
 fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
@@ -28,11 +25,11 @@ macro_rules! kernel {
                 }
                 let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
                 if avx2 && is_x86_feature_detected!("avx512f") {
-                    // SAFETY: the processor has the features that `wide` is compiled for.
+                    // SAFETY: the CPU supports the features that `wide` is compiled for.
                     return unsafe { wide::<K>($($argument),*) };
                 }
                 if avx2 {
-                    // SAFETY: the processor has the features that `middle` is compiled for.
+                    // SAFETY: the CPU supports the features that `middle` is compiled for.
                     return unsafe { middle::<K>($($argument),*) };
                 }
             }
@@ -43,23 +40,23 @@ macro_rules! kernel {
 }
 
 kernel!(
-    /// `y -= A x`; A has leading dimension `ld`, `x` `[columns x K]`, `y` `[rows x K]`.
+    /// `y -= A x`; leading dimension `ld`, `x` `[columns x K]`, `y` `[rows x K]`.
     subtract_product = product(a: &[f64], ld: usize, x: &[f64], y: &mut [f64])
 );
 kernel!(
-    /// `x -= A^T y`; A has leading dimension `ld`, `x` `[columns x K]`, `y` `[rows x K]`.
+    /// `x -= A^T y`; shapes as above.
     subtract_transposed = transposed(a: &[f64], ld: usize, x: &mut [f64], y: &[f64])
 );
 kernel!(
-    /// `x = L^-1 x` with the lower triangle of A, whose diagonal counts as 1 when `unit`.
+    /// `x = L^-1 x`, unit diagonal if `unit`.
     solve_lower = lower(a: &[f64], ld: usize, x: &mut [f64], unit: bool)
 );
 kernel!(
-    /// `x = L^-T x` with the lower triangle of A.
+    /// `x = L^-T x`.
     solve_lower_transposed = lower_transposed(a: &[f64], ld: usize, x: &mut [f64])
 );
 kernel!(
-    /// `x = U^-1 x` with the upper triangle of A.
+    /// `x = U^-1 x`.
     solve_upper = upper(a: &[f64], ld: usize, x: &mut [f64])
 );
 
@@ -84,7 +81,6 @@ fn product<const K: usize, const FUSED: bool>(a: &[f64], ld: usize, x: &[f64], y
     }
 }
 
-/// `C` columns at once, so that y is read and written once for all.
 #[inline(always)]
 fn product_of<const K: usize, const C: usize, const FUSED: bool>(
     a: &[f64],
@@ -123,7 +119,6 @@ fn transposed<const K: usize, const FUSED: bool>(a: &[f64], ld: usize, x: &mut [
     }
 }
 
-/// `C` columns at once, so that y is read once for all.
 #[inline(always)]
 fn transposed_of<const K: usize, const C: usize, const FUSED: bool>(
     a: &[f64],
@@ -164,7 +159,6 @@ fn transposed_of<const K: usize, const C: usize, const FUSED: bool>(
     }
 }
 
-/// Columns of a small triangle that are eliminated one by one.
 const STEP: usize = 4;
 
 #[inline(always)]

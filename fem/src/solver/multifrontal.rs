@@ -1,12 +1,9 @@
-//! Multifrontal factorization `P A P^T = L L^T` or `P A P^T = L U` on one symbolic structure, and solves with it.
+//! Multifrontal factorisation `P A P^T = L L^T` or `P A P^T = L U`, and solves.
 //!
-//! Branches of the elimination tree run as tasks, the fronts above them one after another in tiles (see
-//! `structure`). All buffers are made once and reused by every factorization. The bits of factors and solutions are the
-//! same on any number of threads, and the same for a first factorization and a later one.
+//! Results are bitwise identical for any number of threads and repeated factorisations.
 //!
-//! Source: Duff and Reid, ACM Trans. Math. Software 9 (1983) 302-325; Liu, SIAM Review 34 (1992) 82-109. Limits: rows are
-//! exchanged within a pivot block only, so a nonsingular unsymmetric matrix whose pivot block is singular fails with
-//! [`PivotError`]; [`DirectSolver::weakest_pivot`] tells how near that was.
+//! Source: Duff and Reid (1983); Liu (1992). Limits: rows are exchanged within pivot blocks only, so a
+//! singular pivot block gives [`PivotError`]; see [`DirectSolver::weakest_pivot`].
 
 use super::PivotError;
 use super::analysis::Analysis;
@@ -15,13 +12,13 @@ use super::solution::{Solution, Vectors};
 use super::structure::{Structure, Task};
 use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 
-/// A numeric factor with its buffers; factored anew in place.
+/// Numeric factor with buffers.
 pub struct DirectSolver {
     analysis: Arc<Analysis>,
     kind: Kind,
     first: Buffer,
     second: Buffer,
-    /// Row that changes places with the i-th of its pivot block, in turn.
+    /// Row exchanges in the pivot block, in order.
     rows: Vec<u32>,
     work: Buffer,
     handed: Buffer,
@@ -31,7 +28,6 @@ pub struct DirectSolver {
     weakest: (f64, usize),
 }
 
-/// What a thread needs for branches.
 struct Slot {
     work: Buffer,
     scratch: Scratch,
@@ -45,7 +41,7 @@ enum Kind {
 }
 
 impl DirectSolver {
-    /// A solver without a factor; memory is taken by the first factorization.
+    /// Solver without factor; the first factorisation allocates.
     pub fn new(analysis: Arc<Analysis>) -> DirectSolver {
         let last = analysis.size().saturating_sub(1);
         DirectSolver {
@@ -63,20 +59,18 @@ impl DirectSolver {
         }
     }
 
-    /// The analysis that the factor follows.
+    /// Symbolic factorisation.
     pub fn analysis(&self) -> &Arc<Analysis> {
         &self.analysis
     }
 
-    /// Factors the symmetric matrix with the values `lower` `[pattern entries]`, in the order of
-    /// [`Analysis::pattern`].
+    /// Factors the symmetric matrix `lower` `[pattern entries]`, ordered as [`Analysis::pattern`].
     ///
     /// # Errors
-    /// [`PivotError`] names the equation whose pivot is not positive, the earliest of those that branches of the tree
-    /// meet at the same time; there is no factor then.
+    /// [`PivotError`] of the earliest nonpositive pivot; invalid factor.
     ///
     /// # Panics
-    /// When `lower` has another length than the pattern.
+    /// If `lower` does not match the pattern.
     pub fn factor_symmetric(&mut self, lower: &[f64]) -> Result<(), PivotError> {
         assert_eq!(lower.len(), self.analysis.entries(), "one value for every entry of the pattern");
         let analysis = self.analysis.clone();
@@ -95,15 +89,14 @@ impl DirectSolver {
         Ok(())
     }
 
-    /// Factors the unsymmetric matrix: `lower` and `upper` `[pattern entries]` hold, for the entry (r, c) of the pattern, the
-    /// values of (r, c) and (c, r). On the diagonal `lower` counts. Rows are exchanged within pivot blocks.
+    /// Factors the unsymmetric matrix of `lower` (r, c) and `upper` (c, r), `[pattern entries]`; `lower`
+    /// gives the diagonal.
     ///
     /// # Errors
-    /// [`PivotError`] names the equation whose pivot is zero or not finite, the earliest of those that branches of the tree
-    /// meet at the same time; there is no factor then.
+    /// [`PivotError`] of the earliest zero or nonfinite pivot; invalid factor.
     ///
     /// # Panics
-    /// When `lower` or `upper` have another length than the pattern.
+    /// If `lower` or `upper` does not match the pattern.
     pub fn factor_unsymmetric(&mut self, lower: &[f64], upper: &[f64]) -> Result<(), PivotError> {
         let entries = self.analysis.entries();
         assert!(
@@ -128,13 +121,13 @@ impl DirectSolver {
         Ok(())
     }
 
-    /// The smallest pivot and its equation: for a symmetric matrix over its diagonal entry, for an unsymmetric one in
-    /// absolute value over the largest entry of its column. (1, last equation) without a factor or equations.
+    /// Smallest pivot over its diagonal (symmetric) or largest column entry (unsymmetric), and its equation;
+    /// (1, last equation) without either.
     pub fn weakest_pivot(&self) -> (f64, usize) {
         self.weakest
     }
 
-    /// Bytes that the buffers of this solver hold.
+    /// Allocated buffers [bytes].
     pub fn allocated(&self) -> usize {
         let buffers = [&self.first, &self.second, &self.work, &self.handed];
         let values: usize = buffers.iter().map(|buffer| buffer.capacity()).sum();
@@ -148,24 +141,24 @@ impl DirectSolver {
         8 * (values + self.solution.capacity()) + 4 * self.rows.capacity() + slots + scratch
     }
 
-    /// Number of equations.
+    /// Equation count.
     pub fn size(&self) -> usize {
         self.analysis.size()
     }
 
-    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    /// Solves in place. Shape `[equations]`.
     ///
     /// # Panics
-    /// When there is no factor, or when `x` has another length.
+    /// If there is no factor, or the length of `x` differs.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
         self.solve_many(x, 1);
     }
 
-    /// Solves for `count` right-hand sides, column-major `[equations x count]`, in place. Eight at a time share the
-    /// reading of the factor. A solution may differ from [`DirectSolver::solve_in_place`] by rounding, but not with the number of threads.
+    /// Solves `count` right-hand sides in place, column-major `[equations x count]`; differs from
+    /// [`DirectSolver::solve_in_place`] by rounding.
     ///
     /// # Panics
-    /// When there is no factor, or when `x` has another length.
+    /// If there is no factor, or the length of `x` differs.
     pub fn solve_many(&mut self, x: &mut [f64], count: usize) {
         let n = self.analysis.size();
         assert!(self.kind != Kind::None, "factor the matrix before a solve");
@@ -216,7 +209,7 @@ impl DirectSolver {
         }
     }
 
-    /// Runs `front` on every front; the error is the first position (in the order of elimination) that failed.
+    /// Returns the first failed position in elimination order.
     fn run<F>(&mut self, structure: &Structure, triangles: usize, front: &F) -> Result<(), usize>
     where
         F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
@@ -259,7 +252,6 @@ impl DirectSolver {
     }
 }
 
-/// Where one front writes.
 struct Store<'a> {
     first: &'a mut [f64],
     second: &'a mut [f64],
@@ -267,7 +259,6 @@ struct Store<'a> {
     update: &'a mut [f64],
 }
 
-/// Places at which the slices of a [`Space`] begin.
 #[derive(Clone, Copy, Default)]
 struct Start {
     first: usize,
@@ -276,7 +267,6 @@ struct Start {
     handed: usize,
 }
 
-/// The part of the buffers that a range of tasks owns.
 struct Space<'a> {
     first: &'a mut [f64],
     second: &'a mut [f64],
@@ -295,12 +285,12 @@ impl<F> Drive<'_, F>
 where
     F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
 {
-    /// Runs the tasks, halving their range; the least position that failed, if any.
+    /// Returns the least failed position.
     fn branches(&self, tasks: &[Task], space: Space<'_>, slots: &[Mutex<Slot>]) -> Option<usize> {
         match tasks {
             [] => None,
             [task] => {
-                // A thread does one branch at a time, and there is a slot for each, so one is always free.
+                // One slot per thread: one is always free.
                 let mut at = rayon::current_thread_index().unwrap_or(0);
                 loop {
                     let slot = &slots[at % slots.len()];
@@ -318,7 +308,6 @@ where
                 let (left, right) = self.halve(space, &high[0]);
                 let (a, b) =
                     rayon::join(|| self.branches(low, left, slots), || self.branches(high, right, slots));
-                // Positions ascend with the tasks.
                 a.or(b)
             }
         }
@@ -364,14 +353,13 @@ where
         None
     }
 
-    /// Range of the update of `s` in a slice that begins at `start`.
     fn range(&self, s: usize, start: usize) -> std::ops::Range<usize> {
         let (structure, triangles) = (self.structure, self.triangles);
         let begin = triangles * structure.update[s] - start;
         begin..begin + triangles * super::dense::update_len(structure.below(s))
     }
 
-    /// The front's own update, and the stack with those of its children.
+    /// Update of the front, and the children's stack.
     fn cut<'a>(&self, s: usize, work: &'a mut [f64], handed: &'a [f64]) -> (&'a mut [f64], Updates<'a>) {
         let triangles = self.triangles;
         let split = triangles * self.structure.split[s];
@@ -386,7 +374,6 @@ where
         }
     }
 
-    /// Runs one front; the error is a position in the elimination.
     fn one(
         &self,
         s: usize,
@@ -413,7 +400,7 @@ where
     }
 }
 
-/// Values on whole cache lines, so that kernels meet the same alignment in every run.
+/// Cache-line aligned, so that kernel results are reproducible.
 #[derive(Debug, Default)]
 pub(super) struct Buffer {
     values: Vec<f64>,
@@ -424,10 +411,9 @@ pub(super) struct Buffer {
 const LINE: usize = 8;
 
 impl Buffer {
-    /// Makes the buffer `len` long; the values are whatever they were.
     pub fn reserve(&mut self, len: usize) {
         if self.len != len {
-            // Fresh zeroed memory costs nothing before it is used; growing would copy.
+            // Fresh zeroed memory is free until used.
             self.values = Vec::new();
             self.values = vec![0.0; len + LINE];
             self.skip = self.values.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE);

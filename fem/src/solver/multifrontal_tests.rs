@@ -1,4 +1,4 @@
-//! Tests of the analysis, the factorizations and the solves.
+//! Tests of analysis, factorisation and solves.
 
 use super::*;
 use crate::assembly::{Combination, Matrices};
@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{LltRef, SymmetricOrdering, factorize_symbol
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-/// Numbers in (-1, 1), uniform enough for tests: Knuth's 64-bit linear congruential generator (MMIX), upper bits.
+/// Knuth's linear congruential generator (MMIX), upper bits.
 struct Random(u64);
 
 impl Random {
@@ -26,7 +26,6 @@ impl Random {
     }
 }
 
-/// A sparse matrix by halves, and how to eliminate it.
 struct System {
     start: Vec<usize>,
     row: Vec<usize>,
@@ -44,7 +43,6 @@ impl System {
         self.order.len()
     }
 
-    /// Calls `visit(row, column, value)` for every entry of the whole matrix.
     fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
         for c in 0..self.size() {
             for k in self.start[c]..self.start[c + 1] {
@@ -62,7 +60,7 @@ impl System {
         y
     }
 
-    /// |b - A x| / (|A| |x| + |b|), maximum norms: the backward error of Rigal and Gaches.
+    /// |b - A x| / (|A| |x| + |b|), maximum norms: backward error of Rigal and Gaches.
     fn residual(&self, x: &[f64], b: &[f64]) -> f64 {
         let mut size = vec![0.0; x.len()];
         self.visit(|r, _, value| size[r] += f64::abs(value));
@@ -71,7 +69,7 @@ impl System {
         largest(&miss) / (largest(&size) * largest(x) + largest(b))
     }
 
-    /// Gauss elimination of the dense matrix with partial pivoting.
+    /// Dense Gauss elimination with partial pivoting.
     fn dense_solution(&self, b: &[f64]) -> Vec<f64> {
         let n = b.len();
         let mut a = vec![vec![0.0; n + 1]; n];
@@ -95,8 +93,7 @@ impl System {
     }
 }
 
-/// `nodes` nodes of `dofs` unknowns each, `links` random pairs of them coupled, in a random order of nodes. Symmetric: the diagonal outweighs
-/// the rest. Else: zeros on the diagonal, large entries beside it within the node's block.
+/// Symmetric: diagonally dominant. Else: zero diagonal, large entries within node blocks.
 fn random_system(seed: u64, nodes: usize, dofs: usize, links: usize, symmetric: bool) -> System {
     let mut random = Random(seed);
     let mut coupled = vec![vec![false; nodes]; nodes];
@@ -117,7 +114,6 @@ fn random_system(seed: u64, nodes: usize, dofs: usize, links: usize, symmetric: 
                 a = if r == c { 1.2 * (nodes * dofs) as f64 + a } else { a };
                 b = a;
             } else if own {
-                // A cyclic shift, the best pivot of the first column in its second row.
                 let heavy = 30.0 + 10.0 * a;
                 let shift = |from: usize, to: usize| (from % dofs + 1) % dofs == to % dofs;
                 a = if r == c && dofs > 1 {
@@ -142,7 +138,7 @@ fn random_system(seed: u64, nodes: usize, dofs: usize, links: usize, symmetric: 
     System { start, row, lower, upper, order }
 }
 
-/// The clamped brick of `side`³ elements, K dt²/4 + M; `skew` makes it unsymmetric.
+/// K dt²/4 + M of a clamped brick, unsymmetric by `skew`.
 fn brick(side: usize, skew: f64) -> System {
     let mesh = Mesh::block([side; 3], [side as f64; 3]);
     let soil = Elastic { young: 60e6, poisson: 0.3, density: 1900.0 };
@@ -185,7 +181,7 @@ fn bits(x: &[f64]) -> Vec<u64> {
 }
 
 #[test]
-fn random_symmetric_systems_agree_with_a_dense_elimination() {
+fn symmetric_systems_match_dense_elimination() {
     for seed in 0..60 {
         let (nodes, dofs) = (1 + seed as usize % 37, 1 + seed as usize % 4);
         let system = random_system(seed, nodes, dofs, seed as usize * 2, true);
@@ -199,9 +195,9 @@ fn random_symmetric_systems_agree_with_a_dense_elimination() {
     }
 }
 
-/// Every first pivot of a node is zero without an exchange of rows.
+/// Every first pivot of a node requires a row exchange.
 #[test]
-fn random_unsymmetric_systems_with_zero_diagonals_agree_with_a_dense_elimination() {
+fn unsymmetric_systems_match_dense_elimination() {
     for seed in 0..60 {
         let (nodes, dofs) = (1 + seed as usize % 31, 2 + seed as usize % 5);
         let system = random_system(seed, nodes, dofs, seed as usize, false);
@@ -214,9 +210,9 @@ fn random_unsymmetric_systems_with_zero_diagonals_agree_with_a_dense_elimination
     }
 }
 
-/// One pivot block of 400 with weak diagonal, large enough to be cut in tiles: rows are exchanged across panels.
+/// Rows are exchanged across panels.
 #[test]
-fn a_large_pivot_block_is_factored_with_exchanges_in_tiles() {
+fn factors_large_pivot_block() {
     let system = random_system(5, 1, 400, 0, false);
     let analysis = system.analysis();
     assert!(analysis.structure().upper.len() == 1 && analysis.structure().max_width == 400);
@@ -229,7 +225,7 @@ fn a_large_pivot_block_is_factored_with_exchanges_in_tiles() {
 }
 
 #[test]
-fn the_residuals_of_a_brick_are_rounding_and_the_solution_is_that_of_faer() {
+fn brick_solution_matches_faer() {
     let system = brick(6, 0.0);
     let n = system.size();
     let analysis = system.analysis();
@@ -277,7 +273,6 @@ fn the_residuals_of_a_brick_are_rounding_and_the_solution_is_that_of_faer() {
     assert!(!close(&x, &y, 1e-4));
 }
 
-/// Factor, rows exchanged and solutions for 1 to 15 right-hand sides.
 fn fingerprint(solver: &mut DirectSolver, n: usize) -> Vec<u64> {
     let mut all = bits(&solver.first);
     all.extend(bits(&solver.second));
@@ -291,7 +286,7 @@ fn fingerprint(solver: &mut DirectSolver, n: usize) -> Vec<u64> {
 }
 
 #[test]
-fn the_bits_do_not_depend_on_the_threads() {
+fn is_bitwise_independent_of_threads() {
     let system = brick(8, 0.2);
     let analysis = system.analysis();
     let structure = analysis.structure();
@@ -313,7 +308,7 @@ fn the_bits_do_not_depend_on_the_threads() {
 }
 
 #[test]
-fn a_later_factorization_has_the_bits_of_a_fresh_one() {
+fn refactorization_is_bitwise_identical() {
     let (system, other) = (brick(4, 0.2), brick(4, 0.1));
     let analysis = system.analysis();
     let mut used = DirectSolver::new(analysis.clone());
@@ -332,7 +327,7 @@ fn a_later_factorization_has_the_bits_of_a_fresh_one() {
 }
 
 #[test]
-fn many_right_hand_sides_agree_with_single_ones_to_rounding() {
+fn multiple_solves_match_single_solves() {
     let system = brick(5, 0.2);
     let n = system.size();
     let mut solver = DirectSolver::new(system.analysis());
@@ -352,7 +347,7 @@ fn many_right_hand_sides_agree_with_single_ones_to_rounding() {
     }
 }
 
-/// diag(4, 9, 1, 16), uncoupled but for (3, 2): the pivot of equation 2 loses most of its diagonal.
+/// diag(4, 9, 1, 16), coupled by (3, 2): pivot 2 loses most of its diagonal.
 #[test]
 fn the_weakest_pivot_is_named() {
     let (start, row) = (vec![0, 1, 2, 4, 5], vec![0, 1, 2, 3, 3]);
@@ -371,7 +366,7 @@ fn the_weakest_pivot_is_named() {
 }
 
 #[test]
-fn a_pivot_that_is_not_positive_or_zero_is_named_and_leaves_the_solver_usable() {
+fn reports_bad_pivot_and_recovers() {
     let system = brick(4, 0.0);
     let n = system.size();
     let analysis = system.analysis();
@@ -384,7 +379,7 @@ fn a_pivot_that_is_not_positive_or_zero_is_named_and_leaves_the_solver_usable() 
         wrong[system.start[equation]] = f64::NAN;
         assert_eq!(solver.factor_symmetric(&wrong), Err(PivotError { equation, ratio: 0.0 }));
     }
-    // Two empty equations: the one that is eliminated first is named.
+    // Two empty equations: the first eliminated is reported.
     let empty = [analysis.equation(n / 2), analysis.equation(n - 7)];
     let (mut lower, mut upper) = (system.lower.clone(), system.upper.clone());
     for c in 0..n {
@@ -423,7 +418,7 @@ fn the_memory_is_predicted() {
 }
 
 #[test]
-fn no_equation_one_equation_and_equations_without_coupling() {
+fn solves_trivial_and_uncoupled_systems() {
     let empty = Arc::new(Analysis::from_pattern(vec![0], vec![], vec![]).unwrap());
     let mut solver = DirectSolver::new(empty);
     solver.factor_symmetric(&[]).unwrap();
@@ -449,9 +444,9 @@ fn no_equation_one_equation_and_equations_without_coupling() {
     assert!(x.iter().zip(&values).all(|(x, v)| (x * v - 1.0).abs() < 1e-15));
 }
 
-/// A bar of 20,000 elements with 3 unknowns a node, eliminated from end to end: the tree is a single path.
+/// Elimination tree is a path.
 #[test]
-fn a_long_chain_needs_no_deep_stack() {
+fn long_chain_needs_shallow_stack() {
     let n = 60_003;
     let (mut start, mut row, mut values) = (vec![0], Vec::new(), Vec::new());
     for c in 0..n {
@@ -472,7 +467,7 @@ fn a_long_chain_needs_no_deep_stack() {
 }
 
 #[test]
-fn a_pattern_that_cannot_be_used_is_refused() {
+fn rejects_invalid_pattern() {
     let refused = |start: &[usize], row: &[usize], order: &[usize]| {
         let result = Analysis::from_pattern(start.to_vec(), row.to_vec(), order.to_vec());
         assert!(matches!(result, Err(AnalysisError::Pattern { .. })), "{result:?}");

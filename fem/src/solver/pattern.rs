@@ -1,24 +1,24 @@
 //! Permuted pattern, elimination tree and postorder of a structurally symmetric matrix.
 //!
-//! Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. Appl. 11 (1990) 134-172,
-//! sections 3 and 4. Limits: fewer than 2^31 entries.
+//! Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. Appl. 11 (1990)
+//! 134-172, sections 3 and 4. Limits: fewer than 2^31 entries.
 
-/// Marks the end of a list and the parent of a root.
+/// List end, or parent of a root.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Set in [`Upper::source`] where the entry came from the other side of the diagonal.
+/// Flag in [`Upper::source`]: entry from the other side of the diagonal.
 pub(super) const MIRRORED: u32 = 1 << 31;
 
-/// Upper triangle, diagonal included, of the matrix in the order of elimination; compressed columns.
+/// Upper triangle in elimination order.
 pub(super) struct Upper {
     pub start: Vec<usize>,
     pub row: Vec<usize>,
-    /// Place of the entry in the pattern of the caller, with [`MIRRORED`] when lower and upper change places.
+    /// Index of the entry in the caller's pattern, with [`MIRRORED`] if transposed.
     pub source: Vec<u32>,
 }
 
 impl Upper {
-    /// From the lower triangle in the caller's numbering; `position[equation]` is its place in the elimination.
+    /// From the caller's lower triangle; `position[equation]` is the elimination position.
     pub fn new(column_start: &[usize], row: &[usize], position: &[u32]) -> Upper {
         let n = position.len();
         let mut start = vec![0_usize; n + 1];
@@ -48,7 +48,6 @@ impl Upper {
         Upper { start, row: found, source }
     }
 
-    /// Parent of every column in the elimination tree, [`NONE`] for a root.
     pub fn elimination_tree(&self) -> Vec<u32> {
         let n = self.start.len() - 1;
         let (mut parent, mut ancestor) = (vec![NONE; n], vec![NONE; n]);
@@ -56,7 +55,7 @@ impl Upper {
             for &i in &self.row[self.start[j]..self.start[j + 1]] {
                 let mut i = i;
                 while i < j {
-                    // Path compression: every node met points to j from now on.
+                    // Path compression.
                     let next = std::mem::replace(&mut ancestor[i], j as u32);
                     if next == NONE {
                         parent[i] = j as u32;
@@ -70,7 +69,7 @@ impl Upper {
     }
 }
 
-/// Columns in postorder: children before parents, subtrees contiguous, children in ascending order.
+/// Columns in postorder, children ascending.
 pub(super) fn postorder(parent: &[u32]) -> Vec<u32> {
     let n = parent.len();
     let (mut first_child, mut sibling) = (vec![NONE; n], vec![NONE; n]);
@@ -88,7 +87,6 @@ pub(super) fn postorder(parent: &[u32]) -> Vec<u32> {
             node = first_child[node as usize];
         }
         order.push(node);
-        // Up while there is no further sibling.
         while sibling[node as usize] == NONE {
             match path.pop() {
                 Some(up) => {
@@ -107,10 +105,9 @@ pub(super) fn postorder(parent: &[u32]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// The tree of Liu's definition: parent(j) is the first row below the diagonal of column j of the factor.
+    /// Liu: parent(j) is the first row below the diagonal of factor column j.
     #[test]
-    fn the_tree_and_its_postorder_agree_with_a_dense_elimination() {
-        // Lower triangle of a 7 × 7 matrix, diagonal first.
+    fn tree_and_postorder_match_dense_elimination() {
         let columns: [&[usize]; 7] = [&[0, 3, 5], &[1, 2], &[2, 6], &[3], &[4, 5], &[5], &[6]];
         let mut start = vec![0];
         let mut row = Vec::new();
@@ -128,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_of_a_million_columns_needs_no_stack() {
+    fn million_column_chain_needs_no_stack() {
         let n = 1_000_000;
         let parent: Vec<u32> = (1..=n).map(|p| if p == n { NONE } else { p }).collect();
         assert!(postorder(&parent).iter().enumerate().all(|(i, &j)| i == j as usize));

@@ -1,10 +1,9 @@
-//! Forward and backward substitution on the tree, for one right-hand side or for 2, 4, 8 interleaved ones.
+//! Forward and backward substitution for 1, 2, 4 or 8 interleaved right-hand sides.
 //!
-//! Forward, a front adds what its children hand up, solves with its pivot block, and hands up what its rows below
-//! contribute; backward, it fetches the solution at those rows from its parent. Branches run as tasks; large fronts of the
-//! upper fronts are cut into row or column blocks of fixed size.
+//! Forward, fronts sum contributions of children; backward, they read the parent's solution. Branches are
+//! tasks; large upper fronts are split.
 //!
-//! Source: Liu, SIAM Review 34 (1992) 82-109, section 6.
+//! Source: Liu (1992), section 6.
 
 use super::analysis::Analysis;
 use super::kernels::{
@@ -12,29 +11,25 @@ use super::kernels::{
 };
 use super::structure::{Structure, Task};
 
-/// Columns that are solved at a time.
 const BLOCK: usize = 128;
-/// Rows or columns of a large front that one task works on.
 const ROWS: usize = 512;
 const COLUMNS: usize = 128;
-/// Fronts with more values than this are shared by threads.
+/// Values above which threads share a front.
 const SHARED: usize = 200_000;
 
-/// The factor, as a solve needs it.
 pub(super) struct Vectors<'a> {
     pub analysis: &'a Analysis,
     pub first: &'a [f64],
     pub second: &'a [f64],
-    /// Row that changes places with the i-th of its pivot block, in turn; present for L U.
+    /// Row exchanges in the pivot block, in order; for L U.
     pub rows: Option<&'a [u32]>,
 }
 
-/// Work space of solves, kept between them.
 #[derive(Default)]
 pub(super) struct Solution {
-    /// Solution in the order of elimination `[equations x width]`.
+    /// Solution in elimination order `[equations x width]`.
     x: Vec<f64>,
-    /// Contributions of the rows below every front `[rows x width]`.
+    /// Contributions below every front `[rows x width]`.
     below: Vec<f64>,
 }
 
@@ -52,7 +47,6 @@ impl Solution {
         self.x.capacity() + self.below.capacity()
     }
 
-    /// Solves for `K` right-hand sides, column-major in `b`.
     pub fn solve<const K: usize>(&mut self, factor: &Vectors<'_>, b: &mut [f64]) {
         let structure = factor.analysis.structure();
         self.reserve(structure, K);
@@ -71,7 +65,6 @@ impl Solution {
         for &s in structure.upper.iter().rev() {
             pass.backward(s as usize, x, below, (0, 0), true);
         }
-        // What the branches need from the upper fronts.
         for task in &structure.tasks {
             for s in (task.first..task.end).filter(|&s| structure.handed[s]) {
                 pass.fetch(s, x, below, (0, 0));
@@ -86,7 +79,6 @@ impl Solution {
     }
 }
 
-/// The part of the vectors that a range of tasks owns, and where it begins.
 struct Space<'a> {
     x: &'a mut [f64],
     below: &'a mut [f64],
@@ -182,7 +174,6 @@ impl<const K: usize> Pass<'_, K> {
         }
     }
 
-    /// Fetches the solution at the rows below from the parent.
     fn fetch(&self, s: usize, x: &[f64], below: &mut [f64], origin: (usize, usize)) {
         let structure = self.structure;
         let rows = structure.below(s);
@@ -208,7 +199,7 @@ impl<const K: usize> Pass<'_, K> {
         }
     }
 
-    /// `x_s = L11^-T (x_s - L21^T below)`, or with U in place of L^T.
+    /// `x_s = L11^-T (x_s - L21^T below)`, or with U instead of L^T.
     fn backward(&self, s: usize, x: &mut [f64], below: &mut [f64], origin: (usize, usize), upper: bool) {
         let structure = self.structure;
         if !structure.handed[s] {
@@ -244,7 +235,6 @@ fn add(target: &mut [f64], source: &[f64]) {
     target.iter_mut().zip(source).for_each(|(t, s)| *t += s);
 }
 
-/// `y -= A x`, the rows in chunks.
 fn by_rows<const K: usize>(
     a: &[f64],
     ld: usize,
@@ -269,7 +259,6 @@ fn by_rows<const K: usize>(
     );
 }
 
-/// `x -= A^T y`, the columns in chunks.
 fn by_columns<const K: usize>(a: &[f64], ld: usize, x: &mut [f64], y: &[f64], parallel: bool) {
     let columns = x.len() / K;
     if y.is_empty() {

@@ -1,46 +1,41 @@
-//! Supernodes of the factor, how fronts pass updates to their parents, and where everything lies in memory.
+//! Supernodes, fronts and memory layout of the factor.
 //!
-//! A *front* is the dense matrix of a supernode: `width` pivot columns and `below` rows below them. Its pivot columns become
-//! factor; the rest is its *update*, added into the front of the parent. Whole subtrees that cost little are *branches*:
-//! they are independent tasks. The fronts above them, the *upper fronts*, are factored one after another, each cut into tiles.
+//! A *front* is the dense matrix of a supernode: `width` pivot columns and `below` rows. Its *update* is
+//! added to the parent's front. Cheap subtrees are *branches*, run as independent tasks; the *upper fronts*
+//! above them follow sequentially, in tiles.
 //!
-//! Every place is fixed here, from the pattern alone. The updates of a branch lie on two stacks that grow towards each other
-//! from the ends of a work space (depth even: left, odd: right, so that a front reads its children from one stack and
-//! writes to the other); every thread has one such space. The upper fronts have another. The updates that branches hand to the
-//! upper fronts have places of their own, and to keep these few, large subtrees are done in *rounds*: the branches of one, then
-//! its upper fronts, then the next. So the peak is known beforehand.
+//! The layout follows from the pattern, so peak memory is known. Branch updates use two opposed stacks per
+//! thread (even depth left, odd right): a front reads children from one and writes to the other. Updates
+//! passed to upper fronts are limited by *rounds*: branches of a large subtree, then its upper fronts.
 //!
-//! Source: Duff and Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans. Math.
-//! Software 9 (1983) 302-325; Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992) 82-109.
+//! Source: Duff and Reid (1983); Liu (1992).
 
 use super::dense::update_len;
 use super::pattern::{NONE, Upper};
 use std::ops::Range;
 
-/// A branch costs at most this share of all flops; at least [`BRANCH_FLOPS`].
+/// Branch limit: this fraction of all flops, at least [`BRANCH_FLOPS`].
 const BRANCHES: f64 = 256.0;
 const BRANCH_FLOPS: f64 = 4e6;
-/// A round costs about this share of all flops at most.
+/// Round limit as a fraction of all flops.
 const ROUNDS: f64 = 4.0;
 
-/// Consecutive rows of an update that are consecutive in the parent's front, too.
+/// Update rows also consecutive in the parent's front.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
-    /// First row in the update.
     pub own: u32,
-    /// First row in the parent's front.
     pub parent: u32,
     pub len: u32,
 }
 
-/// Branches that make one task: a contiguous range of supernodes.
+/// Contiguous range of supernodes.
 #[derive(Clone, Debug)]
 pub(super) struct Task {
     pub first: usize,
     pub end: usize,
 }
 
-/// Tasks, and the upper fronts that can be done after them.
+/// Tasks, then upper fronts.
 #[derive(Clone, Debug)]
 pub(super) struct Round {
     pub tasks: Range<usize>,
@@ -49,43 +44,42 @@ pub(super) struct Round {
 
 #[derive(Debug, Default)]
 pub(super) struct Structure {
-    /// First column of every supernode, and the number of columns at the end.
+    /// First column of every supernode, then the column count.
     pub begin: Vec<u32>,
-    /// Start of the rows of every supernode in `rows`; also of its part of the vectors of a solve.
+    /// Start of each supernode in `rows` and in solve vectors.
     pub rows_start: Vec<usize>,
     /// Rows below the pivot block, ascending.
     pub rows: Vec<u32>,
-    /// The same rows as places in the parent's front.
+    /// Positions of `rows` in the parent's front.
     pub local: Vec<u32>,
     pub runs_start: Vec<usize>,
     pub runs: Vec<Run>,
     pub parent: Vec<u32>,
     pub children_start: Vec<usize>,
     pub children: Vec<u32>,
-    /// Start of the columns of a front in the factor (`width + below` rows), and of the second panel of an
-    /// unsymmetric factor (`below` rows).
+    /// Start of each front in the factor (`width + below` rows) and second panel (`below` rows).
     pub panel: Vec<usize>,
     pub second: Vec<usize>,
-    /// Entries of the matrix by pivot column: row in the front, and place in the caller's values.
+    /// Matrix entries by pivot column: front row, index of the caller's value.
     pub entry_start: Vec<usize>,
     pub entry_row: Vec<u32>,
     pub entry_source: Vec<u32>,
-    /// Place of the update: in the work space, or for the last front of a branch among the handed-over ones.
+    /// Update offset in the work space, or among passed updates.
     pub update: Vec<usize>,
-    /// Boundary of the work space between the front's own update and those of its children.
+    /// Boundary between own and children's updates.
     pub split: Vec<usize>,
-    /// Whether the update lies on the left stack, below that boundary.
+    /// Whether the update is on the left stack.
     pub left: Vec<bool>,
-    /// Whether the update is handed from a branch to the upper fronts.
+    /// Whether the update passes to the upper fronts.
     pub handed: Vec<bool>,
     pub handed_len: usize,
-    /// Work space of the upper fronts, and of a thread that does branches; in values of one triangle, like all places.
+    /// Work space of upper fronts and branch thread, in values of one triangle.
     pub work_len: usize,
     pub branch_len: usize,
     pub rounds: Vec<Round>,
     pub tasks: Vec<Task>,
     pub upper: Vec<u32>,
-    /// Columns of the widest front, and of the widest one in a branch.
+    /// Widest front, overall and in a branch [columns].
     pub max_width: usize,
     pub branch_width: usize,
     pub flops: f64,
@@ -120,14 +114,12 @@ impl Structure {
         &self.children[self.children_start[s]..self.children_start[s + 1]]
     }
 
-    /// Flops of a symmetric front.
     pub fn front_flops(&self, s: usize) -> f64 {
         let (w, r) = (self.width(s) as f64, self.below(s) as f64);
         // Sum of (r + i)^2 for i = 1..=w.
         w * r * r + r * w * (w + 1.0) + w * (w + 1.0) * (2.0 * w + 1.0) / 6.0
     }
 
-    /// Builds everything from the supernodes (`begin`, `rows_start`, `rows`) and the matrix.
     pub fn new(begin: Vec<u32>, rows_start: Vec<usize>, rows: Vec<u32>, upper: &Upper) -> Structure {
         let mut structure = Structure { begin, rows_start, rows, ..Structure::default() };
         structure.link();
@@ -212,7 +204,7 @@ impl Structure {
             let (w, r) = (self.width(s), self.below(s));
             self.panel.push(panel);
             self.second.push(second);
-            // Whole cache lines, so that kernels meet the same alignment in every run.
+            // Whole cache lines keep kernel results reproducible.
             panel += (w * (w + r)).next_multiple_of(8);
             second += (w * r).next_multiple_of(8);
             self.max_width = self.max_width.max(w);
@@ -239,7 +231,7 @@ impl Structure {
         for s in 0..self.count() {
             supernode_of[self.columns(s)].fill(s as u32);
         }
-        // Rows come ascending, so the place within a supernode only moves on.
+        // Rows ascend, so positions only advance.
         let mut reached = self.rows_start.clone();
         for j in 0..n {
             for k in upper.start[j]..upper.start[j + 1] {
@@ -260,7 +252,6 @@ impl Structure {
         }
     }
 
-    /// Cuts the tree into branches and upper fronts and gives every update its place.
     fn plan(&mut self) {
         let count = self.count();
         let mut below_flops: Vec<f64> = (0..count).map(|s| self.front_flops(s)).collect();
@@ -314,7 +305,7 @@ impl Structure {
         self.upper = upper;
     }
 
-    /// Ends a round after every subtree of the upper fronts that is as large as a round may be, and places what is handed over.
+    /// Ends rounds at subtrees of full size.
     fn make_rounds(&mut self, below_flops: &[f64]) {
         let limit = self.flops / ROUNDS;
         let large = |s: usize| self.parent[s] == NONE || below_flops[self.parent[s] as usize] > limit;
@@ -337,7 +328,7 @@ impl Structure {
                     if self.handed[s] {
                         self.update[s] = place;
                         place += update_len(self.below(s));
-                        // What a later round reads must stay.
+                        // Later rounds read it.
                         if self.parent[s] != NONE && self.parent[s] as usize >= end {
                             base = place;
                         }
@@ -349,15 +340,14 @@ impl Structure {
         }
     }
 
-    /// Number of tasks of the longest round: more threads than that have nothing to do.
+    /// Most tasks of a round, the useful number of threads.
     pub fn most_tasks(&self) -> usize {
         self.rounds.iter().map(|round| round.tasks.len()).max().unwrap_or(0)
     }
 
-    /// Places the updates of `fronts` (in their order) on two stacks; returns the length of the work space.
     fn stack(&mut self, fronts: &[u32]) -> usize {
         let mut end = 0_usize;
-        // The right stack needs the size of the region, which the first pass finds.
+        // The right stack needs the region size from the first pass.
         for _ in 0..2 {
             let (mut height, mut peak) = ([0_usize; 2], 0);
             for &s in fronts {

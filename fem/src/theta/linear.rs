@@ -1,24 +1,19 @@
-//! The θ-method of a linear body.
+//! θ-method of a linear body.
 //!
 //! ```text
 //! M (v1 - v0)/dt + C vt + K ut = F_mean
 //! vt = (1 - theta) v0 + theta v1,   ut = u0 + theta dt vt,   u1 = u0 + dt vt
 //! ```
 //!
-//! Only the impulse `F_mean dt` of the window enters, so the impulse that the other side felt is handed over exactly.
-//! One solve with `M/(theta dt) + C + theta dt K` for `w = vt - v0`, so rounding, and the tolerance of an iteration, stay relative
-//! to the change.
+//! The window's impulse `F_mean dt` is applied exactly. The unknown is `w = vt - v0` with matrix
+//! `M/(theta dt) + C + theta dt K`: errors are relative to the change.
 //!
-//! Energy: multiplying by `du = dt vt` gives, without approximation,
-//! `work = change of (kinetic + strain) + dt vt·C vt + (theta - 1/2)(|dv|²_M + |du|²_K)`, C = alpha_m M + beta_k K + D with
-//! the boundary dashpots D, the work being that of the load and of moved supports.
-//! theta = 1/2 is Newmark's 1/4, 1/2 for a load that is constant over the step, and conserves energy; larger theta
-//! damps what the step cannot follow, theta = 1 is backward Euler.
+//! Energy, exactly: `work = change of (kinetic + strain) + dt vt·C vt + (theta - 1/2)(|dv|²_M + |du|²_K)`,
+//! C = alpha_m M + beta_k K + D. theta = 1/2 conserves energy (Newmark 1/4, 1/2); theta = 1 is backward
+//! Euler.
 //!
-//! Source: Simo and Tarnow, Z. angew. Math. Phys. 43 (1992) 757-792 (mid-point form and its energy); the terms in
-//! (theta - 1/2) follow from `(1 - theta) v0 + theta v1 = (v0 + v1)/2 + (theta - 1/2)(v1 - v0)` and the same for u.
-//! Limits: second order for theta = 1/2 only; a moved support has the velocity `vt = du/dt` inside the window and
-//! `v1 = v0 + (vt - v0)/theta` at its end.
+//! Source: Simo and Tarnow (1992) (mid-point form and energy). Limits: second order for theta = 1/2 only;
+//! moved supports have `vt = du/dt` and `v1 = v0 + (vt - v0)/theta`.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
@@ -31,10 +26,10 @@ use crate::newmark::check_dynamics;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load, check_prescribed};
 
-/// Residual at which a prediction is good enough [-].
+/// Residual tolerance of predictions [-].
 const TOLERANCE: f64 = 1e-8;
 
-/// Holds the factor for one window length, or what an iteration needs, and scratch.
+/// θ-method solver of one window length.
 pub struct ThetaSolver {
     theta: f64,
     dt: f64,
@@ -43,22 +38,21 @@ pub struct ThetaSolver {
     next: State,
     work: Vec<f64>,
     product: Vec<f64>,
-    /// Scratch for moved supports, empty until then.
     inner: Vec<f64>,
     equations: Vec<f64>,
 }
 
 impl ThetaSolver {
-    /// Factors the matrix of windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
+    /// Factors the matrix of windows `dt` [s], `theta` from 1/2 (undamped) to 1.
     ///
     /// # Errors
-    /// theta out of range, a length that is not above 0, a material without density or with plasticity.
+    /// theta out of range, length not above 0, material without density or with plasticity.
     pub fn new(model: &Model, theta: f64, dt: f64) -> Result<ThetaSolver, SolveError> {
         check_theta(theta)?;
         check_linear(model)?;
         check_dynamics(model, dt)?;
         let c = model.rayleigh();
-        // The equation is multiplied by theta dt, so that the mass has the factor 1 as in Newmark's method.
+        // Scaled by theta dt: unit mass factor as in Newmark.
         let combination = Combination {
             stiffness: theta * dt * (theta * dt + c.beta_k),
             mass: 1.0 + theta * dt * c.alpha_m,
@@ -79,23 +73,22 @@ impl ThetaSolver {
         })
     }
 
-    /// Counts of conjugate gradients, where the model's [`methods`](Model::methods) say so.
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// Memory of conjugate gradients or of a library beside that of the model [bytes].
+    /// Additional solver memory [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }
 
-    /// The parameter theta [-].
+    /// Parameter theta [-].
     pub fn theta(&self) -> f64 {
         self.theta
     }
 
-    /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` under the mean load,
-    /// 0 at free dofs. Shape `[3 * nodes]`. With the mean load they are the change of momentum exactly.
+    /// Mean support reactions [N] of a window from `before` to `after`, 0 at free dofs. Shape `[3 * nodes]`.
     pub fn mean_reactions(
         &self,
         model: &Model,
@@ -110,7 +103,7 @@ impl ThetaSolver {
         at_supports(model, &inner, mean_load)
     }
 
-    /// `M dv/dt + C vt + K ut` of a window. Scratch has the length of five nodal vectors.
+    /// `M dv/dt + C vt + K ut`; scratch: five nodal vectors.
     fn mean_inner_force(
         &self,
         model: &Model,
@@ -132,7 +125,7 @@ impl ThetaSolver {
         inner_force(model, [u, v, a], force, rest);
     }
 
-    /// Work, damping and numerical dissipation; expects du in `work`. Forms that a term does not need are left out.
+    /// Expects du in `work`.
     fn audit(&mut self, model: &Model, old: &State, mean_load: &[f64]) -> StepAudit {
         let (dt, c, matrices) = (self.dt, model.rayleigh(), model.matrices());
         let excess = self.theta - 0.5;
@@ -191,7 +184,7 @@ impl ThetaMethod for ThetaSolver {
         let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
         let (n, supports) = (state.u.len(), model.supports());
         let next = &mut self.next;
-        // 1. Residual with vt = v0 on free dofs; `a` holds w = vt - v0, known at the supports.
+        // Residual with vt = v0 on free dofs; `a` holds w = vt - v0.
         next.a.fill(0.0);
         let mut accelerated = false;
         for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
@@ -226,7 +219,7 @@ impl ThetaMethod for ThetaSolver {
                 *slot -= theta * dt * self.product[d as usize];
             }
         }
-        // 2. Solve for w = vt - v0 = theta (v1 - v0), which the last window's is a guess of, and advance.
+        // The last window's w is the guess.
         self.system.solve(supports, &mut self.equations, &|d| theta * dt * state.a[d])?;
         supports.scatter(&self.equations, &mut next.a);
         for d in 0..n {
@@ -236,7 +229,7 @@ impl ThetaMethod for ThetaSolver {
             next.v[d] = state.v[d] + change;
             next.a[d] = change / dt;
         }
-        // The end itself, where the sum above would miss it by rounding.
+        // Exact end value, without rounding of the sum.
         if let Some(values) = prescribed {
             for (&(dof, _), &value) in supports.fixed().iter().zip(values) {
                 next.u[dof as usize] = value;
@@ -249,7 +242,6 @@ impl ThetaMethod for ThetaSolver {
         Ok(audit)
     }
 
-    /// Solved by [`SystemSolver::solve_with`] to a residual of 1e-8.
     fn predict(
         &mut self,
         model: &Model,

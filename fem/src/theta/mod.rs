@@ -1,7 +1,6 @@
-//! θ-methods: one implicit step under the mean load of a time window, the solid's part of a coupled step.
+//! θ-methods: one implicit step under the mean load of a coupling window.
 //!
-//! [`ThetaSolver`] for linear bodies, [`NonlinearTheta`] for elastoplastic ones, [`ReducedTheta`] in the span of a
-//! [reduction](crate::reduction). Only the impulse of a window enters, so the impulse that the other side felt is passed on exactly.
+//! The window's impulse is applied exactly.
 
 mod linear;
 mod nonlinear;
@@ -16,21 +15,20 @@ use crate::integrator::{Conditions, Loading, OnStep, StepReport, TimeIntegrator,
 use crate::model::Model;
 use crate::state::{State, StepAudit};
 
-/// A θ-method with windows of one length. As [`TimeIntegrator`] it takes the mean of the loads at both ends of each window.
+/// θ-method of one window length; as [`TimeIntegrator`] it averages the loads at both ends.
 pub trait ThetaMethod: TimeIntegrator {
-    /// The length of the window [s].
+    /// Window length [s].
     fn dt(&self) -> f64;
 
-    /// How the last step, or the last part of it, converged.
+    /// Convergence of the last step or its last part.
     fn report(&mut self) -> &mut StepReport;
 
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, with the displacement [m] of each constrained dof at
-    /// its end, in the order of [`Supports::fixed`](crate::supports::Supports::fixed); without it all stay where they are.
-    /// `state.a` becomes the mean acceleration of the window, or of its last part.
+    /// Steps under the mean load [N], shape `[3 * nodes]`, to displacements [m] ordered as
+    /// [`Supports::fixed`](crate::supports::Supports::fixed); `None`: unchanged. `state.a` becomes the mean
+    /// acceleration.
     ///
     /// # Errors
-    /// A load, a displacement or a result that is not finite; a window that does not converge; moved supports of a reduced body.
-    /// The state is untouched then.
+    /// Values not finite; no convergence; moved supports of a reduced body (state unchanged).
     fn step_prescribed(
         &mut self,
         model: &Model,
@@ -39,7 +37,7 @@ pub trait ThetaMethod: TimeIntegrator {
         prescribed: Option<&[f64]>,
     ) -> Result<StepAudit, SolveError>;
 
-    /// One step under the mean load [N] of the window, shape `[3 * nodes]`, on supports that stay where they are.
+    /// Steps under the mean load [N], shape `[3 * nodes]`, with fixed supports.
     ///
     /// # Errors
     /// As [`ThetaMethod::step_prescribed`].
@@ -47,13 +45,14 @@ pub trait ThetaMethod: TimeIntegrator {
         self.step_prescribed(model, state, mean_load, None)
     }
 
-    /// The mean velocity [m/s] that a step would have if the load fell by `contacts(w)` as this velocity exceeds the present
-    /// one by w: a linearized contact on the body. `contacts` adds a symmetric, positive semidefinite product to its second
-    /// argument; shapes `[3 * nodes]`. The state stays as it is. Returns the iterations of the solve.
+    /// Predicts the mean velocity [m/s] with linearised contact: load reduced by `contacts(w)` for a velocity
+    /// change w.
+    ///
+    /// `contacts` adds a symmetric positive semidefinite product; shapes `[3 * nodes]`. Returns the
+    /// iterations.
     ///
     /// # Errors
-    /// [`SolveError::Plastic`] for a method without a constant matrix of all dofs; a load or a result that is not finite; an
-    /// iteration without a factor that does not converge.
+    /// [`SolveError::Plastic`]; values not finite; no convergence.
     fn predict(
         &mut self,
         model: &Model,
@@ -66,7 +65,6 @@ pub trait ThetaMethod: TimeIntegrator {
     }
 }
 
-/// [`TimeIntegrator::integrate`] of a θ-method; `to` must lie a whole number of windows ahead.
 fn integrate(
     method: &mut impl ThetaMethod,
     model: &Model,
@@ -81,7 +79,7 @@ fn integrate(
         let [mean, end] = &mut conditions.loads;
         mean.iter_mut().zip(&*end).for_each(|(m, e)| *m = 0.5 * (*m + e));
         let audit = method.step_prescribed(model, state, &conditions.loads[0], conditions.prescribed())?;
-        // The end itself, where the sum of the steps would miss it by rounding.
+        // Exact end time, without rounding of the sum.
         state.time = ends[1];
         let report = method.report();
         report.time = ends[1];
@@ -90,7 +88,6 @@ fn integrate(
     Ok(())
 }
 
-/// Rejects a weight of the end of a window that is not from 1/2 to 1.
 fn check_theta(theta: f64) -> Result<(), SolveError> {
     if (0.5..=1.0).contains(&theta) { Ok(()) } else { Err(SolveError::Theta { theta }) }
 }

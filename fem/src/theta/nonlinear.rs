@@ -1,14 +1,14 @@
-//! The θ-method of an elastoplastic body.
+//! θ-method of an elastoplastic body.
 //!
 //! ```text
-//! M (v1 - v0)/dt + C vt + (1 - theta) (f(s0) + S u0) + theta (f(s1) + S u1) = F_mean,   vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
+//! M (v1 - v0)/dt + C vt + (1 - theta) (f(s0) + S u0) + theta (f(s1) + S u1) = F_mean
+//! vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
 //! ```
 //!
-//! For an elastic body this is [`super::ThetaSolver`] exactly. The impulse of the window is handed over whole. When the
-//! iteration of a window fails it is taken in 2, 4, … equal parts under the same mean load, which keeps the impulse.
+//! Equals [`super::ThetaSolver`] for elastic bodies. After divergence, the window is split into 2, 4, … parts
+//! under the same mean load, which keeps the impulse.
 //!
-//! Source: as the elastic one; the stresses are returned at the end of the step (backward Euler) and weighted as forces, so the
-//! ledger closes without approximation with the mean of the stresses at both ends. Limits: second order for theta = 1/2 only.
+//! Source: as the linear method; backward Euler stresses. Limits: second order for theta = 1/2 only.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
@@ -24,11 +24,10 @@ use crate::nonlinear::newton::{Failure, INERTIA, Newton, Problem};
 use crate::state::{State, StepAudit};
 use crate::statics::{check_load, check_prescribed};
 
-/// Parts that a window is split in at most.
+/// Largest number of parts of a window.
 const PARTS: u32 = 64;
 
-/// Steps an elastoplastic body through windows of one length; where a sixty-fourth of a window fails, a step returns
-/// [`SolveError::Diverged`].
+/// Elastoplastic θ-method; if a sixty-fourth of a window fails, [`SolveError::Diverged`].
 pub struct NonlinearTheta {
     theta: f64,
     dt: f64,
@@ -41,10 +40,10 @@ pub struct NonlinearTheta {
 }
 
 impl NonlinearTheta {
-    /// Windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
+    /// Builds a solver for windows `dt` [s], `theta` from 1/2 (undamped) to 1.
     ///
     /// # Errors
-    /// theta or options out of range, a length that is not above 0, a material without density.
+    /// theta or options out of range, length not above 0, material without density.
     pub fn new(
         model: &Model,
         theta: f64,
@@ -66,17 +65,17 @@ impl NonlinearTheta {
         })
     }
 
-    /// The parameter theta [-].
+    /// Parameter theta [-].
     pub fn theta(&self) -> f64 {
         self.theta
     }
 
-    /// Counts and times since the solver was made.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }
 
-    /// The window in equal parts. One part goes straight into the state; several go into a copy.
+    /// Several parts use a copy of the state.
     fn parts(
         &mut self,
         model: &Model,
@@ -115,7 +114,7 @@ impl NonlinearTheta {
         self.newton.force.of_states(model, &state.points);
         start.copy_from_slice(&self.newton.force.force);
         model.boundary_spring_times(&state.u, start);
-        // 1. The equation over theta, with the increment as unknown.
+        // Equation over theta, for the increment.
         let square = 1.0 / (theta * theta * dt * dt);
         model.mass_times(&state.v, force);
         for d in 0..n {
@@ -129,11 +128,9 @@ impl NonlinearTheta {
         };
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let forces = norm(mean_load).max(norm(start)).max(INERTIA * norm(&self.rhs));
-        // 2. Iterate.
         let (old, forces, stop) = (&state.points, Some(forces), &|| false);
         let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop };
         self.newton.solve(model, &problem)?;
-        // 3. The motion at the end, and the ledger.
         let next = &mut self.next;
         for d in 0..n {
             let w = self.newton.w[d];
@@ -149,7 +146,7 @@ impl NonlinearTheta {
             audit.external_work += mean_load[d] * self.newton.w[d];
         }
         if self.fixed.iter().any(|f| *f != 0.0) {
-            // theta times the residual of the iteration is what the supports must add.
+            // Supports supply theta times the residual.
             for d in model.supports().fixed().iter().map(|(dof, _)| *dof as usize) {
                 audit.support_work -= theta * self.newton.residual[d] * self.newton.w[d];
             }
@@ -165,8 +162,7 @@ impl NonlinearTheta {
         Ok(audit)
     }
 
-    /// Mean forces of the supports on the body during a window [N] that led from `before` to `after` in one part under the
-    /// mean load, 0 at free dofs. Shape `[3 * nodes]`.
+    /// Mean support reactions [N] of an undivided window, 0 at free dofs. Shape `[3 * nodes]`.
     pub fn mean_reactions(
         &mut self,
         model: &Model,
@@ -175,7 +171,7 @@ impl NonlinearTheta {
         mean_load: &[f64],
     ) -> Vec<f64> {
         let (n, dt, theta) = (before.u.len(), after.time - before.time, self.theta);
-        // The inner force of the mean motion, its stresses being the weighted mean of those at both ends.
+        // Weighted mean stresses.
         let mean = |a: f64, b: f64| (1.0 - theta) * a + theta * b;
         let mut middle = after.clone();
         for d in 0..n {

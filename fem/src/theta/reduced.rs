@@ -1,8 +1,13 @@
-//! The θ-method in the span of the shapes of a reduced body.
+//! θ-method in the basis of a reduced body.
 //!
-//! `w = V q'` with `(1 + θ dt α + θ dt (θ dt + β) s_k) q'_k + θ dt (D q')_k = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)`,
-//! s_k the squares of the frequencies, p = Vᵀ M v0 the velocity in the span, α and β Rayleigh's coefficients, D the
-//! dashpots. What is stored is the state of all nodes: a run that goes on from it has the same bits.
+//! ```text
+//! w = V q'
+//! (1 + θ dt α + θ dt (θ dt + β) s_k) q'_k + θ dt (D q')_k
+//!     = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)
+//! ```
+//!
+//! s_k squared frequencies, p = Vᵀ M v0, α and β Rayleigh coefficients, D dashpots. The state keeps all
+//! nodes.
 
 use super::{ThetaMethod, check_theta};
 use crate::error::SolveError;
@@ -15,13 +20,12 @@ use crate::statics::{check_finite, check_linear, check_load};
 use nalgebra::{DMatrix, DVector, Dyn, linalg};
 use std::sync::Arc;
 
-/// Holds the reduced equations for one window length, and scratch.
+/// Reduced θ-method of one window length.
 pub struct ReducedTheta {
     theta: f64,
     dt: f64,
     report: StepReport,
     reduced: Arc<Reduced>,
-    /// Diagonal of the equations, or their factor where dashpots join them.
     diagonal: Vec<f64>,
     factor: Option<linalg::Cholesky<f64, Dyn>>,
     next: State,
@@ -31,10 +35,10 @@ pub struct ReducedTheta {
 }
 
 impl ReducedTheta {
-    /// Windows of length `dt` [s], with `theta` from 1/2 (no numerical damping) to 1.
+    /// Builds a solver for windows `dt` [s], `theta` from 1/2 (undamped) to 1.
     ///
     /// # Errors
-    /// theta out of range, a length that is not above 0, a plastic material.
+    /// theta out of range, length not above 0, plastic material.
     pub fn new(
         model: &Model,
         reduced: Arc<Reduced>,
@@ -53,7 +57,7 @@ impl ReducedTheta {
             reduced.square.iter().map(|s| 1.0 + h * c.alpha_m + h * (h + c.beta_k) * s).collect();
         let factor = reduced.dashpots.as_ref().map(|d| {
             let matrix = DMatrix::from_diagonal(&DVector::from_column_slice(&diagonal)) + d * h;
-            // Positive definite: a diagonal above 1 and a damping that takes energy.
+            // Positive definite: diagonal above 1, dissipative damping.
             linalg::Cholesky::new(matrix).expect("a damped body at rest")
         });
         let count = reduced.count();
@@ -81,7 +85,7 @@ impl ThetaMethod for ReducedTheta {
         &mut self.report
     }
 
-    /// A part of the velocity outside the span is lost; supports stay where they are.
+    /// Velocity outside the basis is lost.
     fn step_prescribed(
         &mut self,
         model: &Model,
@@ -98,7 +102,6 @@ impl ThetaMethod for ReducedTheta {
         let h = theta * dt;
         let r = &*self.reduced;
         let count = r.count();
-        // 1. Residual and velocity in the span.
         let (velocity, right) = (self.velocity.as_mut_slice(), self.right.as_mut_slice());
         velocity.fill(0.0);
         right.fill(0.0);
@@ -117,7 +120,6 @@ impl ThetaMethod for ReducedTheta {
             self.right.gemv(-1.0, dashpots, &self.velocity, 1.0);
         }
         self.right *= h;
-        // 2. Solve for q' = (v1 - v0) theta, and advance all nodes.
         match &self.factor {
             Some(factor) => factor.solve_mut(&mut self.right),
             None => self.right.iter_mut().zip(&self.diagonal).for_each(|(x, d)| *x /= d),
@@ -139,7 +141,6 @@ impl ThetaMethod for ReducedTheta {
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
-        // 3. What entered and left, in the span.
         let excess = theta - 0.5;
         let mut audit = StepAudit { external_work, ..StepAudit::default() };
         for k in 0..count {

@@ -1,4 +1,4 @@
-//! Springs and dashpots on faces: reflection of plane waves, elastic supports, and the energy that they take.
+//! Boundary springs and dashpots: reflection, elastic supports, energy balance.
 
 use crate::common::{Random, fix};
 use trackbed_fem::boundary::{BoundaryLayer, SpringFactors};
@@ -18,8 +18,7 @@ fn side(mesh: &Mesh, side: u8) -> Vec<Face> {
     mesh.boundary_faces().into_iter().filter(|f| f.side == side).collect()
 }
 
-/// Share of the energy of a pulse that is still in a column after the pulse met the base. `direction` 2 is a P wave, 0 an
-/// S wave; all other motion is held, so the waves are plane. The base is absorbing or fixed.
+/// Energy reflected at the base of a column, as a fraction. `direction` 2: P wave, 0: S wave.
 fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
     let (count, length, width) = (80, 40.0, 0.1);
     let mesh = Mesh::block([1, 1, count], [width, width, length]);
@@ -46,7 +45,7 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
         2 => SOIL.compression_wave_speed(),
         _ => (SOIL.lame().1 / SOIL.density).sqrt(),
     };
-    // A pulse cos⁴ of 12 m in the middle, that runs down: u = f(z + c t), v = c f'(z).
+    // Pulse cos⁴, 12 m long, travelling down: u = f(z + c t), v = c f'(z).
     let (half, centre) = (6.0, 20.0);
     let mut state = State::new(&model);
     for (n, x) in model.mesh().coordinates.iter().enumerate() {
@@ -61,7 +60,7 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
     initial_acceleration(&model, &mut state, &load).unwrap();
     let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
     let start = total(&state);
-    // Time to reach the base with its tail and to be half way up again, if it was reflected.
+    // Until a reflection would be half way up.
     let (time, steps) = ((centre + half + 4.0) / c, 600);
     let mut solver = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, time / steps as f64).unwrap();
     let mut absorbed = 0.0;
@@ -73,11 +72,10 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
     end / start
 }
 
-/// Lysmer and Kuhlemeyer (1969): no reflection at a right angle. Asked: below 1 % of the energy; found far below. A fixed
-/// base sends all of it back, which shows that the measure sees a reflection. What the lumped mass leaves behind is not
-/// reflected: its waves disperse more, and the pulse is not quite a wave of its mesh.
+/// Lysmer and Kuhlemeyer (1969): no reflection at normal incidence; limit 1 % of the energy. A fixed base
+/// reflects everything.
 #[test]
-fn plane_waves_leave_through_an_absorbing_base() {
+fn plane_waves_leave_absorbing_base() {
     for (name, direction) in [("P", 2), ("S", 0)] {
         for mass in [Mass::Consistent, Mass::Lumped] {
             let (absorbing, fixed) = (reflected(direction, true, mass), reflected(direction, false, mass));
@@ -92,9 +90,9 @@ fn plane_waves_leave_through_an_absorbing_base() {
     }
 }
 
-/// A confined column on springs: settlement `p/k + p L/(lambda + 2 mu)`, sideways `t/k_t + t L/mu`; linear, so exact.
+/// Exact: settlement `p/k + p L/(lambda + 2 mu)`, lateral `t/k_t + t L/mu`.
 #[test]
-fn column_on_springs_settles_as_the_closed_form_says() {
+fn column_on_springs_matches_closed_form() {
     let mesh = Mesh::block([2, 1, 4], [1.0, 0.5, 2.0]);
     let (lambda, mu) = SOIL.lame();
     let (normal, tangential) = (8e6, 3e6);
@@ -135,10 +133,10 @@ fn column_on_springs_settles_as_the_closed_form_says() {
     }
 }
 
-/// A hole under pressure in an infinite medium, plane strain: `u(a) = p a/(2 G)` (Timoshenko and Goodier, section 28).
-/// A ring cut off at three radii on viscous springs gives that; free and fixed at the cut are 25 % and 16 % off.
+/// Pressurised hole in an infinite medium, plane strain: `u(a) = p a/(2 G)` (Timoshenko and Goodier, section
+/// 28). Error with a free outer boundary 25 %, fixed 16 %.
 #[test]
-fn ring_on_viscous_springs_is_an_infinite_medium() {
+fn viscous_springs_represent_infinite_medium() {
     let (inner, outer, pressure) = (1.0, 3.0, 50e3);
     let shear = SOIL.lame().1;
     let found = |springs: Option<SpringFactors>| {
@@ -175,7 +173,7 @@ fn ring_on_viscous_springs_is_an_infinite_medium() {
     assert!(free.abs() > 0.03, "{free}");
 }
 
-/// A block on springs and dashpots, pushed at random, its side moved: every step's energies add up, for each method.
+/// Random loads, one side moved.
 fn shaken_block(mass: Mass) -> Model {
     let mesh = Mesh::block([2, 2, 2], [1.0, 0.8, 0.6]);
     let constraints = fix(&mesh, &[0, 2], |x| x[0] == 0.0);
@@ -196,7 +194,7 @@ fn shaken_block(mass: Mass) -> Model {
 }
 
 #[test]
-fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
+fn energy_balances_with_boundary_layers() {
     let dt = 1e-3;
     for mass in [Mass::Consistent, Mass::Lumped] {
         let model = shaken_block(mass);
@@ -243,11 +241,10 @@ fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
                 ]) {
                     *e += a;
                 }
-                // The supports are where they were prescribed to be.
                 for (&(d, _), m) in model.supports().fixed().iter().zip(&motion) {
                     assert!((state.u[d as usize] - m).abs() < 1e-18);
                 }
-                // The work by other means: for the window the mean forces, for Newmark's pair the numerical part is zero.
+                // Independent work: from mean forces (window); numerical part zero (Newmark pair).
                 if newmark.is_none() {
                     let mean = window.mean_reactions(&model, &before, &state, &end);
                     let work: f64 = (0..n).map(|d| mean[d] * (state.u[d] - before.u[d])).sum();
@@ -275,10 +272,9 @@ fn energy_balances_with_springs_dashpots_and_prescribed_motion() {
     }
 }
 
-/// With exact starting accelerations the pair 1/4, 1/2 loses nothing to the method itself, supports moved or not: what
-/// the forces do, less what dampers take, is stored. Checked against sums made from the states alone.
+/// No numerical dissipation; balance from the states only.
 #[test]
-fn average_acceleration_loses_nothing_on_moved_supports() {
+fn average_acceleration_conserves_on_moved_supports() {
     let model = shaken_block(Mass::Consistent);
     let (n, dt) = (model.dof_count(), 1e-3);
     let load = vec![0.0; n];
@@ -303,7 +299,7 @@ fn average_acceleration_loses_nothing_on_moved_supports() {
 }
 
 #[test]
-fn springs_dashpots_and_lumped_mass_have_the_same_bits_on_any_number_of_threads() {
+fn results_independent_of_thread_count() {
     let bits = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

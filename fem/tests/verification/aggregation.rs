@@ -1,4 +1,4 @@
-//! Conjugate gradients with smoothed aggregation for statics, against the factor.
+//! CG with smoothed aggregation for statics, against the direct solver.
 
 use crate::common::{Random, difference, fix};
 use crate::mixed::block;
@@ -14,7 +14,7 @@ fn iterative(tolerance: f64) -> Methods {
     Methods { statics: Method::Iterative { tolerance }, ..Methods::default() }
 }
 
-/// A block of two soils, narrower at the top, held below, guided on two sides.
+/// Tapered block of two soils.
 pub fn soils(kind: ElementKind, counts: [usize; 3], methods: Methods) -> Model {
     let size = [4.0, 3.0, 2.0];
     let mut mesh = match kind {
@@ -39,7 +39,7 @@ pub fn soils(kind: ElementKind, counts: [usize; 3], methods: Methods) -> Model {
     .unwrap()
 }
 
-/// Weight, a pressure on a part of the top, and an uneven settlement of the supports.
+/// Gravity, pressure on part of the top, uneven support settlement.
 pub fn solve(model: &Model) -> (statics::Static, u32) {
     let mut load = model.gravity_load();
     for face in model.mesh().boundary_faces() {
@@ -56,7 +56,7 @@ pub fn solve(model: &Model) -> (statics::Static, u32) {
 }
 
 #[test]
-fn bricks_and_tetrahedra_stand_as_by_the_factor() {
+fn statics_match_direct_solver() {
     let cases =
         [(ElementKind::Hex20, [8, 6, 5]), (ElementKind::Tet10, [6, 4, 4]), (ElementKind::Hex8, [12, 9, 7])];
     for (kind, counts) in cases {
@@ -71,7 +71,7 @@ fn bricks_and_tetrahedra_stand_as_by_the_factor() {
 }
 
 #[test]
-fn iterations_hardly_depend_on_the_size_of_the_mesh() {
+fn iteration_count_independent_of_mesh_size() {
     let sizes = [[6, 5, 4], [12, 9, 8], [20, 16, 13]];
     let counts = sizes.map(|counts| {
         let model = soils(ElementKind::Hex20, counts, iterative(1e-8));
@@ -79,7 +79,7 @@ fn iterations_hardly_depend_on_the_size_of_the_mesh() {
         println!("{counts:?}, {} nodes: {most} iterations", model.mesh().node_count());
         most
     });
-    // An unsmoothed prolongator takes 16, 20 and 25.
+    // An unsmoothed prolongator takes 16, 20 and 25 iterations.
     assert!(counts.iter().all(|&c| c > 5 && 10 * c <= 13 * counts[0] && c < 20), "{counts:?}");
 }
 
@@ -96,7 +96,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert!(one == on(2) && one == on(3) && one == on(7));
 }
 
-/// Loads of random direction at every node, several with one set-up.
 #[test]
 fn any_load_is_carried() {
     let model = soils(ElementKind::Hex20, [8, 6, 5], iterative(1e-9));
@@ -111,7 +110,7 @@ fn any_load_is_carried() {
     assert!(a.counts().unwrap().solves >= 3);
 }
 
-/// Two blocks joined by one line of nodes, a hinge, which geometry does not show.
+/// Two blocks joined along one line of nodes.
 pub fn hinged(methods: Methods) -> Model {
     let whole = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
     let mut mesh = Mesh { coordinates: whole.coordinates.clone(), ..Mesh::default() };

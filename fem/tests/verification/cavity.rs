@@ -1,11 +1,12 @@
-//! A spherical cavity of radius a in a ball of radius b, Mohr–Coulomb, expanded by a pressure: plastic radius and wall displacement.
+//! Cavity expansion in a Mohr–Coulomb ball: plastic radius and wall displacement, tolerance 1 %.
 //!
-//! Source: Yu and Houlsby, Géotechnique 41 (1991), 173–183, in small strain and with a free outer surface; structure of Hill (1950).
-//! Tension positive, `al = (1 + sin phi)/(1 - sin phi)`, `Y = 2 c cos phi/(1 - sin phi)`, yield `al s_t - s_r = Y`. Outside the plastic
-//! radius R: `s_r = S (1/b³ - 1/r³)`, `s_t = S (1/b³ + 1/(2 r³))`, `S = Y/((al - 1)/b³ + (al/2 + 1)/R³)`. Inside: equilibrium gives
-//! `s_r = Y/(al - 1) + A r^{-2 (al - 1)/al}`. Flow on the edge s_t = s_t with `be` from psi as `al` from phi: `be e_r + 2 e_t = 0` for the plastic
-//! strains, so `u' + (2/be) u/r` is that of the elastic strains, integrated inwards from R (Simpson).
-//! Tolerance: 1 % of the wall displacement and of the plastic radius; the latter is worked out from S in the elastic part.
+//! Yu and Houlsby, Géotechnique 41 (1991), 173–183, small strain, free outer surface; structure of Hill
+//! (1950). Tension positive, `al = (1 + sin phi)/(1 - sin phi)`, `Y = 2 c cos phi/(1 - sin phi)`, yield
+//! `al s_t - s_r = Y`.
+//!
+//! * r > R: `s_r = S (1/b³ - 1/r³)`, `s_t = S (1/b³ + 1/(2 r³))`, `S = Y/((al - 1)/b³ + (al/2 + 1)/R³)`.
+//! * r < R: `s_r = Y/(al - 1) + A r^{-2 (al - 1)/al}`; flow `be e_r + 2 e_t = 0`, integrated inwards from R
+//!   (Simpson).
 
 use crate::collapse_common::{Builder, between, graded, mohr_coulomb};
 use std::collections::BTreeMap;
@@ -17,11 +18,11 @@ use trackbed_fem::{Constraint, Elastic, ElementKind, Model, ModelInput, Quadratu
 const SOIL: Elastic = Elastic { young: 80e6, poisson: 0.3, density: 2000.0 };
 const COHESION: f64 = 25e3;
 const PHI: f64 = 25.0;
-/// Radii of the cavity and of the ball [m].
+/// Radii [m].
 const INNER: f64 = 1.0;
 const OUTER: f64 = 5.0;
 
-/// The closed form at one plastic radius.
+/// Closed form for one plastic radius.
 struct Exact {
     al: f64,
     y: f64,
@@ -37,7 +38,7 @@ impl Exact {
         Exact { al, y, s, radius }
     }
 
-    /// Plastic radius that belongs to the strength `s` of the elastic field.
+    /// Plastic radius for the strength `s` of the elastic field [m].
     fn radius_of(&self, s: f64) -> f64 {
         ((0.5 * self.al + 1.0) / (self.y / s - (self.al - 1.0) / OUTER.powi(3))).cbrt()
     }
@@ -53,7 +54,6 @@ impl Exact {
         [radial, (self.y + radial) / self.al]
     }
 
-    /// Elastic strains, radial and tangential.
     fn elastic_strain(&self, r: f64) -> [f64; 2] {
         let ([radial, hoop], nu) = (self.stress(r), SOIL.poisson);
         [(radial - 2.0 * nu * hoop) / SOIL.young, ((1.0 - nu) * hoop - nu * radial) / SOIL.young]
@@ -83,8 +83,7 @@ impl Exact {
     }
 }
 
-/// One octant of the ball in three blocks, `across` elements along each side of a block and about `along` in the direction of the
-/// radius; with the load of a unit pressure in the cavity.
+/// Three blocks, `across` elements per side and about `along` radially, with the load of unit pressure.
 fn octant(psi: f64, across: usize, first: f64, ratio: f64) -> (Model, Vec<f64>) {
     let radii: Vec<f64> = graded(OUTER - INNER, first, ratio).iter().map(|r| INNER + r).collect();
     let mut builder = Builder::default();
@@ -118,7 +117,7 @@ fn octant(psi: f64, across: usize, first: f64, ratio: f64) -> (Model, Vec<f64>) 
     (model, unit)
 }
 
-/// Radius [m], radial and mean tangential stress [Pa] and whether it yielded, for every Gauss point.
+/// Radius [m], radial and mean tangential stress [Pa] and yield flag per Gauss point.
 fn points(model: &Model, state: &State) -> Vec<(f64, [f64; 2], bool)> {
     let mut all = Vec::new();
     for e in 0..model.mesh().element_count() {
@@ -152,7 +151,7 @@ fn check(psi: f64) {
         let exact = Exact::new(radius);
         let p = -exact.stress(INNER)[0];
         solver.integrate(&model, &mut state, p, &mut pressure, &mut |_, _, _| ()).unwrap();
-        // The mean over the wall, weighted as the pressure does work; single nodes deviate more (corners against mid-sides).
+        // Work-conjugate mean: corner and mid-side nodes deviate.
         let swept: f64 = unit.iter().zip(&state.u).map(|(f, u)| f * u).sum();
         let mean = swept / (0.5 * std::f64::consts::PI * INNER * INNER);
         let mut worst = 0.0_f64;
@@ -180,7 +179,7 @@ fn check(psi: f64) {
         );
         assert!((mean / wall - 1.0).abs() < 0.01);
         assert!((found / radius - 1.0).abs() < 0.01);
-        // The front of the points that yielded lies at R, to half an element.
+        // Plastic front at R, to half an element.
         assert!(yielded < radius + 0.25 && intact > radius - 0.25);
     }
     let s = solver.statistics();
@@ -201,14 +200,14 @@ fn spherical_cavity_non_associated() {
     check(5.0);
 }
 
-/// The quadrature against the elastic closed form: as long as only the wall yields, `u = p a/(2 E) ...` of Lamé.
+/// First yield: Lamé, `u = p a/(2 E) ...`.
 #[test]
 fn closed_form_meets_lame() {
     let exact = Exact::new(INNER);
     let [radial, hoop] = exact.stress(INNER);
     let lame = INNER * ((1.0 - SOIL.poisson) * hoop - SOIL.poisson * radial) / SOIL.young;
     assert!((exact.wall_displacement(10.0) / lame - 1.0).abs() < 1e-9);
-    // Equilibrium in the plastic part, by central differences.
+    // Equilibrium in the plastic part.
     let (exact, r, h) = (Exact::new(2.0), 1.4, 1e-4);
     let slope = (exact.stress(r + h)[0] - exact.stress(r - h)[0]) / (2.0 * h);
     let [radial, hoop] = exact.stress(r);

@@ -1,4 +1,4 @@
-//! Meshes of the collapse cases and the footing that is pushed into the ground.
+//! Meshes and footing of the collapse cases.
 
 use std::collections::{BTreeMap, HashMap};
 use trackbed_fem::TimeIntegrator;
@@ -7,13 +7,13 @@ use trackbed_fem::{
     Constraint, Elastic, ElementKind, Material, Mesh, Model, ModelInput, MohrCoulomb, Quadrature, State,
 };
 
-/// Mohr–Coulomb without tension cut-off; angles in degrees.
+/// Angles [°].
 pub fn mohr_coulomb(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     let (friction, dilation) = (phi.to_radians().into(), psi.to_radians());
     Material::plastic(elastic, MohrCoulomb { cohesion: c.into(), friction, dilation, tension: None })
 }
 
-/// A mesh put together from mapped blocks; nodes that coincide are one.
+/// Mapped blocks with coincident nodes merged.
 #[derive(Default)]
 pub struct Builder {
     pub mesh: Mesh,
@@ -30,8 +30,8 @@ impl Builder {
         })
     }
 
-    /// A block of `counts` cells, each one hexahedron, two wedges (axis along the second direction) or six tetrahedra.
-    /// `position` [m] takes indices on the grid of half cells.
+    /// Block of `counts` cells: one hexahedron, two wedges (axis along direction 2) or six tetrahedra each.
+    /// `position` [m] takes indices on the half-cell grid.
     pub fn block(
         &mut self,
         counts: [usize; 3],
@@ -65,12 +65,12 @@ impl Builder {
     }
 }
 
-/// Place of the half cell `i` between grid lines.
+/// Position of half cell `i`.
 pub fn between(lines: &[f64], i: usize) -> f64 {
     0.5 * (lines[i / 2] + lines[i.div_ceil(2)])
 }
 
-/// Distances of grid lines from 0 to `length`: the first cell is `first` long, each next about `ratio` times the one before.
+/// Graded grid lines from 0 to `length`, growth about `ratio`.
 pub fn graded(length: f64, first: f64, ratio: f64) -> Vec<f64> {
     let count = (1.0 + length * (ratio - 1.0) / first).ln() / ratio.ln();
     let count = (count.round() as i32).clamp(1, (length / first) as i32);
@@ -88,35 +88,31 @@ pub fn graded(length: f64, first: f64, ratio: f64) -> Vec<f64> {
     lines
 }
 
-/// Lines from 0 to `length`, refined on both sides of `edge`.
+/// Grid lines refined on both sides of `edge`.
 fn about(edge: f64, length: f64, first: f64, ratio: f64) -> Vec<f64> {
     let mut lines: Vec<f64> = graded(edge, first, ratio).iter().rev().map(|x| edge - x).collect();
     lines.extend(graded(length - edge, first, ratio).iter().skip(1).map(|x| edge + x));
     lines
 }
 
-/// A rigid rough footing on weightless ground, by symmetry one half (strip, plane strain) or one quarter (square); its half width is
-/// 1 m. The nodes at `x <= 1` (and `y <= 1`) move down, the one at the edge included, and do not move sideways.
+/// Rigid rough footing, half width 1 m, on weightless ground: half of a strip or quarter of a square.
 #[derive(Clone, Copy)]
 pub struct Ground {
-    /// Elements.
     pub kind: ElementKind,
-    /// Size of the elements at the edge of the footing [m].
+    /// Element size at the footing edge [m].
     pub first: f64,
     /// Growth of the elements away from the edge.
     pub ratio: f64,
-    /// Width and depth of the ground [m].
+    /// Width and depth [m].
     pub extent: [f64; 2],
-    /// Whether the footing is square.
     pub square: bool,
 }
 
-/// The model of a [`Ground`].
 pub struct Footing {
     pub model: Model,
-    /// Which constrained dofs move with the footing.
+    /// Constrained dofs that move with the footing.
     moved: Vec<bool>,
-    /// Area of the footing in the model [m²].
+    /// Footing area in the model [m²].
     area: f64,
 }
 
@@ -157,7 +153,7 @@ impl Footing {
         Footing { model, moved, area }
     }
 
-    /// Mean pressure [Pa] under the footing.
+    /// Mean pressure [Pa].
     pub fn pressure(&self, reactions: &[f64]) -> f64 {
         let fixed = self.model.supports().fixed().iter().zip(&self.moved);
         -fixed.filter(|(_, moved)| **moved).map(|((dof, _), _)| reactions[*dof as usize]).sum::<f64>()
@@ -174,8 +170,8 @@ impl Loading for &Footing {
     }
 }
 
-/// Full Newton with line search to 1e-4 of the forces, up to 40 iterations. Without dilation a tighter tolerance costs many
-/// iterations, or is not met at all, and does not change the load: 15.604 c at 1e-4 and at 1e-6 (phi = 20°, psi = 0, coarse mesh).
+/// Without dilation a tighter tolerance stalls or costs many iterations, at equal load: 15.604 c at 1e-4 and
+/// at 1e-6 (phi = 20°, psi = 0, coarse mesh).
 pub fn loose() -> NewtonOptions {
     NewtonOptions {
         force_tolerance: 1e-4,
@@ -185,26 +181,22 @@ pub fn loose() -> NewtonOptions {
     }
 }
 
-/// What a footing did.
 pub struct Course {
-    /// Settlement [m] and mean pressure [Pa] at each station.
+    /// Settlement [m] and mean pressure [Pa] per station.
     pub curve: Vec<[f64; 2]>,
     pub statistics: Statistics,
-    /// Why it stopped before the last station.
     pub stopped: Option<String>,
-    /// Settlement at the end [m].
+    /// Final settlement [m].
     pub settlement: f64,
 }
 
 impl Course {
-    /// Pressure over `c` at the last station.
     pub fn factor(&self, c: f64) -> f64 {
         self.curve.last().map_or(0.0, |p| p[1] / c)
     }
 }
 
-/// Pushes a footing down to `settlement` [m], with as many stations at which the pressure is read; a step goes from station to station
-/// or is halved, at most six times.
+/// Loads to `settlement` [m]; steps between stations are halved at most six times.
 pub fn push(footing: &Footing, options: NewtonOptions, settlement: f64, stations: u32) -> Course {
     let length = settlement / f64::from(stations);
     let control = StepControl {

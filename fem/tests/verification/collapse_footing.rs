@@ -1,10 +1,8 @@
-//! P2: rough rigid strip footing on weightless ground, against Prandtl's bearing capacity factor.
+//! Rough rigid strip footing on weightless ground, against Prandtl's bearing capacity factor.
 //!
-//! Source: Prandtl (1920), Reissner (1924): `Nc = (Nq - 1) cot(phi)`, `Nq = tan²(45° + phi/2) exp(pi tan(phi))`, 2 + pi for phi = 0; the
-//! same for smooth and rough footings. It is exact for associated flow. Convention: the load is the sum of the reactions of the nodes
-//! at 0 <= x <= half width, the one at the edge included, over the half width itself. The elements beside the edge carry
-//! part of that, as if the footing were wider by a fraction of an element, so Nc falls to the exact value from above as they shrink.
-//! Tolerances: 3 % (phi = 0) and 5 % (phi = 20°) on the finest mesh.
+//! Prandtl (1920), Reissner (1924): `Nc = (Nq - 1) cot(phi)`, `Nq = tan²(45° + phi/2) exp(pi tan(phi))`;
+//! `2 + pi` for phi = 0. Load: reactions at 0 <= x <= half width over the half width. Elements next to the
+//! edge widen the footing, so Nc converges from above. Tolerances: 3 % (phi = 0), 5 % (phi = 20°).
 
 use crate::collapse_common::{Course, Footing, Ground, loose, mohr_coulomb, push};
 use trackbed_fem::nonlinear::{NewtonOptions, Variant};
@@ -13,7 +11,7 @@ use trackbed_fem::{Cone, DruckerPrager, Elastic, ElementKind, Material};
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
 const COHESION: f64 = 10e3;
 
-/// Size of the elements at the edge over the half width, and their growth: coarse, middle, fine.
+/// Element size at the edge over the half width, and growth ratio.
 const MESHES: [(f64, f64); 3] = [(0.25, 1.4), (0.125, 1.3), (0.04, 1.2)];
 
 fn prandtl(phi: f64) -> f64 {
@@ -24,7 +22,7 @@ fn prandtl(phi: f64) -> f64 {
     (half * half * (std::f64::consts::PI * tan).exp() - 1.0) / tan
 }
 
-/// The slip lines of Prandtl's mechanism reach 3 half widths to the side for phi = 0, 6.1 for 20° and 7.6 for 25°.
+/// Prandtl's mechanism extends 3 half widths sideways for phi = 0, 6.1 for 20° and 7.6 for 25°.
 fn ground(kind: ElementKind, mesh: usize, phi: f64) -> Ground {
     let extent = if phi == 0.0 {
         [5.0, 3.0]
@@ -67,14 +65,12 @@ fn run(
     course
 }
 
-/// The error of the factor on each of the meshes, for a plateau that has been reached.
 fn errors(name: &str, meshes: &[usize], phi: f64, psi: f64, settlement: f64, law: Law) -> Vec<f64> {
     let course = |&mesh: &usize| {
         let material = law(SOIL, COHESION, phi, psi);
         let course =
             run(name, loose(), &ground(ElementKind::Hex20, mesh, phi), material, phi, [settlement, 20.0]);
         assert!(course.stopped.is_none() && growth(&course).abs() < 5e-3, "{name}: no plateau");
-        // Only associated flow has symmetric tangents.
         assert!(phi != psi || course.statistics.factorizations_unsymmetric == 0, "{name}: not associated");
         course.factor(COHESION) / prandtl(phi) - 1.0
     };
@@ -122,7 +118,7 @@ fn friction_associated_converges() {
     assert!(e[0] > e[1] && e[1] > e[2] && e[2].abs() < 0.05, "{e:?}");
 }
 
-/// Flow without dilation: no theorem gives the limit load; on these meshes it stays near Prandtl's.
+/// No theorem gives the limit load without dilation.
 fn without_dilation(phi: f64, mesh: usize, options: NewtonOptions, path: [f64; 2]) -> Course {
     let material = mohr_coulomb(SOIL, COHESION, phi, 0.0);
     run(&format!("phi {phi} psi 0"), options, &ground(ElementKind::Hex20, mesh, phi), material, phi, path)
@@ -142,7 +138,7 @@ fn friction_without_dilation() {
     check_without_dilation(20.0, &[0], [0.12, 40.0]);
 }
 
-/// phi = 25°, psi = 0: a plain full Newton iteration is known to stall at 43 % of the load.
+/// phi = 25°, psi = 0: plain full Newton stalls at 43 % of the load.
 #[test]
 #[ignore = "five runs and the course of full Newton beside them, minutes"]
 fn friction_without_dilation_on_finer_meshes() {
@@ -153,7 +149,7 @@ fn friction_without_dilation_on_finer_meshes() {
     }
 }
 
-/// The kinds of elements on the two coarser meshes: mean dilatation keeps hex8 from locking, wedge15 and tet10 are stiffer than hex20.
+/// Mean dilatation prevents locking of hex8; wedge15 and tet10 are stiffer than hex20.
 #[test]
 #[ignore = "prints, minutes"]
 fn kinds_of_elements() {
@@ -171,7 +167,7 @@ fn kinds_of_elements() {
     }
 }
 
-/// Drucker–Prager with the limit load of Mohr–Coulomb in plane strain; angles in degrees.
+/// Drucker–Prager matched in plane strain; angles [°].
 fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     let (friction, dilation) = (phi.to_radians().into(), psi.to_radians());
     let law =
@@ -179,8 +175,8 @@ fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     Material::plastic(elastic, law)
 }
 
-/// The elastic matrix with line search, to 1e-4 of the forces. Hundreds of cheap iterations per step; for psi < phi it gets through where
-/// the tangent's iterations run in circles between the planes of the yield surface.
+/// For psi < phi tangent iterations cycle between yield planes; the elastic matrix takes hundreds of cheap
+/// iterations.
 fn patient() -> NewtonOptions {
     NewtonOptions {
         force_tolerance: 1e-4,
@@ -189,7 +185,7 @@ fn patient() -> NewtonOptions {
     }
 }
 
-/// Growth of the pressure over the last tenth of the settlement, over the pressure.
+/// Relative pressure growth over the last tenth.
 fn growth(course: &Course) -> f64 {
     let n = course.curve.len();
     if n < 11 { f64::NAN } else { 1.0 - course.curve[n - 1 - n / 10][1] / course.curve[n - 1][1] }

@@ -1,4 +1,4 @@
-//! Readers of the tables, random numbers, and small models.
+//! Table readers, random numbers and small models.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +8,7 @@ use trackbed_fem::material::{Elastic, Material};
 use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
 
-/// Reproducible numbers in [-1, 1): a linear congruential generator (Knuth's constants).
+/// Numbers in [-1, 1): linear congruential generator (Knuth's constants).
 pub struct Random(pub u64);
 
 impl Random {
@@ -22,10 +22,9 @@ impl Random {
     }
 }
 
-/// Folders with tables, of elastic and of elastoplastic cases.
 const FOLDERS: [&str; 2] = ["../tests/data/fem", "tests/data/plasticity_fe"];
 
-/// Numbers of a table, split at commas and blanks; lines that do not start with a number are left out.
+/// Numbers separated by commas or blanks; other lines are skipped.
 pub fn table(case: &str, file: &str) -> Vec<Vec<f64>> {
     let folders = FOLDERS.map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f).join(case));
     let folder = folders.iter().find(|f| f.is_dir()).unwrap_or_else(|| panic!("no folder of {case}"));
@@ -37,7 +36,6 @@ pub fn table(case: &str, file: &str) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The mesh and the constraints of a case.
 pub fn read_mesh(case: &str) -> (Mesh, Vec<Constraint>) {
     let mut mesh = Mesh::default();
     for row in table(case, "NODECOORD.DAT") {
@@ -55,13 +53,13 @@ pub fn read_mesh(case: &str) -> (Mesh, Vec<Constraint>) {
     (mesh, constraints)
 }
 
-/// The three soils of the embankment and of the column.
+/// Soils of the embankment and the column.
 pub fn soils() -> BTreeMap<u32, Material> {
     let soil = |young, poisson, density| Elastic { young, poisson, density }.into();
     [(1, soil(60e6, 0.35, 1900.0)), (2, soil(110e6, 0.3, 2000.0)), (3, soil(180e6, 0.25, 2100.0))].into()
 }
 
-/// A model of one material without gravity and damping.
+/// Model without gravity and damping.
 pub fn model(
     mesh: Mesh,
     constraints: Vec<Constraint>,
@@ -79,7 +77,6 @@ pub fn model(
     .unwrap()
 }
 
-/// Constraints, with value 0, of the given directions at the nodes that `chosen` picks.
 pub fn fix(mesh: &Mesh, directions: &[u8], chosen: impl Fn([f64; 3]) -> bool) -> Vec<Constraint> {
     (0..mesh.node_count() as u32)
         .filter(|&n| chosen(mesh.coordinates[n as usize]))
@@ -87,7 +84,7 @@ pub fn fix(mesh: &Mesh, directions: &[u8], chosen: impl Fn([f64; 3]) -> bool) ->
         .collect()
 }
 
-/// Largest difference over all entries, over the largest size of the second vector.
+/// Largest difference over the largest entry of `b`.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let size = b.iter().fold(0.0, |m: f64, b| m.max(b.abs()));

@@ -1,4 +1,4 @@
-//! The companions at work: nearly incompressible membrane, thick cylinder, bending.
+//! Membrane, thick cylinder and bending with every element kind.
 
 use crate::common::{fix, model};
 use crate::mixed::{block, mixed};
@@ -8,8 +8,8 @@ use trackbed_fem::element::stiffness_points;
 use trackbed_fem::kinematics::{gradient_products, stiffness_block};
 use trackbed_fem::{Constraint, Elastic, ElementKind, Mesh, loads, statics, stress};
 
-/// Cook's membrane (Cook, J. Struct. Div. ASCE 100 (1974) 1851-1863), one element thick: corners (0, 0), (48, 44), (48,
-/// 60), (0, 44), clamped at the left, sheared by 100 N at the right, no displacement across (plane strain).
+/// Cook's membrane (Cook, J. Struct. Div. ASCE 100 (1974) 1851-1863), plane strain, one element thick:
+/// corners (0, 0), (48, 44), (48, 60), (0, 44), shear force 100 N.
 fn membrane(kind: ElementKind, n: usize) -> (Mesh, Vec<Constraint>) {
     let mut mesh = block(kind, [n, n, 1], [1.0; 3]);
     let mut constraints = fix(&mesh, &[0, 1], |x| x[0] == 0.0);
@@ -40,7 +40,6 @@ fn tip(mesh: &Mesh, u: &[f64]) -> f64 {
     u[3 * corner + 1]
 }
 
-/// Rise of the upper right corner by the program.
 fn rise(kind: ElementKind, n: usize, poisson: f64, rule: Quadrature) -> f64 {
     let (mesh, constraints) = membrane(kind, n);
     let load = membrane_load(&mesh);
@@ -48,7 +47,7 @@ fn rise(kind: ElementKind, n: usize, poisson: f64, rule: Quadrature) -> f64 {
     tip(model.mesh(), &statics::solve(&model, &load).unwrap().u)
 }
 
-/// The same by plain hex8 with all of the stiffness at the 2×2×2 points, assembled and solved here.
+/// Displacement-based hex8 with full 2×2×2 integration.
 fn plain_rise(n: usize, poisson: f64) -> f64 {
     let (mesh, constraints) = membrane(ElementKind::Hex8, n);
     let load = membrane_load(&mesh);
@@ -85,8 +84,8 @@ fn plain_rise(n: usize, poisson: f64) -> f64 {
     tip(&mesh, &u)
 }
 
-/// Reference: reduced hex20 on 32 × 32, which 16 × 16 confirms to 1 %. At Poisson's ratio 0.3 plain and mean-dilatation
-/// hex8 agree; at 0.4999 the plain one locks, and so do, as their modules tell, the triangles of wedge6 and tet4.
+/// Reference: reduced hex20, 32 × 32, confirmed by 16 × 16 to 1 %. At 0.4999 plain hex8, wedge6 and tet4
+/// lock.
 #[test]
 fn mean_dilatation_does_not_lock() {
     let reference = |poisson| {
@@ -129,8 +128,8 @@ fn mean_dilatation_does_not_lock() {
     }
 }
 
-/// Thick cylinder under pressure from inside, plane strain (Lamé 1852; Timoshenko and Goodier, Theory of Elasticity
-/// (1951), section 26): radial displacement at all nodes and hoop stress at the nodes, largest miss over the largest.
+/// Thick cylinder, plane strain (Lamé 1852; Timoshenko and Goodier, Theory of Elasticity (1951), section 26):
+/// errors of radial displacement and hoop stress.
 fn cylinder(kind: ElementKind, counts: [usize; 2], rule: Quadrature) -> (f64, f64) {
     let (young, nu, p, a, b) = (200e9, 0.3, 10e6, 0.5, 1.0);
     let mut mesh = block(kind, [counts[0], counts[1], counts[0] / 4], [1.0; 3]);
@@ -166,7 +165,7 @@ fn cylinder(kind: ElementKind, counts: [usize; 2], rule: Quadrature) -> (f64, f6
 }
 
 #[test]
-fn thick_cylinders_of_all_kinds_widen_as_lame_says() {
+fn thick_cylinders_match_lame() {
     for (kind, radial_limit, hoop_limit) in [
         (ElementKind::Hex20, 1e-4, 0.03),
         (ElementKind::Wedge15, 1.5e-3, 0.02),
@@ -193,7 +192,7 @@ fn thick_cylinders_of_all_kinds_widen_as_lame_says() {
     }
 }
 
-/// Pure bending of a prism about y with stress `E κ z` along x: the displacement is quadratic.
+/// Pure bending about y, `sigma_x = E κ z`.
 fn bending(x: [f64; 3]) -> [f64; 3] {
     let nu = SOIL.poisson;
     [x[0] * x[2], -nu * x[1] * x[2], 0.5 * (nu * (x[1] * x[1] - x[2] * x[2]) - x[0] * x[0])]
@@ -203,7 +202,7 @@ fn bending(x: [f64; 3]) -> [f64; 3] {
 const CURVATURE: f64 = 1e-3;
 const SOIL: Elastic = Elastic { young: 30e6, poisson: 0.3, density: 2000.0 };
 
-/// Miss of displacement and nodal stress over the largest, all of the surface being given the exact displacement.
+/// Errors of displacement and nodal stress; exact surface displacement.
 fn bending_miss(mesh: Mesh, rule: Quadrature) -> (f64, f64) {
     let surface = crate::mixed::on_surface(&mesh);
     let exact: Vec<f64> = mesh.coordinates.iter().flat_map(|x| bending(*x)).collect();
@@ -222,10 +221,9 @@ fn bending_miss(mesh: Mesh, rule: Quadrature) -> (f64, f64) {
     (crate::common::difference(&u, &exact), miss / largest)
 }
 
-/// Quadratic kinds hold the exact solution and their nodal stresses are exact: on parallelepipeds and what they are
-/// cut into. Linear kinds: the nodal stress is of first order at the surface.
+/// Exact for quadratic kinds on parallelepipeds; first order at the surface for linear kinds.
 #[test]
-fn linear_stress_is_recovered_at_the_nodes() {
+fn recovers_linear_stress_at_nodes() {
     for rule in [Quadrature::Gauss2, Quadrature::Gauss3] {
         let quadratic = ElementKind::ALL.into_iter().filter(|k| !k.is_linear());
         let blocks = quadratic.map(|kind| (kind.name(), block(kind, [3; 3], [1.0; 3])));

@@ -1,10 +1,8 @@
-//! Orders of convergence of every kind of element, on the manufactured solution of [`crate::convergence`].
+//! Orders of convergence of every element kind, on the manufactured solution of [`crate::convergence`].
 //!
-//! Goal: displacement in the mean of squares of third order and energy norm of second order for quadratic kinds, second
-//! and first for linear ones; source: Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), section 2.6. The
-//! meshes are mapped smoothly, so that faces are skewed (and curved where there are mid-sides). Errors are integrated by
-//! four points per axis collapsed into the shape of the element, not by the element's own points, which would
-//! flatter it. Allowed shortfall of an order on these coarse meshes: 0.15.
+//! L2 and energy norm: 3 and 2 (quadratic), 2 and 1 (linear); Zienkiewicz and Taylor, The Finite Element
+//! Method, vol. 1 (2000), section 2.6. Errors are not integrated at the element's own, superconvergent
+//! points. Allowed shortfall: 0.15.
 
 use crate::common::model;
 use crate::convergence::{LINE4, SOIL, exact};
@@ -14,7 +12,7 @@ use trackbed_fem::kinematics::jacobian;
 use trackbed_fem::mesh::Constraint;
 use trackbed_fem::{ElementKind, loads, statics, stress};
 
-/// Four points per axis of the cube, collapsed into the natural shape (conical products).
+/// Four points per axis, collapsed (conical products).
 fn fine_rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
     let mut points = Vec::with_capacity(64);
     for (x, wx) in LINE4 {
@@ -39,7 +37,7 @@ fn fine_rule(kind: ElementKind) -> Vec<([f64; 3], f64)> {
     points
 }
 
-/// Errors (mean of squares of u, energy norm) on a unit cube of n³ cells.
+/// Errors (L2 norm of u, energy norm) on a unit cube of n³ cells.
 fn errors(kind: ElementKind, n: usize, rule: Quadrature, map: fn([f64; 3]) -> [f64; 3]) -> (f64, f64) {
     let mut mesh = block(kind, [n; 3], [1.0; 3]);
     mesh.coordinates.iter_mut().for_each(|x| *x = map(*x));
@@ -74,7 +72,6 @@ fn errors(kind: ElementKind, n: usize, rule: Quadrature, map: fn([f64; 3]) -> [f
             let (exact_u, exact_e, _) = exact(at(&x, n));
             let (found, sigma) = (at(&moved, n), SOIL.stress(&exact_e));
             square += volume * (0..3).map(|k| (found[k] - exact_u[k]).powi(2)).sum::<f64>();
-            // The stress that the program reports, mean dilatation and all, and its energy.
             let s = stress::at_natural(&model, &u, e, xi);
             let d: [f64; 6] = std::array::from_fn(|c| s[c] - sigma[c]);
             let trace = d[0] + d[1] + d[2];
@@ -113,7 +110,7 @@ fn fine_rules_have_the_natural_volumes() {
 }
 
 #[test]
-fn quadratic_kinds_converge_with_order_three_and_two() {
+fn quadratic_kinds_order_three_and_two() {
     for (kind, counts) in [
         (ElementKind::Hex20, [3, 6]),
         (ElementKind::Wedge15, [3, 6]),
@@ -128,7 +125,7 @@ fn quadratic_kinds_converge_with_order_three_and_two() {
 }
 
 #[test]
-fn linear_kinds_converge_with_order_two_and_one() {
+fn linear_kinds_order_two_and_one() {
     for kind in [ElementKind::Hex8, ElementKind::Wedge6, ElementKind::Pyramid5, ElementKind::Tet4] {
         assert_orders(kind, [5, 10], Quadrature::Gauss2, |x| x);
         assert_orders(kind, [5, 10], Quadrature::Gauss2, smooth);

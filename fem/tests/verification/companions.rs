@@ -1,9 +1,7 @@
-//! The companions of the hex20 one by one and mixed: patch test, modes without stiffness, loads on their faces, and
-//! elements turned inside out.
+//! Patch test, zero-energy modes, face loads and inverted elements of every kind.
 //!
-//! Source of the tests: Irons and Razzaque, in: The Mathematical Foundations of the Finite Element Method (1972) (patch
-//! test); Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapters 9 and 10 (rank). Exact answers
-//! are linear fields, the number 6 of rigid motions, and statics. Tolerances: rounding.
+//! Irons and Razzaque, in: The Mathematical Foundations of the Finite Element Method (1972) (patch test);
+//! Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), chapters 9 and 10 (rank).
 
 use crate::common::{difference, model};
 use crate::mixed::{block, distort, mixed, on_surface, single};
@@ -26,8 +24,7 @@ fn linear_kinds() -> impl Iterator<Item = ElementKind> {
     ElementKind::ALL.into_iter().filter(|kind| kind.is_linear())
 }
 
-/// Solves with a linear field on the surface; largest miss of displacement and of stress (at points and nodes), each
-/// over its largest value.
+/// Errors of displacement and stress with a linear surface field.
 fn patch(mesh: Mesh, rule: Quadrature) -> (f64, f64) {
     let linear = |x: &[f64; 3]| GRADIENT.map(|g| g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
     let exact: Vec<f64> = mesh.coordinates.iter().flat_map(linear).collect();
@@ -47,7 +44,7 @@ fn patch(mesh: Mesh, rule: Quadrature) -> (f64, f64) {
     (difference(&u, &exact), miss)
 }
 
-/// A block of 2 × 2 × 2 cells of a kind, or the mixed block, with its inner corners moved.
+/// Blocks of 2 × 2 × 2 cells with inner corners moved.
 fn meshes(quadratic: bool) -> Vec<(&'static str, Mesh)> {
     let kinds: Vec<ElementKind> =
         if quadratic { quadratic_kinds().collect() } else { linear_kinds().collect() };
@@ -63,7 +60,7 @@ fn meshes(quadratic: bool) -> Vec<(&'static str, Mesh)> {
 }
 
 #[test]
-fn straight_patches_pass_under_every_rule() {
+fn straight_patches_pass() {
     for (name, mesh) in meshes(true).into_iter().chain(meshes(false)) {
         for rule in RULES {
             let (u, s) = patch(mesh.clone(), rule);
@@ -73,10 +70,9 @@ fn straight_patches_pass_under_every_rule() {
     }
 }
 
-/// All mid-side nodes moved, those of the surface too. The full rule is exact for the products of the determinant
-/// and a gradient, and so is the lean rule of the pyramid; the other lean rules are not.
+/// Products of determinant and gradient are exact only in full integration and the pyramid's reduced rule.
 #[test]
-fn curved_patches_pass_under_the_full_rule_and_miss_slightly_under_the_lean_one() {
+fn curved_patches_need_full_integration() {
     for (name, mut mesh) in meshes(true) {
         let corners: Vec<bool> = mesh.linear_node_map().iter().map(Option::is_some).collect();
         distort(&mut mesh, 0.02, 5, |n| !corners[n]);
@@ -89,7 +85,7 @@ fn curved_patches_pass_under_the_full_rule_and_miss_slightly_under_the_lean_one(
     }
 }
 
-/// Eigenvalues of the stiffness of an element over the largest, ascending, and the largest force of rigid motions.
+/// Ascending eigenvalues over the largest, and the largest force of rigid motions.
 fn spectrum(mesh: Mesh, rule: Quadrature) -> (Vec<f64>, f64) {
     let model = model(mesh, Vec::new(), Elastic { young: 1.0, poisson: 0.3, density: 1.0 }, rule);
     let n = model.dof_count();
@@ -127,10 +123,9 @@ fn spectrum(mesh: Mesh, rule: Quadrature) -> (Vec<f64>, f64) {
     (values.into_iter().map(|v| v / largest).collect(), rigid)
 }
 
-/// Six modes without stiffness, the rigid motions, for each kind under each rule, natural and distorted; the
-/// reduced hex20 has six more.
+/// The reduced hex20 has six further modes.
 #[test]
-fn an_element_has_six_modes_without_stiffness() {
+fn stiffness_has_six_zero_modes() {
     for kind in ElementKind::ALL {
         for (rule, amount) in RULES.into_iter().flat_map(|r| [(r, 0.0), (r, 0.1)]) {
             let mut mesh = single(kind);
@@ -145,7 +140,6 @@ fn an_element_has_six_modes_without_stiffness() {
     }
 }
 
-/// Force and moment about the origin of a nodal load.
 fn resultants(mesh: &Mesh, load: &[f64]) -> ([f64; 3], [f64; 3]) {
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for (x, f) in mesh.coordinates.iter().zip(load.as_chunks::<3>().0) {
@@ -158,11 +152,10 @@ fn resultants(mesh: &Mesh, load: &[f64]) -> ([f64; 3], [f64; 3]) {
     (force, moment)
 }
 
-/// Every face of every kind, on an affine image of the natural element: consistent nodal shares, force and moment
-/// of pressure and traction. A force on each node of the exact polynomial: Tri6 0 and 1/3; Quad8 of a parallelogram
-/// -1/12 and 1/3; linear faces equal shares.
+/// Affine image of the natural element. Nodal fractions: Tri6 0 and 1/3; Quad8 of a parallelogram -1/12 and
+/// 1/3; linear faces equal.
 #[test]
-fn loads_on_faces_have_their_shares_force_and_moment() {
+fn face_loads_are_consistent() {
     let traction = [3.0, -7.0, 11.0];
     for kind in ElementKind::ALL {
         let mut mesh = single(kind);
@@ -174,7 +167,6 @@ fn loads_on_faces_have_their_shares_force_and_moment() {
             let face = mesh.face(0, side);
             let corners: Vec<[f64; 3]> =
                 face.corners().iter().map(|&n| mesh.coordinates[n as usize]).collect();
-            // Parallelograms and triangles: area vector and middle from the corners.
             let part = if corners.len() == 3 { 0.5 } else { 1.0 };
             let edge = |a: usize| -> [f64; 3] { std::array::from_fn(|k| corners[a][k] - corners[0][k]) };
             let (a, b) = (edge(1), edge(corners.len() - 1));
@@ -222,10 +214,8 @@ fn assert_shares(face: &Face, load: &[f64], force: [f64; 3], largest: f64) {
     }
 }
 
-/// Pressure on a closed surface of curved faces has no resultant force or moment; on the mixed block both quadratic
-/// shapes of faces meet.
 #[test]
-fn pressure_all_around_a_curved_body_cancels() {
+fn pressure_on_closed_surface_cancels() {
     let mut mesh = mixed(true);
     distort(&mut mesh, 0.03, 9, |_| true);
     let mut load = vec![0.0; 3 * mesh.node_count()];
@@ -242,9 +232,9 @@ fn refusal(mesh: Mesh) -> Option<ModelError> {
     Model::new(ModelInput { mesh, materials, ..Default::default() }).err()
 }
 
-/// A mirrored element among sound ones is named; so is one with a corner pushed through the opposite side.
+/// Mirrored element, and a corner pushed through the opposite side.
 #[test]
-fn inverted_elements_of_every_kind_are_named() {
+fn reports_inverted_elements() {
     for kind in ElementKind::ALL {
         let name = kind.name();
         let mut mesh = block(kind, [2, 2, 2], [1.0; 3]);
@@ -277,10 +267,10 @@ fn inverted_elements_of_every_kind_are_named() {
     }
 }
 
-/// An upright mid-side nearer to the apex than a quarter of its edge turns the pyramid inside out there, beyond
-/// the reach of points inside; the quality sees it from the limits along the uprights.
+/// A mid-side node closer to the apex than a quarter of its edge inverts the pyramid beyond the interior
+/// points.
 #[test]
-fn a_pyramid_turned_inside_out_at_its_apex_is_seen() {
+fn rejects_pyramid_inverted_at_apex() {
     for (along, sound) in [(0.5, true), (0.70, true), (0.80, false)] {
         let mut mesh = single(ElementKind::Pyramid13);
         mesh.coordinates[9] = [along - 1.0, along - 1.0, along];

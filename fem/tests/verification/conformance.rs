@@ -1,8 +1,4 @@
-//! What every constitutive law must fulfil, whatever its equations. A new law joins by one line of the table below.
-//!
-//! Per law: the tangent is the derivative of the stress (central differences), the response does not depend on the axes,
-//! an elastic cycle gives back its work (or the law says that it does not), an associated law never returns plastic work,
-//! a returned stress is admissible, and a state that went through a checkpoint goes on bit for bit.
+//! Requirements on every constitutive law; a new law needs one line in the table below.
 
 mod checks;
 mod paths;
@@ -46,7 +42,7 @@ fn dense() -> ModifiedCamClay {
     ModifiedCamClay { consolidation: Consolidation::Pressure(300e3), ..clay(POISSON) }
 }
 
-/// `name: material, isotropic pressure at the start [Pa], strain within which it is elastic, strain of the walks`.
+/// `name: material, initial isotropic pressure [Pa], elastic strain limit, strain of the walks`.
 macro_rules! laws {
     ($($name:ident: $material:expr, $pressure:expr, $elastic:expr, $walk:expr;)*) => {
         $(mod $name {
@@ -62,12 +58,12 @@ macro_rules! laws {
             }
 
             #[test]
-            fn response_does_not_depend_on_the_axes() {
+            fn response_is_objective() {
                 objectivity(&case());
             }
 
             #[test]
-            fn elastic_cycles_give_back_their_work_as_stated() {
+            fn elastic_cycles_conserve_energy_as_declared() {
                 elastic_cycles(&case());
             }
 
@@ -82,12 +78,12 @@ macro_rules! laws {
             }
 
             #[test]
-            fn state_goes_through_a_checkpoint_bit_for_bit() {
+            fn restart_is_bitwise_identical() {
                 round_trip(&case());
             }
 
             #[test]
-            fn statements_of_the_law_are_consistent() {
+            fn declared_properties_are_consistent() {
                 statements(&case());
             }
         })*

@@ -1,9 +1,7 @@
-//! Orders of convergence of the element, on a smooth manufactured solution.
+//! Orders of convergence of hex20 on a smooth manufactured solution.
 //!
-//! Goal: displacement in the mean of squares of third order, strain in the energy norm of second order, on three
-//! meshes. Boundary: all surface nodes take the exact displacement. The distorted meshes come from one smooth map, so
-//! that the elements tend to parallelepipeds; on elements that stay skewed the serendipity family loses order (Arnold,
-//! Boffi and Falk, Math. Comp. 71 (2002) 909-922).
+//! L2 norm of displacement third order, energy norm second order. One smooth map distorts all meshes:
+//! serendipity elements that stay skewed lose order (Arnold, Boffi and Falk, Math. Comp. 71 (2002) 909-922).
 
 use crate::common::model;
 use trackbed_fem::element::hex20;
@@ -14,11 +12,11 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::{loads, statics};
 
 pub const SOIL: Elastic = Elastic { young: 3.0, poisson: 0.3, density: 1.0 };
-/// Waves `A sin(k·x)` that add up to the solution.
+/// Waves `A sin(k·x)` of the solution.
 const WAVES: [([f64; 3], [f64; 3]); 2] =
     [([1.0, -0.5, 0.3], [2.0, 1.0, -1.5]), ([0.2, 0.7, -0.4], [-1.0, 2.5, 1.0])];
 
-/// Points and weights of the four-point rule: exact enough that it does not flatter the element.
+/// Four-point Gauss rule: no superconvergent points.
 pub const LINE4: [(f64, f64); 4] = [
     (-0.8611363115940526, 0.3478548451374538),
     (-0.3399810435848563, 0.6521451548625461),
@@ -30,7 +28,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Displacement, strain (engineering shear) and body force of the exact solution.
+/// Displacement, strain (engineering shear) and body force.
 pub fn exact(x: [f64; 3]) -> ([f64; 3], [f64; 6], [f64; 3]) {
     let (lambda, mu) = SOIL.lame();
     let (mut u, mut e, mut f) = ([0.0; 3], [0.0; 6], [0.0; 3]);
@@ -48,7 +46,7 @@ pub fn exact(x: [f64; 3]) -> ([f64; 3], [f64; 6], [f64; 3]) {
     (u, e, f)
 }
 
-/// Errors (mean of squares of u, energy norm) on a unit cube of n³ elements.
+/// Errors (L2 norm of u, energy norm) on n³ elements.
 fn errors(n: usize, rule: Quadrature, map: fn([f64; 3]) -> [f64; 3]) -> (f64, f64) {
     let mut mesh = Mesh::block([n; 3], [1.0; 3]);
     let constraints = (0..mesh.node_count() as u32)
@@ -112,13 +110,13 @@ fn assert_orders(name: &str, rule: Quadrature, map: fn([f64; 3]) -> [f64; 3]) {
 }
 
 #[test]
-fn straight_meshes_converge_with_order_three_and_two() {
+fn straight_meshes_order_three_and_two() {
     assert_orders("straight", Quadrature::Gauss3, |x| x);
     assert_orders("straight", Quadrature::Gauss2, |x| x);
 }
 
 #[test]
-fn smoothly_distorted_meshes_converge_with_order_three_and_two() {
+fn distorted_meshes_order_three_and_two() {
     let map = |[x, y, z]: [f64; 3]| {
         let bump = 0.04 * (3.0 * x).sin() * (2.0 * y).cos() * (1.0 + z);
         [x + bump, y - 0.5 * bump + 0.03 * z * z, z + bump * x]

@@ -1,4 +1,4 @@
-//! The same bits on any number of threads, and after a restart.
+//! Bitwise identical results for any number of threads and after a restart.
 
 use crate::common::{Random, fix, model};
 use trackbed_fem::element::quadrature::Quadrature;
@@ -9,7 +9,7 @@ use trackbed_fem::state::State;
 use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{statics, stress};
 
-/// Bits of a static solution, its nodal stresses and five dynamic steps, computed on `threads` threads.
+/// Static solution, nodal stresses and five dynamic steps.
 fn bits(threads: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
@@ -44,14 +44,13 @@ fn bits(threads: usize) -> Vec<u64> {
 }
 
 #[test]
-fn one_two_and_three_threads_give_the_same_bits() {
+fn results_independent_of_thread_count() {
     let one = bits(1);
     assert!(one == bits(2) && one == bits(3));
 }
 
-/// The state holds all there is: a solver built anew goes on with the same bits.
 #[test]
-fn a_new_solver_continues_bit_for_bit() {
+fn new_solver_continues_bitwise_identically() {
     let mesh = Mesh::block([2, 2, 2], [1.0; 3]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let soil = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };

@@ -1,4 +1,4 @@
-//! Newmark's method: free vibration (V0.9), order in time, energy, and the tabled column (E5).
+//! Newmark's method: free vibration, order in time, energy, and the tabled column (E5).
 
 use crate::common::{fix, model, read_mesh, soils, table};
 use trackbed_fem::SolveError;
@@ -14,7 +14,7 @@ use trackbed_fem::state::State;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
-/// A block of which one dof only is free: an oscillator of one mass. Returns the dof and its circular frequency.
+/// One free dof; returns it and its circular frequency.
 fn oscillator() -> (Model, usize, f64) {
     let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
     let dof = 3 * 19 + 1;
@@ -31,9 +31,9 @@ fn oscillator() -> (Model, usize, f64) {
     (model, dof, (k[dof] / m[dof]).sqrt())
 }
 
-/// V0.9: 100 periods of one dof. The energy stays; the period is longer by the fraction (w dt)²/12.
+/// 100 periods: energy is constant, the period longer by the fraction (w dt)²/12.
 #[test]
-fn free_vibration_keeps_its_energy_and_lengthens_its_period_as_theory_says() {
+fn free_vibration_keeps_its_energy() {
     let (model, dof, frequency) = oscillator();
     let step = 0.1; // w dt
     let dt = step / frequency;
@@ -76,7 +76,7 @@ fn column(rayleigh: Rayleigh) -> Model {
     .unwrap()
 }
 
-/// Push on the top of the column, oblique, N per face area.
+/// Oblique push on the top, N per face area.
 fn push(model: &Model) -> Vec<f64> {
     let mut load = vec![0.0; model.dof_count()];
     for face in model.mesh().boundary_faces().iter().filter(|f| f.side == 5 && f.element >= 6) {
@@ -100,7 +100,7 @@ fn after_pulse(model: &Model, method: Newmark, steps: usize) -> State {
 }
 
 #[test]
-fn average_acceleration_is_of_second_order_in_time() {
+fn average_acceleration_converges_at_second_order() {
     let model = column(Rayleigh { alpha_m: 2.0, beta_k: 2e-4 });
     let fine = after_pulse(&model, Newmark::AVERAGE_ACCELERATION, 16 * 1280);
     let error = |steps| {
@@ -117,7 +117,7 @@ fn average_acceleration_is_of_second_order_in_time() {
 }
 
 #[test]
-fn energy_of_every_step_is_accounted_for() {
+fn every_step_balances_energy() {
     let model = column(Rayleigh { alpha_m: 2.0, beta_k: 2e-4 });
     for (method, conserves) in
         [(Newmark::AVERAGE_ACCELERATION, true), (Newmark { beta: 0.3025, gamma: 0.6 }, false)]
@@ -148,9 +148,8 @@ fn energy_of_every_step_is_accounted_for() {
     }
 }
 
-/// Rest under gravity stays rest: static solution as the start, support forces carry the weight.
 #[test]
-fn a_body_at_rest_under_gravity_stays_at_rest() {
+fn equilibrium_under_gravity_persists() {
     let mesh = Mesh::block([2, 2, 2], [1.0; 3]);
     let mut constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     constraints.iter_mut().filter(|c| c.direction == 2).for_each(|c| c.value = -1e-3);
@@ -180,7 +179,7 @@ fn a_body_at_rest_under_gravity_stays_at_rest() {
 }
 
 #[test]
-fn unstable_parameters_and_bad_steps_are_refused() {
+fn rejects_unstable_parameters_and_bad_steps() {
     let (model, ..) = oscillator();
     for (beta, gamma) in [(0.25, 0.6), (0.2, 0.5), (0.25, 0.4)] {
         let error = NewmarkSolver::new(&model, Newmark { beta, gamma }, 1e-3).err().unwrap();
@@ -195,7 +194,7 @@ fn unstable_parameters_and_bad_steps_are_refused() {
 }
 
 #[test]
-fn a_load_that_is_not_a_number_leaves_the_state_untouched() {
+fn invalid_load_leaves_state_untouched() {
     let model = column(Rayleigh::default());
     let mut state = State::new(&model);
     let mut solver = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, 1e-3).unwrap();
@@ -208,7 +207,7 @@ fn a_load_that_is_not_a_number_leaves_the_state_untouched() {
     assert_eq!(state, before);
 }
 
-/// Steps far below and far above the period: bounded, and still in balance.
+/// Steps far below and above the period.
 #[test]
 fn extreme_steps_stay_bounded() {
     let (model, dof, frequency) = oscillator();
@@ -230,9 +229,9 @@ fn extreme_steps_stay_bounded() {
     }
 }
 
-/// E5: layered column under a pressure pulse on a quarter of its top; 400 steps. Source: table of two independent
-/// programs, whose error against the modal solution falls fourfold with half the step. Tolerances of the table: 1e-6 for
-/// displacements, 1e-5 for velocities and accelerations, of the largest value of that history.
+/// Layered column, pressure pulse on a quarter of its top, 400 steps. Table of two independent programs, of
+/// second order against the modal solution. Tolerances, of the largest value: 1e-6 (displacement), 1e-5
+/// (velocity, acceleration).
 #[test]
 fn layered_column_follows_the_tabled_history() {
     let (mesh, constraints) = read_mesh("E5_column_pulse");

@@ -1,12 +1,12 @@
-//! Element alone: the mapping of a distorted element.
+//! Mapping of a distorted element.
 
 use crate::common::Random;
 use trackbed_fem::element::hex20;
 
-/// V0.2: `sum N = 1`, and `sum N_a x_a` is the point itself on a distorted element, where the point is known another way:
-/// an element whose nodes lie on a quadratic map (complete quadratics are in the serendipity space).
+/// `sum N = 1`, and `sum N_a x_a` reproduces a quadratic map (complete quadratics are in the serendipity
+/// space).
 #[test]
-fn shape_functions_add_up_to_one_and_map_a_distorted_element() {
+fn shape_functions_reproduce_quadratic_map() {
     let mut random = Random(1);
     let (linear, square): ([_; 3], [_; 3]) =
         (std::array::from_fn(|_| random.point()), std::array::from_fn(|_| [random.point(), random.point()]));

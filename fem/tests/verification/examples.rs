@@ -1,4 +1,4 @@
-//! The examples of the crate run as tests.
+//! Examples of the crate as tests.
 
 #[path = "../../examples/cantilever.rs"]
 mod cantilever;
@@ -13,7 +13,7 @@ fn cantilever_bends_as_timoshenko_says() {
 }
 
 #[test]
-fn column_vibrates_with_its_period_under_every_method() {
+fn every_method_reproduces_column_period() {
     free_vibration::main().unwrap();
 }
 

@@ -1,4 +1,4 @@
-//! HHT-α and Newmark on one mode: damping and period against the amplification matrix; order in time.
+//! HHT-α and Newmark on one mode.
 
 use crate::common::{fix, model};
 use nalgebra::Matrix3;
@@ -13,7 +13,7 @@ use trackbed_fem::state::State;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
-/// A block of which one dof only is free; its dof and circular frequency.
+/// One free dof; returns it and its circular frequency.
 fn oscillator() -> (Model, usize, f64) {
     let mesh = Mesh::block([1, 1, 1], [1.0; 3]);
     let dof = 3 * 19 + 1;
@@ -28,8 +28,8 @@ fn oscillator() -> (Model, usize, f64) {
     (model, dof, (k[dof] / m[dof]).sqrt())
 }
 
-/// Amplification matrix of (u, dt v, dt² a) for an undamped oscillator with `step` = w dt, from the three equations of the
-/// method (Hughes 1987, section 9.3). `hht` = 0 is Newmark's method.
+/// Amplification matrix of (u, dt v, dt² a), undamped, `step` = w dt (Hughes 1987, section 9.3). `hht` = 0:
+/// Newmark.
 fn amplification(method: Newmark, hht: f64, step: f64) -> Matrix3<f64> {
     let (beta, gamma, s) = (method.beta, method.gamma, step * step);
     let left = Matrix3::new(1.0, 0.0, -beta, 0.0, 1.0, -gamma, s * (1.0 + hht), 0.0, 1.0);
@@ -37,14 +37,14 @@ fn amplification(method: Newmark, hht: f64, step: f64) -> Matrix3<f64> {
     left.try_inverse().unwrap() * right
 }
 
-/// Modulus and angle per step of the principal pair of eigenvalues.
+/// Modulus and angle per step of the principal eigenvalues.
 fn principal(matrix: &Matrix3<f64>) -> (f64, f64) {
     let pair = matrix.complex_eigenvalues().iter().copied().max_by(|a, b| a.im.total_cmp(&b.im)).unwrap();
     (pair.norm(), pair.im.atan2(pair.re))
 }
 
-/// Modulus and angle per step that the solver shows: after the third root has died out, `u` follows
-/// `u[n+2] = t u[n+1] - d u[n]` with the trace t and determinant d of the principal pair.
+/// From the solver: after decay of the third root `u[n+2] = t u[n+1] - d u[n]`, trace t and determinant d of
+/// the principal pair.
 fn shown(solver: &mut NewmarkSolver, model: &Model, dof: usize) -> (f64, f64) {
     let load = vec![0.0; 60];
     let mut state = State::new(model);
@@ -65,7 +65,7 @@ fn shown(solver: &mut NewmarkSolver, model: &Model, dof: usize) -> (f64, f64) {
 }
 
 #[test]
-fn decay_and_period_of_one_mode_are_those_of_the_amplification_matrix() {
+fn decay_and_period_match_theory() {
     let (model, dof, frequency) = oscillator();
     for step in [0.1, 0.5, 1.5] {
         let dt = step / frequency;
@@ -73,7 +73,7 @@ fn decay_and_period_of_one_mode_are_those_of_the_amplification_matrix() {
             let method = Newmark { beta, gamma };
             let mut solver = NewmarkSolver::new(&model, method, dt).unwrap();
             let (modulus, angle) = shown(&mut solver, &model, dof);
-            // Closed form (Hughes 1987, section 9.1): half trace and determinant.
+            // Hughes 1987, section 9.1.
             let bottom = 1.0 + beta * step * step;
             let half_trace = 1.0 - 0.5 * step * step * (gamma + 0.5) / bottom;
             let determinant: f64 = 1.0 - step * step * (gamma - 0.5) / bottom;
@@ -104,7 +104,7 @@ fn decay_and_period_of_one_mode_are_those_of_the_amplification_matrix() {
             assert!(hht == 0.0 || modulus < 1.0);
         }
     }
-    // At infinite steps the spectral radius is (1 + α)/(1 - α): 1/2 for -1/3 (Hughes 1987, section 9.3).
+    // Spectral radius at infinite steps: (1 + α)/(1 - α), 1/2 for -1/3 (Hughes 1987, section 9.3).
     for hht in [-0.1, -0.2, -1.0 / 3.0] {
         let matrix = amplification(Newmark::of_hht(hht), hht, 1e4);
         let radius = matrix.complex_eigenvalues().iter().map(|l| l.norm()).fold(0.0, f64::max);
@@ -112,7 +112,7 @@ fn decay_and_period_of_one_mode_are_those_of_the_amplification_matrix() {
     }
 }
 
-/// State of a column after a smooth pulse of 0.08 s.
+/// State after a smooth pulse of 0.08 s.
 fn after_pulse(model: &Model, mut solver: NewmarkSolver, steps: usize) -> State {
     let mut push = vec![0.0; model.dof_count()];
     for face in model.mesh().boundary_faces().iter().filter(|f| f.side == 5 && f.element >= 6) {
@@ -132,9 +132,10 @@ fn after_pulse(model: &Model, mut solver: NewmarkSolver, steps: usize) -> State 
     state
 }
 
-/// Hilber, Hughes and Taylor (1977): second order for every α; Newmark with the same numerical damping only first.
+/// Hilber, Hughes and Taylor (1977): second order for every α; Newmark with equal numerical damping only
+/// first.
 #[test]
-fn hht_is_of_second_order_in_time() {
+fn hht_converges_at_second_order() {
     let mesh = Mesh::block([2, 1, 4], [1.0, 0.5, 2.0]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[2] == 0.0);
     let column = model(mesh, constraints, SOIL, Gauss2);
@@ -157,7 +158,7 @@ fn hht_is_of_second_order_in_time() {
 }
 
 #[test]
-fn parameters_out_of_range_and_missing_loads_are_refused() {
+fn rejects_invalid_parameters_and_missing_loads() {
     let (model, ..) = oscillator();
     for hht in [-0.34, 0.01, f64::NAN] {
         let error = NewmarkSolver::hht(&model, hht, 1e-3).err().unwrap();

@@ -1,7 +1,7 @@
-//! Every method of time integration behind the one trait, on one body: a column under a load that swings.
+//! All time integrators through one trait: column under a harmonic load.
 //!
-//! Reference is the linear Newmark method at a step sixteen times shorter. Tolerance 1 %: the methods are of second order
-//! and take 160 steps per period of the load.
+//! Reference: linear Newmark with a step sixteen times shorter. Tolerance 1 %: second order, 160 steps per
+//! load period.
 
 use std::sync::Arc;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
@@ -18,7 +18,7 @@ const LENGTH: f64 = 4.0;
 const PERIOD: f64 = 0.4;
 const DT: f64 = PERIOD / 160.0;
 
-/// A column on a fixed foot; with a strength that it never reaches where `plastic`.
+/// Column on a fixed foot; `plastic` adds a strength that is never reached.
 fn column(plastic: bool) -> Model {
     let mesh = Mesh::block([1, 1, 4], [1.0, 1.0, LENGTH]);
     let foot = (0..mesh.node_count() as u32).filter(|&n| mesh.coordinates[n as usize][2] == 0.0);
@@ -42,7 +42,6 @@ fn top(model: &Model) -> usize {
     3 * (model.mesh().node_count() - 1) + 2
 }
 
-/// Traction on the top.
 fn swing(model: &Model) -> impl FnMut(f64, &mut [f64]) + use<> {
     let (mesh, mut unit) = (model.mesh(), vec![0.0; model.dof_count()]);
     for face in mesh.boundary_faces().iter().filter(|f| f.centre(mesh)[2] == LENGTH) {
@@ -54,7 +53,7 @@ fn swing(model: &Model) -> impl FnMut(f64, &mut [f64]) + use<> {
     }
 }
 
-/// The θ-method of a column in the span of its slowest modes.
+/// θ-method in the span of the slowest modes.
 fn reduced(model: &Model) -> ReducedTheta {
     let (mesh, modes) = (model.mesh(), Reduction::Modes { modes: 12 });
     let faces = mesh.boundary_faces();
@@ -63,7 +62,7 @@ fn reduced(model: &Model) -> ReducedTheta {
     ReducedTheta::new(model, shapes, 0.5, DT).unwrap()
 }
 
-/// Deflections of the top after every step, the state at the end, and the sum of the ledgers.
+/// Top deflection per step, final state, and summed energy balance.
 fn course(method: &mut dyn TimeIntegrator, model: &Model, end: f64) -> (Vec<[f64; 2]>, State, StepAudit) {
     let mut state = State::new(model);
     let (mut rows, mut sum) = (Vec::new(), StepAudit::default());
@@ -81,7 +80,7 @@ fn course(method: &mut dyn TimeIntegrator, model: &Model, end: f64) -> (Vec<[f64
 }
 
 #[test]
-fn every_dynamic_method_follows_the_same_motion_and_closes_its_ledger() {
+fn dynamic_methods_agree_and_conserve_energy() {
     let (linear, plastic) = (column(false), column(true));
     let options = NewtonOptions { force_tolerance: 1e-10, ..NewtonOptions::new(Variant::Full) };
     let control = StepControl::fixed(DT);
@@ -117,21 +116,20 @@ fn every_dynamic_method_follows_the_same_motion_and_closes_its_ledger() {
 }
 
 #[test]
-fn the_quasi_static_method_is_in_equilibrium_at_every_step() {
+fn quasi_static_steps_are_in_equilibrium() {
     let model = column(true);
     let mut method = QuasiStatic::new(&model, NewtonOptions::default(), StepControl::fixed(DT)).unwrap();
-    // The load stays away from 0, by which the residual is measured.
+    // The residual is relative to the load, which must not vanish.
     let (rows, ..) = course(&mut method, &model, 0.375 * PERIOD);
     for [time, u] in rows {
-        // E A u / L, uniaxial: Poisson's ratio is 0. The tolerance is that of the iteration.
+        // E A u / L, uniaxial, since Poisson's ratio is 0.
         let expected = 1e4 * (std::f64::consts::TAU * time / PERIOD).sin() * LENGTH / SOIL.young;
         assert!((u - expected).abs() < 1e-5 * 1e4 * LENGTH / SOIL.young, "{time}: {u} {expected}");
     }
 }
 
-/// A method with one length of step refuses an end between two steps, and leaves the state.
 #[test]
-fn an_end_between_two_steps_is_refused() {
+fn rejects_end_between_two_steps() {
     let model = column(false);
     let mut method = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, DT).unwrap();
     let mut state = State::new(&model);
@@ -143,9 +141,8 @@ fn an_end_between_two_steps_is_refused() {
     assert_eq!(state, before);
 }
 
-/// The supports of a reduced body stay where they are: a method that would leave them there says so.
 #[test]
-fn a_reduced_body_does_not_follow_moved_supports() {
+fn reduced_model_rejects_moved_supports() {
     let model = column(false);
     let (mut method, mut state) = (reduced(&model), State::new(&model));
     let before = state.clone();

@@ -1,4 +1,4 @@
-//! Conjugate gradients for windows and Newmark steps against the factor: results, energy, iterations, bits, failures.
+//! CG for coupling windows and Newmark steps, against the direct solver.
 
 use crate::common::{Random, difference, fix};
 use crate::mixed::block;
@@ -14,14 +14,14 @@ use trackbed_fem::{
 
 const SOIL: Elastic = Elastic { young: 60e6, poisson: 0.35, density: 1900.0 };
 const STIFF: Elastic = Elastic { young: 300e6, poisson: 0.25, density: 2300.0 };
-/// Window of a coupled run [s].
+/// Coupling window [s].
 const WINDOW: f64 = 1e-4;
 
 fn iterative(tolerance: f64) -> Methods {
     Methods { dynamics: Method::Iterative { tolerance }, ..Methods::default() }
 }
 
-/// A block of two soils on a base, with dashpots on one side and damping.
+/// Two soils, dashpots on one side, damping.
 pub fn soils(kind: ElementKind, counts: [usize; 3], mass: Mass, methods: Methods) -> Model {
     let size = counts.map(|n| 0.25 * n as f64);
     let mut mesh = match kind {
@@ -56,13 +56,13 @@ pub fn loads(model: &Model, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|_| (0..model.dof_count()).map(|_| 1e3 * random.next()).collect()).collect()
 }
 
-/// Base displacements that shake the block [m].
+/// Base displacements [m].
 fn shake(model: &Model, step: usize) -> Vec<f64> {
     let phase = 0.3 * step as f64;
     model.supports().fixed().iter().map(|(dof, _)| 1e-5 * phase.sin() * f64::from(dof % 3)).collect()
 }
 
-/// The states after ten windows of random loads on a moving base, and the most iterations of one.
+/// Final state and most iterations of ten windows, random loads, moving base.
 pub fn windows(model: &Model, theta: f64) -> (State, u32) {
     let mut solver = ThetaSolver::new(model, theta, WINDOW).unwrap();
     let mut state = State::new(model);
@@ -73,7 +73,7 @@ pub fn windows(model: &Model, theta: f64) -> (State, u32) {
 }
 
 #[test]
-fn windows_of_bricks_and_tetrahedra_are_those_of_the_factor() {
+fn windows_match_direct_solver() {
     for (kind, counts) in [(ElementKind::Hex20, [5, 4, 4]), (ElementKind::Tet10, [4, 3, 3])] {
         for (mass, theta) in [(Mass::Lumped, 0.5), (Mass::Lumped, 0.8), (Mass::Consistent, 0.55)] {
             let (direct, _) = windows(&soils(kind, counts, mass, Methods::default()), theta);
@@ -92,7 +92,7 @@ fn windows_of_bricks_and_tetrahedra_are_those_of_the_factor() {
 }
 
 #[test]
-fn newmark_and_hht_steps_are_those_of_the_factor() {
+fn newmark_and_hht_match_direct_solver() {
     let run = |methods| {
         let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, methods);
         let mut solver = NewmarkSolver::hht(&model, -0.1, 4.0 * WINDOW).unwrap();
@@ -112,10 +112,10 @@ fn newmark_and_hht_steps_are_those_of_the_factor() {
     assert_eq!(counts.map(|c| c.solves), Some(10));
 }
 
-/// Blocks of the same elements, 4 to 256 times as many, take the same iterations; finer ones under the same window more, as waves
-/// cross more elements in a window.
+/// Equal element size, 4 to 256 times as many. Finer elements need more iterations: waves cross more of them
+/// per window.
 #[test]
-fn iterations_do_not_grow_with_the_size_of_the_model() {
+fn iteration_count_independent_of_model_size() {
     let sizes = [[4, 4, 2], [8, 8, 4], [16, 8, 8]];
     let counts = sizes.map(|counts| {
         let model = soils(ElementKind::Hex20, counts, Mass::Lumped, iterative(1e-10));
@@ -127,7 +127,7 @@ fn iterations_do_not_grow_with_the_size_of_the_model() {
 }
 
 #[test]
-fn the_account_of_energy_closes_as_the_tolerance_allows() {
+fn energy_balance_closes_within_tolerance() {
     for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
         let model = soils(ElementKind::Hex20, [4, 4, 4], Mass::Lumped, iterative(tolerance));
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
@@ -163,9 +163,9 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert!(one == on(2) && one == on(3) && one == on(7));
 }
 
-/// The guess of a window lies in the state.
+/// The initial guess is part of the state.
 #[test]
-fn a_new_solver_continues_bit_for_bit() {
+fn new_solver_continues_bitwise_identically() {
     let model = soils(ElementKind::Tet10, [4, 3, 3], Mass::Lumped, iterative(1e-8));
     let run = |restart: bool| {
         let mut state = State::new(&model);
@@ -181,7 +181,7 @@ fn a_new_solver_continues_bit_for_bit() {
     assert!(run(false) == run(true));
 }
 
-/// The load of a window hardly changes: the last window is a good guess of the next.
+/// The last window is a good initial guess.
 #[test]
 fn a_steady_load_takes_fewer_iterations() {
     let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, iterative(1e-8));
@@ -199,7 +199,7 @@ fn a_steady_load_takes_fewer_iterations() {
     assert!(steps[40..].iter().all(|&s| s < steps[0]), "{steps:?}");
 }
 
-/// The prediction of a window under a plate whose contacts are stiff against the window matrix, and its iterations.
+/// Prediction with contacts stiff against the window matrix, and its iterations.
 pub fn predict(methods: Methods) -> (Vec<f64>, u32) {
     let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, methods);
     let load = &loads(&model, 1)[0];
@@ -216,15 +216,15 @@ pub fn predict(methods: Methods) -> (Vec<f64>, u32) {
 }
 
 #[test]
-fn predictions_with_contacts_are_those_of_the_factor() {
+fn predictions_match_direct_solver() {
     let ((direct, few), (found, more)) = (predict(Methods::default()), predict(iterative(1e-10)));
     println!("{few} iterations on the factor, {more} without: differ by {:.1e}", difference(&found, &direct));
     assert!(difference(&found, &direct) < 1e-6 && few > 0 && more > few);
 }
 
 #[test]
-fn a_solve_that_does_not_converge_names_iterations_and_residual_and_leaves_the_state() {
-    // A slender column in a window so long that its mass does not count.
+fn reports_failed_convergence_and_keeps_state() {
+    // Slender column, window so long that mass is negligible.
     let model = soils(ElementKind::Hex20, [1, 1, 120], Mass::Lumped, iterative(1e-13));
     let mut solver = ThetaSolver::new(&model, 0.6, 1e4).unwrap();
     let mut state = State::new(&model);

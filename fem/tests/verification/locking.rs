@@ -1,4 +1,4 @@
-//! Elements that neither lock at constant volume nor in bending: thick cylinder, cantilever, patch tests.
+//! Volumetric and shear locking: thick cylinder, cantilever, patch tests.
 
 use crate::common::{difference, fix};
 use crate::mixed::{block, distort, on_surface};
@@ -28,9 +28,9 @@ fn build(
         .unwrap()
 }
 
-/// Quarter of a thick cylinder of radii 0.5 and 1 m in plane strain under 10 MPa from inside (Lamé 1852; Timoshenko and Goodier,
-/// Theory of Elasticity (1951), section 26): widening of the inner face over the exact one, and the largest miss of the
-/// radial stress at the nodes over the pressure.
+/// Thick cylinder, radii 0.5 and 1 m, plane strain, 10 MPa (Lamé 1852; Timoshenko and Goodier, Theory of
+/// Elasticity (1951), section 26): inner displacement over exact, error of nodal radial stress over the
+/// pressure.
 fn cylinder(
     kind: ElementKind,
     counts: [usize; 3],
@@ -74,11 +74,11 @@ fn cylinder(
     (widening / count / exact, miss)
 }
 
-/// At ν = 0.4999, 6 × 12 elements over a quarter: the inner face widens within 1 % under every rule, hex8 included; the radial stress
-/// of quadratic kinds is within 5 % of the pressure at every node. Without mean dilatation the full rules and the pyramid lock at
-/// 3 × 6, and the stresses of wedge15 and tet10 waver by more than a third of the pressure.
+/// 6 × 12 elements: displacement within 1 %, radial stress of quadratic kinds within 5 %. Without mean
+/// dilatation the full rules and the pyramid lock at 3 × 6; stresses of wedge15 and tet10 oscillate by a
+/// third.
 #[test]
-fn nearly_incompressible_cylinders_widen_as_lame_says() {
+fn nearly_incompressible_cylinders_match_lame() {
     let nu = 0.4999;
     for kind in [
         ElementKind::Hex20,
@@ -144,10 +144,10 @@ fn cantilever(
     ends.iter().map(|&n| u[3 * n + 2]).sum::<f64>() / ends.len() as f64 / exact
 }
 
-/// Four elements over the height, as long as the beam is high and half as wide (10 × 2 × 4), straight and with sections
-/// slanted by up to a half: within 2 % of the beam theory at any Poisson's ratio, where the plain hex8 misses a quarter to a third.
+/// 10 × 2 × 4 elements, straight and with sections slanted by up to a half: within 2 % of beam theory; the
+/// plain hex8 misses a quarter to a third.
 #[test]
-fn hex8_with_incompatible_modes_bends_as_a_beam() {
+fn hex8_with_incompatible_modes_matches_beam() {
     for (nu, skew) in [(0.0, 0.0), (0.3, 0.0), (0.4999, 0.0), (0.0, 0.5), (0.3, 0.5), (0.4999, 0.5)] {
         let tip = |assumed| cantilever(ElementKind::Hex8, [10, 2, 4], nu, Quadrature::Gauss2, assumed, skew);
         let (found, plain) = (tip(ASSUMED), tip(PLAIN));
@@ -162,8 +162,7 @@ fn hex8_with_incompatible_modes_bends_as_a_beam() {
     }
 }
 
-/// Tip deflection [m], averaged by the load, of a 10 × 1 × 1 cantilever held in all directions at its end x = 0; the `stations` are
-/// the fractions of its length at which its cross-sections lie.
+/// Tip deflection [m] of a fully clamped 10 × 1 × 1 cantilever; `stations` are fractions of its length.
 fn clamped(kind: ElementKind, stations: &[f64], across: usize, nu: f64, assumed: AssumedStrain) -> f64 {
     let mut mesh = block(kind.linear(), [stations.len() - 1, across, across], [10.0, 1.0, 1.0]);
     for c in &mut mesh.coordinates {
@@ -183,9 +182,8 @@ fn clamped(kind: ElementKind, stations: &[f64], across: usize, nu: f64, assumed:
     u.iter().zip(&load).map(|(u, f)| u * f).sum::<f64>() / 100.0
 }
 
-/// Clamped cantilever, two hex8 over height and width, against 24 × 4 × 4 hex20 refined to the clamped face: elements as deep there
-/// as the beam is high lose 1.6 % at ν = 0.3 and 5.7 % at 0.4999, hex20 elements 0.4 and 2.9 %. It is the boundary layer of the
-/// clamped face and not locking: with the same section 0.2 of the height deep there it is 0.2 %.
+/// Reference: 24 × 4 × 4 hex20 refined to the clamped face. Cubic elements there lose 1.6 % at ν = 0.3 and
+/// 5.7 % at 0.4999, hex20 0.4 and 2.9 %, by the boundary layer: 0.2 % with elements 0.2 of the height long.
 #[test]
 fn hex8_resolves_a_clamped_face() {
     let even = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();
@@ -205,8 +203,7 @@ fn hex8_resolves_a_clamped_face() {
     }
 }
 
-/// Linear displacements on the surface of distorted blocks: every kind, with mean dilatation and with modes, in a material
-/// that yields or not, has them inside, and constant stress at all points and nodes (Irons and Razzaque 1972).
+/// Linear surface displacement of distorted blocks gives constant stress (Irons and Razzaque 1972).
 #[test]
 fn patches_pass_with_assumed_strains() {
     let gradient = [[1e-3, 2e-4, -3e-4], [5e-4, -7e-4, 1e-4], [-2e-4, 6e-4, 4e-4]];
@@ -238,7 +235,7 @@ fn patches_pass_with_assumed_strains() {
             let miss = miss.fold(difference(&u, &exact), f64::max);
             assert!(miss < 1e-10, "{} {rule:?}: {miss:e}", kind.name());
         }
-        // The same by Newton's iteration, in a material that could yield.
+        // By Newton's method, in a material that could yield.
         let input = ModelInput {
             mesh,
             materials: [(1, firm.clone())].into(),
@@ -257,7 +254,8 @@ fn patches_pass_with_assumed_strains() {
     }
 }
 
-/// Pushes a rough strip footing on a Tresca slab 0.3 m down: pressure [Pa] and the residuals of all steps with many yielding points.
+/// Pushes a strip footing 0.3 m into Tresca clay: pressure [Pa] and residuals of steps with many yielding
+/// points.
 fn push(linear: bool, rule: Quadrature, assumed: AssumedStrain) -> (f64, Vec<Vec<f64>>) {
     let clay = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
     let slab = footing(Material::plastic(clay, MohrCoulomb::tresca(10e3)), [3, 5, 5]).model;
@@ -297,11 +295,10 @@ fn push(linear: bool, rule: Quadrature, assumed: AssumedStrain) -> (f64, Vec<Vec
     (-down.map(|((dof, _), _)| solver.reactions()[*dof as usize]).sum::<f64>() / 0.5, residuals)
 }
 
-/// Prandtl's pressure (2 + π) c on clay that flows at constant volume, on a mesh of 3 + 5 by 5 elements, whose limit load comes from
-/// above: the full rules with mean dilatation 1.16, the full rule alone 1.28; the hex8 with modes, which have a quarter of the
-/// unknowns, 1.32. The iteration ends quadratically.
+/// Prandtl's pressure (2 + π) c, from above on 3 + 5 by 5 elements: full rules with mean dilatation 1.16,
+/// without 1.28, hex8 with modes 1.32.
 #[test]
-fn plastic_flow_at_constant_volume_does_not_lock() {
+fn isochoric_plastic_flow_does_not_lock() {
     // The cohesion is half the yield stress.
     let prandtl = (2.0 + std::f64::consts::PI) * 5e3;
     let (plain, _) = push(false, Quadrature::Gauss3, PLAIN);
@@ -323,7 +320,7 @@ fn plastic_flow_at_constant_volume_does_not_lock() {
             pressure / prandtl,
             plain / prandtl
         );
-        // 2 less what the set of yielding points and the share of the elastic matrix in the tangent take.
+        // Below 2: the yielding set changes.
         let mean = last.iter().sum::<f64>() / last.len() as f64;
         assert!(mean > 1.6 && last.iter().all(|o| *o > 1.1), "{last:?}");
         assert!(

@@ -1,7 +1,6 @@
-//! Verification of the finite elements against exact answers and against tables of other programs.
+//! Verification of the finite elements against exact solutions and tables of other programs.
 //!
-//! The tables are in `tests/data/fem` of the workspace and in `tests/data/plasticity_fe`; each folder's `case.json` says how they
-//! were made.
+//! Tables: `tests/data/fem` of the workspace and `tests/data/plasticity_fe`, origin in each `case.json`.
 
 mod absorbing;
 mod aggregation;

@@ -1,23 +1,21 @@
-//! Blocks of any kind of element, and of all kinds at once.
+//! Blocks of one element kind or of all kinds.
 
 use crate::common::Random;
 use trackbed_fem::{ElementKind, Mesh};
 
-/// What a cell of a block is filled with.
+/// Filling of a block cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
     /// One hexahedron.
     Hex,
-    /// Two wedges, upright along z, parted by the diagonal of the bottom.
+    /// Two wedges along z, split by the diagonal of the bottom.
     Wedge,
-    /// Six tetrahedra around the diagonal of the cell (Kuhn 1960); the diagonals of all faces start at their lowest corner.
+    /// Six tetrahedra around the cell diagonal (Kuhn 1960); face diagonals start at their lowest corner.
     Tet,
-    /// A node in the middle, joined to each face: by two tetrahedra where the neighbour has triangles, else by a
-    /// pyramid.
+    /// Central node joined to each face by a pyramid, or by two tetrahedra next to triangles.
     Pyramid,
 }
 
-/// The cell that gives elements of a kind alone.
 pub fn cell_of(kind: ElementKind) -> Cell {
     match kind.linear() {
         ElementKind::Hex8 => Cell::Hex,
@@ -27,20 +25,19 @@ pub fn cell_of(kind: ElementKind) -> Cell {
     }
 }
 
-/// A block of elements of one kind, one corner at the origin.
 pub fn block(kind: ElementKind, counts: [usize; 3], size: [f64; 3]) -> Mesh {
     let mesh = cells(counts, size, |_| cell_of(kind));
     if kind.is_linear() { mesh } else { mesh.to_quadratic() }
 }
 
-/// A block of 4 × 2 × 2 cells with, along x, hexahedra, wedges, pyramids (and tetrahedra), tetrahedra.
+/// 4 × 2 × 2 cells; along x hexahedra, wedges, pyramids (and tetrahedra), tetrahedra.
 pub fn mixed(quadratic: bool) -> Mesh {
     let along = [Cell::Hex, Cell::Wedge, Cell::Pyramid, Cell::Tet];
     let mesh = cells([4, 2, 2], [2.0, 1.0, 1.0], |[i, _, _]| along[i]);
     if quadratic { mesh.to_quadratic() } else { mesh }
 }
 
-/// A block of linear elements of material 1, filled cell by cell.
+/// Linear elements of material 1.
 pub fn cells(counts: [usize; 3], size: [f64; 3], cell: impl Fn([usize; 3]) -> Cell) -> Mesh {
     let nodes = counts.map(|n| n + 1);
     let mut mesh = Mesh::default();
@@ -66,7 +63,7 @@ pub fn cells(counts: [usize; 3], size: [f64; 3], cell: impl Fn([usize; 3]) -> Ce
 }
 
 fn fill(mesh: &mut Mesh, ijk: [usize; 3], nodes: [usize; 3], cell: &dyn Fn([usize; 3]) -> Option<Cell>) {
-    // Corner by its place 0 or 1 along each axis.
+    // Corner by its index 0 or 1 along each axis.
     let corner =
         |at: [usize; 3]| (((ijk[2] + at[2]) * nodes[1] + ijk[1] + at[1]) * nodes[0] + ijk[0] + at[0]) as u32;
     let place = ElementKind::Hex8.natural();
@@ -113,7 +110,7 @@ fn fill(mesh: &mut Mesh, ijk: [usize; 3], nodes: [usize; 3], cell: &dyn Fn([usiz
                     Some(Cell::Wedge) => axis == 2,
                     _ => false,
                 };
-                // Seen from the centre the corners of the face run the other way round; the lowest comes first.
+                // From inside the order reverses; the lowest comes first.
                 let mut around: Vec<[usize; 3]> = face.iter().rev().map(|&c| place(c)).collect();
                 let lowest = (0..4).min_by_key(|&c| around[c].iter().sum::<usize>()).unwrap();
                 around.rotate_left(lowest);
@@ -129,7 +126,6 @@ fn fill(mesh: &mut Mesh, ijk: [usize; 3], nodes: [usize; 3], cell: &dyn Fn([usiz
     }
 }
 
-/// Whether each node is on the surface.
 pub fn on_surface(mesh: &Mesh) -> Vec<bool> {
     let mut surface = vec![false; mesh.node_count()];
     for face in mesh.boundary_faces() {
@@ -138,7 +134,7 @@ pub fn on_surface(mesh: &Mesh) -> Vec<bool> {
     surface
 }
 
-/// Moves the nodes that `chosen` picks at random by up to `amount` [m] along each axis.
+/// Moves chosen nodes randomly by up to `amount` [m] per axis.
 pub fn distort(mesh: &mut Mesh, amount: f64, seed: u64, chosen: impl Fn(usize) -> bool) {
     let mut random = Random(seed);
     for n in 0..mesh.node_count() {
@@ -149,7 +145,7 @@ pub fn distort(mesh: &mut Mesh, amount: f64, seed: u64, chosen: impl Fn(usize) -
     }
 }
 
-/// The natural element of a kind, alone.
+/// Natural element of a kind.
 pub fn single(kind: ElementKind) -> Mesh {
     let mut mesh = Mesh { coordinates: kind.natural().to_vec(), ..Mesh::default() };
     let nodes: Vec<u32> = (0..kind.node_count() as u32).collect();

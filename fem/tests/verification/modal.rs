@@ -1,4 +1,4 @@
-//! Modes: closed forms of bars and beams, the frequencies of other programs, free bodies, completeness.
+//! Modes against closed forms and other programs.
 
 use crate::common::{fix, model};
 use trackbed_fem::boundary::BoundaryLayer;
@@ -26,7 +26,7 @@ fn orthogonality(model: &Model, modes: &Modes) -> f64 {
     worst
 }
 
-/// The map of the distorted cases in `tests/data/modal/reference.py`.
+/// Map of the distorted cases in `tests/data/modal/reference.py`.
 fn bend(x: [f64; 3]) -> [f64; 3] {
     [
         x[0] + 0.06 * (2.1 * x[1] + 1.3 * x[2]).sin(),
@@ -35,7 +35,6 @@ fn bend(x: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Puts each mid-side node between its corners.
 fn straighten(mesh: &mut Mesh) {
     for e in 0..mesh.element_count() {
         for (m, [a, b]) in mesh.connectivity.kind(e).edges().iter().enumerate() {
@@ -47,8 +46,8 @@ fn straighten(mesh: &mut Mesh) {
     }
 }
 
-/// Frequencies of scikit-fem 12.0.2 (ElementHexS2) with scipy's eigsh, and of an independent assembly for the curved
-/// mesh; made by `tests/data/modal/reference.py`.
+/// scikit-fem 12.0.2 (ElementHexS2) with scipy's eigsh; curved mesh: independent assembly. See
+/// `tests/data/modal/reference.py`.
 #[test]
 fn frequencies_are_those_of_other_programs() {
     let block = Mesh::block([3, 2, 4], [1.0, 0.8, 1.5]);
@@ -89,10 +88,10 @@ fn frequencies_are_those_of_other_programs() {
     }
 }
 
-/// A bar on rollers all around (uniaxial strain), fixed at one end: `f_n = (2 n - 1) c/(4 L)`, c of the compression wave
-/// (Clough and Penzien, chapter 20). 20 quadratic elements: 1e-6 of the first, 2e-4 of the fifth.
+/// `f_n = (2 n - 1) c/(4 L)`, compression wave speed c (Clough and Penzien, chapter 20). 20 quadratic
+/// elements: 1e-6 of the first, 2e-4 of the fifth.
 #[test]
-fn bar_in_extension_has_the_closed_frequencies() {
+fn bar_frequencies_match_closed_form() {
     let mesh = Mesh::block([1, 1, 20], [0.5, 0.5, 10.0]);
     let mut constraints = fix(&mesh, &[0, 1], |_| true);
     constraints.extend(fix(&mesh, &[2], |x| x[2] == 0.0));
@@ -103,7 +102,7 @@ fn bar_in_extension_has_the_closed_frequencies() {
     for (n, f) in modes.frequencies.iter().enumerate() {
         let odd = (2 * n + 1) as f64;
         let error = f / (odd * c / 40.0) - 1.0;
-        // Effective mass of mode n of a bar: 8/(odd² pi²) of the whole (Clough and Penzien, section 13-3 for a cantilever).
+        // Effective mass ratio of mode n: 8/(odd² pi²) (Clough and Penzien, section 13-3).
         let share = modes.effective_mass[n][2] / bar.total_mass();
         let exact = 8.0 / (odd * std::f64::consts::PI).powi(2);
         println!("bar mode {}: frequency {error:+.1e}, effective mass {:+.1e}", n + 1, share / exact - 1.0);
@@ -114,15 +113,14 @@ fn bar_in_extension_has_the_closed_frequencies() {
     assert!(total > 0.95 && total < 1.0);
 }
 
-/// A slender cantilever, L/h = 40: bending at `beta² sqrt(EI/(m L^4))`, beta = 1.8751, 4.6941 (Euler-Bernoulli), with the
-/// reduction by rotary inertia and shear that the first-order Timoshenko term gives; both within 1 %. Torsion and
-/// extension come in between and are recognised by their participation.
+/// Cantilever, L/h = 40: `beta² sqrt(EI/(m L^4))`, beta = 1.8751, 4.6941 (Euler-Bernoulli), with first-order
+/// Timoshenko correction; both within 1 %. Participation separates torsion and extension.
 #[test]
-fn slender_beam_bends_at_the_closed_frequencies() {
+fn beam_bending_frequencies_match_closed_form() {
     let (length, height, width) = (8.0, 0.2, 0.3);
     let mesh = Mesh::block([20, 1, 1], [length, width, height]);
     let constraints = fix(&mesh, &[0, 1, 2], |x| x[0] == 0.0);
-    // The reduced rule bends without locking; the full rule holds its modes without stiffness.
+    // Slender hex20 with the full rule: no zero-energy modes.
     let beam = model(mesh, constraints, Elastic { poisson: 0.0, ..STEEL }, Gauss3);
     let modes = modal::solve(&beam, 8).unwrap();
     let mut checked = 0;
@@ -135,7 +133,7 @@ fn slender_beam_bends_at_the_closed_frequencies() {
             let radius = depth / 12.0_f64.sqrt();
             let (e, rho) = (STEEL.young, STEEL.density);
             let euler = (beta / length).powi(2) * radius * (e / rho).sqrt();
-            // Timoshenko: w = w_E (1 - (beta r/L)² (1 + E/(k G))/2), k = 5/6, for slender beams.
+            // Timoshenko: w = w_E (1 - (beta r/L)² (1 + E/(k G))/2), k = 5/6.
             let timoshenko = euler * (1.0 - 0.5 * (beta * radius / length).powi(2) * (1.0 + 2.0 * 6.0 / 5.0));
             let errors = (bending[n] / euler - 1.0, bending[n] / timoshenko - 1.0);
             println!(
@@ -151,9 +149,8 @@ fn slender_beam_bends_at_the_closed_frequencies() {
     assert_eq!(checked, 4);
 }
 
-/// All modes of small bodies against a dense solution of the same matrices: nothing is missed, however many copies an
-/// eigenvalue has. The cube has pairs and triplets; two cubes apart have everything twice, and twelve rigid motions; of
-/// eight cubes the block finds six of each at once, and the check the rest.
+/// Against a dense solution with repeated eigenvalues; two separate cubes have twelve rigid motions. Of eight
+/// cubes the block finds six copies, the completeness check the others.
 #[test]
 fn no_mode_is_missed() {
     let cube = Mesh::block([2, 2, 2], [1.0; 3]);
@@ -196,7 +193,7 @@ fn no_mode_is_missed() {
     }
 }
 
-/// Squares of all circular frequencies by a dense solution, ascending.
+/// Ascending squared circular frequencies by a dense solution.
 fn dense_squares(model: &Model) -> Vec<f64> {
     let (free, n) = (model.supports().free(), model.free_dof_count());
     let columns = |times: &dyn Fn(&[f64], &mut [f64])| {
@@ -222,9 +219,9 @@ fn dense_squares(model: &Model) -> Vec<f64> {
     values
 }
 
-/// The effective masses of all modes add up to the mass that the free dofs carry: `r·M_f (M_ff)^-1 M_f r`.
+/// Effective masses sum to `r·M_f (M_ff)^-1 M_f r`.
 #[test]
-fn effective_masses_of_a_free_body_are_its_mass() {
+fn effective_masses_sum_to_total_mass() {
     let model = model(Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]), Vec::new(), SOIL, Gauss3);
     let modes = modal::solve(&model, 6).unwrap();
     for k in 0..3 {
@@ -233,9 +230,9 @@ fn effective_masses_of_a_free_body_are_its_mass() {
     }
 }
 
-/// A stiff block on soft springs: heave at `sqrt(k A/m)`, slides at `sqrt(k_t A/m)`, within the block's own flexibility.
+/// Heave at `sqrt(k A/m)`, sliding at `sqrt(k_t A/m)`, within the block's own flexibility.
 #[test]
-fn block_on_springs_rides_at_the_closed_frequency() {
+fn block_on_springs_matches_closed_form() {
     let mesh = Mesh::block([2, 2, 2], [1.0, 1.0, 0.5]);
     let base = mesh.boundary_faces().into_iter().filter(|f| f.side == 0).collect();
     let model = Model::new(ModelInput {
@@ -254,9 +251,9 @@ fn block_on_springs_rides_at_the_closed_frequency() {
     assert!((modes.circular[heave] / exact - 1.0).abs() < 1e-4);
 }
 
-/// The reduced rule leaves six modes without stiffness in a single element, beside the six rigid motions.
+/// Six zero-energy modes of one element.
 #[test]
-fn mechanisms_of_the_reduced_rule_are_counted() {
+fn counts_mechanisms_of_reduced_integration() {
     let single = |rule| {
         let model = model(Mesh::block([1, 1, 1], [1.0; 3]), Vec::new(), SOIL, rule);
         modal::solve(&model, 20).unwrap().zero_modes
@@ -264,10 +261,9 @@ fn mechanisms_of_the_reduced_rule_are_counted() {
     assert_eq!((single(Gauss3), single(Gauss2)), (6, 12));
 }
 
-/// The consistent mass never lies below the exact frequency (Rayleigh's principle), and is of fourth order for quadratic
-/// elements; the lumped one lies below here, and is of second order.
+/// Consistent mass: from above (Rayleigh), fourth order. Lumped mass: from below, second order.
 #[test]
-fn lumped_mass_gives_frequencies_of_second_order_from_below() {
+fn lumped_mass_converges_from_below() {
     let bar = |mass, count: usize| {
         let width = 10.0 / count as f64;
         let mesh = Mesh::block([1, 1, count], [width, width, 10.0]);
@@ -308,7 +304,7 @@ fn odd_requests_are_met_or_refused() {
 }
 
 #[test]
-fn modes_have_the_same_bits_on_any_number_of_threads() {
+fn results_independent_of_thread_count() {
     let bits = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -324,7 +320,7 @@ fn modes_have_the_same_bits_on_any_number_of_threads() {
     assert!(one == bits(2) && one == bits(3));
 }
 
-/// Ten modes of 54,000 dofs, held and free: residuals, and the time.
+/// Ten modes of 54,000 dofs, fixed and free.
 #[test]
 #[ignore = "for measurement: about 20 s"]
 fn modes_of_a_large_block() {

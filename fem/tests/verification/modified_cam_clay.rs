@@ -1,15 +1,13 @@
-//! Modified Cam clay at a point against the closed forms of triaxial compression, undrained and drained.
+//! Modified Cam clay at a point, against closed forms of triaxial compression.
 //!
-//! With `eta = q/p`, `Lambda = (lambda - kappa)/lambda`, `R` the overconsolidation ratio and `v = 1 + e0`:
+//! `eta = q/p`, `Lambda = (lambda - kappa)/lambda`, `R` the overconsolidation ratio, `v = 1 + e0`:
 //!
-//! * no drainage: `p/p0 = (R M²/(M² + eta²))^Lambda` once it yields, and no change of `p` before;
-//! * drained, `q = 3 (p - p0)`: `eps_v = kappa/v ln(p/p0) + (lambda - kappa)/v ln(pc/pc0)` with `pc = p (1 + eta²/M²)`;
-//! * the flow `d eps_s^p = 2 eta/(M² - eta²) d eps_v^p` and `d eps_s^e = dq/(3 G)`, integrated along both paths.
+//! * undrained: `p/p0 = (R M²/(M² + eta²))^Lambda` after yield;
+//! * drained: `eps_v = kappa/v ln(p/p0) + (lambda - kappa)/v ln(pc/pc0)`, `pc = p (1 + eta²/M²)`;
+//! * flow `d eps_s^p = 2 eta/(M² - eta²) d eps_v^p`, by partial fractions.
 //!
-//! Source: Wood, Soil Behaviour and Critical State Soil Mechanics (1990), chapters 4 and 5, for the yield surface, the flow
-//! and the undrained path; the integrals of the shear strain follow from them by partial fractions. Pressures and volumes are
-//! exponentials that the law follows exactly: 1e-9, whatever the step. The shear strain is that of an implicit rule of first
-//! order: 0.5 % at the steps taken here, and halved with them.
+//! Wood, Soil Behaviour and Critical State Soil Mechanics (1990), chapters 4 and 5. Pressures and volumes are
+//! exact: 1e-9. Shear strain is first order in the step: 0.5 %.
 
 use trackbed_fem::material::{Consolidation, ModifiedCamClay, Shear};
 use trackbed_fem::{Material, Point, PointState};
@@ -31,7 +29,6 @@ const V: f64 = 1.0 + CLAY.void_ratio;
 const SHEAR_RATIO: f64 = 1.5 * 0.4 / 1.3;
 const LAMBDA: f64 = (CLAY.lambda - CLAY.kappa) / CLAY.lambda;
 
-/// A point on its path.
 struct Sample {
     material: Material,
     state: PointState,
@@ -50,7 +47,6 @@ impl Sample {
         Sample { material, state, pc: pc[0], strain: [0.0; 2] }
     }
 
-    /// Adds compression along z and along x and y.
     fn step(&mut self, axial: f64, radial: f64) {
         let (response, pc) = self.trial(axial, radial);
         (self.state, self.pc) = (response.state, pc);
@@ -65,7 +61,7 @@ impl Sample {
         (law.update(elastic, old, &increment, true, &mut pc).unwrap(), pc[0])
     }
 
-    /// Adds axial compression under a constant radial stress.
+    /// Axial compression at constant radial stress.
     fn drained(&mut self, axial: f64) {
         let mut radial = 0.0;
         for _ in 0..50 {
@@ -96,7 +92,7 @@ impl Sample {
     }
 }
 
-/// Shear strain of normally consolidated clay without drainage.
+/// Undrained shear strain of normally consolidated clay.
 fn undrained_shear(eta: f64) -> f64 {
     let elastic = CLAY.kappa / (3.0 * SHEAR_RATIO * V);
     let turn = (eta / M).atan();
@@ -104,7 +100,7 @@ fn undrained_shear(eta: f64) -> f64 {
     plastic + elastic * (eta - 2.0 * LAMBDA * (eta - M * turn))
 }
 
-/// Shear strain of normally consolidated clay in drained compression.
+/// Drained shear strain of normally consolidated clay.
 fn drained_shear(eta: f64, p: f64) -> f64 {
     let at = |eta: f64| {
         let by_pressure =
@@ -115,7 +111,7 @@ fn drained_shear(eta: f64, p: f64) -> f64 {
 }
 
 #[test]
-fn undrained_stress_path_is_the_closed_form_at_every_overconsolidation() {
+fn undrained_stress_path_matches_closed_form() {
     for ratio in [1.0_f64, 1.5, 3.0, 8.0] {
         let mut sample = Sample::new(ratio);
         for _ in 0..400 {
@@ -130,7 +126,7 @@ fn undrained_stress_path_is_the_closed_form_at_every_overconsolidation() {
             let miss = sample.p() / P0 / expected - 1.0;
             assert!(miss.abs() < 1e-9, "R = {ratio}, eta = {eta}: {miss:e}");
         }
-        // The critical state: M, and p0 (R/2)^Lambda. It is approached like an exponential; 20 % of strain leave 1e-3.
+        // Critical state: M, and p0 (R/2)^Lambda, approached exponentially; 20 % of strain leave 1e-3.
         let end = P0 * (0.5 * ratio).powf(LAMBDA);
         assert!(
             (sample.eta() / M - 1.0).abs() < 1e-3 && (sample.p() / end - 1.0).abs() < 1e-3,
@@ -140,7 +136,7 @@ fn undrained_stress_path_is_the_closed_form_at_every_overconsolidation() {
 }
 
 #[test]
-fn undrained_shear_strain_converges_to_the_closed_form() {
+fn undrained_shear_strain_converges() {
     let miss = |steps: usize| {
         let mut sample = Sample::new(1.0);
         let part = 0.02 / steps as f64;
@@ -154,7 +150,7 @@ fn undrained_shear_strain_converges_to_the_closed_form() {
 }
 
 #[test]
-fn drained_volume_strain_is_the_closed_form() {
+fn drained_volumetric_strain_matches_closed_form() {
     let mut sample = Sample::new(1.0);
     for _ in 0..400 {
         sample.drained(1e-3);
@@ -166,12 +162,12 @@ fn drained_volume_strain_is_the_closed_form() {
         assert!(miss.abs() < 1e-7, "eta = {eta}: {miss:e}");
         assert!((sample.pc / pc - 1.0).abs() < 1e-9);
     }
-    // Towards the critical state p = 3 p0 / (3 - M).
+    // Critical state: p = 3 p0 / (3 - M).
     assert!((sample.p() * (3.0 - M) / (3.0 * P0) - 1.0).abs() < 0.02, "p = {}", sample.p());
 }
 
 #[test]
-fn drained_shear_strain_converges_to_the_closed_form() {
+fn drained_shear_strain_converges() {
     let miss = |steps: usize| {
         let mut sample = Sample::new(1.0);
         (0..steps).for_each(|_| sample.drained(0.08 / steps as f64));
@@ -183,7 +179,7 @@ fn drained_shear_strain_converges_to_the_closed_form() {
     assert!((order - 1.0).abs() < 0.1, "order {order}");
 }
 
-/// Loading along the normal compression line, unloading along a swelling line.
+/// Normal compression line, then swelling line.
 #[test]
 fn isotropic_compression_follows_both_lines() {
     let mut sample = Sample::new(1.0);
@@ -197,7 +193,6 @@ fn isotropic_compression_follows_both_lines() {
     }
 }
 
-/// Ground without stress, and strains far beyond any test: the return ends with numbers, inside the surface.
 #[test]
 fn extreme_strains_return() {
     for start in [0.0, 1e2, 1e5] {
@@ -222,8 +217,7 @@ fn extreme_strains_return() {
     }
 }
 
-/// Isotropic compression from the normal compression line: no shear, so that the equivalent plastic strain √(2/3 ε:ε) of the
-/// plastic volume strain εᵥ, a third of it along each axis, is √2/3 εᵥ; and εᵥ = (λ − κ)/v ln(p/p₀).
+/// Equivalent plastic strain √(2/3 ε:ε) = √2/3 εᵥ with εᵥ = (λ − κ)/v ln(p/p₀).
 #[test]
 fn equivalent_strain_of_isotropic_compression() {
     let mut sample = Sample::new(1.0);
@@ -233,7 +227,7 @@ fn equivalent_strain_of_isotropic_compression() {
     assert!((sample.state.kappa / exact - 1.0).abs() < 1e-9, "{} against {exact}", sample.state.kappa);
 }
 
-/// An overconsolidation ratio is that of the yield surface through the initial stress, shear included: pc = R (p + q²/(M² p)).
+/// pc = R (p + q²/(M² p)): the ratio refers to the yield surface through the initial stress.
 #[test]
 fn overconsolidation_counts_the_shear_of_the_initial_stress() {
     let (p, q) = (100e3, 60e3);
@@ -247,7 +241,6 @@ fn overconsolidation_counts_the_shear_of_the_initial_stress() {
     }
 }
 
-/// A preconsolidation pressure below the minimum pressure is kept where nothing hardens it, and hardens by its own exponential.
 #[test]
 fn a_small_preconsolidation_pressure_is_not_lifted() {
     let law = ModifiedCamClay { consolidation: Consolidation::Pressure(400.0), ..CLAY };
@@ -264,8 +257,7 @@ fn a_small_preconsolidation_pressure_is_not_lifted() {
     assert!((pc[0] / (400.0 * (plastic / slope).exp()) - 1.0).abs() < 1e-9, "{}", pc[0]);
 }
 
-/// Reduced strength: the friction angle of triaxial compression, sin(phi) = 3 M/(6 + M), has its tangent divided by the factor, and
-/// a factor of 1 changes nothing.
+/// tan of the friction angle, sin(phi) = 3 M/(6 + M), is divided by the factor.
 #[test]
 fn reduced_strength_divides_the_tangent_of_the_friction_angle() {
     use trackbed_fem::ConstitutiveLaw;

@@ -1,5 +1,4 @@
-//! The library MUMPS against the program's own factor: statics, windows, predictions, factors out of core, failures.
-//! A program without it says so.
+//! MUMPS against the built-in direct solver, and builds without it.
 
 use crate::aggregation::hinged;
 use trackbed_fem::solver::mumps::MumpsError;
@@ -33,9 +32,9 @@ mod library {
 
     const OUT_OF_CORE: MumpsMethod = MumpsMethod { out_of_core: true };
 
-    /// Two exact factors of one matrix: rounding times its condition, some 1e4 here, leaves 1e-12.
+    /// Two exact factors: rounding times the condition number, about 1e4, gives 1e-12.
     #[test]
-    fn statics_are_those_of_the_own_factor() {
+    fn statics_match_direct_solver() {
         let cases = [(ElementKind::Hex20, [8, 6, 5]), (ElementKind::Tet10, [6, 4, 4])];
         for (kind, counts) in cases {
             let (own, _) = solve(&block(kind, counts, Methods::default()));
@@ -50,7 +49,7 @@ mod library {
     }
 
     #[test]
-    fn windows_are_those_of_the_own_factor() {
+    fn windows_match_direct_solver() {
         for (mass, theta) in [(Mass::Lumped, 0.5), (Mass::Consistent, 0.55)] {
             let model = |methods| soils(ElementKind::Hex20, [5, 4, 4], mass, methods);
             let (own, _) = windows(&model(Methods::default()), theta);
@@ -65,7 +64,7 @@ mod library {
     }
 
     #[test]
-    fn predictions_are_those_of_the_own_factor() {
+    fn predictions_match_direct_solver() {
         let (own, iterations) = predict(Methods::default());
         for method in [MumpsMethod::default(), OUT_OF_CORE] {
             let (found, made) = predict(by(method));
@@ -75,7 +74,7 @@ mod library {
         }
     }
 
-    /// The hinge has no stiffness: the pivot that shows it is that of a node of the second block or of the hinge.
+    /// The singular pivot belongs to the second block or to the hinge.
     #[test]
     fn a_mechanism_is_named() {
         for method in [MumpsMethod::default(), OUT_OF_CORE] {
@@ -88,9 +87,9 @@ mod library {
         }
     }
 
-    /// Instances share variables of the library; threads wait for each other.
+    /// Instances share library variables.
     #[test]
-    fn solvers_on_several_threads_do_not_disturb_each_other() {
+    fn concurrent_solvers_are_independent() {
         let model = block(ElementKind::Hex20, [6, 5, 4], by(MumpsMethod::default()));
         let alone = solve(&model).0;
         std::thread::scope(|scope| {
@@ -99,7 +98,7 @@ mod library {
         });
     }
 
-    /// The estimate of the memory, which a run is refused by, is at least what is peak, and near it.
+    /// The estimate, which limits a run, is an upper bound close to the peak.
     #[test]
     fn the_memory_is_known_before() {
         for method in [MumpsMethod::default(), OUT_OF_CORE] {
@@ -115,7 +114,7 @@ mod library {
 
     #[test]
     fn a_folder_that_is_not_there_is_an_error() {
-        // The folder is that of the process, so that a process of its own is asked.
+        // The directory is set per process.
         if std::env::var_os("TRACKBED_NO_FOLDER").is_none() {
             let output = std::process::Command::new(std::env::current_exe().unwrap())
                 .args(["--exact", "mumps::library::a_folder_that_is_not_there_is_an_error"])
@@ -133,9 +132,8 @@ mod library {
         assert_eq!(error, SolveError::Library(MumpsError::Files.to_string()));
     }
 
-    /// Steps of one solver, then of another made anew, have the same bits.
     #[test]
-    fn a_solver_made_anew_goes_on_with_the_same_bits() {
+    fn new_solver_continues_bitwise_identically() {
         let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, by(MumpsMethod::default()));
         let loads = loads(&model, 6);
         let new = || ThetaSolver::new(&model, 0.6, 1e-4).unwrap();

@@ -1,7 +1,6 @@
-//! Patch test (V0.8, E1): linear displacement on the boundary of a distorted 2×2×2 block of elements.
+//! Patch test on a distorted 2×2×2 block, tables `E1_*` of two independent programs.
 //!
-//! Source: tables `E1_*`, made by two independent programs; the exact answer is the linear field itself. Tolerances:
-//! rounding. On curved elements only the 3×3×3 rule passes; the 2×2×2 rule is compared with its own known miss.
+//! On curved elements only the 3×3×3 rule passes; the 2×2×2 rule is compared with its known error.
 
 use crate::common::{difference, model, read_mesh, table};
 use trackbed_fem::element::quadrature::Quadrature;
@@ -28,7 +27,7 @@ fn solve(case: &str, rule: Quadrature) -> (Model, Static) {
     (model, solution)
 }
 
-/// The linear field at all nodes, to the 13 digits that the prescribed values carry.
+/// To the 13 digits of the prescribed values.
 fn linear(model: &Model) -> Vec<f64> {
     let at = |x: &[f64; 3]| GRADIENT.map(|g| g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
     model.mesh().coordinates.iter().flat_map(at).collect()
@@ -60,12 +59,12 @@ fn straight_patch_passes_with_both_rules() {
 }
 
 #[test]
-fn curved_patch_passes_with_the_full_rule() {
+fn curved_patch_passes_under_full_integration() {
     assert_patch_passes("E1_patch_curved", Quadrature::Gauss3);
 }
 
 #[test]
-fn curved_patch_misses_with_the_reduced_rule_as_other_programs_do() {
+fn reduced_integration_error_matches_other_programs() {
     let (model, solution) = solve("E1_patch_curved", Quadrature::Gauss2);
     let probes = [
         (26, [0.00054054519, -1.7476742e-05, 0.00021595113]),

@@ -6,7 +6,7 @@ use trackbed_fem::{
     Cone, Constraint, DruckerPrager, Elastic, Material, Mesh, Model, MohrCoulomb, Quadrature,
 };
 
-/// Mohr–Coulomb without tension cut-off; angles in degrees.
+/// Angles [°].
 pub fn mohr_coulomb(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     Material::plastic(
         elastic,
@@ -19,7 +19,7 @@ pub fn mohr_coulomb(elastic: Elastic, c: f64, phi: f64, psi: f64) -> Material {
     )
 }
 
-/// Drucker–Prager without cap; angles in degrees.
+/// Angles [°].
 pub fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64, cone: Cone) -> Material {
     Material::plastic(
         elastic,
@@ -33,12 +33,11 @@ pub fn drucker_prager(elastic: Elastic, c: f64, phi: f64, psi: f64, cone: Cone) 
     )
 }
 
-/// Full Newton with tight tolerances.
 pub fn tight() -> NewtonOptions {
     NewtonOptions { force_tolerance: 1e-10, energy_tolerance: 1e-12, ..NewtonOptions::new(Variant::Full) }
 }
 
-/// A slab of hexahedra, one element thick in y, with the given element boundaries in x and z.
+/// One element thick in y, with the given element boundaries.
 pub fn slab(x: &[f64], z: &[f64], thickness: f64) -> Mesh {
     let (nx, nz) = (x.len() - 1, z.len() - 1);
     let mut mesh = Mesh::block([nx, 1, nz], [nx as f64, thickness, nz as f64]);
@@ -52,17 +51,17 @@ pub fn slab(x: &[f64], z: &[f64], thickness: f64) -> Mesh {
     mesh
 }
 
-/// Lines from `from` to `to`, each interval `ratio` times the one before.
+/// Grid lines from `from` to `to`, growth `ratio`.
 pub fn graded(from: f64, to: f64, count: usize, ratio: f64) -> Vec<f64> {
     let weight =
         |i: usize| if ratio == 1.0 { i as f64 } else { (ratio.powi(i as i32) - 1.0) / (ratio - 1.0) };
     (0..=count).map(|i| from + (to - from) * weight(i) / weight(count)).collect()
 }
 
-/// Half of a rough strip footing of width 2 m on a weightless slab, pushed down by prescribed displacements.
+/// Half of a rough strip footing, width 2 m, on a weightless slab.
 pub struct Footing {
     pub model: Model,
-    /// Whether a constrained dof, in their order, is a vertical one under the footing.
+    /// Vertical dofs under the footing, among the constrained ones.
     pub pushed: Vec<bool>,
 }
 
@@ -98,13 +97,13 @@ pub fn footing(material: Material, [under, beside, down]: [usize; 3]) -> Footing
 }
 
 impl Footing {
-    /// Mean pressure under the footing [Pa] from the forces of the supports.
+    /// Mean pressure [Pa].
     pub fn pressure(&self, reactions: &[f64]) -> f64 {
         let pushed = self.model.supports().fixed().iter().zip(&self.pushed).filter(|(_, pushed)| **pushed);
         -pushed.map(|((dof, _), _)| reactions[*dof as usize]).sum::<f64>() / 0.5
     }
 
-    /// The loading that pushes the footing down by `time` [m].
+    /// Time is the settlement [m].
     pub fn loading(&self) -> impl trackbed_fem::nonlinear::Loading + '_ {
         trackbed_fem::nonlinear::Driven {
             load: |_: f64, _: &mut [f64]| (),
@@ -115,7 +114,7 @@ impl Footing {
     }
 }
 
-/// Seconds that this thread has run.
+/// CPU time of this thread [s].
 pub fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     text.split_whitespace().next().and_then(|ns| ns.parse::<f64>().ok()).map_or(f64::NAN, |ns| 1e-9 * ns)

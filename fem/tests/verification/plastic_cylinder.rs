@@ -1,8 +1,8 @@
-//! P3: thick cylinder under internal pressure, Mohr–Coulomb, plane strain, against the closed form and an independent program.
+//! Thick Mohr–Coulomb cylinder under internal pressure, plane strain.
 //!
-//! Source: equilibrium and yield in the plastic ring, Lamé outside, displacement from the flow rule by quadrature (structure of Hill
-//! 1950 and Yu, Int. J. Numer. Anal. Methods Geomech. 16 (1992)); see case.json. Tolerance: displacement of the inner wall 0.5 % of the
-//! closed form (error of an independent program on this mesh: 0.006 to 0.14 %).
+//! Closed form with the flow rule by quadrature (Hill 1950; Yu, Int. J. Numer. Anal. Methods Geomech. 16
+//! (1992)); see case.json. Tolerance of the inner displacement: 0.5 % (independent program on this mesh:
+//! 0.006 to 0.14 %).
 
 use crate::common::difference;
 use crate::common::{model, read_mesh, table};
@@ -36,7 +36,6 @@ fn check(case: &str, psi: f64, wall: [f64; 3], rule: Quadrature) {
     let profile = table(case, "closed_form_profile.csv");
     for (level, (p, exact)) in LEVELS.into_iter().zip(wall).enumerate() {
         solver.integrate(&model, &mut state, p / LEVELS[2], &mut pressure, &mut |_, _, _| ()).unwrap();
-        // Displacement at every node, stress at the points, both over the closed form.
         let radius = [0.6, 0.8, 1.0][level];
         let rows: Vec<&Vec<f64>> = profile.iter().filter(|r| r[0] == radius).collect();
         let exact_at = |r: f64, column: usize| {
@@ -89,7 +88,7 @@ fn non_associated() {
     }
 }
 
-/// Above the pressure at which the whole wall yields there is no equilibrium.
+/// Above full plasticity of the wall.
 #[test]
 fn no_equilibrium_above_the_limit_pressure() {
     let (model, unit) = cylinder(25.0, Quadrature::Gauss2);
@@ -107,6 +106,5 @@ fn no_equilibrium_above_the_limit_pressure() {
     assert!((state.time - 1.0).abs() < 0.01, "{}", state.time);
     let SolveError::Diverged { time, element, point, .. } = error else { panic!("{error}") };
     assert!(time == state.time && (1..=48).contains(&element) && (1..=8).contains(&point));
-    // The step that failed left nothing behind.
     assert_eq!(state, accepted);
 }

@@ -1,5 +1,5 @@
-//! Dynamics of elastoplastic bodies: agreement with the linear solvers where nothing yields, an oscillator with friction in
-//! closed form, and the ledger of energy.
+//! Elastoplastic dynamics: linear solvers without yield, frictional oscillator in closed form, energy
+//! balance.
 
 use crate::common::difference;
 use crate::plastic_common::{mohr_coulomb, tight};
@@ -17,7 +17,7 @@ use trackbed_fem::{
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
-/// A block on a held base with damping, an absorbing and sprung side, and gravity.
+/// Block on a fixed base with damping, an absorbing sprung side, and gravity.
 fn block(material: Material, lumped: bool) -> Model {
     let mesh = Mesh::block([3, 2, 2], [3.0, 2.0, 2.0]);
     let constraints = (0..mesh.node_count() as u32)
@@ -40,7 +40,7 @@ fn block(material: Material, lumped: bool) -> Model {
     .unwrap()
 }
 
-/// What a pulse on the top of the block is at a time: half a sine of 0.02 s.
+/// Half sine of 0.02 s.
 fn pulse(time: f64) -> f64 {
     if time < 0.02 { (std::f64::consts::PI * time / 0.02).sin() } else { 0.0 }
 }
@@ -55,7 +55,7 @@ fn top_load(model: &Model, pressure: f64) -> Vec<f64> {
     load
 }
 
-/// A block under its weight and a pulse on its top, on a base that swings, with all kinds of damping.
+/// Weight, pulse on the top and a moving base, with all kinds of damping.
 struct Shaken {
     model: Model,
     weight: Vec<f64>,
@@ -89,9 +89,8 @@ impl Loading for &Shaken {
     }
 }
 
-/// Without plasticity the elastoplastic dynamics are the linear ones: Newmark and HHT-α.
 #[test]
-fn elastic_bodies_move_as_under_the_linear_newmark_and_hht() {
+fn elastic_response_matches_linear_newmark() {
     let mut shaken = &Shaken::new();
     let model = &shaken.model;
     let dt = 1e-3;
@@ -135,9 +134,8 @@ fn elastic_bodies_move_as_under_the_linear_newmark_and_hht() {
     }
 }
 
-/// As above for the window methods, with moved supports and their reactions.
 #[test]
-fn elastic_bodies_move_as_under_the_linear_window() {
+fn elastic_response_matches_linear_window() {
     let shaken = Shaken::new();
     let (model, dt) = (&shaken.model, 1e-3);
     for theta in [0.5, 0.7] {
@@ -190,9 +188,9 @@ fn elastic_bodies_move_as_under_the_linear_window() {
     }
 }
 
-/// A cube in simple shear is an oscillator: mass of its top half, stiffness G, friction tau_y. Pushed off with a speed
-/// beyond yield it comes to rest at `u_max = u_y + (m v0² - F u_y)/(2 F)` after `asin(u_y w/v0)/w + m v1/F`, and swings about
-/// `u_max - u_y` with the elastic period.
+/// A cube in simple shear, stiffness G, friction tau_y. Initial speed beyond yield gives
+/// `u_max = u_y + (m v0² - F u_y)/(2 F)` after `asin(u_y w/v0)/w + m v1/F`, then oscillation about
+/// `u_max - u_y`.
 #[test]
 fn an_oscillator_with_friction() {
     let (shear, yield_shear) = (SOIL.lame().1, 20e3);
@@ -253,15 +251,13 @@ fn an_oscillator_with_friction() {
     assert!((plastic / (yield_shear * (u_max - u_y)) - 1.0).abs() < 1e-3);
 }
 
-/// Kinetic, elastic and spring energy of a state.
 fn stored(model: &Model, state: &State) -> f64 {
     energy::kinetic(model, state) + energy::strain(model, state)
 }
 
-/// Everything that went in is found again: kinetic and elastic energy, plastic flow, damping, boundary, and the integration's
-/// own part, which is nothing for the average acceleration and not below nothing for the damping schemes.
+/// Numerical dissipation: zero for average acceleration, non-negative for damping schemes.
 #[test]
-fn the_ledger_of_a_yielding_body_closes() {
+fn energy_balance_closes_under_yield() {
     for lumped in [false, true] {
         let model = block(mohr_coulomb(SOIL, 10e3, 25.0, 5.0), lumped);
         let (weight, top) = (model.gravity_load(), top_load(&model, 150e3));
@@ -291,7 +287,7 @@ fn the_ledger_of_a_yielding_body_closes() {
                 let theta: f64 = theta.parse().unwrap();
                 let mut driver = NonlinearTheta::new(&model, theta, dt, NewtonOptions::default()).unwrap();
                 for step in 0..60 {
-                    // The impulse of the window by the mid-point rule.
+                    // Window impulse by the mid-point rule.
                     at(dt * (f64::from(step) + 0.5), &mut load);
                     let audit = driver.step(&model, &mut state, &load).unwrap();
                     add(&audit, &state);
@@ -329,7 +325,6 @@ fn the_ledger_of_a_yielding_body_closes() {
     }
 }
 
-/// The same bits on any number of threads, and from a state that was stored.
 #[test]
 fn bits_and_restart() {
     let run = |threads: usize, restart: bool| {

@@ -1,9 +1,8 @@
-//! P1: one element under triaxial histories, against histories of an independent program.
+//! One element under triaxial histories of an independent program.
 //!
-//! Source: seven histories of stress and volume strain (20 steps to 2 % of axial strain, ten digits); their plateaus are
-//! closed forms, `s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin phi)/(1 - sin phi)` in compression and so on (case.json).
-//! The lateral stresses are held by loads. With equal ones Mohr–Coulomb returns to an edge, where the consistent tangent is
-//! singular: an iteration that does not treat that fails here. Tolerance: 1e-6 of the largest stress; 1e-8 of strain.
+//! Closed-form plateaus `s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin phi)/(1 - sin phi)` in compression and
+//! so on (case.json). Equal lateral stresses return to an edge with a singular consistent tangent. Tolerance:
+//! 1e-6 of the largest stress; 1e-8 of strain.
 
 use crate::common::{model, read_mesh, table};
 use crate::plastic_common::{drucker_prager, mohr_coulomb, tight};
@@ -15,7 +14,7 @@ const CASE: &str = "P1_single_element";
 const SOIL: Elastic = Elastic { young: 50e6, poisson: 0.3, density: 2000.0 };
 const PRESSURE: f64 = 100e3;
 
-/// Runs a history; the largest miss of the axial stress over the largest stress, and of the volume strain.
+/// Largest relative error of axial stress, and error of volumetric strain.
 fn follow(file: &str, material: &Material, ratio: f64, rule: Quadrature) -> (f64, f64) {
     let rows = table(CASE, file);
     let (mesh, mut constraints) = read_mesh(CASE);

@@ -1,6 +1,6 @@
-//! P2: strip footing on weightless soil, against Prandtl: mean pressure over cohesion
-//! `Nc = (tan²(45° + phi/2) exp(pi tan phi) - 1) cot phi`, `2 + pi` for phi = 0 (Prandtl 1920; rough and smooth alike).
-//! And what the variants of the iteration cost on it.
+//! Strip footing on weightless soil, with the cost of the Newton variants (P2).
+//!
+//! `Nc = (tan²(45° + phi/2) exp(pi tan phi) - 1) cot phi`, `2 + pi` for phi = 0 (Prandtl 1920).
 
 use crate::common::difference;
 use crate::common::model;
@@ -72,7 +72,7 @@ fn table_of_costs() {
     }
 }
 
-/// Plateau of the pressure on a coarse mesh: some per cent above the limit load, as the mesh is stiff at the edge.
+/// Plateau some per cent above the limit load, as the mesh is stiff at the edge.
 #[test]
 fn footing_on_clay_reaches_its_plateau() {
     let footing = footing(mohr_coulomb(SOIL, COHESION, 0.0, 0.0), [5, 8, 9]);
@@ -92,8 +92,7 @@ fn footing_on_clay_reaches_its_plateau() {
     assert!((factors[2] / factors[1] - 1.0).abs() < 3e-3, "not a plateau: {factors:?}");
 }
 
-/// A quarter of a square footing pushed into a block: cost of associated flow (L L^T), and of non-associated flow by L U and by
-/// GMRES on the elastic factor.
+/// Associated flow (L L^T), non-associated flow by L U and by GMRES on the elastic factor.
 #[test]
 #[ignore = "prints the cost of unsymmetric systems, a minute"]
 fn cost_of_unsymmetric_systems() {

@@ -1,4 +1,4 @@
-//! Initial stress, and the factor of safety of a slope (P4).
+//! Initial stress and factor of safety of a slope.
 
 use crate::plastic_common::{mohr_coulomb, slab};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use trackbed_fem::{
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// A column of two soils, 2 m of each, between smooth walls.
+/// Two soils, 2 m each, between smooth walls.
 fn column(upper: Material, lower: Material) -> Model {
     let mut mesh = Mesh::block([2, 1, 4], [2.0, 1.0, 4.0]);
     for e in 0..mesh.element_count() {
@@ -41,7 +41,7 @@ fn column(upper: Material, lower: Material) -> Model {
     .unwrap()
 }
 
-/// Height and stress of every point.
+/// Height and stress per point.
 fn profile(model: &Model, state: &State) -> Vec<(f64, [f64; 6])> {
     let mesh = model.mesh();
     (0..mesh.element_count())
@@ -58,13 +58,13 @@ fn profile(model: &Model, state: &State) -> Vec<(f64, [f64; 6])> {
         .collect()
 }
 
-/// Weight of what lies above a height in the column of 1800 over 2000 kg/m³.
+/// Overburden of 1800 over 2000 kg/m³.
 fn vertical(z: f64) -> f64 {
     -9.81 * (1800.0 * (4.0 - z).min(2.0) + 2000.0 * (2.0 - z).max(0.0))
 }
 
 #[test]
-fn k0_state_of_layered_ground_is_in_equilibrium() {
+fn layered_k0_state_is_in_equilibrium() {
     let soil = |density, phi| mohr_coulomb(Elastic { young: 20e6, poisson: 0.3, density }, 5e3, phi, 0.0);
     let model = column(soil(1800.0, 30.0), soil(2000.0, 25.0));
     let mut state = State::new(&model);
@@ -82,9 +82,9 @@ fn k0_state_of_layered_ground_is_in_equilibrium() {
     }
 }
 
-/// A horizontal stress below the active one is returned to the yield surface, and equilibrium restores the weight.
+/// Horizontal stress below the active state: return to the yield surface, then equilibrium.
 #[test]
-fn a_k0_outside_the_yield_surface_is_returned_to_it() {
+fn inadmissible_k0_returns_to_yield_surface() {
     let soil = |density| mohr_coulomb(Elastic { young: 20e6, poisson: 0.3, density }, 0.1, 30.0, 0.0);
     let model = column(soil(1800.0), soil(2000.0));
     let mut state = State::new(&model);
@@ -100,10 +100,9 @@ fn a_k0_outside_the_yield_surface_is_returned_to_it() {
     }
 }
 
-/// Elastic ground between smooth walls: horizontal stress `nu/(1 - nu)` of the vertical one. Then nothing moves when
-/// gravity acts on.
+/// K0 = `nu/(1 - nu)` between smooth walls.
 #[test]
-fn gravity_turned_on_leaves_stress_without_displacement() {
+fn gravity_does_not_move_k0_state() {
     let soil = |density| mohr_coulomb(Elastic { young: 20e6, poisson: 0.3, density }, 5e5, 30.0, 0.0);
     let model = column(soil(1800.0), soil(2000.0));
     let mut state = State::new(&model);
@@ -124,7 +123,7 @@ fn gravity_turned_on_leaves_stress_without_displacement() {
     let mut solver = QuasiStatic::new(&model, NewtonOptions::default(), StepControl::fixed(1.0)).unwrap();
     solver.integrate(&model, &mut state, 1.0, &mut on, &mut |_, _, _| ()).unwrap();
     assert!(state.u.iter().all(|u| u.abs() < 1e-12));
-    // A uniform stress outside the surface is returned as well.
+    // Uniform stress outside the yield surface.
     let mut other = State::new(&model);
     let soft = column(
         mohr_coulomb(Elastic { young: 20e6, poisson: 0.3, density: 1.0 }, 1e3, 0.0, 0.0),
@@ -135,9 +134,9 @@ fn gravity_turned_on_leaves_stress_without_displacement() {
     assert!(initial_stress::set_k0(&model, &mut other, &Overburden::Level(4.0), &[(1, 0.5)].into()).is_err());
 }
 
-/// Griffiths and Lane (1999), example 1: slope 2:1 of height H, phi = 20°, c = 0.05 gamma H, psi = 0, no foundation layer, gravity at
-/// once. Published factor of safety 1.4 (Bishop and Morgenstern: 1.380); an independent program with this element brackets it between
-/// 1.35 and 1.40.
+/// Griffiths and Lane (1999), example 1: slope 2:1, phi = 20°, c = 0.05 gamma H, psi = 0, no foundation
+/// layer, gravity in one step. Factor 1.4 (Bishop and Morgenstern: 1.380); an independent program brackets it
+/// by 1.35 and 1.40.
 #[test]
 fn slope_of_griffiths_and_lane() {
     let (height, density): (f64, f64) = (10.0, 2000.0);
@@ -179,6 +178,5 @@ fn slope_of_griffiths_and_lane() {
     println!("slope: factor of safety between {} and {}", found.converged, found.failed);
     assert!(found.failed - found.converged <= 0.07);
     assert!(found.converged > 1.30 && found.failed < 1.46, "{found:?}");
-    // Steeply rising displacements near failure, and none of the trials out of order.
     assert!(found.trials.windows(2).all(|t| t[0].converged || !t[1].converged));
 }

@@ -1,4 +1,4 @@
-//! The iteration itself: rate of convergence, agreement of all variants, determinism, refusals.
+//! Nonlinear iteration: rate of convergence, variants, determinism, errors.
 
 use crate::common::difference;
 use crate::plastic_common::{Footing, footing, mohr_coulomb, tight};
@@ -14,7 +14,7 @@ fn small(psi: f64) -> Footing {
     footing(mohr_coulomb(SOIL, 10e3, 20.0, psi), [2, 4, 4])
 }
 
-/// Pushes a footing down in steps; state, pressure and the reports of all steps.
+/// State, pressure and step reports of a pushed footing.
 fn push(
     footing: &Footing,
     options: NewtonOptions,
@@ -32,8 +32,7 @@ fn push(
     (state, footing.pressure(solver.reactions()), reports, solver.statistics())
 }
 
-/// Near the solution each residual is at most a constant times the square of the one before; the order
-/// `log(r3/r2)/log(r2/r1)` of the last three that rounding does not spoil is about 2.
+/// Order `log(r3/r2)/log(r2/r1)` of the last three residuals above rounding: about 2.
 #[test]
 fn full_newton_converges_quadratically() {
     for psi in [20.0, 5.0] {
@@ -47,7 +46,7 @@ fn full_newton_converges_quadratically() {
                 "psi {psi}: {:?}",
                 report.residuals.iter().map(|r| format!("{r:.1e}")).collect::<Vec<_>>()
             );
-            // The last drop, in the region of convergence.
+            // Region of convergence.
             if b < 1e-3 {
                 orders.push((c / b).ln() / (b / a).ln());
                 assert!(c <= 100.0 * b * b + 1e-5 * b, "{a:e} {b:e} {c:e}");
@@ -58,7 +57,6 @@ fn full_newton_converges_quadratically() {
     }
 }
 
-/// Every variant finds the same equilibrium.
 #[test]
 fn variants_agree() {
     let control = StepControl { initial: 0.002, min: 1e-5, max: 0.002, target_iterations: 400 };
@@ -86,7 +84,7 @@ fn variants_agree() {
                     s.iterations,
                     s.halvings
                 );
-                // Halved steps follow the path more closely: another answer, by the error of the steps.
+                // Halved steps follow the path more closely.
                 let tolerance = if s.steps == 6 { 1e-5 } else { 1e-2 };
                 assert!(miss < tolerance && (other / pressure - 1.0).abs() < tolerance);
             }
@@ -107,7 +105,7 @@ fn variants_agree() {
 }
 
 #[test]
-fn one_two_and_three_threads_give_the_same_bits() {
+fn results_independent_of_thread_count() {
     let bits = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -122,9 +120,8 @@ fn one_two_and_three_threads_give_the_same_bits() {
     assert!(one == bits(2) && one == bits(3));
 }
 
-/// A step that fails leaves the state as it was, and the next try from there goes on as if nothing had happened.
 #[test]
-fn a_failed_step_leaves_the_state_untouched() {
+fn failed_step_leaves_state_untouched() {
     let footing = small(5.0);
     let control = StepControl { initial: 0.004, min: 0.004, max: 0.004, target_iterations: 10 };
     let few = NewtonOptions { max_iterations: 2, ..tight() };
@@ -143,7 +140,6 @@ fn a_failed_step_leaves_the_state_untouched() {
     solver.integrate(&footing.model, &mut state, 0.012, &mut footing.loading(), &mut |_, _, _| ()).unwrap();
     let mut fresh = QuasiStatic::new(&footing.model, tight(), control).unwrap();
     fresh.integrate(&footing.model, &mut other, 0.012, &mut footing.loading(), &mut |_, _, _| ()).unwrap();
-    // The state holds all there is.
     assert_eq!(state, other);
 }
 
@@ -183,7 +179,6 @@ fn unusable_options_and_states_are_refused() {
     assert!(matches!(error, SolveError::NotFinite { .. }), "{error}");
 }
 
-/// The driver on a model without plasticity: the linear solution in one iteration.
 #[test]
 fn an_elastic_model_takes_one_iteration() {
     let footing = footing(SOIL.into(), [2, 4, 4]);

@@ -1,10 +1,9 @@
-//! Expansion of a spherical cavity in a thick shell of Mohr–Coulomb soil, against the closed form.
+//! Expansion of a spherical cavity in a thick Mohr–Coulomb shell.
 //!
-//! Source: Yu, Cavity Expansion Methods in Geomechanics (2000), chapter 3 (finite shell; Yu, J. Geotech. Eng. 119 (1993)), small
-//! strain; compression positive: equilibrium `s_r' = -2 (s_r - s_t)/r` and yield `s_r - al s_t = Y` give
-//! `s_r = -Y/(al - 1) + A r^(-2 (al - 1)/al)` inside r < c, Lamé outside; displacement from
-//! `be eps_r^p + 2 eps_t^p = 0` by quadrature. al = (1 + sin phi)/(1 - sin phi), be the same of psi, Y = 2 c sqrt(al). The two
-//! hoop stresses are equal: every point returns to an edge. Tolerance 1 %.
+//! Yu, Cavity Expansion Methods in Geomechanics (2000), chapter 3 (finite shell; Yu, J. Geotech. Eng. 119
+//! (1993)), small strain, compression positive. `s_r = -Y/(al - 1) + A r^(-2 (al - 1)/al)` for r < c, Lamé
+//! outside; displacement from `be eps_r^p + 2 eps_t^p = 0` by quadrature. Equal hoop stresses return to an
+//! edge. Tolerance 1 %.
 
 use crate::common::model;
 use crate::plastic_common::{mohr_coulomb, tight};
@@ -17,7 +16,7 @@ const SOIL: Elastic = Elastic { young: 50e6, poisson: 0.3, density: 2000.0 };
 const INNER: f64 = 1.0;
 const OUTER: f64 = 4.0;
 
-/// Pressure and displacement of the inner wall when the soil yields up to the radius `c`.
+/// Inner wall at plastic radius `c`.
 struct ClosedForm {
     alpha: f64,
     beta: f64,
@@ -31,7 +30,7 @@ impl ClosedForm {
         ClosedForm { alpha, beta: ratio(psi), y: 2.0 * c * alpha.sqrt() }
     }
 
-    /// Radial and hoop stress, compression positive, at `r` when the soil yields up to `c`.
+    /// Radial and hoop stress, compression positive.
     fn stress(&self, r: f64, c: f64) -> (f64, f64) {
         let (al, y, outer) = (self.alpha, self.y, OUTER.powi(-3));
         let b = y / (c.powi(-3) * (1.0 + 0.5 * al) + outer * (al - 1.0));
@@ -44,7 +43,7 @@ impl ClosedForm {
         (radial, (radial - y) / al)
     }
 
-    /// Elastic strains, radial and hoop, tension positive.
+    /// Radial and hoop elastic strain, tension positive.
     fn elastic(&self, r: f64, c: f64) -> (f64, f64) {
         let (radial, hoop) = self.stress(r, c);
         let (e, nu) = (SOIL.young, SOIL.poisson);
@@ -81,14 +80,14 @@ impl ClosedForm {
     }
 }
 
-/// An octant of the shell: three patches of n × n columns, and layers of elements that grow outward.
+/// Three patches of n × n columns, graded layers.
 fn octant(n: usize, layers: usize) -> Mesh {
     let mut mesh = Mesh::default();
     let mut known: BTreeMap<[i64; 3], u32> = BTreeMap::new();
     let ratio = (OUTER / INNER).powf(1.0 / layers as f64);
     for axis in 0..3 {
         for (i, j, l) in (0..n * n * layers).map(|k| (k % n, k / n % n, k / (n * n))) {
-            // The corner at the axis, the middles of its two sides, and the middle of the octant.
+            // Corner at the axis, mid-sides, and centre of the octant.
             let point = |xi: [f64; 3]| -> [f64; 3] {
                 let (s, t) = (
                     (i as f64 + 0.5 * (1.0 + xi[0])) / n as f64,
@@ -128,7 +127,7 @@ fn octant(n: usize, layers: usize) -> Mesh {
 }
 
 #[test]
-fn spherical_cavity_expands_as_the_closed_form_says() {
+fn cavity_expansion_matches_closed_form() {
     for (phi, psi) in [(30.0, 30.0), (30.0, 10.0)] {
         let exact = ClosedForm::new(20e3, phi, psi);
         let mesh = octant(3, 8);
@@ -165,7 +164,7 @@ fn spherical_cavity_expands_as_the_closed_form_says() {
                     worst = worst.max((u / wall - 1.0).abs());
                 }
             }
-            // Radii between which the soil yields no more.
+            // Bounds of the plastic radius.
             let (mut inside, mut outside) = (0.0_f64, f64::INFINITY);
             for e in 0..mesh.element_count() {
                 let (x, first) = (mesh.element_coordinates(e), model.point_start(e));

@@ -1,6 +1,6 @@
-//! Plasticity at a material point: tables, tangents, flow, closed forms, random walks.
+//! Plasticity at a material point.
 //!
-//! The tables of `tests/data/plasticity` come from a separate reference code (see its `case.json`).
+//! Tables: `tests/data/plasticity`, from a separate reference code (`case.json`).
 
 mod closed_forms;
 mod faults;
@@ -16,7 +16,7 @@ use trackbed_fem::material::{
     update,
 };
 
-/// The soil of the tables: E = 50 MPa, nu = 0.3.
+/// E = 50 MPa, nu = 0.3.
 pub const SOIL: Elastic = Elastic { young: 50e6, poisson: 0.3, density: 2000.0 };
 pub const COHESION: f64 = 20e3;
 
@@ -51,8 +51,8 @@ pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m, x| x.abs().max(m))
 }
 
-/// A strain with deviatoric part of size `shear` and volumetric part in +-`volume`; every fifth without shear strains,
-/// every seventh with two equal normal strains.
+/// Deviatoric part of size `shear`, volumetric in +-`volume`; every fifth without shear strains, every
+/// seventh with two equal normal strains.
 pub fn random_strain(random: &mut Random, shear: f64, volume: f64) -> [f64; 6] {
     let mut e: [f64; 6] = std::array::from_fn(|_| shear * random.next());
     let volume = volume * random.next() / 3.0;
@@ -68,7 +68,7 @@ pub fn random_strain(random: &mut Random, shear: f64, volume: f64) -> [f64; 6] {
     e
 }
 
-/// Principal values, largest first, and axes (columns), by another library.
+/// Descending principal values and axes (columns), by another library.
 pub fn eigen(s: &[f64; 6]) -> ([f64; 3], nalgebra::Matrix3<f64>) {
     let m = nalgebra::Matrix3::new(s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]);
     let e = m.symmetric_eigen();
@@ -78,13 +78,12 @@ pub fn eigen(s: &[f64; 6]) -> ([f64; 3], nalgebra::Matrix3<f64>) {
     (order.map(|i| e.eigenvalues[i]), nalgebra::Matrix3::from_columns(&columns))
 }
 
-/// One step, which must have a result.
 pub fn step(material: &Material, old: &PointState, increment: &[f64; 6]) -> Response {
     update(material, old, increment, true).expect("a return")
 }
 
-/// A step with prescribed strains where `held` is false and prescribed stresses where it is true (normal components;
-/// no shear): Newton on the free strains with the regularised tangent. Returns the response and the strain increment.
+/// Prescribed stresses where `held` is true, else strains (normal components; no shear). Returns the response
+/// and the strain increment.
 pub fn mixed_step(
     material: &Material,
     old: &PointState,
@@ -107,7 +106,7 @@ pub fn mixed_step(
     panic!("no convergence at strain {strain:?}");
 }
 
-/// Every law the tests sweep over, with the regions it must reach.
+/// Laws with the regions to reach.
 pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
     use Region::*;
     let open = vec![Plane, EdgeCompression, EdgeExtension, Apex];

@@ -1,4 +1,4 @@
-//! Prescribed motion: base excitation, rigid translation, and the balance of momentum with the reactions.
+//! Prescribed motion: base excitation, rigid translation, momentum balance with reactions.
 
 use crate::common::{Random, difference, fix, model};
 use trackbed_fem::boundary::{BoundaryLayer, SpringFactors};
@@ -17,7 +17,7 @@ use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
 
-/// A column that shears along x only, on a base whose x motion is prescribed; 10 m high.
+/// Column, 10 m high, that shears along x on a base with prescribed x motion.
 fn shear_column(rayleigh: Rayleigh) -> Model {
     let mesh = Mesh::block([1, 1, 40], [0.5, 0.5, 10.0]);
     let mut constraints = fix(&mesh, &[1, 2], |_| true);
@@ -33,15 +33,15 @@ fn shear_column(rayleigh: Rayleigh) -> Model {
     .unwrap()
 }
 
-/// The prescribed displacements when all x dofs of the supports move by `x`.
+/// Prescribed displacements for support motion `x`.
 fn along_x(model: &Model, x: f64) -> Vec<f64> {
     model.supports().fixed().iter().map(|&(dof, _)| if dof % 3 == 0 { x } else { 0.0 }).collect()
 }
 
-/// Standing wave over a base that moves as `U sin wt`: `u = U cos k(H - z)/cos kH sin wt`, k = w/c (Kramer, Geotechnical
-/// Earthquake Engineering (1996), section 7.2.1, undamped). Started from that, the error is of second order in the step.
+/// `u = U cos k(H - z)/cos kH sin wt`, k = w/c (Kramer, Geotechnical Earthquake Engineering (1996), section
+/// 7.2.1, undamped); second order in the step.
 #[test]
-fn harmonic_base_motion_makes_the_closed_standing_wave() {
+fn harmonic_base_motion_matches_standing_wave() {
     let model = shear_column(Rayleigh::default());
     let (amplitude, frequency) = (1e-3, 40.0);
     let k = frequency / (SOIL.lame().1 / SOIL.density).sqrt();
@@ -82,10 +82,10 @@ fn harmonic_base_motion_makes_the_closed_standing_wave() {
     }
 }
 
-/// The same motion seen from the base: `M a + beta K v + K u = -M r a_g` on fixed supports. With the base acceleration of
-/// the method itself the two are one algebraic system, so they agree to rounding.
+/// `M a + beta K v + K u = -M r a_g` on fixed supports, with the base acceleration of the method: equal to
+/// rounding.
 #[test]
-fn base_motion_is_the_relative_motion_under_inertia_loads() {
+fn base_motion_matches_relative_motion() {
     let model = shear_column(Rayleigh { alpha_m: 0.0, beta_k: 5e-4 });
     let (dt, n) = (2e-3, model.dof_count());
     let zero = vec![0.0; n];
@@ -122,7 +122,6 @@ fn base_motion_is_the_relative_motion_under_inertia_loads() {
     }
 }
 
-/// A body carried along by its base at constant speed stays without strain, and its supports do no work.
 #[test]
 fn constant_speed_strains_nothing() {
     let mesh = Mesh::block([2, 2, 3], [1.0, 0.8, 1.5]);
@@ -165,9 +164,8 @@ fn constant_speed_strains_nothing() {
     }
 }
 
-/// Without a displacement in a step, supports that moved stay where they are.
 #[test]
-fn supports_stay_where_the_last_step_left_them() {
+fn supports_keep_their_last_position() {
     let model = shear_column(Rayleigh { alpha_m: 0.0, beta_k: 5e-2 });
     let load = vec![0.0; model.dof_count()];
     let mut state = State::new(&model);
@@ -180,7 +178,6 @@ fn supports_stay_where_the_last_step_left_them() {
     for _ in 0..4000 {
         solver.step(&model, &mut state, &load).unwrap();
     }
-    // At rest at last, moved as a whole.
     assert!(state.u.iter().step_by(3).all(|u| (u - 2e-3).abs() < 1e-12), "{:?}", state.u[0]);
 }
 
@@ -206,8 +203,8 @@ fn block() -> Model {
     .unwrap()
 }
 
-/// Change of momentum, linear and angular = impulse of loads, reactions, springs, dashpots and mass damping, weighted as the
-/// method does: exact.
+/// Momentum change equals the impulse of loads, reactions, springs, dashpots and mass damping: exact with the
+/// weights of the method.
 #[test]
 fn momentum_balances_with_the_reactions() {
     let model = block();
@@ -216,7 +213,7 @@ fn momentum_balances_with_the_reactions() {
     let method = Newmark { beta: 0.3025, gamma: 0.6 };
     let mut newmark = NewmarkSolver::new(&model, method, dt).unwrap();
     let mut window = ThetaSolver::new(&model, 0.6, dt).unwrap();
-    // Forces that act on the body as a whole, [force, moment] in one line.
+    // External forces as [force, moment].
     let outer = |state: &State, forces: &[f64]| -> Vec<f64> {
         let mut inertia = vec![0.0; n];
         model.mass_times(&state.v, &mut inertia);
@@ -268,7 +265,6 @@ fn momentum_balances_with_the_reactions() {
     }
 }
 
-/// Sums by sets are parts of the whole; the weight of a body at rest comes out of its supports.
 #[test]
 fn sums_of_reactions_carry_the_weight() {
     let mesh = Mesh::block([2, 2, 2], [2.0, 1.0, 1.0]);
@@ -296,7 +292,7 @@ fn sums_of_reactions_carry_the_weight() {
     let parts = energy::reaction_sums(&model, &state, &load, &[half(true), half(false)]);
     let weight = 2.0 * 2000.0 * 9.81;
     assert!((whole.force[2] / weight - 1.0).abs() < 1e-11 && whole.force[0].abs() < 1e-9 * weight);
-    // About the origin the weight turns by -y W about x… carried back by the supports: moment (y W, -x W, 0).
+    // Support moment about the origin: (y W, -x W, 0).
     assert!((whole.moment[0] / (0.5 * weight) - 1.0).abs() < 1e-10, "{whole:?}");
     assert!((whole.moment[1] / -weight - 1.0).abs() < 1e-10, "{whole:?}");
     for k in 0..3 {
@@ -305,9 +301,8 @@ fn sums_of_reactions_carry_the_weight() {
     }
 }
 
-/// A static solver takes other displacements of its supports than those of the model.
 #[test]
-fn static_supports_can_be_moved_between_solutions() {
+fn static_supports_move_between_solutions() {
     let mesh = Mesh::block([3, 2, 2], [1.5, 1.0, 1.0]);
     let constraints = |value| -> Vec<Constraint> {
         let mut all = fix(&mesh, &[0, 1, 2], |x| x[0] == 0.0);

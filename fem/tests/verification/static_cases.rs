@@ -1,8 +1,7 @@
-//! Static cases E2, E3, E6: cantilever, railway embankment, thick cylinder.
+//! Static cases: cantilever (E2), railway embankment (E3), thick cylinder (E6).
 //!
-//! Source: tables made by two independent programs with 3×3×3 points, checked with a third (its seven printed digits).
-//! Tolerances of the tables: 1e-6 of the largest displacement, 1e-5 of the largest stress. Probes of the 2×2×2 rule
-//! carry eight digits.
+//! Tables of two independent programs, 3×3×3 points, checked with a third (seven digits). Tolerances: 1e-6 of
+//! the largest displacement, 1e-5 of the largest stress.
 
 use crate::common::{difference, read_mesh, soils, table};
 use std::collections::BTreeMap;
@@ -52,7 +51,7 @@ fn solve(case: &Case, rule: Quadrature) -> (Model, Vec<f64>, Static) {
     (model, load, solution)
 }
 
-/// Solves with both rules and compares everything the tables hold; returns the solution of the full rule.
+/// Compares both rules with the tables; returns the full-rule solution.
 fn assert_tables_met(case: &Case) -> (Model, Vec<f64>, Static) {
     let (model, load, solution) = solve(case, Quadrature::Gauss3);
     let reference: Vec<f64> =
@@ -105,7 +104,7 @@ fn cantilever_bends_as_tabled() {
 }
 
 #[test]
-fn embankment_under_a_sleeper_load_settles_as_tabled() {
+fn embankment_under_a_sleeper_load() {
     let faces = [451, 452, 453, 454, 459, 460, 461, 462];
     let (model, load, solution) = assert_tables_met(&Case {
         name: "E3_embankment_patch",
@@ -128,7 +127,7 @@ fn embankment_under_a_sleeper_load_settles_as_tabled() {
 }
 
 #[test]
-fn embankment_under_its_own_weight_settles_as_tabled() {
+fn embankment_under_its_own_weight() {
     let (model, _, solution) = assert_tables_met(&Case {
         name: "E3_embankment_patchg",
         materials: soils(),
@@ -142,7 +141,7 @@ fn embankment_under_its_own_weight_settles_as_tabled() {
 }
 
 #[test]
-fn thick_cylinder_widens_as_tabled_and_as_lame_says() {
+fn thick_cylinder_widens_as_tabled() {
     let (model, _, solution) = assert_tables_met(&Case {
         name: "E6_thick_cylinder",
         materials: [(1, Elastic { young: 200e9, poisson: 0.3, density: 7850.0 }.into())].into(),

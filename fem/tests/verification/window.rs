@@ -1,4 +1,4 @@
-//! The window step of the coupling: its twin in Newmark's method, energy, momentum, order.
+//! Window step of the coupling: equivalence to Newmark, energy, momentum, order.
 
 use crate::common::{Random, difference, fix, model};
 use trackbed_fem::SolveError;
@@ -34,7 +34,7 @@ fn random_load(random: &mut Random, model: &Model) -> Vec<f64> {
 }
 
 #[test]
-fn theta_one_half_is_newmark_with_average_acceleration_for_a_constant_load() {
+fn theta_one_half_equals_average_acceleration() {
     let model = block(Rayleigh { alpha_m: 3.0, beta_k: 1e-4 });
     let load = random_load(&mut Random(3), &model);
     let dt = 1e-3;
@@ -51,7 +51,7 @@ fn theta_one_half_is_newmark_with_average_acceleration_for_a_constant_load() {
 }
 
 #[test]
-fn energy_balances_to_rounding_for_every_theta() {
+fn energy_balances_for_every_theta() {
     let model = block(Rayleigh { alpha_m: 3.0, beta_k: 1e-4 });
     let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
     for theta in [0.5, 0.55, 0.7, 1.0] {
@@ -88,9 +88,8 @@ fn free_vibration_without_damping_conserves_energy() {
     assert!((end / start - 1.0).abs() < 1e-11, "{}", end / start - 1.0);
 }
 
-/// A free body takes exactly the impulse and the moment of impulse that the loads carry.
 #[test]
-fn impulse_and_moment_of_a_free_body_are_exact() {
+fn free_body_conserves_impulse() {
     let model = model(Mesh::block([3, 2, 1], [1.5, 1.0, 0.4]), Vec::new(), SOIL, Gauss2);
     let (mut state, mut random) = (State::new(&model), Random(9));
     let dt = 5e-4;
@@ -116,7 +115,7 @@ fn impulse_and_moment_of_a_free_body_are_exact() {
 }
 
 #[test]
-fn theta_one_half_is_of_second_order_and_theta_one_of_first() {
+fn theta_method_converges_at_expected_order() {
     let model = block(Rayleigh { alpha_m: 1.0, beta_k: 1e-4 });
     let shape = random_load(&mut Random(2), &model);
     let duration = 0.05;
@@ -125,7 +124,7 @@ fn theta_one_half_is_of_second_order_and_theta_one_of_first() {
         let mut solver = ThetaSolver::new(&model, theta, dt).unwrap();
         let mut state = State::new(&model);
         for n in 0..steps {
-            // Mean of sin² over the window, exact.
+            // Exact mean of sin² over the window.
             let w = std::f64::consts::TAU / duration;
             let (t0, t1) = (n as f64 * dt, (n + 1) as f64 * dt);
             let mean = 0.5 - ((w * t1).sin() - (w * t0).sin()) / (2.0 * w * dt);

@@ -1,12 +1,11 @@
-//! The keys of both decks in the order of their lines.
+//! Keys of both decks in line order.
 
-/// A value of a line: its name, and other spellings of it in comments.
+/// Key with spellings in comments.
 pub type Key = (&'static str, &'static [&'static str]);
 
-/// What a line holds.
 pub type Line = &'static [Key];
 
-/// The deck of 2011, for key blocks on terrain.
+/// Deck of 2011, for key blocks on terrain.
 pub const GEOLOGY: &[Line] = &[
     &[("restart", &[])],
     &[("pattern", &[])],
@@ -42,7 +41,7 @@ pub const GEOLOGY: &[Line] = &[
     &[("TContact", &[])],
 ];
 
-/// The deck of 2013, for spheres, disks and ice too.
+/// Deck of 2013, also for spheres, disks and ice.
 pub const GENERAL: &[Line] = &[
     &[("restart", &[])],
     &[("pattern", &[])],

@@ -1,8 +1,7 @@
-//! Parameter decks of two older programs: one value or list on each line, in a fixed order, with a comment in brackets
-//! behind it that names the key.
+//! Parameter decks of two older programs: one value or list per line, in fixed order, with the key in a
+//! bracketed comment.
 //!
-//! Both orders are in `keys`; `scene` says what becomes of each key. A key that is not used is named with the reason, in the
-//! head of the scene and on the terminal.
+//! Unused keys are listed with the reason in the scene header and on the terminal.
 
 mod keys;
 mod rest;
@@ -18,7 +17,7 @@ use values::Deck;
 /// Converts a deck to a scene.
 ///
 /// # Errors
-/// A line that is not what its place says, values out of range, files that a key needs.
+/// Unexpected lines, values out of range, missing files.
 pub fn convert(
     (file, text): (&Path, &str),
     output: &Path,

@@ -1,4 +1,4 @@
-//! What becomes of the keys of bonds, walls, time and output, and which have no meaning here.
+//! Converts keys of bonds, walls, time and output.
 
 use super::scene::{Maker, relative, strength};
 use crate::convert::options::Options;
@@ -14,7 +14,7 @@ impl Maker<'_> {
         let mean = 1e6 * d.number(strength(d), |s| s >= 0.0, "0 MPa or more")?;
         let area = 0.25 * PI * self.diameter * self.diameter;
         let in_shear = ratio("BONDNS")? * mean;
-        // Neighbours of a lattice or a packing touch to rounding.
+        // Neighbours of a lattice or packing touch up to rounding.
         self.line(&format!("[[bond]]\nname = \"bonds\"\ngap = {:?}\ncontact = true", 0.01 * self.diameter));
         match d.word("BOND_MODEL").as_str() {
             "p" => self.line(&format!(
@@ -83,7 +83,6 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Duration and outputs. The step is that of the older programs only as far as it sets the duration.
     pub(super) fn duration(&mut self) -> Result<(), Failure> {
         let d = self.deck;
         let above = |x: f64| x > 0.0;
@@ -94,7 +93,6 @@ impl Maker<'_> {
         let mass = PI / 6.0 * least.powi(3) * d.number("dens", above, "above 0")?;
         let ln = libm::log(restitution);
         let damping = -ln / libm::hypot(PI, ln);
-        // Contact of two like grains of the smallest size.
         let contact = PI / (2.0 * self.stiffness / mass * (1.0 - damping * damping)).sqrt();
         let step = contact / divisor;
         let by_time = d.word("CTime") != "nstep";

@@ -1,4 +1,4 @@
-//! What becomes of the keys of a deck.
+//! Converts deck keys to a scene.
 
 use super::values::Deck;
 use crate::convert::options::Options;
@@ -6,31 +6,27 @@ use crate::failure::Failure;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A scene, and what is to be said of it.
 pub struct Made {
-    /// The scene.
     pub text: String,
-    /// Every key with what became of it.
+    /// Conversion notes.
     pub remarks: Vec<String>,
 }
 
-/// The scene while it is made.
 pub(super) struct Maker<'a> {
     pub(super) deck: &'a Deck,
     text: String,
-    /// Key, whether it is used, and how or why not.
     pub(super) became: Vec<(&'static str, bool, String)>,
     /// Diameter [m].
     pub(super) diameter: f64,
-    /// Stiffness of a contact of two grains [N/m].
+    /// Grain–grain contact stiffness [N/m].
     pub(super) stiffness: f64,
     bonded: bool,
 }
 
-/// Makes the scene; `output` is where it will lie.
+/// Converts the deck to a scene at `output`.
 ///
 /// # Errors
-/// Values out of range, files that a key needs.
+/// Values out of range, missing files.
 pub fn scene(deck: &Deck, output: &Path, options: &Options) -> Result<Made, Failure> {
     let above = |x: f64| x > 0.0;
     let diameter = deck.number("D", above, "a diameter above 0")?;
@@ -59,7 +55,6 @@ pub fn scene(deck: &Deck, output: &Path, options: &Options) -> Result<Made, Fail
     Ok(maker.finish())
 }
 
-/// The key of the strength.
 pub(super) fn strength(deck: &Deck) -> &'static str {
     if deck.geology { "BSTRENGTH" } else { "MEANBOND" }
 }
@@ -69,7 +64,7 @@ impl Maker<'_> {
         self.became.push((key, true, how.to_string()));
     }
 
-    /// A key that is not used; one that the deck has not is passed over.
+    /// Records an unused key, if present.
     pub(super) fn left(&mut self, key: &'static str, why: &str) {
         if self.deck.has(key) && self.became.iter().all(|(k, _, _)| *k != key) {
             self.became.push((key, false, why.to_string()));
@@ -116,7 +111,7 @@ impl Maker<'_> {
         self.line(&spring);
         let rolling_line = rolling.map_or(String::new(), |a| format!("rolling_friction = {a:?}\n"));
         self.line(&format!("tangential_damping_ratio = {dashpots:?}\nfriction = {friction:?}\nrestitution = {restitution:?}\n{rolling_line}"));
-        // A wall as stiff as the grains: the pair then has their stiffness.
+        // Walls as stiff as grains: the pair then has the grain stiffness.
         self.line(&format!(
             "[[material]]\nname = \"walls\"\n{spring}\nfriction = {:?}\nrestitution = {:?}\n",
             wall[0], wall[1]
@@ -201,7 +196,6 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Grains at random places in the box of the options.
     fn scattered(&mut self, options: &Options, low: [f64; 3]) -> Result<(), Failure> {
         let d = self.deck;
         let Some(size) = options.region else {
@@ -215,7 +209,7 @@ impl Maker<'_> {
             0.0 => format!("law = \"equal\", size = {:?}", self.diameter),
             1.0 => format!("law = \"two\", small = {least:?}, large = {most:?}, large_share = 0.5"),
             2.0 => format!("law = \"uniform\", low = {least:?}, high = {most:?}"),
-            // The deck has no deviation: two of it reach the limits.
+            // The deck has no deviation: two deviations reach the limits.
             3.0 => {
                 let deviation = 0.25 * (most - least);
                 let mean = self.diameter;
@@ -267,7 +261,7 @@ impl Maker<'_> {
     }
 }
 
-/// A file as seen from the folder of the scene, absolute where that is not plain.
+/// Path relative to the scene, absolute if unclear.
 pub(super) fn relative(file: &Path, output: &Path) -> String {
     let folder = output.parent().unwrap_or(Path::new(""));
     match file.strip_prefix(folder) {

@@ -1,23 +1,22 @@
-//! A deck read: its values by key.
+//! Deck values by key.
 
 use super::keys::{GENERAL, GEOLOGY, Line};
 use crate::read::ReadError;
 use crate::read::number;
 use std::path::{Path, PathBuf};
 
-/// A deck.
 pub struct Deck {
     file: PathBuf,
-    /// Whether it is the one of 2011.
+    /// Whether it is the deck of 2011.
     pub geology: bool,
     values: Vec<(&'static str, String, usize)>,
 }
 
 impl Deck {
-    /// Reads a deck. Which of the two it is shows in its fifth line, which has two values in the older one.
+    /// Reads a deck; the fifth line has two values in the older one.
     ///
     /// # Errors
-    /// Another number of lines or of values, a comment that names another key.
+    /// Wrong number of lines or values, comments with other keys.
     pub fn parse(file: &Path, text: &str) -> Result<Deck, ReadError> {
         let lines = text.lines().enumerate().map(|(k, l)| (k + 1, l.trim())).filter(|(_, l)| !l.is_empty());
         let lines: Vec<(usize, &str, &str)> = lines
@@ -56,7 +55,7 @@ impl Deck {
         Ok(())
     }
 
-    /// A fault at a key.
+    /// Error about a key.
     pub fn error(&self, key: &str, expected: impl Into<String>) -> ReadError {
         let (_, value, line) = self.entry(key);
         ReadError::at(&self.file, *line, key, format!("\"{value}\""), expected)
@@ -66,22 +65,20 @@ impl Deck {
         self.values.iter().find(|(name, _, _)| *name == key).expect("a key of the deck")
     }
 
-    /// Whether the deck has a key.
     pub fn has(&self, key: &str) -> bool {
         self.values.iter().any(|(name, _, _)| *name == key)
     }
 
-    /// All keys, in their order.
     pub fn keys(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.values.iter().map(|(name, _, _)| *name)
     }
 
-    /// A value as it is written, in lower case.
+    /// Raw value in lower case.
     pub fn word(&self, key: &str) -> String {
         self.entry(key).1.to_ascii_lowercase()
     }
 
-    /// A logical value, `.true.` or `.false.`; the points may be missing.
+    /// Logical value, `.true.` or `.false.`, also without points.
     ///
     /// # Errors
     /// Neither.
@@ -93,22 +90,20 @@ impl Deck {
         }
     }
 
-    /// A number that is `fit`.
+    /// Number that satisfies `fit`.
     ///
     /// # Errors
-    /// None, or one that does not fit.
+    /// No number, or unfit.
     pub fn number(&self, key: &str, fit: impl Fn(f64) -> bool, expected: &str) -> Result<f64, ReadError> {
         let value = number::real(&self.entry(key).1).filter(|v| v.is_finite() && fit(*v));
         value.ok_or_else(|| self.error(key, expected))
     }
 }
 
-/// Values of a line.
 fn fields(values: &str) -> impl Iterator<Item = &str> {
     values.split(|c: char| c == ',' || c.is_whitespace()).filter(|f| !f.is_empty())
 }
 
-/// Whether a comment names one of the keys of its line. Case does not count.
 fn names_one(comment: &str, keys: Line) -> bool {
     let comment = comment.to_ascii_lowercase();
     keys.iter().any(|(name, others)| {

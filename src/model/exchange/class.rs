@@ -1,53 +1,53 @@
-//! Contacts by the materials of both sides, and whether their exchange is stable.
+//! Contact classes (material pairs) and the stability of their coupling.
 
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::interface::InterfaceNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{PointMasses, Stability, largest_d};
 
-/// Implicitness of the solid's step with meshed sleepers, unless the scene says otherwise: with 0.5 the oscillations of a stiff
-/// body that no window resolves go on for ever, and dashpots that see them a window late make them grow.
+/// Default θ with meshed sleepers. At 0.5 stiff unresolved oscillations are undamped, and dashpots that lag
+/// by one window amplify them.
 pub(super) const WITH_SLEEPERS: f64 = 0.6;
 
-/// Contacts of the stones of one material with the solid of one material.
+/// Contacts between a grain material and a material of the solid.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ContactClass {
-    /// Material of the stones.
+    /// Grain material.
     pub grains: String,
     /// Material of the solid.
     pub solid: String,
     /// Contact stiffness Kₙ [N/m].
     pub stiffness: f64,
-    /// Damping ratio ζ of the contact, for the stone's own mass.
+    /// Damping ratio ζ with the grain mass only.
     pub damping_ratio: f64,
-    /// Masses that points of the surface offer [kg].
+    /// Effective nodal masses at the surface [kg].
     pub masses: PointMasses,
-    /// Mass of the lightest and the heaviest stone [kg].
+    /// Smallest and largest grain mass [kg].
     pub stones: [f64; 2],
-    /// Damping ratio ζ' of the lightest and the heaviest stone against the lightest point.
+    /// Damping ratio ζ' of the lightest and heaviest grain at the lightest point.
     pub pair_damping: [f64; 2],
     /// W at the lightest point.
     pub w: f64,
-    /// Largest W of the scheme for this class.
+    /// Limit of W.
     pub w_limit: f64,
-    /// D of the heaviest stone at the lightest point.
+    /// D of the heaviest grain at the lightest point.
     pub d: f64,
-    /// Largest D of the scheme; absent where it has none.
+    /// Limit of D, if any.
     pub d_limit: Option<f64>,
-    /// W and D of a dense layer of such stones, all contacts together, and Ω of the lightest one. Zero on meshed sleepers.
+    /// W and D of a dense grain layer, Ω of its lightest grain. Zero on meshed sleepers.
     pub numbers: InterfaceNumbers,
 }
 
 impl ContactClass {
-    /// How far a class is beyond its limits: above 1 it may be unstable.
+    /// Returns W or D over its limit; unstable above 1.
     pub fn excess(&self) -> f64 {
         (self.w / self.w_limit).max(self.d_limit.map_or(0.0, |limit| self.d / limit))
     }
 
-    /// The class in a line.
+    /// Returns a one-line description.
     pub fn line(&self) -> String {
         let limit = |v: f64| if v < 1e-12 { "0".into() } else { format!("{v:.2}") };
-        // A mesh need not have points of every kind.
+        // A mesh may lack corner or mid-side nodes.
         let mass = |v: f64| if v.is_finite() { format!("{v:.3e}") } else { "none".into() };
         format!(
             "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {} kg at a corner, {} at a side, {} in the \
@@ -80,7 +80,7 @@ impl ContactClass {
 }
 
 impl ContactClass {
-    /// The same for windows of `window` [s], given that for 1 s.
+    /// Scales from windows of 1 s to `window` [s].
     pub fn at(&self, window: f64) -> ContactClass {
         ContactClass {
             w: window * self.w,
@@ -91,7 +91,7 @@ impl ContactClass {
     }
 }
 
-/// The largest W and D of all classes.
+/// Returns the largest W and D of all classes.
 pub fn stability(classes: &[ContactClass]) -> Stability {
     Stability {
         stiffness: classes.iter().map(|c| c.w).fold(0.0, f64::max),
@@ -99,12 +99,11 @@ pub fn stability(classes: &[ContactClass]) -> Stability {
     }
 }
 
-/// Mass of a stone over that of the point that it touches, above which it bends the faces about the point so far that it
-/// touches several of them, and its contact is none with a potential. Impacts at 0.5 to 5 m/s within all limits of the window
-/// err by up to 25 % above 220, by at most 3 % below (predicted scheme).
+/// Ratio of grain mass to effective nodal mass above which deflected faces cause several contacts without a
+/// potential. Impacts at 0.5 to 5 m/s within all limits err by up to 25 % above 220, at most 3 % below
+/// (predicted scheme).
 const HEAVY: f64 = 200.0;
 
-/// What to say about stones that are too heavy for the elements that they touch.
 fn heavy(c: &ContactClass) -> Option<String> {
     let ratio = c.stones[1] / c.masses.least();
     (ratio > HEAVY).then(|| {
@@ -115,14 +114,14 @@ fn heavy(c: &ContactClass) -> Option<String> {
     })
 }
 
-/// What to say about classes beyond their limits.
+/// Returns warnings about classes beyond their limits.
 pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<String> {
     let beyond = classes.iter().filter(|c| c.excess() > 1.0);
     let heavy = classes.iter().filter_map(heavy);
     beyond
         .map(|c| {
             let fitting = (f64::from(substeps) / c.excess()) as u32;
-            // Only a meshed sleeper's limit is lower than that of the scheme.
+            // Only meshed sleepers have a lower limit.
             let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
             let fewer = match fitting {
                 _ if lax => {

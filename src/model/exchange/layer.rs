@@ -1,4 +1,4 @@
-//! A dense layer of stones on the surface: W and D of all its contacts together, before any stone lies there.
+//! Interface numbers W and D of a dense grain layer on the surface.
 
 use super::ContactClass;
 use crate::model::grains::GrainsPart;
@@ -10,10 +10,9 @@ use trackbed_dem::Vec3;
 use trackbed_dem::surface::Surface;
 use trackbed_fem as fem;
 
-/// Rings of stones about the one in the middle.
 const RINGS: i32 = 4;
 
-/// The stones of one material: of the mean mass and radius, and what one unit of force on the lightest moves its contact by.
+/// Mean mass and radius of a grain material, and contact mobility of its lightest grain.
 struct Stones {
     mass: f64,
     radius: f64,
@@ -38,8 +37,8 @@ fn stones(model: &dem::Model, material: usize, grains: u32) -> Option<Stones> {
     })
 }
 
-/// Adds the numbers of the interface to classes of contacts with the ground, for windows of 1 s. `within` says whether stones come to
-/// a face; `own` is the ground's material as grains have it.
+/// Adds interface numbers on the ground for windows of 1 s. `within`: whether grains reach a face; `own`: DEM
+/// material of the ground.
 pub fn add_numbers(
     classes: &mut [ContactClass],
     (grains, model, own): (&GrainsPart, &dem::Model, usize),
@@ -51,7 +50,7 @@ pub fn add_numbers(
     let bodies = grains.stone_groups();
     for (material, name) in grains.materials.touching() {
         let Some(stones) = stones(model, material, bodies) else { continue };
-        // Any overlap shows what the pair has across the normal; how stiff it may become is another question.
+        // Ratios do not depend on overlap.
         let law = model.linearised(material, own, stones.mass, stones.radius, 1e-3 * stones.radius);
         let (stiffness, ratio) = model.contact_stiffness(material, own);
         let share = |across: f64, along: f64| if along > 0.0 { across / along } else { 0.0 };
@@ -67,7 +66,6 @@ pub fn add_numbers(
     }
 }
 
-/// A corner within the surface with the least entry in the diagonal of the mass matrix: patch and natural coordinates.
 fn lightest(
     solid: &fem::Model,
     surface: &SolidSurface,
@@ -86,7 +84,7 @@ fn lightest(
     least.map(|(_, patch, corner)| (patch, landmarks(surface.shape(patch))[corner]))
 }
 
-/// Contacts of a hexagonal layer of spheres that touch, one of them on a given point.
+/// Contacts of a hexagonal layer of touching spheres, one at the given point.
 fn lattice(
     surface: &SolidSurface,
     (patch, local): (u32, [f64; 2]),

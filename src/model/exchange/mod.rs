@@ -1,4 +1,4 @@
-//! `[coupling]` resolved: faces, scheme, transfer, and how long a window may be.
+//! `[coupling]` resolved: faces, scheme, load transfer, window length.
 
 mod class;
 mod layer;
@@ -21,76 +21,75 @@ use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Face;
 
-/// Largest Ω of undamped contacts that θ is chosen for, 0.633 then; beyond it windows are divided.
+/// Largest Ω of undamped contacts; θ is then 0.633. Beyond it windows are divided.
 const LARGEST_PHASE: f64 = 0.85;
 
-/// Most sub-steps that `"auto"` takes: beyond it the grains are nearly all of the cost.
+/// Above 20 sub-steps the DEM part dominates the cost.
 const MOST: u32 = 20;
 
-/// How far beyond its limits the shortest window that `"auto"` can choose is refused. Of 109 impacts at 0.5 to 5 m/s
-/// (predicted scheme) 3 % err by more than 5 % of the energy within the limits, 7 % up to twice them, 29 % beyond.
+/// Excess at which the shortest window is rejected. Of 109 impacts at 0.5 to 5 m/s (predicted scheme) 3 % err
+/// by more than 5 % of the energy within the limits, 7 % up to twice them, 29 % beyond.
 const BEYOND: f64 = 2.0;
 
-/// The exchange, resolved.
+/// Resolved coupling.
 pub struct CouplingPart {
     window: WindowPlan,
-    /// Order of the exchange.
+    /// Coupling scheme.
     pub scheme: Scheme,
-    /// How contact forces reach the solid.
+    /// Load transfer to the solid.
     pub transfer: TransferPlan,
-    /// Implicitness of the solid's step; absent where it follows from the contacts.
     theta: Option<f64>,
-    /// Faces that grains may touch: those of the ground, then those of the meshed sleepers, one after the other.
+    /// Contact faces: ground, then meshed sleepers in order.
     pub faces: Vec<Face>,
-    /// How many of them are the ground's.
+    /// Number of ground faces.
     pub ground_faces: usize,
 }
 
-/// Windows of a run, from the contacts that its materials make.
+/// Coupling windows derived from the contact classes.
 pub struct Windows {
-    /// The classes of contacts, with their numbers in these windows.
+    /// Contact classes.
     pub classes: Vec<ContactClass>,
-    /// Steps of the grains per window, as long as the first.
+    /// Initial number of DEM sub-steps per window.
     pub substeps: u32,
-    /// Implicitness of the solid's step.
+    /// Implicitness θ of the FEM time integration.
     pub theta: f64,
 }
 
-/// How long a step of the solid is.
+/// Window length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WindowPlan {
-    /// As long as the exchange allows.
+    /// Longest stable window.
     Auto,
-    /// So many first steps of the grains.
+    /// Number of initial DEM time steps.
     Steps(u32),
-    /// So many seconds, rounded to first steps of the grains.
+    /// Seconds, rounded to initial DEM time steps.
     Seconds(f64),
 }
 
-/// How contact forces reach the solid.
+/// Load transfer to the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TransferPlan {
     /// At the contact point.
     Point,
-    /// Over discs of this radius [m].
+    /// Distributed over discs of this radius [m].
     Disc(f64),
-    /// Over discs of this part of the stones' mean radius.
+    /// Distributed over discs, fraction of the mean grain radius.
     Part(f64),
 }
 
 impl CouplingPart {
-    /// The ground's surface that grains touch. `grains` tells the size of the discs where it goes with the stones.
+    /// Returns the ground surface; `grains` sizes relative discs.
     pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
         let faces = self.faces[..self.ground_faces].to_vec();
         self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
     }
 
-    /// The ground's surface as triangles between its nodes, which polyhedra touch.
+    /// Returns the ground surface as flat triangles, for polyhedra.
     pub fn surface_mesh(&self, solid: &SolidPart) -> Option<SurfaceMesh> {
         SolidSurface::new(solid.model.mesh(), self.faces[..self.ground_faces].to_vec()).triangles()
     }
 
-    /// The whole surface that grains touch, of `model`, where the sleepers are set down.
+    /// Returns the contact surface of `model`.
     pub fn surface(&self, model: &fem::Model, grains: &GrainsPart) -> SolidSurface {
         self.spread(SolidSurface::new(model.mesh(), self.faces.clone()), grains)
     }
@@ -103,7 +102,7 @@ impl CouplingPart {
         }
     }
 
-    /// The transfer in words.
+    /// Describes the load transfer as text.
     pub fn transfer_kind(&self, surface: &SolidSurface) -> String {
         match surface.spread() {
             None => "point, by the shape functions of the face".into(),
@@ -111,7 +110,7 @@ impl CouplingPart {
         }
     }
 
-    /// The windows: as the scene says, or as long as the limits of all classes leave room for, and θ. `surface` is the ground's.
+    /// Determines windows and θ. `surface` is the ground.
     pub fn windows(
         &self,
         grains: &GrainsPart,
@@ -125,14 +124,14 @@ impl CouplingPart {
             WindowPlan::Steps(n) => n,
             WindowPlan::Seconds(window) => ((window / dt).round() as u32).max(1),
             WindowPlan::Auto => {
-                // Steps that follow the contacts grow beyond the first.
+                // Adaptive steps grow beyond the initial step.
                 let growth = if model.measured().is_some() {
                     (model.longest(true) / dt).clamp(1.0, 50.0)
                 } else {
                     1.0
                 };
                 let most = (f64::from(MOST) * growth) as u32;
-                // W and D are proportional to the window. Where many contacts need shorter ones the run divides them.
+                // W and D are proportional to the window; the run divides windows if needed.
                 let of_one = |c: ContactClass| c.excess().max(c.w / quiet_w(self.scheme));
                 let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
@@ -153,10 +152,10 @@ impl CouplingPart {
         }
     }
 
-    /// Refuses windows that the program was to choose and that one step of the grains makes too long already.
+    /// Rejects automatic windows if one DEM time step is too long.
     ///
     /// # Errors
-    /// `BEYOND` times a limit, or more.
+    /// Excess of at least `BEYOND`.
     pub fn refuse(
         &self,
         document: &Document,
@@ -185,12 +184,12 @@ impl CouplingPart {
         Err(document.error("coupling.substeps", found, &expected))
     }
 
-    /// Whether the scene leaves the number of steps to the program.
+    /// Whether the number of sub-steps is chosen automatically.
     pub fn automatic(&self) -> bool {
         self.window == WindowPlan::Auto
     }
 
-    /// The classes of contacts with the ground for windows of 1 s; [`ContactClass::at`] gives them for others.
+    /// For windows of 1 s; see [`ContactClass::at`].
     fn ground_classes(
         &self,
         grains: &GrainsPart,
@@ -204,7 +203,7 @@ impl CouplingPart {
             faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
-        // A solid that grains lie on without a mass is refused elsewhere.
+        // Massless solids are rejected elsewhere.
         let within = |face: u32| reached(model, surface, face);
         let places =
             ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id, within)?)));
@@ -214,7 +213,6 @@ impl CouplingPart {
         classes
     }
 
-    /// The classes of contacts with meshed sleepers, whose masses depend on the window [s].
     fn sleeper_classes(
         &self,
         grains: &GrainsPart,
@@ -227,7 +225,7 @@ impl CouplingPart {
             return Vec::new();
         };
         debug_assert!(first.element as usize >= sleepers.ground_elements());
-        // The whole solid was made of such bodies and steps with such matrices.
+        // Cannot fail: the whole model has the same bodies.
         let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
         let surface = self.spread(surface, grains);
         let faces = sleepers.telling_faces(&surface);
@@ -237,8 +235,7 @@ impl CouplingPart {
         let own = model.patch_material(self.ground_faces as u32);
         let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
         for class in &mut classes {
-            // Of a motion that a window does not resolve θ leaves −(1 − θ)/θ, and a dashpot that sees it a window late
-            // −D/2θ of it.
+            // θ leaves −(1 − θ)/θ of an unresolved motion; a dashpot that lags by one window adds −D/2θ.
             let own = (1e6 * (4.0 * theta - 2.0)).round() / 1e6;
             class.d_limit = class.d_limit.map(|limit| limit.min(own));
             *class = class.at(window);
@@ -246,7 +243,6 @@ impl CouplingPart {
         classes
     }
 
-    /// Classes of all stones on materials of the solid with their masses of points, for windows of 1 s.
     fn with_stones(
         &self,
         grains: &GrainsPart,
@@ -285,7 +281,7 @@ impl CouplingPart {
     }
 }
 
-/// Whether stones can come to a face of the surface: not where it lies wholly behind a plane that stands still.
+/// Whether grains can reach a face, not wholly behind a fixed plane.
 fn reached(model: &dem::Model, surface: &SolidSurface, face: u32) -> bool {
     let nodes: Vec<_> = surface.face_nodes(face).iter().map(|&n| surface.mesh_position(n)).collect();
     model

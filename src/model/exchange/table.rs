@@ -8,16 +8,14 @@ use crate::scene::{SceneError, Table};
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::surface::{SolidSurface, facets};
 
-/// Passes of the iterated scheme, unless the scene says otherwise.
 const PASSES: u32 = 20;
 
-/// Tolerance of the iterated scheme, unless the scene says otherwise.
 const TOLERANCE: f64 = 1e-4;
 
-/// Resolves `[coupling]`. `polyhedra`: there are some among the grains.
+/// Resolves `[coupling]`. `polyhedra`: in the model.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<CouplingPart, SceneError> {
     if polyhedra {
         beside_polyhedra(c, solid)?;
@@ -47,13 +45,12 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<
     }
     let ground_faces = faces.len();
     if solid.sleepers.is_some() {
-        // On all sides: in the order of their elements, so sleeper by sleeper.
+        // In element order, hence sleeper by sleeper.
         faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
     }
     Ok(CouplingPart { window, scheme, transfer, theta, faces, ground_faces })
 }
 
-/// Refuses what polyhedra cannot be combined with.
 fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneError> {
     if c.faces == Some(FacesName::Curved) {
         let remedy = "Polyhedra contact flat triangles between the nodes";
@@ -69,7 +66,6 @@ fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneE
     Ok(())
 }
 
-/// How long a step of the solid is.
 fn window(c: &Table<Coupling>) -> Result<WindowPlan, SceneError> {
     match (c.substeps.unwrap_or_default(), c.window) {
         (_, Some(_)) if c.substeps.is_some() => Err(c.conflict("window", "`substeps`")),

@@ -1,11 +1,10 @@
-//! Checks that all tables of the grains share.
+//! Checks shared by all grain tables.
 
 use crate::scene::units::{Length, Quantity, vector};
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::Vec3;
 use trackbed_dem::measure::BoxRegion;
 
-/// Number of the material that `key` of a table names.
 pub(super) fn find<T>(
     scene: &Table<Scene>,
     table: &Table<T>,
@@ -20,7 +19,6 @@ pub(super) fn find<T>(
     })
 }
 
-/// A box with a volume, from `key` of a table.
 pub(in crate::model) fn region<T>(
     table: &Table<T>,
     key: &str,

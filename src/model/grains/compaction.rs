@@ -13,82 +13,82 @@ use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Longest time of coming to rest, unless the scene says otherwise [s].
+/// Default time limit of rest [s].
 const REST: f64 = 0.2;
 
-/// One stage of compaction.
+/// Compaction stage.
 #[derive(Clone)]
 pub struct CompactionPlan {
-    /// What is done.
+    /// Type of compaction.
     pub press: Press,
-    /// Box whose porosity is measured.
+    /// Box in which porosity is measured.
     pub region: BoxRegion,
-    /// Friction and damping of the stage, its longest time of rest, and what rest is.
+    /// Friction, damping and rest criterion.
     pub rest: DepositionPlan,
 }
 
-/// How a bed is pressed or shaken.
+/// Type of compaction.
 #[derive(Clone)]
 pub enum Press {
-    /// Planes swing along a unit vector.
+    /// Planes oscillate along a unit vector.
     Vibration {
-        /// The planes.
+        /// Planes.
         planes: Vec<usize>,
-        /// Displacement at the crest [m].
+        /// Displacement amplitude [m].
         amplitude: Vec3,
         /// Frequency [Hz].
         frequency: f64,
-        /// Number of cycles.
+        /// Cycles.
         cycles: u32,
     },
-    /// A plate presses at several places.
+    /// A platen loads several positions.
     Tamping {
-        /// The plate; its height is found when it is set down.
+        /// Platen; its height is set when it is placed.
         plate: BodyInput,
         /// Half edge lengths [m].
         half: [f64; 3],
-        /// Places of its centre [m].
+        /// Centres [m].
         at: Vec<[f64; 2]>,
         /// Largest force [N].
         force: f64,
         /// Frequency [Hz].
         frequency: f64,
-        /// Number of cycles at each place.
+        /// Cycles per position.
         cycles: u32,
     },
-    /// The sleepers are set down where they are not yet, and pressed.
+    /// Sleepers are placed if necessary and loaded.
     Bedding {
-        /// Largest force on each [N].
+        /// Largest force per sleeper [N].
         force: f64,
         /// Frequency [Hz].
         frequency: f64,
-        /// Number of cycles.
+        /// Cycles.
         cycles: u32,
     },
-    /// Grains that waited are dropped.
+    /// Queued grains are dropped.
     Pouring {
-        /// Their groups.
+        /// Groups.
         parts: Vec<u32>,
-        /// Parts that they are dropped in.
+        /// Number of layers.
         layers: u32,
-        /// Height above which they are taken away afterwards [m].
+        /// Height above which grains are then removed [m].
         level: Option<f64>,
     },
-    /// A plane moves in.
+    /// A plane moves inwards.
     Squeeze {
-        /// The plane.
+        /// Plane.
         plane: usize,
         /// Velocity [m/s].
         velocity: Vec3,
-        /// Porosity at which it stops.
+        /// Porosity at which the plane stops.
         porosity: f64,
-        /// Longest way [m].
+        /// Longest travel [m].
         max_travel: f64,
     },
 }
 
 impl Press {
-    /// Name of the kind, as in a scene.
+    /// Returns the scene name of the type.
     pub fn name(&self) -> &'static str {
         match self {
             Press::Vibration { .. } => "vibration",
@@ -100,7 +100,7 @@ impl Press {
     }
 }
 
-/// The stages of a scene; the shape of a plate is added to those of the groups.
+/// Resolves the stages; platen shapes are added to the group shapes.
 pub(super) fn build(
     scene: &Table<Scene>,
     settled: Option<&DepositionPlan>,
@@ -230,7 +230,6 @@ fn bedding(scene: &Table<Scene>, c: &Table<Compaction>) -> Result<Press, SceneEr
     Ok(Press::Bedding { force, frequency, cycles })
 }
 
-/// The grains of the groups that are poured wait from here on.
 fn pouring(
     scene: &Table<Scene>,
     c: &Table<Compaction>,
@@ -280,7 +279,7 @@ fn squeeze(scene: &Table<Scene>, c: &Table<Compaction>, walls: &WallsPart) -> Re
     Ok(Press::Squeeze { plane, velocity: normal * speed, porosity, max_travel })
 }
 
-/// Number of a plane among the plain ones, from its number among the walls.
+/// Converts an index among walls to planes.
 fn plane(scene: &Table<Scene>, c: &Table<Compaction>, key: &str, wall: usize) -> Result<usize, SceneError> {
     match scene.walls.get(wall) {
         Some(it) if is_plain(it) => Ok(scene.walls[..wall].iter().filter(|w| is_plain(w)).count()),

@@ -4,35 +4,32 @@ use crate::scene::deposition::Deposition;
 use crate::scene::{SceneError, Table};
 use trackbed_dem::Model;
 
-/// Root-mean-square speed below which a bed counts as settled, unless the scene says otherwise [m/s].
+/// Default RMS speed of rest [m/s].
 pub(super) const SETTLED_SPEED: f64 = 5e-3;
 
-/// What a factor on the stiffness may be.
 pub(super) const SOFTER: &str = "above 0, at most 1";
 
-/// Settling before the run proper.
+/// Deposition before the main stage.
 #[derive(Clone, Debug)]
 pub struct DepositionPlan {
     /// Longest time [s].
     pub max_time: f64,
-    /// Root-mean-square speed below which the bed counts as settled [m/s].
+    /// RMS speed of rest [m/s].
     pub settled_speed: f64,
-    /// Ratio of unbalanced to contact forces below which it does.
+    /// Unbalanced to contact force ratio of rest.
     pub unbalanced_ratio: Option<f64>,
-    /// Parts that the grains are dropped in.
+    /// Number of layers that are dropped.
     pub layers: u32,
-    /// Height above which grains are taken away afterwards [m].
+    /// Removal height afterwards [m].
     pub level: Option<f64>,
-    /// Friction coefficient between grains meanwhile, where it is another.
     pub(super) friction: Option<f64>,
-    /// Contact stiffness meanwhile, as a share of the true one.
+    /// Ratio to the true contact stiffness.
     pub(super) stiffness_factor: f64,
-    /// Local damping meanwhile; 0 for none.
     pub(super) local_damping: f64,
 }
 
 impl DepositionPlan {
-    /// Whether a bed of this root-mean-square speed [m/s] counts as settled.
+    /// Whether a bed of this RMS speed [m/s] is at rest.
     pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
         use trackbed_dem::measure::{contacts, unbalanced_ratio};
         speed < self.settled_speed
@@ -42,7 +39,6 @@ impl DepositionPlan {
     }
 }
 
-/// `[deposition]` resolved.
 pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError> {
     d.check("max_time", d.max_time, |t| t > 0.0, "a time above 0")?;
     d.check("settled_speed", d.settled_speed, |v| v > 0.0, "a speed above 0")?;
@@ -54,7 +50,7 @@ pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError>
     d.check("local_damping", d.local_damping, |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
     Ok(DepositionPlan {
         max_time: d.max_time.si,
-        // With a ratio of forces alone, speed does not matter.
+        // With a force ratio, any speed is accepted.
         settled_speed: match (d.settled_speed, ratio) {
             (Some(speed), _) => speed.si,
             (None, Some(_)) => f64::INFINITY,

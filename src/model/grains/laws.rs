@@ -1,11 +1,10 @@
-//! Laws of the contacts that materials and pairs select, and constants that none of them uses.
+//! Contact laws of material pairs, and unused constants.
 
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::law::table::{Combination, combination};
 use trackbed_dem::material::Pair;
 use trackbed_dem::{Material, PairOverride};
 
-/// Refuses pairs without a law, and constants that no law uses.
 pub(super) fn check_laws(
     scene: &Table<Scene>,
     materials: &[Material],
@@ -57,7 +56,6 @@ pub(super) fn check_laws(
     Ok(())
 }
 
-/// Refuses constants of material `i` that none of the laws of its contacts uses.
 fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Result<(), SceneError> {
     let m = scene.row("material", &scene.material, i);
     let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
@@ -77,7 +75,7 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
     if m.corner_strength.is_some() && unused("corner_strength") {
         return Err(m.no_effect("corner_strength", "a contact law with conical damage"));
     }
-    // The linear law gets a tangential law of its own where there are asperities.
+    // Asperities add a tangential law to the linear law.
     let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
     if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {
         return Err(m.no_effect("asperity_friction", "a contact law with asperities"));
@@ -88,7 +86,6 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
     Ok(())
 }
 
-/// Whether the stiffness of any contact grows with the overlap.
 pub(super) fn stiffens(materials: &[Material], contacts: &[PairOverride]) -> bool {
     let count = materials.len();
     let mut pairs = (0..count).flat_map(|i| (i..count).map(move |j| Pair::of(materials, contacts, i, j)));

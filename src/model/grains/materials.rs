@@ -16,28 +16,27 @@ use trackbed_dem::{Material, PairOverride};
 /// Materials of a scene.
 #[derive(Clone)]
 pub struct MaterialsPart {
-    /// All of them, in the order of the scene.
+    /// Materials in scene order.
     pub all: Vec<Material>,
-    /// What single pairs of them have of their own.
+    /// Overrides for pairs.
     pub pairs: Vec<PairOverride>,
-    /// Those that grains consist of.
+    /// Materials of grains.
     pub of_grains: Vec<usize>,
-    /// Names.
     names: Vec<String>,
 }
 
 impl MaterialsPart {
-    /// Materials of grains that may touch a solid, with their names. A rigid sleeper touches grains only.
+    /// Returns grain materials that may contact a solid. Rigid sleepers contact grains only.
     pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
     }
 
-    /// Sources of the laws of contact in use and of the integration in time.
+    /// Returns sources of contact laws and time integration.
     pub fn sources(&self) -> Vec<&'static str> {
         sources::of(&self.all, &self.pairs)
     }
 
-    /// The pairs, with the same friction coefficient between all grains where one is given.
+    /// Returns pair overrides, with a common grain friction.
     pub fn pairs_with(&self, friction: Option<f64>) -> Vec<PairOverride> {
         let mut pairs = self.pairs.clone();
         let Some(friction) = friction else { return pairs };
@@ -55,7 +54,6 @@ impl MaterialsPart {
     }
 }
 
-/// Resolves `[[material]]` and `[[contact]]`; no material is one of grains yet.
 pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
     let all = materials(scene)?;
     let pairs = pairs(scene)?;
@@ -64,14 +62,13 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
     Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names })
 }
 
-/// Checks the materials, in the order of the scene.
 fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
     let mut out = Vec::new();
     for (i, m) in scene.rows("material", &scene.material).enumerate() {
         if scene.material[..i].iter().any(|other| other.name == m.name) {
             return Err(m.error("name", format!("\"{}\" again", m.name), "each name once"));
         }
-        // Infinite values would mean that the key is not there.
+        // Infinity would be read as not set.
         m.check("stiffness", m.stiffness, |_| true, "a finite stiffness")?;
         m.check("corner_strength", m.corner_strength, |_| true, "a finite strength")?;
         m.check("asperity_pressure", m.asperity_pressure, |_| true, "a finite pressure")?;
@@ -86,10 +83,10 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
     Ok(out)
 }
 
-/// Parameters of a material as written, with defaults; its normal law is not set.
+/// Returns material parameters without normal law.
 pub fn parameters(m: &GrainMaterial) -> Material {
     Material {
-        // Bodies need a density and say so; walls never use it.
+        // Required for bodies; unused for walls.
         density: m.density.map_or(1.0, |d| d.si),
         stiffness: m.stiffness.map_or(f64::INFINITY, |s| s.si),
         tangential_ratio: m.tangential_ratio.unwrap_or(0.5),
@@ -109,7 +106,6 @@ pub fn parameters(m: &GrainMaterial) -> Material {
     }
 }
 
-/// Checks the parameters of a material or a pair in their order.
 fn check_ranges<T, P>(row: &Table<T>, table: &[Parameter<P>], of: &P) -> Result<(), SceneError> {
     for p in table {
         match p.value(of) {
@@ -123,7 +119,6 @@ fn check_ranges<T, P>(row: &Table<T>, table: &[Parameter<P>], of: &P) -> Result<
     Ok(())
 }
 
-/// A value without the rounding of its conversion to SI units and back.
 fn round_12(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
@@ -138,7 +133,6 @@ fn asperities(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     }
 }
 
-/// Corners that crush have a strength, an angle and a modulus.
 fn corner_keys(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     match (m.corner_strength, m.corner_angle) {
         (None, None) => Ok(()),
@@ -149,7 +143,7 @@ fn corner_keys(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     }
 }
 
-/// Crushing takes energy.
+/// Crushing must dissipate energy.
 fn crushing(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     let (Some(strength), Some(angle), Some(young)) = (m.corner_strength, m.corner_angle, m.young) else {
         return Ok(());
@@ -190,7 +184,6 @@ fn tangential(c: &Table<PairContact>) -> Result<Option<LawName>, SceneError> {
         .ok_or_else(|| c.error("tangential", format!("\"{name}\""), expected()))
 }
 
-/// Checks the pairs, in the order of the scene.
 fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
     let mut out = Vec::new();
     for c in scene.rows("contact", &scene.contact) {

@@ -5,14 +5,14 @@ use crate::scene::compaction as scene;
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::measure::BoxRegion;
 
-/// A box in which the packing is measured.
+/// Box in which the packing is measured.
 #[derive(Clone, Debug)]
 pub struct MeasurePlan {
     /// Name in the summary.
     pub name: String,
     /// The box.
     pub region: BoxRegion,
-    /// Radial distribution function, where it is asked for.
+    /// Radial distribution function, if requested.
     pub radial: Option<RadialPlan>,
 }
 
@@ -25,7 +25,6 @@ pub struct RadialPlan {
     pub bins: usize,
 }
 
-/// The boxes of a scene.
 pub(super) fn build(scene: &Table<Scene>) -> Result<Vec<MeasurePlan>, SceneError> {
     let mut measures = Vec::new();
     for (i, m) in scene.rows("measure", &scene.measure).enumerate() {
@@ -40,7 +39,7 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<Vec<MeasurePlan>, SceneError
     Ok(measures)
 }
 
-/// Checks that the reach finds room about at least one point of the box.
+/// The cut-off distance must fit around a point of the box.
 fn shells(r: &Table<scene::Radial>, region: &BoxRegion) -> Result<RadialPlan, SceneError> {
     let least = (region.high - region.low).min();
     let reach = r.reach.si;

@@ -1,4 +1,4 @@
-//! The grains of a scene: materials, shapes, bodies, walls, sleeper.
+//! Grains of a scene: materials, shapes, bodies, walls, sleepers.
 
 mod bonds;
 mod check;
@@ -49,7 +49,7 @@ pub use structures::StructurePlan;
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
 ///
 /// # Errors
-/// Bad input in the scene or in the tables it names.
+/// Input errors.
 pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Failure> {
     let gravity = Vec3::from(gravity);
     let mut materials = materials::build(scene)?;

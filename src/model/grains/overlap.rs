@@ -1,4 +1,4 @@
-//! Overlaps of the grains at the start, by their real shapes.
+//! Initial overlaps by true shapes.
 
 use super::part::GrainsPart;
 use crate::scene::{Document, SceneError};
@@ -8,16 +8,14 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{Model, Partner};
 
-/// Largest overlap at the start, as a share of the smaller radius: springs of deeper ones shoot the grains apart.
+/// Largest overlap over smaller radius, beyond which grains are ejected.
 const LARGEST: f64 = 0.1;
-/// Shares above it by less than this are rounding of the places.
 const ROUNDING: f64 = 1e-9;
 
-/// Rejects grains that overlap each other, a wall or the solid's surface `ground` at the start by more than a tenth of the smaller radius, unless their
-/// group has `accept_overlap`.
+/// Rejects initial overlaps above a tenth of the smaller radius, unless a group has `accept_overlap`.
 ///
 /// # Errors
-/// Bad input: the deepest such overlap.
+/// Deepest overlap.
 pub fn check_overlaps(
     document: &Document,
     grains: &GrainsPart,
@@ -26,7 +24,7 @@ pub fn check_overlaps(
 ) -> Result<(), SceneError> {
     let mut state = dem::State::new(model);
     let mut work = dem::Work::new(model, &state);
-    // An overlap that no step can be made with is found, and rejected with its time, by the run.
+    // Larger overlaps are reported by the run.
     let found = match ground {
         Some(ground) => dem::find_contacts(model, &mut state, &mut work, ground),
         None => dem::find_contacts(model, &mut state, &mut work, &NoSurface),
@@ -68,8 +66,8 @@ pub fn check_overlaps(
     Err(document.error(&format!("grains.{part}"), found, expected))
 }
 
-/// Radius of a body, of the smallest sphere of a clump, half the shortest side of a box; of a polyhedron that of the sphere of its
-/// volume [m].
+/// Reference radius [m]: smallest clump sphere, half the shortest box side, equal-volume sphere of a
+/// polyhedron.
 fn radius(model: &Model, body: usize) -> f64 {
     let scale = model.scale(body);
     match model.shape(body) {

@@ -1,4 +1,4 @@
-//! The resolved grains of a scene, from which models are built.
+//! Resolved grains of a scene, from which models are built.
 
 use super::bonds::BondPart;
 use super::compaction::CompactionPlan;
@@ -18,40 +18,40 @@ use std::sync::Arc;
 use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
-/// The grains, ready to build models of.
+/// Resolved grains.
 #[derive(Clone)]
 pub struct GrainsPart {
-    /// Materials, and what pairs of them have of their own.
+    /// Materials and pair overrides.
     pub materials: MaterialsPart,
-    /// Groups of grains, and all grains where they start.
+    /// Groups with all grains.
     pub groups: GroupsPart,
     /// Bonds between grains.
     pub bonds: BondPart,
     /// Walls.
     pub walls: WallsPart,
-    /// The solid's surface.
+    /// Contact surface of the solid.
     pub surface: SurfacePlan,
     /// Acceleration of gravity [m/s²].
     pub gravity: Vec3,
-    /// Wind of the run proper.
+    /// Wind during the main stage.
     pub wind: Option<BodyForce>,
-    /// Water, which is there from the start.
+    /// Water, in all stages.
     pub water: Option<BodyForce>,
-    /// Steps in time.
+    /// DEM time stepping.
     pub steps: StepPlan,
     /// Periodic borders.
     pub periodic: Borders,
-    /// What is done before the run proper.
+    /// Stages before the main stage.
     pub packing: PackingPlan,
-    /// Boxes that are measured.
+    /// Measurement boxes.
     pub measures: Vec<MeasurePlan>,
-    /// What of a slide is measured.
+    /// Runout measurement.
     pub runout: Option<RunoutPlan>,
-    /// A specimen between platens.
+    /// Specimen between platens.
     pub specimen: Option<SpecimenPlan>,
-    /// How breaks are joined to acoustic events.
+    /// Acoustic event clustering.
     pub events: Option<EventPlan>,
-    /// Structures whose loads are recorded.
+    /// Structures with recorded loads.
     pub structures: Vec<StructurePlan>,
     /// Sleepers, rail and load.
     pub track: TrackPart,
@@ -59,32 +59,31 @@ pub struct GrainsPart {
     pub flow: Option<FlowPlan>,
 }
 
-/// The surface of a solid that grains touch.
+/// Contact surface of the solid.
 #[derive(Clone, Debug)]
 pub struct SurfacePlan {
-    /// That of the ground; none without a solid.
+    /// DEM material of the ground.
     pub ground: Option<usize>,
-    /// First face of meshed sleepers in the surface, and their material.
+    /// First meshed sleeper face, material.
     pub sleepers: Option<(u32, usize)>,
-    /// The ground's surface as triangles, where there are polyhedra.
+    /// Ground surface as triangles, for polyhedra.
     pub mesh: Option<Arc<SurfaceMesh>>,
 }
 
-/// What is done with grains before the run proper.
+/// Packing stages before the main stage.
 #[derive(Clone, Default)]
 pub struct PackingPlan {
-    /// Settling.
+    /// Deposition.
     pub deposition: Option<DepositionPlan>,
-    /// Compaction of the settled bed.
+    /// Compaction of the deposited bed.
     pub compaction: Vec<CompactionPlan>,
 }
 
-/// Takes a share of the stiffness of all contacts.
 fn soften(input: &mut ModelInput, factor: f64) {
     for material in &mut input.materials {
         material.stiffness *= factor;
         material.young = material.young.map(|young| young * factor);
-        // Corners crush under the forces that the true ones bear, which go as strength³ / modulus².
+        // Corners crush at true forces, proportional to strength³/modulus².
         material.corner_strength *= libm::cbrt(factor * factor);
     }
     for pair in &mut input.contacts {
@@ -93,7 +92,7 @@ fn soften(input: &mut ModelInput, factor: f64) {
 }
 
 impl GrainsPart {
-    /// Body forces of the run proper.
+    /// Returns the body forces of the main stage.
     pub fn body_forces(&self) -> impl Iterator<Item = BodyForce> {
         self.wind.into_iter().chain(self.water)
     }
@@ -103,11 +102,11 @@ impl GrainsPart {
         self.walls.others.iter().any(|w| w.scarring.is_some())
     }
 
-    /// The model in which filled grains settle: no sleeper, friction and damping of the deposition.
+    /// Returns the deposition model, without sleepers.
     pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
         let contacts = self.materials.pairs_with(plan.friction);
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
-        // Sleepers are not there yet.
+        // Sleepers are placed later.
         let alone = ModelInput {
             other_surface: None,
             body_forces: self.water.into_iter().collect(),
@@ -115,12 +114,11 @@ impl GrainsPart {
         };
         let mut input = ModelInput { contacts, damping, ..alone };
         soften(&mut input, plan.stiffness_factor);
-        // How grains bounce on their way into the bed does not matter.
+        // Restitution does not matter during deposition.
         if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
             (*longest, *collisions) = (f64::INFINITY, false);
         }
-        // Walls wait for the run proper, which starts with them in their first place; driven walls and rigid bodies come
-        // in only then.
+        // Walls move in the main stage; servo-controlled walls and rigid bodies are added there.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
         input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());
@@ -132,7 +130,7 @@ impl GrainsPart {
         input
     }
 
-    /// The step, or how it is found; not longer than the track's springs on sleepers allow.
+    /// Limited by track springs on sleepers.
     fn time_step(&self) -> TimeStep {
         match self.steps.step {
             TimeStep::Measured { share, .. } => {
@@ -142,20 +140,20 @@ impl GrainsPart {
         }
     }
 
-    /// Whether grains are packed before the run proper.
+    /// Whether grains are packed before the main stage.
     pub fn is_packed(&self) -> bool {
         let PackingPlan { deposition, compaction } = &self.packing;
         deposition.is_some() || !self.groups.growths.is_empty() || !compaction.is_empty()
     }
 
-    /// The model of the run proper with the given bodies, which have their true masses.
+    /// Returns the main-stage model of bodies of true mass.
     pub fn input(&self, bodies: Vec<BodyInput>) -> ModelInput {
         let mut input = self.true_input(bodies);
         add_inertia(&mut input, self.steps.mass_factor);
         input
     }
 
-    /// The same without a factor on the masses: beds are made with the true ones, for falling is no quasi-static motion.
+    /// Without mass scaling: falling is not quasi-static.
     fn true_input(&self, mut bodies: Vec<BodyInput>) -> ModelInput {
         for moving in &self.groups.moving {
             for body in bodies.iter_mut().filter(|b| b.part == moving.part) {
@@ -186,17 +184,17 @@ impl GrainsPart {
         input
     }
 
-    /// Stiffness, density and the like of the material of a body.
+    /// Returns the material of a body.
     pub fn material(&self, body: &BodyInput) -> Material {
         self.materials.all[body.material]
     }
 
-    /// Number of groups that are no sleepers; theirs come first.
+    /// Returns the number of grain groups, which come first.
     pub fn stone_groups(&self) -> u32 {
         self.groups.names.len() as u32 - u32::from(self.track.rigid_sleeper().is_some())
     }
 
-    /// Masses of the lightest and the heaviest grain of a material in a model of these grains [kg]; none without any.
+    /// Returns smallest and largest grain mass [kg].
     pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
         let grains = self.stone_groups();
         let own = (0..model.body_count())
@@ -206,18 +204,18 @@ impl GrainsPart {
         (ends[1] > 0.0).then_some(ends)
     }
 
-    /// Puts a plane elsewhere [m].
+    /// Moves a plane [m].
     pub fn place_plane(&mut self, plane: usize, point: Vec3) {
         self.walls.planes[plane].point = point;
     }
 
-    /// Tells from which face of the solid's surface on the faces are those of meshed sleepers.
+    /// Sets the first face of meshed sleepers.
     pub fn set_sleeper_faces(&mut self, first: u32) {
         let meshed = self.track.sleeper.as_ref().filter(|s| s.row.meshed);
         self.surface.sleepers = meshed.map(|s| (first, s.material));
     }
 
-    /// A sleeper as a body with its centre above `centre` at height `z` [m], with its true mass.
+    /// Returns a sleeper of true mass above `centre` at height `z` [m].
     pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
             shape: plan.shape,
@@ -235,9 +233,9 @@ impl GrainsPart {
 mod tests {
     use super::*;
 
-    /// A corner crushes at the force π³ σ³ R²/(6 E*²) (Hertz), so softened corners crush at the force of the true ones.
+    /// Crushing force π³ σ³ R²/(6 E*²) (Hertz); softening must preserve it.
     #[test]
-    fn softened_corners_crush_at_the_same_force() {
+    fn softening_preserves_crushing_force() {
         let granite = Material { young: Some(50e9), corner_strength: 800e6, ..Material::RIGID };
         let mut input = ModelInput { materials: vec![granite], ..ModelInput::default() };
         soften(&mut input, 0.02);

@@ -1,14 +1,14 @@
-//! `[periodic]` resolved: borders, and the grains that must lie between them.
+//! `[periodic]` resolved.
 
 use super::groups::GroupsPart;
 use crate::scene::{Scene, SceneError, Table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Lower and upper border along each periodic axis [m].
+/// Borders of each periodic axis [m].
 pub type Borders = [Option<[f64; 2]>; 3];
 
-/// The borders; grains that are placed by the program may not stick out, others must have their centre inside.
+/// Generated grains must lie inside, given grains only with their centre.
 pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders, SceneError> {
     let mut borders = Borders::default();
     let Some(table) = scene.optional("periodic", &scene.periodic) else { return Ok(borders) };
@@ -26,7 +26,7 @@ pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders
         let slack = 1e-9 * (high - low);
         for body in groups.bodies.iter().filter(|b| !b.absent) {
             let group = &scene.grains[body.part as usize];
-            // Floes lie in their box, far within the spheres about them.
+            // Floes lie inside, unlike their bounding spheres.
             let placed = [group.spheres.is_some(), group.packing.is_some(), group.floes.is_some()];
             let reach =
                 if placed.contains(&true) || group.frustum.is_some() { 0.0 } else { groups.reach(body) };

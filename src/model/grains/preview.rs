@@ -1,5 +1,4 @@
-//! The models of the grains as far as they are known before anything has moved: what is wrong with a scene shows here, and not
-//! after its bed has settled.
+//! Grain models before the first step, to report errors before deposition.
 
 use super::bonds::{check_gaps, check_joinable, check_joined};
 use super::overlap::check_overlaps;
@@ -9,28 +8,28 @@ use crate::scene::{Document, SceneError};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::{Model, ModelInput};
 
-/// Most steps of the grains in a stage: at ten million steps a second, more than any run takes, it lasts a day.
+/// A day at ten million steps per second.
 const MOST_STEPS: f64 = 1e12;
 
-/// The grains at the start.
+/// Initial grain models.
 pub struct Preview {
     /// Without sleepers.
     pub alone: Model,
-    /// With rigid sleepers at the height 0: their place does not matter to the limit of the step.
+    /// With rigid sleepers at height 0, irrelevant to the step limit.
     pub whole: Model,
 }
 
-/// Makes the models, and checks what depends on their step and on all bodies together, and on the solid's surface `ground`.
+/// Builds and checks the models.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn preview(
     document: &Document,
     grains: &GrainsPart,
     ground: Option<&SolidSurface>,
 ) -> Result<Preview, SceneError> {
     check_gaps(document, &grains.bonds, &grains.groups.bodies, &grains.groups.shapes)?;
-    // First without the sleeper, as a run does to find its place.
+    // First without sleepers, as in a run.
     let input = grains.input(grains.groups.bodies.clone());
     if grains.is_packed() {
         check_joinable(document, &grains.bonds, &input)?;
@@ -46,7 +45,7 @@ pub fn preview(
     Ok(Preview { alone, whole })
 }
 
-/// The grains at the start with rigid sleepers at the height 0.
+/// Returns the initial grains with rigid sleepers at height 0.
 pub fn with_sleepers(grains: &GrainsPart) -> ModelInput {
     let plan = grains.track.rigid_sleeper();
     let sleepers = plan
@@ -55,10 +54,10 @@ pub fn with_sleepers(grains: &GrainsPart) -> ModelInput {
     grains.input(grains.groups.bodies.iter().cloned().chain(sleepers).collect())
 }
 
-/// Refuses a time that takes more steps of `dt` [s] than anyone can wait for.
+/// Rejects times of too many steps `dt` [s].
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn check_steps(document: &Document, key: &str, time: f64, dt: f64) -> Result<(), SceneError> {
     if time / dt <= MOST_STEPS {
         return Ok(());

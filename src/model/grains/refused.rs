@@ -1,9 +1,9 @@
-//! What the model of the grains refuses, in words of the scene.
+//! Model errors in terms of scene keys.
 
 use crate::scene::{Document, Problem, SceneError};
 use trackbed_dem::ModelError;
 
-/// What is wrong with the grains as a whole, which shows only when their model is made.
+/// Converts a model error into an input error.
 pub fn refused(document: &Document, error: &ModelError) -> SceneError {
     match error {
         ModelError::TimeStep { dt, limit, cause } => {

@@ -3,27 +3,26 @@
 use super::groups::GroupsPart;
 use crate::scene::{Scene, SceneError, Table};
 
-/// Share of the mass at which the front is taken where the scene does not say.
+/// Default mass fraction behind the front.
 const SHARE: f64 = 0.99;
-/// Most cells of a depth map along a side: what a slide spreads over beyond it makes the cells larger.
+/// Most depth map cells per side.
 pub const MOST_CELLS: usize = 4000;
 
-/// What of a slide is measured.
+/// Runout measurement.
 #[derive(Clone, Debug)]
 pub struct RunoutPlan {
-    /// Groups that slide, by number, ascending.
+    /// Sliding groups, ascending.
     pub parts: Vec<u32>,
-    /// Direction in plan, of length 1.
+    /// Unit direction in plan.
     pub direction: [f64; 2],
-    /// Side of the cells of the depth map [m]; none: twice the mean diameter.
+    /// Cell size [m]; default twice the mean diameter.
     pub cell: Option<f64>,
-    /// Depth above which a cell belongs to the deposit [m]; none: half the mean diameter.
+    /// Depth limit [m]; default half the mean diameter.
     pub depth: Option<f64>,
-    /// Share of the mass behind the front.
+    /// Mass fraction behind the front.
     pub share: f64,
 }
 
-/// The plan of a scene.
 pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Option<RunoutPlan>, SceneError> {
     let Some(table) = scene.optional("runout", &scene.runout) else { return Ok(None) };
     let excluded = [("coupling", scene.coupling.is_some()), ("periodic", scene.periodic.is_some())];

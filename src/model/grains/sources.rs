@@ -1,10 +1,9 @@
-//! Sources of the models that grains use, for the summary and the log.
+//! Literature sources of the models in use.
 
 use trackbed_dem::{Material, PairOverride, law};
 
 const INTEGRATION: &str = "integration: leapfrog (velocity Verlet), Verlet, Phys. Rev. 159, 1967";
 
-/// Sources of the laws of contact in use and of the integration in time.
 pub(super) fn of(materials: &[Material], pairs: &[PairOverride]) -> Vec<&'static str> {
     let mut sources = law::sources(materials, pairs);
     sources.push(INTEGRATION);
@@ -16,7 +15,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_law_of_the_materials_is_the_one_that_is_named() {
+    fn names_law_of_materials() {
         let linear = Material { stiffness: 1e6, ..Material::RIGID };
         let hertz = Material { young: Some(5e10), ..Material::RIGID };
         let sticky = PairOverride { adhesion: Some(0.1), ..PairOverride::default() };

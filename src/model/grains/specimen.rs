@@ -6,49 +6,48 @@ use crate::scene::specimen::{Specimen, SpecimenTest};
 use crate::scene::{Scene, SceneError, Table};
 use std::f64::consts::PI;
 
-/// Shares of the peak between which constants are taken where the scene does not say.
+/// Default range of the secant over the peak.
 const BETWEEN: [f64; 2] = [0.2, 0.5];
 
-/// What presses on a specimen.
+/// Platen type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Platen {
-    /// A wall, by its number among those that are no plain planes.
+    /// Wall, by index among non-planar walls.
     Wall(usize),
-    /// A group of grains that keeps its motion.
+    /// Group with prescribed motion.
     Group(u32),
 }
 
-/// A specimen between platens.
+/// Specimen between platens.
 #[derive(Clone, Debug)]
 pub struct SpecimenPlan {
-    /// Whether it is a disc that is split.
+    /// Whether it is a Brazilian disc.
     pub brazilian: bool,
     /// Lower and upper platen.
     pub platens: [Platen; 2],
-    /// Axis, 0 to 2.
+    /// Axis index, 0 to 2.
     pub axis: usize,
-    /// Distance of the platens at the start [m].
+    /// Initial platen distance [m].
     pub length: f64,
-    /// What the force is divided by [m²].
+    /// Reference area of the stress [m²].
     pub area: f64,
-    /// Walls at the sides, by number, and the area of each [m²].
+    /// Side walls and their areas [m²].
     pub sides: (Vec<usize>, f64),
-    /// Groups of the specimen, ascending.
+    /// Specimen groups, ascending.
     pub parts: Vec<u32>,
-    /// Shares of the peak between which modulus and Poisson's ratio are taken.
+    /// Peak fractions of the elastic range.
     pub between: [f64; 2],
 }
 
-/// How breaks are joined to events.
+/// Clustering of bond breaks into events.
 #[derive(Clone, Copy, Debug)]
 pub struct EventPlan {
-    /// Largest distance of two breaks of an event [m].
+    /// Largest break distance in an event [m].
     pub distance: f64,
     /// Longest time between them [s].
     pub time: f64,
 }
 
-/// How breaks of a scene are joined.
 pub(super) fn events(scene: &Table<Scene>) -> Result<Option<EventPlan>, SceneError> {
     let Some(table) = scene.optional("events", &scene.events) else { return Ok(None) };
     if scene.bond.is_empty() {
@@ -59,7 +58,6 @@ pub(super) fn events(scene: &Table<Scene>) -> Result<Option<EventPlan>, SceneErr
     Ok(Some(EventPlan { distance, time }))
 }
 
-/// The specimen of a scene.
 pub(super) fn build(
     scene: &Table<Scene>,
     groups: &GroupsPart,
@@ -126,7 +124,7 @@ pub(super) fn build(
     }))
 }
 
-/// What the force is divided by: the section, or π D t/2.
+/// Section, or π D t/2.
 fn area(table: &Table<Specimen>, length: f64) -> Result<f64, SceneError> {
     match table.test {
         SpecimenTest::Compression => {

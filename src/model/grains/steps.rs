@@ -1,4 +1,4 @@
-//! Steps of the grains in time: keys of `[time]` resolved.
+//! DEM time stepping: keys of `[time]` resolved.
 //!
 //! Theory manual: equation (3.10) of `docs/theory/motion.md`.
 
@@ -7,21 +7,21 @@ use super::materials::MaterialsPart;
 use crate::scene::{Scene, SceneError, Table, TimeControl};
 use trackbed_dem::{ModelInput, SearchSkin, TimeStep};
 
-/// How the step of the grains is found.
+/// DEM time stepping.
 #[derive(Clone, Copy, Debug)]
 pub struct StepPlan {
-    /// The step, or its share of what the contacts of each moment allow.
+    /// Fixed, or fraction of the critical time step.
     pub step: TimeStep,
-    /// Approach speed that contacts whose stiffness grows are to be stable at [m/s].
+    /// Approach speed for stiffening contacts [m/s].
     pub impact_speed: Option<f64>,
-    /// How far beyond touch neighbours are listed.
+    /// Neighbour list skin.
     pub skin: SearchSkin,
-    /// Factor on inertial masses of the run proper.
+    /// Mass scaling factor of the main stage.
     pub mass_factor: f64,
 }
 
-/// Makes all bodies heavier by a factor under a gravity that is weaker by it: the same weights and contacts, more inertia. Every account
-/// stays that of a system as it is, with `factor` times the kinetic energy at the same speed.
+/// Scales masses up and gravity down: same weights and contacts, more inertia. Energy balances equal the true
+/// ones with `factor` times the kinetic energy.
 pub(super) fn add_inertia(input: &mut ModelInput, factor: f64) {
     if factor == 1.0 {
         return;
@@ -35,14 +35,13 @@ pub(super) fn add_inertia(input: &mut ModelInput, factor: f64) {
     }
 }
 
-/// The distance beyond touch up to which neighbours are listed.
 pub(super) fn search_skin(time: &Table<TimeControl>) -> Result<SearchSkin, SceneError> {
     let good = |s| (0.01..=2.0).contains(&s);
     let share = time.check("search_skin", time.search_skin, good, "0.01 to 2")?;
     Ok(share.map_or_else(SearchSkin::default, SearchSkin::Share))
 }
 
-/// The factor on inertial masses; refused where motion itself is the result.
+/// Rejected if motion itself is the result.
 pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
     let time = scene.below("time", &scene.time);
     let good = |f| (1.0..=1e4).contains(&f);
@@ -69,7 +68,7 @@ pub(super) fn mass_factor(scene: &Table<Scene>) -> Result<f64, SceneError> {
     }
 }
 
-/// Refuses an impact speed that no contact asks for.
+/// Rejected without a stiffening contact.
 pub(super) fn impact_speed(
     scene: &Table<Scene>,
     materials: &MaterialsPart,
@@ -81,7 +80,6 @@ pub(super) fn impact_speed(
     Ok(speed.map(|v| v.si))
 }
 
-/// The step, or how it is found.
 pub(super) fn time_step(time: &Table<TimeControl>) -> Result<TimeStep, SceneError> {
     match (time.grain_step, time.grain_step_fraction) {
         (Some(_), Some(_)) => Err(time.conflict("grain_step_fraction", "`grain_step`")),

@@ -4,43 +4,41 @@ use super::walls::WallsPart;
 use crate::scene::structure::Structure;
 use crate::scene::{Scene, SceneError, Table};
 
-/// Most sectors and levels.
 const MOST: usize = 360;
 
-/// A structure whose load is recorded.
+/// Structure with recorded loads.
 #[derive(Clone, Debug)]
 pub struct StructurePlan {
     /// Name in the history.
     pub name: String,
-    /// Walls, counted among those other than plain planes.
+    /// Walls, indexed among non-planar walls.
     pub walls: Vec<usize>,
     /// Groups of grains.
     pub groups: Vec<u32>,
-    /// The one of its walls that is a rigid body, whose motion is recorded.
+    /// Rigid body wall with recorded motion.
     pub body: Option<usize>,
-    /// Point of its axis that moments refer to [m].
+    /// Reference point of moments [m].
     pub foot: [f64; 3],
     /// Sectors of equal angle.
     pub sectors: usize,
-    /// Heights between layers [m], ascending.
+    /// Layer boundaries [m], ascending.
     pub levels: Vec<f64>,
 }
 
 impl StructurePlan {
-    /// Sector of a place.
+    /// Returns the sector of a position.
     pub fn sector(&self, at: [f64; 3]) -> usize {
         let turn = libm::atan2(at[1] - self.foot[1], at[0] - self.foot[0]) / std::f64::consts::TAU;
         let share = if turn < 0.0 { turn + 1.0 } else { turn };
         ((share * self.sectors as f64) as usize).min(self.sectors.saturating_sub(1))
     }
 
-    /// Layer of a place, from below.
+    /// Returns the layer of a position, from below.
     pub fn layer(&self, at: [f64; 3]) -> usize {
         self.levels.partition_point(|level| *level <= at[2])
     }
 }
 
-/// The structures of a scene; `groups`: names of the groups of grains.
 pub(super) fn build(
     scene: &Table<Scene>,
     walls: &WallsPart,

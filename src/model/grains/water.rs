@@ -4,7 +4,6 @@ use crate::scene::water::{DragArea, Water as Written};
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::{BodyForce, DragArea as Area, Measured, Vec3, Water, Wave, WaveError};
 
-/// The water of a scene, if it has any.
 pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyForce>, SceneError> {
     let Some(water) = scene.optional("water", &scene.water) else { return Ok(None) };
     if !(gravity.z < 0.0 && gravity.x == 0.0 && gravity.y == 0.0) {
@@ -40,7 +39,6 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
     })))
 }
 
-/// Its waves.
 fn wave(water: &Table<Written>, current: [f64; 2], gravity: f64) -> Result<Option<Wave>, SceneError> {
     let depth = water.check("depth", water.depth, |d| d > 0.0, "above 0")?.map_or(f64::INFINITY, |d| d.si);
     let Some(wave) = water.optional("wave", &water.wave) else {

@@ -4,7 +4,6 @@ use crate::scene::units::vector;
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::{BodyForce, Vec3, Wind};
 
-/// The wind of a scene, if it has any.
 pub(super) fn build(scene: &Table<Scene>) -> Result<Option<BodyForce>, SceneError> {
     let Some(wind) = scene.optional("wind", &scene.wind) else { return Ok(None) };
     let velocity = Vec3::from(vector(&wind.velocity));

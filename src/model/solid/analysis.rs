@@ -1,4 +1,4 @@
-//! How the solid is solved, resolved.
+//! `[solid]` analysis resolved.
 
 use super::initial_stress::{InitialStressKind, InitialStressPlan, initial_stress};
 use super::material::Materials;
@@ -8,62 +8,61 @@ use trackbed_fem::newmark::Newmark;
 use trackbed_fem::nonlinear::strength_reduction::ReductionOptions;
 use trackbed_fem::nonlinear::{LinearMethod, NewtonOptions, Variant};
 
-/// Force tolerance of a quasi-static run: displacements and loads within 5e-6, where 1e-4 has 7e-5 for 5 to 8 % fewer iterations
-/// (`inputs/studies/newton_*.toml`).
+/// Quasi-static force tolerance: displacements and loads within 5e-6; 1e-4 gives 7e-5 for 5 to 8 % fewer
+/// iterations (`inputs/studies/newton_*.toml`).
 const QUASI_STATIC: f64 = 1e-5;
 
-/// How a solid that runs alone is solved.
+/// Analysis of a solid-only model.
 #[derive(Clone, Copy, Debug)]
 pub enum Analysis {
-    /// One static solve.
+    /// Static solve.
     Static,
     /// Time integration.
     Dynamic(TimeMethod),
-    /// Equilibrium at every step of a pseudo-time.
+    /// Equilibrium at pseudo-time steps.
     QuasiStatic(QuasiStaticPlan),
     /// Factor of safety.
     StrengthReduction(StrengthReductionPlan),
 }
 
-/// Method of time integration.
+/// Time integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeMethod {
-    /// Newmark's.
+    /// Newmark.
     Newmark(Newmark),
-    /// That of Hilber, Hughes and Taylor, with its α, −1/3 to 0.
+    /// Hilber, Hughes, Taylor with α in −1/3 to 0.
     Hht(f64),
 }
 
-/// Steps of a quasi-static run.
+/// Quasi-static stepping.
 #[derive(Clone, Copy, Debug)]
 pub struct QuasiStaticPlan {
-    /// Smallest part of the step that is tried before giving up.
+    /// Smallest fraction of the step.
     pub smallest_step: f64,
-    /// Newton iterations above which the next step is made shorter.
+    /// Newton iterations that reduce the next step.
     pub target_iterations: u32,
 }
 
-/// Search for the factor of safety.
+/// Factor of safety search.
 pub type StrengthReductionPlan = ReductionOptions;
 
-/// Options of the iteration.
+/// Newton options.
 pub type NewtonPlan = NewtonOptions;
 
-/// All of a solid's plans.
+/// Resolved plans of a solid.
 pub struct Plans {
-    /// How it is solved.
+    /// Analysis type.
     pub analysis: Analysis,
-    /// Stress before the run.
+    /// Initial stress.
     pub initial_stress: Option<InitialStressPlan>,
-    /// Options of the iteration.
+    /// Newton options.
     pub newton: NewtonPlan,
 }
 
-/// Resolves what a scene says about how its solid is solved. `linear`: no material yields;
-/// `coupled`: grains lie on it.
+/// Resolves the analysis. `linear`: not plastic; `coupled`: with grains.
 ///
 /// # Errors
-/// Tables that exclude each other, a value out of range, or a plastic solid without steps.
+/// Input errors.
 pub fn plans(
     solid: &Table<Solid>,
     materials: &Materials,
@@ -147,7 +146,7 @@ fn quasi_static(q: &Table<QuasiStatic>) -> Result<QuasiStaticPlan, SceneError> {
         smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
         target_iterations: q.target_iterations.unwrap_or(40),
     };
-    // A step is halved down to this: smaller parts than a double tells apart would never end.
+    // Smaller fractions are lost to rounding.
     q.check("smallest_step", plan.smallest_step, |s| (1e-9..=1.0).contains(&s), "1e-9 to 1")?;
     q.check("target_iterations", plan.target_iterations, |n| (2.0..=1000.0).contains(&n), "2 to 1000")?;
     Ok(plan)
@@ -166,7 +165,7 @@ fn strength_reduction(
         ..default
     };
     s.check("start", plan.start, |f| (1e-3..=1e3).contains(&f), "0.001 to 1000")?;
-    // Each halving of the bracket is a search of its own for equilibrium; strength is known to a hundredth at best.
+    // Each bisection is an equilibrium search; strength is known to 1 %.
     s.check("tolerance", plan.tolerance, |f| (1e-4..=10.0).contains(&f), "0.0001 to 10")?;
     let good = |f| f <= 1e4 && f > plan.start.max(plan.start.recip());
     s.check("largest", plan.largest, good, "above `start` and its reciprocal, at most 10000")?;

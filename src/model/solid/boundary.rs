@@ -1,4 +1,4 @@
-//! Supports and absorbing boundaries of the solid, resolved.
+//! Supports and absorbing boundaries resolved.
 
 use super::common::time_function;
 use super::geometry::Geometry;
@@ -11,24 +11,24 @@ use trackbed_fem::boundary::{BoundaryLayer, SpringFactors};
 use trackbed_fem::material::Material;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// Supports of the scene, joined with those of the mesh file.
+/// Supports of scene and mesh file.
 pub struct Supports {
-    /// All of them, with the displacement at time 0.
+    /// Constraints with displacements at time 0.
     pub constraints: Vec<Constraint>,
-    /// Supports that move: dof (`3 * node + direction`), displacement [m], its course.
+    /// Moving supports by dof (`3 * node + direction`): displacement [m], time history.
     pub moving: BTreeMap<u32, (f64, TimeFunction)>,
-    /// Named supports and their dofs, for reactions.
+    /// Named supports and their dofs.
     pub named: Vec<(String, Vec<u32>)>,
 }
 
 /// Resolves `[[solid.support]]`.
 ///
 /// # Errors
-/// A key is missing or contradictory, or two supports give one dof different displacements.
+/// Missing, contradictory or conflicting keys.
 pub fn supports(solid: &Table<Solid>, geometry: &Geometry) -> Result<Supports, SceneError> {
     let mut all =
         Supports { constraints: geometry.constraints.clone(), moving: BTreeMap::new(), named: Vec::new() };
-    // What each dof is given, by which support of the scene; none for the mesh file's.
+    // Displacement and scene support; none for the mesh file.
     let mut given: BTreeMap<u32, (f64, Option<usize>)> =
         all.constraints.iter().map(|c| (3 * c.node + u32::from(c.direction), (c.value, None))).collect();
     for (i, s) in solid.rows("support", &solid.support).enumerate() {
@@ -96,7 +96,7 @@ fn directions(s: &Table<Support>) -> Result<Vec<u8>, SceneError> {
     if directions.is_empty() { Err(wrong("none".into())) } else { Ok(directions) }
 }
 
-/// Resolves `[[solid.absorbing]]`: one layer for each material that the faces belong to.
+/// Resolves `[[solid.absorbing]]`: a layer per material.
 ///
 /// # Errors
 /// No face, or a factor out of range.

@@ -1,29 +1,26 @@
-//! Warnings about 8-node hexahedra too deep to resolve the boundary layer of a clamped face.
+//! Warnings about 8-node hexahedra too deep for the boundary layer at a clamped face.
 //!
-//! A clamped face suppresses the lateral strain ν σ/E over about a third of the width of the section. Elements that are deeper
-//! carry it through their whole depth, whatever their formulation.
+//! A clamped face suppresses the lateral strain ν σ/E over about a third of the section width. Deeper
+//! elements carry the error through their depth, in any formulation.
 
 use std::collections::BTreeMap;
 use trackbed_fem::mesh::Face;
 use trackbed_fem::{Constraint, ElementKind, Material, Mesh};
 
-/// Poisson's ratio from which deep elements at a clamped face are named.
+/// Poisson's ratio from which it warns.
 const LATERAL_STRAIN: f64 = 0.45;
-/// Largest depth of such an element over the width of the clamped section.
+/// Largest element depth over section width.
 const DEPTH: f64 = 0.25;
 
-/// Clamped faces of one material.
 #[derive(Default)]
 struct Section {
-    /// Area [m²].
     area: f64,
-    /// Length of the edges that they share with a free face [m].
+    /// Length of edges shared with free faces [m].
     free: f64,
-    /// Depth of the element behind each face [m].
     depths: Vec<f64>,
 }
 
-/// Names the materials whose 8-node hexahedra are too deep at a clamped face.
+/// Warns about too deep 8-node hexahedra at a clamped face.
 pub fn remarks(mesh: &Mesh, materials: &BTreeMap<u32, Material>, constraints: &[Constraint]) -> Vec<String> {
     let stiff = |e: usize| {
         let poisson = materials.get(&mesh.materials[e]).map_or(0.0, |m| m.elastic.poisson);
@@ -47,13 +44,12 @@ pub fn remarks(mesh: &Mesh, materials: &BTreeMap<u32, Material>, constraints: &[
     sections.iter().filter_map(|(number, s)| remark(*number, materials[number].elastic.poisson, s)).collect()
 }
 
-/// Area of a flat face [m²].
 fn area(mesh: &Mesh, face: &Face) -> f64 {
     let (_, area) = face.point_and_area(mesh, face.shape.natural_centre());
     4.0 * area.iter().map(|a| a * a).sum::<f64>().sqrt()
 }
 
-/// Length [m] of the edge that a face shares with a clamped one, if nothing holds its other corners; else 0.
+/// Length [m] of the edge shared with a clamped face, if other corners are free; else 0.
 fn free_edge(mesh: &Mesh, face: &Face, held: &[u8]) -> f64 {
     let corners = face.corners();
     let of = |k: usize| corners[k % corners.len()] as usize;
@@ -65,10 +61,10 @@ fn free_edge(mesh: &Mesh, face: &Face, held: &[u8]) -> f64 {
     })
 }
 
-/// The warning, if elements are deeper than a quarter of the hydraulic diameter 4 A/P of the section.
+/// Warns below a quarter of the hydraulic diameter 4 A/P.
 fn remark(number: u32, poisson: f64, section: &Section) -> Option<String> {
     let width = 4.0 * section.area / section.free;
-    // Without a free edge the width is infinite, without a clamped face no number.
+    // Infinite width without a free edge, NaN without a clamped face.
     let deep = |d: &&f64| **d > DEPTH * width * (1.0 + 1e-9);
     let count = section.depths.iter().filter(deep).count();
     let deepest = section.depths.iter().copied().fold(0.0, f64::max);

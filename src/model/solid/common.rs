@@ -1,4 +1,4 @@
-//! What several tables of `[solid]` share.
+//! Helpers shared by `[solid]` tables.
 
 use crate::model::tables;
 use crate::scene::history::{History, TimeFunction};

@@ -1,19 +1,17 @@
-//! Solids that are held, but whose stiffnesses are too unlike to be solved together.
+//! Ill-conditioned solids: constrained, but with too different stiffnesses.
 
 use trackbed_fem::model::Model;
 
-/// Ratio of Young's moduli from which a lost pivot is put down to them.
+/// Modulus ratio that may explain a lost pivot.
 const UNLIKE: f64 = 1e6;
-/// Ratio of the edges of an element from which a lost pivot is put down to its shape.
+/// Edge ratio that may explain a lost pivot.
 const FLAT: f64 = 500.0;
 
-/// Largest over smallest Young's modulus in use.
 fn contrast(model: &Model) -> f64 {
     let moduli = || (0..model.mesh().element_count()).map(|e| model.elastic(e).young);
     moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)
 }
 
-/// Largest ratio of the longest to the shortest edge of an element, and the element's number.
 fn flattest(model: &Model) -> (f64, u32) {
     let mesh = model.mesh();
     let ratio = |e: usize| {
@@ -30,12 +28,12 @@ fn flattest(model: &Model) -> (f64, u32) {
     ratios.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, 0))
 }
 
-/// Whether a model has moduli or elements so unlike that a pivot may be lost in a body that is held.
+/// Whether a pivot may be lost in a constrained body.
 pub fn is_poor(model: &Model) -> bool {
     contrast(model) >= UNLIKE || flattest(model).0 >= FLAT
 }
 
-/// What is wrong with it: at node `node` the part `pivot` of the stiffness is left.
+/// Describes the ill-conditioning; `pivot` remains at node `node`.
 pub fn message(model: &Model, node: u32, pivot: f64) -> String {
     let (flatness, element) = flattest(model);
     format!(

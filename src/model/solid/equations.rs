@@ -1,4 +1,4 @@
-//! How the equations of an elastic solid are solved: as the scene says, or by what is faster.
+//! Selection of equation solvers.
 
 use super::analysis::Analysis;
 use crate::scene::solid::{EquationMethod, Equations, Mass, Solid};
@@ -6,48 +6,44 @@ use crate::scene::{SceneError, Table};
 use trackbed_fem::solver::mumps;
 use trackbed_fem::{Method, Methods, MumpsMethod, Regime};
 
-/// Nodes from which steps with a lumped mass take conjugate gradients: about the time of a kept factor there, a hundredth of its
-/// memory, and none of its set-up (`benches/README.md`, section "Large solids").
+/// Nodes above which lumped-mass steps use CG: time of a stored factor, a hundredth of its memory, no set-up
+/// (`benches/README.md`, "Large solids").
 const WINDOW_NODES: usize = 100_000;
 
-/// Nodes from which conjugate gradients with smoothed aggregation are faster than a factor for a static solve (the same section).
+/// Nodes above which CG with smoothed aggregation is faster in static solves (same section).
 const STATIC_NODES: usize = 25_000;
 
-/// The methods of a solid, and why these.
+/// Solvers of a solid, with reasons.
 #[derive(Clone, Debug)]
 pub struct EquationPlan {
-    /// The methods, direct where none is used.
+    /// Solvers; direct if unused.
     pub methods: Methods,
-    /// Whether there is a static solve with a linear solver.
+    /// Whether there is a linear static solve.
     pub statics: bool,
-    /// Whether there are steps in time with a linear solver.
+    /// Whether there are linear time steps.
     pub dynamics: bool,
-    /// Why the static solve has its method.
+    /// Reason for the static solver.
     pub statics_reason: String,
-    /// Why steps have theirs.
+    /// Reason for the dynamic solver.
     pub dynamics_reason: String,
 }
 
 impl EquationPlan {
-    /// The methods that are used, by regime.
+    /// Returns the solvers in use, by regime.
     pub fn used(&self) -> impl Iterator<Item = (Regime, Method)> + use<> {
         let statics = self.statics.then_some((Regime::Statics, self.methods.statics));
         let dynamics = self.dynamics.then_some((Regime::Dynamics, self.methods.dynamics));
         statics.into_iter().chain(dynamics)
     }
 
-    /// Whether any equations of the solid are factored by the program itself.
+    /// Whether the built-in direct solver is used.
     pub fn takes_factor(&self) -> bool {
-        // Neither a linear static solve nor linear steps: plastic ones, which always are.
+        // Neither: plastic, always direct.
         let neither = !self.statics && !self.dynamics;
         neither || self.used().any(|(_, method)| method == Method::Direct)
     }
 }
 
-/// Resolves `[solid.equations]` for a solid of so many nodes.
-///
-/// # Errors
-/// An iteration or MUMPS where none is possible, a key without what it is for, MUMPS in a program that was built without it.
 pub(super) fn plan(
     solid: &Table<Solid>,
     analysis: &Analysis,
@@ -99,7 +95,6 @@ pub(super) fn plan(
     Ok(EquationPlan { methods, statics, dynamics, statics_reason, dynamics_reason })
 }
 
-/// Checks `[solid.equations]` by itself.
 fn check(t: &Table<Equations>) -> Result<(), SceneError> {
     t.check("tolerance", t.tolerance, |t| (1e-13..=1e-4).contains(&t), "1e-13 to 1e-4")?;
     let (direct, by_mumps) = (t.method == EquationMethod::Direct, t.method == EquationMethod::Mumps);
@@ -115,7 +110,6 @@ fn check(t: &Table<Equations>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// What keeps an iteration or MUMPS from being used.
 fn hindrance(solid: &Solid, analysis: &Analysis, linear: bool, coupled: bool) -> Option<&'static str> {
     if !linear {
         Some("a material that yields")

@@ -1,4 +1,4 @@
-//! The mesh of a scene's solid: read from files, or made on the spot.
+//! Mesh of a solid: from files, or generated.
 
 use crate::failure::Failure;
 use crate::machine;
@@ -9,31 +9,31 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// A mesh with what its file says about it.
+/// Mesh with data of its file.
 #[derive(Debug, Default)]
 pub struct Geometry {
     /// The mesh.
     pub mesh: Mesh,
-    /// Constraints of the file.
+    /// Constraints.
     pub constraints: Vec<Constraint>,
-    /// Node sets of the file: node indices, ascending.
+    /// Node sets: node indices, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Face sets of the file: element index and face number, ascending.
+    /// Face sets: element, face number, ascending.
     pub face_sets: BTreeMap<String, Vec<[u32; 2]>>,
-    /// Types of elements as the file names them, with their counts.
+    /// Element types of the file, with counts.
     pub element_types: Vec<(String, usize)>,
-    /// File that the elements come from, for messages.
+    /// Element file, for messages.
     pub element_file: PathBuf,
-    /// File that the constraints come from, for messages.
+    /// Constraint file, for messages.
     pub constraint_file: PathBuf,
-    /// Remarks of the reader.
+    /// Reader warnings.
     pub warnings: Vec<String>,
 }
 
-/// Reads or makes the mesh of a scene's solid.
+/// Reads or generates the mesh.
 ///
 /// # Errors
-/// No source or several, or a file is missing, unreadable or contradictory.
+/// Input errors.
 pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
     let of_lists = [("layout", solid.layout.is_some()), ("constraints", solid.constraints.is_some())];
     let lists = "`nodes` and `elements`";
@@ -118,7 +118,7 @@ fn from_file(read: MeshFile, element_file: PathBuf, constraint_file: PathBuf) ->
     }
 }
 
-/// Changes the order of the elements; constraints and sets keep the nodes that are left.
+/// Constraints and sets keep remaining nodes.
 fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
     let old = std::mem::take(&mut geometry.mesh);
     geometry.mesh = change(&old);
@@ -133,7 +133,7 @@ fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
     let of_faces = &geometry.face_sets;
     for (name, set) in &mut geometry.node_sets {
         *set = set.iter().filter_map(|n| moved(*n)).collect();
-        // New mid-side nodes of the faces of the same name.
+        // New mid-side nodes of same-named face sets.
         for [element, side] in of_faces.get(name).into_iter().flatten() {
             set.extend(geometry.mesh.face(*element as usize, *side as usize).nodes());
         }
@@ -142,12 +142,11 @@ fn reorder(geometry: &mut Geometry, change: impl Fn(&Mesh) -> Mesh) {
     }
 }
 
-/// Most elements of a block.
 const MOST_ELEMENTS: u64 = 20_000_000;
-/// Least memory that the model of a block of quadratic and of linear bricks takes for each of them [bytes].
+/// Least memory per quadratic and linear brick [bytes].
 const ELEMENT_BYTES: [u64; 2] = [30_000, 2_500];
 
-/// Refuses more elements than are planned for, or than the free memory holds, before any is made.
+/// Checked before generation.
 fn check_counts(block: &Table<Block>, order: Option<Order>) -> Result<(), SceneError> {
     let bytes = ELEMENT_BYTES[usize::from(matches!(order, Some(Order::Linear)))];
     let along = |axis: &Axis| axis.counts.iter().fold(0_u64, |n, &c| n.saturating_add(c as u64));
@@ -211,7 +210,6 @@ fn block(block: &Table<Block>, order: Option<Order>) -> Result<Mesh, SceneError>
     Ok(mesh)
 }
 
-/// The grid planes of an axis.
 fn planes(axis: &Table<Axis>) -> Result<Vec<f64>, SceneError> {
     let lines: Vec<f64> = axis.lines.iter().map(|l| l.si).collect();
     if lines.len() < 2 || lines.windows(2).any(|w| w[1] <= w[0]) {
@@ -230,7 +228,7 @@ fn planes(axis: &Table<Axis>) -> Result<Vec<f64>, SceneError> {
     let mut planes = vec![lines[0]];
     for i in 0..intervals {
         let (low, high, count) = (lines[i], lines[i + 1], axis.counts[i]);
-        // Element lengths are a geometric row whose last is `ratio` times its first.
+        // The last length is `ratio` times the first.
         let growth = if count > 1 { libm::pow(ratios[i], 1.0 / (count - 1) as f64) } else { 1.0 };
         let total: f64 = (0..count).map(|k| growth.powi(k as i32)).sum();
         let mut sum = 0.0;
@@ -250,7 +248,7 @@ mod tests {
     use crate::scene::units::Quantity;
 
     #[test]
-    fn a_graded_axis_keeps_its_lines_and_ratios() {
+    fn graded_axis_keeps_lines_and_ratios() {
         let document = Document::parse(std::path::Path::new("x.toml"), String::new()).unwrap();
         let axis = Axis {
             lines: [0.0, 1.0, 4.0].map(Quantity::new).to_vec(),

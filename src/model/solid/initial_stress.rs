@@ -1,4 +1,4 @@
-//! Stress of the solid before the run, resolved.
+//! `[solid.initial_stress]` resolved.
 
 use super::material::Materials;
 use crate::scene::solid::{InitialStress, InitialStressMethod, Solid};
@@ -7,34 +7,33 @@ use std::collections::BTreeMap;
 use trackbed_fem::Mesh;
 use trackbed_fem::nonlinear::initial_stress::Overburden;
 
-/// Stress before the run.
+/// Initial stress.
 #[derive(Clone, Debug)]
 pub struct InitialStressPlan {
-    /// How it is found.
+    /// Method.
     pub kind: InitialStressKind,
-    /// Steps in which equilibrium is sought.
+    /// Load steps to equilibrium.
     pub steps: u32,
-    /// Whether the loads at time 0 take part in the equilibrium.
+    /// Whether loads at time 0 are included.
     pub loads: bool,
 }
 
-/// How the initial stress is found.
+/// Initial stress method.
 #[derive(Clone, Debug)]
 pub enum InitialStressKind {
-    /// Weight above times K₀ sideways.
+    /// K₀ times the overburden horizontally.
     K0 {
-        /// K₀ of each material.
+        /// K₀ by material.
         k0: BTreeMap<u32, f64>,
-        /// What lies above a point; none: level ground up to the top of the mesh.
+        /// Overburden; default level ground at the top of the mesh.
         overburden: Option<Overburden>,
     },
-    /// Gravity turned on in steps.
+    /// Gravity applied in steps.
     Gravity,
-    /// The same stress everywhere [Pa].
+    /// Uniform stress [Pa].
     Uniform([f64; 6]),
 }
 
-/// Resolves `[solid.initial_stress]`.
 pub(super) fn initial_stress(
     i: &Table<InitialStress>,
     materials: &Materials,
@@ -91,10 +90,10 @@ fn overburden(i: &Table<InitialStress>) -> Result<Option<Overburden>, SceneError
     }
 }
 
-/// Refuses a K₀ state whose weight above a point is taken from the density at that point, where materials differ in it.
+/// Rejects a K₀ state of several densities without layers.
 ///
 /// # Errors
-/// Densities that differ, and no layers.
+/// Densities that differ.
 pub fn check_overburden(
     solid: &Table<Solid>,
     plan: Option<&InitialStressPlan>,

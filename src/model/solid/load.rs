@@ -1,4 +1,4 @@
-//! Loads on the solid, resolved to nodal forces with a course in time.
+//! Nodal forces with time histories.
 
 use super::common::time_function;
 use super::geometry::Geometry;
@@ -11,16 +11,16 @@ use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Mesh;
 
-/// A load pattern and how it varies in time.
+/// Load pattern with time history.
 pub struct NodalLoad {
     /// (degree of freedom, force [N]) pairs.
     pub entries: Vec<(usize, f64)>,
-    /// Factor against time.
+    /// Load factor over time.
     pub function: TimeFunction,
 }
 
 impl NodalLoad {
-    /// Adds the load at time `t` [s] to `load`, shape `[3·nodes]`.
+    /// Adds the load at time `t` [s], shape `[3·nodes]`.
     pub fn add(&self, t: f64, load: &mut [f64]) {
         let factor = self.function.factor(t);
         if factor != 0.0 {
@@ -31,10 +31,10 @@ impl NodalLoad {
     }
 }
 
-/// Resolves one `[[solid.load]]`.
+/// Resolves a `[[solid.load]]`.
 ///
 /// # Errors
-/// A key is missing or not one of this kind of load, or it covers no face.
+/// Wrong keys, or no face.
 pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalLoad, SceneError> {
     use SolidLoadKind::{Point, Pressure, Traction};
     let mesh = &geometry.mesh;
@@ -87,7 +87,6 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
     Ok(NodalLoad { entries, function })
 }
 
-/// Spreads a force at a point of the solid over the nodes of the element that holds the point.
 fn point_load(
     load: &Table<SolidLoad>,
     mesh: &Mesh,
@@ -95,7 +94,7 @@ fn point_load(
     force: [f64; 3],
     pattern: &mut [f64],
 ) -> Result<(), SceneError> {
-    // A little slack lets a point on the surface belong to the solid in spite of rounding.
+    // Slack for points on the surface.
     const SLACK: f64 = 1e-9;
     for (e, element) in mesh.connectivity.iter().enumerate() {
         let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));

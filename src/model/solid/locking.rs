@@ -1,17 +1,17 @@
-//! What elements do against locking, and remarks on those that will lock.
+//! Assumed strains, and warnings about locking.
 
 use crate::scene::solid::{Dilatation, Solid};
 use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use trackbed_fem::{self as fem, AssumedStrain, ElementKind, Material, Mesh, Quadrature};
 
-/// Poisson's ratio from which elements that lock at constant volume are named.
+/// Poisson's ratio of volumetric locking.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// The strains that a scene's elements assume.
+/// Returns the assumed strains.
 ///
 /// # Errors
-/// A key that no element of the mesh has a use for.
+/// Keys without effect.
 pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
     let kinds = mesh.connectivity.kinds();
     let idle = solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear());
@@ -30,7 +30,7 @@ pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, Scene
     })
 }
 
-/// Names the kinds of elements that lock where their material hardly changes its volume, and the key that helps.
+/// Returns warnings about volumetric locking, with a remedy.
 pub fn remarks(
     mesh: &Mesh,
     materials: &BTreeMap<u32, Material>,
@@ -57,7 +57,6 @@ pub fn remarks(
         .collect()
 }
 
-/// What to do where elements of a kind lock; none where they do not.
 fn remedy(kind: ElementKind, rule: Quadrature, assumed: AssumedStrain) -> Option<&'static str> {
     let mean = assumed.dilatation == fem::Dilatation::Mean;
     match kind {

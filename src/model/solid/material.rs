@@ -5,20 +5,20 @@ use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use trackbed_fem::material::Material;
 
-/// Materials of a solid by number, and their names for reports.
+/// Materials by number, with names.
 pub struct Materials {
     /// Constants.
     pub constants: BTreeMap<u32, Material>,
     /// Names.
     pub names: BTreeMap<u32, String>,
-    /// Horizontal over vertical initial stress, where a material has its own.
+    /// Horizontal over vertical initial stress, if set.
     pub k0: BTreeMap<u32, f64>,
 }
 
 /// Resolves `[[solid.material]]`.
 ///
 /// # Errors
-/// A constant is missing, out of range, or not one of the model.
+/// Missing, unexpected or invalid constants.
 pub fn materials(solid: &Table<Solid>) -> Result<Materials, SceneError> {
     let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
     for m in solid.rows("material", &solid.material) {

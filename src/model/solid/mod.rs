@@ -1,4 +1,4 @@
-//! The solid of a scene: mesh read, materials, supports and loads resolved.
+//! Solid of a scene: mesh, materials, supports, loads.
 
 mod analysis;
 mod boundary;
@@ -35,46 +35,46 @@ use std::path::{Path, PathBuf};
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
 
-/// The solid, ready to run.
+/// Resolved solid.
 pub struct SolidPart {
-    /// Checked model.
+    /// Model.
     pub model: fem::model::Model,
-    /// Nodal loads other than gravity, each with its course in time.
+    /// Nodal loads without gravity.
     pub loads: Vec<NodalLoad>,
-    /// Its supports beside what the model knows of them.
+    /// Moving and recorded supports.
     pub supports: SupportPlan,
-    /// How it is solved when it runs alone.
+    /// Analysis of a solid-only model.
     pub analysis: Analysis,
-    /// Stress before the run.
+    /// Initial stress.
     pub initial_stress: Option<InitialStressPlan>,
-    /// How equilibrium of a plastic solid is found.
+    /// Newton options.
     pub newton: NewtonPlan,
-    /// How its equations are solved where they are linear.
+    /// Linear solvers.
     pub equations: EquationPlan,
-    /// What it is reduced to under grains.
+    /// Reduction in a coupled model.
     pub reduction: Option<fem::reduction::Reduction>,
-    /// Names of the materials by number, for reports.
+    /// Material names by number.
     pub material_names: BTreeMap<u32, String>,
-    /// Remarks of the readers.
+    /// Reader warnings.
     pub warnings: Vec<String>,
-    /// Meshed sleepers among its elements.
+    /// Meshed sleepers.
     pub sleepers: Option<SleeperBodies>,
-    /// Whether the ground has a weight; sleepers have.
+    /// Whether the ground itself has weight.
     heavy_ground: bool,
 }
 
-/// Supports of a solid: which move, which are recorded.
+/// Moving and recorded supports.
 pub struct SupportPlan {
-    /// Supports that move, by position in the model's list of fixed dofs: displacement [m] and its course.
+    /// Moving supports: index of fixed dof, displacement [m], time history.
     pub moving: Vec<(usize, f64, TimeFunction)>,
-    /// Named supports and their dofs, whose reactions are recorded.
+    /// Named supports and their dofs.
     pub named: Vec<(String, Vec<u32>)>,
-    /// File of the constraints, for messages.
+    /// Constraint file, for messages.
     pub file: PathBuf,
 }
 
 impl SolidPart {
-    /// A failure of a solver: bad input when the model cannot be solved by anyone, else numerical.
+    /// Converts a solver error: input error if unsolvable, else numerical.
     pub fn failure(&self, error: &SolveError) -> Failure {
         let file = self.supports.file.display();
         match error {
@@ -92,7 +92,7 @@ impl SolidPart {
         }
     }
 
-    /// The weight of a model of this solid [N], with its sleepers where they are. Shape `[3·nodes]`.
+    /// Returns the weight [N], shape `[3·nodes]`.
     pub fn dead_load(&self, model: &fem::Model) -> Vec<f64> {
         let mut load = model.gravity_load();
         if let (Some(sleepers), false) = (&self.sleepers, self.heavy_ground) {
@@ -101,10 +101,10 @@ impl SolidPart {
         load
     }
 
-    /// The solid without its sleepers, which nothing holds; none for a solid that has none.
+    /// Returns the solid without its free sleepers, if any.
     ///
     /// # Errors
-    /// As [`fem::Model::new`]; the whole solid was made of the same before.
+    /// As [`fem::Model::new`].
     pub fn ground(&self) -> Result<Option<fem::Model>, fem::ModelError> {
         let Some(sleepers) = &self.sleepers else { return Ok(None) };
         let (whole, nodes) = (self.model.mesh(), sleepers.ground_nodes());
@@ -135,19 +135,19 @@ impl SolidPart {
         Ok(Some(model))
     }
 
-    /// Adds all loads at time `t` [s] to `load`, shape `[3·nodes]`.
+    /// Adds all loads at time `t` [s], shape `[3·nodes]`.
     pub fn add_loads(&self, t: f64, load: &mut [f64]) {
         self.loads.iter().for_each(|l| l.add(t, load));
     }
 
-    /// Sets the displacements of moving supports at time `t` [m], in the model's order of fixed dofs.
+    /// Sets support displacements at time `t` [m], by fixed dof.
     pub fn prescribe(&self, t: f64, values: &mut [f64]) {
         for (position, value, function) in &self.supports.moving {
             values[*position] = value * function.factor(t);
         }
     }
 
-    /// Names and sums of the reactions of named supports, those of one name together. Shape of `reactions` `[3·nodes]`.
+    /// Returns reaction sums by support name. Shape of `reactions` `[3·nodes]`.
     pub fn named_sums<'a>(&'a self, reactions: &'a [f64]) -> impl Iterator<Item = (&'a str, [f64; 3])> {
         self.supports.named.iter().map(|(name, dofs)| {
             let mut sum = [0.0; 3];
@@ -158,16 +158,16 @@ impl SolidPart {
         })
     }
 
-    /// Whether the linear solvers can take it: no yield surface and no initial stress.
+    /// Whether linear solvers apply: no yield surface, no initial stress.
     pub fn is_linear(&self) -> bool {
         self.model.is_linear() && self.initial_stress.is_none()
     }
 }
 
-/// Resolves `[solid]`. `coupled`: grains lie on it; `sleepers`: they lie on the grains and are part of its equations.
+/// Resolves `[solid]`. `coupled`: with grains; `sleepers`: meshed.
 ///
 /// # Errors
-/// Bad input in the scene or in the mesh files.
+/// Input errors.
 pub fn build(
     document: &Document,
     solid: &Solid,
@@ -196,7 +196,7 @@ pub fn build(
     let plans = analysis::plans(solid, &materials, linear, coupled)?;
     initial_stress::check_overburden(solid, plans.initial_stress.as_ref(), &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
-    // Faults that a solver can live with, such as an element turned inside out at a corner only, are said aloud.
+    // Solvers tolerate some defects, such as an element inverted only at a corner.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
     let inside_out = mesh_tools::all_inside_out(&mesh, &faults);
     let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
@@ -256,10 +256,10 @@ fn quadrature(integration: Integration) -> fem::Quadrature {
     }
 }
 
-/// The mesh of a scene's solid with all its constraints, as a mesh file holds it.
+/// Returns the mesh with constraints.
 ///
 /// # Errors
-/// As [`geometry`], and supports that contradict each other.
+/// As [`geometry`], and contradictory supports.
 pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure> {
     let solid = &Table::top(document, "solid", solid);
     let geometry = geometry(solid)?;
@@ -268,7 +268,6 @@ pub fn mesh_file(document: &Document, solid: &Solid) -> Result<MeshFile, Failure
     Ok(MeshFile { mesh, constraints, node_sets, face_sets, element_types, warnings, ..MeshFile::default() })
 }
 
-/// What is wrong with the mesh, which shows only when its model is made.
 fn refused(elements: &Path, error: &fem::ModelError, inside_out: Option<String>) -> SceneError {
     let (key, found, expected) = match error {
         fem::ModelError::Inverted { .. } if inside_out.is_some() => {

@@ -1,10 +1,10 @@
-//! Damping and reduction of a solid in motion, resolved.
+//! Damping and reduction of the solid.
 
 use crate::scene::solid::{Rayleigh, ReductionKind, Solid};
 use crate::scene::{SceneError, Table};
 use trackbed_fem as fem;
 
-/// The reduction of a solid, refused where it would not be one, or would not be used.
+/// Rejected if useless or unused.
 pub(super) fn reduction(
     solid: &Table<Solid>,
     linear: bool,
@@ -31,7 +31,6 @@ pub(super) fn reduction(
     }
 }
 
-/// The constants of Rayleigh damping; 0 where the scene has none.
 pub(super) fn rayleigh(rayleigh: Option<Table<Rayleigh>>) -> Result<fem::damping::Rayleigh, SceneError> {
     let Some(r) = rayleigh else { return Ok(fem::damping::Rayleigh { alpha_m: 0.0, beta_k: 0.0 }) };
     let result = match (r.alpha_m, r.beta_k, r.damping_ratio, r.frequencies) {

@@ -1,4 +1,4 @@
-//! Nodes and faces that a scene chooses by side, box, set or number.
+//! Node and face selection.
 
 use super::geometry::Geometry;
 use crate::scene::solid::{Side, Support};
@@ -7,16 +7,16 @@ use crate::scene::{SceneError, Table};
 use std::collections::HashMap;
 use trackbed_fem::mesh::{Face, Mesh};
 
-/// Part of the bounding box's largest edge within which a node counts as on its side.
+/// Tolerance relative to the largest edge of the bounding box.
 const ON_SIDE: f64 = 1e-6;
 
-/// A box as a scene writes it, [low, high].
+/// Box in scene units, [low, high].
 pub type SceneBox = [[Quantity<Length>; 3]; 2];
 
-/// Index of the node with number `id`, the `node` of a table.
+/// Returns the index of node number `id`.
 ///
 /// # Errors
-/// The mesh has no such node.
+/// Missing nodes.
 pub fn find_node<T>(table: &Table<T>, mesh: &Mesh, id: u32) -> Result<usize, SceneError> {
     mesh.node_ids
         .iter()
@@ -24,10 +24,10 @@ pub fn find_node<T>(table: &Table<T>, mesh: &Mesh, id: u32) -> Result<usize, Sce
         .ok_or_else(|| table.error("node", format!("node {id}"), "the number of a node of the mesh"))
 }
 
-/// Nodes of a support, ascending.
+/// Returns support nodes, ascending.
 ///
 /// # Errors
-/// None or several of the keys are given, or no node answers to them.
+/// Not exactly one key, or no node.
 pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, SceneError> {
     let mesh = &geometry.mesh;
     let all = 0..mesh.node_count() as u32;
@@ -56,10 +56,10 @@ pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, 
     }
 }
 
-/// Boundary faces that a load or an absorbing boundary covers.
+/// Returns boundary faces of a table.
 ///
 /// # Errors
-/// None or several of the keys are given, or no face answers to them.
+/// Not exactly one key, or no face.
 pub fn faces<T>(
     table: &Table<T>,
     geometry: &Geometry,
@@ -149,7 +149,7 @@ fn on_side(mesh: &Mesh, side: Side) -> impl Fn([f64; 3]) -> bool {
     move |x| (x[axis] - at).abs() <= near
 }
 
-/// Whether a point lies in a box; a millionth of the mesh's size counts as inside.
+/// Tolerance relative to mesh size.
 fn in_box(mesh: &Mesh, [low, high]: SceneBox) -> impl Fn([f64; 3]) -> bool {
     let (least, greatest) = mesh.bounding_box();
     let near = 1e-9 * (0..3).map(|k| greatest[k] - least[k]).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Sieve limits of a grade, from a table in CSV.
+//! Sieve limits of a grade, from CSV.
 
 use super::{fault, rows, text};
 use crate::read::ReadError;
@@ -6,32 +6,32 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use trackbed_dem::insert::gradation::Gradation;
 
-/// Sieve limits and the curve in their middle.
+/// Sieve limits and their mean curve.
 #[derive(Clone, Debug)]
 pub struct Grading {
-    /// The curve that stones are drawn to.
+    /// Target curve.
     pub curve: Gradation,
-    /// Rows of the table, by rising sieve: size [m], least and largest mass fraction passing [-].
+    /// By ascending sieve: size [m], least and largest fraction passing.
     pub limits: Vec<[f64; 3]>,
 }
 
 impl Grading {
-    /// The same for stones `s` times as large.
+    /// Scales sizes by `s`.
     pub fn scaled(&self, s: f64) -> Grading {
         let limits = self.limits.iter().map(|[size, low, high]| [size * s, *low, *high]).collect();
         Grading { curve: self.curve.scaled(s), limits }
     }
 }
 
-/// A name without blanks, dashes and capitals: `EN 13450` is `EN13450`.
+/// Normalises a name: `EN 13450` to `EN13450`.
 fn plain(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric() || *c == '.').flat_map(char::to_lowercase).collect()
 }
 
-/// The limits of one grade of a sieve table and the curve in their middle.
+/// Reads the limits of a grade.
 ///
 /// # Errors
-/// The file is missing, has no such grade, or its limits make no curve.
+/// Missing file or grade, or invalid limits.
 pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, ReadError> {
     let content = text(file, "gradation")?;
     let mut columns: Option<[usize; 5]> = None;
@@ -77,7 +77,7 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, Re
     }
     table.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let limits = table.clone();
-    // Sieves that everything passes carry no information beyond the first of them.
+    // Of sieves passing everything, only the first matters.
     let full = table.iter().position(|r| r[1] + r[2] >= 2.0).unwrap_or(table.len() - 1);
     table.truncate(full + 1);
     let column = |k: usize| table.iter().map(|r| r[k]).collect::<Vec<_>>();

@@ -1,21 +1,20 @@
-//! Headings of columns: a heading names what a column holds, and its unit is obeyed.
+//! Column headings with units.
 
 use crate::read::ReadError;
 use crate::scene::units::{Dimension, Force, Length, Time};
 use std::path::Path;
 
-/// What a column of a table holds.
+/// Column of a table.
 pub struct Column {
     /// Name in messages.
     pub name: &'static str,
-    /// Names that a heading may give it; any where there are none.
     names: &'static [&'static str],
-    /// Accepted units with their factor to SI; none for a plain number.
+    /// Units with factor to SI; empty for plain numbers.
     units: &'static [(&'static str, f64)],
 }
 
 impl Column {
-    /// A number without a unit, of this name.
+    /// Plain number.
     pub const fn number(name: &'static str, names: &'static [&'static str]) -> Column {
         Column { name, names, units: &[] }
     }
@@ -29,12 +28,11 @@ impl Column {
 /// A time [s].
 pub const TIME: Column =
     Column { name: "time", names: &["time", "t", "zeit", "temps", ""], units: Time::UNITS };
-/// A dimensionless factor, under any name.
+/// Dimensionless factor, any heading.
 pub const FACTOR: Column = Column { name: "factor", names: &[], units: &[] };
-/// A force [N], under any name.
+/// Force [N], any heading.
 pub const FORCE: Column = Column { name: "force", names: &[], units: Force::UNITS };
 
-/// Units in words, and signs of a plain number.
 const WORDS: [(&str, &str); 22] = [
     ("sec", "s"),
     ("secs", "s"),
@@ -60,16 +58,16 @@ const WORDS: [(&str, &str); 22] = [
     ("1", ""),
 ];
 
-/// Units of quantities that a table may hold by mistake, so that they are not taken for parts of a name.
+/// Foreign units, recognised to report them.
 const OTHERS: [&str; 21] = [
     "s", "ms", "us", "min", "h", "m", "mm", "cm", "km", "in", "ft", "N", "kN", "MN", "Pa", "kPa", "MPa",
     "bar", "kg", "%", "lbf",
 ];
 
-/// Factors to SI of the columns under a heading.
+/// Returns factors to SI by column.
 ///
 /// # Errors
-/// A name or a unit that is none of the column.
+/// Unknown heading or unit.
 pub fn factors<const N: usize>(
     file: &Path,
     line: usize,
@@ -80,7 +78,7 @@ pub fn factors<const N: usize>(
     for ((factor, column), field) in factors.iter_mut().zip(columns).zip(fields) {
         let (name, unit) = split(field);
         let known = column.names.is_empty() || column.names.contains(&name.to_lowercase().as_str());
-        // A unit alone may stand for the time.
+        // A unit alone may denote time.
         if !known || name.is_empty() && unit.is_none() || name.parse::<f64>().is_ok() {
             let expected = format!("a column of {}, or a row of numbers", column.name);
             return Err(super::fault(file, Some(line), "heading", format!("\"{field}\""), expected));
@@ -97,7 +95,7 @@ pub fn factors<const N: usize>(
     Ok(factors)
 }
 
-/// A field as name and unit: `time [ms]`, `time (ms)`, `time/ms`, `time_ms`, `time in ms`, `ms`.
+/// `time [ms]`, `time (ms)`, `time/ms`, `time_ms`, `time in ms`, `ms`.
 fn split(field: &str) -> (&str, Option<&str>) {
     let field = field.trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')] {
@@ -114,7 +112,6 @@ fn split(field: &str) -> (&str, Option<&str>) {
     (field, None)
 }
 
-/// The factor of a unit, `None` where it is none of a column.
 fn of_unit(unit: &str, units: &[(&str, f64)]) -> Option<f64> {
     let unit = unit.strip_prefix("in ").unwrap_or(unit);
     let word = WORDS.iter().find(|(word, _)| unit.eq_ignore_ascii_case(word)).map_or(unit, |(_, unit)| unit);

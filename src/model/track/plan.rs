@@ -10,10 +10,10 @@ use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Seating, Wave
 use trackbed_coupling::track::rail::RailInput;
 use trackbed_coupling::track::train;
 
-/// Spacings at the ends of a rail over which the load of a wheel comes on.
+/// Spacings over which a wheel load is ramped at the rail ends.
 const TAPER: f64 = 2.0;
 
-/// The keys that only some kinds of load have, which kinds, and whether these need them.
+/// Keys, their load kinds, whether required.
 const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
     use SeatLoadKind::{Bogie, Gauss, Haversine, History, Ramp, Sine, Train};
     [
@@ -41,20 +41,20 @@ const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
     ]
 };
 
-/// A number of `key` that must be above 0; one that is not there counts as 0.
+/// A missing value counts as 0.
 fn above_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64, SceneError> {
     table.check(key, value.number().unwrap_or(0.0), |x| x > 0.0, "above 0")
 }
 
-/// A number of `key` that may not be below 0; one that is not there counts as 0.
+/// A missing value counts as 0.
 fn least_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64, SceneError> {
     table.check(key, value.number().unwrap_or(0.0), |x| x >= 0.0, "0 or more")
 }
 
-/// The load of a scene on sleepers at `places` along the track [m], through `rail` where the scene has one.
+/// Resolves the load on sleepers at `places` [m], through an optional `rail`.
 ///
 /// # Errors
-/// Bad input in the scene or in the files it names.
+/// Input errors.
 pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> Result<CyclicLoad, Failure> {
     which_keys(l)?;
     let cycles = l.check("cycles", l.cycles.unwrap_or(1), |n| n >= 1.0, "1 or more")?;
@@ -123,7 +123,6 @@ pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> R
     Ok(load)
 }
 
-/// The pulses before the first cycle of `load`.
 fn seating(s: &Table<SeatingTable>, load: &CyclicLoad) -> Result<Seating, SceneError> {
     let base = (0..load.places.len()).map(|k| load.on(k, load.seating_begins())).fold(0.0, f64::max);
     let expected = format!("more than the {base} N that the load begins with");
@@ -134,7 +133,6 @@ fn seating(s: &Table<SeatingTable>, load: &CyclicLoad) -> Result<Seating, SceneE
     })
 }
 
-/// Refuses keys of other kinds and asks for those that are needed.
 fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
     let present = |name: &str| match name {
         "minimum" => l.minimum.is_some(),
@@ -171,7 +169,7 @@ fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Distance behind the first [m] and force [N] of each axle on the rail.
+/// Distance behind the first axle [m], force [N].
 fn axles(l: &Table<SeatLoad>) -> Result<Vec<[f64; 2]>, SceneError> {
     let given = l.axle_load.map(|f| above_zero(l, "axle_load", f)).transpose()?;
     if l.kind == SeatLoadKind::Bogie {
@@ -186,7 +184,7 @@ fn axles(l: &Table<SeatLoad>) -> Result<Vec<[f64; 2]>, SceneError> {
     Ok(car.axles(cars).into_iter().map(|behind| [behind, force]).collect())
 }
 
-/// Force amplitudes [N] and lengths [m] of the waves of an uneven rail.
+/// Force amplitude [N] and length [m] of irregularities.
 fn waves(l: &Table<SeatLoad>, speed: f64) -> Result<Vec<[f64; 2]>, SceneError> {
     let Some(e) = l.optional("excitation", &l.excitation) else { return Ok(Vec::new()) };
     let mass = above_zero(&e, "mass", e.mass)?;
@@ -197,17 +195,16 @@ fn waves(l: &Table<SeatLoad>, speed: f64) -> Result<Vec<[f64; 2]>, SceneError> {
     e.waves.iter().map(wave).collect()
 }
 
-/// The rail of a scene.
+/// Rail model.
 #[derive(Clone, Debug)]
 pub enum RailPlan {
-    /// A formula.
+    /// Winkler formula.
     Winkler(Winkler),
-    /// A beam.
+    /// Beam.
     Beam(Box<RailInput>),
 }
 
 impl RailPlan {
-    /// How it spreads the load of an axle.
     fn spread(&self, places: &[f64]) -> AxleSpread {
         match self {
             RailPlan::Winkler(w) => AxleSpread::Winkler(*w),
@@ -220,10 +217,10 @@ impl RailPlan {
     }
 }
 
-/// The rail of a scene, one on each seat.
+/// Resolves the rail, one per seat.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub fn rail(track: &Table<TrackTable>, r: &Table<RailTable>) -> Result<RailPlan, SceneError> {
     let Some(load) = &track.load else {
         return Err(r.here("a rail", "[track.load] with wheels on it"));

@@ -1,4 +1,4 @@
-//! `[track.sleeper]` resolved: places, seats, and the elements of meshed sleepers.
+//! `[track.sleeper]` resolved: positions, seats, meshing.
 
 use crate::scene::after::JumpMethod;
 use crate::scene::solid::Integration;
@@ -7,36 +7,35 @@ use crate::scene::units::vector;
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_fem::Elastic;
 
-/// Length of a rail's foot across the rail [m], unless the scene says otherwise.
+/// Default rail foot width [m].
 const FOOT: f64 = 0.15;
-/// Elements of a sleeper at most.
 const MOST_ELEMENTS: u64 = 100_000;
 
-/// Sleepers that consist of elements.
+/// Meshed sleepers.
 #[derive(Clone, Debug)]
 pub struct MeshedSleepers {
     /// Half edge lengths [m].
     pub half: [f64; 3],
     /// Elements along x, y, z.
     pub elements: [usize; 3],
-    /// Constants of the material.
+    /// Elastic constants.
     pub elastic: Elastic,
-    /// Places of the centres in x and y [m], along the track.
+    /// Centres in plan along the track [m].
     pub centres: Vec<[f64; 2]>,
-    /// Places of the seats from the centre [m].
+    /// Seat positions from the centre [m].
     pub seats: Vec<[f64; 2]>,
-    /// Lengths in x and y of the rectangle over which the force of each seat is spread [m]. Shape `[seats]`.
+    /// Loaded rectangle of each seat [m]. Shape `[seats]`.
     pub feet: Vec<[f64; 2]>,
-    /// Whether the middle plane across x, and that across y, is a plane of symmetry.
+    /// Symmetry about the x and y middle planes.
     pub symmetric: [bool; 2],
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; 3],
 }
 
-/// Half edge lengths of the sleepers [m].
+/// Returns half edge lengths [m].
 ///
 /// # Errors
-/// A length that is not above 0.
+/// A length not above 0.
 pub fn half(s: &Table<Sleeper>) -> Result<[f64; 3], SceneError> {
     let size = vector(&s.size);
     match size.iter().find(|l| !(l.is_finite() && **l > 0.0)) {
@@ -45,7 +44,7 @@ pub fn half(s: &Table<Sleeper>) -> Result<[f64; 3], SceneError> {
     }
 }
 
-/// Motions that a scene holds: along x, y, z, about x, y, z.
+/// Returns fixed motions: along, then about x, y, z.
 pub fn held(s: &Sleeper) -> [bool; 6] {
     let mut held = [false; 6];
     for motion in &s.hold {
@@ -62,10 +61,10 @@ pub fn held(s: &Sleeper) -> [bool; 6] {
     held
 }
 
-/// Places of the seats from the centre [m].
+/// Returns seat positions [m].
 ///
 /// # Errors
-/// A seat beside the sleeper's top.
+/// A seat outside the top face.
 pub fn seats(track: &Table<TrackTable>, half: [f64; 3]) -> Result<Vec<[f64; 2]>, SceneError> {
     let load = track.optional("load", &track.load);
     let Some(l) = load.filter(|l| !l.seats.is_empty()) else { return Ok(vec![[0.0; 2]]) };
@@ -79,10 +78,10 @@ pub fn seats(track: &Table<TrackTable>, half: [f64; 3]) -> Result<Vec<[f64; 2]>,
     }
 }
 
-/// Centres of the sleepers in plan [m].
+/// Returns centres in plan [m].
 ///
 /// # Errors
-/// A count or a spacing that makes no row.
+/// Invalid count or spacing.
 pub fn row(s: &Table<Sleeper>) -> Result<Vec<[f64; 2]>, SceneError> {
     let (axis, spacing) = (s.along.axis(), s.spacing.map(|l| l.si));
     if !(1..=1000).contains(&s.count) {
@@ -105,10 +104,10 @@ pub fn row(s: &Table<Sleeper>) -> Result<Vec<[f64; 2]>, SceneError> {
     Ok((0..s.count).map(place).collect())
 }
 
-/// The meshed sleepers of a scene, if it has such.
+/// Resolves meshed sleepers, if any.
 ///
 /// # Errors
-/// Bad input, or something beside them that they cannot be combined with.
+/// Input errors.
 pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSleepers>, SceneError> {
     let Some(track) = scene.optional("track", &scene.track) else { return Ok(None) };
     let s = &track.below("sleeper", &track.sleeper);
@@ -157,7 +156,6 @@ pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSl
     }))
 }
 
-/// Refuses what meshed sleepers cannot be combined with.
 fn refuse_company(scene: &Table<Scene>, track: &Table<TrackTable>) -> Result<(), SceneError> {
     let Some(solid) = &scene.solid else {
         return Err(track.requirement("sleeper.mesh", "[solid]"));
@@ -179,7 +177,7 @@ fn refuse_company(scene: &Table<Scene>, track: &Table<TrackTable>) -> Result<(),
     Ok(())
 }
 
-/// Planes of symmetry: the motions that one does not allow are held all together, or none of them.
+/// Motions of a symmetry plane must be fixed together or not at all.
 fn symmetric(s: &Table<Sleeper>) -> Result<[bool; 2], SceneError> {
     let held = held(s);
     let [x, y] = [[0, 4, 5], [1, 3, 5]].map(|plane: [usize; 3]| plane.iter().all(|&k| held[k]));
@@ -193,14 +191,13 @@ fn symmetric(s: &Table<Sleeper>) -> Result<[bool; 2], SceneError> {
     Err(s.error("hold", format!("{found:?}"), expected))
 }
 
-/// The rectangles of the seats.
 fn feet(
     mesh: &Table<SleeperMesh>,
     seats: &[[f64; 2]],
     half: [f64; 3],
     along: usize,
 ) -> Result<Vec<[f64; 2]>, SceneError> {
-    // Length from a seat to the nearest edge, twice.
+    // Twice the distance from seat to edge.
     let room = |seat: &[f64; 2]| [0, 1].map(|d| 2.0 * (half[d] - seat[d].abs()));
     let Some(foot) = mesh.foot.map(|f| [f[0].si, f[1].si]) else {
         let across = 1 - along;

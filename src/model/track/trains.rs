@@ -1,4 +1,4 @@
-//! Trains: cars from a table of axle layouts.
+//! Trains from a table of axle layouts.
 
 use crate::scene::units::{Force, Length, Quantity};
 use crate::scene::{self, Document, SceneError};
@@ -6,35 +6,34 @@ use serde::Deserialize;
 use std::path::Path;
 use trackbed_coupling::track::train::CarLayout;
 
-/// Axle layout of a car with two bogies of two axles.
+/// Car with two two-axle bogies.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Car {
-    /// Name of the train.
+    /// Train name.
     pub name: String,
-    /// Where the figures are from.
+    /// Source of the data.
     pub source: String,
-    /// Static load of an axle [N].
+    /// Static axle load [N].
     pub axle_load: Quantity<Force>,
-    /// Distance of the axles of a bogie [m].
+    /// Axle distance in a bogie [m].
     pub wheelbase: Quantity<Length>,
-    /// Distance of the bogies' centres [m].
+    /// Bogie centre distance [m].
     pub bogie_spacing: Quantity<Length>,
-    /// Length over couplers, which is the distance from car to car [m].
+    /// Length over couplers, the car spacing [m].
     pub car_length: Quantity<Length>,
 }
 
-/// A file of trains.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Table {
     train: Vec<Car>,
 }
 
-/// The car of train `name` in a file.
+/// Reads the car of train `name`.
 ///
 /// # Errors
-/// The file is missing or no table of trains, the name is not in it, or its lengths make no car.
+/// Missing file or name, invalid lengths.
 pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
     let document = Document::open(file)?;
     let table: Table = document.read()?;
@@ -60,7 +59,7 @@ pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
 }
 
 impl Car {
-    /// Distances of all axles of `cars` cars behind the first one [m], ascending.
+    /// Returns axle distances of `cars` cars [m], ascending.
     pub fn axles(&self, cars: u32) -> Vec<f64> {
         let layout = CarLayout {
             wheelbase: self.wheelbase.si,
@@ -75,7 +74,7 @@ impl Car {
 mod tests {
     use super::*;
 
-    /// Every train of the shipped table can be made, and its axles are in order.
+    /// Every shipped train is valid, with ordered axles.
     #[test]
     fn shipped_trains() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/data/trains.toml");

@@ -1,32 +1,27 @@
-//! Which things lie in which tile of the picture, the nearest first.
+//! Sorts objects into picture tiles, nearest first.
 
 use rayon::prelude::*;
 
 use super::camera::{Camera, V3};
 use super::scene::{Scene, Triangle};
 
-/// Number of a thing: its kind in the upper two bits, its place in the scene in the others.
+/// Kind in the upper two bits, index in the others.
 pub type Id = u32;
-/// No thing: the background.
+/// Background.
 pub const NONE: Id = u32::MAX;
 
-/// Kinds of things.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A sphere.
     Sphere = 0,
-    /// A triangle.
     Triangle = 1,
-    /// A tube.
     Tube = 2,
 }
 
-/// The number of a thing.
 pub fn number(kind: Kind, place: usize) -> Id {
     ((kind as u32) << 30) | place as u32
 }
 
-/// Kind and place of a number that is not [`NONE`].
+/// Kind and index of an id other than [`NONE`].
 pub fn thing(id: Id) -> (Kind, usize) {
     let kind = match id >> 30 {
         0 => Kind::Sphere,
@@ -36,7 +31,6 @@ pub fn thing(id: Id) -> (Kind, usize) {
     (kind, (id & 0x3fff_ffff) as usize)
 }
 
-/// The look of a thing.
 pub fn look(scene: &Scene, id: Id) -> usize {
     let (kind, k) = thing(id);
     usize::from(match kind {
@@ -46,10 +40,9 @@ pub fn look(scene: &Scene, id: Id) -> usize {
     })
 }
 
-/// A thing with the samples that it may cover, both ends included, and its least depth.
+/// Object with the samples that it may cover, ends included.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    /// What it is.
     pub id: Id,
     /// Least depth [m].
     pub near: f32,
@@ -57,16 +50,14 @@ pub struct Item {
     pub rect: [i32; 4],
 }
 
-/// Things by tiles.
 pub struct Bins {
-    /// All things, the nearest first.
     pub items: Vec<Item>,
     start: Vec<u32>,
     places: Vec<u32>,
 }
 
 impl Bins {
-    /// Sorts the things that `wanted` accepts (a look) into tiles of `side` samples. `fine` is the eye for samples.
+    /// Bins objects accepted by `wanted`; `fine` is the camera of samples.
     pub fn new(
         scene: &Scene,
         fine: &Camera,
@@ -126,14 +117,13 @@ impl Bins {
         Bins { items, start, places }
     }
 
-    /// The things of a tile, the nearest first.
+    /// Objects of a tile, nearest first.
     pub fn of(&self, tile: usize) -> impl Iterator<Item = &Item> {
         let places = &self.places[self.start[tile] as usize..self.start[tile + 1] as usize];
         places.iter().map(|k| &self.items[*k as usize])
     }
 }
 
-/// Samples that a sphere may cover.
 fn around(fine: &Camera, c: &V3, r: f32) -> [i32; 4] {
     let ends = |across: f32| match fine.perspective {
         // Slopes of the tangents from the eye.
@@ -150,7 +140,6 @@ fn around(fine: &Camera, c: &V3, r: f32) -> [i32; 4] {
     [px(x[0]), py(y[1]), px(x[1]), py(y[0])].map(whole)
 }
 
-/// A coordinate as the sample that it lies in; far outside any picture alike.
 fn whole(v: f32) -> i32 {
     v.clamp(-1e6, 1e6).floor() as i32
 }

@@ -1,20 +1,17 @@
-//! Lines of even width on surfaces, such as edges of elements.
+//! Lines of constant width on surfaces, such as element edges.
 
 use super::camera::Camera;
 use super::scene::{Line, Scene};
 
-/// Half of the width [pixels].
 const HALF: f32 = 0.5;
-/// How far a surface may lie before a line on it [pixels].
+/// Depth tolerance of the surface in front of a line [pixels].
 const BEFORE: f32 = 2.5;
 
-/// Lines by tiles.
 pub struct Lines {
     tiles: Vec<Vec<u32>>,
 }
 
 impl Lines {
-    /// Sorts the lines of a scene, seen by `fine` with `samples` samples along a pixel.
     pub fn new(scene: &Scene, fine: &Camera, tiles: [usize; 2], side: usize, samples: usize) -> Lines {
         let mut sorted = vec![Vec::new(); tiles[0] * tiles[1]];
         let half = HALF * samples as f32;
@@ -27,7 +24,7 @@ impl Lines {
             };
             for y in range(1) {
                 for x in range(0) {
-                    // A long line leaves out most tiles of its box.
+                    // A long line misses most tiles of its box.
                     let middle = [x, y].map(|v| (v as f32 + 0.5) * side as f32);
                     let (far, _) = beside(a, b, middle);
                     if far <= half + 0.71 * side as f32 {
@@ -39,7 +36,7 @@ impl Lines {
         Lines { tiles: sorted }
     }
 
-    /// Marks the samples of a tile that lie on a line: on a surface of its own look, or before all.
+    /// Marks samples on a line, if its own surface or nothing is in front.
     pub fn mark(
         &self,
         scene: &Scene,
@@ -80,7 +77,6 @@ impl Lines {
     }
 }
 
-/// Distance of a point from a line, and where along it the nearest point is.
 fn beside(a: [f32; 2], b: [f32; 2], p: [f32; 2]) -> (f32, f32) {
     let d = [b[0] - a[0], b[1] - a[1]];
     let v = [p[0] - a[0], p[1] - a[1]];

@@ -1,9 +1,8 @@
-//! Draws a scene into pixels, by the processor alone: the same bytes on any number of threads.
+//! Software renderer, bitwise reproducible for any number of threads.
 //!
-//! The picture is cut into tiles. Each finds the thing that is seen in every sample of it ([`raster`]), several to a pixel; then the
-//! light of the surroundings is estimated from the depths ([`occlusion`]); then each tile is coloured: once for every thing in a pixel,
-//! weighted by the samples in which it is seen. No tile writes what another reads in the same step, and what lies in a tile is drawn in
-//! one order, so threads do not matter.
+//! Each tile finds the visible object of its samples ([`raster`]); ambient light follows from the depths
+//! ([`occlusion`]); each pixel is then coloured once per object, weighted by samples. No tile writes data
+//! that others read in the same step.
 
 mod bins;
 mod camera;
@@ -28,25 +27,20 @@ use raster::Tile;
 use resolve::Resolver;
 use shade::Lamps;
 
-/// Side of a tile [pixels].
+/// Tile side [pixels].
 const TILE: usize = 16;
-/// Pixels of a picture above which there are fewer samples to a pixel: they take eight bytes each.
+/// Pictures with more pixels have fewer samples, at eight bytes each.
 const LARGE: usize = 6_000_000;
-/// Bodies of this size have full outlines [pixels].
+/// Least size for full outlines [pixels].
 const OUTLINED: f32 = 26.0;
-/// Corners are darkened as far as this many sizes of what is of interest.
+/// Range of ambient occlusion over the grain size.
 const REACH: f32 = 0.55;
 
-/// How the picture is divided.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
-    /// Columns and rows [pixels].
     size: [usize; 2],
-    /// Samples along a pixel.
     samples: usize,
-    /// Columns and rows of tiles.
     tiles: [usize; 2],
-    /// Samples along a tile.
     side: usize,
 }
 
@@ -56,19 +50,17 @@ impl Grid {
         Grid { size, samples, tiles: size.map(|n| n.div_ceil(TILE)), side: samples * TILE }
     }
 
-    /// First sample of a tile.
     fn origin(&self, tile: usize) -> [usize; 2] {
         [tile % self.tiles[0] * self.side, tile / self.tiles[0] * self.side]
     }
 
-    /// Where a sample of the picture stands in arrays that hold tile after tile.
     fn place(&self, x: usize, y: usize) -> usize {
         let tile = y / self.side * self.tiles[0] + x / self.side;
         (tile * self.side + y % self.side) * self.side + x % self.side
     }
 }
 
-/// Colours of the pixels of a scene, three bytes each, row by row from above.
+/// Pixels of a scene: three bytes each, by rows from above.
 pub fn draw(world: &Scene, eye: &Camera, size: [usize; 2], background: Colour) -> Vec<u8> {
     let grid = Grid::new(size);
     let fine = eye.finer(grid.samples);
@@ -118,7 +110,6 @@ pub fn draw(world: &Scene, eye: &Camera, size: [usize; 2], background: Colour) -
     out
 }
 
-/// The light from all around, from the middle sample of each pixel.
 fn surroundings(scene: &Scene, eye: &Camera, fine: &Camera, grid: &Grid, depth: &[f32], id: &[u32]) -> Light {
     let width = grid.size[0];
     let mut surfaces = vec![(f32::INFINITY, V3::zeros()); width * grid.size[1]];

@@ -1,37 +1,30 @@
-//! How much of the light from all around a place gets: less in corners and between stones.
+//! Ambient occlusion from picture depths.
 //!
-//! The estimate from the depths of the picture after McGuire, Mara and Luebke, Scalable ambient obscurance, High Performance Graphics
-//! 2012, eq. 10, with taps on a spiral that is turned from pixel to pixel in a pattern of 4 × 4, which a mean over 4 × 4 pixels of like
-//! depth takes out again.
+//! Source: McGuire, Mara and Luebke, Scalable ambient obscurance, High Performance Graphics 2012, eq. 10. Its
+//! tap spiral is rotated in a 4 × 4 pixel pattern, which averaging over pixels of similar depth removes.
 
 use rayon::prelude::*;
 
 use super::camera::{Camera, V3};
 
-/// Taps per pixel.
 const TAPS: usize = 14;
-/// Turns of the spiral over the taps, coprime to them.
+/// Turns of the spiral, coprime to the taps.
 const TURNS: f32 = 5.0;
-/// Side of the pattern.
 const PATTERN: usize = 4;
-/// How dark corners become.
 const STRENGTH: f32 = 1.15;
-/// Share of the reach that counts as the surface itself.
+/// Depth bias over the range, against self-occlusion.
 const BIAS: f32 = 0.02;
-/// Least and largest reach of taps [pixels].
+/// Least and largest tap distance [pixels].
 const REACH: [f32; 2] = [2.0, 72.0];
 
-/// Surfaces by pixels: depth (infinite for the background) and normal.
+/// Depth (infinite for the background) and normal by pixel.
 pub struct Surfaces {
-    /// Columns.
     pub width: usize,
-    /// Depth of each pixel [m].
+    /// Depth [m].
     pub depth: Vec<f32>,
-    /// Normal of each pixel.
     pub normal: Vec<V3>,
 }
 
-/// Light from all around by pixels.
 pub struct Light {
     width: usize,
     depth: Vec<f32>,
@@ -40,14 +33,14 @@ pub struct Light {
 }
 
 impl Light {
-    /// Of surfaces seen by `eye`; corners within `reach` [m] are dark.
+    /// `reach`: occlusion range [m].
     pub fn of(surfaces: Surfaces, eye: &Camera, reach: f32) -> Light {
         let Surfaces { width, depth, normal } = surfaces;
         let spiral: Vec<[f32; 2]> = (0..TAPS * PATTERN * PATTERN)
             .map(|k| {
                 let (tap, cell) = (k % TAPS, k / TAPS);
                 let share = (tap as f32 + 0.5) / TAPS as f32;
-                // Neighbours differ by much: 7 is coprime to 16.
+                // 7 is coprime to 16, so neighbours differ much.
                 let turn = ((cell * 7) % (PATTERN * PATTERN)) as f32 / (PATTERN * PATTERN) as f32;
                 let angle = std::f32::consts::TAU * (share * TURNS + turn);
                 [share * libm::cosf(angle), share * libm::sinf(angle)]
@@ -67,7 +60,7 @@ impl Light {
         Light { width, depth, share, reach }
     }
 
-    /// At a depth in a pixel: the mean over pixels around of like depth.
+    /// Mean over neighbouring pixels of similar depth.
     pub fn at(&self, x: usize, y: usize, depth: f32) -> f32 {
         let height = self.depth.len() / self.width;
         let (mut sum, mut count) = (0.0, 0.0);
@@ -84,7 +77,6 @@ impl Light {
     }
 }
 
-/// Share of the light that a pixel gets.
 fn open(
     depth: &[f32],
     width: usize,
@@ -99,7 +91,7 @@ fn open(
     let z = depth[y * width + x];
     let place = eye.at(px, py, z);
     let pixels = (reach * eye.scale(z)).clamp(REACH[0], REACH[1]);
-    // Where the picture is so fine that taps do not reach, corners are so much smaller.
+    // Range limited by the largest tap distance.
     let reach = pixels / eye.scale(z);
     let over = 1.0 / reach;
     let mut sum = 0.0;

@@ -1,36 +1,30 @@
-//! Which thing is seen in each sample of a tile: its number and its depth.
+//! Finds the visible object and depth of each sample of a tile.
 //!
-//! Spheres and tubes are cut with the ray of every sample, so that outlines and depths are exact at any size; triangles are
-//! found by their edges.
+//! Spheres and tubes are intersected with each ray, exact at any size; triangles use edge functions.
 
 use super::bins::{Bins, Id, Kind, thing};
 use super::camera::{Camera, V3};
 use super::scene::{Scene, Sphere, Triangle, Tube};
 
-/// Things drawn between two looks at the farthest depth of a tile.
+/// Objects between updates of the farthest depth.
 const LOOK: usize = 12;
 
-/// A tile of samples in the making.
 pub struct Tile<'a> {
-    /// Its first sample.
     pub origin: [usize; 2],
-    /// Samples along each side.
     pub side: usize,
-    /// Depth of each sample [m], infinite for the background.
+    /// Depth [m], infinite for the background.
     pub depth: &'a mut [f32],
-    /// Thing in each sample.
     pub id: &'a mut [Id],
 }
 
 impl Tile<'_> {
-    /// Draws the things of a tile over what is there.
     pub fn draw(&mut self, scene: &Scene, fine: &Camera, bins: &Bins, tile: usize) {
         let mut farthest = f32::INFINITY;
         for (k, item) in bins.of(tile).enumerate() {
             if k % LOOK == LOOK - 1 {
                 farthest = self.depth.iter().fold(0.0, |m, d| if *d > m { *d } else { m });
             }
-            // All that follow are as far or farther.
+            // Objects are sorted by depth.
             if item.near >= farthest {
                 return;
             }
@@ -51,12 +45,10 @@ impl Tile<'_> {
         }
     }
 
-    /// Middle of a sample in the picture of samples.
     fn middle(&self, x: usize, y: usize) -> [f32; 2] {
         [(self.origin[0] + x) as f32 + 0.5, (self.origin[1] + y) as f32 + 0.5]
     }
 
-    /// Columns whose middles lie between two abscissae, within `within`.
     fn columns(&self, low: f32, high: f32, within: [usize; 2]) -> std::ops::Range<usize> {
         let o = self.origin[0] as f32 + 0.5;
         let first = (low - o).ceil().max(within[0] as f32) as usize;
@@ -64,7 +56,6 @@ impl Tile<'_> {
         first..(end.max(0.0) as usize).min(within[1] + 1).max(first)
     }
 
-    /// A sphere seen in parallel.
     fn ball(&mut self, fine: &Camera, s: &Sphere, id: Id, [xs, ys]: [[usize; 2]; 2]) {
         let (c, rr) = (s.centre, s.radius * s.radius);
         for y in ys[0]..=ys[1] {
@@ -89,7 +80,6 @@ impl Tile<'_> {
         }
     }
 
-    /// A sphere in perspective.
     fn sphere(&mut self, fine: &Camera, s: &Sphere, id: Id, [xs, ys]: [[usize; 2]; 2]) {
         let (c, r) = (s.centre, s.radius);
         let rr = r * r;
@@ -107,7 +97,7 @@ impl Tile<'_> {
                 let sx = (x0 + k as f32 - fine.centre[0]) * step;
                 let over = 1.0 / (sx * sx + e);
                 let t = (c.x * sx + m) * over;
-                // From the foot of the centre on the ray: differences of large squares would be lost.
+                // Relative to the foot point on the ray: avoids cancellation of large squares.
                 let (ox, oy, oz) = (sx * t - c.x, sy * t - c.y, t - c.z);
                 let rest = rr - (ox * ox + oy * oy + oz * oz);
                 let z = t - (rest.max(0.0) * over).sqrt();
@@ -130,7 +120,7 @@ impl Tile<'_> {
             let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             for k in 0..3 {
                 let (a, b) = (p[k], p[(k + 1) % 3]);
-                // Inside where this grows: slope · x + rest ≥ 0.
+                // Inside if slope · x + rest ≥ 0.
                 let slope = -(b[1] - a[1]) * area.signum();
                 let rest = ((b[0] - a[0]) * (sy - a[1]) + (b[1] - a[1]) * a[0]) * area.signum();
                 match slope {
@@ -143,7 +133,7 @@ impl Tile<'_> {
             if low > high {
                 continue;
             }
-            // Neighbours share the samples on an edge: no gap is left by rounding.
+            // Shared edge samples leave no gaps by rounding.
             let span = self.columns((low - 1e-3) as f32, (high + 1e-3) as f32, xs);
             let row = y * self.side;
             for x in span {
@@ -168,12 +158,11 @@ impl Tile<'_> {
     }
 }
 
-/// Slopes between which a row of rays meets a sphere.
 fn chord(c: &V3, r: f32, sy: f32) -> Option<[f32; 2]> {
     let [cx, cy, cz, sy, r] = [c.x, c.y, c.z, sy, r].map(f64::from);
     let rest = cy * cy + cz * cz - r * r;
     let (k, m) = (cx * cx + rest, cy * sy + cz);
-    // (cx² - k) s² + 2 cx m s + m² - k (sy² + 1) = 0, where cx² - k = -rest.
+    // (cx² - k) s² + 2 cx m s + m² - k (sy² + 1) = 0, with cx² - k = -rest.
     let root = cx * cx * m * m + rest * (m * m - k * (sy * sy + 1.0));
     if root <= 0.0 || rest <= 0.0 {
         return None;
@@ -182,7 +171,7 @@ fn chord(c: &V3, r: f32, sy: f32) -> Option<[f32; 2]> {
     Some([((cx * m - root) / rest) as f32, ((cx * m + root) / rest) as f32])
 }
 
-/// Depths of a triangle: linear over the picture in parallel, their reciprocals in perspective.
+/// Triangle depth: linear in parallel projection, reciprocal in perspective.
 struct Plane {
     by: [f64; 3],
     ends: [f32; 2],
@@ -207,15 +196,14 @@ impl Plane {
     fn depth(&self, fine: &Camera, [x, y]: [f32; 2]) -> f32 {
         let v = self.by[0] * f64::from(x) + self.by[1] * f64::from(y) + self.by[2];
         let z = if fine.perspective { 1.0 / v } else { v };
-        // A triangle seen along its plane has no depth of its own.
+        // Depth is undefined for a triangle seen edge-on.
         (z as f32).clamp(self.ends[0], self.ends[1])
     }
 }
 
-/// Depth of a tube on the ray through a sample; `None` beside it.
 fn tube(fine: &Camera, t: &Tube, px: f32, py: f32) -> Option<f32> {
     let middle = 0.5 * (t.ends[0] + t.ends[1]);
-    // From a point nearby: differences of large squares would be lost.
+    // From a nearby point: avoids cancellation of large squares.
     let from = fine.at(px, py, middle.z);
     let along = fine.ray(&from);
     let shift = from - along * ((from - middle).dot(&along));
@@ -238,7 +226,6 @@ fn tube(fine: &Camera, t: &Tube, px: f32, py: f32) -> Option<f32> {
             best = Some(t0);
         }
     }
-    // The flat ends.
     let found = best.or_else(|| {
         let y = baoa + (-b - h.sqrt()) / a.max(1e-30) * bard;
         let end = if y <= 0.0 { 0.0 } else { baba };

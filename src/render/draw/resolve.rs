@@ -1,4 +1,4 @@
-//! Colours of pixels from their samples.
+//! Pixel colours from samples.
 
 use super::bins::{self, Bins, Id, NONE};
 use super::camera::Camera;
@@ -10,14 +10,12 @@ use super::shade::Lamps;
 use super::surface::{self, surface};
 use super::{Grid, TILE};
 
-/// What is left of a colour beside the outline of a body before it, by distance in samples.
+/// Colour factor next to an outline, by distance in samples.
 const OUTLINE: [f32; 2] = [0.52, 0.76];
-/// Step in depth that makes an outline, as a share of the size of what is of interest.
+/// Depth step of an outline over the grain size.
 const STEP: f32 = 0.06;
-/// Colour of lines, and how much of it they have.
 const INK: (Colour, f32) = ([0.08, 0.1, 0.14], 0.42);
 
-/// All that tiles are coloured from.
 pub struct Resolver<'a> {
     pub scene: &'a Scene,
     pub fine: &'a Camera,
@@ -27,14 +25,12 @@ pub struct Resolver<'a> {
     pub light: &'a Light,
     pub lamps: &'a Lamps,
     pub lines: &'a Lines,
-    /// Looks that are seen through, with their things.
     pub glass: &'a [(usize, Bins)],
     pub background: Colour,
-    /// How much outlines darken: less where bodies are a few pixels large, of which they would leave nothing.
+    /// Outline strength, lower for bodies of few pixels.
     pub outlines: f32,
 }
 
-/// A pane of glass in a tile.
 struct Pane {
     opacity: f32,
     depth: Vec<f32>,
@@ -42,7 +38,6 @@ struct Pane {
 }
 
 impl Resolver<'_> {
-    /// Colours of the pixels of a tile, row by row.
     pub fn tile(&self, tile: usize) -> Vec<u8> {
         let (n, side) = (self.grid.samples, self.grid.side);
         let area = side * side;
@@ -92,7 +87,7 @@ impl Resolver<'_> {
         out
     }
 
-    /// The nearest surface of each look that is seen through, before what is not.
+    /// Nearest surface of each transparent look in front of opaque ones.
     fn panes(&self, tile: usize, origin: [usize; 2], depth: &[f32]) -> Vec<Pane> {
         let of = |(look, bins): &(usize, Bins)| {
             let mut pane = Pane {
@@ -108,7 +103,7 @@ impl Resolver<'_> {
         self.glass.iter().filter_map(of).collect()
     }
 
-    /// A colour seen through the panes before it, the farthest first.
+    /// Blends layers over a colour, farthest first.
     fn through(
         &self,
         panes: &[Pane],
@@ -128,7 +123,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The colour of a thing in a pixel: once for all of its samples, but for contours in bands, which have edges of their own.
+    /// Object colour in a pixel, computed once except for banded contours.
     fn colour(&self, known: &mut Vec<(Id, Colour)>, id: Id, place: [usize; 2], depth: f32) -> Colour {
         if let Some((_, colour)) = known.iter().find(|k| k.0 == id) {
             return *colour;
@@ -144,7 +139,7 @@ impl Resolver<'_> {
         colour
     }
 
-    /// What an outline leaves of the colour of a sample: bodies before it cast one.
+    /// Outline factor of a sample, cast by bodies in front.
     fn outline(&self, [x, y]: [usize; 2], id: Id, depth: f32) -> f32 {
         let own = surface::body(self.scene, id);
         let step = STEP * self.scene.grain;
@@ -155,7 +150,7 @@ impl Resolver<'_> {
             if there == id {
                 return false;
             }
-            // Bodies end at the background as well.
+            // Bodies also end at the background.
             there == NONE || (self.depth[at] < depth - step && surface::body(self.scene, there) != own)
         };
         let reach = if self.grid.samples > 2 { 2 } else { 1 };
@@ -170,7 +165,6 @@ impl Resolver<'_> {
     }
 }
 
-/// Samples of a pixel from its middle on.
 fn order(n: usize) -> impl Iterator<Item = usize> {
     let middle = n * n / 2;
     std::iter::once(middle).chain((0..n * n).filter(move |s| *s != middle))

@@ -1,30 +1,21 @@
-//! What is drawn, in the world [m], and as the eye sees it.
+//! Objects to draw, in world [m] or camera coordinates.
 
 use rayon::prelude::*;
 
 use super::camera::{Camera, V3};
 
-/// A colour: red, green, blue from 0 to 1, as a screen takes them.
+/// sRGB, 0 to 1.
 pub type Colour = [f32; 3];
 
-/// Colours from values.
 #[derive(Clone, Debug)]
 pub enum Paint {
-    /// The colour of each sphere or tube; of triangles this one.
+    /// Individual colour of spheres and tubes; this colour for triangles.
     Own(Colour),
-    /// A value over a range; `bands` above 0 has so many steps.
-    Map {
-        /// 256 colours from the lowest value to the highest.
-        table: Vec<Colour>,
-        /// Values of the first colour and of the last.
-        range: [f32; 2],
-        /// Number of steps.
-        bands: usize,
-    },
+    /// Value over a range, in `bands` steps unless 0.
+    Map { table: Vec<Colour>, range: [f32; 2], bands: usize },
 }
 
 impl Paint {
-    /// The colour of a value.
     pub fn of(&self, value: f32) -> Colour {
         match self {
             Paint::Own(colour) => *colour,
@@ -40,92 +31,69 @@ impl Paint {
     }
 }
 
-/// How a group of things looks.
 #[derive(Clone, Debug)]
 pub struct Look {
-    /// Its colours.
     pub paint: Paint,
-    /// 1 hides what is behind; below, the nearest surface of the group alone is seen, as glass.
+    /// 1 is opaque; below, only the nearest surface of the group is visible.
     pub opacity: f32,
-    /// Share of light and shade: less for contours, whose colours must be found in the legend again.
+    /// Shading strength; low for contours, which must match their legend.
     pub relief: f32,
 }
 
-/// A sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Sphere {
-    /// Centre.
     pub centre: V3,
     /// Radius [m].
     pub radius: f32,
-    /// Colour.
     pub colour: Colour,
-    /// Its look.
     pub look: u16,
-    /// What it belongs to: outlines are between bodies.
+    /// Outlines separate bodies.
     pub body: u32,
 }
 
-/// A triangle, seen from both sides.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Corners.
     pub corners: [V3; 3],
-    /// Values at the corners.
     pub values: [f32; 3],
-    /// Its look.
     pub look: u16,
-    /// As of [`Sphere`].
     pub body: u32,
 }
 
-/// A cylinder.
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
-    /// Ends of its axis.
     pub ends: [V3; 2],
     /// Radius [m].
     pub radius: f32,
-    /// Colour.
     pub colour: Colour,
-    /// Its look.
     pub look: u16,
 }
 
-/// A line of even width on the triangles of a look.
+/// Line of constant width on triangles of a look.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    /// Ends.
     pub ends: [V3; 2],
-    /// Look of the surface that it lies on.
     pub look: u16,
 }
 
-/// Everything.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Looks, by number.
     pub looks: Vec<Look>,
-    /// Spheres.
     pub spheres: Vec<Sphere>,
-    /// Triangles.
     pub triangles: Vec<Triangle>,
-    /// Tubes.
     pub tubes: Vec<Tube>,
-    /// Lines.
     pub lines: Vec<Line>,
-    /// Size of what is small and of interest, such as a stone [m]: how far corners are darkened.
+    /// Grain size [m], the scale of ambient occlusion.
     pub grain: f32,
 }
 
 impl Scene {
-    /// Adds a look; its number.
+    /// Adds a look; returns its index.
     pub fn look(&mut self, look: Look) -> u16 {
         self.looks.push(look);
         (self.looks.len() - 1) as u16
     }
 
-    /// The same as the eye sees it: what lies before the near plane is cut off.
+    /// Scene in camera coordinates, clipped at the near plane.
     pub fn seen(&self, camera: &Camera) -> Scene {
         let near = camera.near();
         let spheres = self.spheres.par_iter().map(|s| Sphere { centre: camera.view(&s.centre), ..*s });
@@ -156,7 +124,7 @@ impl Scene {
 }
 
 impl Line {
-    /// What is left of it where `side` is not negative, which is linear in the place.
+    /// Clips to `side` ≥ 0, which is linear.
     pub fn cut(&self, side: impl Fn(&V3) -> f32) -> Option<Line> {
         let [a, b] = self.ends;
         let (da, db) = (side(&a), side(&b));
@@ -172,7 +140,6 @@ impl Line {
 }
 
 impl Triangle {
-    /// What is left of it where `side` is not negative, which is linear in the place.
     pub fn cut(&self, side: impl Fn(&V3) -> f32) -> Vec<Triangle> {
         let mut left: Vec<(V3, f32)> = Vec::with_capacity(4);
         for k in 0..3 {

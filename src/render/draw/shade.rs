@@ -1,22 +1,18 @@
-//! Light and shade.
+//! Shading.
 
 use super::camera::{Camera, V3};
 use super::scene::Colour;
 use super::surface::Surface;
 
-/// Light as the eye sees it.
+/// Lights in camera coordinates.
 pub struct Lamps {
-    /// Direction to the main lamp.
     key: V3,
-    /// Direction to a weak lamp at the other side.
     fill: V3,
-    /// Up in the world.
     up: V3,
 }
 
 impl Lamps {
-    /// A main lamp over the left shoulder, which moves with the eye, a weak one at the right, light from all around that is stronger from
-    /// above.
+    /// Key light over the left shoulder, weak fill light at the right, ambient light stronger from above.
     pub fn new(eye: &Camera) -> Lamps {
         Lamps {
             key: V3::new(-0.42, 0.66, -0.62).normalize(),
@@ -25,7 +21,7 @@ impl Lamps {
         }
     }
 
-    /// The colour of a surface. `open` is the share of the light from all around that it gets; with `relief` 0 it keeps its own colour.
+    /// Shaded colour. `open` is the ambient light fraction; `relief` 0 disables shading.
     pub fn lit(&self, eye: &Camera, surface: &Surface, open: f32, relief: f32) -> Colour {
         let n = &surface.normal;
         let around = 0.46 + 0.14 * n.dot(&self.up);
@@ -43,7 +39,6 @@ impl Lamps {
     }
 }
 
-/// From 0 at 0 to 1 at 1, level at both ends.
 fn smooth(t: f32) -> f32 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)

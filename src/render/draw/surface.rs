@@ -1,22 +1,18 @@
-//! Surface that is seen in a sample: where, how it is inclined, its colour.
+//! Visible surface of a sample: position, normal, colour.
 
 use super::bins::{Id, Kind, thing};
 use super::camera::{Camera, V3};
 use super::scene::{Colour, Paint, Scene};
 
-/// A piece of surface.
 pub struct Surface {
-    /// Place, seen from the eye.
+    /// In camera coordinates.
     pub place: V3,
-    /// Direction away from the surface, to the side of the eye.
+    /// Normal towards the eye.
     pub normal: V3,
-    /// Colour without light.
     pub colour: Colour,
-    /// Number of its look.
     pub look: usize,
 }
 
-/// The surface of a thing at a depth in a sample.
 pub fn surface(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f32) -> Surface {
     let place = fine.at(x, y, depth);
     let (kind, k) = thing(id);
@@ -30,7 +26,6 @@ pub fn surface(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f3
             let axis = t.ends[1] - t.ends[0];
             let along = (place - t.ends[0]).dot(&axis) / axis.norm_squared().max(1e-30);
             let out = place - (t.ends[0] + axis * along);
-            // On a flat end, or around.
             let flat = !(1e-3..=0.999).contains(&along) && out.norm() < 0.99 * t.radius;
             (if flat { axis } else { out }, t.colour, t.look)
         }
@@ -41,7 +36,6 @@ pub fn surface(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f3
             let colour = match &scene.looks[usize::from(t.look)].paint {
                 Paint::Own(colour) => *colour,
                 paint => {
-                    // Weights of the corners from areas.
                     let size = normal.norm_squared().max(1e-38);
                     let v = (place - a).cross(&(c - a)).dot(&normal) / size;
                     let w = (b - a).cross(&(place - a)).dot(&normal) / size;
@@ -58,7 +52,7 @@ pub fn surface(scene: &Scene, fine: &Camera, id: Id, [x, y]: [f32; 2], depth: f3
     Surface { place, normal: if away { -normal } else { normal }, colour, look: usize::from(look) }
 }
 
-/// What outlines are drawn between: 0 for tubes, which have none among themselves.
+/// Body for outlines; 0 for tubes, which have no outlines between them.
 pub fn body(scene: &Scene, id: Id) -> u32 {
     let (kind, k) = thing(id);
     match kind {

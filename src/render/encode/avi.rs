@@ -1,7 +1,6 @@
-//! Videos: Motion JPEG in AVI with an index (Microsoft, "AVI RIFF file reference"; one stream, one RIFF list, `idx1`).
+//! Motion JPEG in AVI with index (Microsoft, "AVI RIFF file reference"; one stream, one RIFF list, `idx1`).
 //!
-//! Frames go to the disk one by one; lengths and the index follow when their number is known, so the file is written aside as any
-//! other and a video need not fit into the memory.
+//! Frames are written one by one; lengths and index follow. Videos may exceed memory.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -10,17 +9,16 @@ use super::super::sheet::Picture;
 use super::jpg;
 use crate::write::{WriteError, atomic};
 
-/// Largest file of one RIFF list: readers take lengths of 31 bits.
+/// Largest RIFF list: readers use 31-bit lengths.
 const MOST: u64 = (1 << 31) - (1 << 20);
-/// Every frame can be shown by itself.
+/// Frame without predecessors.
 const KEY_FRAME: u32 = 0x10;
-/// The file has an index.
 const HAS_INDEX: u32 = 0x10;
 
-/// Writes a video of `count` pictures of one size, whole or not at all; `frame` makes them in their order.
+/// Writes a video of `count` equal-sized pictures atomically; `frame` creates them in order.
 ///
 /// # Errors
-/// What `frame` returns; a video too long for the format; what the system refuses.
+/// Errors of `frame`; too long video; I/O errors.
 pub fn write<E: From<WriteError>>(
     file: &Path,
     size: [usize; 2],
@@ -47,7 +45,6 @@ pub fn write<E: From<WriteError>>(
     })
 }
 
-/// Adds a frame.
 fn one(out: &mut impl Write, jpeg: &[u8]) -> std::io::Result<()> {
     out.write_all(b"00dc")?;
     out.write_all(&(jpeg.len() as u32).to_le_bytes())?;
@@ -55,7 +52,6 @@ fn one(out: &mut impl Write, jpeg: &[u8]) -> std::io::Result<()> {
     out.write_all(&[0][..jpeg.len() % 2])
 }
 
-/// Adds the index, and the lengths at the head.
 fn finish(
     out: &mut (impl Write + Seek),
     size: [usize; 2],
@@ -68,7 +64,6 @@ fn finish(
     out.write_all(&head(size, rate, lengths, index.len() as u32))
 }
 
-/// A chunk: name, length, content.
 fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut out = name.to_vec();
     out.extend((content.len() as u32).to_le_bytes());
@@ -84,12 +79,11 @@ fn words(values: &[u32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-/// Length of the frames with their heads.
 fn data(lengths: &[u32]) -> u32 {
     lengths.iter().map(|l| 8 + l.next_multiple_of(2)).sum()
 }
 
-/// Everything up to the first frame.
+/// Header up to the first frame.
 fn head([width, height]: [usize; 2], rate: f64, lengths: &[u32], index: u32) -> Vec<u8> {
     let [width, height] = [width as u32, height as u32];
     let micro = (1e6 / rate).round() as u32;
@@ -117,7 +111,7 @@ fn head([width, height]: [usize; 2], rate: f64, lengths: &[u32], index: u32) -> 
     out
 }
 
-/// Where each frame stands, counted from `movi`.
+/// Frame offsets from `movi`.
 fn index(lengths: &[u32]) -> Vec<u8> {
     let mut content = Vec::with_capacity(16 * lengths.len());
     let mut at = 4;

@@ -1,12 +1,11 @@
-//! Windows bitmaps: BITMAPFILEHEADER, BITMAPINFOHEADER, rows of 24 bits from below, padded to four bytes
+//! Windows bitmaps: BITMAPFILEHEADER, BITMAPINFOHEADER, 24-bit rows from below, padded to four bytes
 //! (Microsoft, "Bitmap storage").
 
 use super::super::sheet::Picture;
 
-/// Length of both heads [bytes].
+/// Length of both headers [bytes].
 const HEAD: u32 = 54;
 
-/// The file of a picture.
 pub fn bytes(picture: &Picture) -> Vec<u8> {
     let (width, height) = (picture.width, picture.height);
     let row = (3 * width).next_multiple_of(4);

@@ -1,4 +1,4 @@
-//! Pictures and videos as files.
+//! Picture and video files.
 
 mod avi;
 mod bmp;
@@ -10,38 +10,31 @@ use crate::write::{WriteError, atomic};
 
 pub use avi::write as write_video;
 
-/// Quality of JPEG pictures, of 100: above it files grow and nobody sees why.
+/// Of 100; more is invisible.
 const QUALITY: u8 = 92;
 
-/// Kinds of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Portable network graphics: exact.
     Png,
-    /// JPEG.
     Jpg,
-    /// Windows bitmap: exact, large.
     Bmp,
-    /// Video: Motion JPEG in AVI.
     Avi,
 }
 
-/// Endings of files and what they stand for.
 pub const ENDINGS: [(&str, Form); 5] =
     [("png", Form::Png), ("jpg", Form::Jpg), ("jpeg", Form::Jpg), ("bmp", Form::Bmp), ("avi", Form::Avi)];
 
 impl Form {
-    /// By the ending of a file.
     pub fn of(file: &Path) -> Option<Form> {
         let ending = file.extension()?.to_str()?.to_lowercase();
         ENDINGS.iter().find(|(e, _)| *e == ending).map(|(_, form)| *form)
     }
 }
 
-/// Writes a picture, whole or not at all.
+/// Writes a picture atomically.
 ///
 /// # Errors
-/// What the system refuses.
+/// I/O errors.
 pub fn write(file: &Path, form: Form, picture: &Picture) -> Result<(), WriteError> {
     let bytes = match form {
         Form::Png => png(file, picture)?,
@@ -66,10 +59,7 @@ fn png(file: &Path, picture: &Picture) -> Result<Vec<u8>, WriteError> {
     Ok(bytes)
 }
 
-/// A picture as JPEG.
-///
-/// # Errors
-/// A picture larger than the format allows.
+/// Fails for pictures too large for JPEG.
 fn jpg(file: &Path, picture: &Picture) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
     let refused = |error: jpeg_encoder::EncodingError| WriteError::format(file, error);

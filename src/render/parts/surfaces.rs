@@ -1,4 +1,4 @@
-//! The solid, walls, sleepers and rails.
+//! Solid, walls, sleepers and rails.
 
 use super::super::colours;
 use super::super::draw::{Colour, Line, Look, Paint, Triangle, V3};
@@ -12,23 +12,20 @@ use crate::results::section::{Point, outlines, section};
 use crate::write::WallKind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Colours of what has none from values, those of the viewer.
+/// Default colours, as in the viewer.
 const GROUND: &str = "9aa7b3";
 const BOUNDARY: &str = "7d8fa3";
 const SLEEPER: &str = "8f959c";
 const RAIL: &str = "5b4a3f";
 const STONE: &str = "a89f91";
-/// Shares of light and shade of contours, which are found in the legend again.
+/// Shading strength of contours, which must match their legend.
 const CONTOUR: f32 = 0.38;
-/// Edges of triangulated walls with more triangles would hide them.
+/// Most triangles of a wall with visible edges.
 const MOST_EDGES: usize = 400;
-/// Number of bodies of the solid; walls follow.
 const SOLID_BODY: u32 = 0;
 
-/// Looks of the triangles of a part.
 struct Looks {
     first: u16,
-    /// By the number of a group.
     groups: BTreeMap<usize, u16>,
 }
 
@@ -101,7 +98,6 @@ impl Parts<'_> {
         }
     }
 
-    /// The inside of the solid where it is cut, and the elements in it.
     fn sections(
         &self,
         places: &[f64],
@@ -121,7 +117,7 @@ impl Parts<'_> {
             for end in clip.range.into_iter().filter(|e| e.abs() < 1e29) {
                 let mut normal = [0.0; 3];
                 normal[clip.axis] = 1.0;
-                // What lies on the plane is not cut off by it again.
+                // The cutting plane itself is not clipped.
                 let on = (end - self.origin[clip.axis]) as f32;
                 let at = |x: &[f64]| {
                     let mut place = self.near(x);
@@ -140,7 +136,6 @@ impl Parts<'_> {
         (out, lines)
     }
 
-    /// Adds what the clips of a part leave.
     fn cut(&mut self, part: Part, mut triangles: Vec<Triangle>, mut lines: Vec<Line>) {
         let clips: Vec<Clip> = self.options.clips_of(part).copied().collect();
         for Clip { axis, range, .. } in clips {
@@ -164,7 +159,6 @@ impl Parts<'_> {
         self.scene.lines.extend(lines);
     }
 
-    /// How triangles of one part look: all alike, by a value, or by the number of a group.
     fn looks(&mut self, values: Option<impl Iterator<Item = f64>>, colour: Colour, opacity: f32) -> Looks {
         let (range, table) = (self.limits.grains.unwrap_or([0.0, 1.0]), self.table(Part::Grains));
         let mut add = |paint| self.scene.look(Look { paint, opacity, relief: 1.0 });

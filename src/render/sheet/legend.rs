@@ -1,4 +1,4 @@
-//! Legends: colours of values, of groups.
+//! Legends.
 
 use super::super::draw::Colour;
 use super::super::labels::{figure, scaled, ticks};
@@ -6,52 +6,31 @@ use super::picture::Picture;
 use super::text::Text;
 use super::{Ink, PANEL};
 
-/// What a legend explains.
 #[derive(Clone, Debug)]
 pub enum Key {
-    /// Values over a range.
-    Scale {
-        /// SI unit.
-        unit: &'static str,
-        /// Values of the first and of the last colour.
-        range: [f64; 2],
-        /// 256 colours.
-        table: Vec<Colour>,
-        /// Number of steps; 0: none.
-        bands: usize,
-    },
-    /// Colours with names.
+    Scale { unit: &'static str, range: [f64; 2], table: Vec<Colour>, bands: usize },
     Names(Vec<(Colour, String)>),
 }
 
-/// A legend.
 #[derive(Clone, Debug)]
 pub struct Legend {
-    /// What is shown.
     pub title: String,
-    /// Colours.
     pub key: Key,
 }
 
-/// Width of a legend [units of the sheet].
+/// Legend width [sheet units].
 const WIDE: f32 = 172.0;
-/// Height of a bar.
 const HIGH: f32 = 150.0;
-/// Width of a bar.
 const BAR: f32 = 18.0;
-/// Distance of rows with names.
 const ROW: f32 = 19.0;
-/// Distance of lines of a title.
 const LINE: f32 = 16.0;
-/// Size of letters.
 const LETTER: f32 = 13.0;
-/// Steps between ticks at most.
 const STEPS: usize = 6;
 
-/// Width that legends take at the right edge [units of the sheet].
+/// Width reserved at the right edge [sheet units].
 pub const ROOM: f32 = WIDE + 26.0;
 
-/// Draws legends one below the other at the right edge, a unit of the sheet being `u` pixels.
+/// Draws legends at the right edge, with `u` pixels per sheet unit.
 pub fn draw(picture: &mut Picture, legends: &[Legend], ink: &Ink, u: f32) {
     let text = Text::new(LETTER * u);
     let x = picture.width as f32 - (WIDE + 14.0) * u;
@@ -61,7 +40,6 @@ pub fn draw(picture: &mut Picture, legends: &[Legend], ink: &Ink, u: f32) {
     }
 }
 
-/// Draws one; returns where it ends.
 fn one(picture: &mut Picture, legend: &Legend, ink: &Ink, text: &Text, [x, y]: [f32; 2], u: f32) -> f32 {
     let (factor, unit) = match &legend.key {
         Key::Scale { unit, range, .. } => scaled(unit, range[0].abs().max(range[1].abs())),

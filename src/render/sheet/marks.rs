@@ -6,12 +6,10 @@ use super::picture::Picture;
 use super::text::Text;
 use super::{Ink, PANEL};
 
-/// Colours of the axes x, y, z.
 const AXES: [(Colour, &str); 3] =
     [([0.80, 0.16, 0.14], "x"), ([0.13, 0.56, 0.20], "y"), ([0.16, 0.34, 0.80], "z")];
-/// Length of an axis [units of the sheet].
 const ARM: f32 = 34.0;
-/// Longest scale, as a share of the width of the picture.
+/// Longest scale over picture width.
 const SCALE: f32 = 0.16;
 
 /// Draws title and remark at the upper left.
@@ -25,17 +23,16 @@ pub fn caption(picture: &mut Picture, title: &str, remark: &str, width: f32, ink
     small.draw(picture, &remark, [14.0 * u, 47.0 * u], ink.pale);
 }
 
-/// Draws the directions of the axes at the lower left.
 pub fn axes(picture: &mut Picture, eye: &Camera, ink: &Ink, u: f32) {
     let from = [56.0 * u, picture.height as f32 - 52.0 * u];
     let text = Text::new(13.0 * u);
     let mut arms: Vec<(V3, usize)> =
         [V3::x(), V3::y(), V3::z()].iter().enumerate().map(|(k, a)| (eye.turn(a), k)).collect();
-    // What points away from the eye is drawn first.
+    // Axes pointing away are drawn first.
     arms.sort_by(|a, b| b.0.z.total_cmp(&a.0.z));
     for (arm, k) in arms {
         let long = (arm.x * arm.x + arm.y * arm.y).sqrt();
-        // An axis along the line of sight is a point without a name.
+        // Axes along the line of sight have no label.
         if long < 0.08 {
             continue;
         }
@@ -52,7 +49,7 @@ pub fn axes(picture: &mut Picture, eye: &Camera, ink: &Ink, u: f32) {
     }
 }
 
-/// Draws a length at the lower left: in perspective that of what lies in the middle.
+/// Draws a length at the lower left, valid at the centre in perspective.
 pub fn scale(picture: &mut Picture, eye: &Camera, from: f32, ink: &Ink, u: f32) {
     let metre = eye.scale(eye.distance);
     let most = SCALE * picture.width as f32 / metre;

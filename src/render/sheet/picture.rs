@@ -1,20 +1,17 @@
-//! Pixels that can be drawn on.
+//! Drawing on pixels.
 
 use super::super::draw::Colour;
 
-/// A picture: three bytes a pixel, row by row from above.
+/// Picture, by rows from above.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Columns.
     pub width: usize,
-    /// Rows.
     pub height: usize,
-    /// Red, green, blue.
     pub pixels: Vec<u8>,
 }
 
 impl Picture {
-    /// Lays a colour over a pixel; nothing outside.
+    /// Ignores positions outside.
     pub fn blend(&mut self, x: i32, y: i32, colour: Colour, share: f32) {
         if x < 0 || y < 0 || x as usize >= self.width || y as usize >= self.height {
             return;
@@ -26,7 +23,7 @@ impl Picture {
         }
     }
 
-    /// Fills a rectangle, whose edges may cut pixels.
+    /// Fills a rectangle with antialiased edges.
     pub fn fill(&mut self, [x0, y0, x1, y1]: [f32; 4], colour: Colour, share: f32) {
         let covered = |k: i32, low: f32, high: f32| (high.min(k as f32 + 1.0) - low.max(k as f32)).max(0.0);
         for y in y0.floor() as i32..y1.ceil() as i32 {
@@ -36,7 +33,7 @@ impl Picture {
         }
     }
 
-    /// Draws a line of a width with round ends.
+    /// Draws a line with round ends.
     pub fn line(&mut self, a: [f32; 2], b: [f32; 2], width: f32, colour: Colour) {
         let half = 0.5 * width;
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
@@ -53,7 +50,6 @@ impl Picture {
         }
     }
 
-    /// The frame of a rectangle.
     pub fn frame(&mut self, [x0, y0, x1, y1]: [f32; 4], width: f32, colour: Colour) {
         let w = width;
         self.fill([x0, y0, x1, y0 + w], colour, 1.0);

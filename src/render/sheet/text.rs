@@ -1,4 +1,4 @@
-//! Text in pictures: DejaVu Sans (licence: `font/LICENSE.txt`), of which the letters of Latin, Greek and Cyrillic are in the program.
+//! Text in DejaVu Sans (licence: `font/LICENSE.txt`), with Latin, Greek and Cyrillic letters embedded.
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 
@@ -6,17 +6,16 @@ use super::super::draw::Colour;
 use super::picture::Picture;
 
 const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
-/// What stands for a letter that the font lacks.
+/// Replaces missing letters.
 const UNKNOWN: char = '\u{fffd}';
 
-/// The font in one size.
 pub struct Text {
     font: FontRef<'static>,
     scale: PxScale,
 }
 
 impl Text {
-    /// With an em of `size` pixels.
+    /// An em has `size` pixels.
     pub fn new(size: f32) -> Text {
         let font = FontRef::try_from_slice(FONT).expect("the font in the program is whole");
         // The crate scales by the height from ascent to descent.
@@ -32,13 +31,12 @@ impl Text {
         })
     }
 
-    /// Width of a text [pixels].
     pub fn width(&self, text: &str) -> f32 {
         let scaled = self.font.as_scaled(self.scale);
         self.letters(text).map(|id| scaled.h_advance(id)).sum()
     }
 
-    /// Draws a text from `x` on, on a base line `y`; returns where it ends.
+    /// Draws text from `x` on base line `y`; returns its end.
     pub fn draw(&self, picture: &mut Picture, text: &str, [x, y]: [f32; 2], colour: Colour) -> f32 {
         let scaled = self.font.as_scaled(self.scale);
         let mut at = x;
@@ -55,7 +53,7 @@ impl Text {
         at
     }
 
-    /// A text in lines no wider than `most` [pixels], broken between words.
+    /// Wraps text at `most` pixels between words.
     pub fn lines(&self, text: &str, most: f32) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -70,7 +68,7 @@ impl Text {
         lines.iter().map(|line| self.cut(line, most)).collect()
     }
 
-    /// A text cut so that it is no wider than `most` [pixels].
+    /// Truncates text to `most` pixels.
     pub fn cut(&self, text: &str, most: f32) -> String {
         if self.width(text) <= most {
             return text.to_string();

@@ -1,4 +1,4 @@
-//! The SVG of a plot.
+//! SVG of a plot.
 
 use super::ruler::{Ruler, Tick};
 use super::{Curve, Look};
@@ -10,10 +10,8 @@ const HEIGHT: f64 = 340.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 50.0;
 const FONT: f64 = 13.0;
-/// Width of a line.
 const STROKE: f64 = 1.6;
 
-/// The rectangle that curves are drawn in, with its sides.
 struct Area<'a> {
     left: f64,
     right: f64,
@@ -34,7 +32,7 @@ impl Area<'_> {
     }
 }
 
-/// The plot as SVG; points are those that have a place.
+/// Draws the plot; only points within range.
 pub fn svg(title: &str, labels: [String; 2], sides: (&Ruler, &Ruler, bool), curves: &[Curve]) -> Markup {
     let (x, y, downwards) = sides;
     let width = |label: &Option<String>| label.as_ref().map_or(0.0, |l| text_width(l, FONT));
@@ -90,7 +88,6 @@ fn curve(curve: &Curve, area: &Area<'_>) -> Markup {
     }
 }
 
-/// A marker; shapes go with the dashes.
 fn mark(shape: usize, colour: &str, x: f64, y: f64) -> Markup {
     let (left, top) = (round(x - 2.8), round(y - 2.8));
     html! {
@@ -103,7 +100,7 @@ fn mark(shape: usize, colour: &str, x: f64, y: f64) -> Markup {
     }
 }
 
-/// Line and marker beside a name in the legend.
+/// Draws a legend sample.
 pub fn sample(look: Look) -> Markup {
     let colour = COLOURS[look.colour % COLOURS.len()];
     html! {

@@ -1,7 +1,7 @@
-//! Plots of a report: SVG inside the page, the legend as a list of the page below it, so that no text covers another.
+//! SVG plots with an HTML legend below, so that no text overlaps.
 //!
-//! Text is placed by estimated widths, as in [`crate::write::svg`]. Curves differ by colour (Okabe and Ito 2008, distinct for
-//! colour-blind readers), by dashes and by the shape of their markers.
+//! Text width is estimated as in [`crate::write::svg`]. Curves differ by colour (Okabe and Ito 2008), dashes
+//! and markers.
 
 mod draw;
 mod ruler;
@@ -10,50 +10,49 @@ use super::quantity::{Scale, scale};
 use maud::{Markup, html};
 use ruler::Ruler;
 
-/// A side of a plot.
+/// Axis.
 #[derive(Clone, Debug, Default)]
 pub struct Side {
     /// Quantity, such as `settlement`.
     pub name: String,
-    /// Its SI unit; empty for a count or a ratio.
+    /// SI unit; empty for counts and ratios.
     pub unit: String,
-    /// Whether distances are ratios.
+    /// Whether logarithmic.
     pub logarithmic: bool,
-    /// Whether it grows downwards.
+    /// Whether it increases downwards.
     pub downwards: bool,
-    /// Whether it begins at zero, whatever the values are.
+    /// Whether it starts at zero.
     pub from_zero: bool,
-    /// Whether its values are counts, which have no ticks between whole numbers.
+    /// Whether values are counts with integer ticks.
     pub whole: bool,
 }
 
 impl Side {
-    /// A linear side.
+    /// Creates a linear axis.
     pub fn new(name: &str, unit: &str) -> Side {
         Side { name: name.into(), unit: unit.into(), ..Side::default() }
     }
 
-    /// A linear side of counts.
+    /// Creates an axis of counts.
     pub fn count(name: &str) -> Side {
         Side { name: name.into(), whole: true, ..Side::default() }
     }
 
-    /// The same by logarithms.
+    /// Makes it logarithmic.
     pub fn logarithmic(self) -> Side {
         Side { logarithmic: true, ..self }
     }
 
-    /// The same growing downwards.
+    /// Makes it increase downwards.
     pub fn downwards(self) -> Side {
         Side { downwards: true, ..self }
     }
 
-    /// The same from zero on.
+    /// Makes it start at zero.
     pub fn with_zero(self) -> Side {
         Side { from_zero: true, ..self }
     }
 
-    /// Quantity and unit, as it stands beside the side.
     fn label(&self, scale: &Scale) -> String {
         match scale.unit.as_str() {
             "" => self.name.clone(),
@@ -72,50 +71,50 @@ impl Side {
     }
 }
 
-/// How a curve looks: numbers of its colour and of its dashes, whether a line joins its points, whether they have markers.
+/// Curve style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Number of the colour.
+    /// Colour index.
     pub colour: usize,
-    /// Number of the dashes and of the shape of markers.
+    /// Index of dashes and marker shape.
     pub dash: usize,
-    /// Whether points are joined.
+    /// Whether points are connected.
     pub line: bool,
     /// Whether points have markers.
     pub marks: bool,
 }
 
-/// A curve.
+/// Curve.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Its name in the legend; what has none is not in it.
+    /// Legend entry, if not empty.
     pub name: String,
-    /// Points (x, y) in SI units, joined in order.
+    /// Points (x, y) in SI units.
     pub points: Vec<[f64; 2]>,
-    /// How it looks.
+    /// Style.
     pub look: Look,
 }
 
-/// A plot.
+/// Plot.
 #[derive(Clone, Debug, Default)]
 pub struct Plot {
     /// Title.
     pub title: String,
-    /// Along the page.
+    /// Horizontal axis.
     pub x: Side,
-    /// Up or down the page.
+    /// Vertical axis.
     pub y: Side,
-    /// The curves.
+    /// Curves.
     pub curves: Vec<Curve>,
 }
 
 impl Plot {
-    /// A plot of curves.
+    /// Creates a plot.
     pub fn new(title: &str, x: Side, y: Side, curves: Vec<Curve>) -> Plot {
         Plot { title: title.into(), x, y, curves }
     }
 
-    /// The plot as a figure of a page; nothing where no curve has two points that can be shown.
+    /// Draws the figure; nothing without two valid points.
     pub fn figure(&self) -> Markup {
         let values = |d: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[d]));
         let largest = |d: usize| values(d).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -149,7 +148,6 @@ impl Plot {
     }
 }
 
-/// The list of the curves that have names.
 fn legend(curves: &[Curve]) -> Markup {
     let named: Vec<&Curve> = curves.iter().filter(|c| !c.name.is_empty()).collect();
     html! {
@@ -168,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_has_units_legend_and_only_finite_points() {
+    fn figure_has_units_and_legend() {
         let curve = |name: &str, points: &[[f64; 2]], k| Curve {
             name: name.into(),
             points: points.to_vec(),
@@ -187,7 +185,7 @@ mod tests {
         assert!(text.contains("settlement [mm]") && text.contains("cycle N") && text.contains("a &lt; b"));
         assert!(text.contains("run &lt;1&gt;") && !text.contains("NaN"), "{text}");
         assert_eq!(text.matches("<li>").count(), 2);
-        // Downwards: the deepest settlement is the lowest point of the page, whose coordinates grow downwards.
+        // Deepest is lowest on the page.
         let line = text.split("<polyline points=\"").nth(1).unwrap().split('"').next().unwrap();
         let y: Vec<f64> = line.split(' ').map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
         assert!(y.len() == 2 && y[1] > y[0], "{y:?}");

@@ -1,36 +1,36 @@
-//! Values along one side of a plot: from a tick to a tick, linear or by their logarithms.
+//! Axis scale with ticks, linear or logarithmic.
 
 use crate::write::svg::{minus, power_of_ten};
 
-/// A mark at a value; without a text it is a thin line only.
+/// Tick; without label a thin line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// Its text.
+    /// Label.
     pub label: Option<String>,
 }
 
-/// The values along one side.
+/// Axis scale.
 #[derive(Clone, Debug)]
 pub struct Ruler {
     low: f64,
     high: f64,
     logarithmic: bool,
-    /// Marks, in order of size.
+    /// Ticks, ascending.
     pub ticks: Vec<Tick>,
 }
 
 impl Ruler {
-    /// A linear side over the values, with up to `most` steps of 1, 2 or 5 times a power of ten, none below `least`: from tick to tick, or
-    /// `tight`, from the least value to the largest.
+    /// Creates a linear scale of up to `most` steps of 1, 2 or 5 times a power of ten, at least `least`;
+    /// `tight` ends at extreme values.
     pub fn linear(values: impl Iterator<Item = f64>, most: usize, least: f64, tight: bool) -> Ruler {
         let (low, high) = widened(range(values).unwrap_or([0.0, 1.0]));
         let least = ((high - low) / most as f64).max(least);
         let power = libm::pow(10.0, libm::log10(least).floor());
         let steps = [1.0, 2.0, 5.0, 10.0].map(|m| m * power);
         let step = steps.into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power);
-        // A value a rounding error beyond a tick does not deserve a further step.
+        // Rounding needs no further step.
         let first = (low / step + 1e-6).floor();
         let last = (high / step - 1e-6).ceil().max(first + 1.0);
         let largest = step * first.abs().max(last.abs());
@@ -44,8 +44,7 @@ impl Ruler {
         Ruler { low: first * step, high: last * step, logarithmic: false, ticks }
     }
 
-    /// A logarithmic side over the values above 0: texts at 1, 2 and 5 of each power of ten where these are few, else at the
-    /// powers alone, thin lines between.
+    /// Creates a logarithmic scale, labelled at 1, 2 and 5 of each decade, or at decades.
     pub fn logarithmic(values: impl Iterator<Item = f64>) -> Ruler {
         let [low, high] = range(values.filter(|v| *v > 0.0)).unwrap_or([1.0, 10.0]);
         let decades = libm::log10(high / low);
@@ -78,7 +77,7 @@ impl Ruler {
         Ruler { low, high, logarithmic: true, ticks }
     }
 
-    /// Where a value lies, from 0 to 1.
+    /// Returns the position of a value, 0 to 1.
     pub fn fraction(&self, value: f64) -> f64 {
         match self.logarithmic {
             true => libm::log(value / self.low) / libm::log(self.high / self.low),
@@ -86,25 +85,24 @@ impl Ruler {
         }
     }
 
-    /// Whether a value has a place.
+    /// Whether a value can be shown.
     pub fn holds(&self, value: f64) -> bool {
         value.is_finite() && (!self.logarithmic || value > 0.0)
     }
 }
 
-/// Least and largest of the finite values.
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.filter(|v| v.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
     (low <= high).then_some([low, high])
 }
 
-/// A range that is wider than rounding.
+/// Widens a range below rounding.
 fn widened([low, high]: [f64; 2]) -> (f64, f64) {
     if high - low > 1e-12 * high.abs().max(low.abs()) {
         return (low, high);
     }
-    // All alike: something round about it, with zero where it is not far.
+    // Equal values: widen, including a near zero.
     match high.total_cmp(&0.0) {
         std::cmp::Ordering::Greater => (0.0, 2.0 * high),
         std::cmp::Ordering::Less => (2.0 * low, 0.0),
@@ -112,7 +110,6 @@ fn widened([low, high]: [f64; 2]) -> (f64, f64) {
     }
 }
 
-/// The text of a tick of a linear side.
 fn label(value: f64, step: f64, largest: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -135,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_round_and_enclose_the_values() {
+    fn ticks_enclose_values() {
         assert_eq!(
             labels(&Ruler::linear([0.0, 30.24].into_iter(), 6, 0.0, false)),
             ["0", "10", "20", "30", "40"]
@@ -172,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_logarithm_has_no_place() {
+    fn log_scale_rejects_nonpositive_values() {
         let ruler = Ruler::logarithmic([1.0, 5.0].into_iter());
         assert!(ruler.holds(2.0) && !ruler.holds(0.0) && !ruler.holds(f64::NAN));
     }

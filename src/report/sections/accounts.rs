@@ -1,4 +1,4 @@
-//! The accounts of energy, momentum and of the interface.
+//! Balances of energy, momentum and interface.
 
 use super::overlay::{facts, one, overlay};
 use crate::columns::{Definition, history};
@@ -8,7 +8,6 @@ use crate::report::plot::{Plot, Side};
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Columns of the history that store energy, with their names.
 const STORED: [(&Definition, &str); 9] = [
     (history::GRAINS_KINETIC, "kinetic energy of grains"),
     (history::CONTACT_SPRINGS, "contact springs"),
@@ -21,7 +20,6 @@ const STORED: [(&Definition, &str); 9] = [
     (history::RAIL_ENERGY, "rails"),
 ];
 
-/// Columns of work and losses.
 const SPENT: [(&Definition, &str); 7] = [
     (history::WORK, "work"),
     (history::DISSIPATED_DASHPOT, "dashpots of contacts"),
@@ -32,7 +30,7 @@ const SPENT: [(&Definition, &str); 7] = [
     (history::DISSIPATED_TRACK, "rail pads and track outside the model"),
 ];
 
-/// Energy, momentum, interface.
+/// Formats energy, momentum, interface.
 pub fn energy(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
     let curves = |columns: &'static [(&'static Definition, &'static str)], change: bool| {
@@ -48,7 +46,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
         })
     };
     let error = one(runs, |r| r.table("history")?.points(history::TIME, history::ENERGY_ERROR));
-    // Of several runs the parts would be too many lines.
+    // Several runs would give too many curves.
     let single = runs.len() == 1;
     let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };
     let figures = plots([
@@ -86,7 +84,6 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
     Section::new("energy", "Energy and momentum balances", joined([figures, sums, parts(runs)]))
 }
 
-/// What was stored at both ends, and what was spent, part by part.
 fn parts(runs: &[RunData]) -> Markup {
     joined(runs.iter().map(|run| {
         let object = |path: &str| run.value(path).as_object().cloned().unwrap_or_default();

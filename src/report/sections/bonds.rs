@@ -1,4 +1,4 @@
-//! Bonds that break, and the pieces that they leave.
+//! Bond breakage and fragments.
 
 use super::overlay::{facts, one, overlay};
 use crate::columns::history;
@@ -6,7 +6,7 @@ use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
 
-/// Bonds.
+/// Formats bonds.
 pub fn bonds(runs: &[RunData]) -> Option<Section> {
     let broken = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };

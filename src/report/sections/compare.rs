@@ -1,4 +1,4 @@
-//! Several runs beside each other: what sets them apart, and what came of it.
+//! Comparison of runs: different keys and results.
 
 use super::overlay::facts;
 use crate::columns::{Definition, cycles, history};
@@ -7,10 +7,9 @@ use crate::report::page::{Cell, Section, joined, paragraph, table};
 use maud::Markup;
 use std::collections::BTreeSet;
 
-/// Most keys that are listed.
 const KEYS: usize = 60;
 
-/// Comparison of several runs; none of a single one.
+/// Compares several runs; none for one.
 pub fn compare(runs: &[RunData]) -> Option<Section> {
     if runs.len() < 2 {
         return None;
@@ -18,7 +17,6 @@ pub fn compare(runs: &[RunData]) -> Option<Section> {
     Section::new("compare", "Comparison", joined([different_keys(runs), results(runs)]))
 }
 
-/// Keys of the scenes that are not alike in all runs.
 fn different_keys(runs: &[RunData]) -> Markup {
     let all: BTreeSet<&String> = runs.iter().flat_map(|r| r.keys.keys()).collect();
     let known = runs.iter().all(|r| !r.keys.is_empty());
@@ -41,7 +39,7 @@ fn different_keys(runs: &[RunData]) -> Markup {
     table(&heads, &rows)
 }
 
-/// A value of a scene for people: strings without quotes, long ones in short.
+/// Formats a scene value, unquoted and shortened.
 pub fn shown(value: &str) -> String {
     let text = value.strip_prefix('"').and_then(|v| v.strip_suffix('"')).unwrap_or(value);
     match text.char_indices().nth(160) {
@@ -50,18 +48,16 @@ pub fn shown(value: &str) -> String {
     }
 }
 
-/// Settlement after a cycle [m].
 fn settlement_at(run: &RunData, cycle: f64) -> Option<f64> {
     let points = run.table("cycles")?.points(cycles::CYCLE, cycles::SETTLEMENT)?;
     points.iter().find(|p| p[0] == cycle).map(|p| p[1])
 }
 
-/// Last value of a column of `cycles.csv`.
+/// Returns the last value of a `cycles.csv` column.
 pub fn last_of(run: &RunData, column: &'static Definition) -> Option<f64> {
     run.table("cycles")?.column(column)?.last().copied()
 }
 
-/// Largest value of a column of `history.csv`.
 fn largest_of(run: &RunData, column: &'static Definition) -> Option<f64> {
     run.table("history")?.column(column)?.iter().copied().reduce(f64::max)
 }

@@ -1,4 +1,4 @@
-//! Grains that come and go: inventory and mass flow.
+//! Inflow and outflow: inventory and mass flow.
 
 use super::overlay::{facts, one, overlay};
 use crate::columns::history;
@@ -6,10 +6,9 @@ use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
 
-/// Stretches of the run that a mean rate is given for.
 const STRETCHES: usize = 40;
 
-/// Inlets and outlets.
+/// Formats inlets and outlets.
 pub fn flow(runs: &[RunData]) -> Option<Section> {
     let mass = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
@@ -61,7 +60,6 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
     Section::new("flow", "Inlets and outlets", joined([figures, sums, table(&["", "grains", "mass"], &rows)]))
 }
 
-/// Mean mass flow out over stretches of equal length.
 fn rate(run: &RunData) -> Option<Vec<[f64; 2]>> {
     let points = run.table("history")?.points(history::TIME, history::MASS_OUT)?;
     let every = points.len().div_ceil(STRETCHES).max(1);

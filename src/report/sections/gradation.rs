@@ -1,4 +1,4 @@
-//! Sieve curves, over the logarithm of the size.
+//! Sieve curves, logarithmic in size.
 
 use super::overlay::overlay;
 use crate::columns::{Definition, gradation};
@@ -7,7 +7,7 @@ use crate::report::page::{Section, columns, joined, plots};
 use crate::report::plot::{Plot, Side};
 use serde_json::Value;
 
-/// Sieve curves asked for and achieved.
+/// Plots target and achieved sieve curves.
 pub fn gradation(runs: &[RunData]) -> Option<Section> {
     let curves = overlay(runs, |run| {
         let Some(table) = run.table("gradation") else { return Vec::new() };

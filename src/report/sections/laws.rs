@@ -1,29 +1,28 @@
-//! Settlement laws as the summary has them: their curves.
+//! Settlement laws of the summary.
 
 use serde_json::Value;
 
-/// Points of a curve.
 const POINTS: usize = 120;
 
-/// A law that was fitted to the settlement.
+/// Fitted settlement law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Law {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// s(N).
     pub form: String,
-    /// Names and values of the parameters; settlements [m].
+    /// Parameters by name; settlements [m].
     pub parameters: Vec<(String, f64)>,
-    /// Share of the spread that it explains.
+    /// R².
     pub r2: f64,
-    /// Root-mean-square residual [m].
+    /// RMS residual [m].
     pub rms_error: f64,
-    /// First and last cycle used.
+    /// First and last cycle of the fit.
     pub range: [f64; 2],
 }
 
 impl Law {
-    /// Of `settlement.fits` in a summary; none where something is missing.
+    /// Reads an entry of `settlement.fits`, if complete.
     pub fn of(fit: &Value) -> Option<Law> {
         let parameter = |p: &Value| Some((p.get(0)?.as_str()?.to_string(), p.get(1)?.as_f64()?));
         Some(Law {
@@ -36,8 +35,8 @@ impl Law {
         })
     }
 
-    /// Settlement after N cycles [m]; none of a law that is not known here, or is another one's curve written in another way
-    /// (Hettler's is that of Alva-Hurtado & Selig).
+    /// Returns settlement after N cycles [m]; none if unknown or a reformulation (Hettler's is Alva-Hurtado &
+    /// Selig).
     pub fn at(&self, n: f64) -> Option<f64> {
         let p = |name: &str| self.parameters.iter().find(|p| p.0 == name).map(|p| p.1);
         let log = libm::log10(n);
@@ -53,7 +52,7 @@ impl Law {
         value.is_finite().then_some(value)
     }
 
-    /// Its curve over the cycles that it was fitted to; empty where it has none of its own.
+    /// Returns the curve over the fitted cycles, if any.
     pub fn curve(&self) -> Vec<[f64; 2]> {
         let [from, to] = self.range;
         if !(from > 0.0 && to > from) {
@@ -70,8 +69,8 @@ mod tests {
     use trackbed_coupling::track::settlement;
 
     #[test]
-    fn every_law_has_the_curve_that_was_fitted() {
-        // The residuals of each curve are those that its fit states.
+    fn law_curves_match_fits() {
+        // Residuals match the fit.
         let data: Vec<[f64; 2]> = (1..=400)
             .map(|n| {
                 let n = f64::from(n);

@@ -1,4 +1,4 @@
-//! Loads on structures: against time, by sectors around their axis, by height; motion of those that move.
+//! Loads on structures, and their motion.
 
 use super::overlay::overlay;
 use crate::columns::{Definition, Name, history};
@@ -8,10 +8,9 @@ use crate::report::plot::{Plot, Side};
 use crate::results::tables::Table;
 use std::f64::consts::TAU;
 
-/// Points of a curve that a structure has in a history.
 type Curve<'a> = &'a dyn Fn(&Table, &str) -> Option<Vec<[f64; 2]>>;
 
-/// Loads on structures.
+/// Formats structural loads.
 pub fn loads(runs: &[RunData]) -> Option<Section> {
     let of =
         |stem: &str, f: Curve<'_>, run: &RunData| Some((stem.to_string(), f(run.table("history")?, stem)?));
@@ -64,18 +63,16 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
     if html.0.is_empty() { None } else { Section::new("loads", "Loads on structures", joined([html, note])) }
 }
 
-/// Names of structures.
 fn names(run: &RunData) -> Vec<&str> {
     run.table("history").map(|t| t.items(history::STRUCTURE_LOAD_LEVEL)).unwrap_or_default()
 }
 
-/// Largest value of each column of a list.
 fn largest(table: &Table, list: Name<'_>) -> Vec<f64> {
     let of = |k: usize| table.column(list.at(k));
     (0..).map_while(of).map(|column| column.iter().fold(0.0, |m: f64, x| m.max(*x))).collect()
 }
 
-/// The largest load of each sector as a closed curve.
+/// Sector loads as a closed curve.
 fn rose(table: &Table, name: &str) -> Option<Vec<[f64; 2]>> {
     let loads = largest(table, history::STRUCTURE_SECTOR.of(name));
     let count = loads.len();

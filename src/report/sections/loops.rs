@@ -1,4 +1,4 @@
-//! Load against deflection in single cycles; stiffness, modulus and damping over the cycles.
+//! Load–deflection loops; cyclic stiffness, modulus, damping.
 
 use super::overlay::one;
 use crate::columns::{Definition, cycles, history};
@@ -8,21 +8,20 @@ use crate::report::plot::{Curve, Look, Plot, Side};
 use maud::Markup;
 use std::f64::consts::PI;
 
-/// Rows of the history that a loop needs.
 const ROWS: usize = 12;
 
-/// A loop: deflection [m] downwards, load [N].
+/// Deflection [m] downwards, load [N].
 struct Loop {
     number: usize,
     points: Vec<[f64; 2]>,
 }
 
-/// Loops, stiffness, damping.
+/// Formats loops, stiffness, damping.
 pub fn loops(runs: &[RunData]) -> Option<Section> {
     let x = || Side::count("load cycle N").logarithmic();
     let of = |column: &'static Definition| {
         one(runs, move |r| {
-            // Zero: the cycle does not tell it.
+            // Zero means undefined.
             let points = r.table("cycles")?.points(cycles::CYCLE, column)?;
             Some(points.into_iter().filter(|p| p[1] != 0.0).collect())
         })
@@ -64,7 +63,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
     Section::new("loops", "Load–deflection", joined([html, note, formulas]))
 }
 
-/// Damping ratio of each cycle: E/(4π ½ K (u/2)²).
+/// E/(4π ½ K (u/2)²).
 fn damping(run: &RunData) -> Option<Vec<[f64; 2]>> {
     let table = run.table("cycles")?;
     let [n, u, k, e] =
@@ -76,7 +75,6 @@ fn damping(run: &RunData) -> Option<Vec<[f64; 2]>> {
     Some(known.map(|i| [n[i], ratio(i)]).collect())
 }
 
-/// The plot of single loops, and what to say about it.
 fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
     let mut curves = Vec::new();
     let mut coarse = false;
@@ -84,7 +82,7 @@ fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
         let Some(all) = loops_of(run) else { continue };
         let fine: Vec<&Loop> = all.iter().filter(|l| l.points.len() >= ROWS).collect();
         coarse |= fine.len() < all.len();
-        // The count of the loops is that of the cycles only where each was seen.
+        // Numbered as cycles only if all were detected.
         let counted = run.table("cycles").is_some_and(|t| t.rows() == all.len());
         for (k, one) in selected(&fine, if runs.len() > 1 { 2 } else { 6 }).into_iter().enumerate() {
             let kind = if counted { "cycle" } else { "loop" };
@@ -106,7 +104,7 @@ fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
     )
 }
 
-/// The first, the last and some between by equal ratios.
+/// First, last, others in geometric spacing.
 fn selected<'a>(all: &[&'a Loop], most: usize) -> Vec<&'a Loop> {
     if all.len() <= most {
         return all.to_vec();
@@ -119,7 +117,7 @@ fn selected<'a>(all: &[&'a Loop], most: usize) -> Vec<&'a Loop> {
     places.into_iter().map(|k| all[k.min(all.len() - 1)]).collect()
 }
 
-/// The loops of the first sleeper with a load: from one least load to the next. None without a load that goes up and down.
+/// Loops of the first loaded sleeper, between load minima.
 fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     let table = run.table("history")?;
     let (load, z) = ["", "_1"].into_iter().find_map(|n| {
@@ -127,7 +125,7 @@ fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     })?;
     let least = load.iter().copied().fold(f64::INFINITY, f64::min);
     let most = load.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // The load goes through the middle of its range, not just past it: a ramp from zero is no cycle of its own.
+    // Must cross the middle range: a ramp is no cycle.
     let (low, high) = (least + 0.45 * (most - least), least + 0.55 * (most - least));
     let mut rises = Vec::new();
     let mut below = true;
@@ -142,13 +140,13 @@ fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     let mut ends = Vec::new();
     for (k, &rise) in rises.iter().enumerate() {
         let from = if k == 0 { 0 } else { rises[k - 1] };
-        // Before the first rise the last of the rows of least load: rest and ramp are no part of a cycle.
+        // Rest and ramp before the first rise are no part of the cycle.
         let near = |i: &usize| load[*i] <= load[lowest(from, rise).unwrap_or(from)] + 0.08 * (most - least);
         let start = if k == 0 { (from..rise).rev().find(near) } else { lowest(from, rise) };
         ends.push(start.unwrap_or(from));
     }
     if let Some(&rise) = rises.last() {
-        // The last cycle may not be over.
+        // The last cycle may be incomplete.
         ends.extend(lowest(rise, load.len()).filter(|&k| load[k] < low));
     }
     let first = *z.first()?;

@@ -1,5 +1,4 @@
-//! The sections of a report, in their order on the page; each a function of the runs that returns nothing where these have
-//! nothing for it.
+//! Report sections in page order.
 
 mod accounts;
 mod bonds;
@@ -24,10 +23,9 @@ mod walls;
 use super::data::RunData;
 use super::page::Section;
 
-/// Makes a section of the runs.
 type Make = fn(&[RunData]) -> Option<Section>;
 
-/// All sections that the runs have something for.
+/// Returns all sections with data.
 pub fn all(runs: &[RunData]) -> Vec<Section> {
     let sections: [Make; 23] = [
         verdict::verdict,

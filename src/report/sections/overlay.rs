@@ -1,4 +1,4 @@
-//! What sections share: curves and tables of one or several runs.
+//! Shared curves and tables of sections.
 
 use crate::columns::Name;
 use crate::report::data::RunData;
@@ -6,14 +6,13 @@ use crate::report::page::{Cell, facts_table};
 use crate::report::plot::{Curve, Look};
 use maud::Markup;
 
-/// More points than these have no markers: the line is dense.
+/// Longer curves have no markers.
 const FEW: usize = 60;
 
-/// A named curve of a run, in SI units.
+/// Named curve in SI units.
 pub type Named = (String, Vec<[f64; 2]>);
 
-/// The curves of all runs: of one run in colours of their own; of several each run has its colour, and its curves differ by
-/// dashes.
+/// Collects the curves of all runs, coloured by curve or by run.
 pub fn overlay(runs: &[RunData], of: impl Fn(&RunData) -> Vec<Named>) -> Vec<Curve> {
     let several = runs.len() > 1;
     let mut curves = Vec::new();
@@ -32,15 +31,15 @@ pub fn overlay(runs: &[RunData], of: impl Fn(&RunData) -> Vec<Named>) -> Vec<Cur
     curves
 }
 
-/// A curve of each run without a name of its own.
+/// Collects one unnamed curve per run.
 pub fn one(runs: &[RunData], of: impl Fn(&RunData) -> Option<Vec<[f64; 2]>>) -> Vec<Curve> {
     overlay(runs, |run| of(run).map(|points| vec![(String::new(), points)]).unwrap_or_default())
 }
 
-/// A row of a table of facts: name, and what a run has.
+/// Fact name, cell of a run.
 pub type Fact<'a> = (&'a str, &'a dyn Fn(&RunData) -> Cell);
 
-/// A table with a column for each run and a row for each fact that any of them has.
+/// Formats a table of runs by facts, without empty rows.
 pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> Markup {
     let rows: Vec<(String, Vec<Cell>)> = rows
         .iter()
@@ -52,7 +51,7 @@ pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> Markup {
     facts_table(&heads, &rows)
 }
 
-/// The component of a vector of a history that varies most, as (axis, values).
+/// Returns the most variable component of a history vector: (axis, values).
 pub fn dominant<'a>(run: &'a RunData, vector: Name<'_>) -> Option<(&'static str, &'a [f64])> {
     let table = run.table("history")?;
     let spread = |values: &[f64]| {

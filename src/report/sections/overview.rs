@@ -1,4 +1,4 @@
-//! What was run: counts, steps of the model, materials, options.
+//! Run overview: counts, materials, options.
 
 use super::compare::shown;
 use super::overlay::facts;
@@ -8,15 +8,14 @@ use crate::report::page::{Cell, Section, headed, joined, paragraph, table};
 use maud::Markup;
 use std::collections::BTreeSet;
 
-/// Keys that have sections of their own, or are long.
 const ELSEWHERE: [&str; 3] = ["material", "title", "probe"];
-/// Most tables that are listed before the text of the scene, which has all.
+/// The scene text is complete.
 const OPTIONS: usize = 60;
 
-/// What was run.
+/// Formats the overview.
 pub fn overview(runs: &[RunData]) -> Option<Section> {
     let mut parts = vec![counts(runs)];
-    // Of runs of one scene the materials that differ stand in the comparison.
+    // Differing materials are shown in the comparison.
     let alike = |run: &RunData| run.keys == runs[0].keys;
     let shown: Vec<&RunData> = if runs.iter().all(alike) { vec![&runs[0]] } else { runs.iter().collect() };
     for run in shown {
@@ -70,7 +69,6 @@ fn counts(runs: &[RunData]) -> Markup {
     )
 }
 
-/// Materials of a kind, a row each, with the keys that any of them has.
 fn materials(run: &RunData, kind: &str) -> Markup {
     let key_of = |key: &str| {
         let rest = key.strip_prefix(kind)?.strip_prefix('.')?;
@@ -97,7 +95,6 @@ fn materials(run: &RunData, kind: &str) -> Markup {
     table(&heads, &rows)
 }
 
-/// The other keys of the scene, as they were written: a row for each table.
 fn options(run: &RunData, whose: &str) -> Markup {
     let elsewhere = |key: &str| {
         let first = key.split('.').next().unwrap_or(key);

@@ -1,4 +1,4 @@
-//! The grains at the end: coordination, porosity, stress; how the bed was made.
+//! Final packing: coordination, porosity, stress; growth and compaction.
 
 use super::overlay::{facts, one};
 use crate::columns::radial;
@@ -8,7 +8,7 @@ use crate::report::plot::{Plot, Side};
 use maud::Markup;
 use serde_json::Value;
 
-/// Packing.
+/// Formats the packing.
 pub fn packing(runs: &[RunData]) -> Option<Section> {
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let figures = facts(
@@ -65,7 +65,6 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
     Section::new("packing", "Packing", html)
 }
 
-/// The boxes that the scene measures: packing and stress.
 fn measures(runs: &[RunData]) -> Markup {
     let mut names = Vec::new();
     let mut found: Vec<&Value> = Vec::new();
@@ -107,7 +106,6 @@ fn measures(runs: &[RunData]) -> Markup {
     ])
 }
 
-/// Growth and compaction.
 fn made(runs: &[RunData]) -> Markup {
     let several = runs.len() > 1;
     let (mut growth, mut compaction) = (Vec::new(), Vec::new());

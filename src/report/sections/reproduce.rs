@@ -1,4 +1,4 @@
-//! How the results come again: command, scene, overrides, sources.
+//! Command, scene, overrides and sources of the runs.
 
 use crate::report::data::RunData;
 use crate::report::page::{Section, paragraph};
@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// How to reproduce the runs.
+/// Formats the reproduction data.
 pub fn reproduce(runs: &[RunData]) -> Option<Section> {
     let sources: BTreeSet<&str> =
         runs.iter().flat_map(|r| r.list("sources")).filter_map(Value::as_str).collect();

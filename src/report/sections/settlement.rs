@@ -1,4 +1,4 @@
-//! Settlement under load cycles, with the laws fitted to it.
+//! Settlement under load cycles, with fitted laws.
 
 use super::laws::Law;
 use super::overlay::{facts, one};
@@ -10,13 +10,13 @@ use crate::report::quantity::{exact, number};
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Cycles that the table has: 1, 2, 5 of each power of ten, and the last.
+/// 1, 2, 5 of each decade, and the last.
 fn chosen(n: f64, last: f64) -> bool {
     let power = libm::pow(10.0, libm::log10(n).floor());
     n == last || [1.0, 2.0, 5.0].iter().any(|d| (n - d * power).abs() < 1e-6 * n)
 }
 
-/// Settlement against load cycles.
+/// Formats settlement over cycles.
 pub fn settlement(runs: &[RunData]) -> Option<Section> {
     let data = one(runs, |r| r.table("cycles")?.points(cycles::CYCLE, cycles::SETTLEMENT));
     if data.is_empty() {
@@ -66,7 +66,6 @@ fn fitted(law: &Law, name: String, k: usize) -> Curve {
     Curve { name, points: law.curve(), look }
 }
 
-/// Lowering of the sleepers against time.
 fn lowering(runs: &[RunData]) -> Markup {
     let curves = super::overlay::overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
@@ -104,7 +103,6 @@ fn figures_of(runs: &[RunData]) -> Markup {
     )
 }
 
-/// The laws with their parameters.
 fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
     let mut rows = Vec::new();
     for (run, laws) in runs.iter().zip(laws) {
@@ -141,7 +139,6 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
     joined([headed("Settlement laws", table(&heads, &rows)), note])
 }
 
-/// Single cycles in figures.
 fn by_cycle(runs: &[RunData]) -> Markup {
     let mut parts = Vec::new();
     for run in runs {
@@ -154,7 +151,7 @@ fn by_cycle(runs: &[RunData]) -> Markup {
             let column = table.column(column);
             rows.iter().map(|&k| column.map(|c| c[k])).collect()
         };
-        // Zero: the cycle does not tell it.
+        // Zero means undefined.
         let known = |column: &'static Definition| -> Vec<Option<f64>> {
             of(column).into_iter().map(|v| v.filter(|v| *v != 0.0)).collect()
         };

@@ -1,4 +1,4 @@
-//! Slides and specimens of rock.
+//! Slides and rock specimens.
 
 use super::overlay::{facts, one, overlay};
 use crate::columns::{Definition, history};
@@ -6,7 +6,7 @@ use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots};
 use crate::report::plot::{Plot, Side};
 
-/// Run-out of a slide.
+/// Formats the runout.
 pub fn runout(runs: &[RunData]) -> Option<Section> {
     let of =
         |column: &'static Definition| one(runs, move |r| r.table("history")?.points(history::TIME, column));
@@ -49,7 +49,7 @@ pub fn runout(runs: &[RunData]) -> Option<Section> {
     Section::new("runout", "Run-out", joined([figures, sums]))
 }
 
-/// Curve and constants of a specimen.
+/// Formats specimen results.
 pub fn specimen(runs: &[RunData]) -> Option<Section> {
     let curve = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };

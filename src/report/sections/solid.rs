@@ -1,4 +1,4 @@
-//! The solid: load against displacement, equilibrium, plastic share, factor of safety, modes.
+//! Solid: displacement, equilibrium, plasticity, safety, modes.
 
 use super::overlay::{dominant, facts, one, overlay};
 use crate::columns::{Definition, gauss, history, modes, safety};
@@ -8,7 +8,7 @@ use crate::report::plot::{Plot, Side};
 use crate::scene::history::TimeFunction;
 use maud::Markup;
 
-/// The solid.
+/// Formats the solid.
 pub fn solid(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
     let driven = overlay(runs, load_displacement);
@@ -58,14 +58,13 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
     Section::new("solid", "Solid", joined([figures, note, equilibrium(runs), supports(runs)]))
 }
 
-/// Force of moved supports against their displacement.
 fn load_displacement(run: &RunData) -> Vec<(String, Vec<[f64; 2]>)> {
     let (Some(table), Some(scene)) = (run.table("history"), &run.scene) else { return Vec::new() };
     let supports = scene.solid.iter().flat_map(|s| &s.support);
     let moved = supports.filter_map(|s| {
         let (name, size) = (s.name.as_ref()?, s.displacement?.si);
         let [direction] = s.directions.as_slice() else { return None };
-        // A history from a file stays with the scene; the results do not have it.
+        // History files are not in the results.
         let history = s.history.as_ref().filter(|h| h.file.is_none())?;
         let history = TimeFunction::new(history, None).ok().filter(|_| size != 0.0)?;
         let points = table.points(history::TIME, history::SUPPORT_REACTION.of(name).along(direction)?)?;
@@ -108,7 +107,6 @@ fn equilibrium(runs: &[RunData]) -> Markup {
     )
 }
 
-/// Equivalent plastic strain at the Gauss points.
 fn plastic(run: &RunData) -> Option<&[f64]> {
     run.table("gauss")?.column(gauss::EQUIVALENT_PLASTIC_STRAIN)
 }
@@ -118,7 +116,6 @@ fn plastic_share(run: &RunData) -> Option<f64> {
     Some(all.iter().filter(|k| **k > 0.0).count() as f64 / all.len().max(1) as f64)
 }
 
-/// Sums of the reactions of named supports at the end.
 fn supports(runs: &[RunData]) -> Markup {
     let mut names = Vec::new();
     let mut forces = Vec::new();
@@ -137,7 +134,7 @@ fn supports(runs: &[RunData]) -> Markup {
     headed("Reactions at the end", columns("support", &names, &all))
 }
 
-/// Factor of safety.
+/// Formats the factor of safety.
 pub fn safety(runs: &[RunData]) -> Option<Section> {
     let curve = one(runs, |r| {
         let table = r.table("safety")?;
@@ -179,7 +176,7 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
     Section::new("safety", "Factor of safety", joined([sums, plots([figure]), table(&heads, &rows)]))
 }
 
-/// Natural modes.
+/// Formats natural modes.
 pub fn modes(runs: &[RunData]) -> Option<Section> {
     let mut parts = Vec::new();
     for run in runs {

@@ -1,4 +1,4 @@
-//! Steps, windows and the exchange in figures; time of each stage.
+//! Steps, windows, coupling, and stage times.
 
 use super::overlay::facts;
 use crate::report::data::RunData;
@@ -6,10 +6,10 @@ use crate::report::page::{Cell, Section, table};
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Width of the bar of the longest stage [px].
+/// Longest bar [px].
 const BAR: f64 = 220.0;
 
-/// Steps and windows.
+/// Formats steps and windows.
 pub fn steps(runs: &[RunData]) -> Option<Section> {
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let text = |path: &'static str| move |r: &RunData| r.text(path).map_or(Cell::Nothing, Cell::text);
@@ -46,12 +46,11 @@ pub fn steps(runs: &[RunData]) -> Option<Section> {
     Section::new("steps", "Time steps and coupling windows", html)
 }
 
-/// A bar of a width [px] with its share [%].
 fn bar(width: f64, share: f64) -> Markup {
     html! { span class="bar" style={ "width:" (width) "px" } {} " " (format!("{share:.0}")) " %" }
 }
 
-/// Time by the clock of each stage.
+/// Formats wall times of stages.
 pub fn timings(runs: &[RunData]) -> Option<Section> {
     let seconds = |s: &Value| s["seconds"].as_f64().unwrap_or(0.0);
     let longest = runs.iter().flat_map(|r| r.list("stages")).map(seconds).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Pressure on the formation, sleepers, lateral push.
+//! Formation pressure, sleepers, lateral push.
 
 use super::overlay::{facts, one, overlay};
 use crate::columns::{Definition, cycles, history, push};
@@ -6,7 +6,7 @@ use crate::report::data::RunData;
 use crate::report::page::{Cell, Section, joined, plots, table};
 use crate::report::plot::{Plot, Side};
 
-/// Pressure on the formation and force on the solid.
+/// Formats formation pressure and force on the solid.
 pub fn pressure(runs: &[RunData]) -> Option<Section> {
     let time = || Side::new("time", "s");
     let in_time = one(runs, |r| r.table("history")?.points(history::TIME, history::PEAK_FORMATION_PRESSURE));
@@ -40,7 +40,7 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
     Section::new("pressure", "Pressure on the formation", html)
 }
 
-/// Loads on the sleepers, and what became of each.
+/// Formats sleeper loads and results.
 pub fn sleepers(runs: &[RunData]) -> Option<Section> {
     let numbered = |run: &RunData, column: &'static Definition| -> Vec<(String, Vec<[f64; 2]>)> {
         let Some(table) = run.table("history") else { return Vec::new() };
@@ -89,7 +89,7 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
     Section::new("sleepers", "Sleepers", joined([figures, table(&heads, &rows)]))
 }
 
-/// Lateral push of a sleeper.
+/// Formats the lateral push.
 pub fn push(runs: &[RunData]) -> Option<Section> {
     let curve =
         |column: &'static Definition| one(runs, move |r| r.table("push")?.points(push::DISPLACEMENT, column));

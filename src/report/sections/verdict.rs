@@ -1,4 +1,4 @@
-//! How the runs ended, what they were judged by and what they remark: first of all.
+//! Status, checks and warnings of the runs.
 
 use crate::columns::history;
 use crate::report::data::{RunData, State};
@@ -7,13 +7,12 @@ use crate::report::quantity::with_unit;
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Verdict and warnings.
+/// Formats checks and warnings.
 pub fn verdict(runs: &[RunData]) -> Option<Section> {
     let cards = joined(runs.iter().map(card));
     Section::new("verdict", "Checks and warnings", joined([cards, judged(runs)]))
 }
 
-/// A run with its state and remarks.
 fn card(run: &RunData) -> Markup {
     let remarks = remarks(run);
     let class = match run.state() {
@@ -35,7 +34,6 @@ fn card(run: &RunData) -> Markup {
     }
 }
 
-/// The verdict in a word.
 fn word(run: &RunData) -> &'static str {
     match run.state() {
         State::Passed => "Passed.",
@@ -48,7 +46,6 @@ fn word(run: &RunData) -> &'static str {
     }
 }
 
-/// What it means for the figures below.
 fn sentence(run: &RunData) -> String {
     let judged = run.list("verdict.judged").len();
     let reached = match run.table("history").and_then(|t| t.column(history::TIME)?.last().copied()) {
@@ -94,7 +91,6 @@ fn sentence(run: &RunData) -> String {
     }
 }
 
-/// Remarks of the run itself, and on its files.
 fn remarks(run: &RunData) -> Vec<String> {
     let mut out = Vec::new();
     for j in run.list("verdict.judged").iter().filter(|j| j["outcome"] != "passed") {
@@ -122,7 +118,6 @@ fn remarks(run: &RunData) -> Vec<String> {
     out
 }
 
-/// The accounts and the checks of validity with their limits.
 fn judged(runs: &[RunData]) -> Markup {
     let several = runs.len() > 1;
     let mut rows = Vec::new();

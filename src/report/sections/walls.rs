@@ -1,4 +1,4 @@
-//! Recorded walls: forces against time and displacement; stress against strain of servo tests.
+//! Recorded walls: forces; stress–strain of servo tests.
 
 use super::overlay::{dominant, overlay};
 use crate::columns::{Definition, history};
@@ -8,10 +8,10 @@ use crate::report::plot::{Plot, Side};
 use crate::results::tables::Table;
 use crate::scene::walls::{Wall, WallKind};
 
-/// Share of the largest force above which a wall touches.
+/// Contact threshold over largest force.
 const TOUCH: f64 = 0.01;
 
-/// Forces on walls.
+/// Formats wall forces.
 pub fn walls(runs: &[RunData]) -> Option<Section> {
     let forces = overlay(runs, |run| {
         let of = |stem: &str| {
@@ -59,18 +59,16 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
     if html.0.is_empty() { None } else { Section::new("walls", "Walls", joined([html, note])) }
 }
 
-/// Names of recorded walls.
 fn stems(run: &RunData) -> Vec<&str> {
     run.table("history").map(|t| t.items(history::WALL_MOMENT.at(0))).unwrap_or_default()
 }
 
-/// Stress against strain of a wall.
 struct Servo {
     name: String,
     points: Vec<[f64; 2]>,
 }
 
-/// Servo walls that are planes with an area and another plane that faces them.
+/// Planes with an area and an opposite plane.
 fn servos(run: &RunData) -> Vec<Servo> {
     let (Some(scene), Some(table)) = (&run.scene, run.table("history")) else { return Vec::new() };
     scene.walls.iter().filter_map(|wall| servo(wall, &scene.walls, table)).collect()
@@ -86,11 +84,11 @@ fn servo(wall: &Wall, all: &[Wall], table: &Table) -> Option<Servo> {
         Some((0..x.len()).map(|k| dot([x[k], y[k], z[k]], normal)).collect())
     };
     let (force, way) = (along(history::WALL_FORCE)?, along(history::WALL_DISPLACEMENT)?);
-    // A plate may come a long way before it touches.
+    // A platen may travel before contact.
     let most = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let start = force.iter().position(|f| f.abs() > TOUCH * most)?;
     let first = way[start];
-    // The nearest plane on the side that the wall looks to, and that looks back.
+    // Nearest opposite plane in front.
     let faces = all.iter().filter_map(plane).filter(|(_, n)| dot(*n, normal) < -0.999);
     let gaps = faces.map(|(p, _)| dot([0, 1, 2].map(|d| p[d] - point[d]), normal) - first);
     let gap = gaps.filter(|g| *g > 0.0).min_by(f64::total_cmp)?;
@@ -98,7 +96,6 @@ fn servo(wall: &Wall, all: &[Wall], table: &Table) -> Option<Servo> {
     Some(Servo { name: name.clone(), points })
 }
 
-/// Point and unit normal of a plane.
 fn plane(wall: &Wall) -> Option<([f64; 3], [f64; 3])> {
     if wall.kind != WallKind::Plane {
         return None;

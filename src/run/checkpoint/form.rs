@@ -1,15 +1,14 @@
-//! The file of a checkpoint.
+//! Checkpoint file format.
 //!
 //! ```text
-//! trackbed checkpoint N\n        the form of the file
+//! trackbed checkpoint N\n        format version
 //! { header }\n                   JSON: program, scene, stage, step, time
-//! body                           binary: every number with all its bits
+//! body                           binary, bitwise exact
 //! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first
 //! ```
 //!
-//! The body is a sequence of parts in the form of the crate `postcard` (little endian, integers of variable length), read in the
-//! order that they were written in; which parts they are is up to the stage that wrote them. Fields have no names there, so
-//! no type in a checkpoint may leave a field out (`skip_serializing_if`).
+//! The body is a sequence of `postcard` parts (little endian, varint), read in writing order; the stage
+//! defines them. Fields are unnamed, so no type may skip a field (`skip_serializing_if`).
 
 use super::origin::Origin;
 use crate::failure::Failure;
@@ -18,45 +17,39 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// First line of a checkpoint, with the number of its form.
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
-/// The form that this program writes and reads.
+/// Supported format version.
 pub(super) const FORM: u32 = 17;
-/// Bytes of the checksum at the end.
 pub(super) const CHECKSUM: usize = 8;
-/// Bytes that are gathered before they are summed and written.
 const BUFFER: usize = 1 << 18;
 
-/// Where in the run a checkpoint was written.
+/// Position of a checkpoint in the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moment {
-    /// Stage, such as `run`.
+    /// Stage name, such as `run`.
     pub stage: String,
-    /// Steps or windows of the stage that were done.
+    /// Completed steps or windows of the stage.
     pub step: u64,
     /// Simulated time of the stage [s].
     pub time: f64,
 }
 
-/// What is known of a checkpoint before its body is read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
-    /// Number of this checkpoint in its run; the higher one of two slots is the later.
+    /// The higher number of two slots is later.
     pub(super) number: u64,
     pub(super) moment: Moment,
     pub(super) origin: Origin,
 }
 
-/// Why a file is refused.
 pub(super) enum Unfit {
-    /// It has the form of another program.
+    /// Foreign format version.
     Form(String),
-    /// It is not what was written.
+    /// Damaged.
     Damaged(String),
 }
 
-/// Whether the checksum is that of the content. A form of another program has its checksum too; one digit that flipped in the
-/// number of the form has not.
+/// Also distinguishes a foreign format version from a damaged digit.
 fn is_whole(bytes: &[u8]) -> bool {
     let end = bytes.len().saturating_sub(CHECKSUM);
     let mut hash = Hash::default();
@@ -64,7 +57,6 @@ fn is_whole(bytes: &[u8]) -> bool {
     bytes[end..] == hash.value().to_le_bytes()
 }
 
-/// Header and body of a checkpoint, from the bytes of its file.
 pub(super) fn read(bytes: Vec<u8>) -> Result<(Header, Loaded), Unfit> {
     let damaged = |text: &str| Unfit::Damaged(text.to_string());
     let line = |from: usize| bytes[from..].iter().position(|b| *b == b'\n').map(|n| from + n);
@@ -88,7 +80,6 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<(Header, Loaded), Unfit> {
     Ok((header, Loaded { moment, at: second + 1, end, bytes }))
 }
 
-/// Writes a checkpoint whose parts `fill` puts in.
 pub(super) fn write(
     out: &mut dyn Write,
     header: &Header,
@@ -101,7 +92,7 @@ pub(super) fn write(
     body.finish()
 }
 
-/// Takes the parts of a checkpoint in.
+/// Checkpoint body being written.
 pub struct Body<'a> {
     out: &'a mut dyn Write,
     hash: Hash,
@@ -109,10 +100,10 @@ pub struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// Adds a part.
+    /// Appends a part.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn put<T: Serialize + ?Sized>(&mut self, part: &T) -> io::Result<()> {
         postcard::to_io(part, self).map(|_| ()).map_err(io::Error::other)
     }
@@ -145,9 +136,9 @@ impl Write for Body<'_> {
     }
 }
 
-/// A checkpoint that was read.
+/// Checkpoint that was read.
 pub struct Loaded {
-    /// Where in the run it was written.
+    /// Position in the run.
     pub moment: Moment,
     bytes: Vec<u8>,
     at: usize,
@@ -155,10 +146,10 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// The next part.
+    /// Reads the next part.
     ///
     /// # Errors
-    /// The part is not of this type: the program that wrote it was another one of the same version.
+    /// Part of another type, from a different build.
     pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
         let (part, rest) = postcard::take_from_bytes(&self.bytes[self.at..self.end])
             .map_err(|e| Failure::Input(format!("--resume: found a checkpoint of another program: {e}")))?;

@@ -1,7 +1,7 @@
-//! Checkpoints of a run: files that a later start of the program goes on from, bit for bit.
+//! Checkpoints from which a run resumes bitwise identically.
 //!
-//! There are two slots. A checkpoint goes to the one that the last did not go to, beside the old file first and in its
-//! place when it is whole and on the disk. So at any moment one good checkpoint exists.
+//! Two slots alternate. A new file replaces the older slot once it is synced, so one valid checkpoint always
+//! exists.
 
 mod form;
 mod origin;
@@ -19,10 +19,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Reads a state that was kept as a file of its own: what it is of, the state, and the hash of the file.
+/// Reads a state file: origin, state, hash.
 ///
 /// # Errors
-/// Bad input: it cannot be read, is damaged, or is of another program.
+/// Unreadable, damaged, or of another program.
 pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     let name = file.display();
     let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
@@ -35,15 +35,15 @@ pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     Ok((header.origin, loaded, hash.hex()))
 }
 
-/// Reads a checkpoint or a kept state as far as every run does: its form, checksum and header.
+/// Validates a checkpoint or state file.
 ///
 /// # Errors
-/// Bad input: it cannot be read, is damaged, or is of another program.
+/// As [`read_file`].
 pub fn check_file(file: &Path) -> Result<(), Failure> {
     read_file(file).map(drop)
 }
 
-/// The latest good checkpoint of whatever run in a folder of results; none where there is none.
+/// Returns the latest valid checkpoint of any run.
 pub fn latest(results: &Path) -> Option<Loaded> {
     let bytes =
         SLOTS.iter().filter_map(|slot| source::bytes(&results.join(FOLDER).join(slot), source::LARGEST).ok());
@@ -51,33 +51,31 @@ pub fn latest(results: &Path) -> Option<Loaded> {
     read.max_by_key(|(header, _)| header.number).map(|(_, loaded)| loaded)
 }
 
-/// The folder of the checkpoints of a run.
+/// Checkpoint directory of a run.
 pub struct Slots {
     dir: PathBuf,
     origin: Origin,
-    /// Number of the next checkpoint.
     next: u64,
-    /// Whether the slots hold checkpoints of this run, or none.
+    /// Whether the slots are of this run.
     own: bool,
 }
 
-/// Name of the folder in the folder of the results.
+/// Directory name in the results directory.
 pub const FOLDER: &str = "checkpoint";
 const SLOTS: [&str; 2] = ["a.checkpoint", "b.checkpoint"];
 
 impl Slots {
-    /// The slots of a run that begins. What an earlier run left there stays until the first checkpoint is written, or the
-    /// results of that run are cleared away.
+    /// Creates the slots of a new run. Earlier checkpoints remain until the first save.
     pub fn new(results: &Path, origin: Origin) -> Slots {
         Slots { dir: results.join(FOLDER), origin, next: 0, own: false }
     }
 
-    /// The folder.
+    /// Returns the directory.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
 
-    /// Whether there is a checkpoint, good or not, of whatever run.
+    /// Whether any checkpoint exists, valid or not.
     pub fn any(&self) -> bool {
         SLOTS.iter().any(|slot| self.dir.join(slot).exists())
     }
@@ -87,17 +85,17 @@ impl Slots {
         self.own && self.next > 0
     }
 
-    /// Writes a checkpoint whose parts `fill` puts in.
+    /// Writes a checkpoint.
     ///
     /// # Errors
-    /// What the system refuses; the last good checkpoint is left.
+    /// I/O errors; the last valid checkpoint remains.
     pub fn save(
         &mut self,
         moment: Moment,
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         self.clear_others()?;
-        // Not with the folder of the results: where that has been renamed a new one would part the run from its results.
+        // Not recursive: a new directory at the path of a renamed one would split the run.
         match fs::create_dir(&self.dir) {
             Err(e) if e.kind() != io::ErrorKind::AlreadyExists => return Err(failure(&self.dir, &e)),
             _ => {}
@@ -112,10 +110,10 @@ impl Slots {
         Ok(())
     }
 
-    /// Writes a state to a file of its own.
+    /// Writes a state file.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn save_file(
         &self,
         file: &Path,
@@ -126,18 +124,18 @@ impl Slots {
         Ok(atomic::write(file, |out| form::write(out, &header, fill).map_err(WriteError::io(file)))?)
     }
 
-    /// Removes the checkpoints that another run left.
+    /// Removes checkpoints of another run.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn clear_others(&mut self) -> Result<(), Failure> {
         if self.own { Ok(()) } else { self.clear() }
     }
 
-    /// Removes all checkpoints and their folder, if nothing else is in it.
+    /// Removes all checkpoints.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn clear(&mut self) -> Result<(), Failure> {
         for slot in SLOTS {
             for name in [slot.to_string(), format!("{slot}.part")] {
@@ -148,16 +146,16 @@ impl Slots {
                 }
             }
         }
-        // Files of a user keep the folder; so does its absence.
+        // User files or a missing directory are harmless.
         let _ = fs::remove_dir(&self.dir);
         (self.own, self.next) = (true, 0);
         Ok(())
     }
 
-    /// The latest good checkpoint in the slots, which later ones then follow, and remarks on a damaged one and on another processor.
+    /// Loads the latest valid checkpoint, with warnings about a damaged slot or another CPU.
     ///
     /// # Errors
-    /// Bad input: there is none, all are damaged, or it is of another program or scene.
+    /// None, all damaged, or of another program or scene.
     pub fn load(&mut self, document: &Document) -> Result<(Loaded, Vec<String>), Failure> {
         let refuse = |text: String| Failure::Input(format!("--resume: {text}"));
         let (mut found, mut damaged, mut forms) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,29 +1,29 @@
-//! What a checkpoint is of, and what makes a scene another one.
+//! Identity of a checkpoint: program, scene, files, CPU.
 
 use crate::scene::Document;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What a checkpoint is of.
+/// Origin of a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// Version of the program.
+    /// Program version.
     pub version: String,
-    /// Hash of the scene, its overrides and its files.
+    /// Hash of scene, overrides and files.
     pub scene_hash: String,
-    /// Text of the scene file.
+    /// Scene text.
     pub scene: String,
-    /// Keys overridden on the command line, as key=value.
+    /// Command-line overrides, key=value.
     pub overrides: Vec<String>,
-    /// The files that the scene names, with the hash of each.
+    /// Named files with hashes.
     pub files: Vec<(PathBuf, String)>,
-    /// What of the processor the last bits of the solid depend on.
+    /// CPU features that affect rounding in the solid.
     pub processor: String,
 }
 
-/// Architecture of the processor, and its instructions that the solid's kernels choose by: lanes of other widths, and products
-/// fused with sums, round differently. The grains have the same bits with all of them.
+/// Returns architecture and instruction sets of solid kernels: SIMD width and FMA change rounding. Grains are
+/// bitwise identical on all.
 pub fn processor() -> String {
     let mut words = vec![std::env::consts::ARCH];
     #[cfg(target_arch = "x86_64")]
@@ -39,7 +39,7 @@ pub fn processor() -> String {
 }
 
 impl Origin {
-    /// One sentence on how this processor differs from the one of `old`; none where both compute alike.
+    /// Describes a CPU difference to `old`, if relevant.
     pub fn other_processor(&self, old: &Origin) -> Option<String> {
         (self.processor != old.processor).then(|| {
             format!(
@@ -49,7 +49,7 @@ impl Origin {
         })
     }
 
-    /// One sentence on what makes this scene another than the one that `old` is of; none when it is the same.
+    /// Describes how this scene differs from `old`, if it does.
     pub fn difference(&self, old: &Origin, document: &Document) -> Option<String> {
         if old.version != self.version {
             return Some(format!("found program version {}, expected {}", old.version, self.version));

@@ -24,9 +24,9 @@ fn moment(step: u64) -> Moment {
     Moment { stage: "run".into(), step, time: 0.1 * step as f64 }
 }
 
-/// Infinities and signed zeros included: nothing is rounded, whatever the length of the parts.
+/// Bitwise exact, also infinities and signed zeros, for any part length.
 #[test]
-fn parts_come_back_with_all_their_bits() {
+fn restores_parts_bitwise() {
     let dir = folder("checkpoint_bits");
     let mut slots = Slots::new(&dir, origin(SCENE, "5"));
     let values: Vec<f64> =
@@ -49,7 +49,7 @@ fn parts_come_back_with_all_their_bits() {
 }
 
 #[test]
-fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
+fn falls_back_to_undamaged_slot() {
     let dir = folder("checkpoint_slots");
     let new = || Slots::new(&dir, origin(SCENE, "5"));
     let none = new().load(&document(SCENE)).err().unwrap().to_string();
@@ -65,7 +65,7 @@ fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
     };
     assert_eq!(load().unwrap(), (4, vec![]));
     let whole = fs::read(&a).unwrap();
-    // Every kind of damage: one bit anywhere, and every way of being cut short.
+    // Single bit flips and truncations.
     for at in (0..whole.len()).step_by(97).chain([0, 30, whole.len() - 1]) {
         let mut bytes = whole.clone();
         bytes[at] ^= 4;
@@ -79,7 +79,7 @@ fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
     let error = load().unwrap_err();
     assert!(error.is_input(), "{error}");
     assert!(error.to_string().contains("b.checkpoint is damaged"), "{error}");
-    // One that goes on writes over the damaged slot first.
+    // Resuming overwrites the damaged slot first.
     fs::write(&a, &whole).unwrap();
     let mut slots = new();
     slots.load(&document(SCENE)).unwrap();
@@ -92,7 +92,7 @@ fn the_later_slot_is_read_and_the_other_when_it_is_damaged() {
 }
 
 #[test]
-fn what_is_written_first_removes_what_another_run_left() {
+fn first_save_removes_foreign_checkpoints() {
     let dir = folder("checkpoint_other");
     let mut old = Slots::new(&dir, origin(SCENE, "4"));
     (0..4).for_each(|k| old.save(moment(k), |body| body.put(&k)).unwrap());
@@ -105,9 +105,9 @@ fn what_is_written_first_removes_what_another_run_left() {
     fs::remove_dir_all(&dir).unwrap();
 }
 
-/// A failure while writing leaves the last good checkpoint, and no half of one.
+/// No partial file remains.
 #[test]
-fn a_failed_write_leaves_the_last_one() {
+fn failed_write_keeps_last_checkpoint() {
     let dir = folder("checkpoint_full");
     let mut slots = Slots::new(&dir, origin(SCENE, "5"));
     slots.save(moment(1), |body| body.put(&1_u64)).unwrap();
@@ -149,7 +149,6 @@ fn another_program_or_scene_is_named() {
     assert!(difference_of(origin(&comment, "6"), &comment, &[]).ends_with("but no key"));
 }
 
-/// A checkpoint from another processor is taken, with a remark.
 #[test]
 fn another_processor_is_remarked() {
     let dir = folder("checkpoint_processor");
@@ -175,7 +174,7 @@ fn another_form_is_refused() {
     let mut bytes = fs::read(&file).unwrap();
     let digits = FORM.to_string().len();
     bytes.splice(MAGIC.len()..MAGIC.len() + digits, *b"9876");
-    // Of another program, whose checksum is right; else it is damage.
+    // A foreign format, not damage.
     let end = bytes.len() - CHECKSUM;
     let mut hash = Hash::default();
     hash.add(&bytes[..end]);
@@ -187,8 +186,7 @@ fn another_form_is_refused() {
     fs::remove_dir_all(&dir).unwrap();
 }
 
-/// Bytes changed at random with a checksum that is right again: a checkpoint or an error, never a panic, and no memory for
-/// lengths that the file cannot hold.
+/// Random bytes with a valid checksum: never a panic or huge allocation.
 #[test]
 fn crafted_checkpoints_are_read_or_refused() {
     let dir = folder("checkpoint_crafted");
@@ -222,7 +220,6 @@ fn crafted_checkpoints_are_read_or_refused() {
     fs::remove_dir_all(&dir).unwrap();
 }
 
-/// Spheres of one size with these centres.
 fn spheres(centres: impl Iterator<Item = dem::Vec3>) -> dem::ModelInput {
     let material = dem::Material {
         density: 2600.0,
@@ -241,10 +238,9 @@ fn spheres(centres: impl Iterator<Item = dem::Vec3>) -> dem::ModelInput {
     }
 }
 
-/// The whole state has the same bytes with and without restarts, the bookkeeping of neighbours included, which shows in no
-/// result. One restart falls on a new order of the bodies.
+/// With and without restarts, including neighbour lists. One restart falls on a spatial re-sorting.
 #[test]
-fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
+fn grain_state_is_bitwise_after_restarts() {
     const RESTARTS: [u64; 8] = [1, 331, 700, 1234, 4999, 5000, 5001, 5390];
     let place = |k: usize| {
         let wave = 0.002 * (k as f64 * 1.7).sin();
@@ -279,7 +275,7 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
         let mut seen = Vec::new();
         while state.steps < 5400 {
             dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]).unwrap();
-            // Just after a restart too: later a new near list makes some of it the same again.
+            // A later neighbour list rebuild would hide differences.
             if RESTARTS.contains(&(state.steps - 1)) {
                 seen.push(postcard::to_stdvec(&state).unwrap());
             }
@@ -304,7 +300,7 @@ fn the_state_of_the_grains_has_the_same_bytes_after_restarts() {
 fn checkpoint_of_a_bed() {
     use std::time::Instant;
     let side = 59_usize;
-    // Face-centred cubic, every sphere touching twelve: more contacts than any bed has.
+    // FCC packing: twelve contacts per sphere.
     let pitch = 0.02 * 0.999 * std::f64::consts::SQRT_2;
     let cell = |k: usize| [k % side, k / side % side, k / side / side];
     let cells = (0..side * side * side).map(cell).filter(|c| c.iter().sum::<usize>().is_multiple_of(2));

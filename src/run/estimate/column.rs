@@ -1,5 +1,5 @@
-//! A column of the bed: some of the grains of a scene, as high as all of them, settle between smooth planes. It shows how long the
-//! bed takes to come to rest, which steps it allows, and what a step costs.
+//! Column of the bed: a full-height sample of grains settles between smooth planes, to find settling time,
+//! step size and cost.
 
 use super::clock::Clock;
 use crate::model::grains::{DepositionPlan, GrainsPart};
@@ -11,49 +11,45 @@ use trackbed_dem as dem;
 use trackbed_dem::bond::BondInput;
 use trackbed_dem::{BackEnd, BodyInput, ModelInput, Plane, Shape, Vec3};
 
-/// Spheres that a column has, if the scene has many more.
 const SPHERES: usize = 2000;
-/// Spheres up to which it is all of the bed: beds of few grains are of large and small ones.
+/// Small beds mix large and small grains, and are used as a whole.
 const WHOLE: usize = 6000;
-/// Spheres that a polyhedron stands for. One costs some hundred; a column needs as many neighbours as a bed has.
+/// A polyhedron costs several hundred spheres, but a column needs as many neighbours as the bed.
 const POLYHEDRON: usize = 20;
-/// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
-/// Simulated time before slowness counts as rest [s].
+/// Before low speed means rest [s].
 const START: f64 = 0.05;
-/// Simulated time that the settled bed is followed with the contacts of the run proper [s].
+/// With main-stage contacts [s].
 const AT_REST: f64 = 0.1;
-/// Steps between two looks at the clock.
 const STRIDE: u32 = 50;
 
-/// What a column of a bed did.
+/// Results of a column.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// Spheres of the scene for each of the column.
+    /// Ratio of scene spheres to column spheres.
     pub share: f64,
-    /// Share of the contacts of a bed's grains that those of the column have.
+    /// Contacts per grain, column over bed.
     pub full: f64,
-    /// Time until it lay at rest [s]; what was simulated of it where the clock ran out.
+    /// Settling time [s], or simulated time at the end of the budget.
     pub rest: f64,
     /// Whether it came to rest.
     pub rested: bool,
-    /// Seconds that it took, on one thread.
+    /// Elapsed seconds on one thread.
     pub seconds: f64,
-    /// Seconds of a simulated second at the end of its settling, on one thread.
+    /// Seconds per simulated second at the end of settling, one thread.
     pub late: f64,
-    /// Seconds of a simulated second of the settled bed with the contacts of the run proper, on one thread.
+    /// Seconds per simulated second at rest with main-stage contacts, one thread.
     pub pace: f64,
-    /// The same from its beginning on, where steps are short.
+    /// The same including the initial short steps.
     pub first: f64,
-    /// Simulated time and seconds while it settled.
     course: Vec<[f64; 2]>,
 }
 
 impl Column {
-    /// Lets a column of the bed settle, if the scene lets its bed do so, for about `budget` by the clock.
+    /// Settles a column, if the bed is deposited, within about `budget`.
     ///
     /// # Errors
-    /// Contacts for which no step can be made.
+    /// No stable time step.
     pub fn settle(
         grains: &GrainsPart,
         plan: Option<&DepositionPlan>,
@@ -106,7 +102,7 @@ impl Column {
         let below = unbroken(below, &input.bonds, bodies.len());
         let bonds = std::mem::take(&mut input.bonds);
         let left = below.iter().map(|&b| bodies[b].clone()).collect();
-        // Bonds name bodies of the whole bed.
+        // Bonds refer to bodies of the whole bed.
         let proper = match bonded {
             false => grains.input(left),
             true => ModelInput { bodies: left, ..grains.input(grains.groups.bodies.clone()) },
@@ -115,8 +111,7 @@ impl Column {
         input.bonds = among(&below, &bonds, bodies.len());
         input.planes.extend(planes.iter().copied());
         smooth(&mut input, planes.len());
-        // A bed that was cut out, or has not settled in time, may not be where the walls of the run proper leave room: it costs what it did
-        // before.
+        // Otherwise the bed may overlap main-stage walls; assume its earlier cost.
         let late = late(&course).unwrap_or(seconds / rest.max(f64::MIN_POSITIVE));
         let paces =
             if rested || plan.is_none() { paces(input, surface, budget / 3) } else { Ok((late, late)) };
@@ -127,7 +122,7 @@ impl Column {
         Ok(Column { share, full, rest, rested, seconds, late, pace, first, course })
     }
 
-    /// Seconds that it took from one simulated time to another [s], on one thread; none where it did not come so far.
+    /// Returns the seconds between two simulated times [s]; none if not reached.
     pub fn between(&self, [from, to]: [f64; 2]) -> Option<f64> {
         let at = |time: f64| {
             let k = self.course.partition_point(|c| c[0] < time);
@@ -138,13 +133,12 @@ impl Column {
     }
 }
 
-/// Seconds of a simulated second in the last quarter of a course.
 fn late(course: &[[f64; 2]]) -> Option<f64> {
     let ([t0, s0], [t1, s1]) = (course[3 * course.len() / 4], *course.last()?);
     (t1 > t0).then(|| (s1 - s0) / (t1 - t0))
 }
 
-/// Spheres of a shape, or as many as cost what it costs.
+/// Counts spheres, or equivalent cost.
 fn members(shape: &Shape) -> usize {
     match shape {
         Shape::Clump(clump) => clump.spheres.len(),
@@ -153,7 +147,6 @@ fn members(shape: &Shape) -> usize {
     }
 }
 
-/// Those of some bodies, by their numbers among `count`, that no bond ties to one that is not among them.
 fn unbroken(mut numbers: Vec<usize>, bonds: &[BondInput], count: usize) -> Vec<usize> {
     let mut kept = vec![false; count];
     numbers.iter().for_each(|&b| kept[b] = true);
@@ -170,7 +163,6 @@ fn unbroken(mut numbers: Vec<usize>, bonds: &[BondInput], count: usize) -> Vec<u
     numbers
 }
 
-/// The bonds among some bodies, by the places of these in the list of their numbers among `count`.
 fn among(numbers: &[usize], bonds: &[BondInput], count: usize) -> Vec<BondInput> {
     let mut place = vec![None; count];
     numbers.iter().enumerate().for_each(|(at, &b)| place[b] = Some(at));
@@ -178,8 +170,7 @@ fn among(numbers: &[usize], bonds: &[BondInput], count: usize) -> Vec<BondInput>
     bonds.iter().filter_map(renamed).collect()
 }
 
-/// Numbers of the grains that lie within a square about the middle of all in plan, the planes around it, and the share of the contacts
-/// among grains that those beside the planes leave; all, and none, where there are few.
+/// Grains in a central square, enclosing planes, and fraction of contacts kept; all grains if few.
 fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
     let numbers: Vec<usize> = (0..input.bodies.len()).filter(|&b| !input.bodies[b].absent).collect();
     if all <= WHOLE {
@@ -202,7 +193,7 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
     let ends = [ends(0), ends(1)];
     let middle = ends.map(|[low, high]| 0.5 * (low + high));
     let sides = ends.map(|[low, high]| high - low);
-    // A bed that is narrow one way keeps that width.
+    // A narrow bed keeps its width.
     let area = sides[0] * sides[1] * SPHERES as f64 / all as f64;
     let narrow = sides[0].min(sides[1]);
     let largest = there.iter().map(|b| reach(b)).fold(0.0, f64::max);
@@ -215,13 +206,12 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
         normal[d] = -sign;
         Plane { point, normal, material: 0, velocity: Vec3::zeros() }
     };
-    // Two of three contacts are across; of n grains in a row one has a plane for a neighbour, which costs little.
+    // Two thirds of contacts are lateral; one of n in a row becomes a cheap plane contact.
     let mean = there.iter().map(|b| 2.0 * reach(b)).sum::<f64>() / there.len() as f64;
     let full = 1.0 - 2.0 / 3.0 * (mean / side).min(1.0);
     (inside, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec(), full)
 }
 
-/// Gives the last planes, those around the column, a material of their own without friction.
 fn smooth(input: &mut ModelInput, count: usize) {
     let of = input.bodies.first().map_or(0, |b| b.material);
     input.materials.push(input.materials[of].with_friction(0.0));
@@ -229,7 +219,6 @@ fn smooth(input: &mut ModelInput, count: usize) {
     input.planes[first..].iter_mut().for_each(|plane| plane.material = material);
 }
 
-/// One step of the length that the contacts allow.
 fn step(
     model: &dem::Model,
     state: &mut dem::State,
@@ -243,10 +232,10 @@ fn step(
     }
 }
 
-/// Seconds of a simulated second of a bed at rest, on one thread: in the end, and on the whole.
+/// Seconds per simulated second at rest: final, and overall.
 ///
 /// # Errors
-/// Contacts for which no step can be made.
+/// No stable time step.
 fn paces(
     input: ModelInput,
     surface: Option<&SolidSurface>,
@@ -256,7 +245,7 @@ fn paces(
     let (mut state, begun, clock) = (dem::State::new(&model), Instant::now(), Clock::start(1));
     let mut work = dem::Work::new(&model, &state);
     let mut looks = vec![(0.0, 0.0)];
-    // With other friction and stiffness than the bed had while it settled it moves again, and steps are short at first.
+    // New friction and stiffness cause motion and short steps.
     while looks.len() < 2 || (state.time < AT_REST && begun.elapsed() < budget) {
         for _ in 0..STRIDE {
             step(&model, &mut state, &mut work, surface)?;

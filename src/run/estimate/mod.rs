@@ -1,5 +1,4 @@
-//! How long a run will take. Its first seconds are carried out for real; what they do not reach follows from a column of the bed
-//! that settles by itself, and from a few steps of the solid.
+//! Run time estimate from a trial run, a column of the bed, and some solid steps.
 
 mod clock;
 mod column;
@@ -21,51 +20,49 @@ use std::time::Duration;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 
-/// Settling of a column over rehearsals.
 const SETTLE: u32 = 15;
-/// Share of the steps that the cores besides the first take over.
+/// Parallel efficiency of additional cores.
 const SPEED_UP: f64 = 0.8;
 
-/// How a time is known.
+/// Certainty of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Known {
-    /// It was measured.
+    /// Measured.
     Measured,
-    /// It follows from what was measured.
+    /// Extrapolated from measurements.
     Expected,
-    /// It is the most that the scene allows.
+    /// Upper bound.
     AtMost,
-    /// It is not known: the stage ends when its work is done.
+    /// Unknown.
     Unknown,
 }
 
 /// Time of a stage.
 #[derive(Clone, Debug, Serialize)]
 pub struct StageTime {
-    /// Name, as in the summary of a run.
+    /// Stage name, as in the summary.
     pub name: String,
-    /// Seconds: those of the processor on one thread, else by the clock.
+    /// CPU seconds on one thread, else wall time.
     pub seconds: f64,
-    /// How it is known.
+    /// Certainty.
     pub known: Known,
 }
 
-/// Time of a run, stage by stage.
+/// Estimated run time by stage.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// The stages in order.
+    /// Stages in order.
     pub stages: Vec<StageTime>,
-    /// Threads that it is for.
+    /// Number of threads.
     pub threads: usize,
 }
 
 impl Estimate {
-    /// Rehearses a run of the scene, which `job` is made of, for `budget` by the clock, and estimates the time of all of it; that
-    /// takes up to some forty times as long.
+    /// Estimates the run time of `job` by a trial run of `budget`; takes up to forty times `budget`.
     ///
     /// # Errors
-    /// What the run itself ends with in its first seconds; contacts for which no step can be made.
+    /// Failures of the trial run; no stable time step.
     pub fn of(
         scene: &Path,
         set: &[String],
@@ -84,12 +81,12 @@ impl Estimate {
         Ok(Estimate { stages: measured.chain(stages).collect(), threads: count })
     }
 
-    /// Seconds of all stages whose time is known.
+    /// Returns the sum of known stage times.
     pub fn seconds(&self) -> f64 {
         self.stages.iter().map(|s| s.seconds).sum()
     }
 
-    /// In words.
+    /// Formats the estimate.
     pub fn line(&self) -> String {
         let stage = |s: &StageTime| match s.known {
             Known::Measured => format!("{} {}", s.name, duration(s.seconds)),
@@ -108,7 +105,6 @@ impl Estimate {
     }
 }
 
-/// The stages that a rehearsal left.
 fn left(
     job: &Job,
     rehearsed: &Rehearsal,
@@ -132,7 +128,7 @@ fn left(
     let growing =
         grains.groups.growths.iter().map(|g| format!("growing {}", g.group)).filter(|g| !is_done(g));
     if !grains.groups.growths.is_empty() {
-        // Grains that have yet to grow show nothing of the bed that they will be.
+        // Not representative of the final bed.
         let names = growing.chain([RUN.to_string()]);
         return Ok(names
             .enumerate()
@@ -145,22 +141,22 @@ fn left(
         _ => None,
     };
     let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done(SETTLING));
-    // On one thread: a column is too small to be shared among as many as the bed.
+    // A column is too small to parallelise.
     let settle = || Column::settle(grains, deposition, ground.as_ref(), SETTLE * budget).ok();
     let Some(column) = run::thread_pool(Some(1))?.install(settle) else {
-        // Some of the grains do not do what all of them do.
+        // Some grains behave differently from the rest.
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
     };
     let whole = column.share / cores(threads);
-    // A bed that has just begun to fall has few contacts, as the column has then.
+    // Few contacts at first, in bed and column.
     let whole = whole * beside(&column, rehearsed, whole) / column.full;
     if let Some(plan) = deposition {
-        // Each layer falls on those before it.
+        // Each layer falls on the previous ones.
         let layers = f64::from(plan.layers);
         if plan.layers > 1 && !is_done("layers") {
             stages.push(expected("layers", 0.5 * (layers - 1.0) * whole * column.seconds));
         }
-        // Where the clock ran out before the column lay at rest.
+        // Budget exhausted.
         let (known, left) = match column.rested {
             true => (Known::Expected, 0.0),
             false => (Known::AtMost, plan.max_time - column.rest),
@@ -168,7 +164,7 @@ fn left(
         let seconds = whole * (column.seconds + left * column.late);
         stages.push(StageTime { name: SETTLING.into(), seconds, known });
     }
-    // What a compaction that was seen cost over what the column makes expect.
+    // Measured over expected cost of a compaction.
     let seen = rehearsed.compacting.map(|pace| (pace / (whole * column.first)).clamp(0.3, 5.0));
     let whole = whole * seen.unwrap_or(1.0);
     for (k, plan) in grains.packing.compaction.iter().enumerate() {
@@ -187,19 +183,17 @@ fn left(
     Ok(stages)
 }
 
-/// What the settling of the bed took over what the column's makes expect, as far as the rehearsal came: grains of many sizes, and
-/// memory that caches do not hold, cost more in a bed than in a column.
+/// Grading and cache misses cost more in a bed than in a column.
 fn beside(column: &Column, rehearsed: &Rehearsal, whole: f64) -> f64 {
     let pair = rehearsed.settling.and_then(|(stretch, took)| Some((took, column.between(stretch)?)));
     pair.map_or(1.0, |(took, seconds)| (took / (whole * seconds)).clamp(0.3, 5.0))
 }
 
-/// How many cores' worth of work some threads do.
 fn cores(threads: usize) -> f64 {
     1.0 + SPEED_UP * (threads as f64 - 1.0)
 }
 
-/// Length of a window of grains and solid [s] and its theta; none where one of them is alone.
+/// Window length [s] and θ.
 fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<(f64, f64)> {
     let (plan, solid) = (job.coupling.as_ref()?, job.solid.as_ref()?);
     let model = dem::Model::new(with_sleepers(grains)).ok()?;
@@ -207,7 +201,6 @@ fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Opti
     Some((model.dt() * f64::from(substeps), theta))
 }
 
-/// A time for people.
 fn duration(seconds: f64) -> String {
     if seconds < 100.0 {
         format!("{seconds:.1} s")

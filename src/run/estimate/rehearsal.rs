@@ -1,4 +1,4 @@
-//! A rehearsal: the first seconds of a run, carried out in a folder of its own that is thrown away.
+//! Trial run in a temporary directory.
 
 use super::clock::Clock;
 use crate::failure::Failure;
@@ -14,46 +14,45 @@ use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Rehearsals that growth and what follows it may take before another begins in the main loop.
+/// Budgets up to the main loop with growth.
 const GROWTH: u32 = 8;
-/// The same of settling and compaction without growth.
+/// Budgets up to the main loop without growth.
 const PREPARATION: u32 = 3;
-/// Share of the main loop that a rehearsal goes on to, if that takes no more than [`LOOP`] times as long: a bed that rests at first may flow
-/// once a wall has turned far enough. Where walls move or grains flow, [`MOVED`] times: a ship comes into the ice bit by bit.
+/// Fraction of the main loop to reach within [`LOOP`] budgets: a resting bed may flow once a wall has turned.
+/// With moving walls or flow, [`MOVED`] budgets: a ship enters ice gradually.
 const SEEN: f64 = 0.2;
-/// The same of grains that come in and go out: those that fall in at the top come late, and are the fastest.
+/// With inlets and outlets: grains from the top arrive late and are fastest.
 const FLOWN: f64 = 2.0 / 3.0;
 const LOOP: u32 = 5;
 const MOVED: u32 = 20;
-/// Share of the moments of a main loop with moving walls or flow after which its pace is that of the rest: grains flow by then.
+/// Representative fraction with moving walls or flow.
 const LATE: f64 = 0.75;
-/// Time between two looks at the stage of a rehearsal.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How far a rehearsal came.
+/// Extent of a trial run.
 #[derive(Debug, Default)]
 pub struct Rehearsal {
-    /// Stages that it finished: name, seconds by the clock.
+    /// Completed stages: name, wall time [s].
     pub done: Vec<(String, f64)>,
-    /// Whether the run was over in time.
+    /// Whether the run completed.
     pub whole: bool,
-    /// Seconds in the stage that it was stopped in.
+    /// Seconds in the stopped stage.
     pub seconds: f64,
-    /// Simulated time that the main loop had reached [s], and seconds of a simulated second from halfway there on, with moving walls or flow in the
-    /// last quarter; none where it had not begun.
+    /// Simulated main-loop time [s], and seconds per simulated second in its second half (last quarter with
+    /// moving walls or flow).
     pub reached: Option<(f64, f64)>,
-    /// Seconds of a simulated second of the compaction that it was stopped in; none where that was not so.
+    /// Seconds per simulated second of the stopped compaction.
     pub compacting: Option<f64>,
-    /// A stretch of the settling: from and to [s], and the seconds that it took; none where there was none.
+    /// Settling interval [s], and its seconds.
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for about `budget` by the clock: at most half as long again where a stage has just begun. What comes before the main loop is
-/// gone through, if that takes no more than [`PREPARATION`] times as long, or [`GROWTH`] times where grains grow, and followed by another
-/// `budget`: growth ends when it is done, and nothing else shows the bed that it leaves; a bed that flows costs more than one at rest.
+/// Runs a scene for about `budget`, half as long again after a stage change. Stages before the main loop may
+/// take [`PREPARATION`] budgets, or [`GROWTH`] with growth, plus another `budget`: only complete growth
+/// yields the final bed, and a flowing bed costs more.
 ///
 /// # Errors
-/// What the run itself would end with; a folder for temporary files that cannot be written.
+/// Failures of the run; temporary directory not writable.
 pub fn rehearse(
     scene: &Path,
     set: &[String],
@@ -77,7 +76,7 @@ pub fn rehearse(
         while on && begun.elapsed() < most * budget && come(&followed).is_none() {
             on = passes(LOOK);
         }
-        // What a stage does first says little of the rest of it.
+        // Not representative.
         on = on
             && passes(budget)
             && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)));
@@ -103,10 +102,10 @@ pub fn rehearse(
         ..Options::default()
     };
     let outcome = run::run(scene, &options);
-    // What the clock shows is shared with other programs.
+    // Wall time includes other programs.
     let (elapsed, share) = (clock.seconds(), clock.share());
     drop(ended);
-    // It holds nothing that could fail.
+    // The thread cannot fail.
     let _ = timer.join();
     match outcome {
         Ok(Outcome::Done(summary)) => {
@@ -130,7 +129,7 @@ pub fn rehearse(
     }
 }
 
-/// Seconds by the clock of a simulated second in a trace's main loop, from a share of its moments on.
+/// Wall seconds per simulated second, from a fraction of the samples on.
 fn pace(trace: &[(Instant, Moment)], share: f64) -> Option<f64> {
     let begun = trace.iter().position(|(_, moment)| moment.stage == RUN)?;
     let from = begun + (share * (trace.len() - begun) as f64) as usize;
@@ -142,13 +141,11 @@ fn pace(trace: &[(Instant, Moment)], share: f64) -> Option<f64> {
     (time > 0.0).then(|| (end.0 - middle.0).as_secs_f64() / time)
 }
 
-/// Simulated time that a run has come to in its main loop [s]; none before it.
 fn come(trace: &Trace) -> Option<f64> {
     let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
     trace.last().filter(|(_, moment)| moment.stage == RUN).map(|(_, moment)| moment.time)
 }
 
-/// How long ago by the clock the stage began that a run is in.
 fn stage_age(trace: &Trace) -> Option<Duration> {
     let trace = trace.lock().unwrap_or_else(PoisonError::into_inner);
     let now = &trace.last()?.1.stage;
@@ -156,7 +153,7 @@ fn stage_age(trace: &Trace) -> Option<Duration> {
     Some(first.0.elapsed())
 }
 
-/// Seconds by the clock of a simulated second of compaction, in the second half of its trace. Where another bed takes over, its time begins anew.
+/// Second half of the trace. Time restarts with each bed.
 fn compacting_pace(trace: &[(Instant, Moment)]) -> Option<f64> {
     let begun = trace.iter().position(|(_, moment)| moment.stage == COMPACTED)?;
     let steps = trace[(begun + trace.len()) / 2..].windows(2);
@@ -166,14 +163,12 @@ fn compacting_pace(trace: &[(Instant, Moment)]) -> Option<f64> {
     (time > 0.0).then(|| clock / time)
 }
 
-/// The stretch of the settling that a trace has.
 fn settling(trace: &[(Instant, Moment)]) -> Option<([f64; 2], f64)> {
     let mut moments = trace.iter().filter(|(_, moment)| moment.stage == SETTLING);
     let (first, last) = (moments.next()?, moments.next_back()?);
     Some(([first.1.time, last.1.time], (last.0 - first.0).as_secs_f64()))
 }
 
-/// A new folder for temporary files, removed with all that is in it when it is dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -183,7 +178,7 @@ impl Folder {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
             let dir = std::env::temp_dir().join(format!("trackbed-{}-{number}", std::process::id()));
             match std::fs::create_dir(&dir) {
-                // Left by a program of the same number.
+                // Of a process with the same id.
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
                 made => return made.map(|()| Folder(dir)),
             }
@@ -193,7 +188,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What cannot be removed is the system's to clear away.
+        // The system cleans up the rest.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -202,9 +197,9 @@ impl Drop for Folder {
 mod tests {
     use super::*;
 
-    /// A loop whose last quarter costs three times as much a simulated second as the rest, after settling that does not count.
+    /// The last quarter costs three times as much per simulated second; settling is excluded.
     #[test]
-    fn the_pace_is_that_of_the_moments_from_a_share_on() {
+    fn measures_pace_of_last_samples() {
         let begun = Instant::now();
         let at = |stage: &str, clock: f64, time: f64| {
             let moment = Moment { stage: stage.into(), step: 0, time };

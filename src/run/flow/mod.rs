@@ -1,8 +1,7 @@
-//! Inlets and outlets of a run: looked at every so many windows, with an account of what came and went.
+//! Inlets and outlets with balances.
 //!
-//! What an inlet has let in never exceeds its rate times the time since its start, and is behind by less than a grain after
-//! each look, unless there is no room, or no grain waits. What it owes then is not forgotten: it is made up at twice the rate as soon
-//! as it can be.
+//! The inserted amount never exceeds rate × (t − start) and lags by less than one grain, unless no position
+//! or queued grain is free. The backlog is inserted at twice the rate.
 
 mod record;
 
@@ -20,60 +19,53 @@ use trackbed_dem::flow::Arrival;
 use trackbed_dem::insert::room::{Places, Room};
 use trackbed_dem::measure::BoxRegion;
 
-/// Most that an inlet lets in over what its rate asks for, while it makes up for what it owes.
+/// Insertion rate over requested rate during a backlog.
 const CATCH_UP: f64 = 2.0;
-/// Share of a grain by which rounding may have the amount owed fall short.
+/// Rounding tolerance in grains.
 const SLACK: f64 = 1e-9;
 
-/// One inlet in progress.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Inlet {
-    /// Bodies that wait, the next one first.
     waiting: VecDeque<u32>,
     places: Places,
-    /// What it may have let in by now and what it has, in the measure of its rate.
+    /// Requested and inserted amounts.
     allowed: f64,
     given: f64,
     amount: Amount,
-    /// Looks at which a grain that was due found no room, and at which none waited.
     full: u64,
     empty: u64,
 }
 
-/// One outlet in progress.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Outlet {
     amount: Amount,
-    /// Grains that seem to have flown through it between two looks.
     missed: u64,
 }
 
-/// What a checkpoint needs of inlets and outlets.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Course {
     start: Amount,
     inlets: Vec<Inlet>,
     outlets: Vec<Outlet>,
-    /// Time, mass in and mass out at the first look in the second half of the run.
+    /// Time, mass in, mass out at half time.
     half: Option<[f64; 3]>,
 }
 
-/// Inlets and outlets of a run in progress.
+/// Inlets and outlets in progress.
 pub struct Flow<'a> {
     plan: &'a FlowPlan,
-    /// Number of groups: bodies of other parts are sleepers.
+    /// Other parts are sleepers.
     groups: u32,
-    /// Windows between two looks.
     every: u64,
     window: f64,
     end: f64,
-    /// Mean grain of each inlet, in the measure of its rate.
+    /// Mean grain in units of the rate.
     usual: Vec<f64>,
     course: Course,
 }
 
 impl<'a> Flow<'a> {
-    /// Those of a scene that has any, at the start of its run proper of length `end` [s].
+    /// Creates inlets and outlets, if any, for a main stage of `end` [s].
     pub fn new(
         part: Option<&'a GrainsPart>,
         view: Option<GrainsView<'_>>,
@@ -118,23 +110,23 @@ impl<'a> Flow<'a> {
         Some(flow)
     }
 
-    /// Goes on from a checkpoint.
+    /// Restores from a checkpoint.
     ///
     /// # Errors
-    /// A checkpoint of something else.
+    /// Checkpoint with other content.
     pub fn resume(self, loaded: &mut Loaded) -> Result<Self, Failure> {
         Ok(Flow { course: loaded.take()?, ..self })
     }
 
-    /// Puts into a checkpoint what [`Flow::resume`] goes on from.
+    /// Saves the state for [`Flow::resume`].
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         body.put(&self.course)
     }
 
-    /// Grains that are there.
+    /// Returns the present grains.
     pub fn present(&self, view: GrainsView<'_>) -> Amount {
         let mut sum = Amount::default();
         let there = |b: &usize| view.state.present(*b) && view.model.part(*b) < self.groups;
@@ -142,10 +134,10 @@ impl<'a> Flow<'a> {
         sum
     }
 
-    /// After window `k`, when the grains are at `time` [s]: takes out and puts in what is due.
+    /// Inserts and removes grains after window `k` at `time` [s].
     ///
     /// # Errors
-    /// A grain that cannot leave or come.
+    /// Failed insertion or removal.
     pub fn follow<S: System>(&mut self, k: u64, time: f64, system: &mut S) -> Result<(), Failure> {
         if !k.is_multiple_of(self.every) {
             return Ok(());
@@ -163,7 +155,6 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    /// What the outlets take.
     fn leaving(&mut self, view: GrainsView<'_>) -> Vec<usize> {
         let GrainsView { model, state } = view;
         let interval = self.every as f64 * self.window;
@@ -192,7 +183,6 @@ impl<'a> Flow<'a> {
         leave
     }
 
-    /// What the inlets let in.
     fn arriving(
         &mut self,
         time: f64,
@@ -203,7 +193,7 @@ impl<'a> Flow<'a> {
         let GrainsView { model, state } = view;
         let interval = self.every as f64 * self.window;
         let mut arrive: Vec<Arrival> = Vec::new();
-        // Ascending, as they were found.
+        // Sorted, as found.
         let leaves = |b: usize| leave.binary_search(&b).is_ok();
         let inlets = self.plan.inlets.iter().zip(&mut self.course.inlets);
         for ((plan, inlet), &usual) in inlets.zip(&self.usual) {
@@ -233,7 +223,7 @@ impl<'a> Flow<'a> {
                 });
                 let Some((position, orientation)) = room.place(model.radius(body), &mut inlet.places) else {
                     inlet.full += 1;
-                    // A grain that waits for room saves up no more than its own due.
+                    // Without a free position, at most one grain is due.
                     inlet.allowed = inlet.allowed.min(inlet.given + amount);
                     break;
                 };
@@ -247,7 +237,7 @@ impl<'a> Flow<'a> {
         arrive
     }
 
-    /// All that came in and all that went out.
+    /// Returns total inflow and outflow.
     pub fn sums(&self) -> [Amount; 2] {
         let sum = |all: &mut dyn Iterator<Item = Amount>| {
             all.fold(Amount::default(), |s, a| Amount { grains: s.grains + a.grains, mass: s.mass + a.mass })
@@ -256,7 +246,7 @@ impl<'a> Flow<'a> {
         [sum(&mut course.inlets.iter().map(|i| i.amount)), sum(&mut course.outlets.iter().map(|o| o.amount))]
     }
 
-    /// Results at `time` [s], and warnings about them.
+    /// Returns results at `time` [s] and warnings.
     pub fn finish(&self, time: f64, view: GrainsView<'_>) -> (FlowRecord, Vec<String>) {
         let [come, gone] = self.sums();
         let over = |mass: f64, time: f64| if time > 0.0 { mass / time } else { 0.0 };
@@ -286,12 +276,12 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Whether a body at `x` that came the straight way `way` has passed through a box that its way is longer than wide.
+/// Whether displacement `way` crossed a box, if longer than its width.
 fn flown_through(region: &BoxRegion, x: &dem::Vec3, way: &dem::Vec3) -> bool {
     if way.norm() < (region.high - region.low).min() {
         return false;
     }
-    // Shares of the way back at which it is between each pair of sides.
+    // Path fractions between each pair of sides.
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for d in 0..3 {
         let (a, b) = ((x[d] - region.low[d]) / way[d], (x[d] - region.high[d]) / way[d]);

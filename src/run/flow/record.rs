@@ -1,8 +1,8 @@
-//! What came in and went out, for the summary and the report.
+//! Inflow and outflow for summary and report.
 
 use serde::{Deserialize, Serialize};
 
-/// Number and mass [kg] of grains.
+/// Number and mass of grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
     /// Number.
@@ -12,36 +12,35 @@ pub struct Amount {
 }
 
 impl Amount {
-    /// Adds a grain of a mass [kg].
     pub(super) fn add(&mut self, mass: f64) {
         self.grains += 1;
         self.mass += mass;
     }
 }
 
-/// Grains that came and went.
+/// Inflow and outflow of grains.
 #[derive(Debug, Serialize)]
 pub struct FlowRecord {
-    /// Time between two looks at inlets and outlets [s].
+    /// Check interval [s].
     pub interval: f64,
-    /// Grains at the start of the run proper.
+    /// Initial grains of the main stage.
     pub at_start: Amount,
-    /// Grains at its end.
+    /// Grains at the end.
     pub at_end: Amount,
-    /// Grains that came in.
+    /// Inserted grains.
     pub came_in: Amount,
-    /// Grains that were taken out; one that comes and goes again and again counts every time.
+    /// Removed grains, counted on each removal.
     pub went_out: Amount,
-    /// Energy that they brought in less what they took out: kinetic, of gravity (zero at the origin) and of springs [J].
-    /// The energy account counts it as work of walls.
+    /// Net inflow of kinetic, gravitational (zero at the origin) and elastic energy [J], counted as wall
+    /// work.
     pub energy_in: f64,
-    /// Mean mass flow in over the whole run [kg/s].
+    /// Mean inflow rate [kg/s].
     pub mean_rate_in: f64,
-    /// Mean mass flow out over the whole run [kg/s].
+    /// Mean outflow rate [kg/s].
     pub mean_rate_out: f64,
-    /// The same in its second half, in [kg/s].
+    /// Mean inflow rate, second half [kg/s].
     pub later_rate_in: f64,
-    /// And out [kg/s].
+    /// Mean outflow rate, second half [kg/s].
     pub later_rate_out: f64,
     /// Inlets.
     pub inlets: Vec<InletRecord>,
@@ -49,41 +48,40 @@ pub struct FlowRecord {
     pub outlets: Vec<OutletRecord>,
 }
 
-/// One inlet.
+/// Inlet.
 #[derive(Debug, Serialize)]
 pub struct InletRecord {
-    /// Its group.
+    /// Group name.
     pub group: String,
-    /// What it let in.
+    /// Inserted amount.
     pub amount: Amount,
-    /// What `requested` and `owed` count: `"kg"` or `"grains"`.
+    /// Unit of `requested` and `owed`: `"kg"` or `"grains"`.
     pub unit: &'static str,
-    /// What its rate requests.
+    /// Requested amount.
     #[serde(rename = "asked")]
     pub requested: f64,
-    /// What of it has not come in.
+    /// Backlog.
     pub owed: f64,
-    /// Grains that still wait.
+    /// Queued grains.
     pub waiting: usize,
-    /// Looks at which a grain that was due found no room.
+    /// Checks without a free position.
     pub without_room: u64,
-    /// Looks at which one was due and none waited.
+    /// Checks with an empty queue.
     pub without_grains: u64,
 }
 
-/// One outlet.
+/// Outlet.
 #[derive(Debug, Serialize)]
 pub struct OutletRecord {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it took.
+    /// Removed amount.
     pub amount: Amount,
-    /// Grains whose straight way between two looks led through it without their being seen there.
+    /// Grains that crossed it between checks.
     pub missed: u64,
 }
 
 impl InletRecord {
-    /// What to say about an inlet that fell behind.
     pub(super) fn remark(&self) -> Option<String> {
         (self.without_room + self.without_grains > 0).then(|| {
             format!(
@@ -100,7 +98,6 @@ impl InletRecord {
 }
 
 impl OutletRecord {
-    /// What to say about grains that were too fast for it.
     pub(super) fn remark(&self, interval: f64) -> Option<String> {
         (self.missed > 0).then(|| {
             format!(
@@ -112,7 +109,7 @@ impl OutletRecord {
 }
 
 impl FlowRecord {
-    /// Lines of the report.
+    /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
         let (a, b) = (&self.came_in, &self.went_out);
         let mut lines = vec![format!(

@@ -1,4 +1,4 @@
-//! Files about the grains at the end of a run: `radial.csv`, `packing.csv`.
+//! Final grain files: `radial.csv`, `packing.csv`.
 
 use crate::columns::radial;
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::measure;
 
-/// Radial distribution functions of the boxes that ask for one: distance at the middle of each shell, and g.
+/// At shell centres.
 pub(super) fn write_radial(
     dir: &Path,
     view: GrainsView<'_>,
@@ -31,7 +31,7 @@ pub(super) fn write_radial(
     Ok(write_table(&dir.join("radial.csv"), &columns, rows)?)
 }
 
-/// `packing.csv`, or one file for each of several groups: what `[[grains]] packing` reads.
+/// Read by `[[grains]] packing`.
 pub(super) fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPart) -> Result<(), Failure> {
     let groups = grains.groups.first_shape.len();
     for group in 0..groups {
@@ -45,8 +45,7 @@ pub(super) fn write_packings(dir: &Path, view: GrainsView<'_>, grains: &GrainsPa
     Ok(())
 }
 
-/// Rows of one group: `x,y,z,r` of spheres; of clumps and polyhedra place, quaternion, scale and number of the stone. Numbers are
-/// written in the shortest form that reads back to the same bits.
+/// `x,y,z,r` of spheres; position, quaternion, scale, library index of others. Shortest exact decimals.
 fn packing(view: GrainsView<'_>, part: u32, first_shape: usize) -> String {
     let GrainsView { model, state } = view;
     let own = || (0..model.body_count()).filter(|&b| state.present(b) && model.part(b) == part);

@@ -1,5 +1,4 @@
-//! What the grains are like at the end of a run: porosity, coordination, fabric, stress, sieve curves; and the files that
-//! hold it: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
+//! Final packing and its files: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
 mod files;
 mod records;
@@ -20,10 +19,10 @@ use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{self, BoxRegion, ContactRecord};
 
-/// Measures the grains at the end and writes their files.
+/// Measures the final grains.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn record(
     job: &Job,
     dir: &Path,
@@ -77,20 +76,19 @@ pub fn record(
     })
 }
 
-/// Which bodies are grains: those that are not there at the end do not count, nor does the sleeper.
+/// Present, and no sleepers.
 fn grain_of<'a>(view: GrainsView<'a>, grains: &GrainsPart) -> impl Fn(usize) -> bool + Copy + 'a {
     let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);
     move |b: usize| view.state.present(b) && Some(view.model.part(b)) != sleeper
 }
 
-/// Checks that the bed fills the boxes that are measured.
+/// Checks that the bed fills the measurement boxes.
 pub fn checks(view: GrainsView<'_>, grains: &GrainsPart) -> Vec<Check> {
     let is_grain = grain_of(view, grains);
     let boxes = grains.measures.iter();
     boxes.filter_map(|m| measure_box(&m.name, view, &m.region, is_grain)).collect()
 }
 
-/// How much of the fouling groups is in the bed.
 fn fouling(
     view: GrainsView<'_>,
     grains: &GrainsPart,
@@ -118,12 +116,10 @@ fn fouling(
     })
 }
 
-/// A ratio; zero where there is nothing to compare with.
 fn share_of(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// Share of a box that grains leave.
 fn porosity(view: GrainsView<'_>, region: &BoxRegion, is_grain: impl Fn(usize) -> bool) -> f64 {
     let grains = (0..view.model.body_count()).filter(|&b| is_grain(b));
     let solid: f64 = grains.map(|b| measure::body_volume_in(view.model, view.state, b, region)).sum();

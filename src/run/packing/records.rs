@@ -1,107 +1,107 @@
-//! What the grains are like at the end of a run, as it stands in the summary.
+//! Summary records of the final packing.
 
 use serde::{Deserialize, Serialize};
 
-/// A group after growth.
+/// Group after growth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GrowthRecord {
-    /// Name of the group.
+    /// Group name.
     pub group: String,
-    /// Porosity of its container, overlaps counted once.
+    /// Container porosity, overlaps counted once.
     pub porosity: f64,
-    /// Largest overlap over the reduced radius of the contact.
+    /// Largest overlap over the effective contact radius.
     pub largest_overlap: f64,
-    /// Mean unbalanced force over mean contact force.
+    /// Mean unbalanced over mean contact force.
     pub unbalanced_ratio: f64,
 }
 
-/// A stage of compaction.
+/// Compaction stage.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CompactionRecord {
-    /// What was done.
+    /// Stage type.
     pub kind: String,
-    /// Porosity of its region before.
+    /// Porosity before.
     pub porosity_before: f64,
-    /// The same after, of the region cut off at a plane that has moved in.
+    /// Porosity after, cut at a moved plane.
     pub porosity_after: f64,
-    /// Force on the plane that has moved [N]. Written even where there is none: checkpoints have no names of fields.
+    /// Force on the moved plane [N]. Always written: fields are unnamed.
     pub wall_force: Option<f64>,
 }
 
-/// The grains at the end of a run; the sleeper is none.
+/// Final grains, without sleepers.
 #[derive(Debug, Serialize)]
 pub struct PackingRecord {
-    /// Mean number of neighbours.
+    /// Mean coordination number.
     pub coordination: f64,
-    /// The same without the grains that have no or one neighbour, and without their contacts.
+    /// Mean coordination number without rattlers.
     pub mechanical_coordination: f64,
-    /// Share of the grains with no or one neighbour.
+    /// Fraction of grains with at most one neighbour.
     pub rattlers: f64,
-    /// Number of grains with 0, 1, 2, … neighbours.
+    /// Number of grains by coordination number.
     pub neighbours: Vec<usize>,
-    /// Mean of n ⊗ n over the contacts of grains with each other: xx, yy, zz, xy, yz, zx.
+    /// Fabric n ⊗ n of grain contacts: xx, yy, zz, xy, yz, zx.
     pub fabric: [f64; 6],
-    /// Mean normal force of the contacts [N].
+    /// Mean normal contact force [N].
     pub mean_contact_force: f64,
-    /// Share of the contacts that carry more than the mean.
+    /// Fraction of contacts above the mean force.
     pub strong_contacts: f64,
-    /// Share of the sum of normal forces that they carry.
+    /// Fraction of normal force that they bear.
     pub strong_load: f64,
-    /// Mean unbalanced force over mean contact force; absent without contacts.
+    /// Mean unbalanced over mean contact force.
     pub unbalanced_ratio: Option<f64>,
-    /// Boxes that the scene asks for.
+    /// Measurement boxes.
     pub measures: Vec<MeasureRecord>,
-    /// Fines in the bed.
+    /// Fouling.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fouling: Option<FoulingRecord>,
-    /// Sieve curves of the groups filled by one.
+    /// Sieve curves of graded groups.
     pub gradations: Vec<GradationRecord>,
 }
 
-/// Fines in the bed (Selig & Waters 1994; Indraratna, Su & Rujikiatkamjorn, Can. Geotech. J. 48, 2011).
+/// Fouling (Selig & Waters 1994; Indraratna, Su & Rujikiatkamjorn, Can. Geotech. J. 48, 2011).
 #[derive(Debug, Serialize)]
 pub struct FoulingRecord {
-    /// Mass of the fines over that of all grains: the fouling index with the fines for what passes the sieve of 4.75 mm.
+    /// Fouling index: mass fraction of fines, if they pass the 4.75 mm sieve.
     pub fouling_index: f64,
-    /// Solid volume of the fines over that of the other grains: relative ballast fouling ratio.
+    /// Relative ballast fouling ratio: solid volume of fines over other grains.
     pub relative_fouling_ratio: f64,
-    /// Name of each measured box, porosity of the other grains alone, and solid volume of the fines over the voids that the
-    /// others leave. The void contaminant index is 1 + e_f times the last, e_f the void ratio of the fines.
+    /// Name, porosity without fines, solid volume of fines over remaining voids. Void contaminant index: 1 +
+    /// e_f times the latter, e_f the void ratio of fines.
     pub boxes: Vec<(String, f64, f64)>,
 }
 
-/// What a box holds.
+/// Measured box.
 #[derive(Debug, Serialize)]
 pub struct MeasureRecord {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Share that no grain fills.
+    /// Porosity.
     pub porosity: f64,
-    /// Number of grains with their centre inside.
+    /// Grains with centre inside.
     pub grains: usize,
-    /// Their mean number of neighbours, and without those with no or one.
+    /// Mean coordination number.
     pub coordination: f64,
-    /// The same without rattlers.
+    /// Without rattlers.
     pub mechanical_coordination: f64,
-    /// Fabric of the contacts inside: xx, yy, zz, xy, yz, zx.
+    /// Fabric: xx, yy, zz, xy, yz, zx.
     pub fabric: [f64; 6],
-    /// Mean stress, voids included [Pa]: xx, yy, zz, xy, yz, zx, tension positive.
+    /// Mean stress [Pa]: xx, yy, zz, xy, yz, zx, tension positive.
     pub stress: [f64; 6],
 }
 
-/// How well a group meets its sieve curve.
+/// Sieve curve of a group.
 #[derive(Debug, Serialize)]
 pub struct GradationRecord {
-    /// Name of the group.
+    /// Group name.
     pub group: String,
-    /// Number of stones.
+    /// Number of grains.
     pub stones: usize,
     /// Sieves [m].
     pub sieves: Vec<f64>,
-    /// Mass fraction passing that was asked for.
+    /// Target fraction passing by mass.
     pub target: Vec<f64>,
-    /// Mass fraction passing that the stones have.
+    /// Achieved fraction passing by mass.
     pub achieved: Vec<f64>,
-    /// Largest |achieved − target| over all sizes, not the sieves alone.
+    /// Largest |achieved − target| over all sizes.
     pub largest_deviation: f64,
 }

@@ -1,8 +1,8 @@
-//! Lines of the report about grains.
+//! Packing lines of the report.
 
 use super::records::{CompactionRecord, GrowthRecord, PackingRecord};
 
-/// Lines of the report about grains.
+/// Formats packing lines.
 pub fn report(
     growth: &[GrowthRecord],
     compaction: &[CompactionRecord],

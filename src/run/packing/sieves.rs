@@ -1,4 +1,4 @@
-//! Sieve curves of the groups that were filled by one: how well they are met, `gradation.csv` and `gradation.svg`.
+//! Target and achieved sieve curves: `gradation.csv`, `gradation.svg`.
 
 use super::records::GradationRecord;
 use crate::columns::gradation;
@@ -11,10 +11,8 @@ use std::path::Path;
 use trackbed_dem::insert::gradation::achieved_passing;
 use trackbed_dem::measure;
 
-/// Sizes at which a plotted sieve curve is evaluated.
 const CURVE_POINTS: usize = 120;
 
-/// How well a group meets its sieve curve.
 pub(super) fn graded(view: GrainsView<'_>, group: &GradedGroup) -> GradationRecord {
     let stones = stones(view, group);
     let curve = &group.grading.curve;
@@ -31,22 +29,20 @@ pub(super) fn graded(view: GrainsView<'_>, group: &GradedGroup) -> GradationReco
     }
 }
 
-/// Sieve size [m] and mass [kg] of the stones of a group that are there.
+/// Sieve size [m], mass [kg].
 fn stones(view: GrainsView<'_>, group: &GradedGroup) -> Vec<(f64, f64)> {
     measure::stones(view.model, |b| view.state.present(b) && view.model.part(b) == group.part)
 }
 
-/// Sizes from the smallest sieve to the largest, evenly on the logarithmic scale, a little beyond at both ends [m].
+/// Log-spaced, slightly beyond the sieve range [m].
 fn curve_sizes(group: &GradedGroup) -> Vec<f64> {
     let sizes = group.grading.curve.sizes();
     let (low, high) = (sizes[0] * 0.999, sizes[sizes.len() - 1] * 1.001);
     (0..=CURVE_POINTS).map(|k| low * libm::pow(high / low, k as f64 / CURVE_POINTS as f64)).collect()
 }
 
-/// A row of `gradation.csv`.
 type Sieve = [f64; 6];
 
-/// Its columns.
 const SIEVES: [Field<Sieve>; 6] = [
     (gradation::GROUP, |r| r[0]),
     (gradation::SIEVE, |r| r[1]),
@@ -56,8 +52,6 @@ const SIEVES: [Field<Sieve>; 6] = [
     (gradation::ACHIEVED, |r| r[5]),
 ];
 
-/// `gradation.csv`: the limits, the curve asked for and the one achieved at every sieve of the table; `gradation.svg`: the
-/// same drawn.
 pub(super) fn write(
     dir: &Path,
     title: &str,

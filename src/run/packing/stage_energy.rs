@@ -1,4 +1,4 @@
-//! Energy balance of a stage of packing, and the energy of the grains that the stage removes.
+//! Energy balance of a packing stage.
 
 use crate::failure::Failure;
 use crate::run::validity::{Check, Limits};
@@ -9,41 +9,40 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 
-/// Energy gained over the reference energy.
 const GAIN: Limits = Limits { warn: 0.01, fail: Some(0.2) };
-/// Error of the balance over the reference energy: long steps count dashpots up to 8 % too high.
+/// Long steps overestimate dashpots by up to 8 %.
 const ERROR: Limits = Limits { warn: 0.1, fail: Some(0.5) };
-/// Energy that springs gain where one stage follows another, over the reference energy of the later one.
+/// Over the later reference energy.
 const CHANGE: Limits = Limits { warn: 0.1, fail: Some(0.5) };
 
-/// Energy balance of a stage of packing.
+/// Energy balance of a packing stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageEnergy {
-    /// Name of the stage.
+    /// Stage name.
     pub stage: String,
-    /// Energy in springs of contacts at its start and at its end [J].
+    /// Initial and final elastic contact energy [J].
     pub springs: [f64; 2],
-    /// Kinetic energy at its end, which the next stage begins without [J].
+    /// Final kinetic energy, then dropped [J].
     pub kinetic: f64,
-    /// Energy turned over [J].
+    /// Reference energy [J].
     pub turned_over: f64,
-    /// Error of the balance [J], and its share of the energy turned over.
+    /// Energy error [J].
     pub error: f64,
-    /// See `error`.
+    /// Relative energy error.
     pub relative_error: f64,
-    /// Stored energy beyond that of the start and the work of walls and forces, over the energy turned over: energy from nowhere.
+    /// Spurious energy over reference energy.
     pub gain: f64,
-    /// Grains that were removed above the level.
+    /// Grains removed above the level.
     pub removed: usize,
-    /// Their kinetic energy [J].
+    /// Kinetic energy of removed grains [J].
     pub removed_kinetic: f64,
 }
 
 impl StageEnergy {
-    /// Balance of a stage that began with `model` at rest or as given, and has come to `state`; `surface`: the rigid solid.
+    /// Computes the balance from initial `model` to `state`; `surface`: rigid solid.
     ///
     /// # Errors
-    /// Contacts at the start that cannot be found.
+    /// Failed initial contact detection.
     pub fn of(
         stage: &str,
         model: &dem::Model,
@@ -82,7 +81,7 @@ impl StageEnergy {
         })
     }
 
-    /// Checks that no stage has made energy and that the balances close; none without stages.
+    /// Checks energy gain and error of all stages.
     pub fn checks(stages: &[StageEnergy]) -> Vec<Check> {
         let worst = |of: fn(&StageEnergy) -> f64| stages.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let gain = worst(|stage| stage.gain).map(|worst| {
@@ -102,8 +101,7 @@ impl StageEnergy {
         gain.into_iter().chain(error).collect()
     }
 
-    /// Checks that no stage begins with more energy in the springs of contacts than the one before has left there; `run`: energy
-    /// in springs at the start of the run proper, and that turned over in it [J].
+    /// Checks elastic energy gained between stages; `run`: initial elastic and reference energy [J].
     pub fn check_changes(stages: &[StageEnergy], run: [f64; 2]) -> Option<Check> {
         let run = StageEnergy {
             stage: "run".into(),
@@ -129,8 +127,8 @@ impl StageEnergy {
         ))
     }
 
-    /// Notes the grains (numbers in the model) that are removed; returns a warning that names the fastest of those that
-    /// rise beyond every height of `before`, the grains at the start: gravity alone cannot do that.
+    /// Records removed grains. Warns about the fastest above all heights in `before`, impossible under
+    /// gravity.
     pub fn remove(
         &mut self,
         model: &dem::Model,
@@ -156,7 +154,6 @@ impl StageEnergy {
     }
 }
 
-/// Energy that grains alone store.
 fn stored(model: &dem::Model, state: &dem::State) -> Stored {
     let e = dem::measure::energies(model, state);
     Stored {

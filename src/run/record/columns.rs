@@ -1,4 +1,4 @@
-//! The columns of `history.csv`: a list of recorders.
+//! Columns of `history.csv`.
 
 use super::histories::{Energies, Interface, Inventory, Probes, Rails, Sleepers, Supports};
 use crate::columns::history;
@@ -11,7 +11,7 @@ use crate::run::system::System;
 use crate::run::wall_output::Walls;
 use crate::write::csv::{Column, Row};
 
-/// Everything that is recorded, in the order of the columns behind the time.
+/// In column order after time.
 fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 13] {
     [
         &Sleepers,
@@ -35,12 +35,12 @@ fn record<S: System>(now: &Now<'_, S>, row: &mut Row) {
     recorders().iter().for_each(|recorder| recorder.record(now, row));
 }
 
-/// The columns of a history.
+/// Returns the history columns.
 pub fn columns<S: System>(now: &Now<'_, S>) -> Vec<Column> {
     Row::columns_of(|row| record(now, row))
 }
 
-/// Their values.
+/// Returns the history values.
 pub fn values<S: System>(now: &Now<'_, S>) -> Vec<f64> {
     Row::values_of(|row| record(now, row))
 }

@@ -8,7 +8,7 @@ use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
 use trackbed_dem as dem;
 
-/// What follows the cycles of a load.
+/// Creates the recorder of load cycles.
 pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {
     let part = job.grains.as_ref();
     let between = part.and_then(|g| g.track.after.between).unwrap_or(load.range());
@@ -27,12 +27,11 @@ pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRec
     CycleRecorder::new(load, between, column)
 }
 
-/// The load of a scene on its sleepers.
 fn load_of(job: &Job) -> Option<&CyclicLoad> {
     job.grains.as_ref()?.track.load.as_ref()
 }
 
-/// The row of a cycle; `broken` are the bonds broken so far by tension and by shear.
+/// Records a cycle; `broken`: bonds broken in tension, in shear.
 pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
     row.put(cycles::CYCLE, f64::from(c.number));
     row.put(cycles::SETTLEMENT, c.settlement);
@@ -58,7 +57,7 @@ pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
     }
 }
 
-/// Its columns.
+/// Returns the columns.
 pub fn columns(job: &Job) -> Vec<Column> {
     Row::columns_of(|row| record(job, &Cycle::default(), (0, 0), row))
 }

@@ -1,4 +1,4 @@
-//! Columns of the sleepers, the interface, the energies, the rails, the supports, the probes, inlets and outlets.
+//! Recorders of `history.csv`.
 
 use crate::columns::history;
 use crate::model::Observed;
@@ -7,7 +7,7 @@ use crate::run::system::{GrainsView, System};
 use crate::write::csv::Row;
 use trackbed_dem as dem;
 
-/// Place, load and shape of each sleeper.
+/// Position, load and shape of sleepers.
 pub struct Sleepers;
 
 impl<S: System> Recorder<S> for Sleepers {
@@ -27,7 +27,7 @@ impl<S: System> Recorder<S> for Sleepers {
     }
 }
 
-/// What is added to the name of a column of a sleeper: its number from 1, where there are several.
+/// Number from 1, if several.
 fn number<S>(now: &Now<'_, S>, k: usize) -> String {
     if now.track.count() > 1 { format!("_{}", k + 1) } else { String::new() }
 }
@@ -99,7 +99,7 @@ impl<S: System> Recorder<S> for Supports {
     }
 }
 
-/// Motion of the observed nodes.
+/// Motion of observed nodes.
 pub struct Probes;
 
 impl<S: System> Recorder<S> for Probes {
@@ -118,8 +118,7 @@ impl<S: System> Recorder<S> for Probes {
     }
 }
 
-/// Number, mean place, velocity, spin and mean stress of the grains that a probe observes, each weighted by mass, stress by volume; zeros
-/// without any.
+/// Position, velocity and angular velocity weighted by mass, stress by volume. Zeros if empty.
 fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row) {
     let GrainsView { model, state } = view;
     let seen = |b: usize| match observed {
@@ -147,7 +146,7 @@ fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row
     row.put(history::PROBE_MEAN_STRESS.of(name), sum / volume.max(f64::MIN_POSITIVE));
 }
 
-/// Grains that are there, that came in and that went out.
+/// Present, inserted and removed grains.
 pub struct Inventory;
 
 impl<S: System> Recorder<S> for Inventory {

@@ -1,5 +1,4 @@
-//! What a run leaves while it goes: `history.csv`, `cycles.csv`, frames for ParaView and Tecplot, and at the end the
-//! settlement curve.
+//! Output during a run.
 
 mod columns;
 mod cycle_file;
@@ -29,47 +28,38 @@ use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
 use trackbed_coupling::track::jump::{JumpSummary, Jumper};
 use trackbed_coupling::track::{Track, settlement};
 
-/// The files of one run.
+/// Output files of a run.
 pub struct Results<'a> {
     job: &'a Job,
     dir: PathBuf,
     writers: Writers,
     history: History,
-    /// Columns of the history, where structures have some.
     columns: Vec<Column>,
     cycles_file: Option<History>,
     course: Course,
 }
 
-/// What the results need to know of the run so far: with the marks of the files all that a checkpoint has of them.
+/// Saved in checkpoints with file positions.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Course {
-    /// Number of the next frame.
     frame: usize,
     cycles: Option<CycleRecorder>,
     jumper: Option<Jumper>,
-    /// Energy that cycle jumps brought in [J].
     jump_energy: f64,
-    /// Energy error just before a jump whose energy is not known before the next window [J].
+    /// Energy error before a jump, whose energy follows from the next window [J].
     before_jump: Option<f64>,
     balance: Balance,
-    /// Largest |energy error| at any row [J], and how the account stands to what was turned over.
     largest_error: f64,
     watch: EnergyWatch,
-    /// Settlement of each sleeper since the run began against time, for the plot.
     settlement: Vec<Vec<[f64; 2]>>,
-    /// Stress and strain of a specimen.
     specimen: Vec<specimen::Point>,
     first_heights: Vec<f64>,
-    /// Loads on structures.
     #[serde(default)]
     loads: Vec<LoadRecord>,
-    /// Largest kinetic energy of the grains at any check [J].
     #[serde(default)]
     largest_kinetic: f64,
 }
 
-/// How far the files have come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Marks {
     history: Mark,
@@ -78,10 +68,10 @@ struct Marks {
 }
 
 impl<'a> Results<'a> {
-    /// Starts the files of a run in `dir`.
+    /// Creates the output files in `dir`.
     ///
     /// # Errors
-    /// The folder cannot be written.
+    /// I/O errors.
     pub fn start<S: System>(
         job: &'a Job,
         dir: &Path,
@@ -107,10 +97,10 @@ impl<'a> Results<'a> {
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
-    /// Resumes the files of a run in `dir` where a checkpoint has them; what was written later is removed.
+    /// Resumes output and truncates later rows.
     ///
     /// # Errors
-    /// Files that are not those of the run that the checkpoint is of; the folder cannot be written.
+    /// Files of another run; I/O errors.
     pub fn resume<S: System>(
         job: &'a Job,
         dir: &Path,
@@ -138,10 +128,10 @@ impl<'a> Results<'a> {
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
-    /// Puts into a checkpoint what [`Results::resume`] goes on from. The rows written are on the disk then.
+    /// Saves the state after flushing rows.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         let mark = |history: &History| history.mark().map_err(io::Error::other);
         body.put(&Marks {
@@ -152,7 +142,7 @@ impl<'a> Results<'a> {
         body.put(&self.course)
     }
 
-    /// Brings the energy balance to the present state: before a row, and before a check.
+    /// Updates the energy balance.
     pub fn measure<S: System>(&mut self, system: &S, track: &Track<'_>) {
         self.course.take(system, track);
     }
@@ -160,7 +150,7 @@ impl<'a> Results<'a> {
     /// Checks the energy balance.
     ///
     /// # Errors
-    /// The balance does not close.
+    /// Energy error above its limit.
     pub fn check(&mut self) -> Result<(), Failure> {
         let course = &mut self.course;
         course.largest_kinetic = course.largest_kinetic.max(course.balance.now.grains_kinetic);
@@ -168,10 +158,10 @@ impl<'a> Results<'a> {
         course.watch.follow(&course.balance)
     }
 
-    /// Adds a row to the history.
+    /// Adds a history row.
     ///
     /// # Errors
-    /// A value is not finite, or the disk refuses.
+    /// Non-finite values; I/O errors.
     pub fn row<S: System>(
         &mut self,
         time: f64,
@@ -192,17 +182,17 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    /// Follows the load cycles; call after every window.
+    /// Follows load cycles.
     ///
     /// # Errors
-    /// A value is not finite, or the disk refuses.
+    /// Non-finite values; I/O errors.
     pub fn follow<S: System>(
         &mut self,
         time: f64,
         system: &mut S,
         track: &Track<'_>,
     ) -> Result<Option<Cycle>, Failure> {
-        // All that the window after a jump does not account for came in with the jump.
+        // The error of this window is energy of the jump.
         if let Some(before) = self.course.before_jump.take() {
             self.course.jump_energy += self.energy_error(system) - before;
         }
@@ -228,7 +218,6 @@ impl<'a> Results<'a> {
         Ok(Some(cycle))
     }
 
-    /// Energy error of the present state [J].
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
@@ -236,17 +225,17 @@ impl<'a> Results<'a> {
             .error()
     }
 
-    /// Number of the last finished cycle and of all cycles; none without a cyclic load.
+    /// Returns completed and total cycles; none without cyclic load.
     pub fn progress(&self) -> Option<(u32, u32)> {
         self.course.cycles.as_ref().map(|c| (c.number(), c.total()))
     }
 
-    /// Settlement by the pulses that seat the sleeper [m].
+    /// Returns the seating settlement [m].
     pub fn seating(&self) -> f64 {
         self.course.cycles.as_ref().map_or(0.0, CycleRecorder::seating)
     }
 
-    /// Settlement laws fitted to the cycles.
+    /// Fits settlement laws to the cycles.
     pub fn fits(&self) -> Vec<settlement::Fit> {
         let load = self.job.grains.as_ref().and_then(|g| g.track.load.as_ref());
         match (&self.course.cycles, load) {
@@ -255,17 +244,17 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// What became of the cycle jumps.
+    /// Summarises cycle jumps.
     pub fn jumps(&self) -> Option<JumpSummary> {
         let plan = self.job.grains.as_ref()?.track.after.jump.as_ref()?;
         let course = &self.course;
         Some(course.jumper.as_ref()?.summary(plan, course.cycles.as_ref()?, course.jump_energy))
     }
 
-    /// Writes a frame of the animation.
+    /// Writes a frame.
     ///
     /// # Errors
-    /// A field is not finite, or the disk refuses.
+    /// Non-finite fields; I/O errors.
     pub fn frame<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) -> Result<(), Failure> {
         let draw: &dyn Fn(&mut WallFrame) = &|walls| track_output::draw(track, walls);
         let grains = system.grains().zip(self.job.grains.as_ref()).map(|(view, part)| Shown {
@@ -281,15 +270,15 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    /// Ends the files of the frames.
+    /// Closes the frame files.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn end(&mut self) -> Result<(), Failure> {
         Ok(self.writers.end()?)
     }
 
-    /// Energy account as of the last row.
+    /// Energy balance of the last row.
     pub fn balance(&self) -> &Balance {
         &self.course.balance
     }
@@ -299,20 +288,20 @@ impl<'a> Results<'a> {
         self.course.largest_error
     }
 
-    /// Largest kinetic energy of the grains at any check [J].
+    /// Largest kinetic energy of grains at any check [J].
     pub fn largest_kinetic(&self) -> f64 {
         self.course.largest_kinetic
     }
 
-    /// How the energy account stands to what was turned over.
+    /// Relative energy error.
     pub fn energy_watch(&self) -> &EnergyWatch {
         &self.course.watch
     }
 
-    /// Constants of the specimen, and its curve as a plot.
+    /// Evaluates and plots the specimen.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn specimen<S: System>(&self, system: &S) -> Result<Option<SpecimenRecord>, Failure> {
         let plan = self.job.grains.as_ref().and_then(|g| g.specimen.as_ref());
         let Some((plan, view)) = plan.zip(system.grains()) else { return Ok(None) };
@@ -325,20 +314,18 @@ impl<'a> Results<'a> {
         &self.course.loads
     }
 
-    /// Finished load cycles.
+    /// Completed load cycles.
     pub fn cycles(&self) -> &[Cycle] {
         self.course.cycles.as_ref().map_or(&[], |c| &c.done)
     }
 }
 
-/// The columns, where any are of structures.
 fn of_structures(job: &Job, columns: Vec<Column>) -> Vec<Column> {
     let there = job.grains.as_ref().is_some_and(|part| !part.structures.is_empty());
     if there { columns } else { Vec::new() }
 }
 
 impl Course {
-    /// Brings the balance to the present state.
     fn take<S: System>(&mut self, system: &S, track: &Track<'_>) {
         let balance = &mut self.balance;
         balance.now = system.stored();
@@ -348,7 +335,6 @@ impl Course {
         track.account(&mut balance.now, &mut balance.spent);
     }
 
-    /// Takes the heights of the sleepers into the settlement curves.
     fn settle<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) {
         for (k, s) in (0..track.count()).filter_map(|k| Some((k, track.sleeper(k, time, system)?))) {
             if self.first_heights.len() == k {

@@ -1,4 +1,4 @@
-//! The settlement curves at the end of a run.
+//! Final settlement plots.
 
 use super::Results;
 use crate::failure::Failure;
@@ -7,19 +7,19 @@ use crate::write::svg::{LinePlot, Series};
 use trackbed_coupling::track::cycles::Cycle;
 
 impl Results<'_> {
-    /// Draws the settlement curves.
+    /// Draws settlement curves.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn plot_settlement(&self) -> Result<(), Failure> {
         self.plot_lowering()?;
         self.plot_cycles()
     }
 
-    /// `specimen.svg`: stress against axial and lateral strain.
+    /// Draws `specimen.svg`.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn plot_specimen(&self, brazilian: bool) -> Result<(), Failure> {
         let curve = &self.course.specimen;
         let series = |name: &str, x: fn(&Point) -> f64| Series {
@@ -40,7 +40,6 @@ impl Results<'_> {
         Ok(plot.write(&self.dir.join("specimen.svg"))?)
     }
 
-    /// `sleeper.svg`: lowering of every sleeper against time.
     fn plot_lowering(&self) -> Result<(), Failure> {
         let lowering = &self.course.settlement;
         if lowering.is_empty() {
@@ -58,7 +57,6 @@ impl Results<'_> {
         Ok(plot.write(&self.dir.join("sleeper.svg"))?)
     }
 
-    /// `settlement.svg`: settlement and resilient deflection against cycles.
     fn plot_cycles(&self) -> Result<(), Failure> {
         let cycles = self.cycles();
         if cycles.is_empty() {

@@ -1,27 +1,27 @@
-//! The deposit: its depth in the cells of a grid, its extent and its outline.
+//! Deposit of a slide: depth grid, extent, outline.
 
 use super::ground::{self, Plan};
 use crate::model::grains::{GrainsPart, MOST_CELLS, RunoutPlan};
 use crate::run::system::GrainsView;
 use std::collections::BTreeMap;
 
-/// Depth of a deposit, cell by cell.
+/// Depth grid of a deposit.
 pub struct Deposit {
-    /// The cells.
+    /// Grid.
     pub plan: Plan,
-    /// Height of the ground in the middle of each cell [m], of the lowest grain where there is no ground.
+    /// Ground height at cell centres, or lowest grain [m].
     pub ground: Vec<f64>,
-    /// Highest point of the grains over the cell above the ground [m]; 0 where there are none.
+    /// Depth above ground [m]; 0 if empty.
     pub depth: Vec<f64>,
-    /// Volume of the grains in the cell by its area [m].
+    /// Grain volume over cell area [m].
     pub solid: Vec<f64>,
-    /// Mean distance that the grains in the cell have come [m].
+    /// Mean travel of grains [m].
     pub travel: Vec<f64>,
     /// Whether the cell belongs to the deposit.
     pub inside: Vec<bool>,
 }
 
-/// Measures the deposit of the bodies `slide`; `travel` is how far each body has come [m], shape `[bodies]`.
+/// Measures the deposit of bodies `slide`; `travel` [m], shape `[bodies]`.
 pub fn measure(
     view: GrainsView<'_>,
     part: &GrainsPart,
@@ -41,7 +41,7 @@ pub fn measure(
     }
     let side = (high[0] - low[0]).max(high[1] - low[1]);
     let cell = runout.cell.unwrap_or(2.0 * diameter).max(side / MOST_CELLS as f64);
-    // Cells begin at whole multiples, so that maps of different runs can be compared; a rim of empty ones closes the outline.
+    // Whole multiples make maps comparable; an empty rim closes the outline.
     let low = low.map(|x| ((x / cell).floor() - 1.0) * cell);
     let counts = [0, 1].map(|d| ((high[d] - low[d]) / cell).ceil() as usize + 1);
     let plan = Plan { low, cell, counts };
@@ -50,7 +50,7 @@ pub fn measure(
     for (x, r) in spheres() {
         for j in plan.along(1, x.y - r)..=plan.along(1, x.y + r) {
             for i in plan.along(0, x.x - r)..=plan.along(0, x.x + r) {
-                // The highest point over the cell is over its point nearest to the middle of the sphere.
+                // At the cell point closest to the sphere axis.
                 let [cx, cy] = plan.middle(i, j);
                 let beyond = |c: f64, x: f64| ((x - c).abs() - 0.5 * cell).max(0.0);
                 let distance2 = beyond(cx, x.x).powi(2) + beyond(cy, x.y).powi(2);
@@ -84,7 +84,7 @@ pub fn measure(
 }
 
 impl Deposit {
-    /// Cells that belong to it.
+    /// Iterates over its cells.
     pub fn cells(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let [nx, ny] = self.plan.counts;
         (0..ny)
@@ -92,7 +92,7 @@ impl Deposit {
             .filter(|(i, j)| self.inside[self.plan.index(*i, *j)])
     }
 
-    /// Extent along a direction of its cells, from the first to the last middle and a cell more [m]; 0 without cells.
+    /// Returns the extent along a direction [m]; 0 if empty.
     pub fn extent(&self, direction: [f64; 2]) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (i, j) in self.cells() {
@@ -103,13 +103,13 @@ impl Deposit {
         if low <= high { high - low + self.plan.cell } else { 0.0 }
     }
 
-    /// Its outlines: closed lines of corners along the sides of cells, the deposit on their left; inner ones are holes.
+    /// Returns closed outlines, deposit on the left; inner ones are holes.
     pub fn outlines(&self) -> Vec<Vec<[f64; 2]>> {
         let is_in = |i: isize, j: isize| {
             let [nx, ny] = self.plan.counts.map(|n| n as isize);
             i >= 0 && j >= 0 && i < nx && j < ny && self.inside[self.plan.index(i as usize, j as usize)]
         };
-        // Directed sides from corner to corner; at a corner where two cells meet aslant, the line turns left.
+        // At diagonal corners the line turns left.
         let mut next: BTreeMap<[isize; 2], Vec<[isize; 2]>> = BTreeMap::new();
         for (i, j) in self.cells().map(|(i, j)| (i as isize, j as isize)) {
             let sides = [
@@ -167,9 +167,9 @@ mod tests {
         0.5 * line.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
     }
 
-    /// Lines go about the cells counter-clockwise, about holes clockwise: their areas add up to that of the cells.
+    /// Counter-clockwise outlines and clockwise holes sum to the cell area.
     #[test]
-    fn outlines_hold_the_area_of_the_cells() {
+    fn outline_area_equals_cell_area() {
         let ring = deposit(&["###", "#.#", "###"]);
         let lines = ring.outlines();
         assert_eq!(lines.len(), 2);

@@ -1,4 +1,4 @@
-//! Files of a slide: `runout.vti` and `runout.png` (depth map), `outline.csv`, `fragments.csv`, `origins.csv`.
+//! Files `runout.vti`, `runout.png`, `outline.csv`, `fragments.csv`, `origins.csv`.
 
 use super::deposit::Deposit;
 use super::records::FragmentRecord;
@@ -10,7 +10,7 @@ use crate::write::depth_map::{self, DepthMap};
 use std::path::Path;
 use trackbed_dem::{self as dem, Vec3};
 
-/// A corner of an outline: number of the line, place.
+/// Line index, position.
 type Corner = (usize, [f64; 2]);
 
 const OUTLINE: [Field<Corner>; 3] =
@@ -26,7 +26,6 @@ const FRAGMENTS: [Field<FragmentRecord>; 7] = [
     (fragments::Z, |f| f.centre[2]),
 ];
 
-/// A grain: number, place at the start, at the end, fragment.
 struct Origin {
     body: usize,
     from: Vec3,
@@ -45,10 +44,10 @@ const ORIGINS: [Field<Origin>; 8] = [
     (origins::FRAGMENT, |o| f64::from(o.fragment)),
 ];
 
-/// Writes all of them.
+/// Writes all files.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn write(
     dir: &Path,
     view: GrainsView<'_>,

@@ -1,20 +1,20 @@
-//! Height of the ground under a grid of places: planes that are not upright, and triangles, of walls that stand still.
+//! Ground height from fixed planes and triangles.
 
 use crate::model::grains::GrainsPart;
 use crate::run::system::GrainsView;
 use trackbed_dem::{Motion, Vec3, WallInput, WallShape};
 
-/// Least upward part of a plane's normal for it to be ground.
+/// Smallest vertical component of a ground normal.
 const UPRIGHT: f64 = 1e-3;
-/// Part of a triangle's width by which a place may miss it: what lies on the edge of two belongs to one at least.
+/// Shared edges must belong to at least one triangle.
 const EDGE: f64 = 1e-9;
 
-/// A grid in plan: lower corner [m], side of a cell [m], cells along x and y.
+/// Grid in plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     /// Lower corner [m].
     pub low: [f64; 2],
-    /// Side of a cell [m].
+    /// Cell size [m].
     pub cell: f64,
     /// Cells along x and y.
     pub counts: [usize; 2],
@@ -26,31 +26,30 @@ impl Plan {
         self.counts[0] * self.counts[1]
     }
 
-    /// Middle of cell (i, j) [m].
+    /// Centre of cell (i, j) [m].
     pub fn middle(&self, i: usize, j: usize) -> [f64; 2] {
         [self.low[0] + (i as f64 + 0.5) * self.cell, self.low[1] + (j as f64 + 0.5) * self.cell]
     }
 
-    /// Place of cell (i, j) in a list, x running fastest.
+    /// Index of cell (i, j), x fastest.
     pub fn index(&self, i: usize, j: usize) -> usize {
         j * self.counts[0] + i
     }
 
-    /// The cell that holds a coordinate along an axis, the nearest one for what lies beyond.
+    /// Cell index of a coordinate, clamped to the grid.
     pub fn along(&self, axis: usize, x: f64) -> usize {
         let cell = ((x - self.low[axis]) / self.cell).floor().max(0.0) as usize;
         cell.min(self.counts[axis] - 1)
     }
 }
 
-/// Height of the ground in the middle of each cell [m]; none where there is none. Of surfaces above each other the highest
-/// counts, so a closed body of terrain is as good as its upper side.
+/// Returns ground heights at cell centres [m], of the highest surface.
 pub fn heights(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan) -> Vec<Option<f64>> {
     let cells = (0..plan.counts[1]).flat_map(|j| (0..plan.counts[0]).map(move |i| (i, j)));
     under(view, part, plan, &cells.map(|(i, j)| plan.middle(i, j)).collect::<Vec<_>>())
 }
 
-/// Height of the ground at places in plan [m]; none where there is none.
+/// Returns ground heights at positions in plan [m].
 pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f64; 2]]) -> Vec<Option<f64>> {
     let mut ground: Vec<Option<f64>> = vec![None; places.len()];
     let mut raise = |k: usize, z: f64| ground[k] = Some(ground[k].map_or(z, |g: f64| g.max(z)));
@@ -82,14 +81,13 @@ pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f6
     ground
 }
 
-/// Whether a wall stands still: a wagon that is tipped is no ground.
+/// A tipping wagon is no ground.
 fn stands(wall: &WallInput) -> bool {
     let Motion { velocity, angular_velocity, oscillation, .. } = &wall.motion;
     let still = *velocity == Vec3::zeros() && *angular_velocity == Vec3::zeros();
     still && oscillation.is_none() && wall.servo.is_none() && wall.body.is_none()
 }
 
-/// Calls `raise` with the height of a triangle at every place that it covers.
 fn below(
     plan: &Plan,
     [a, b, c]: [Vec3; 3],

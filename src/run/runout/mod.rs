@@ -1,11 +1,9 @@
-//! How far a slide has run and what it has left: front, reach, deposit, fragments, who came from where.
+//! Runout of a slide.
 //!
-//! The *head* is where the highest grain of the slide lay at the start, the *toe* the grain of the front at the end: the
-//! one behind which a share of the mass lies, along the direction of the slide. H and L are the height and the horizontal
-//! distance between the two, the reach angle atan(H/L) is that of Heim's Fahrböschung (Heim, Bergsturz und Menschenleben,
-//! 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle is that between the centres of mass at start and end.
-//!
-//! Places at the start are those of the run proper.
+//! *Head*: initial position of the highest grain. *Toe*: final front grain, behind which a given mass
+//! fraction lies. H and L: their vertical and horizontal distances. The reach angle atan(H/L) is Heim's
+//! Fahrböschung (Heim, Bergsturz und Menschenleben, 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle
+//! connects the centres of mass.
 //!
 //! Theory manual: equation (6.39) of `docs/theory/track.md`.
 
@@ -25,27 +23,24 @@ use crate::write::csv::Row;
 use std::path::Path;
 use trackbed_dem::{self as dem, Vec3};
 
-/// Fragments that the summary lists.
 const LISTED: usize = 10;
 
-/// Places of the bodies when the run began [m]. Shape `[bodies]`.
+/// Returns initial body positions in the main stage [m]. Shape `[bodies]`.
 pub fn origins(model: &dem::Model) -> Vec<Vec3> {
     let start = dem::State::new(model);
     (0..model.body_count()).map(|b| start.position(b)).collect()
 }
 
-/// The bodies that slide and are there.
 fn slide(view: GrainsView<'_>, plan: &RunoutPlan) -> Vec<usize> {
     let GrainsView { model, state } = view;
     (0..model.body_count()).filter(|&b| state.present(b) && plan.has(model.part(b))).collect()
 }
 
-/// Where a place lies along the direction of the slide [m].
+/// Along the slide [m].
 fn along(plan: &RunoutPlan, x: &Vec3) -> f64 {
     x.x * plan.direction[0] + x.y * plan.direction[1]
 }
 
-/// The body behind which a share of the mass lies; none without bodies.
 fn front(
     view: GrainsView<'_>,
     plan: &RunoutPlan,
@@ -64,14 +59,12 @@ fn front(
     at.or(ordered.len().checked_sub(1)).map(|k| ordered[k].1)
 }
 
-/// Centre of mass of bodies [m].
 fn centre(view: GrainsView<'_>, bodies: &[usize], place: impl Fn(usize) -> Vec3) -> Vec3 {
     let mass: f64 = bodies.iter().map(|&b| view.model.mass(b)).sum();
     let sum: Vec3 = bodies.iter().map(|&b| place(b) * view.model.mass(b)).sum();
     sum / mass.max(f64::MIN_POSITIVE)
 }
 
-/// Kinetic energy of bodies [J].
 fn kinetic(view: GrainsView<'_>, bodies: &[usize]) -> f64 {
     let energy = |b: usize| {
         let (v, q) = (view.state.velocity(b), view.state.orientation(view.model, b));
@@ -81,7 +74,7 @@ fn kinetic(view: GrainsView<'_>, bodies: &[usize]) -> f64 {
     bodies.iter().map(|&b| energy(b)).sum()
 }
 
-/// Front, centre of mass, kinetic energy and largest fragment of a slide against time.
+/// Front, centre of mass, kinetic energy, largest fragment.
 pub struct Slides;
 
 impl<S: System> Recorder<S> for Slides {
@@ -99,10 +92,10 @@ impl<S: System> Recorder<S> for Slides {
     }
 }
 
-/// Measures a slide at its end and writes its files.
+/// Measures the final runout.
 ///
 /// # Errors
-/// The disk refuses.
+/// I/O errors.
 pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Option<RunoutRecord>, Failure> {
     let Some(plan) = &part.runout else { return Ok(None) };
     let GrainsView { model, state } = view;
@@ -165,7 +158,7 @@ pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Opt
     }))
 }
 
-/// Height and distance along the slide from one place to another [m].
+/// Vertical, horizontal distance [m].
 fn fall(plan: &RunoutPlan, from: &Vec3, to: &Vec3) -> (f64, f64) {
     (from.z - to.z, along(plan, to) - along(plan, from))
 }

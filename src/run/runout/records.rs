@@ -1,72 +1,72 @@
-//! What the summary holds of a slide, and its lines in the report.
+//! Runout records of the summary, and report lines.
 
 use crate::run::system::GrainsView;
 use serde::Serialize;
 use trackbed_dem::{self as dem, Vec3};
 
-/// How far a slide has run and what it has left.
+/// Runout of a slide.
 #[derive(Debug, Serialize)]
 pub struct RunoutRecord {
-    /// Grains of the slide.
+    /// Number of grains.
     pub grains: usize,
-    /// Their mass [kg].
+    /// Mass [kg].
     pub mass: f64,
-    /// Their volume, without pores [m³].
+    /// Solid volume [m³].
     pub solid_volume: f64,
-    /// Share of the mass that has come farther than its own diameter.
+    /// Mass fraction moved more than a grain diameter.
     pub moved_share: f64,
-    /// Place of the front along the direction of the slide: the share of the mass asked for lies behind it [m].
+    /// Front coordinate along the slide [m].
     pub front: f64,
-    /// How far the front has come [m].
+    /// Advance of the front [m].
     pub advance: f64,
-    /// Place of the farthest grain [m].
+    /// Farthest grain [m].
     pub farthest: f64,
-    /// Height from the head to the toe [m].
+    /// Height from head to toe [m].
     pub drop: f64,
-    /// Horizontal distance from the head to the toe along the direction [m].
+    /// Horizontal distance from head to toe [m].
     pub length: f64,
-    /// Angle of the line from head to toe [degrees].
+    /// Reach angle [degrees].
     pub reach_angle: f64,
-    /// Angle of the line between the centres of mass [degrees].
+    /// Travel angle [degrees].
     pub travel_angle: f64,
-    /// Centre of mass at the start [m].
+    /// Initial centre of mass [m].
     pub centre_start: [f64; 3],
-    /// Centre of mass at the end [m].
+    /// Final centre of mass [m].
     pub centre_end: [f64; 3],
-    /// Side of a cell of the depth map [m].
+    /// Cell size of the depth map [m].
     pub cell: f64,
-    /// Area of the deposit in plan [m²].
+    /// Deposit area in plan [m²].
     pub deposit_area: f64,
-    /// Its extent along the direction [m].
+    /// Deposit length along the slide [m].
     pub deposit_length: f64,
-    /// Its extent across [m].
+    /// Deposit width [m].
     pub deposit_width: f64,
-    /// Volume between ground and highest grains, with pores [m³].
+    /// Deposit volume with pores [m³].
     pub deposit_volume: f64,
     /// Largest depth [m].
     pub deepest: f64,
-    /// Potential energy set free [J].
+    /// Released potential energy [J].
     pub potential_released: f64,
-    /// Kinetic energy at the end [J].
+    /// Final kinetic energy [J].
     pub kinetic_left: f64,
-    /// Grains whose centre lies below the ground.
+    /// Grains with centre below ground.
     pub below_ground: usize,
-    /// Grains without ground under them.
+    /// Grains without ground below.
     pub beyond_ground: usize,
-    /// Number of fragments, single grains among them.
+    /// Number of fragments, with single grains.
     pub fragments: usize,
-    /// Volume of the largest fragment over that of the slide.
+    /// Volume fraction of the largest fragment.
     pub largest_share: f64,
     /// The largest fragments.
     pub largest: Vec<FragmentRecord>,
 }
 
-/// A piece that bonds hold together.
+/// Bonded fragment.
 #[derive(Clone, Debug, Serialize)]
 pub struct FragmentRecord {
     /// Bodies.
     pub bodies: usize,
-    /// Volume of the bodies [m³].
+    /// Solid volume [m³].
     pub volume: f64,
     /// Mass [kg].
     pub mass: f64,
@@ -75,7 +75,7 @@ pub struct FragmentRecord {
 }
 
 impl RunoutRecord {
-    /// Lines of the report.
+    /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
         let lost = match (self.below_ground, self.beyond_ground) {
             (0, 0) => String::new(),
@@ -108,7 +108,7 @@ impl RunoutRecord {
     }
 }
 
-/// The fragments of bodies, the largest first.
+/// Returns the fragments of bodies, largest first.
 pub fn fragments(view: GrainsView<'_>, bodies: &[usize]) -> Vec<FragmentRecord> {
     let found = dem::measure::fragments(view.model, view.state);
     let mut of: Vec<(usize, f64, f64, Vec3)> = vec![(0, 0.0, 0.0, Vec3::zeros()); found.sizes.len()];

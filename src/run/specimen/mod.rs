@@ -1,10 +1,8 @@
-//! Stress and strain of a specimen between platens, and its constants: strength, modulus, Poisson's ratio.
+//! Stress and strain of a specimen between platens.
 //!
-//! Stress is the mean force on both platens over the section, in the Brazilian test the tension 2 F/(π D t) in the middle
-//! of the disc (Carneiro 1943; ISRM 1978). Strain is the approach of the platens over their distance; strains of the
-//! specimen itself are slopes of the displacement of its grains over their places at the start, by least squares, so that
-//! gaps and overlaps at the platens do not enter Poisson's ratio. Compression is positive, but for the lateral strain, which
-//! is positive where the specimen bulges.
+//! Stress is the mean platen force over the section; in the Brazilian test 2 F/(π D t) at the disc centre
+//! (Carneiro 1943; ISRM 1978). Grain strains are least-squares slopes of displacement over initial position,
+//! so platen gaps do not affect Poisson's ratio. Compression is positive, laterally bulging.
 //!
 //! Theory manual: equation (6.40) of `docs/theory/track.md`.
 
@@ -21,24 +19,24 @@ use crate::write::csv::Row;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 
-/// A specimen at one moment.
+/// Specimen state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Time [s].
     pub time: f64,
-    /// Approach of the platens over their distance.
+    /// Platen approach over distance.
     pub strain: f64,
     /// Stress [Pa].
     pub stress: f64,
-    /// Axial strain of the grains, compression positive.
+    /// Axial grain strain, compression positive.
     pub axial: f64,
-    /// Mean lateral strain of the grains, bulging positive.
+    /// Mean lateral strain, bulging positive.
     pub lateral: f64,
-    /// Mean pressure on the sides [Pa].
+    /// Mean confining pressure [Pa].
     pub confinement: f64,
 }
 
-/// Measures a specimen.
+/// Measures the specimen.
 pub fn point(plan: &SpecimenPlan, view: GrainsView<'_>, time: f64) -> Point {
     let GrainsView { model, state } = view;
     let from = runout::origins(model);

@@ -1,4 +1,4 @@
-//! Constants of a specimen, from its curve.
+//! Evaluation of a specimen curve.
 
 use super::Point;
 use crate::model::grains::SpecimenPlan;
@@ -7,37 +7,37 @@ use crate::run::system::GrainsView;
 use serde::Serialize;
 use trackbed_dem::bond::{Break, BreakMode};
 
-/// What a test found.
+/// Test results.
 #[derive(Debug, Serialize)]
 pub struct SpecimenRecord {
-    /// Largest stress [Pa], in the Brazilian test the tensile strength.
+    /// Strength [Pa]; Brazilian test: tensile strength.
     pub strength: f64,
-    /// Strain at the largest stress.
+    /// Strain at peak.
     pub peak_strain: f64,
-    /// Mean pressure on the sides then [Pa].
+    /// Mean confining pressure at peak [Pa].
     pub confinement: f64,
-    /// Slope of the stress over the axial strain of the grains between two shares of the peak [Pa].
+    /// Secant modulus from grain strain [Pa].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub modulus: Option<f64>,
-    /// Slope of the stress over the strain by the platens there [Pa].
+    /// Secant modulus from platen strain [Pa].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub platen_modulus: Option<f64>,
-    /// Slope of the lateral over the axial strain there.
+    /// Poisson's ratio in the same range.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson: Option<f64>,
-    /// Stress at the end over the largest.
+    /// Final over peak stress.
     pub residual: f64,
-    /// Bonds broken by tension up to the peak.
+    /// Tension cracks up to the peak.
     pub tension_cracks_at_peak: usize,
-    /// Bonds broken by shear up to the peak.
+    /// Shear cracks up to the peak.
     pub shear_cracks_at_peak: usize,
-    /// Stress at which a hundredth of the bonds broken at the peak were broken, over the peak: where cracks begin.
+    /// Crack initiation: stress at 1 % of pre-peak bond breaks, over peak.
     pub crack_initiation: f64,
-    /// Share of the tension cracks whose plane is within 30° of the axis; half of them where they lie at random.
+    /// Tension cracks within 30° of the axis; one half if random.
     pub axial_cracks: f64,
 }
 
-/// Finds the constants; none of a curve without stress.
+/// Evaluates a curve; none without stress.
 pub fn record(plan: &SpecimenPlan, curve: &[Point], view: GrainsView<'_>) -> Option<SpecimenRecord> {
     let top = curve.iter().enumerate().max_by(|a, b| a.1.stress.total_cmp(&b.1.stress))?.0;
     let peak = curve[top];
@@ -73,7 +73,6 @@ pub fn record(plan: &SpecimenPlan, curve: &[Point], view: GrainsView<'_>) -> Opt
     })
 }
 
-/// Share of tension cracks along the axis.
 fn axial(plan: &SpecimenPlan, breaks: &[Break], view: GrainsView<'_>) -> f64 {
     let from = runout::origins(view.model);
     let (mut along, mut all) = (0.0, 0.0_f64);
@@ -85,7 +84,6 @@ fn axial(plan: &SpecimenPlan, breaks: &[Break], view: GrainsView<'_>) -> f64 {
     along / all.max(1.0)
 }
 
-/// Slope by least squares; none of fewer than three points, or of points above each other.
 fn slope(points: &[&Point], x: fn(&Point) -> f64, y: fn(&Point) -> f64) -> Option<f64> {
     let count = points.len() as f64;
     let mean = |of: fn(&Point) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
@@ -96,7 +94,7 @@ fn slope(points: &[&Point], x: fn(&Point) -> f64, y: fn(&Point) -> f64) -> Optio
 }
 
 impl SpecimenRecord {
-    /// Lines of the report.
+    /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
         let known = |name: &str, value: Option<f64>, unit: &str| {
             value.map_or(String::new(), |v| format!(", {name} {v:.4e}{unit}"))

@@ -1,7 +1,7 @@
-//! Sleepers that are bedded while the ballast is compacted, and grains that are poured around them.
+//! Seating of sleepers, and pouring of grains around them.
 //!
-//! A sleeper put on a heap of stones rests on the few highest ones and sinks by a share of their size before it lies in its bed:
-//! pressed there with the ground held rigid, it has done so when the run proper begins.
+//! On loose grains a sleeper settles by a fraction of their size. Pressing it with rigid ground before the
+//! main stage avoids this.
 
 use super::stage::Settled;
 use crate::failure::Failure;
@@ -11,10 +11,10 @@ use std::f64::consts::PI;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::{AppliedForce, BodyInput, Vec3};
 
-/// Gap between what is dropped and what it falls on, as a share of the largest grain's radius.
+/// Drop gap over the largest grain radius.
 const GAP: f64 = 1e-3;
 
-/// The sleepers just above the highest grains below them.
+/// Returns sleepers just above the highest grains.
 pub fn set_down(bed: &Bed<'_>, grains: &GrainsPart, surface: Option<&SolidSurface>) -> Vec<BodyInput> {
     let Some(plan) = &grains.track.sleeper else { return Vec::new() };
     let place = |&centre: &[f64; 2]| {
@@ -24,7 +24,7 @@ pub fn set_down(bed: &Bed<'_>, grains: &GrainsPart, surface: Option<&SolidSurfac
     plan.row.centres.iter().map(place).collect()
 }
 
-/// All bodies from number `first` on are pressed down with F sin²(πft) each.
+/// Presses bodies from `first` on with F sin²(πft).
 ///
 /// # Errors
 /// As [`Bed::step`].
@@ -48,7 +48,7 @@ pub fn press(
     Ok(())
 }
 
-/// The waiting grains of the groups `parts` in so many layers of equal number, the lowest first.
+/// Returns queued grains in `count` equal layers, lowest first.
 pub fn layers(bodies: &[BodyInput], parts: &[u32], count: u32) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> =
         (0..bodies.len()).filter(|&b| bodies[b].absent && parts.contains(&bodies[b].part)).collect();
@@ -59,11 +59,11 @@ pub fn layers(bodies: &[BodyInput], parts: &[u32], count: u32) -> Vec<Vec<usize>
     order.chunks(order.len().div_ceil(count as usize)).map(<[usize]>::to_vec).collect()
 }
 
-/// Lets a layer of waiting grains in, just above all that lies there.
+/// Inserts a layer just above all bodies.
 pub fn let_in(grains: &GrainsPart, settled: &mut Settled, layer: &[usize]) {
     let reach = |b: &BodyInput| grains.groups.reach(b);
     let there = settled.bodies.iter().filter(|b| !b.absent).map(|b| b.position.z + reach(b));
-    // A bedded sleeper lies tilted: its highest corner counts.
+    // Seated sleepers are tilted.
     let half = grains.track.sleeper.as_ref().map_or([0.0; 3], |s| s.row.half);
     let top = there.chain(settled.sleepers.iter().map(|s| highest_corner(s, half)));
     let top = top.fold(f64::NEG_INFINITY, f64::max);
@@ -77,13 +77,12 @@ pub fn let_in(grains: &GrainsPart, settled: &mut Settled, layer: &[usize]) {
     }
 }
 
-/// Height of the highest corner of a block with half sides `half` [m].
 fn highest_corner(block: &BodyInput, half: [f64; 3]) -> f64 {
     let up = block.orientation.inverse() * Vec3::z();
     block.position.z + up.abs().dot(&Vec3::from(half))
 }
 
-/// Removes poured grains that lie above the level; `bed` is the model that they came to rest in, from the places `before`.
+/// Removes grains above the level; `bed`: final model from `before`.
 pub fn cut(settled: &mut Settled, bed: &Bed<'_>, before: &[BodyInput], parts: &[u32], level: Option<f64>) {
     let above = |b: &BodyInput| level.is_some_and(|level| b.position.z > level);
     let goes = |b: &BodyInput| !b.absent && parts.contains(&b.part) && above(b);
@@ -94,19 +93,19 @@ pub fn cut(settled: &mut Settled, bed: &Bed<'_>, before: &[BodyInput], parts: &[
     settled.bodies.retain(|b| !goes(b));
 }
 
-/// The end of a pouring.
+/// Result of pouring.
 pub struct Poured<'b> {
-    /// The last model.
+    /// Last model.
     pub bed: Bed<'b>,
-    /// The grains as that began with them.
+    /// Its initial grains.
     pub before: Vec<BodyInput>,
-    /// Steps in all.
+    /// Total steps.
     pub steps: u64,
-    /// Whether all came to rest.
+    /// Whether all layers came to rest.
     pub rested: bool,
 }
 
-/// Grains come to rest layer by layer, in models that `new` makes.
+/// Pours layer by layer, in models from `new`.
 ///
 /// # Errors
 /// As [`Bed::step`].
@@ -137,7 +136,7 @@ mod tests {
     use nalgebra::UnitQuaternion;
     use std::f64::consts::FRAC_PI_6;
 
-    /// Half sides 1.3, 0.14 and 0.1 m: turned by 30 degrees about y the end rises by 1.3 sin 30°.
+    /// Half sides 1.3, 0.14, 0.1 m, rotated by 30 degrees about y: the end rises by 1.3 sin 30°.
     #[test]
     fn tilted_block_reaches_its_corner() {
         let half = [1.3, 0.14, 0.1];

@@ -1,31 +1,28 @@
-//! When a run writes what.
+//! Output intervals of a run.
 
 use crate::model::Job;
 use trackbed_coupling::track::CyclicLoad;
 
-/// Checks of the energy balance in a run.
 const CHECKS: f64 = 1000.0;
 
-/// When something is written, in windows.
 pub(super) struct Cadence {
-    /// Length of a window [s].
+    /// Window length [s].
     pub window: f64,
-    /// Frames over the run, but for its last part where that has its own.
+    /// Without a separate last part.
     frames: u64,
-    /// Window that the last part begins with, and its frames.
     last: Option<(u64, u64)>,
-    /// Windows between two rows of the history.
+    /// Windows per history row.
     pub every: u64,
-    /// Windows between two checks of the energy balance: the outcome of a run does not depend on the rows of its history.
+    /// Windows per energy check.
     pub checked: u64,
-    /// Windows after the last cycle, whenever that ends.
+    /// Windows after the last cycle.
     pub tail: u64,
-    /// Whether cycles are jumped over: then neither time nor steps show how far a run is.
+    /// Whether cycles are jumped over; steps then measure no progress.
     pub jumps: bool,
 }
 
 impl Cadence {
-    /// Of a run of `windows` windows of length `window` [s]; `jumps` says whether cycles of the `load` are jumped over.
+    /// Creates intervals for `windows` of length `window` [s]; `jumps`: over cycles of `load`.
     pub fn new(job: &Job, window: f64, windows: u64, load: Option<&CyclicLoad>, jumps: bool) -> Cadence {
         let every = |interval: f64| ((interval / window).round() as u64).max(1);
         Cadence {
@@ -42,9 +39,9 @@ impl Cadence {
         }
     }
 
-    /// The frame after the next one, `next`, when that is due at the window `reached` of `whole`.
+    /// Returns the frame after `next`, if due at `reached` of `whole`.
     pub fn frame_after(&self, next: u64, reached: u64, whole: u64) -> Option<u64> {
-        // Frames of the first part are counted before those of the last.
+        // The first part is counted first.
         let (begin, last) = self.last.unwrap_or((whole, 0));
         let first = if begin > 0 { self.frames } else { 0 };
         let (count, from, done, of) = if next > first && last > 0 {

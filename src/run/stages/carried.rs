@@ -1,7 +1,6 @@
-//! The bed at the end of another run, put into another scene: `trackbed run NEXT --from DIR --bed`.
+//! Bed imported from another run: `trackbed run NEXT --from DIR --bed`.
 //!
-//! Both scenes have the same `[[grains]]`. Where the grains are, how they move, and what their contacts and bonds with each other
-//! remember is carried over; walls, sleepers, solid and loads are those of the new scene, contacts with them begin anew.
+//! Grains keep positions, velocities, contact and bond history. Walls, sleepers, solid and loads are new.
 
 use super::stage::Settled;
 use crate::failure::Failure;
@@ -12,21 +11,18 @@ use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 use trackbed_fem as fem;
 
-/// A bed.
+/// Imported bed.
 pub struct Carried {
-    /// Grains as their run began with them; none where these are the ones of the scene.
     begun: Option<Vec<BodyInput>>,
-    /// What became of them, and of the bodies after them.
     state: dem::State,
-    /// How many they are.
     count: usize,
 }
 
 impl Carried {
-    /// Reads the end of a run, `coupled` or of grains alone.
+    /// Reads a final state, `coupled` or DEM only.
     ///
     /// # Errors
-    /// Bad input: a state of another program.
+    /// State of another program.
     pub fn read(loaded: &mut Loaded, coupled: bool) -> Result<Carried, Failure> {
         let bed: Option<Settled> = loaded.take()?;
         let state = if coupled {
@@ -39,22 +35,22 @@ impl Carried {
         Ok(Carried { begun: bed.map(|bed| bed.bodies), state, count: 0 })
     }
 
-    /// The grains as their run began with them; `part`: those of the scene.
+    /// Returns the initial grains; `part`: of the scene.
     pub fn bodies(&mut self, part: &GrainsPart) -> Vec<BodyInput> {
         let bodies = self.begun.take().unwrap_or_else(|| part.groups.bodies.clone());
         self.count = bodies.len();
         bodies
     }
 
-    /// Gives the contacts of the bed their memory back, once those of a state are found.
+    /// Restores contact history after contact detection.
     pub fn remember(&self, model: &dem::Model, state: &mut dem::State) {
         state.remember(model, &self.state, self.count);
     }
 
-    /// Puts the bed into the state that a model begins with.
+    /// Sets the bed in an initial state.
     ///
     /// # Errors
-    /// Bad input: the grains of the model are others.
+    /// Different grains.
     pub fn put(&self, model: &dem::Model, state: &mut dem::State) -> Result<(), Failure> {
         state.carry(model, &self.state, self.count).map_err(|body| {
             Failure::Input(format!(

@@ -1,4 +1,4 @@
-//! Compaction of a settled bed: planes that swing, a plate that presses, a plane that moves in.
+//! Compaction of a deposited bed.
 
 use super::bedding::{self, Poured};
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
@@ -18,23 +18,18 @@ use trackbed_dem as dem;
 use trackbed_dem::measure::{BoxRegion, body_volume_in};
 use trackbed_dem::{BodyInput, Vec3};
 
-/// A bed after a stage.
 struct Pressed<'a> {
     bed: Bed<'a>,
-    /// Steps in all.
     steps: u64,
-    /// Whether it came to rest.
     rested: bool,
-    /// Where its porosity is measured now.
     region: BoxRegion,
-    /// Force on the plane that was moved [N].
     wall_force: Option<f64>,
 }
 
-/// What a bed is doing in the stages of compaction.
+/// Activity shown in progress and errors.
 pub const COMPACTED: &str = "being compacted";
 
-/// Longest simulated time of one press with the rests that follow it [s].
+/// Returns the longest simulated time of a press with rests [s].
 pub fn longest(plan: &CompactionPlan) -> f64 {
     let rest = plan.rest.max_time;
     match &plan.press {
@@ -48,7 +43,7 @@ pub fn longest(plan: &CompactionPlan) -> f64 {
     }
 }
 
-/// The settled bed is pressed, stage by stage.
+/// Compaction stages.
 pub struct Compaction;
 
 impl Stage for Compaction {
@@ -76,7 +71,6 @@ impl Stage for Compaction {
     }
 }
 
-/// Warns of a region that the bed does not fill, and of grains that have not come to rest.
 fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, index: usize) {
     let view = GrainsView { model: &done.bed.model, state: &done.bed.state };
     let key = format!("compaction.{index}.region");
@@ -90,7 +84,6 @@ fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, index: usize) {
     }
 }
 
-/// One stage of compaction.
 fn compact(
     run: &Run<'_>,
     grains: &mut GrainsPart,
@@ -169,7 +162,6 @@ fn compact(
     Ok(())
 }
 
-/// A bed of these bodies with the friction and damping of the stage.
 fn new_bed<'b>(
     run: &'b Run<'_>,
     grains: &GrainsPart,
@@ -182,14 +174,13 @@ fn new_bed<'b>(
     Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED))
 }
 
-/// Share of a region that the first `grains` bodies leave: a plate is no grain.
+/// Of the first `grains` bodies: a platen is no grain.
 fn porosity(bed: &Bed<'_>, grains: usize, region: &BoxRegion) -> f64 {
     let solid: f64 = (0..grains).map(|b| body_volume_in(&bed.model, &bed.state, b, region)).sum();
     1.0 - solid / region.volume()
 }
 
-/// A plate presses at one place after the other. Balances of the stage `name` are those of each press and of each rest after it; that of the
-/// last rest is the caller's.
+/// Adds balances of presses and rests, except the last rest.
 fn tamp<'b>(
     mut done: Pressed<'b>,
     plan: &CompactionPlan,
@@ -203,7 +194,7 @@ fn tamp<'b>(
         if k > 0 {
             settled.energy.push(done.bed.energy(name)?);
         }
-        // A model with the plate for every place, and one without it to come to rest in.
+        // Separate models with and without platen.
         let mut all = done.bed.at_rest(bodies);
         let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
         all.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
@@ -217,7 +208,7 @@ fn tamp<'b>(
     Ok(done)
 }
 
-/// Planes swing as A sin(2πft) for whole cycles and are then where they were.
+/// A sin(2πft) for whole cycles, back to the start.
 fn shake(
     bed: &mut Bed<'_>,
     planes: &[usize],
@@ -229,7 +220,7 @@ fn shake(
     let at = |t: f64| if t < end { libm::sin(TAU * frequency * t) } else { 0.0 };
     while bed.state.time - begun < end {
         let (t, dt) = (bed.state.time - begun, bed.dt());
-        // The velocity that takes the plane from one place to the next exactly.
+        // Moves the plane exactly.
         let velocity = amplitude * ((at(t + dt) - at(t)) / dt);
         planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, velocity));
         bed.step(&[])?;
@@ -238,8 +229,8 @@ fn shake(
     Ok(())
 }
 
-/// A plane moves in until the region, cut off at it, has the porosity, or for the longest way. Returns the cut region and
-/// whether the porosity was reached.
+/// Stops at the porosity of the cut region, or the longest travel. Returns the region and whether it was
+/// reached.
 fn squeeze(
     bed: &mut Bed<'_>,
     whole: &BoxRegion,

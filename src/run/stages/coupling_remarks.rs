@@ -1,4 +1,4 @@
-//! Warnings about the exchange between grains and solid at the end of a run.
+//! Final coupling warnings.
 
 use crate::run::summary::CouplingRecord;
 use crate::run::system::CoupledSystem;
@@ -7,7 +7,7 @@ use trackbed_coupling::ledger::Spent;
 use trackbed_coupling::scheme::Passes;
 use trackbed_coupling::stability::{INTERFACE, interface_excess, largest_phase, theta_for};
 
-/// A remark on windows of the iterated scheme that found no end.
+/// Warns about unconverged windows of the iterated scheme.
 pub fn unconverged(passes: &Passes) -> Option<String> {
     (passes.unconverged > 0).then(|| {
         format!(
@@ -17,11 +17,10 @@ pub fn unconverged(passes: &Passes) -> Option<String> {
     })
 }
 
-/// Part of the turnover of energy above which dashpots that act late are remarked on.
+/// Late dissipation over reference energy.
 const LATE: f64 = 0.05;
 
-/// A remark on dashpots at the solid's surface that take much less than their law has, because the solid does not move as
-/// they assume.
+/// Warns about dashpots that dissipate less than their law, because the solid deviates from its prediction.
 pub fn late(spent: &Spent) -> Option<String> {
     let law = spent.dissipated() - spent.dashpot_lag;
     let part = -spent.dashpot_lag / spent.work().abs().max(law);
@@ -34,10 +33,10 @@ pub fn late(spent: &Spent) -> Option<String> {
     })
 }
 
-/// Growth of amplitudes over a run, as an exponent, above which undamped contacts are warned about.
+/// Growth exponent of undamped amplitudes.
 const GROWTH: f64 = 1.0;
 
-/// A warning about an interface whose contacts, all together, were beyond what the windows allow.
+/// Warns about an interface beyond its stability limit.
 pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -> Option<String> {
     let (model, check) = (&system.model, &system.state.interface_check);
     let InterfaceNumbers { stiffness, damping, phase } = check.largest;

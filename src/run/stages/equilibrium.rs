@@ -1,4 +1,4 @@
-//! Grains and solid are joined, the solid in equilibrium with its weight and the bed.
+//! Coupling of grains and solid in equilibrium.
 
 use super::carried::Carried;
 use super::stage::{CoupledRun, RunState, Stage};
@@ -23,7 +23,7 @@ use trackbed_coupling::track::CyclicLoad;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
-/// The solid finds the state that it has under its weight and the grains at rest.
+/// Static equilibrium with grains at rest.
 pub struct Equilibrium;
 
 impl Stage for Equilibrium {
@@ -62,7 +62,7 @@ impl Stage for Equilibrium {
         let substeps = system.model.substeps;
         let remarks = exchange::remarks(&classes, plan.scheme, substeps);
         if run.verbosity > Verbosity::Quiet {
-            // Before anything can blow up.
+            // Before a possible instability.
             remarks.iter().for_each(|r| message::warn(r));
         }
         summary.warnings.extend(remarks);
@@ -85,8 +85,7 @@ impl Stage for Equilibrium {
     }
 }
 
-/// Joins grains and solid. The solid starts in static equilibrium with its weight and the grains that rest on
-/// it; the mesh file describes that loaded shape, as a survey would.
+/// Starts in static equilibrium. The mesh describes the loaded shape, like a survey.
 fn couple<'b>(
     run: &Run<'b>,
     body: Body<'b>,
@@ -113,7 +112,7 @@ fn couple<'b>(
             }
             let reference = state.u.clone();
             let start = coupling::step::State::new(state, resting);
-            // Only the lagged scheme goes on with the load of before.
+            // Only the lagged scheme keeps the previous load.
             let lagged = plan.scheme == Scheme::Lagged;
             (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
         }
@@ -159,7 +158,6 @@ fn couple<'b>(
     })
 }
 
-/// Takes the steps of the solid in the span of few shapes, where the scene says so.
 fn reduce(
     run: &Run<'_>,
     solid: &SolidPart,
@@ -189,10 +187,10 @@ fn reduce(
     Ok(())
 }
 
-/// Displacement of the solid that its loads refer to, what its solver remembers, both states, and the work of loads on seats [J].
+/// Reference displacement, solver history, states, seat work [J].
 type Kept = (Vec<f64>, Option<fem::nonlinear::Memory>, coupling::step::State, f64);
 
-/// What a checkpoint has kept; at the end of a run that another goes on from, accounts begin anew.
+/// A final state of another run restarts the balances.
 fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
     let (reference, memory, mut state, seat_work): Kept = loaded.take()?;
     if loaded.moment.stage != END {
@@ -202,22 +200,19 @@ fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
     Ok((reference, None, state, 0.0))
 }
 
-/// The grains of a coupled run, the state that they begin with, and the bed of another scene that they are.
 struct Bed<'a> {
     model: dem::Model,
     start: dem::State,
     carried: Option<&'a Carried>,
 }
 
-/// The solid of a coupled run: its model has the meshed sleepers where they are set down.
 #[derive(Clone, Copy)]
 struct Body<'a> {
     part: &'a SolidPart,
     model: &'a fem::Model,
 }
 
-/// The solid in equilibrium with its weight, its loads and the grains that lie on it, the grains with their contacts, and
-/// the load of these [N].
+/// Equilibrium with weight, loads and grains; returns grain contacts and load [N].
 fn equilibrium(
     body: Body<'_>,
     (grains, start): (&dem::Model, dem::State),
@@ -232,7 +227,7 @@ fn equilibrium(
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;
     }
-    // Sleepers fall onto the grains only now: what stands is the ground.
+    // Sleepers do not yet rest on the grains.
     let ground = solid.ground().map_err(|e| Failure::Other(e.to_string()))?;
     let standing = ground.as_ref().unwrap_or(model);
     let (load, dead_load) = (&load[..standing.dof_count()], &dead_load[..standing.dof_count()]);

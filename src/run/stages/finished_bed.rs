@@ -1,4 +1,4 @@
-//! The finished bed: its checkpoint, and what the summary has of it.
+//! Finished bed: checkpoint and summary.
 
 use super::stage::{Packed, RunState, SETTLED, Stage, is_packed, planes};
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use crate::run::checkpoint::Moment;
 use crate::run::context::Run;
 use crate::run::packing::StageEnergy;
 
-/// The end of the packing: the bed is kept, with the walls where compaction has left them.
+/// Saves the bed with wall positions.
 pub struct FinishedBed;
 
 impl Stage for FinishedBed {

@@ -1,4 +1,4 @@
-//! Growth: groups grow to their size in containers.
+//! Growth of groups by radius expansion.
 
 use super::stage::{Packed, RunState, Settled, Stage};
 use crate::failure::Failure;
@@ -10,7 +10,7 @@ use crate::run::packing::GrowthRecord;
 use crate::run::summary::StageRecord;
 use trackbed_dem::insert::grow::{GrowError, grow};
 
-/// The groups that are to grow do so, one after the other.
+/// Growth stage.
 pub struct Growth;
 
 impl Stage for Growth {
@@ -32,7 +32,6 @@ impl Stage for Growth {
     }
 }
 
-/// Grows the groups that are to grow.
 fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Result<(), Failure> {
     for plan in grains.groups.growths.clone() {
         let progress = Progress::start("growing", 1.0, run.verbosity);

@@ -1,4 +1,4 @@
-//! Grains that are dropped in layers.
+//! Deposition in layers.
 
 use super::stage::Settled;
 use crate::failure::Failure;
@@ -11,14 +11,13 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 
-/// Gap between a layer of grains and the bed that it falls on, as a share of the largest grain's radius.
+/// Drop gap over the largest grain radius.
 const GAP: f64 = 1e-3;
 
-/// Drops all layers but the last, each just above the settled ones, and puts the last one there: it is left for the
-/// settling proper.
+/// Drops all layers but the last, which is placed above the bed.
 ///
 /// # Errors
-/// A numerical failure, an interrupt.
+/// Numerical failures, interrupts.
 pub fn drop_layers(
     run: &Run<'_>,
     grains: &mut GrainsPart,
@@ -26,7 +25,7 @@ pub fn drop_layers(
     surface: Option<&SolidSurface>,
     bed: &mut Settled,
 ) -> Result<(), Failure> {
-    // Grains that wait for their inlet do not fall.
+    // Queued grains do not fall.
     let bodies = &grains.groups.bodies;
     let mut order: Vec<usize> = (0..bodies.len()).filter(|&b| !bodies[b].absent).collect();
     let height = |b: &usize| bodies[*b].position.z;
@@ -75,7 +74,7 @@ pub fn drop_layers(
     Ok(())
 }
 
-/// Brings a layer down (or up) to just above the bodies `below`; the first one stays where it is.
+/// The first layer stays.
 fn lower(groups: &mut GroupsPart, below: &[usize], layer: &[usize]) {
     let top = below.iter().map(|&b| groups.bodies[b].position.z + groups.reach(&groups.bodies[b]));
     let top = top.fold(f64::NEG_INFINITY, f64::max);

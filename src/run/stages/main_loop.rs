@@ -1,4 +1,4 @@
-//! The main loop of a run: grains, a solid, or both through time, under their loads.
+//! Main loop of grains and solid under load.
 
 use super::coupling_remarks::{late, unconverged, unstable_interface};
 use super::solid_loop::solid_alone;
@@ -19,8 +19,7 @@ use crate::run::validity::{grains_below_walls, load_near_mode, lost_bodies, smal
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 
-/// All that moves advances to the end of the run; with load cycles, inlets and outlets, and a push at the end where the scene
-/// has them.
+/// Main loop with loads, flow and push.
 pub struct MainLoop;
 
 impl Stage for MainLoop {

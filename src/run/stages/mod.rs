@@ -1,5 +1,4 @@
-//! The stages of a run, in order: `run` carries them out, `check` and `explain` report them, all from the one list
-//! [`STAGES`].
+//! Stages of a run in order: [`STAGES`].
 
 mod bedding;
 mod cadence;
@@ -28,7 +27,6 @@ use crate::model::Job;
 use crate::model::grains::{self, GrainsPart, Preview};
 use crate::scene::{Document, SceneError};
 
-/// All stages, in order.
 static STAGES: [&dyn Stage; 9] = [
     &growth::Growth,
     &settling::Settling,
@@ -41,10 +39,10 @@ static STAGES: [&dyn Stage; 9] = [
     &main_loop::MainLoop,
 ];
 
-/// Makes the models of the grains as far as they are known before anything moves.
+/// Builds the grain models before the first step.
 ///
 /// # Errors
-/// Bad input: what the main loop would refuse, and stages of more steps than anyone waits for.
+/// Main-loop input errors, or too many steps.
 pub fn preview(document: &Document, job: &Job, grains: &GrainsPart) -> Result<Preview, SceneError> {
     let preview = grains::preview(document, grains, job.ground().as_ref())?;
     for stage in of(job) {
@@ -59,7 +57,7 @@ pub fn preview(document: &Document, job: &Job, grains: &GrainsPart) -> Result<Pr
     Ok(preview)
 }
 
-/// The stages of a scene, in order.
+/// Returns the stages of a scene, in order.
 pub fn of(job: &Job) -> impl DoubleEndedIterator<Item = &'static dyn Stage> {
     STAGES.into_iter().filter(|stage| stage.applies(job))
 }

@@ -1,4 +1,4 @@
-//! Sleepers are set down on the bed.
+//! Placement of sleepers on the bed.
 
 use super::stage::{RunState, Stage};
 use crate::failure::Failure;
@@ -8,8 +8,7 @@ use crate::run::bed;
 use crate::run::context::Run;
 use trackbed_dem as dem;
 
-/// Each sleeper is put just above the highest grain below it, if compaction has not bedded it; meshed ones are no bodies, and
-/// only get their heights.
+/// Places unseated sleepers on the highest grain; meshed sleepers only get base heights.
 pub struct SetDown;
 
 impl Stage for SetDown {

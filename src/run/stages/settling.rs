@@ -1,4 +1,4 @@
-//! Settling: filled grains come to rest under gravity, and the bed is levelled.
+//! Deposition of grains under gravity, and levelling.
 
 use super::layers::drop_layers;
 use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage, Steps};
@@ -15,13 +15,12 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
 
-/// Time between two looks at the speed [s].
 const LOOK: f64 = 1e-3;
 
-/// Time that bodies need to get going before slowness counts as rest [s].
+/// Acceleration time before low speed means rest [s].
 const START_OF_SETTLING: f64 = 0.05;
 
-/// Grains fall, in layers or at once, until they are at rest; those above the level are removed.
+/// Deposition, and removal above the level.
 pub struct Settling;
 
 impl Stage for Settling {
@@ -59,7 +58,6 @@ impl Stage for Settling {
     }
 }
 
-/// The settling itself, from the start or from within a checkpoint; adds to what was done before.
 fn settle(
     run: &Run<'_>,
     grains: &GrainsPart,
@@ -86,11 +84,11 @@ fn settle(
             None => work.step(&model, &mut state, &dem::surface::NoSurface, &[]),
         }
         .map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
-        // Look at the speed every millisecond.
+        // Check the speed every millisecond.
         if bed::passed(&state, LOOK) {
             work.download(&model, &mut state).map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
             let speed = bed::rms_speed(&model, &state);
-            // Everything starts at rest: free fall has to be under way before slowness means anything.
+            // Free fall must have started.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
             going = !settled && state.time < plan.max_time;
             progress.message(format!("rms {speed:.2e} m/s"));
@@ -139,7 +137,7 @@ fn settle(
     Ok(())
 }
 
-/// Bodies where they have come to lie, at rest, without those above the level; and the numbers of those.
+/// Without grains above the level, whose indices are returned.
 fn at_rest(
     inputs: &[BodyInput],
     model: &dem::Model,

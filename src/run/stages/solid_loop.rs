@@ -1,4 +1,4 @@
-//! A solid that runs alone through time: dynamic or quasi-static.
+//! Time loop of a dynamic or quasi-static solid.
 
 use super::stage::RunState;
 use super::{statics, time_loop};
@@ -10,14 +10,14 @@ use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
 use crate::run::system::{SolidKind, SolidSystem, System};
 use crate::run::validity::{quasi_static_strain, small_strain};
 
-/// Runs a solid without grains.
+/// Runs a solid-only model.
 ///
 /// # Errors
-/// A numerical failure, an interrupt, what the disk refuses.
+/// Numerical failures, interrupts, I/O errors.
 pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -> Result<(), Failure> {
     let (mut resumed, summary) = (state.loaded.take(), &mut state.summary);
     let interrupt = run.checkpoints.interrupt();
-    // Other solids have stages of their own.
+    // Other analyses have separate stages.
     let Some(kind) = SolidKind::of(solid) else { return Ok(()) };
     let step = run.job.solid_step.expect("a solid with steps in time has their length");
     let mut system = match &mut resumed {
@@ -29,7 +29,6 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
     outcome
 }
 
-/// Advances a system to the end of the run and writes its last state.
 fn march(
     run: &Run<'_>,
     solid: &SolidPart,
@@ -40,7 +39,7 @@ fn march(
     summary.model.solid_step = run.job.solid_step;
     run.prepare()?;
     let outcome = time_loop::advance(run, system, None, resumed, None, summary);
-    // A step without equilibrium leaves the last state that had one.
+    // The last converged state.
     match &outcome {
         Ok(()) => {}
         Err(Failure::Numerical(_)) if system.keeps_its_state() => {}

@@ -1,8 +1,8 @@
-//! Remarks on loads that the steps of a solid pass by.
+//! Warnings about loads missed by solid steps.
 
 use crate::model::Job;
 
-/// Remarks on loads and moving supports that pass between the steps of the solid, or between the rows of the history.
+/// Warns about loads that act only between solid steps or history rows.
 pub fn missed(job: &Job) -> Vec<String> {
     let (Some(solid), Some(step)) = (&job.solid, job.solid_step) else { return Vec::new() };
     let loads = solid.loads.iter().enumerate().map(|(i, l)| (format!("solid.load.{i}"), &l.function));

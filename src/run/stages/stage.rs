@@ -1,4 +1,4 @@
-//! What a stage is, and what stages hand on to each other.
+//! Stage interface, and state passed between stages.
 
 use super::carried::Carried;
 use crate::failure::Failure;
@@ -19,81 +19,81 @@ use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 use trackbed_fem as fem;
 
-/// Stage of a checkpoint from within the main loop.
+/// Checkpoint stage: within the main loop.
 pub const RUN: &str = "run";
-/// Stage of a checkpoint from within the settling.
+/// Checkpoint stage: within settling.
 pub const SETTLING: &str = "settling";
-/// Stage of a checkpoint between two stages of packing.
+/// Checkpoint stage: between packing stages.
 pub const PACKING: &str = "packing";
-/// Stage of the checkpoint between the finished bed and the main loop.
+/// Checkpoint stage: after packing.
 pub const SETTLED: &str = "settled";
 
-/// Simulated time of the grains in a stage [s].
+/// Simulated DEM time of a stage [s].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GrainTime {
-    /// Known beforehand.
+    /// Known.
     Exactly(f64),
-    /// Until the grains are at rest, or at most this.
+    /// Until rest, at most this.
     AtMost(f64),
 }
 
-/// Steps of the grains in a time [s], in words.
+/// Formats the DEM steps in a time [s].
 pub type Steps<'a> = &'a dyn Fn(f64) -> String;
 
-/// One stage of a run. What a run carries out is what `check` and `explain` report of it.
+/// Stage, also reported by `check` and `explain`.
 pub trait Stage: Sync {
-    /// Name for users; none where the stage is the end of the one before.
+    /// User-visible name; none for the end of the previous stage.
     fn name(&self) -> Option<&'static str>;
 
-    /// Whether a run of the scene has it.
+    /// Whether the scene has this stage.
     fn applies(&self, job: &Job) -> bool;
 
-    /// What `check` reports of it, line by line.
+    /// Lines for `check`.
     fn report(&self, _job: &Job, _steps: Steps<'_>) -> Vec<String> {
         Vec::new()
     }
 
-    /// What determines the time that it takes, where grains move.
+    /// DEM time of the stage, if any.
     fn grain_time(&self, _job: &Job) -> Option<GrainTime> {
         None
     }
 
-    /// Carries it out, or what a checkpoint has left of it.
+    /// Runs the stage, or the remainder after a checkpoint.
     ///
     /// # Errors
-    /// Bad input, a numerical failure, an interrupt, what the disk refuses.
+    /// Input errors, numerical failures, interrupts, I/O errors.
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure>;
 }
 
-/// How far the packing has come; compaction counts its own stages.
+/// Packing progress; compaction stages are counted separately.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 pub enum Packed {
-    /// No stage is over.
+    /// Nothing done.
     Nothing,
-    /// Grains have grown.
+    /// Grown.
     Grown,
-    /// All layers but the last lie.
+    /// All layers but the last deposited.
     Layered,
-    /// The bed has settled.
+    /// Deposited.
     Settled,
-    /// The bed is finished.
+    /// Finished.
     Finished,
 }
 
-/// A bed that has settled, or is about to.
+/// Bed during or after deposition.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Settled {
-    /// The grains at rest.
+    /// Grains.
     pub bodies: Vec<BodyInput>,
-    /// The sleepers, once they are set down.
+    /// Sleepers, once placed.
     pub sleepers: Vec<BodyInput>,
-    /// Points of the planes, which compaction may have moved [m].
+    /// Plane positions, moved by compaction [m].
     pub planes: Vec<dem::Vec3>,
-    /// Time that the settling took [s].
+    /// Settling time [s].
     pub time: f64,
-    /// The stages so far.
+    /// Stage records.
     pub stages: Vec<StageRecord>,
-    /// What was remarkable about them.
+    /// Warnings.
     pub warnings: Vec<String>,
     /// Results of growth.
     pub growth: Vec<GrowthRecord>,
@@ -104,18 +104,18 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// Grains and sleepers as bodies of one model.
+    /// Returns grains and sleepers as bodies of one model.
     pub fn all(&self) -> Vec<BodyInput> {
         self.bodies.iter().chain(&self.sleepers).cloned().collect()
     }
 
-    /// The bed without the record of its making, which belongs to the run that made it.
+    /// Returns the bed without its records.
     pub fn places(&self) -> Settled {
         let Settled { bodies, sleepers, planes, time, .. } = self.clone();
         Settled { bodies, sleepers, planes, time, ..Settled::default() }
     }
 
-    /// Takes over where a model of [`Settled::all`] has brought them, at rest.
+    /// Updates from a model of [`Settled::all`], at rest.
     pub fn take(&mut self, bed: &Bed<'_>) {
         let mut all = bed.at_rest(&self.all());
         self.sleepers = all.split_off(self.bodies.len());
@@ -123,17 +123,14 @@ impl Settled {
     }
 }
 
-/// The head of a checkpoint from within the packing.
 #[derive(Deserialize)]
 struct Packing {
     done: Packed,
-    /// The grains that are to settle.
     bodies: Vec<BodyInput>,
     bed: Settled,
 }
 
-/// How far the run came whose checkpoint is in the folder `dir`: the stages of packing that it finished, and the time that the
-/// main loop had reached [s], if that had begun.
+/// Returns completed packing stages and main-loop time [s] of the run in `dir`.
 pub fn reached(dir: &Path, job: &Job) -> (Vec<StageRecord>, Option<f64>) {
     let Some(mut loaded) = checkpoint::latest(dir) else { return Default::default() };
     let time = loaded.moment.time;
@@ -145,29 +142,29 @@ pub fn reached(dir: &Path, job: &Job) -> (Vec<StageRecord>, Option<f64>) {
     }
 }
 
-/// The grains on their way to the main loop.
+/// Grains before the main loop.
 pub struct GrainsState {
-    /// The grains, with walls where compaction has left them.
+    /// Grains with current wall positions.
     pub part: GrainsPart,
-    /// Which stages of packing are over.
+    /// Completed packing stages.
     pub done: Packed,
     /// The bed.
     pub bed: Settled,
-    /// The surface of the solid below, which does not move before the main loop.
+    /// Fixed surface of the solid below.
     pub ground: Option<SolidSurface>,
-    /// The bodies of the main loop.
+    /// Main-loop bodies.
     pub bodies: Vec<BodyInput>,
-    /// Heights of the bases of the sleepers when they were set down [m].
+    /// Sleeper base heights at placement [m].
     pub bases: Vec<f64>,
-    /// The bed of another scene that these grains are.
+    /// Imported bed.
     pub carried: Option<Carried>,
 }
 
 impl GrainsState {
-    /// The state that a model of these grains, and of bodies after them, begins with.
+    /// Returns the initial state of a model.
     ///
     /// # Errors
-    /// Bad input: the bed of another scene is of other grains.
+    /// Imported bed of other grains.
     pub fn start(&self, model: &dem::Model) -> Result<dem::State, Failure> {
         let mut state = dem::State::new(model);
         if let Some(carried) = &self.carried {
@@ -176,10 +173,10 @@ impl GrainsState {
         Ok(state)
     }
 
-    /// Writes the checkpoint between two stages of packing.
+    /// Saves a checkpoint between packing stages.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// I/O errors.
     pub fn keep(&mut self, run: &Run<'_>, done: Packed) -> Result<(), Failure> {
         self.bed.planes = planes(&self.part);
         let step = self.bed.stages.iter().map(|s| s.grain_steps).sum();
@@ -188,25 +185,25 @@ impl GrainsState {
     }
 }
 
-/// Grains and solid joined, ready for the main loop.
+/// Coupled model before the main loop.
 pub struct CoupledRun<'a> {
-    /// Both.
+    /// Coupled system.
     pub system: CoupledSystem<'a>,
-    /// The solid, with meshed sleepers where they are set down.
+    /// Solid with sleepers set down.
     pub solid: &'a fem::Model,
-    /// Height of the lowest point of the solid's surface [m].
+    /// Lowest surface point of the solid [m].
     pub lowest: f64,
 }
 
-/// What stages hand on to each other.
+/// State passed between stages.
 pub struct RunState<'a> {
-    /// The checkpoint that the run is continued from, until its stage has read it.
+    /// Unread checkpoint.
     pub loaded: Option<Loaded>,
-    /// The bed of another scene, until the grains have it.
+    /// Imported bed, until used.
     pub carried: Option<Carried>,
-    /// The grains, if there are any.
+    /// Grains, if any.
     pub grains: Option<GrainsState>,
-    /// Grains and solid, once they are joined.
+    /// Coupled model, once built.
     pub coupled: Option<CoupledRun<'a>>,
     /// Results so far.
     pub summary: Summary,
@@ -217,21 +214,21 @@ pub fn is_packed(job: &Job) -> bool {
     job.grains.as_ref().is_some_and(GrainsPart::is_packed)
 }
 
-/// Points of the planes [m].
+/// Returns plane positions [m].
 pub fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
     grains.walls.planes.iter().map(|p| p.point).collect()
 }
 
 impl RunState<'_> {
-    /// Nothing done yet.
+    /// Creates an empty state.
     pub fn new<'a>(loaded: Option<Loaded>, summary: Summary) -> RunState<'a> {
         RunState { loaded, carried: None, grains: None, coupled: None, summary }
     }
 
-    /// Takes up the grains of the scene, or what a checkpoint has of them.
+    /// Loads the grains.
     ///
     /// # Errors
-    /// A checkpoint of something else.
+    /// Checkpoint with other content.
     pub fn begin(&mut self, job: &Job) -> Result<(), Failure> {
         let Some(part) = job.grains.clone() else { return Ok(()) };
         let ground = job.ground();
@@ -239,7 +236,7 @@ impl RunState<'_> {
         let mut grains =
             GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases, carried: None };
         if let Some(mut carried) = self.carried.take().filter(|_| self.loaded.is_none()) {
-            // The bodies are as the bed before began with them: bonds refer to these places. Where they are now follows with their state.
+            // Bonds refer to initial positions; current ones follow with the state.
             let bodies = carried.bodies(&grains.part);
             match is_packed(job) {
                 true => {
@@ -251,7 +248,7 @@ impl RunState<'_> {
             }
             grains.carried = Some(carried);
         } else if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
-            // The bed is the one that the run before began with; where it is now follows with its state.
+            // Initial bed; its state follows.
             match loaded.take::<Option<Settled>>()? {
                 Some(bed) => (grains.bed, grains.done) = (bed, Packed::Finished),
                 None => grains.bodies.clone_from(&grains.part.groups.bodies),
@@ -276,10 +273,10 @@ impl RunState<'_> {
         Ok(())
     }
 
-    /// The model of the grains in the main loop; the summary gets its figures.
+    /// Builds the main-loop grain model.
     ///
     /// # Errors
-    /// Bad input.
+    /// Input errors.
     pub fn grain_model(&mut self, run: &Run<'_>) -> Result<dem::Model, Failure> {
         let grains = self.grains.as_mut().expect("a run with grains");
         let (part, summary) = (&grains.part, &mut self.summary);

@@ -1,4 +1,4 @@
-//! A static solid: one solve, its reactions, its tables.
+//! Static solve of a solid.
 
 use super::stage::{RunState, Stage, Steps};
 use crate::columns::{gauss, nodes};
@@ -18,7 +18,7 @@ use trackbed_fem::State;
 use trackbed_fem::element::stiffness_points;
 use trackbed_fem::model::Model;
 
-/// One solve of a solid that stands still.
+/// Static solve.
 pub struct Statics;
 
 impl Stage for Statics {
@@ -40,11 +40,10 @@ impl Stage for Statics {
     }
 }
 
-/// Solves the static problem of a scene and writes its results into `dir`, which `prepare` makes once there is a
-/// solution.
+/// `prepare` creates `dir` after success.
 ///
 /// # Errors
-/// The body is not held, or the result is no solution.
+/// Insufficient constraints, or an invalid result.
 fn solve(
     job: &Job,
     solid: &SolidPart,
@@ -100,10 +99,9 @@ fn solve(
     Ok(())
 }
 
-/// A node with its displacement [m] and its reaction [N].
+/// Node, displacement [m], reaction [N].
 type Node = (u32, [f64; 3], [f64; 3]);
 
-/// Columns of `nodes.csv`.
 const NODES: [Field<Node>; 7] = [
     (nodes::NODE, |n| f64::from(n.0)),
     (nodes::UX, |n| n.1[0]),
@@ -114,7 +112,6 @@ const NODES: [Field<Node>; 7] = [
     (nodes::RZ, |n| n.2[2]),
 ];
 
-/// A Gauss point of an element.
 struct GaussPoint {
     element: u32,
     xi: [f64; 3],
@@ -122,7 +119,7 @@ struct GaussPoint {
     kappa: f64,
 }
 
-/// Columns of `gauss.csv`; the last for a plastic solid only.
+/// The last column only for plastic solids.
 const GAUSS: [Field<GaussPoint>; 11] = [
     (gauss::ELEMENT, |p| f64::from(p.element)),
     (gauss::XI, |p| p.xi[0]),
@@ -137,11 +134,10 @@ const GAUSS: [Field<GaussPoint>; 11] = [
     (gauss::EQUIVALENT_PLASTIC_STRAIN, |p| p.kappa),
 ];
 
-/// Writes `nodes.csv` (displacement and reaction of every node) and `gauss.csv` (stress at every Gauss point; of a plastic
-/// solid also the equivalent plastic strain).
+/// Writes `nodes.csv` (displacements, reactions) and `gauss.csv` (stresses, plastic strain).
 ///
 /// # Errors
-/// A value is not finite, or the disk refuses.
+/// Non-finite values; I/O errors.
 pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path) -> Result<(), Failure> {
     let (mesh, u) = (model.mesh(), &state.u);
     let nodes = mesh.node_ids.iter().enumerate().map(|(n, &id)| {
@@ -165,7 +161,7 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
             let kappa = at.map_or(0.0, |p| p.state.kappa);
             let point = GaussPoint { element: id, xi: point.xi, stress, kappa };
             let mut row: Vec<f64> = fields.iter().map(|(_, value)| value(&point)).collect();
-            // 0 where the law of the element keeps no such value.
+            // 0 if the law lacks this value.
             let value = |own: &fem::StateValue| Some(at?.values[of_law.iter().position(|v| v == own)?]);
             row.extend(own.iter().map(|own| value(own).unwrap_or(0.0)));
             table.row(&row)?;
@@ -174,7 +170,6 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
     Ok(())
 }
 
-/// The values that the laws of a body keep at their points, each once.
 fn own_values(model: &Model) -> Vec<fem::StateValue> {
     let mut own = Vec::new();
     for value in model.materials().values().flat_map(|m| m.law.state_values()) {

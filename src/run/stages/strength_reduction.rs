@@ -1,4 +1,4 @@
-//! Factor of safety of a solid by strength reduction.
+//! Factor of safety by strength reduction.
 
 use super::stage::{RunState, Stage, Steps};
 use crate::columns::safety;
@@ -14,7 +14,6 @@ use crate::write::csv::{Field, write_table};
 use std::time::Instant;
 use trackbed_fem::nonlinear::strength_reduction::{self, Trial};
 
-/// Columns of `safety.csv`.
 const TRIALS: [Field<Trial>; 5] = [
     (safety::FACTOR, |t| t.factor),
     (safety::STANDS, |t| f64::from(u8::from(t.converged))),
@@ -23,10 +22,9 @@ const TRIALS: [Field<Trial>; 5] = [
     (safety::LARGEST_DISPLACEMENT, |t| t.largest_displacement),
 ];
 
-/// Search for the factor of safety.
+/// Factor of safety search.
 pub struct StrengthReduction;
 
-/// The plan of a scene that has one.
 fn plan_of(job: &Job) -> Option<(&SolidPart, &StrengthReductionPlan)> {
     let solid = job.solid.as_ref().filter(|_| job.grains.is_none())?;
     match &solid.analysis {
@@ -57,10 +55,10 @@ impl Stage for StrengthReduction {
     }
 }
 
-/// Brackets the factor of safety and writes `safety.csv` and the state at the largest factor that stands.
+/// Writes `safety.csv` and the state at the largest stable factor.
 ///
 /// # Errors
-/// No factor stands, or none fails.
+/// No stable, or no unstable factor.
 fn bracket(
     stage: &Run<'_>,
     part: &SolidPart,
@@ -78,7 +76,7 @@ fn bracket(
         strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
     progress.finish(&format!("factor of safety {:.4} to {:.4}", found.converged, found.failed));
 
-    // The state at the edge: the mechanism shows in its displacements.
+    // Its displacements show the mechanism.
     let (weaker, standing) = strength_reduction::at_factor(model, &state, &load, plan, found.converged)
         .map_err(|e| part.failure(&e))?;
     stage.prepare()?;

@@ -1,4 +1,4 @@
-//! The loop over the windows of a run: steps, records, accounts.
+//! Time loop over coupling windows: steps, records, balances.
 
 use super::cadence::Cadence;
 use super::stage::{GrainsState, Packed, RUN, Settled};
@@ -26,7 +26,7 @@ use trackbed_coupling::track::cycles::Cycle;
 use trackbed_coupling::track::{Track, TrackInput};
 use trackbed_dem as dem;
 
-/// How the grains of a run were when it began.
+/// Initial state of the grains.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Start {
     coordination: f64,
@@ -34,20 +34,16 @@ pub struct Start {
     angular: dem::Vec3,
 }
 
-/// Where a run is.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Place {
-    /// Windows done.
     done: u64,
-    /// Next frame, not counting the one of the start.
+    /// Without the initial frame.
     next_frame: u64,
-    /// Seconds by the clock.
     seconds: f64,
-    /// Windows of the whole run, which are fewer where cycles are jumped over.
+    /// Fewer with cycle jumps.
     windows: u64,
 }
 
-/// The parts of a running loop beside the system.
 struct TimeLoop<'a> {
     run: &'a Run<'a>,
     grains: Option<(&'a GrainsPart, Start)>,
@@ -60,7 +56,7 @@ struct TimeLoop<'a> {
     progress: Progress,
 }
 
-/// The main loop of a scene with grains, with its accounts.
+/// Runs the main loop with grains.
 ///
 /// # Errors
 /// As [`advance`].
@@ -104,11 +100,10 @@ pub fn with_grains<S: System>(
     Ok(())
 }
 
-/// Advances a system to the end of the run, recording; from where the checkpoint `resumed` has it, if there is one. `settled`
-/// is the bed that the run began with, for its checkpoints.
+/// Advances a system to the end, from checkpoint `resumed` if any. `settled`: initial bed, for checkpoints.
 ///
 /// # Errors
-/// A numerical failure, an interrupt, what the disk refuses.
+/// Numerical failures, interrupts, I/O errors.
 pub fn advance<S: System>(
     run: &Run<'_>,
     system: &mut S,
@@ -172,7 +167,6 @@ impl<'a> TimeLoop<'a> {
         Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
     }
 
-    /// One window: a step of the system, and what is recorded and written at its end.
     fn window<S: System>(&mut self, system: &mut S) -> Result<(), Failure> {
         let (k, track) = (self.place.done + 1, &mut self.track);
         let time = k as f64 * self.cadence.window;
@@ -183,7 +177,7 @@ impl<'a> TimeLoop<'a> {
             companion.iter().for_each(|c| c.push(model, state, out));
         };
         match system.advance(&mut apply) {
-            // A step that was given up leaves the system as it was before.
+            // An aborted step leaves the previous state.
             Err(Failure::Interrupted(_)) => {
                 return self.keep(self.place.done as f64 * self.cadence.window, system);
             }
@@ -221,7 +215,6 @@ impl<'a> TimeLoop<'a> {
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }
 
-    /// Shows the state to who accompanies the run.
     fn show<S: System>(&self, system: &S) -> Result<(), Failure> {
         let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
         let Place { done, windows, .. } = self.place;
@@ -236,7 +229,6 @@ impl<'a> TimeLoop<'a> {
         })
     }
 
-    /// After a load cycle that ended with window `k`.
     fn after_cycle(&mut self, cycle: &Cycle, k: u64, time: f64) {
         let settlement = 1e3 * cycle.settlement;
         self.progress.message(format!("cycle {}: {settlement:.3} mm", cycle.number));
@@ -252,13 +244,12 @@ impl<'a> TimeLoop<'a> {
         self.recorder.row(time, system, &self.track, self.flow.as_ref())
     }
 
-    /// Writes a checkpoint if one is due.
     fn keep<S: System>(&self, time: f64, system: &S) -> Result<(), Failure> {
         let place = Place { seconds: self.progress.seconds(), ..self.place };
         self.run.checkpoints.step(
             || Moment { stage: RUN.into(), step: place.done, time },
             |body| {
-                // In the order in which a resumed run needs them.
+                // In reading order of a resumed run.
                 if let Some(settled) = self.settled {
                     body.put(settled)?;
                 }
@@ -276,7 +267,6 @@ impl<'a> TimeLoop<'a> {
         )
     }
 
-    /// Keeps the state at the end, from which another run can go on.
     fn keep_end<S: System>(&self, system: &S) -> Result<(), Failure> {
         if self.grains.is_none() || !self.run.job.output.state {
             return Ok(());
@@ -289,9 +279,9 @@ impl<'a> TimeLoop<'a> {
         })
     }
 
-    /// Results of the loop; `failed` is whether a step had no solution.
+    /// `failed`: a step had no solution.
     fn finish<S: System>(mut self, system: &S, failed: bool, summary: &mut Summary) -> Result<(), Failure> {
-        // A step that found no equilibrium leaves the last one: it is what the user wants to see.
+        // The last converged state.
         if failed
             && system.keeps_its_state()
             && let Some(time) = system.solid().map(|s| s.state.time)
@@ -349,7 +339,7 @@ impl<'a> TimeLoop<'a> {
     }
 }
 
-/// How far a run is, and its whole: cycles where some are jumped over, windows otherwise.
+/// Cycles if some are jumped over, else windows.
 fn share(cadence: &Cadence, recorder: &Results<'_>, place: &Place) -> (u64, u64) {
     match recorder.progress() {
         Some((number, total)) if cadence.jumps => (u64::from(number), u64::from(total)),
@@ -357,7 +347,6 @@ fn share(cadence: &Cadence, recorder: &Results<'_>, place: &Place) -> (u64, u64)
     }
 }
 
-/// The account of energy at the end.
 fn energy(recorder: &Results<'_>) -> EnergyRecord {
     let balance = recorder.balance();
     let watch = recorder.energy_watch();
@@ -374,7 +363,7 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
     }
 }
 
-/// Checks of validity by the course of the run: stiffness over load cycles, kinetic energy where masses are scaled, rotation of bonds.
+/// Cyclic stiffness, kinetic energy with mass scaling, bond rotation.
 fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Results<'_>) -> Vec<Check> {
     let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
     let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
@@ -402,7 +391,7 @@ fn settlement(
     let slowing =
         (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
     let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
-    // Cycles that never rise from the one load to the other tell none.
+    // Cycles that never span both loads.
     let between = grains.and_then(|g| g.track.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
     let bed_stiffness = between.map(|between| BedStiffness {
         between,
@@ -415,7 +404,6 @@ fn settlement(
     Some(SettlementRecord { seating, per_cycle, increments, slowing, fits, bed_stiffness, jump })
 }
 
-/// Where a system is after window `k`, at `time` [s], in words for a line of progress.
 fn details<S: System>(system: &S, time: f64, k: u64) -> String {
     let (grain_steps, solid_steps) = system.steps_done(k);
     let mut parts = vec![format!("{time:.4e} s")];

@@ -1,4 +1,4 @@
-//! `summary.json`: what a run did, how well its accounts close, and what it found.
+//! `summary.json`: stages, balances, checks, results.
 
 mod records;
 mod report;
@@ -19,28 +19,28 @@ use std::path::{Path, PathBuf};
 use trackbed_coupling::track::extremes::TrackRecord;
 use trackbed_coupling::track::push::PushSummary;
 
-/// The content of `summary.json`. Parts that are flattened stand in it key by key, in this order.
+/// Content of `summary.json`, in this order.
 #[derive(Debug, Default, Serialize)]
 pub struct Summary {
-    /// Folder of the results.
+    /// Results directory.
     #[serde(skip)]
     pub dir: PathBuf,
-    /// The run itself.
+    /// Run data.
     #[serde(flatten)]
     pub run: RunRecord,
-    /// What the run was judged by.
+    /// Balance checks.
     pub verdict: Verdict,
-    /// Whether the run has stayed within the limits of its theory.
+    /// Validity checks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validity: Vec<Check>,
-    /// Stages in order, with seconds of wall time and steps.
+    /// Stages with wall time and steps.
     pub stages: Vec<StageRecord>,
     /// Sizes of the model.
     pub model: ModelRecord,
-    /// Energy account of the run proper.
+    /// Energy balance of the main stage.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergyRecord>,
-    /// Momentum account of the grains in the run proper.
+    /// Momentum balance of the grains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumRecord>,
     /// Bonds between grains.
@@ -49,73 +49,72 @@ pub struct Summary {
     /// Loads on structures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub structures: Vec<LoadRecord>,
-    /// Force and moment across the interface.
+    /// Interface force and moment.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,
-    /// The solid.
+    /// Solid.
     #[serde(flatten)]
     pub solid: SolidRecord,
-    /// Sleepers and their load.
+    /// Sleepers and load.
     #[serde(flatten)]
     pub track: TrackSummary,
-    /// The bed of grains.
+    /// Grain bed.
     #[serde(flatten)]
     pub bed: BedRecord,
-    /// Remarks that do not stop a run.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Sources of the models used.
+    /// Literature sources.
     pub sources: Vec<&'static str>,
 }
 
-/// What was run, and how it ended.
+/// Run data and status.
 #[derive(Debug, Default, Serialize)]
 pub struct RunRecord {
-    /// `"done"`, or what stopped the run.
+    /// `"done"`, or the failure.
     pub status: String,
-    /// Title of the scene.
+    /// Scene title.
     pub title: String,
-    /// Version of the program.
+    /// Program version.
     pub version: String,
-    /// 64-bit FNV-1a hash of the scene file, its overrides and the files it names, in hexadecimal.
+    /// 64-bit FNV-1a hash of scene, overrides, files.
     pub scene_hash: String,
-    /// Keys overridden on the command line.
+    /// Command-line overrides.
     pub overrides: Vec<String>,
-    /// Threads used; the results do not depend on it.
+    /// Threads; results do not depend on them.
     pub threads: usize,
-    /// Largest resident memory [bytes], where the system reports it.
+    /// Peak resident memory [bytes], if available.
     pub peak_memory: Option<u64>,
-    /// Processor time of the process, user and system, all threads [s], where the system reports it; since the last start of a run that
-    /// was resumed.
+    /// CPU time of all threads since the last start [s].
     pub cpu_seconds: Option<f64>,
 }
 
-/// How a solid was solved, and what it ended with.
+/// Results of the solid.
 #[derive(Debug, Default, Serialize)]
 pub struct SolidRecord {
-    /// Static equilibrium of a solid that ran alone.
+    /// Static equilibrium of a solid-only model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub statics: Option<StaticsRecord>,
-    /// How equilibrium was found in a plastic solid.
+    /// Newton statistics of a plastic solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton: Option<NewtonRecord>,
-    /// How far a solid has yielded.
+    /// Plastic state.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plastic: Option<PlasticRecord>,
-    /// Sums of the reactions of named supports at the end.
+    /// Final reactions by support name.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionRecord>,
-    /// Search for the factor of safety.
+    /// Factor of safety search.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyRecord>,
 }
 
-/// What became of sleepers under their load.
+/// Results of sleepers.
 #[derive(Debug, Default, Serialize)]
 pub struct TrackSummary {
-    /// Lateral push of a sleeper.
+    /// Lateral push.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub push: Option<PushSummary>,
-    /// Settlement per load cycle.
+    /// Settlement per cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,
     /// Sleepers under load.
@@ -123,37 +122,37 @@ pub struct TrackSummary {
     pub sleepers: Option<TrackRecord>,
 }
 
-/// Grains that came and went, and how the bed was made and ended.
+/// Results of the bed.
 #[derive(Debug, Default, Serialize)]
 pub struct BedRecord {
-    /// Grains that came in and went out.
+    /// Inflow and outflow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowRecord>,
-    /// Groups that have grown to their size.
+    /// Groups after growth.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthRecord>,
-    /// Stages of compaction.
+    /// Compaction stages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compaction: Vec<CompactionRecord>,
-    /// Energy balances of the stages of packing.
+    /// Energy balances of packing stages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stage_energy: Vec<StageEnergy>,
-    /// The grains at the end.
+    /// Final packing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<PackingRecord>,
-    /// How far a slide has run.
+    /// Runout.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub runout: Option<RunoutRecord>,
-    /// Constants of a specimen.
+    /// Specimen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub specimen: Option<SpecimenRecord>,
 }
 
 impl Summary {
-    /// Writes the summary as `summary.json` in `dir`.
+    /// Writes `summary.json` in `dir`.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// I/O errors.
     pub fn write(&self, dir: &Path) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
         let file = dir.join("summary.json");
@@ -163,10 +162,10 @@ impl Summary {
         Ok(())
     }
 
-    /// Writes `log.txt` in `dir`: what a run prints, its status and the sources of the models it used.
+    /// Writes `log.txt` in `dir`.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// I/O errors.
     pub fn write_log(&self, dir: &Path) -> Result<(), Failure> {
         let file = dir.join("log.txt");
         crate::write::atomic::write(&file, |out| {
@@ -178,7 +177,7 @@ impl Summary {
     }
 }
 
-/// Largest resident memory of this process so far [bytes], from the system's own account.
+/// Returns the peak resident memory [bytes].
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;

@@ -1,4 +1,4 @@
-//! The parts of `summary.json`.
+//! Parts of `summary.json`.
 
 use crate::model::exchange::ContactClass;
 use crate::run::events::EventRecord;
@@ -13,147 +13,147 @@ use trackbed_coupling::track::settlement::Fit;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
 
-/// One stage of a run.
+/// Stage of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StageRecord {
     /// Name.
     pub name: String,
     /// Wall time [s].
     pub seconds: f64,
-    /// Steps of the grains.
+    /// DEM steps.
     pub grain_steps: u64,
-    /// Steps of the solid.
+    /// FEM steps.
     pub solid_steps: u64,
-    /// Windows: stretches of time after which something can be recorded; zero in stages without records.
+    /// Windows; zero in stages without records.
     pub windows: u64,
 }
 
 /// Sizes of the model.
 #[derive(Debug, Default, Serialize)]
 pub struct ModelRecord {
-    /// Nodes of the solid.
+    /// Nodes.
     pub nodes: usize,
-    /// Elements of the solid.
+    /// Elements.
     pub elements: usize,
-    /// Unknowns of the solid.
+    /// Unknowns.
     pub unknowns: usize,
-    /// Bodies (grains and sleeper).
+    /// Grains and sleepers.
     pub bodies: usize,
-    /// Spheres that carry the contacts.
+    /// Spheres in contact detection.
     pub spheres: usize,
-    /// Step of the grains [s].
+    /// DEM time step [s].
     pub grain_step: Option<f64>,
-    /// Limit of that step [s].
+    /// Critical DEM time step [s].
     pub grain_step_limit: Option<f64>,
-    /// What sets the limit.
+    /// Origin of the limit.
     pub grain_step_set_by: Option<String>,
-    /// Step of the solid [s].
+    /// FEM time step [s].
     pub solid_step: Option<f64>,
-    /// Shapes and errors of a reduced solid.
+    /// Reduction of the solid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduction: Option<trackbed_fem::reduction::Estimate>,
-    /// Memory that the solid was predicted to need [bytes].
+    /// Predicted memory of the solid [bytes].
     pub predicted_memory: Option<u64>,
-    /// Mean number of touching partners per grain at the start of the run proper.
+    /// Initial mean coordination number.
     pub coordination: Option<f64>,
 }
 
-/// Energy account.
+/// Energy balance.
 #[derive(Debug, Serialize)]
 pub struct EnergyRecord {
-    /// Stored energy at the start [J].
+    /// Initial stored energy [J].
     pub start: Stored,
-    /// Stored energy at the end [J].
+    /// Final stored energy [J].
     pub end: Stored,
     /// Work and dissipation [J].
     pub spent: Spent,
     /// Δ stored + dissipated − work [J].
     pub error: f64,
-    /// Work of the load [J].
+    /// Load work [J].
     pub work: f64,
-    /// The larger of the sum of all works and losses and the sum of all changes of stored energies, each by its size [J].
+    /// Reference energy [J]: the larger of Σ|work| + Σ|dissipation| and Σ|Δ stored energy|.
     pub turned_over: f64,
-    /// |error| over the largest energy turned over so far, or over a floor where that is larger: a thousandth of what springs and
-    /// motion hold and 1e-9 of gravity's potential.
+    /// Relative energy error: |error| over largest reference energy, at least a thousandth of elastic and
+    /// kinetic plus 1e-9 of gravitational energy.
     pub relative_error: f64,
-    /// Largest |error| at any row of the history [J].
+    /// Largest |error| at any history row [J].
     pub largest_error: f64,
-    /// The same of the largest error at any row.
+    /// Largest relative error at any row.
     pub largest_relative_error: f64,
 }
 
-/// Momentum account: change of momentum against the impulses of all forces.
+/// Momentum balance against impulses of all forces.
 #[derive(Debug, Serialize)]
 pub struct MomentumRecord {
-    /// Largest deviation of linear momentum over the sum of |impulses|.
+    /// Largest linear momentum error over Σ|impulse|.
     pub linear: f64,
-    /// Largest deviation of angular momentum about the origin over the sum of |angular impulses|.
+    /// Largest angular momentum error over Σ|angular impulse|.
     pub angular: f64,
 }
 
-/// Bonds between grains at the end.
+/// Final bonds.
 #[derive(Debug, Serialize)]
 pub struct BondSummary {
-    /// Bonds at the start of the run proper.
+    /// Initial bonds of the main stage.
     pub made: usize,
-    /// Broken by tension and bending.
+    /// Tension and bending breaks.
     pub broken_by_tension: u64,
-    /// Broken by shear and twisting.
+    /// Shear and twisting breaks.
     pub broken_by_shear: u64,
-    /// Energy set free by breaks [J].
+    /// Energy released by breaks [J].
     pub energy_of_breaks: f64,
-    /// Pieces, unbonded bodies among them.
+    /// Fragments, with single bodies.
     pub fragments: usize,
-    /// Bodies of the largest piece.
+    /// Bodies of the largest fragment.
     pub largest_fragment: u32,
     /// Acoustic events.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub events: Option<EventRecord>,
-    /// Sieve curves of the bonded stones before and after.
+    /// Sieve curves of bonded grains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub breakage: Option<BreakageRecord>,
 }
 
-/// Breakage of bonded stones by their sieve curves.
+/// Breakage of bonded grains by sieve curves.
 #[derive(Debug, Serialize)]
 pub struct BreakageRecord {
-    /// Marsal's index: what sieves hold back less than before, as a share of the mass.
+    /// Marsal's index.
     pub marsal: f64,
-    /// Ballast breakage index of Indraratna, Lackenby & Christie; absent where it is not defined.
+    /// Ballast breakage index (Indraratna, Lackenby & Christie).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ballast_index: Option<f64>,
     /// Sieves [m].
     pub sieves: Vec<f64>,
-    /// Share of the mass that passed each at the start.
+    /// Initial mass fraction passing.
     pub passing_before: Vec<f64>,
-    /// Share that passes at the end.
+    /// Final mass fraction passing.
     pub passing_after: Vec<f64>,
 }
 
-/// Interface audit.
+/// Interface record.
 #[derive(Debug, Serialize)]
 pub struct CouplingRecord {
-    /// Largest relative errors of force and moment over all exchanges.
+    /// Largest relative load transfer errors.
     pub transfer: TransferAudit,
-    /// Order of the exchange.
+    /// Coupling scheme.
     pub scheme: Scheme,
-    /// Steps of the grains per step of the solid.
+    /// DEM sub-steps per FEM step.
     pub substeps: u32,
-    /// Implicitness of the solid's step.
+    /// Implicitness θ.
     pub theta: f64,
-    /// Largest numbers of the interface that the run has met, in the windows they were met in.
+    /// Largest interface numbers in their windows.
     pub interface: InterfaceNumbers,
-    /// Parts that windows were divided into, 1 without.
+    /// Window division, 1 without.
     pub division: u32,
-    /// Stability of the exchange: the largest numbers of all classes of contacts.
+    /// Largest stability numbers of all contact classes.
     pub stability: Stability,
-    /// Every class of contacts with its numbers and limits.
+    /// Contact classes with numbers and limits.
     pub classes: Vec<ContactClass>,
-    /// Windows, and how often they were repeated.
+    /// Windows and repetitions.
     pub passes: Passes,
-    /// Interface work seen by grains plus that seen by the solid [J], which should vanish.
+    /// Interface work on grains plus solid [J], ideally zero.
     pub interface_work_error: f64,
-    /// How contact forces are transferred.
+    /// Load transfer method.
     pub transfer_kind: String,
 }
 
@@ -164,29 +164,29 @@ pub struct StaticsRecord {
     pub load: [f64; 3],
     /// Sum of all reactions [N].
     pub reaction: [f64; 3],
-    /// |Σ load + Σ reaction| over the sum of their absolute values.
+    /// |Σ load + Σ reaction| over the sum of sizes.
     pub equilibrium_error: f64,
-    /// Largest displacement [m] and its node number.
+    /// Largest displacement [m] and node number.
     pub largest_displacement: (f64, u32),
     /// Strain energy [J].
     pub strain_energy: f64,
 }
 
-/// How far a solid has yielded at the end.
+/// Final plastic state.
 #[derive(Debug, Serialize)]
 pub struct PlasticRecord {
-    /// Share of the Gauss points with plastic strain.
+    /// Fraction of Gauss points with plastic strain.
     pub yielded_share: f64,
-    /// Largest equivalent plastic strain at a Gauss point.
+    /// Largest equivalent plastic strain at Gauss points.
     pub largest_plastic_strain: f64,
-    /// Number of the element that it is in.
+    /// Its element number.
     pub element: u32,
-    /// Middle of that element [m].
+    /// Element centre [m].
     pub place: [f64; 3],
 }
 
 impl PlasticRecord {
-    /// Of a solid; none of one that cannot yield.
+    /// Evaluates a solid; none if elastic.
     pub fn of(view: SolidView<'_>) -> Option<PlasticRecord> {
         let SolidView { model, state } = view;
         if model.is_linear() || state.points.is_empty() {
@@ -211,29 +211,29 @@ impl PlasticRecord {
     }
 }
 
-/// How equilibrium was found in a plastic solid.
+/// Newton statistics of a plastic solid.
 #[derive(Debug, Serialize)]
 pub struct NewtonRecord {
-    /// Steps accepted.
+    /// Accepted steps.
     pub steps: u64,
-    /// Steps given up and halved.
+    /// Halved steps.
     pub halvings: u64,
-    /// Iterations in all.
+    /// Iterations.
     pub iterations: u64,
-    /// Factorizations of a symmetric matrix.
+    /// Symmetric factorizations.
     pub factorizations_symmetric: u64,
-    /// Factorizations of an unsymmetric matrix.
+    /// Unsymmetric factorizations.
     pub factorizations_unsymmetric: u64,
-    /// Seconds in stresses and matrices.
+    /// Assembly time [s].
     pub assembly_seconds: f64,
-    /// Seconds in factorizations.
+    /// Factorization time [s].
     pub factor_seconds: f64,
-    /// Seconds in solves.
+    /// Solve time [s].
     pub solve_seconds: f64,
 }
 
 impl NewtonRecord {
-    /// Of the counts of a solver.
+    /// Converts solver statistics.
     pub fn of(s: &Statistics) -> NewtonRecord {
         NewtonRecord {
             steps: s.steps,
@@ -248,56 +248,56 @@ impl NewtonRecord {
     }
 }
 
-/// Sum of the reactions of a named support.
+/// Reaction of a named support.
 #[derive(Debug, Serialize)]
 pub struct ReactionRecord {
     /// Name.
     pub name: String,
-    /// Force of the support on the solid [N].
+    /// Support force on the solid [N].
     pub force: [f64; 3],
 }
 
-/// Search for the factor of safety.
+/// Factor of safety search.
 #[derive(Debug, Serialize)]
 pub struct SafetyRecord {
-    /// Largest factor at which the solid found equilibrium.
+    /// Largest stable factor.
     pub stands_at: f64,
-    /// Smallest factor at which it did not.
+    /// Smallest unstable factor.
     pub fails_at: f64,
-    /// Every factor tried.
+    /// Trials.
     pub trials: Vec<TrialRecord>,
 }
 
-/// One factor tried.
+/// Trial factor.
 #[derive(Debug, Serialize)]
 pub struct TrialRecord {
-    /// Factor by which the strength was divided.
+    /// Strength reduction factor.
     pub factor: f64,
-    /// Whether equilibrium was found.
+    /// Whether equilibrium was reached.
     pub stands: bool,
-    /// Share of the load that was carried.
+    /// Fraction of the load applied.
     pub share_of_load: f64,
     /// Newton iterations.
     pub iterations: u64,
-    /// Largest displacement reached [m].
+    /// Largest displacement [m].
     pub largest_displacement: f64,
 }
 
 /// Settlement under a cyclic load.
 #[derive(Debug, Serialize)]
 pub struct SettlementRecord {
-    /// Settlement of the sleeper by the pulses that seat it, which the other figures leave out [m].
+    /// Seating settlement, excluded below [m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seating: Option<f64>,
-    /// Settlement of the sleeper after each cycle [m].
+    /// Settlement after each cycle [m].
     pub per_cycle: Vec<f64>,
-    /// Increase of settlement in each cycle [m].
+    /// Settlement increment per cycle [m].
     pub increments: Vec<f64>,
-    /// Mean increment of the second half of the cycles over that of the first half.
+    /// Mean increment, second over first half of cycles.
     pub slowing: Option<f64>,
-    /// Settlement laws fitted to the cycles from the tenth on.
+    /// Settlement laws fitted from cycle ten.
     pub fits: Vec<Fit>,
-    /// Slope of the loading branch between two loads.
+    /// Bed stiffness on loading between two loads.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bed_stiffness: Option<BedStiffness>,
     /// Cycle jumps.
@@ -305,45 +305,45 @@ pub struct SettlementRecord {
     pub jump: Option<JumpSummary>,
 }
 
-/// Stiffness of the bed under a sleeper.
+/// Bed stiffness under a sleeper.
 #[derive(Debug, Serialize)]
 pub struct BedStiffness {
-    /// The two loads [N].
+    /// Loads [N].
     pub between: [f64; 2],
-    /// In the last cycle [N/m].
+    /// Last cycle [N/m].
     pub last: f64,
-    /// Mean of the last ten cycles [N/m].
+    /// Mean of ten cycles [N/m].
     pub mean_of_last_ten: f64,
 }
 
-/// The level load on a structure over a run.
+/// Horizontal load on a structure.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LoadRecord {
-    /// Name of the structure.
+    /// Structure name.
     pub name: String,
-    /// Largest level load at any row of the history [N], and when [s].
+    /// Largest horizontal load [N], and time [s].
     pub largest: f64,
     pub time: f64,
-    /// Mean level load over the rows, as a vector [N].
+    /// Mean horizontal load vector [N].
     pub mean: [f64; 2],
-    /// Largest load of each sector, towards the axis [N].
+    /// Largest load per sector [N].
     pub sectors: Vec<f64>,
-    /// Rows so far.
+    /// Number of rows.
     pub rows: u64,
-    /// Motion, of one that moves by the forces on it. Written also where there is none: checkpoints hold the record, field by field.
+    /// Motion, if it moves. Always written: fields are unnamed.
     #[serde(default)]
     pub motion: Option<MotionRecord>,
 }
 
-/// The level motion of a structure over a run, at the rows of the history.
+/// Horizontal motion at history rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct MotionRecord {
-    /// Largest displacement from the start [m].
+    /// Largest displacement [m].
     pub largest_displacement: f64,
-    /// Mean displacement, as a vector [m].
+    /// Mean displacement vector [m].
     pub mean_displacement: [f64; 2],
     /// Largest acceleration [m/s²].
     pub largest_acceleration: f64,
-    /// Root of the mean square of the acceleration [m/s²].
+    /// RMS acceleration [m/s²].
     pub rms_acceleration: f64,
 }

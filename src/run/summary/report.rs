@@ -1,4 +1,4 @@
-//! What a run prints when it has ended, also in `log.txt`.
+//! Final report, also in `log.txt`.
 
 use super::{CouplingRecord, Summary};
 use crate::run::events::EventRecord;
@@ -10,7 +10,7 @@ use crate::run::validity;
 use trackbed_coupling::scheme::Scheme;
 
 impl Summary {
-    /// Results of a run as text; `details`: with stability numbers and factorizations.
+    /// Formats the results; `details`: with stability numbers and factorizations.
     pub fn report(&self, details: bool) -> String {
         let mut lines = Vec::new();
         self.report_stages(&mut lines);
@@ -29,7 +29,6 @@ impl Summary {
         lines.join("\n") + "\n"
     }
 
-    /// Stages with their times.
     fn report_stages(&self, lines: &mut Vec<String>) {
         if let Some(r) = &self.model.reduction {
             lines.push(format!("solid reduced: {r}"));
@@ -42,7 +41,6 @@ impl Summary {
         }
     }
 
-    /// Static equilibrium, Newton's method, supports, factor of safety.
     fn report_solid(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(s) = &self.solid.statics {
             let (u, node) = s.largest_displacement;
@@ -92,7 +90,6 @@ impl Summary {
         }
     }
 
-    /// Energy, momentum and bonds.
     fn report_accounts(&self, lines: &mut Vec<String>) {
         if let Some(e) = &self.energy {
             lines.push(format!(
@@ -145,7 +142,6 @@ impl Summary {
         }
     }
 
-    /// Exchange between grains and solid.
     fn report_coupling(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(c) = &self.coupling {
             lines.push(format!(
@@ -165,7 +161,6 @@ impl Summary {
         }
     }
 
-    /// Settlement under cycles, its laws, jumps.
     fn report_settlement(&self, lines: &mut Vec<String>) {
         if let Some(s) = &self.track.settlement {
             if let Some(seating) = s.seating {
@@ -205,7 +200,6 @@ impl Summary {
         }
     }
 
-    /// Lateral push and sleepers.
     fn report_track(&self, lines: &mut Vec<String>) {
         if let Some(p) = &self.track.push {
             let at_two =
@@ -237,7 +231,6 @@ impl Summary {
 }
 
 impl CouplingRecord {
-    /// Lines with the stability numbers of the coupling windows.
     fn stability_lines(&self) -> Vec<String> {
         let (s, n) = (&self.stability, &self.interface);
         let mut lines = vec![format!("  stability: W = {:.2}, D = {:.2}", s.stiffness, s.damping)];

@@ -1,5 +1,4 @@
-//! What a run is judged by: accounts that must close, each with the figure above which it is remarked and the one above
-//! which the run has no result.
+//! Balance checks of a run.
 
 use super::Summary;
 use crate::failure::Failure;
@@ -7,37 +6,37 @@ use crate::run::energy_watch::ENERGY;
 use crate::run::validity::{self, Outcome};
 use serde::Serialize;
 
-/// Imbalance of loads and reactions of a static solid over the sum of their sizes: remarked, and refused.
+/// Static imbalance: warning, failure.
 const EQUILIBRIUM: (f64, f64) = (1e-3, 0.05);
 
-/// Momentum of the grains against all impulses: they agree to rounding.
+/// Conserved to rounding.
 const MOMENTUM: f64 = 1e-6;
 
-/// Force and moment across the interface: they agree to rounding.
+/// Conserved to rounding.
 const TRANSFER: f64 = 1e-8;
 
-/// A loss below zero by this share of the energy turned over is remarked.
+/// Negative dissipation over reference energy.
 const NEGATIVE: f64 = 0.01;
 
-/// One account.
+/// Check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Judged {
-    /// What was judged.
+    /// Quantity.
     pub what: String,
-    /// What was found, as a share or a number.
+    /// Value.
     pub value: f64,
-    /// Above this it is remarked.
+    /// Warning limit.
     pub warn_above: f64,
-    /// Above this the run has failed; absent where it never does.
+    /// Failure limit, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop_above: Option<f64>,
-    /// How it ended.
+    /// Outcome.
     pub outcome: Outcome,
 }
 
 impl Judged {
     fn new(what: impl Into<String>, value: f64, warn_above: f64, stop_above: Option<f64>) -> Judged {
-        // Also what is not a number has failed.
+        // NaN fails.
         let above = |limit: f64| value.is_nan() || value > limit;
         let outcome = match stop_above {
             Some(limit) if above(limit) => Outcome::Failed,
@@ -48,21 +47,21 @@ impl Judged {
     }
 }
 
-/// What a run was judged by, and how that ended.
+/// Checks and overall outcome.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Verdict {
-    /// The worst outcome of all accounts and of all checks of validity.
+    /// Worst outcome of balance and validity checks.
     pub outcome: Outcome,
-    /// The accounts.
+    /// Balance checks.
     pub judged: Vec<Judged>,
 }
 
 impl Verdict {
-    /// Judges a run by its accounts.
+    /// Checks the balances.
     pub fn of(summary: &Summary) -> Verdict {
         let mut judged = Vec::new();
         if let Some(e) = &summary.energy {
-            // What stops a run does so at the row where it is seen.
+            // The energy check stops the run itself.
             let what = "largest energy error over reference energy";
             judged.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
             for (name, loss) in e.spent.losses() {
@@ -92,12 +91,12 @@ impl Verdict {
         Verdict { outcome, judged }
     }
 
-    /// A run that has failed, whatever the accounts say.
+    /// Marks the run as failed.
     pub fn fail(&mut self) {
         self.outcome = Outcome::Failed;
     }
 
-    /// Lines for the end of a run.
+    /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
         let count = self.judged.len();
         let noun = if count == 1 { "balance" } else { "balances" };
@@ -114,7 +113,7 @@ impl Verdict {
         lines
     }
 
-    /// The run as a failure, where an account says that it has no result.
+    /// Converts a failed check to a failure.
     ///
     /// # Errors
     /// That failure.
@@ -140,13 +139,13 @@ mod tests {
     use trackbed_coupling::transfer::TransferAudit;
 
     #[test]
-    fn what_is_not_a_number_has_failed() {
+    fn nan_fails() {
         assert_eq!(Judged::new("x", f64::NAN, 1.0, Some(2.0)).outcome, Outcome::Failed);
         assert_eq!(Judged::new("x", 1.5, 1.0, Some(2.0)).outcome, Outcome::Warned);
         assert_eq!(Judged::new("x", 1.0, 1.0, Some(2.0)).outcome, Outcome::Passed);
     }
 
-    /// Each figure is judged by itself: the one that is off is remarked by its name, and no other.
+    /// Only the check that exceeds its limit warns.
     #[test]
     fn each_account_judges_its_own_figure() {
         let remarked = |summary: &Summary| -> Vec<String> {

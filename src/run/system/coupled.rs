@@ -13,28 +13,27 @@ use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
 use trackbed_fem as fem;
 
-/// Meshed sleepers of a running system.
+/// Meshed sleepers in a running system.
 pub struct Meshed<'a> {
-    /// Their nodes.
+    /// Sleeper nodes.
     pub bodies: &'a SleeperBodies,
-    /// Heights of their bases when they were set down [m].
+    /// Base heights when set down [m].
     pub bases: Vec<f64>,
-    /// The load on their seats.
+    /// Seat load.
     pub load: Option<&'a CyclicLoad>,
-    /// Their first face in the surface.
+    /// First sleeper face in the surface.
     pub first_face: usize,
-    /// Work of that load so far [J].
+    /// Seat load work [J].
     pub work: f64,
 }
 
 impl Meshed<'_> {
-    /// Adds the forces on the seats at time `t` [s] to nodal loads, shape `[3·nodes]`.
     fn add_load(&self, t: f64, load: &mut [f64]) {
         let Some(cycles) = self.load else { return };
         (0..self.bodies.count()).for_each(|k| self.bodies.add_load(k, cycles.on(k, t), load));
     }
 
-    /// Work of the forces at time `t` [s] on displacements that are added to `u`, less that on `u` itself [J].
+    /// Work of seat forces at time `t` [J].
     fn work_at(&self, t: f64, u: &[f64]) -> f64 {
         let on = |k: usize| self.load.map_or(0.0, |l| l.on(k, t));
         (0..self.bodies.count()).map(|k| -on(k) * self.bodies.rise_of_seats(k, u)).sum()
@@ -43,35 +42,34 @@ impl Meshed<'_> {
 
 /// Grains on a solid.
 pub struct CoupledSystem<'a> {
-    /// Both models and how they are joined.
+    /// Coupled model.
     pub model: coupling::step::Model<'a>,
-    /// Both states.
+    /// Coupled state.
     pub state: coupling::step::State,
-    /// Scratch and factors.
+    /// Scratch memory and factors.
     pub work: coupling::step::Work<Steps>,
-    /// Whether something has changed the grains that a device has taken over.
+    /// Whether grains must be uploaded to a device.
     pub changed: bool,
-    /// Length of the last part of a window [s], which impulses of contacts belong to.
+    /// Last window division [s], the period of contact impulses.
     pub last_window: f64,
-    /// Whether windows may become shorter where the interface asks for it.
+    /// Whether windows may be divided.
     pub automatic: bool,
     /// Loads on the solid.
     pub loads: &'a [crate::model::solid::NodalLoad],
-    /// Faces of the surface that are the ground's.
+    /// Ground faces.
     pub ground_faces: usize,
     /// Meshed sleepers.
     pub seats: Option<Meshed<'a>>,
 }
 
 impl CoupledSystem<'_> {
-    /// One of the equal parts of a window.
     fn part_of_window(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
         let (loads, seats) = (self.loads, self.seats.as_ref());
         let solid_load = |t: f64, load: &mut [f64]| {
             loads.iter().for_each(|l| l.add(t, load));
             seats.iter().for_each(|s| s.add_load(t, load));
         };
-        // The middle of the window, at which the step takes its loads.
+        // Loads are evaluated at mid-window.
         let middle = self.state.solid.time + 0.5 * self.model.window();
         let before = seats.map_or(0.0, |s| s.work_at(middle, &self.state.solid.u));
         let model = &self.model;
@@ -86,7 +84,6 @@ impl CoupledSystem<'_> {
         Ok(())
     }
 
-    /// Puts what the system goes on from: `memory` of the solver and the work of loads on meshed sleepers so far [J] beside the states.
     fn put(
         &self,
         memory: Option<fem::nonlinear::Memory>,
@@ -133,11 +130,11 @@ impl System for CoupledSystem<'_> {
     }
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
-        // The processor steps the state itself.
+        // CPU steps use the state directly.
         if std::mem::take(&mut self.changed) && self.work.grains.elsewhere() {
             self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
         }
-        // A division that begins now is for the windows after this one.
+        // Applies from the next window.
         self.last_window = self.model.window();
         for _ in 0..self.model.division {
             self.part_of_window(applied)?;

@@ -1,4 +1,4 @@
-//! Grains alone.
+//! DEM-only system.
 
 use super::{Applied, GrainsView, System};
 use crate::failure::Failure;
@@ -12,26 +12,24 @@ use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
 
-/// Grains alone.
+/// DEM-only system.
 pub struct GrainsSystem {
     /// Model.
     pub model: dem::Model,
     /// State.
     pub state: dem::State,
-    /// What computes the steps.
     work: Steps,
-    /// Whether something has changed the state that a device has taken over.
+    /// Whether an upload is due.
     changed: bool,
     applied: Vec<dem::AppliedForce>,
-    /// Length of a window [s].
     window: f64,
 }
 
 impl GrainsSystem {
-    /// The grains in the state that they start from; `interval` is that of the history [s].
+    /// Creates the initial system; `interval` of the history [s].
     ///
     /// # Errors
-    /// They overlap so much that no step can be made; a device refuses them.
+    /// Initial overlaps too large, or unsupported device.
     pub fn new(
         model: dem::Model,
         mut state: dem::State,
@@ -45,10 +43,10 @@ impl GrainsSystem {
         GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
-    /// The grains as a checkpoint has them; `interval` as in [`GrainsSystem::new`].
+    /// Restores a checkpoint.
     ///
     /// # Errors
-    /// A checkpoint of something else; a device refuses the grains.
+    /// Unsuitable checkpoint or device.
     pub fn resume(
         model: dem::Model,
         interval: f64,
@@ -82,27 +80,26 @@ impl GrainsSystem {
 }
 
 impl GrainsSystem {
-    /// The state, to be changed.
+    /// Returns the mutable state.
     pub fn state_mut(&mut self) -> (&dem::Model, &mut dem::State) {
         self.changed = true;
         (&self.model, &mut self.state)
     }
 
-    /// What ranks have sent each other a step, in lines; none where there is one.
+    /// Formats messages per step between ranks, if any.
     pub fn traffic(&self) -> Vec<String> {
         let lines = self.work.traffic().map(|traffic| traffic.lines(self.state.steps_done()));
         lines.unwrap_or_default()
     }
 
-    /// Lets time and accounts begin anew.
+    /// Resets time and balances.
     pub fn begin_anew(&mut self) {
         self.state.begin_anew();
     }
 }
 
-/// A window of grains alone [s]: one step where the scene fixes it, else 1, 1.25, 2, 2.5 or 5 times a power of ten, and at most so many
-/// first steps that few long ones find room in their place. Round times are whole numbers of such windows, and windows do not
-/// depend on the history unless its rows are close.
+/// One step if constant, else 1, 1.25, 2, 2.5 or 5 times a power of ten [s], limited so that few longer steps
+/// fit. Windows depend on the history only for close rows.
 fn window(model: &dem::Model, interval: f64) -> f64 {
     match model.measured() {
         None => model.dt(),
@@ -110,15 +107,14 @@ fn window(model: &dem::Model, interval: f64) -> f64 {
     }
 }
 
-/// Steps in a window when a run begins, at most.
 const STEPS: f64 = 64.0;
 
-/// The longest round window within the bounds [s] that an interval of the history [s] has about a whole number of; for close rows
-/// that only far shorter ones fit, whole first steps in about a part of the interval.
+/// Longest round window [s] that nearly divides the history interval; for close rows, a multiple of the first
+/// step.
 fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     let decade = libm::floor(libm::log10(longest)) as i32;
     let round = [0, -1].into_iter().flat_map(|less| {
-        // A division by a power of ten rounds once, its inverse twice.
+        // Dividing rounds once, multiplying by the inverse twice.
         let unit = libm::exp10(f64::from((decade + less).abs()));
         [5.0, 2.5, 2.0, 1.25, 1.0].map(|n| if decade + less < 0 { n / unit } else { n * unit })
     });
@@ -132,7 +128,6 @@ fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     round.into_iter().find(fits).filter(|window| 2.0 * window >= part).unwrap_or_else(whole)
 }
 
-/// Largest deviation of the interval between rows from the one asked for, as a share.
 const MISFIT: f64 = 0.05;
 
 impl TrackSystem for GrainsSystem {
@@ -158,7 +153,7 @@ impl System for GrainsSystem {
 
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
         let none = &dem::surface::NoSurface;
-        // The processor steps the state itself.
+        // CPU steps use the state directly.
         if std::mem::take(&mut self.changed) && self.work.elsewhere() {
             self.work.upload(&self.model, &self.state).map_err(failed)?;
         }
@@ -201,9 +196,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn windows_are_round_and_do_not_follow_the_history() {
+    fn windows_are_round_without_close_rows() {
         let window = |longest: f64, interval: f64| round_window([longest / STEPS, longest], interval);
-        // Intervals that a round window divides, or that are long.
+        // Divisible by a round window, or long.
         for interval in [1.0, 0.5, 0.05, 1e-3, 2e-3, 0.0213, 0.037] {
             assert_eq!(window(1.47e-4, interval), 1.25e-4, "{interval}");
         }
@@ -212,7 +207,7 @@ mod tests {
         {
             assert_eq!(window(longest, 1e4 * round), round);
         }
-        // Close rows: a round part of their interval, or about a part in whole steps.
+        // Close rows.
         assert_eq!(window(1.47e-4, 1e-4), 1e-4);
         assert_eq!(window(6.4e-3, 1.7e-3), 17.0 * 1e-4);
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);

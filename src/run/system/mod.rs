@@ -1,4 +1,4 @@
-//! What the main loop needs of a model, whatever it consists of: solid, grains, or both.
+//! Systems advanced by the main loop.
 
 mod coupled;
 mod grains;
@@ -20,77 +20,77 @@ use trackbed_fem as fem;
 /// Forces on bodies at a time.
 pub type Applied<'a> = &'a mut dyn FnMut(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);
 
-/// The solid of a running system.
+/// Solid of a running system.
 #[derive(Clone, Copy)]
 pub struct SolidView<'a> {
     /// Model.
     pub model: &'a fem::model::Model,
-    /// Its state.
+    /// State.
     pub state: &'a fem::state::State,
 }
 
-/// A model that can be advanced window by window.
+/// Model advanced by windows.
 pub trait System: TrackSystem {
-    /// Steps of grains and solid since the start, after `windows` windows.
+    /// Returns DEM and FEM steps after `windows` windows.
     fn steps_done(&self, windows: u64) -> (u64, u64);
-    /// Advances by one window.
+    /// Advances one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
-    /// Puts into a checkpoint what `resume` of the system goes on from.
+    /// Saves the state to a checkpoint.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
-    /// Puts into a file what another run goes on from: what a solver has learnt stays behind.
+    /// Saves the final state for `--from`, without solver history.
     fn save_end(&self, body: &mut Body<'_>) -> io::Result<()> {
         self.save(body)
     }
-    /// Takes grains out and puts grains in.
+    /// Removes and inserts grains.
     ///
     /// # Errors
-    /// A grain that cannot leave or come.
+    /// Failed removal or insertion.
     fn exchange(&mut self, _leave: &[usize], _arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
         Ok(())
     }
-    /// The surface of the solid that grains may touch.
+    /// Returns the contact surface of the solid.
     fn surface(&self) -> &dyn dem::surface::Surface {
         &dem::surface::NoSurface
     }
-    /// Energy stored now [J].
+    /// Returns the stored energy [J].
     fn stored(&self) -> Stored;
-    /// Work and dissipation so far [J].
+    /// Returns work and dissipation [J].
     fn spent(&self) -> Spent;
-    /// Energy in proportion to which an error of the balance means something at least [J].
+    /// Returns the smallest meaningful reference energy [J].
     fn reference_energy(&self) -> f64 {
         self.grains().map_or(0.0, |g| dem::measure::reference_energy(g.model, g.state))
     }
-    /// The solid, if there is one.
+    /// Returns the solid, if any.
     fn solid(&self) -> Option<SolidView<'_>> {
         None
     }
-    /// Whether a window that fails leaves the state of the last good step behind.
+    /// Whether a failed window keeps the last converged state.
     fn keeps_its_state(&self) -> bool {
         false
     }
-    /// Forces of the supports on the solid [N], shape `[3·nodes]`, where they are known.
+    /// Returns support reactions on the solid [N], shape `[3·nodes]`, if known.
     fn reactions(&self) -> Option<Vec<f64>> {
         None
     }
-    /// Force of the grains on the ground, mean over the last window [N].
+    /// Returns the mean grain force on the ground in the last window [N].
     fn contact_force(&self) -> [f64; 3] {
         [0.0; 3]
     }
-    /// Largest mean pressure on a face of the ground in the last window [Pa].
+    /// Returns the largest mean face pressure on the ground in the last window [Pa].
     fn peak_pressure(&self) -> f64 {
         0.0
     }
-    /// What the user sees of it while it runs, in a few words: the work of an iteration.
+    /// Returns a short progress text on iterations.
     fn progress(&self) -> Option<String> {
         None
     }
-    /// Work of the loads on the sleepers' seats so far [J].
+    /// Returns the seat load work [J].
     fn seat_work(&self) -> f64 {
         self.grains().map_or(0.0, |g| g.state.ledger.work_applied)
     }
 }
 
-/// Energy that a solid alone stores in its strain and against gravity, whose nodal forces are `gravity` [N], shape `[3·nodes]`.
+/// Returns strain and gravitational energy [J]; nodal weights `gravity` [N], shape `[3·nodes]`.
 pub fn stored_at_rest(model: &fem::Model, state: &fem::state::State, gravity: &[f64]) -> Stored {
     Stored {
         solid_strain: fem::energy::strain(model, state),

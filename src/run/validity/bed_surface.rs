@@ -1,11 +1,11 @@
-//! Height of the surface of a bed over a rectangle.
+//! Surface height of a bed over a rectangle.
 
 use trackbed_dem::measure::BoxRegion;
 
-/// Columns in a direction at most: enough for a mean.
+/// Enough for a mean.
 const MOST: usize = 32;
 
-/// Highest grain over each column of a rectangle [m].
+/// Highest grain per column [m].
 #[derive(Clone, Debug)]
 pub struct BedSurface {
     low: [f64; 2],
@@ -16,7 +16,7 @@ pub struct BedSurface {
 }
 
 impl BedSurface {
-    /// The rectangle below and above a box, in columns as wide as a grain of `size` [m].
+    /// Creates columns of width `size` [m] over a box.
     pub fn new(region: &BoxRegion, size: f64) -> BedSurface {
         let length = [0, 1].map(|d| region.high[d] - region.low[d]);
         let count = length.map(|l| ((l / size.max(1e-9 * l)).ceil() as usize).clamp(1, MOST));
@@ -29,7 +29,7 @@ impl BedSurface {
         }
     }
 
-    /// Adds a grain with its centre at `x` [m] and its radius [m]: it covers the columns whose axis it meets.
+    /// Adds a grain with centre and radius [m] to its columns.
     pub fn add(&mut self, x: [f64; 3], radius: f64) {
         let range = |d: usize| {
             let place = |edge: f64| (edge - self.low[d]) / self.size[d] - 0.5;
@@ -50,7 +50,7 @@ impl BedSurface {
         }
     }
 
-    /// Mean height of the surface [m]; a column without a grain counts with the bottom of the box.
+    /// Returns the mean surface height [m]; empty columns count as bottom.
     pub fn height(&self) -> f64 {
         let tops = self.top.iter().map(|z| if z.is_finite() { *z } else { self.floor });
         tops.sum::<f64>() / self.top.len() as f64
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layer_has_its_height_and_nothing_the_floor() {
+    fn measures_layer_and_empty_floor() {
         let mut surface = BedSurface::new(&unit(), 0.1);
         assert_eq!(surface.height(), 0.0);
         for k in 0..400 {
@@ -76,9 +76,9 @@ mod tests {
         assert!((surface.height() - 0.5).abs() < 0.02, "{}", surface.height());
     }
 
-    /// One grain on a wide floor is no bed.
+    /// A single grain on a wide floor is no bed.
     #[test]
-    fn one_high_grain_does_not_raise_the_surface() {
+    fn single_high_grain_is_ignored() {
         let mut surface = BedSurface::new(&unit(), 0.1);
         surface.add([0.5, 0.5, 0.9], 0.1);
         assert!(surface.height() > 0.0 && surface.height() < 0.1, "{}", surface.height());
@@ -86,9 +86,9 @@ mod tests {
         assert!(surface.height() < 0.1);
     }
 
-    /// A bed that ends below the box has its own height, not that of the box.
+    /// A bed below the box keeps its height.
     #[test]
-    fn a_bed_below_the_box_has_its_height() {
+    fn measures_bed_below_box() {
         let mut surface = BedSurface::new(&BoxRegion { low: Vec3::new(0.0, 0.0, 0.6), ..unit() }, 0.1);
         for k in 0..400 {
             surface.add([0.05 * f64::from(k % 20) + 0.025, 0.05 * f64::from(k / 20) + 0.025, 0.4], 0.1);

@@ -1,15 +1,15 @@
-//! Grains that have fallen below every wall of a scene without a solid: they are missing from the bed.
+//! Check for grains fallen below all walls.
 
 use super::{Check, Limits};
 use crate::model::grains::GrainsPart;
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::{State, Vec3, WallShape};
 
-/// Grains lost over all grains. A run that only watches grains leave is a study of its own, hence no failure.
+/// No failure: runs may lose grains intentionally.
 const LOST: Limits = Limits { warn: 0.01, fail: None };
 
-/// Grains that started above the lowest point of the walls and ended below it. `None` without gravity, where a plane bounds the fall,
-/// where no wall is bounded, and for slides, whose summary counts grains below and beyond the ground.
+/// Checks for grains below the lowest wall point. `None` without gravity, with a bounding plane, without
+/// bounded walls, and for slides, which count lost grains.
 pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<Check> {
     let (model, state) = (view.model, view.state);
     let up = -model.gravity().try_normalize(0.0)?;
@@ -35,7 +35,7 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
         };
         lowest = lowest.min(low);
     }
-    // Grains that hold their place, such as a floor of fixed grains, support others.
+    // Fixed grains support others.
     let start = State::new(model);
     let prescribed = |b: &usize| grains.groups.moving.iter().any(|m| m.part == model.part(*b));
     let supports = (0..model.body_count()).filter(prescribed);

@@ -1,13 +1,13 @@
-//! Rotations of bonds, whose springs are linear: those of a cemented joint or of a slab in bending stay small.
+//! Check for bond rotations beyond linear springs.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::largest_rotation;
 
-/// Rotation of a bond [rad]: linear springs err by 2 % of it at the first limit, and by half of it at the second.
+/// Rotation [rad]: linear springs err by 2 % at the first limit, by half at the second.
 const ROTATION: Limits = Limits { warn: 0.3, fail: Some(1.5) };
 
-/// Checks the unbroken bonds at the end of a run; none without bonds that resist rotation.
+/// Checks the final unbroken bonds; none without rotational stiffness.
 pub fn bond_rotation(view: GrainsView<'_>) -> Option<Check> {
     let found = largest_rotation(view.model, view.state)?;
     Some(Check::new("largest rotation of a bond [rad]", found.angle, ROTATION, || {

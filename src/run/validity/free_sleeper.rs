@@ -1,12 +1,12 @@
-//! Sleepers that nothing carries: what the load does to them says nothing of the bed.
+//! Check for unsupported sleepers.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::extremes::TrackRecord;
 
-/// Time without a contact over the time of the run proper: short lifts are what wheels do to neighbouring sleepers.
+/// Time without contact over main-stage time; wheels uplift neighbours.
 const FREE: Limits = Limits { warn: 0.1, fail: Some(0.9) };
 
-/// Checks the sleepers of a track over a run of `duration` [s]; none without sleepers.
+/// Checks sleepers over `duration` [s]; none without sleepers.
 pub fn free_sleeper(track: &TrackRecord, duration: f64) -> Option<Check> {
     let times =
         track.sleepers.iter().enumerate().map(|(k, s)| (k + 1, s.lifted_off.map_or(0.0, |l| l.seconds)));

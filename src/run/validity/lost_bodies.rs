@@ -1,12 +1,12 @@
-//! Bodies that have left the solid and lie or fall below its surface: they are missing from the bed.
+//! Check for bodies below the solid surface.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 
-/// Bodies lost over all bodies. A single one changes no bed; of half a bed nothing can be said.
+/// Lost over all bodies.
 const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };
 
-/// Bodies lost beside a solid whose lowest point was at `lowest` [m]; the message, where any body was lost, beside the check.
+/// Checks for bodies below the solid's lowest point [m]; message if any.
 pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>) {
     let (model, state) = (view.model, view.state);
     let lost = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);

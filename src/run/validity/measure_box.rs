@@ -1,21 +1,21 @@
-//! Boxes that porosity is measured in and that the bed does not reach up to: their porosity is mostly that of the air above the bed.
+//! Check for measurement boxes above the bed.
 
 use super::bed_surface::BedSurface;
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::BoxRegion;
 
-/// Height of the box above the surface of the bed over the height of the box.
+/// Height above the surface over box height.
 const EMPTY: Limits = Limits { warn: 0.0, fail: None };
 
-/// Where the surface of the bed lies over a box [m]; none where gravity does not act downwards, so that there is no top.
+/// Surface height over a box [m]; none unless gravity acts downwards.
 fn surface(view: GrainsView<'_>, region: &BoxRegion, is_grain: &impl Fn(usize) -> bool) -> Option<f64> {
     let (model, state) = (view.model, view.state);
     let gravity = model.gravity();
     if gravity.z >= 0.0 || (gravity.x * gravity.x + gravity.y * gravity.y).sqrt() > 0.5 * gravity.z.abs() {
         return None;
     }
-    // A body that has not come in yet has no place.
+    // Queued bodies have no position.
     let grains = || (0..model.body_count()).filter(|&b| state.present(b) && is_grain(b));
     let count = grains().count().max(1) as f64;
     let size = 2.0 * grains().map(|b| model.radius(b)).sum::<f64>() / count;
@@ -34,7 +34,7 @@ fn text(name: &str, region: &BoxRegion, height: f64) -> String {
     )
 }
 
-/// Checks a box named by a scene, after the run; none where there is no top of a bed.
+/// Checks a named box; none without a bed surface.
 pub fn measure_box(
     name: &str,
     view: GrainsView<'_>,
@@ -49,7 +49,7 @@ pub fn measure_box(
     }))
 }
 
-/// The warning on the `region` of a stage of compaction that the bed does not fill.
+/// Warns about an unfilled `region` of compaction.
 pub fn region_not_filled(
     name: &str,
     view: GrainsView<'_>,

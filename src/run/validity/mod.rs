@@ -1,5 +1,4 @@
-//! Validity of a run: whether it has stayed within the limits of the theory that it was computed with. Balances can close on a result
-//! that the equations do not cover. One file per check; each says what it found, its limits and the remedy.
+//! Validity checks: limits of the theory. Balances may close although the equations do not apply.
 
 mod bed_surface;
 mod below_walls;
@@ -24,21 +23,21 @@ pub use stiffness_drift::stiffness_drift;
 
 use serde::Serialize;
 
-/// Result of a check; the last is the worst.
+/// Check outcome, in increasing severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Within its limit.
     #[default]
     Passed,
-    /// Results are to be looked at with care.
+    /// Interpret results with caution.
     Warned,
-    /// There is no result.
+    /// No valid result.
     Failed,
 }
 
 impl Outcome {
-    /// The outcome in a word.
+    /// Returns the outcome as a word.
     pub fn word(self) -> &'static str {
         match self {
             Outcome::Passed => "passed",
@@ -48,35 +47,35 @@ impl Outcome {
     }
 }
 
-/// Limits of a value: above the first it is warned about; above the second, where there is one, the result is not valid.
+/// Limits for warning and failure.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Above this a value is warned about.
+    /// Warning limit.
     pub warn: f64,
-    /// Above this the result is not valid.
+    /// Failure limit, if any.
     pub fail: Option<f64>,
 }
 
-/// One check of validity.
+/// Validity check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// What was checked.
+    /// Quantity.
     pub name: String,
-    /// Value found, a ratio.
+    /// Value, a ratio.
     pub value: f64,
-    /// Above this it is warned about.
+    /// Warning limit.
     pub limit: f64,
-    /// Above this the result is not valid; absent where no value says so for certain.
+    /// Failure limit, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fail_above: Option<f64>,
-    /// Result of the check.
+    /// Outcome.
     pub status: Outcome,
-    /// What was found, and the remedy; empty where the check passed.
+    /// Finding and remedy; empty if passed.
     pub message: String,
 }
 
 impl Check {
-    /// Compares a value with its limits; `message` is computed where it exceeds one.
+    /// Compares a value with its limits; `message` is called lazily.
     pub fn new(
         name: impl Into<String>,
         value: f64,
@@ -94,17 +93,17 @@ impl Check {
     }
 }
 
-/// The worst result of all checks.
+/// Returns the worst outcome.
 pub fn worst(checks: &[Check]) -> Outcome {
     checks.iter().map(|c| c.status).max().unwrap_or_default()
 }
 
-/// Messages of the checks that did not pass.
+/// Returns the messages of checks that did not pass.
 pub fn messages(checks: &[Check]) -> impl Iterator<Item = String> {
     checks.iter().filter(|c| c.status != Outcome::Passed).map(|c| c.message.clone())
 }
 
-/// Lines for the end of a run; none where nothing could be checked.
+/// Formats report lines; none without checks.
 pub fn report(checks: &[Check]) -> Vec<String> {
     if checks.is_empty() {
         return Vec::new();
@@ -137,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn the_report_names_what_did_not_pass() {
+    fn report_lists_failed_checks() {
         assert!(report(&[]).is_empty());
         let check = |name: &str, value: f64| Check::new(name, value, LIMITS, || format!("{name} is far"));
         let checks = [check("a", 0.5), check("b", 1.5), check("c", 3.0)];

@@ -1,24 +1,22 @@
-//! Scaled masses (`time.mass_factor`) are for beds that are pressed slowly. Where grains fall or fly, inertia rules, and the result is that of
-//! another body.
+//! Check of mass scaling (`time.mass_factor`), valid if quasi-static.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 
-/// Kinetic energy over the reference energy, and over the weight times the radius of a grain, the smaller of both: a bed that is pressed
-/// slowly stays far below.
+/// Kinetic energy over the smaller of reference energy and weight times grain radius.
 const INERTIA: Limits = Limits { warn: 0.05, fail: Some(0.25) };
 
-/// What weight the grains have and how large they are.
+/// Weight and size of the grains.
 #[derive(Clone, Copy, Debug)]
 pub struct Fall {
-    /// Weight of all grains, of true masses [N].
+    /// True weight of all grains [N].
     pub weight: f64,
-    /// Mean radius of the grains [m].
+    /// Mean grain radius [m].
     pub radius: f64,
 }
 
 impl Fall {
-    /// Of the grains of a running system: gravity is weaker there by what the masses are scaled with.
+    /// Evaluates a running system with reduced gravity.
     pub fn of(view: GrainsView<'_>) -> Fall {
         let (model, count) = (view.model, view.model.body_count());
         let mass: f64 = (0..count).map(|b| model.mass(b)).sum();
@@ -27,7 +25,7 @@ impl Fall {
     }
 }
 
-/// Checks the largest kinetic energy of grains [J] of a run with masses scaled by `factor` against its reference energy [J].
+/// Checks the largest kinetic energy [J] with masses scaled by `factor` against the reference energy [J].
 pub fn scaled_inertia(factor: f64, kinetic: f64, reference: f64, fall: Fall) -> Check {
     let share = |whole: f64| match kinetic {
         0.0 => 0.0,
@@ -52,7 +50,7 @@ mod tests {
 
     const FALL: Fall = Fall { weight: 0.109, radius: 0.01 };
 
-    /// Free fall: all of the work is kinetic. A bed in slow motion, and one that merely trembles at rest, pass.
+    /// Free fall: all work is kinetic. Slow motion and vibration at rest pass.
     #[test]
     fn falling_and_pressing_differ() {
         let status = |kinetic: f64, reference: f64| scaled_inertia(100.0, kinetic, reference, FALL).status;
@@ -63,7 +61,7 @@ mod tests {
         assert_eq!(status(0.0, 0.0), Outcome::Passed);
     }
 
-    /// Without gravity the reference energy alone decides.
+    /// Without gravity only the reference energy counts.
     #[test]
     fn without_weight_energy_decides() {
         let flying =

@@ -1,35 +1,33 @@
-//! Strains and displacements of the solid against those that its equations assume.
+//! Check of small strains and displacements.
 
 use super::{Check, Limits};
 use trackbed_fem::limits::{Extent, extent};
 use trackbed_fem::model::Model;
 
-/// Strain above which small strains are a poor assumption, and above which it does not hold: terms left out are half of those kept.
+/// Poor, and invalid: neglected terms are half of those kept.
 const STRAIN: Limits = Limits { warn: 0.05, fail: Some(1.0) };
 
-/// Displacement against the mean of the body over the size of the element.
+/// Relative to the body mean, over element size.
 const DISPLACEMENT: Limits = Limits { warn: 1.0, fail: Some(10.0) };
 
-/// Rotation above which its cosine differs from 1 by 2 %, and above which the linear strain of a rigid rotation is half of it [rad].
+/// Rotation [rad]: cosine differs from 1 by 2 %; rigid-rotation strain is half of it.
 const ROTATION: Limits = Limits { warn: 0.2, fail: Some(1.0) };
 
-/// Strain and rotation of a quasi-static collapse, which small strains describe up to the mechanism: its load is that of the theory of
-/// plasticity, while points of the mechanism are strained without bound.
+/// Quasi-static collapse: the limit load is correct while strains grow without bound.
 const COLLAPSE: Limits = Limits { warn: 1.0, fail: Some(10.0) };
 
-/// Checks the strains, rotations and displacements of a solid, shape of `u` `[3·nodes]` [m].
+/// Checks strains, rotations and displacements; shape of `u` `[3·nodes]` [m].
 pub fn small_strain(model: &Model, u: &[f64]) -> [Check; 3] {
     let found = extent(model, u);
     [strain(&found, STRAIN), rotation(&found, ROTATION), displacement(&found)]
 }
 
-/// The same of a solid that yields in equilibrium.
+/// Checks a plastic solid in equilibrium likewise.
 pub fn quasi_static_strain(model: &Model, u: &[f64]) -> [Check; 3] {
     let found = extent(model, u);
     [strain(&found, COLLAPSE), rotation(&found, COLLAPSE), displacement(&found)]
 }
 
-/// Largest rotation of the solid.
 fn rotation(found: &Extent, limits: Limits) -> Check {
     Check::new("largest rotation of the solid [rad]", found.rotation, limits, || {
         format!(
@@ -41,7 +39,6 @@ fn rotation(found: &Extent, limits: Limits) -> Check {
     })
 }
 
-/// Largest strain of the solid.
 fn strain(found: &Extent, limits: Limits) -> Check {
     Check::new("largest strain of the solid", found.strain, limits, || {
         format!(
@@ -53,7 +50,6 @@ fn strain(found: &Extent, limits: Limits) -> Check {
     })
 }
 
-/// Largest displacement of the solid over the size of its element.
 fn displacement(found: &Extent) -> Check {
     let value = if found.size > 0.0 { found.displacement / found.size } else { 0.0 };
     Check::new("largest displacement of the solid over its element's size", value, DISPLACEMENT, || {
@@ -70,7 +66,7 @@ mod tests {
     use crate::run::validity::Outcome;
 
     #[test]
-    fn strains_pass_are_warned_about_and_fail() {
+    fn classifies_strains() {
         let status = |s: f64, limits| strain(&Extent { strain: s, ..Extent::default() }, limits).status;
         let all = [Outcome::Passed, Outcome::Warned, Outcome::Failed];
         assert_eq!([0.01, 0.2, 559.3].map(|s| status(s, STRAIN)), all);

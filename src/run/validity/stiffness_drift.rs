@@ -1,13 +1,13 @@
-//! Stiffness that falls over load cycles: a bed settles and becomes stiffer; one that softens has failed, or its ground resonates.
+//! Check for cyclic softening.
 
 use super::{Check, Limits};
 
-/// Loss of secant stiffness from the second cycle to the last, over that of the second.
+/// Second to last cycle, over the second.
 const LOSS: Limits = Limits { warn: 0.25, fail: None };
 
-/// Checks the secant stiffness of load cycles in order [N/m]; none of fewer than three.
+/// Checks cyclic secant stiffnesses [N/m]; none for fewer than three.
 pub fn stiffness_drift(secants: &[f64]) -> Option<Check> {
-    // The first cycle beds the sleeper.
+    // The first cycle seats the sleeper.
     let (&second, &last) = (secants.get(1)?, secants.get(2..)?.last()?);
     if second <= 0.0 {
         return None;
@@ -28,7 +28,7 @@ mod tests {
     use crate::run::validity::Outcome;
 
     #[test]
-    fn softening_is_warned_about_and_stiffening_is_not() {
+    fn warns_about_softening_only() {
         let status = |k: &[f64]| stiffness_drift(k).map(|c| c.status);
         assert_eq!(status(&[77e6, 39.5e6, 31e6, 28e6, 28.6e6]), Some(Outcome::Warned));
         assert_eq!(status(&[77e6, 39.5e6, 39e6, 36e6]), Some(Outcome::Passed));

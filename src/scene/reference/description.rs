@@ -1,25 +1,25 @@
-//! Descriptions of keys, taken apart into the columns of a table.
+//! Splits key descriptions into table columns.
 //!
-//! A description is clauses between semicolons: a noun phrase of at most 15 words with the unit in brackets at its end, the default
-//! (`default …`) or the alternatives (`or …`), the range (from a number or one of `> ≥ < ≤` on), and conditions.
+//! Clauses between semicolons: noun phrase with unit in brackets, default (`default …`) or alternatives (`or
+//! …`), range (from a number or one of `> ≥ < ≤`), conditions.
 
 /// Columns of a description.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
-    /// Unit, or nothing.
+    /// Unit or empty.
     pub unit: String,
-    /// Default value, or the keys that may be given instead.
+    /// Default value or alternative keys.
     pub default: String,
     /// Allowed values.
     pub range: String,
     /// Noun phrase.
     pub meaning: String,
-    /// Conditions and other remarks.
+    /// Conditions and notes.
     pub conditions: Vec<String>,
 }
 
 impl Description {
-    /// The columns of the description `text`.
+    /// Splits the description `text` into columns.
     pub fn parse(text: &str) -> Description {
         let mut clauses = clauses(text).into_iter();
         let (meaning, unit) = without_unit(clauses.next().unwrap_or_default());
@@ -43,13 +43,11 @@ impl Description {
     }
 }
 
-/// Whether a clause states the allowed values.
 fn is_range(clause: &str) -> bool {
     let number = clause.trim_start_matches(['-', '−']);
     number.starts_with(|c: char| c.is_ascii_digit() || "><≥≤".contains(c))
 }
 
-/// The parts of `text` between semicolons outside of code, without its line breaks and its last point.
 fn clauses(text: &str) -> Vec<String> {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut parts = vec![String::new()];
@@ -64,7 +62,7 @@ fn clauses(text: &str) -> Vec<String> {
     parts.into_iter().map(|part| part.trim().to_string()).collect()
 }
 
-/// A clause and the unit in brackets at its end.
+/// Clause and its unit.
 fn without_unit(clause: String) -> (String, String) {
     let unit = clause.strip_suffix(']').and_then(|start| start.rsplit_once(" ["));
     match unit {
@@ -88,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_at_the_end_are_no_units() {
+    fn keeps_trailing_lists() {
         assert_eq!(Description::parse("Corners `[[x, y], [x, y]]`.").unit, "");
         assert_eq!(Description::parse("Corners `[[x, y], [x, y]]` [m].").unit, "m");
     }

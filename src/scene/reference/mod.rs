@@ -1,7 +1,7 @@
-//! Tables of the keys of a scene in Markdown, from its schema.
+//! Markdown tables of scene keys, from the schema.
 //!
-//! A page such as `docs/scene.md` is a frame with marks: below `<!-- keys: solid.block -->` stands the table of `[solid.block]`, with `scene`
-//! the top level. A table without a mark is part of the table that holds it.
+//! A page has marks such as `<!-- keys: solid.block -->` (`scene` for the top level). Tables without mark are
+//! part of their parent.
 
 mod description;
 mod tables;
@@ -11,44 +11,37 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use tables::{Key, Tables};
 
-/// Begin and end of a mark.
 const MARK: (&str, &str) = ("<!-- keys: ", " -->");
-/// Name of the top level in a mark.
 const TOP: &str = "scene";
 
-/// A mark that names no table.
+/// Mark of an unknown table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BadMark {
-    /// Number of its line, from 1.
+    /// Line number from 1.
     pub line: usize,
-    /// Keys that it names.
+    /// Keys of the mark.
     pub keys: String,
 }
 
-/// Kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// A heading.
     Heading,
-    /// A row of a table.
     Row,
-    /// Anything else, and all of a block of code.
+    /// Other lines, and code blocks.
     Text,
 }
 
-/// A section of the page.
 #[derive(Clone, Debug)]
 struct Section {
-    /// Number of its heading.
     heading: usize,
     /// Anchor of the heading.
     anchor: String,
 }
 
-/// The page with the tables of `schema` below its marks, in place of those that stand there; everything else is kept.
+/// Returns the page with the tables of `schema` replaced below its marks.
 ///
 /// # Errors
-/// A mark that names no table.
+/// A mark of an unknown table.
 pub fn fill(schema: &Value, page: &str) -> Result<String, BadMark> {
     let sections = sections(schema, page)?;
     let mut tables = Tables::new(schema, sections.keys().map(ToString::to_string).collect());
@@ -72,18 +65,16 @@ pub fn fill(schema: &Value, page: &str) -> Result<String, BadMark> {
     Ok(out)
 }
 
-/// A page with all tables of `schema`, each under its keys.
+/// Returns a page with all tables of `schema`.
 pub fn frame(schema: &Value) -> String {
     let mut page = String::from("# Keys of a scene\n");
     for path in tables::paths(schema) {
         let name = if path.is_empty() { TOP } else { &path };
-        // Writing to a string cannot fail.
         let _ = write!(page, "\n## {name}\n\n{}{name}{}\n", MARK.0, MARK.1);
     }
     page
 }
 
-/// The sections of a page by the tables that they hold.
 fn sections<'a>(schema: &'a Value, page: &str) -> Result<BTreeMap<&'a str, Section>, BadMark> {
     let mut sections = BTreeMap::new();
     let mut section = Section { heading: 0, anchor: String::new() };
@@ -98,13 +89,11 @@ fn sections<'a>(schema: &'a Value, page: &str) -> Result<BTreeMap<&'a str, Secti
     Ok(sections)
 }
 
-/// The keys that a mark names.
 fn marked(line: &str) -> Option<&str> {
     let path = line.strip_prefix(MARK.0)?.strip_suffix(MARK.1)?;
     Some(if path == TOP { "" } else { path })
 }
 
-/// Lines of a page with their numbers, from 1.
 fn lines(page: &str) -> impl Iterator<Item = (usize, &str, Kind)> {
     let mut code = false;
     page.lines().enumerate().map(move |(index, line)| {
@@ -119,14 +108,13 @@ fn lines(page: &str) -> impl Iterator<Item = (usize, &str, Kind)> {
     })
 }
 
-/// Anchor of a heading, as GitHub makes it.
+/// Anchor of a heading, as on GitHub.
 fn anchor(heading: &str) -> String {
     let text = heading.trim_start_matches('#').trim().to_lowercase();
     let kept = text.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
-/// Writes a table; `of` is the key whose table it is, `link` the anchor of a table that stands in another section.
 fn table(out: &mut String, of: Option<&str>, keys: &[Key], link: &dyn Fn(&str) -> Option<String>) {
     let head = of.map_or("key".to_string(), |of| format!("key of `{of}`"));
     let rows: Vec<[String; 5]> = keys.iter().map(|key| cells(key, link)).collect();
@@ -147,7 +135,6 @@ fn table(out: &mut String, of: Option<&str>, keys: &[Key], link: &dyn Fn(&str) -
     }
 }
 
-/// The cells of a key.
 fn cells(key: &Key, link: &dyn Fn(&str) -> Option<String>) -> [String; 5] {
     let mut name = format!("`{}`", key.name);
     if let Some(anchor) = key.table.as_deref().and_then(link) {
@@ -169,7 +156,6 @@ fn cells(key: &Key, link: &dyn Fn(&str) -> Option<String>) -> [String; 5] {
     [name, described.unit.clone(), described.default.clone(), described.range.clone(), meaning]
 }
 
-/// Words that a key may have, with their meanings.
 fn words(words: &[(String, String)]) -> String {
     let plain = words.iter().all(|(_, meaning)| meaning.is_empty());
     let one = |(word, meaning): &(String, String)| match meaning.as_str() {

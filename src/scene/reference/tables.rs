@@ -1,55 +1,43 @@
-//! Tables of keys in the schema of a scene.
+//! Key tables from the schema of a scene.
 
 use super::description::Description;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// A key of a table.
 #[derive(Clone, Debug)]
 pub struct Key {
-    /// Name, from the table on: `wave.height`.
     pub name: String,
-    /// Whether it must be given.
     pub required: bool,
-    /// Its description.
     pub description: Description,
-    /// Words that it may have, with their meaning where it is not stated before.
+    /// Allowed words, with meanings not stated before.
     pub words: Vec<(String, String)>,
-    /// The table that is its value, if that table has a section.
+    /// Table of its value, if that has a section.
     pub table: Option<String>,
 }
 
-/// What a value can be.
 enum Leaf<'a> {
-    /// A table, by its name in the schema.
     Table(&'a str),
-    /// A word of a list.
     Word {
-        /// The word.
         word: &'a str,
-        /// Its description.
         meaning: &'a str,
-        /// Name of the list in the schema.
+        /// List name in the schema.
         list: &'a str,
     },
 }
 
-/// The tables of a schema.
 pub struct Tables<'a> {
     schema: &'a Value,
-    /// Tables that have a section.
     sections: BTreeSet<String>,
-    /// Lists of words that are described already.
     described: BTreeSet<&'a str>,
 }
 
 impl<'a> Tables<'a> {
-    /// The tables of `schema`; those named in `sections` have a section, the others are part of the table that holds them.
+    /// Tables of `schema`; those not in `sections` are part of their parent.
     pub fn new(schema: &'a Value, sections: BTreeSet<String>) -> Tables<'a> {
         Tables { schema, sections, described: BTreeSet::new() }
     }
 
-    /// The keys of the table `name`: those that must be given first, then the others by name.
+    /// Lists the keys of table `name`: required ones first, then by name.
     pub fn keys(&mut self, name: &str) -> Vec<Key> {
         let table = table(self.schema, name);
         match table["oneOf"].as_array() {
@@ -70,7 +58,7 @@ impl<'a> Tables<'a> {
         keys
     }
 
-    /// A key, and those of its table if that has no section.
+    /// Nested keys are included unless their table has a section.
     fn key(&mut self, name: &str, property: &'a Value, required: bool) -> Vec<Key> {
         let (mut words, mut section, mut inline) = (Vec::new(), None, Vec::new());
         let mut lists = BTreeSet::new();
@@ -96,7 +84,7 @@ impl<'a> Tables<'a> {
         keys
     }
 
-    /// The keys of a table whose first key, a word, decides which others it has. Keys of one description stand once.
+    /// The first key, a word, selects the others. Keys of equal description appear once.
     fn keys_of_kinds(&mut self, kinds: &'a [Value]) -> Vec<Key> {
         let mut words = Vec::new();
         let mut tag = "";
@@ -133,7 +121,7 @@ impl<'a> Tables<'a> {
     }
 }
 
-/// A text that goes on a sentence: without the capital of its first word, unless that is an abbreviation.
+/// Lower-cases the first word unless it is an abbreviation.
 fn uncapitalized(text: &str) -> String {
     let mut letters = text.chars();
     match (letters.next(), letters.next()) {
@@ -144,14 +132,14 @@ fn uncapitalized(text: &str) -> String {
     }
 }
 
-/// Whether a meaning is the word itself, such as `Von Mises.` of `von_mises`.
+/// Whether a meaning repeats the word, such as `Von Mises.` of `von_mises`.
 fn says_the_same(word: &str, meaning: &str) -> bool {
     let letters =
         |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     letters(word) == letters(meaning)
 }
 
-/// The name of the table under the keys `path`, such as `solid.block`; empty for the whole scene.
+/// Finds the table under the keys `path`, such as `solid.block`.
 pub fn find<'a>(schema: &'a Value, path: &str) -> Option<&'a str> {
     let mut name = "";
     for key in path.split('.').filter(|key| !key.is_empty()) {
@@ -164,7 +152,7 @@ pub fn find<'a>(schema: &'a Value, path: &str) -> Option<&'a str> {
     Some(name)
 }
 
-/// The keys that lead to each table of a scene, by rising length; a table that several keys have stands once.
+/// Lists the shortest key path of each table, by length.
 pub fn paths(schema: &Value) -> Vec<String> {
     let mut found = BTreeSet::new();
     let mut paths = vec![String::new()];
@@ -187,7 +175,7 @@ fn table<'a>(schema: &'a Value, name: &str) -> &'a Value {
     if name.is_empty() { schema } else { &schema["$defs"][name] }
 }
 
-/// The tables and words that a value can be, in lists too. `list` is the name of the list of words that it stands in.
+/// Tables and words of a value, also in lists.
 fn leaves<'a>(schema: &'a Value, value: &'a Value, list: &'a str) -> Vec<Leaf<'a>> {
     if let Some(name) = value["$ref"].as_str().and_then(|to| to.strip_prefix("#/$defs/")) {
         let table = &schema["$defs"][name];

@@ -1,4 +1,4 @@
-//! How the solid is solved, as written in a scene.
+//! Scene tables of the FEM analysis.
 
 use crate::scene::units::{Density, Frequency, Length, Quantity, Rate, Stress, Time};
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! Supports and absorbing boundaries of the solid as written in a scene.
+//! Scene tables of supports and absorbing boundaries.
 
 use crate::scene::history::History;
 use crate::scene::units::{Length, Quantity};

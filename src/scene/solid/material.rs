@@ -1,4 +1,4 @@
-//! Materials of the solid as written in a scene, and the constitutive law that each key set stands for.
+//! Scene tables of solid materials and their constitutive laws.
 
 use crate::scene::units::{Angle, Density, Quantity, Stress};
 use crate::scene::{Problem, setting};
@@ -96,10 +96,10 @@ pub enum Cone {
     PlaneStrain,
 }
 
-/// A key of a material that cannot be used.
+/// Invalid key of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialFault {
-    /// The key within the material.
+    /// Key within the material.
     pub key: &'static str,
     /// Problem of the key.
     pub problem: Problem,
@@ -125,15 +125,14 @@ fn check(key: &'static str, value: f64, good: bool, expected: &str) -> Result<()
     if good { Ok(()) } else { fault(key, value, expected) }
 }
 
-/// Largest angle of friction [rad]: beyond it the forces that the strength allows are so large that no residual measured by them
-/// says anything of the loads.
+/// Largest friction angle [rad]: beyond it, residuals relative to the admissible forces are meaningless.
 const STEEPEST: f64 = 80.0 * std::f64::consts::PI / 180.0 + 1e-12;
 
 impl SolidMaterial {
-    /// The material of the solid.
+    /// Resolves the material of the solid.
     ///
     /// # Errors
-    /// A constant is missing, out of range, or not one of the model.
+    /// A constant is missing, out of range or unused by the model.
     pub fn resolve(&self) -> Result<Material, MaterialFault> {
         if let Some(young) = self.young {
             check("young", young.si, young.si > 0.0, "a modulus above 0")?;
@@ -162,7 +161,6 @@ impl SolidMaterial {
         }
     }
 
-    /// Name of the model as in a scene.
     fn name(&self) -> &'static str {
         match self.model {
             MaterialModel::Elastic => "elastic",
@@ -208,7 +206,6 @@ impl SolidMaterial {
         Ok(Material { elastic: law.reference(self.density.si), law: law.into() })
     }
 
-    /// A constant that the model needs.
     fn need(&self, key: &'static str, value: Option<f64>) -> Result<f64, MaterialFault> {
         match value {
             Some(value) => Ok(value),
@@ -216,7 +213,6 @@ impl SolidMaterial {
         }
     }
 
-    /// A strength with its hardening, by a slope or by a table.
     fn strength(&self, key: &'static str, value: Option<f64>) -> Result<Hardening, MaterialFault> {
         match (value, self.hardening, &self.hardening_table) {
             (None, None, Some(table)) => {
@@ -236,7 +232,7 @@ impl SolidMaterial {
 
     fn metal(&self, elastic: Elastic) -> Result<Material, MaterialFault> {
         let yield_stress = self.strength("yield_stress", self.yield_stress.map(|y| y.si))?;
-        // Both criteria are met at half the yield stress of tension as their cohesion.
+        // Both criteria match with half the tensile yield stress as cohesion.
         let cohesion = yield_stress.map(|y| 0.5 * y);
         Ok(if self.model == MaterialModel::VonMises {
             Material::plastic(elastic, DruckerPrager { cohesion, ..DruckerPrager::von_mises(1.0) })
@@ -280,7 +276,6 @@ impl SolidMaterial {
         Ok(Material::plastic(elastic, DruckerPrager { cohesion, friction, dilation, cone, tension }))
     }
 
-    /// The key that a faulty constant was written under.
     fn key_of(&self, constant: &str) -> &'static str {
         match constant {
             "Young's modulus" => "young",
@@ -305,7 +300,6 @@ impl SolidMaterial {
         }
     }
 
-    /// Keys that the model has no use for.
     fn refuse_idle_keys(&self) -> Result<(), MaterialFault> {
         let clay: &[&str] = &["modified_cam_clay"];
         let others: &[&str] = &["elastic", "mohr_coulomb", "drucker_prager", "von_mises", "tresca"];
@@ -338,7 +332,7 @@ impl SolidMaterial {
     }
 }
 
-/// Where a softening strength stops: at a hundredth of its start. Hardening has no end.
+/// Softening limit: a hundredth of the initial strength. Hardening has no limit.
 fn softest(initial: f64, modulus: f64) -> Option<f64> {
     (modulus < 0.0).then_some(0.01 * initial)
 }

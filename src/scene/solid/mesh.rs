@@ -1,4 +1,4 @@
-//! The mesh of a solid as written in a scene.
+//! Scene tables of solid meshes.
 
 use crate::scene::units::{Length, Quantity};
 use schemars::JsonSchema;

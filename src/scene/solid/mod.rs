@@ -1,4 +1,4 @@
-//! The solid part as written in a scene.
+//! Scene table `[solid]`.
 
 mod analysis;
 mod boundary;

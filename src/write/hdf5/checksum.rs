@@ -1,12 +1,10 @@
-//! Checksum of HDF5's metadata: `hashlittle` of Bob Jenkins' lookup3 (2006), initial value 0.
+//! HDF5 metadata checksum: `hashlittle` of Bob Jenkins' lookup3 (2006), initial value 0.
 
-/// The checksum of some bytes.
 pub fn lookup3(bytes: &[u8]) -> u32 {
     let mut state = [0xdead_beef_u32.wrapping_add(bytes.len() as u32); 3];
     if bytes.is_empty() {
         return state[2];
     }
-    // All blocks of twelve bytes but the last, which may be shorter.
     let last = (bytes.len() - 1) / 12 * 12;
     for block in bytes[..last].chunks_exact(12) {
         add(&mut state, block);
@@ -17,7 +15,7 @@ pub fn lookup3(bytes: &[u8]) -> u32 {
     state[2]
 }
 
-/// Adds up to twelve bytes, the missing ones as zeros.
+/// Adds up to twelve bytes, zero-padded.
 fn add(state: &mut [u32; 3], block: &[u8]) {
     let mut whole = [0; 12];
     whole[..block.len()].copy_from_slice(block);

@@ -1,7 +1,6 @@
-//! The rows of a dataset: compressed chunks, and the B-tree that finds them.
+//! Dataset rows: compressed chunks with their B-tree.
 //!
-//! Nothing that was written is written again. A chunk that is not full yet and the nodes on the way to it are written anew at
-//! every commit, behind all else; full ones stay where they are.
+//! Written data are never changed: each commit appends the partial chunk and its path of nodes.
 //!
 //! Source: HDF5 File Format Specification Version 3.0, III.A.1, version 1 B-trees, node type 1.
 
@@ -10,45 +9,39 @@ use flate2::{Compression, write::ZlibEncoder};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// Bytes of a chunk, about.
+/// About one chunk [bytes].
 const CHUNK: usize = 16384;
-/// Level of compression, as of the other writers.
+/// Compression level, as in the other writers.
 pub const LEVEL: u32 = 1;
-/// Children of a node that are written for good; one place is left for the last, which is not.
+/// Children of a final node; one slot is left for a pending child.
 const FULL: usize = 2 * HALF_NODE - 1;
 
-/// A chunk or a node in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Child {
     first_row: u64,
     address: u64,
-    /// Bytes of a chunk as it lies in the file.
     size: u32,
 }
 
-/// Writes at the end of the file; returns where.
+/// Appends; returns the address.
 pub type Put<'a> = &'a mut dyn FnMut(&[u8]) -> io::Result<u64>;
 
-/// The rows of a dataset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chunks {
     kind: Kind,
-    /// Numbers in a row, or none of a dataset of one dimension.
+    /// Numbers per row; `None` if one-dimensional.
     columns: Option<u32>,
     rows: u64,
-    /// The rows that do not fill a chunk yet.
     rest: Vec<u8>,
-    /// Of each level of the index, the children of the last node, from the leaves up.
+    /// Last node of each level, leaves first.
     levels: Vec<Vec<Child>>,
 }
 
 impl Chunks {
-    /// No rows.
     pub fn new(kind: Kind, columns: Option<u32>) -> Chunks {
         Chunks { kind, columns, rows: 0, rest: Vec::new(), levels: vec![Vec::new()] }
     }
 
-    /// The type of the numbers.
     pub fn kind(&self) -> Kind {
         self.kind
     }
@@ -61,25 +54,22 @@ impl Chunks {
         (CHUNK / self.row_bytes()).max(1)
     }
 
-    /// Number of rows.
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// Rows, and numbers in a row if it has several.
     pub fn sizes(&self) -> Vec<u64> {
         [self.rows].into_iter().chain(self.columns.map(u64::from)).collect()
     }
 
-    /// The same of a chunk.
     pub fn chunk(&self) -> Vec<u64> {
         [self.chunk_rows() as u64].into_iter().chain(self.columns.map(u64::from)).collect()
     }
 
-    /// Adds rows as little-endian bytes.
+    /// Appends rows as little-endian bytes.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn append(&mut self, bytes: &[u8], put: Put<'_>) -> io::Result<()> {
         self.rows += (bytes.len() / self.row_bytes()) as u64;
         self.rest.extend_from_slice(bytes);
@@ -97,7 +87,7 @@ impl Chunks {
         Ok(())
     }
 
-    /// Adds a child to the last node of a level; a full node is written for good.
+    /// Adds a child to the last node of a level; full nodes are written.
     fn push(&mut self, level: usize, child: Child, put: Put<'_>) -> io::Result<()> {
         if self.levels[level].len() == FULL {
             let full = std::mem::take(&mut self.levels[level]);
@@ -112,10 +102,10 @@ impl Chunks {
         Ok(())
     }
 
-    /// Writes what is not written for good; returns where the index begins.
+    /// Writes pending nodes; returns the root address.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn index(&self, put: Put<'_>) -> io::Result<u64> {
         if self.rows == 0 {
             return Ok(NOWHERE);
@@ -137,7 +127,7 @@ impl Chunks {
         Ok(root)
     }
 
-    /// A node of the index. Siblings are not named: they move, and whoever reads comes from the root.
+    /// Index node. Siblings move, so they are not linked; readers start at the root.
     fn node(&self, level: usize, children: &[Child]) -> Vec<u8> {
         let mut out = b"TREE\x01".to_vec();
         out.push(level as u8);
@@ -160,7 +150,6 @@ impl Chunks {
         out
     }
 
-    /// A chunk as it lies in the file: bytes of the same place in all numbers together, then compressed.
     fn packed(&self, chunk: &[u8]) -> io::Result<Vec<u8>> {
         let size = self.kind.size();
         let count = chunk.len() / size;

@@ -1,20 +1,18 @@
-//! The pieces of an HDF5 file's metadata as bytes.
+//! HDF5 metadata as bytes.
 //!
-//! Source: HDF5 File Format Specification Version 3.0 (The HDF Group): superblock II.A, object headers IV.A.1.b, messages IV.A.2.
+//! Source: HDF5 File Format Specification Version 3.0 (The HDF Group): superblock II.A, object headers
+//! IV.A.1.b, messages IV.A.2.
 
 use super::checksum::lookup3;
 use serde::{Deserialize, Serialize};
 
-/// An address that leads nowhere.
 pub const NOWHERE: u64 = u64::MAX;
 
-/// Half the children of a node of a chunk index.
 pub const HALF_NODE: usize = 16;
 
-/// Bytes of a superblock of version 2.
 pub const SUPERBLOCK: usize = 48;
 
-/// A type of numbers.
+/// Number type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Kind {
     /// Double precision.
@@ -28,7 +26,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Bytes of a number.
+    /// Returns the size [bytes].
     pub fn size(self) -> usize {
         match self {
             Kind::F64 | Kind::I64 => 8,
@@ -37,12 +35,12 @@ impl Kind {
         }
     }
 
-    /// The datatype message.
+    /// Returns the datatype message.
     pub fn message(self) -> Vec<u8> {
         let size = self.size() as u8;
         let integer = |signed: u8| vec![0x10, signed, 0, 0, size, 0, 0, 0, 0, 0, 8 * size, 0];
         match self {
-            // Little endian, implied first bit of the mantissa, sign at bit 63, exponent of 11 bits at 52, bias 1023.
+            // Little endian, implied first mantissa bit, sign at bit 63, 11-bit exponent at 52, bias 1023.
             Kind::F64 => vec![0x11, 0x20, 63, 0, size, 0, 0, 0, 0, 0, 64, 0, 52, 11, 0, 52, 0xff, 3, 0, 0],
             Kind::I64 => integer(8),
             Kind::U32 | Kind::U8 => integer(0),
@@ -50,19 +48,19 @@ impl Kind {
     }
 }
 
-/// The value of an attribute.
+/// Value of an attribute.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Attribute {
-    /// ASCII of fixed length.
+    /// Fixed-length ASCII.
     Text(String),
-    /// One number.
+    /// Scalar.
     Integer(i64),
-    /// A row of numbers.
+    /// Array.
     Integers(Vec<i64>),
 }
 
 impl Attribute {
-    /// The attribute message.
+    /// Returns the attribute message.
     pub fn message(&self, name: &str) -> Vec<u8> {
         let (datatype, space, data) = match self {
             Attribute::Text(text) => {
@@ -87,7 +85,7 @@ impl Attribute {
     }
 }
 
-/// The dataspace message of a scalar (no sizes) or an array with its sizes now and at most.
+/// Scalar (no sizes) or array, with current and largest sizes.
 pub fn dataspace(sizes: &[u64], most: &[u64]) -> Vec<u8> {
     let rank = sizes.len() as u8;
     let mut out = vec![2, rank, u8::from(rank > 0), u8::from(rank > 0)];
@@ -95,7 +93,6 @@ pub fn dataspace(sizes: &[u64], most: &[u64]) -> Vec<u8> {
     out
 }
 
-/// The messages of a dataset whose rows lie in compressed chunks with an index at `index`.
 pub fn dataset(kind: Kind, sizes: &[u64], chunk: &[u64], index: u64, level: u32) -> Vec<(u8, Vec<u8>)> {
     let mut most = sizes.to_vec();
     most[0] = u64::MAX;
@@ -103,7 +100,7 @@ pub fn dataset(kind: Kind, sizes: &[u64], chunk: &[u64], index: u64, level: u32)
     layout.extend(index.to_le_bytes());
     let size = kind.size() as u64;
     layout.extend(chunk.iter().chain([&size]).flat_map(|n| (*n as u32).to_le_bytes()));
-    // Bytes of the same place in all numbers together (shuffle), then deflate.
+    // Shuffle, then deflate.
     let mut filters = vec![2, 2];
     for (id, value) in [(2_u16, kind.size() as u32), (1, level)] {
         filters.extend([id, 0, 1].into_iter().flat_map(u16::to_le_bytes));
@@ -112,14 +109,13 @@ pub fn dataset(kind: Kind, sizes: &[u64], chunk: &[u64], index: u64, level: u32)
     vec![
         (0x01, dataspace(sizes, &most)),
         (0x03, kind.message()),
-        // Space as it is needed, no value of the user for what was never written.
+        // Late allocation, undefined fill value.
         (0x05, vec![3, 0x0b]),
         (0x08, layout),
         (0x0b, filters),
     ]
 }
 
-/// The messages of a group with links to its members.
 pub fn group<'a>(members: impl Iterator<Item = (&'a str, u64)>) -> Vec<(u8, Vec<u8>)> {
     let nowhere = [NOWHERE, NOWHERE].into_iter().flat_map(u64::to_le_bytes);
     let mut out = vec![(0x02, [0, 0].into_iter().chain(nowhere).collect()), (0x0a, vec![0, 0])];
@@ -131,13 +127,11 @@ pub fn group<'a>(members: impl Iterator<Item = (&'a str, u64)>) -> Vec<(u8, Vec<
     out
 }
 
-/// The message with the widths of the nodes of chunk indices.
 pub fn node_sizes() -> Vec<(u8, Vec<u8>)> {
     let widths = [HALF_NODE as u16, 16, 4];
     vec![(0x13, [0].into_iter().chain(widths.into_iter().flat_map(u16::to_le_bytes)).collect())]
 }
 
-/// An object header of version 2.
 pub fn object_header(messages: &[(u8, Vec<u8>)]) -> Vec<u8> {
     let length: usize = messages.iter().map(|(_, body)| 4 + body.len()).sum();
     let mut out = b"OHDR\x02\x02".to_vec();
@@ -151,7 +145,6 @@ pub fn object_header(messages: &[(u8, Vec<u8>)]) -> Vec<u8> {
     with_checksum(out)
 }
 
-/// A superblock of version 2.
 pub fn superblock(extension: u64, end: u64, root: u64) -> Vec<u8> {
     let mut out = b"\x89HDF\r\n\x1a\n\x02\x08\x08\x00".to_vec();
     out.extend([0, extension, end, root].into_iter().flat_map(u64::to_le_bytes));

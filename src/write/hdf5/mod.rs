@@ -1,12 +1,10 @@
-//! HDF5 files that grow: groups, attributes, and datasets that take rows at their end.
+//! Growing HDF5 files: groups, attributes and extensible datasets.
 //!
-//! A file is valid at every moment. What is added goes behind its end, the metadata of what has changed too, and only
-//! when all of that is on the disk does the superblock, 48 bytes in one sector, point to it. So a reader sees the state of
-//! one commit or of the next, a program that is stopped leaves the last one, and a run that is resumed goes back to
-//! that of its checkpoint by cutting the file off. The price are the dead indices of earlier commits, about 1.5 KB per dataset.
+//! The file is always valid: a commit appends data and metadata, then updates the superblock (48 bytes, one
+//! sector). Superseded indices cost about 1.5 KB per dataset and commit.
 //!
-//! The libraries in pure Rust do not offer this: `hdf5-writer` 0.12 encodes whole files only, and a file of `rust-hdf5` 0.7.9 has no
-//! signature until it is closed, even after a flush.
+//! Pure Rust libraries lack this: `hdf5-writer` 0.12 encodes whole files only, and `rust-hdf5` 0.7.9 writes
+//! no signature until the file is closed.
 
 mod checksum;
 mod chunks;
@@ -22,9 +20,9 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// A group in a file, in the order in which they were made; 0 is the root.
+/// Group index in order of creation; 0 is the root.
 pub type GroupId = usize;
-/// A dataset in a file, in the order in which they were made.
+/// Dataset index in order of creation.
 pub type DatasetId = usize;
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -39,23 +37,19 @@ struct Dataset {
     parent: GroupId,
     name: String,
     chunks: Chunks,
-    /// Where its header is, and how many rows it had then.
     header: Option<(u64, u64)>,
 }
 
-/// All that a file needs to go on from a commit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct State {
-    /// Bytes of the file.
     end: u64,
-    /// Where the widths of nodes stand, and the root.
     extension: u64,
     root: u64,
     groups: Vec<Group>,
     datasets: Vec<Dataset>,
 }
 
-/// A file that grows.
+/// Growing file.
 #[derive(Debug)]
 pub struct File {
     path: PathBuf,
@@ -64,10 +58,10 @@ pub struct File {
 }
 
 impl File {
-    /// Begins a file, which appears under its name with the first commit.
+    /// Creates a file, renamed to `path` by the first commit.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn create(path: &Path) -> Result<File, WriteError> {
         let out = fs::File::create(part(path)).map_err(WriteError::io(path))?;
         let root = Group { parent: 0, name: String::new(), attributes: Vec::new() };
@@ -80,10 +74,10 @@ impl File {
         Ok(file)
     }
 
-    /// Resumes a file at a [`File::mark`]; what was written after it is cut off.
+    /// Resumes a file at a [`File::mark`]; later data are truncated.
     ///
     /// # Errors
-    /// The file is shorter than it was at the mark; what the system refuses.
+    /// The file is shorter than at the mark; I/O errors.
     pub fn resume(path: &Path, mark: &[u8]) -> Result<File, WriteError> {
         let state: State = postcard::from_bytes(mark).map_err(|error| WriteError::format(path, error))?;
         if state.groups.is_empty() {
@@ -97,17 +91,17 @@ impl File {
             return Err(WriteError::format(path, message));
         }
         let mut file = File { path: path.to_path_buf(), out, state };
-        // First the superblock: at no moment does it point behind the end.
+        // Superblock first, so that it never points beyond the end.
         file.point().and_then(|()| file.out.set_len(file.state.end)).map_err(WriteError::io(path))?;
         Ok(file)
     }
 
-    /// The state of the last commit.
+    /// Returns the state of the last commit.
     pub fn mark(&self) -> Vec<u8> {
         postcard::to_allocvec(&self.state).expect("plain data can be serialized")
     }
 
-    /// The group of that name, which is made if it is not there.
+    /// Returns the group, created if missing.
     pub fn group(&mut self, parent: GroupId, name: &str) -> GroupId {
         if let Some(id) = self.state.groups.iter().skip(1).position(|g| g.parent == parent && g.name == name)
         {
@@ -126,8 +120,7 @@ impl File {
         }
     }
 
-    /// The dataset of that name, which is made without rows if it is not there: of one dimension, or with rows of
-    /// `columns` numbers.
+    /// Returns the dataset, created if missing: one-dimensional, or of `columns` numbers per row.
     pub fn dataset(&mut self, parent: GroupId, name: &str, kind: Kind, columns: Option<u32>) -> DatasetId {
         if let Some(id) = self.state.datasets.iter().position(|d| d.parent == parent && d.name == name) {
             return id;
@@ -137,25 +130,25 @@ impl File {
         self.state.datasets.len() - 1
     }
 
-    /// Number of rows of a dataset.
+    /// Returns the number of rows.
     pub fn rows(&self, dataset: DatasetId) -> u64 {
         self.state.datasets[dataset].chunks.rows()
     }
 
-    /// Adds rows to a dataset, as little-endian bytes.
+    /// Appends rows as little-endian bytes.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// I/O errors.
     pub fn append(&mut self, dataset: DatasetId, bytes: &[u8]) -> Result<(), WriteError> {
         let File { out, state: State { end, datasets, .. }, path } = self;
         let written = datasets[dataset].chunks.append(bytes, &mut |bytes| put(out, end, bytes));
         written.map_err(WriteError::io(path))
     }
 
-    /// Makes all that was added part of the file.
+    /// Makes all additions part of the file.
     ///
     /// # Errors
-    /// What the system refuses; the file is that of the last commit then.
+    /// I/O errors; the file then keeps the last commit.
     pub fn commit(&mut self) -> Result<(), WriteError> {
         let path = self.path.clone();
         let first = self.state.root == NOWHERE;
@@ -167,7 +160,6 @@ impl File {
         Ok(())
     }
 
-    /// Writes the headers of what has changed, from the datasets up to the root.
     fn write_metadata(&mut self) -> io::Result<()> {
         let File { out, state: State { end, datasets, .. }, .. } = self;
         for dataset in datasets.iter_mut() {
@@ -179,7 +171,7 @@ impl File {
             let messages = message::dataset(chunks.kind(), &chunks.sizes(), &chunks.chunk(), index, LEVEL);
             dataset.header = Some((put(out, end, &message::object_header(&messages))?, chunks.rows()));
         }
-        // A group is younger than its parent.
+        // Children have larger indices than parents.
         let mut headers = vec![NOWHERE; self.state.groups.len()];
         for id in (0..headers.len()).rev() {
             let State { groups, datasets, .. } = &self.state;
@@ -197,7 +189,6 @@ impl File {
         Ok(())
     }
 
-    /// Points the superblock to the present state.
     fn point(&mut self) -> io::Result<()> {
         let State { end, extension, root, .. } = self.state;
         self.out.seek(SeekFrom::Start(0))?;
@@ -210,7 +201,7 @@ impl File {
     }
 }
 
-/// Writes at the end of a file, at a multiple of eight bytes; returns where.
+/// Appends at a multiple of eight bytes; returns the address.
 fn put(out: &mut fs::File, end: &mut u64, bytes: &[u8]) -> io::Result<u64> {
     let address = end.next_multiple_of(8);
     out.seek(SeekFrom::Start(address))?;
@@ -219,7 +210,6 @@ fn put(out: &mut fs::File, end: &mut u64, bytes: &[u8]) -> io::Result<u64> {
     Ok(address)
 }
 
-/// The name of a file before its first commit.
 fn part(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");

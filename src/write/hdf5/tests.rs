@@ -1,7 +1,6 @@
 use super::*;
 use crate::write::sample::folder;
 
-/// A file with a dataset of `rows` rows in commits of 700, and its marks.
 fn grown(path: &Path, rows: u32) -> (File, Vec<Vec<u8>>) {
     let mut file = File::create(path).unwrap();
     let group = file.group(0, "data");
@@ -24,7 +23,7 @@ fn add(file: &mut File, rows: std::ops::Range<u32>) {
 }
 
 #[test]
-fn a_file_is_there_from_the_first_commit_on_and_whole_after_each() {
+fn every_commit_leaves_valid_file() {
     let dir = folder("hdf5_commit");
     let path = dir.join("a.h5");
     let mut file = File::create(&path).unwrap();
@@ -34,7 +33,6 @@ fn a_file_is_there_from_the_first_commit_on_and_whole_after_each() {
     let committed = fs::read(&path).unwrap();
     assert_eq!(fs::read_dir(&dir).unwrap().count(), 1, "no part is left");
     add(&mut file, 10..5000);
-    // All that the superblock points to is as it was.
     let longer = fs::read(&path).unwrap();
     assert!(longer.len() > committed.len() && longer[..committed.len()] == committed);
     file.commit().unwrap();
@@ -45,7 +43,7 @@ fn a_file_is_there_from_the_first_commit_on_and_whole_after_each() {
 }
 
 #[test]
-fn a_file_resumed_at_any_mark_grows_to_the_same_bytes() {
+fn resumed_file_is_identical() {
     let dir = folder("hdf5_resume");
     let path = dir.join("a.h5");
     let rows = 60_000;

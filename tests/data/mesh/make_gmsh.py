@@ -1,8 +1,7 @@
-"""Writes the Gmsh samples of this folder with Gmsh itself: python3 make_gmsh.py (package gmsh 4.15).
+"""Writes the Gmsh samples: python3 make_gmsh.py (package gmsh 4.15).
 
-One body of every kind of element: a block of hexahedra, tetrahedra on top of it with pyramids between, and a layer of
-prisms beside it. Its nodes are then moved by a smooth map, so that edges are curved. The volumes beside the samples are
-integrals of Gmsh's own Jacobian determinants with Gmsh's own rules, by kind in ascending order.
+Hexahedra, tetrahedra on top with pyramids between, and a layer of prisms, curved by a smooth map. The volumes are
+integrals of Gmsh's Jacobian determinants by Gmsh's rules, by kind in ascending order.
 """
 
 import json
@@ -11,7 +10,7 @@ import math
 import gmsh
 
 
-# Types of Gmsh.
+# Gmsh element types.
 NAMES = {4: "tet4", 5: "hex8", 6: "wedge6", 7: "pyramid5", 11: "tet10", 17: "hex20", 18: "wedge15", 19: "pyramid13"}
 
 
@@ -29,7 +28,7 @@ def body(order, name, version, binary):
     hexes = geo.extrude([(2, bottom)], 0, 0, 0.5, numElements=[1], recombine=True)
     top, block = hexes[0][1], hexes[1][1]
     side = hexes[3][1]
-    # A roof of tetrahedra: the corners of the top and an apex.
+    # Tetrahedra between the top and an apex.
     geo.synchronize()
     edges = [abs(tag) for _, tag in model.getBoundary([(2, top)], oriented=False)]
     apex = geo.addPoint(0.5, 0.5, 1.3, 0.6)
@@ -42,7 +41,7 @@ def body(order, name, version, binary):
         (_, a), (_, b) = model.getBoundary([(1, edge)], oriented=False)
         faces.append(geo.addPlaneSurface([geo.addCurveLoop([edge, ends[b], -ends[a]], reorient=True)]))
     roof = geo.addVolume([geo.addSurfaceLoop(faces)])
-    # A wing of prisms on the side of the block: triangles extruded.
+    # Extruded prisms at the side.
     q = [geo.addPoint(x, y, 0.0) for x, y in [(3, 0), (4, 0), (3, 1)]]
     triangle = geo.addPlaneSurface([geo.addCurveLoop([geo.addLine(q[i], q[(i + 1) % 3]) for i in range(3)])])
     wing = geo.extrude([(2, triangle)], 0, 0, 0.7, numElements=[1], recombine=True)[1][1]

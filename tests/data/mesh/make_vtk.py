@@ -1,6 +1,6 @@
-"""Writes the VTK samples of this folder with VTK itself: python3 make_vtk.py (package vtk 9.7).
+"""Writes the VTK samples: python3 make_vtk.py (package vtk 9.7).
 
-One cell of each of eight kinds with curved edges, its points placed at VTK's own parametric coordinates.
+One curved cell of each of eight kinds, at VTK's parametric coordinates.
 """
 
 import vtk

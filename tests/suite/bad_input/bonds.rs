@@ -1,11 +1,10 @@
-//! Broken input: bonds.
+//! Bad input: bonds.
 
 use super::*;
 
 const CEMENT: &str =
     "[[bond]]\nname = \"cement\"\ngap = \"5 mm\"\n[bond.parallel]\nyoung = \"1 MPa\"\n\n[[walls]]";
 
-/// The pair of spheres with a bond between them.
 fn bonded() -> Good {
     grains_scene().scene("[[walls]]", CEMENT)
 }
@@ -18,7 +17,6 @@ fn bonds_that_join_nothing() {
     );
 }
 
-/// Gaps that would join each sphere to hundreds.
 #[test]
 fn bonds_across_many_spheres() {
     bonded().scene("gap = \"5 mm\"", "gap = \"0.6 m\"").refused(

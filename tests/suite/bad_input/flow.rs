@@ -1,16 +1,14 @@
-//! Broken input: inlets and outlets.
+//! Bad input: inlets and outlets.
 
 use super::*;
 
 const INLET: &str = "inlet = { box = [[0, 0, 1], [1, 1, 2]], rate = \"2 kg/s\" }";
 const OUTLET: &str = "[[outlet]]\npoint = [0, 0, -1]\nnormal = [0, 0, -1]\nagain = true\n\n[[walls]]";
 
-/// The two spheres with an inlet that they come to again.
 fn flow() -> Good {
     grains_scene().scene(SPHERES, &format!("{SPHERES}\n{INLET}")).scene("[[walls]]", OUTLET)
 }
 
-/// Grains that wait for their inlet.
 fn waiting() -> Good {
     let source = format!("count = 5\nsize = [0.02, 0.03]\n{INLET}");
     grains_scene().scene(SPHERES, &source).scene("[[walls]]", OUTLET)
@@ -24,7 +22,7 @@ fn box_of_an_inlet_inside_out() {
 }
 
 #[test]
-fn box_of_an_inlet_that_holds_no_grain() {
+fn inlet_box_smaller_than_grain() {
     waiting().scene("[1, 1, 2]]", "[1, 1, 1.025]]").refused(
         "scene.toml:16: grains.0.inlet.box: found a box 0.0250 m wide, expected at least 0.0291 m, for the largest grain",
     );
@@ -55,7 +53,7 @@ fn rate_in_another_unit() {
 }
 
 #[test]
-fn inlet_that_starts_before_the_run_or_after_it() {
+fn inlet_start_outside_run() {
     flow()
         .scene("rate = \"2 kg/s\"", "rate = 2, start = -1")
         .refused("scene.toml:15: grains.0.inlet.start: found -1, expected 0 or more");
@@ -125,7 +123,7 @@ fn outlet_of_two_forms() {
 }
 
 #[test]
-fn outlet_without_a_direction_or_a_volume() {
+fn outlet_without_direction_or_volume() {
     flow()
         .scene("normal = [0, 0, -1]", "normal = [0, 0, 0]")
         .refused("scene.toml:19: outlet.0.normal: found 0, expected a vector that is not null");

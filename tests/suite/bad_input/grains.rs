@@ -1,4 +1,4 @@
-//! Broken input: grains, walls and sleeper.
+//! Bad input: grains, walls and sleeper.
 
 use super::*;
 
@@ -80,7 +80,7 @@ fn packing_with_a_word() {
 }
 
 #[test]
-fn fill_box_too_small_for_a_stone() {
+fn fill_box_smaller_than_grain() {
     grains_scene().scene(SPHERES, &format!("count = 3\nsize = [0.5, 0.6]\n{FILL}")).refused(
         "scene.toml:16: grains.0.fill: found stone 0 with bounding radius 0.2583333333333333 m does not fit into a box \
          of width 0.3 m, expected a box that holds the grains",
@@ -288,14 +288,14 @@ const VIBRATION: &str = "[[compaction]]\nkind = \"vibration\"\nregion = [[0, 0, 
                          frequency = 30\ncycles = 5\n\n[time]";
 
 #[test]
-fn vibration_of_a_wall_that_is_not_there() {
+fn vibration_of_missing_wall() {
     grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nwalls = [0, 1]")).refused(
         "scene.toml:28: compaction.0.walls: found 1, expected the number of a plane in [[walls]], counted from 0",
     );
 }
 
 #[test]
-fn vibration_of_a_plane_that_is_recorded() {
+fn vibration_of_recorded_plane() {
     grains_scene()
         .scene("[[walls]]\n", "[[walls]]\nrecord = true\n")
         .scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nwalls = [0]"))

@@ -1,4 +1,4 @@
-//! Broken input: files that are missing, and the three lists of a mesh.
+//! Bad input: missing files and mesh lists.
 
 use super::*;
 
@@ -30,8 +30,6 @@ fn missing_library() {
         .scene(SPHERES, &format!("library = \"stones.toml\"\ncount = 3\nsize = [0.1, 0.1]\n{FILL}"))
         .refused("stones.toml: file: found No such file or directory (os error 2), expected a readable file");
 }
-
-// --- lists --------------------------------------------------------------------------------------------------------
 
 #[test]
 fn truncated_element() {
@@ -71,7 +69,7 @@ fn absent_node() {
 
 #[test]
 fn inverted_element() {
-    // Bottom and top changed over: I…L with M…P and Q…T with U…X.
+    // Bottom and top swapped: I…L with M…P, Q…T with U…X.
     let turn = |fields: &mut Vec<String>| {
         fields[2..10].rotate_left(4);
         fields[10..18].rotate_left(4);
@@ -84,7 +82,6 @@ fn inverted_element() {
 
 #[test]
 fn flat_element() {
-    // The middle node of the block raised far above its top folds the elements around it.
     solid().field(NODES, 41, 3, "2.5").refused(
         "ELEMENTNUM.DAT: element 1: found a Jacobian determinant of -7.736875e-3 m3 at (-0.77, 0.00, -0.77): \
          inverted or flat, expected a determinant above 0",

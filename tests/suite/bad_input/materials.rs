@@ -1,4 +1,4 @@
-//! Broken input: contact materials and laws.
+//! Bad input: contact materials and laws.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn poisson_without_modulus() {
         .refused("scene.toml:8: material.0.edge_factor: found 0, expected 0.01 to 100");
 }
 
-/// Corners that crush: strength and angle come in twos beside a modulus, and crushing takes energy.
+/// Conical damage model: paired constants, needs dissipation.
 #[test]
 fn corners_out_of_place() {
     let elastic = "young = \"10 GPa\"\npoisson = 0.2";
@@ -108,7 +108,7 @@ fn laws_that_do_not_go_together() {
 }
 
 #[test]
-fn unlike_laws_without_one_for_the_pair() {
+fn different_laws_without_pair_law() {
     let glass = "[[material]]\nname = \"glass\"\nyoung = \"50 MPa\"\npoisson = 0.3\nfriction = 0.5\nrestitution = 0.4\n";
     grains_scene().scene("[time]", &format!("{glass}[time]")).refused(
         "scene.toml:22: material.1: found for \"stone\" and \"glass\" different normal laws, \"linear\" and \"hertz\", and none \
@@ -131,7 +131,7 @@ fn hertz_without_a_modulus() {
 }
 
 #[test]
-fn damping_of_a_law_without_a_dashpot() {
+fn damping_without_dashpot() {
     let pair = format!("{PAIR}normal = \"walton_braun\"\ndamping = \"none\"\n[time]");
     grains_scene().scene("[time]", &pair).refused(
         "scene.toml:25: contact.0.damping: found, but it has no effect without a dashpot. The normal law \"walton_braun\" has no dashpot.",

@@ -1,4 +1,4 @@
-//! Broken input: the form of a scene, the solid, the exchange, time and output.
+//! Bad input: syntax, solid, coupling, time, output.
 
 use super::*;
 
@@ -58,7 +58,7 @@ fn vector_of_two() {
         .refused("scene.toml:19: walls.0.normal: found a list of 2, expected a list of 3");
 }
 
-/// The parser would take the first three.
+/// The parser would use three components.
 #[test]
 fn vector_of_four() {
     grains_scene()
@@ -66,16 +66,16 @@ fn vector_of_four() {
         .refused("scene.toml:19: walls.0.normal: found a list of 4, expected a list of 3");
 }
 
-/// The parser would take the values of a list for those of the table's keys, in their order.
+/// The parser would assign list values by position.
 #[test]
-fn list_in_the_place_of_a_table() {
+fn list_instead_of_table() {
     grains_scene()
         .set("deposition=[1.0, 0.005, 0.5, 1, 0.3, 0.0, 1.0]")
         .refused("--set: deposition: found a list, expected a table");
 }
 
 #[test]
-fn number_in_the_place_of_a_word() {
+fn number_instead_of_word() {
     solid()
         .set("solid.integration=14")
         .refused("--set: solid.integration: found a number, expected a word in quotes");
@@ -122,8 +122,6 @@ fn override_out_of_range() {
         .set("solid.material.0.poisson=0.7")
         .refused("--set: solid.material.0.poisson: found 0.7, expected above -1 and below 0.5");
 }
-
-// --- the solid of a scene -----------------------------------------------------------------------------------------
 
 #[test]
 fn negative_density() {
@@ -243,7 +241,7 @@ fn mixed_rayleigh_damping() {
 
 #[test]
 fn grain_step_above_the_limit() {
-    // Limit of the step: that of two like spheres, of which one touches; the message gives it.
+    // Limit for two equal spheres.
     grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"1 ms\"").refused(
         "scene.toml:24: time.grain_step: found 0.001 s, expected at most 1.374298e-4 s, set by body 0 (effective mass \
          7.929e-1 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
@@ -251,7 +249,7 @@ fn grain_step_above_the_limit() {
 }
 
 #[test]
-fn grain_step_above_the_limit_under_a_sleeper() {
+fn step_above_limit_under_sleeper() {
     coupled().scene("[output]", "[time]\ngrain_step = \"1 ms\"\n\n[output]").refused(
         "scene.toml:54: time.grain_step: found 0.001 s, expected at most 3.887101e-4 s, set by body 0 (effective mass \
          6.343e0 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
@@ -488,7 +486,7 @@ fn jumps_pushes_and_fouling() {
         assert!(outcome.stderr.contains(words), "{set}: {}", outcome.stderr);
         assert!(!out.exists(), "{set}");
     }
-    // A ram that a fixed step cannot follow shows only when the model is made; steps that are not fixed follow it.
+    // Too stiff an actuator is detected during setup; variable steps resolve it.
     let folder = super::super::support::scene_folder("ram", &with(push));
     let set = ["track.push.stiffness=\"1e6 GN/m\"", "time.grain_step=1e-6"];
     let outcome = super::super::support::run(&folder.join("scene.toml"), &folder.join("out"), &set);

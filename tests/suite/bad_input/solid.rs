@@ -1,8 +1,6 @@
-//! Broken input: the solid's mesh on the spot, yield criteria, supports, boundaries, and ways to solve.
+//! Bad input: solid mesh, yield criteria, supports, solution methods.
 
 use super::*;
-
-// --- the mesh -----------------------------------------------------------------------------------------------------
 
 #[test]
 fn two_sources_of_the_mesh() {
@@ -26,7 +24,7 @@ fn block_lines_that_turn_back() {
 }
 
 #[test]
-fn block_counts_for_another_number_of_intervals() {
+fn block_counts_differ_from_intervals() {
     plastic().scene("counts = [1, 1]", "counts = [1]").refused(
         "scene.toml:9: solid.block.z.counts: found [1], expected 2 numbers of 1 or more, one for each interval of `lines`",
     );
@@ -40,7 +38,7 @@ fn block_layer_above_the_top() {
 }
 
 #[test]
-fn block_turned_inside_out_by_its_crest() {
+fn block_inverted_by_crest() {
     plastic()
         .set("solid.block.crest=[0.9, 0.1]")
         .refused("--set: solid.block.crest: found 0.1, expected an end beyond its beginning");
@@ -52,8 +50,6 @@ fn constraints_of_a_block() {
         .set("solid.constraints=DOF.DAT")
         .refused("--set: solid.constraints: found, but it has no effect without `nodes` and `elements`");
 }
-
-// --- yield criteria -----------------------------------------------------------------------------------------------
 
 #[test]
 fn friction_near_a_right_angle() {
@@ -126,8 +122,6 @@ fn hardening_table_that_turns_back() {
     );
 }
 
-// --- supports, boundaries -----------------------------------------------------------------------------------------
-
 #[test]
 fn support_in_a_fourth_direction() {
     plastic().scene("[\"x\", \"y\", \"z\"]", "[\"x\", \"w\"]").refused(
@@ -150,7 +144,7 @@ fn support_where_no_node_is() {
 }
 
 #[test]
-fn a_set_that_the_mesh_has_not() {
+fn set_missing_in_mesh() {
     plastic().scene("side = \"z-\"", "set = \"bottom\"").refused(
         "scene.toml:32: solid.support.0.set: found \"bottom\", expected the name of a node set (the mesh file contains no sets)",
     );
@@ -179,8 +173,6 @@ fn absorbing_faces_inside() {
         "scene.toml:43: solid.absorbing.0.faces_in: found no boundary face in the box, expected at least one",
     );
 }
-
-// --- ways to solve ------------------------------------------------------------------------------------------------
 
 #[test]
 fn a_plastic_solid_without_steps() {
@@ -266,8 +258,7 @@ fn history_file_with_a_word() {
         .refused("course.csv:3: factor: found \"much\", expected a number");
 }
 
-/// The figure comes from the structure of the equations, so it is the same on every machine but for what the program
-/// itself takes.
+/// The estimate depends on the equations only, except the program's own memory.
 #[test]
 fn a_solid_that_will_not_fit() {
     let good = plastic();

@@ -1,10 +1,10 @@
-//! Broken input: meshed sleepers.
+//! Bad input: meshed sleepers.
 
 use super::{COUPLED, Good, SCENE};
 
 const MESH: &str = "[track.sleeper.mesh]\nelements = [2, 2, 1]\nyoung = \"30 GPa\"\npoisson = 0.2";
 
-/// The spheres on a block under a sleeper of elements: its table begins in line 36.
+/// Spheres on a block, meshed sleeper from line 36.
 fn meshed() -> Good {
     Good::new(&COUPLED.replace("centre = [1.0, 1.0]", &format!("centre = [1.0, 1.0]\n\n{MESH}")))
 }
@@ -35,7 +35,7 @@ fn a_sleeper_without_stiffness() {
 }
 
 #[test]
-fn a_sleeper_of_no_mass_or_of_two() {
+fn missing_or_duplicate_sleeper_mass() {
     meshed().scene("poisson = 0.2", "poisson = 0.2\ndensity = 2400").refused(
         "scene.toml:40: track.sleeper.mesh.density: found together with track.sleeper.mass, expected only one of them",
     );
@@ -73,7 +73,7 @@ fn a_meshed_sleeper_without_a_solid() {
 }
 
 #[test]
-fn what_a_meshed_sleeper_has_no_use_for() {
+fn keys_without_effect_on_meshed_sleeper() {
     meshed().append(SCENE, "[track.push]\ndirection = [1, 0]\nspeed = 0.01\ndisplacement = 0.01").refused(
         "scene.toml:61: track.push: found together with [track.sleeper.mesh], expected only one of them",
     );

@@ -1,10 +1,10 @@
-//! Values of a wrong type, at every key of every shipped scene.
+//! Wrong types at every key of every shipped scene.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use trackbed::scene::{Document, Scene};
 
-/// Terms of the parser and of the source, which mean nothing to someone who writes a scene.
+/// Parser and source terms that must not appear.
 const TERMS: [&str; 14] = [
     "struct ",
     "enum",
@@ -22,7 +22,6 @@ const TERMS: [&str; 14] = [
     "something else",
 ];
 
-/// Values of all types, one of which is wrong anywhere.
 const VALUES: [&str; 13] = [
     "5",
     "-5",
@@ -50,7 +49,6 @@ fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Paths of all keys of a table, and of the items of its lists.
 fn paths(value: &toml::Value, at: &str, found: &mut BTreeSet<String>) {
     let below = |key: &str| if at.is_empty() { key.to_string() } else { format!("{at}.{key}") };
     match value {
@@ -66,9 +64,8 @@ fn paths(value: &toml::Value, at: &str, found: &mut BTreeSet<String>) {
     }
 }
 
-/// Every value of every shipped scene, replaced by values of all types: whatever is refused is refused in plain words.
 #[test]
-fn values_of_a_wrong_type_are_refused_in_plain_words() {
+fn wrong_types_give_plain_messages() {
     let mut files = Vec::new();
     scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs"), &mut files);
     let (mut seen, mut refused, mut bad) = (BTreeSet::new(), 0, BTreeSet::new());
@@ -81,7 +78,7 @@ fn values_of_a_wrong_type_are_refused_in_plain_words() {
         let mut keys = BTreeSet::new();
         paths(&toml::Value::Table(text.parse().unwrap()), "", &mut keys);
         for key in keys {
-            // The same key of another entry, or of another scene, is read by the same type.
+            // Same key, same type: once.
             let kind: String =
                 key.split('.').filter(|k| k.parse::<u32>().is_err()).collect::<Vec<_>>().join(".");
             if !seen.insert(kind) {

@@ -1,8 +1,7 @@
-//! Broken input: walls.
+//! Bad input: walls.
 
 use super::*;
 
-/// The plane of the good scene.
 const PLANE: &str = "kind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]";
 
 #[test]
@@ -71,7 +70,6 @@ fn body_of_a_plane() {
     );
 }
 
-/// A ball that is a body, with more keys.
 fn ball(keys: &str) -> String {
     format!("kind = \"sphere\"\nbase = [0, 0, -1]\nradius = 0.5\nbody = {{ mass = 1, {keys} }}")
 }
@@ -102,7 +100,6 @@ fn mounts_of_bodies() {
     }
 }
 
-/// Ground that is scarred, with more keys.
 fn ground(wall: &str, scarring: &str) -> String {
     format!(
         "kind = \"triangles\"\nvertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]]\ntriangles = [[0, 1, 2]]\n{wall}\nscarring = {{ {scarring} }}"
@@ -129,7 +126,7 @@ fn ground_that_is_scarred() {
     grains_scene().scene(PLANE, &format!("{PLANE}\nscarring = {{ strength = 1e7 }}")).refused(
         "scene.toml:20: walls.0.scarring: found, but it has no effect without `kind = \"triangles\"` or `\"mesh\"`",
     );
-    // The grains of this scene are spheres.
+    // Spheres cannot scar.
     grains_scene().scene(PLANE, &ground("", "strength = 1e7")).refused(
         "scene.toml:16: walls: found wall 0: scarring supports only dilated polyhedra and disks, expected valid walls",
     );

@@ -1,31 +1,31 @@
-//! Runs of small scenes, and what must hold for each: an exit code that is named, no fault of the program, only finite numbers.
+//! Runs of small scenes, with checks of exit code and finite values.
 
 use super::super::support::{Folder, Outcome, Table, json, run};
 use serde_json::Value;
 use std::path::PathBuf;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// A run of the program on a scene.
+/// Run of a scene.
 pub struct Case {
     folder: Folder,
-    /// Exit code and what was said.
+    /// Exit code and output.
     pub outcome: Outcome,
 }
 
 impl Case {
-    /// Runs the scene `text` with overrides `key.path=value`.
+    /// Runs `text` with overrides.
     pub fn run(text: &str, set: &[&str]) -> Case {
         Case::in_folder(Folder::new("extremes"), text, set)
     }
 
-    /// Runs a scene beside the lists of a mesh, whose `constraints` are written with it.
+    /// Runs a scene on the lists of a mesh with `constraints`.
     pub fn on_mesh(mesh: &Mesh, constraints: &[Constraint], text: &str, set: &[&str]) -> Case {
         let folder = Folder::new("extremes");
         trackbed::write::ansys_lists::write_lists(mesh, constraints, folder.path()).unwrap();
         Case::in_folder(folder, text, set)
     }
 
-    /// Runs a scene in a folder that may hold files for it.
+    /// Runs a scene in a prepared directory.
     pub fn in_folder(folder: Folder, text: &str, set: &[&str]) -> Case {
         let scene = folder.write("scene.toml", text);
         let outcome = run(&scene, &folder.join("out"), set);
@@ -43,7 +43,6 @@ impl Case {
         self.folder.join("out").join(name)
     }
 
-    /// No table that was left holds anything but finite numbers, and neither do the accounts of the summary.
     fn only_finite(&self) {
         for name in ["history.csv", "packing.csv", "nodes.csv", "gauss.csv"] {
             if self.file(name).exists() {
@@ -58,20 +57,20 @@ impl Case {
         }
     }
 
-    /// Fails the test unless the run came to its end.
+    /// Requires exit code 0.
     #[track_caller]
     pub fn good(self) -> Case {
         assert_eq!(self.outcome.code, 0, "{:?}", self.outcome);
         self
     }
 
-    /// Asserts exit code 2 with `part` in the message; nothing was written.
+    /// Requires exit code 2, `part` in the message, no files.
     #[track_caller]
     pub fn refused(&self, part: &str) {
         self.ended(2, part);
     }
 
-    /// Asserts exit code 3 with `part` in the message, and a summary with that status.
+    /// Requires exit code 3, `part` in the message and that status.
     #[track_caller]
     pub fn stopped(&self, part: &str) {
         self.ended(3, part);
@@ -84,41 +83,41 @@ impl Case {
         assert!(*found == code && stderr.contains(part), "expected {code} and {part:?}: {found}, {stderr}");
     }
 
-    /// What the run left as `summary.json`.
+    /// Content of `summary.json`.
     pub fn summary(&self) -> Value {
         json(&self.file("summary.json"))
     }
 
-    /// A number of the summary by its path, such as `/energy/largest_relative_error`.
+    /// Number at a JSON path of the summary.
     #[track_caller]
     pub fn value(&self, path: &str) -> f64 {
         let summary = self.summary();
         summary.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {summary:#}"))
     }
 
-    /// Whether a remark of the summary holds `part`.
+    /// Whether a warning contains `part`.
     pub fn warned(&self, part: &str) -> bool {
         self.summary()["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(part))
     }
 
-    /// A table that the run left.
+    /// Result table.
     pub fn table(&self, name: &str) -> Table {
         Table::read(&self.file(name))
     }
 
-    /// A column of `history.csv`.
+    /// Column of `history.csv`.
     #[track_caller]
     pub fn history(&self, column: &str) -> Vec<f64> {
         self.table("history.csv").column(column)
     }
 
-    /// Last value of a column of `history.csv`.
+    /// Last value of a history column.
     #[track_caller]
     pub fn last(&self, column: &str) -> f64 {
         *self.history(column).last().unwrap()
     }
 
-    /// Mean velocity of the mean place of a recorded group over the last `part` of the rows [m/s].
+    /// Mean velocity of a recorded group over the last fraction `part` of the rows [m/s].
     #[track_caller]
     pub fn velocity(&self, group: &str, part: f64) -> [f64; 3] {
         let time = self.history("time");
@@ -131,7 +130,7 @@ impl Case {
     }
 }
 
-/// Difference of two numbers relative to the second.
+/// Relative difference from `right`.
 pub fn off(found: f64, right: f64) -> f64 {
     (found / right - 1.0).abs()
 }

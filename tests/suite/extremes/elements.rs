@@ -1,4 +1,4 @@
-//! Elements of the solid that are slender or skewed.
+//! Slender and skewed elements.
 
 use super::case::{Case, off};
 use super::scenes::{LISTS, TABLES, block, held, material, pressure, rollers};
@@ -68,7 +68,7 @@ fn beam() -> Row {
         errors.push(off(case.value("/statics/largest_displacement/0"), right));
     }
     assert!(errors[..3].iter().chain(&errors[4..6]).all(|e| *e < 5e-3), "{errors:?}");
-    // A single element over the whole length bends with one curvature.
+    // A single element has constant curvature.
     assert!([errors[3], errors[6]].iter().all(|e| (e - 0.25).abs() < 1e-2), "{errors:?}");
     Case::run(&scene("", [10, 1, 1]), &[]).refused("use full integration in rows one element wide");
     Row::new(
@@ -86,7 +86,7 @@ fn beam() -> Row {
 fn plate() -> Row {
     let mut errors = Vec::new();
     for (keys, count) in [("", 4), ("", 8), ("integration = \"full\"", 8), ("order = \"linear\"", 16)] {
-        // A quarter of a plate of 1 m × 10 mm, simply supported in its middle plane; elements 12:1 and 6:1.
+        // Quarter plate, 1 m × 10 mm, simply supported at mid-plane; elements 12:1 and 6:1.
         let mut text = block([
             &format!("{{ lines = [0.0, 0.5], counts = [{count}] }}"),
             &format!("{{ lines = [0.0, 0.5], counts = [{count}] }}"),
@@ -116,8 +116,8 @@ fn skew() -> Row {
         Case::on_mesh(mesh, &[], &text, &[])
     };
     let mut errors = Vec::new();
-    // The middle corner of 2 × 2 × 1 elements goes towards a corner of the block, edges stay straight: at half of the way to it
-    // the Jacobian is zero at that corner of its element, at 0.6 it is below zero at a point of integration.
+    // Inner corner of 2 × 2 × 1 elements moved towards a block corner: at 0.5 zero Jacobian at the element
+    // corner, at 0.6 negative at an integration point.
     let skewed = |share: f64| {
         let mut mesh = Mesh::block([2, 2, 1], [1.0, 1.0, 1.0]);
         let tent = |x: f64| 1.0 - (2.0 * x - 1.0).abs();

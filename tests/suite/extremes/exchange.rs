@@ -1,4 +1,4 @@
-//! Grains and solid together: windows, soft ground and heavy stones, borders of elements and materials, lift-off, the mesh's end.
+//! Coupling: windows, soft ground, heavy grains, element and material borders, lift-off, edge of the mesh.
 
 use super::case::{Case, off};
 use super::scenes::{ball, mass, material, stone, time};
@@ -16,7 +16,7 @@ rows! {
     folding: "surface that folds";
 }
 
-/// Ground of 1 m × 1 m × 0.5 m, its top at z = 0, held at its base: `counts` elements along and down, keys of its material.
+/// Ground of 1 m × 1 m × 0.5 m, top at z = 0, fixed base; `counts` along and down.
 fn ground(counts: [u32; 2], keys: &str) -> String {
     let [n, layers] = counts;
     format!(
@@ -26,21 +26,18 @@ fn ground(counts: [u32; 2], keys: &str) -> String {
     ) + &material(1, keys)
 }
 
-/// Damping of the ground.
 const DAMPED: &str = "\n[solid.rayleigh]\nalpha_m = 100.0\nbeta_k = 1e-3\n";
 
-/// What couples, with more keys, and how long, with how many rows.
 fn coupled(keys: &str, end: f64, rows: u32) -> String {
     format!("\n[coupling]\nmaterial = \"stone\"\n{keys}\n")
         + &time(end, rows).replace("vtk = false", "vtk = false\ntecplot = false")
 }
 
-/// A class of contacts' number in the summary.
 fn class(case: &Case, key: &str) -> f64 {
     case.value(&format!("/coupling/classes/0/{key}"))
 }
 
-/// Force on the solid over the weight of a ball of `radius`, mean over the last tenth of the rows, less 1.
+/// Relative error of the mean force of a ball in the last tenth.
 fn weight_error(case: &Case, radius: f64) -> f64 {
     let force = case.history("contact_force_on_solid_z");
     let late = &force[force.len() * 9 / 10..];
@@ -124,7 +121,7 @@ fn heavy() -> Row {
     )
 }
 
-/// A ball that slides without friction along a strip of two materials, 1 m × 0.25 m, their border at x = 0.5 m.
+/// Frictionless sliding on a strip of 1 m × 0.25 m, material border at x = 0.5 m.
 fn sliding() -> Row {
     let mut mesh = Mesh::block([8, 2, 1], [1.0, 0.25, 0.25]);
     mesh.coordinates.iter_mut().for_each(|x| x[2] -= 0.25);
@@ -202,7 +199,7 @@ fn seats() -> Row {
     let iterated = run(1.0, 1.0, "scheme = \"iterated\"");
     let corner = [weight_error(&run(1.0, 1.0, "substeps = 1"), 0.05), weight_error(&iterated, 0.05)];
     assert!(edge < 1e-6 && corner.iter().all(|e| *e < 1e-6), "{edge} {corner:?}");
-    // The mass of a corner of the mesh is a quarter of that of one within, which the number of sub-steps follows.
+    // A corner node has a quarter of an inner node's mass, which limits the sub-steps.
     let chatter = run(1.0, 1.0, "substeps = \"auto\"");
     assert!(chatter.warned("coupling: interface dashpot error "));
     let account = chatter.value("/energy/largest_relative_error");

@@ -1,4 +1,4 @@
-//! Grains: the step, stiffnesses, masses and radii far apart, friction and restitution at their ends, impacts, bodies alone.
+//! Grains: time step, extreme ratios, friction and restitution limits, impacts, single bodies.
 
 use super::case::{Case, off};
 use super::scenes::{ball, floor, mass, plane, stone, time};
@@ -16,7 +16,7 @@ rows! {
     alone: "no gravity, one grain, none";
 }
 
-/// Face-centred cubic crystal of 3³ cells, pressed together by 1 % and disturbed, between six planes.
+/// FCC crystal of 3³ cells, compressed 1 % and perturbed, between six planes.
 fn crystal() -> String {
     let cell = 0.99 * 0.02 * 2.0_f64.sqrt();
     let mut spheres = Vec::new();
@@ -164,14 +164,14 @@ fn restitution() -> Row {
     };
     let text = |e: f64| from(0.0105, e);
     for e in [1e-2, 0.1, 0.5, 1.0] {
-        // With the default steps the balance of such an impact is off by 0.3 to 3 %, by where in a step it begins.
+        // Default steps: energy errors of 0.3 to 3 %, depending on the phase of impact.
         let shorter: &[&str] = if e < 0.5 { &["time.grain_step_fraction=0.4"] } else { &[] };
         let case = Case::run(&text(e), shorter).good();
         errors.push((case.velocity("ball", 0.1)[2] - e).abs());
         assert!(case.value("/energy/largest_relative_error") < 0.01);
     }
     assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
-    // The dashpot of the first steps is larger than the account can follow, by where in a step the impact begins.
+    // The initial dashpot force exceeds the accuracy of the balance, depending on the phase of impact.
     let sticky = [0.0105, 0.010_505, 0.010_51].map(|height| Case::run(&from(height, 1e-3), &[]).good());
     assert!(sticky.iter().all(|case| case.velocity("ball", 0.1)[2].abs() < 5e-3));
     assert!(sticky.iter().any(|case| case.summary()["verdict"]["outcome"] == "warned"));

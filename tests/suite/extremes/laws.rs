@@ -1,4 +1,4 @@
-//! Contact laws at the ends of their ranges: stiffness that grows with the overlap, adhesion.
+//! Contact laws: overlap-dependent stiffness, adhesion.
 
 use super::case::{Case, off};
 use super::scenes::{ball, floor, mass, time};
@@ -9,7 +9,6 @@ rows! {
     adhesion: "adhesion up to and beyond the weight";
 }
 
-/// Head of a scene of one material.
 fn material(keys: &str) -> String {
     format!(
         "title = \"edge\"\n\n[[material]]\nname = \"stone\"\ndensity = 2600\nfriction = 0.5\nrestitution = 0.1\n{keys}\n"
@@ -46,7 +45,7 @@ fn hertz() -> Row {
 }
 
 fn adhesion() -> Row {
-    // A ball under a ceiling, held by 2 π w R; its weight is a share of that.
+    // Hanging ball: adhesion 2 π w R.
     let weight = mass(0.01) * 9.81;
     let hangs = |share: f64| {
         let work = share * weight / (2.0 * std::f64::consts::PI * 0.01);

@@ -1,5 +1,5 @@
-//! Stability at the extremes: at, near and beyond each edge of what a scene can hold the program gives the right result, or
-//! says what is wrong. Each row is a test that runs small scenes, and a row of the table in `docs/extremes.md`.
+//! Extremes of scene values: correct results or a clear error. Each row is a test and a row of
+//! `docs/extremes.md`.
 
 mod case;
 mod elements;
@@ -15,7 +15,7 @@ mod table;
 
 use table::Entry;
 
-/// Titles of the table's parts with their rows.
+/// Table sections and rows.
 const PARTS: [(&str, &[&[Entry]]); 3] = [
     ("Grains", &[grains::ROWS, motion::ROWS, laws::ROWS, shapes::ROWS]),
     ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]),

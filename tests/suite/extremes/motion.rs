@@ -1,4 +1,4 @@
-//! Grains far from the origin, walls that move fast, gravity of any size.
+//! Large coordinates, fast walls, extreme gravity.
 
 use super::case::{Case, off};
 use super::scenes::{ball, floor, mass, plane, stone, time};
@@ -60,7 +60,7 @@ fn gravities() -> Row {
     )
 }
 
-/// A plate of triangles that goes up through the place of a ball at rest, e = 0.5, at a speed [m/s].
+/// Triangulated plate hits a resting ball, e = 0.5, `speed` [m/s].
 fn struck(speed: f64, stiffness: f64) -> Case {
     let text = stone(&format!("weightless\nstiffness = {stiffness:e}\n"))
         + &ball("ball", [0.3, 0.02, 0.05], 0.01, [0.0; 3])

@@ -1,4 +1,4 @@
-//! The solid beyond its elastic range: friction at its ends, no cohesion at a free surface, apex and edges, steps far too large.
+//! Plasticity: limiting friction angles, no cohesion, apex and edges, huge steps.
 
 use super::case::{Case, off};
 use super::scenes::{LISTS, TABLES, held, material, pressure};
@@ -17,14 +17,13 @@ rows! {
     collapse: "loads beyond the collapse";
 }
 
-/// Keys of a Mohr–Coulomb material: cohesion [Pa], angles [degrees].
 fn mohr_coulomb(cohesion: f64, friction: f64, dilation: f64) -> String {
     format!(
         "model = \"mohr_coulomb\"\ncohesion = {cohesion:e}\nfriction = \"{friction:?} deg\"\ndilation = \"{dilation:?} deg\""
     )
 }
 
-/// Pressure [Pa] inside at which a thick cylinder of radii 1 and 2 m flows, in plane strain.
+/// Limit pressure [Pa] of a thick cylinder, radii 1 and 2 m, plane strain.
 fn bursting(cohesion: f64, tangent: f64) -> f64 {
     if tangent < 1e-12 {
         return 2.0 * cohesion * 2.0_f64.ln();
@@ -33,7 +32,7 @@ fn bursting(cohesion: f64, tangent: f64) -> f64 {
     cohesion / tangent * (2.0_f64.powf(2.0 * sine / (1.0 + sine)) - 1.0)
 }
 
-/// The thick cylinder under a pressure inside that rises to `load` [Pa] in steps of a share `step`.
+/// Inner pressure rising to `load` [Pa] in steps of fraction `step`.
 fn burst(keys: &str, load: f64, step: f64) -> Case {
     let (mesh, constraints, faces) = cylinder([4, 6]);
     let text = LISTS.to_string()
@@ -47,20 +46,19 @@ fn burst(keys: &str, load: f64, step: f64) -> Case {
     Case::on_mesh(&mesh, &constraints, &text, &[])
 }
 
-/// Share of the final pressure at which the run stops, as it says.
+/// Reported fraction of the final pressure at failure.
 fn reached(case: &Case) -> f64 {
     case.stopped("solid: not converged at time ");
     let text = case.outcome.stderr.split_once("at time ").unwrap().1;
     text.split_once(':').unwrap().0.parse().unwrap()
 }
 
-/// Bursting pressure found over the right one, to the 5e-5 that steps are halved to, for a cohesion of 10 kPa and these angles [degrees].
+/// Computed over exact limit pressure, to the smallest step (5e-5); cohesion 10 kPa, angles [degrees].
 fn strength(friction: f64, dilation: f64) -> f64 {
     let right = bursting(1e4, friction.to_radians().tan());
     1.05 * reached(&burst(&mohr_coulomb(1e4, friction, dilation), 1.05 * right, 0.05))
 }
 
-/// The largest of some errors.
 fn worst(errors: &[f64]) -> f64 {
     errors.iter().copied().fold(0.0, f64::max)
 }
@@ -95,7 +93,7 @@ fn dilation() -> Row {
     )
 }
 
-/// Ground of 2 m × 1 m between smooth walls, one of which goes by `way` [m]; its force over Rankine's.
+/// Ground of 2 m × 1 m; a smooth wall moves by `way` [m]. Force over Rankine's.
 fn rankine(friction: f64, way: f64) -> f64 {
     let text = "title = \"wall\"\n\n[solid]\n\n[solid.block]\nx = { lines = [0.0, 2.0], counts = [2] }\n\
                 y = { lines = [0.0, 1.0], counts = [1] }\nz = { lines = [0.0, 1.0], counts = [4] }\n"
@@ -134,7 +132,7 @@ fn no_cohesion() -> Row {
     )
 }
 
-/// A cube; its upper sides go by these ways [m], or are pressed by the cell pressure. Reaction of the top [N].
+/// Cube under top displacements `ways` [m] or cell pressure; top reaction [N].
 fn cube(keys: &str, ways: [Option<f64>; 3], cell: f64, step: f64) -> Case {
     let axis = "{ lines = [0.0, 1.0], counts = [2] }";
     let mut text = format!(
@@ -158,7 +156,7 @@ fn cube(keys: &str, ways: [Option<f64>; 3], cell: f64, step: f64) -> Case {
     Case::run(&(text + TABLES), &[])
 }
 
-/// A slope of 45° and 1 m height without cohesion, set down under its weight.
+/// Cohesionless slope of 45°, 1 m high, under its weight.
 fn slope(friction: f64) -> Case {
     let text = "title = \"slope\"\n\n[solid]\n\n[solid.block]\nx = { lines = [0.0, 2.0, 3.0], counts = [4, 3] }\n\
                 y = { lines = [0.0, 0.5], counts = [1] }\nz = { lines = [0.0, 1.0], counts = [4] }\ncrest = [0.0, 2.0]\n"

@@ -1,8 +1,8 @@
-//! Parts of the scenes that rows are made of. SI units.
+//! Scene parts, SI units.
 
 use std::f64::consts::PI;
 
-/// Head of a scene of one material `stone` of 2600 kg/m³ with `keys` in place of the usual ones.
+/// Material `stone`, 2600 kg/m³, with `keys`.
 pub fn stone(keys: &str) -> String {
     let mut text = String::from("title = \"edge\"\n");
     text += if keys.contains("weightless") { "gravity = [0, 0, 0]\n" } else { "" };
@@ -15,7 +15,7 @@ pub fn stone(keys: &str) -> String {
     text + &keys.replace("weightless", "")
 }
 
-/// A group of one ball [m, m/s] whose place is recorded.
+/// Recorded ball [m, m/s].
 pub fn ball(name: &str, place: [f64; 3], radius: f64, velocity: [f64; 3]) -> String {
     let [x, y, z] = place;
     format!(
@@ -24,7 +24,7 @@ pub fn ball(name: &str, place: [f64; 3], radius: f64, velocity: [f64; 3]) -> Str
     )
 }
 
-/// A recorded plane.
+/// Recorded plane.
 pub fn plane(name: &str, point: [f64; 3], normal: [f64; 3]) -> String {
     format!(
         "\n[[walls]]\nname = \"{name}\"\nkind = \"plane\"\nmaterial = \"stone\"\nrecord = true\n\
@@ -32,7 +32,7 @@ pub fn plane(name: &str, point: [f64; 3], normal: [f64; 3]) -> String {
     )
 }
 
-/// Duration [s] and rows of the history.
+/// Duration [s] and history rows.
 pub fn time(end: f64, rows: u32) -> String {
     let interval = end / f64::from(rows);
     format!("\n[time]\nend = {end:?}\n\n[output]\nvtk = false\nhistory_interval = {interval:?}\n")
@@ -48,7 +48,7 @@ pub fn mass(radius: f64) -> f64 {
     2600.0 * 4.0 / 3.0 * PI * radius.powi(3)
 }
 
-/// A material of a solid.
+/// Solid material.
 pub fn material(id: u32, keys: &str) -> String {
     let mut text = format!("\n[[solid.material]]\nid = {id}\n{keys}\n");
     for (key, usual) in [("young", "20e6"), ("poisson", "0.25"), ("density", "2000")] {
@@ -59,32 +59,32 @@ pub fn material(id: u32, keys: &str) -> String {
     text
 }
 
-/// Nodes of a side held or moved in some directions.
+/// Constrained or moved side.
 pub fn held(side: &str, directions: &str, more: &str) -> String {
     let list: Vec<String> = directions.chars().map(|d| format!("\"{d}\"")).collect();
     format!("\n[[solid.support]]\nside = \"{side}\"\ndirections = [{}]\n{more}\n", list.join(", "))
 }
 
-/// All sides but the top on rollers.
+/// Rollers on all sides but the top.
 pub fn rollers() -> String {
     [("x-", "x"), ("x+", "x"), ("y-", "y"), ("y+", "y"), ("z-", "z")]
         .map(|(side, d)| held(side, d, ""))
         .concat()
 }
 
-/// A pressure on a side.
+/// Pressure on a side.
 pub fn pressure(side: &str, value: f64) -> String {
     format!("\n[[solid.load]]\nkind = \"pressure\"\nside = \"{side}\"\npressure = {value:e}\n")
 }
 
-/// A scene on the lists that lie beside it.
+/// Scene on adjacent lists.
 pub const LISTS: &str = "title = \"edge\"\n\n[solid]\ngravity = false\nnodes = \"NODECOORD.DAT\"\n\
                          elements = \"ELEMENTNUM.DAT\"\nconstraints = \"DOF.DAT\"\n";
 
-/// Tables of the last state, no frames.
+/// Final tables, no frames.
 pub const TABLES: &str = "\n[output]\nvtk = false\ntecplot = false\ntables = true\n";
 
-/// A block between grid lines, one material.
+/// Block of one material.
 pub fn block(lines: [&str; 3]) -> String {
     let [x, y, z] = lines;
     format!("title = \"edge\"\n\n[solid]\ngravity = false\n\n[solid.block]\nx = {x}\ny = {y}\nz = {z}\n")

@@ -1,4 +1,4 @@
-//! Grains: edges, corners and seams, needles and plates, beds of unlike grains, large and small units, long runs.
+//! Grains: edges, corners, seams, needles, plates, mixed sizes, extreme units, long runs.
 
 use super::case::{Case, off};
 use super::scenes::{ball, floor, mass, plane, stone, time};
@@ -16,7 +16,7 @@ rows! {
     [long "ten million steps: a minute"] tumbling: "10⁷ steps of a tumbling clump";
 }
 
-/// A ball of 10 mm comes down at 1 m/s beside the border of a plate, frictionless and elastic.
+/// Frictionless elastic 10 mm ball, 1 m/s, at the border of a plate.
 fn borders() -> Row {
     let radius = 0.01;
     let mut errors = Vec::new();
@@ -42,8 +42,8 @@ fn borders() -> Row {
     )
 }
 
-/// One clump of spheres of radius 2 mm at `places` (in diameters), laid over a floor at `height` and turned by the
-/// quaternion `turn` from its principal axes.
+/// Clump of 2 mm spheres at `places` (in diameters), rotated by `turn` from its principal axes, above a floor
+/// at `height`.
 fn dropped(places: &[[u32; 2]], height: f64, turn: [f64; 4], time: &str) -> Case {
     let list: Vec<String> = places
         .iter()
@@ -66,12 +66,11 @@ fn dropped(places: &[[u32; 2]], height: f64, turn: [f64; 4], time: &str) -> Case
     Case::in_folder(folder, &text, &[])
 }
 
-/// A row of 50 spheres.
 fn needle_places() -> Vec<[u32; 2]> {
     (0..50).map(|k| [k, 0]).collect()
 }
 
-/// Force on the floor over the weight of `count` spheres, and height of the middle over the radius, at the end.
+/// Final floor force over the weight of `count` spheres, and height of the middle over radius.
 fn lies(case: &Case, count: usize) -> [f64; 2] {
     let forces = case.history("floor_force_z");
     let late = &forces[forces.len() * 9 / 10..];
@@ -117,7 +116,7 @@ fn flat() -> Row {
     )
 }
 
-/// Many contacts, each with a dashpot for the mass of the whole, come at once between two looks at what the contacts allow.
+/// Many simultaneous contacts, each damped for the whole mass, between two checks of the critical time step.
 fn slap() -> Row {
     let mut stopped = 0;
     for turn in [0.1_f64, 0.2, 0.3] {
@@ -138,7 +137,6 @@ fn slap() -> Row {
     Row::new("needle of 50 spheres at three orientations", outcome, "energy account")
 }
 
-/// A boulder of 50 mm settles on a bed of grains of 0.5 mm in a ring.
 fn unlike_bed() -> Row {
     let text = stone("stiffness = 5e4\nrestitution = 0.3\nrolling_friction = 0.1\n")
         + "\n[[grains]]\nname = \"fines\"\nshape = \"sphere\"\nmaterial = \"stone\"\n\
@@ -150,7 +148,7 @@ fn unlike_bed() -> Row {
     let case = Case::run(&text, &[]).good();
     let forces = case.history("floor_force_z");
     let count = case.value("/model/bodies") - 1.0;
-    // Mean force on the floor, less what the boulder, at rest at the start, has gained in momentum.
+    // Floor force corrected for the boulder's change of momentum from rest.
     let force = -forces[1..].iter().sum::<f64>() / 200.0
         - mass(0.05) * case.velocity("boulder", 0.005)[2] / case.last("time");
     let error = off(force, 9.81 * (mass(0.05) + count * mass(0.0005)));
@@ -209,7 +207,7 @@ fn quiet() -> Row {
     let case = Case::run(&text, &[]).good();
     let steps = case.value("/stages/1/grain_steps");
     assert!(steps >= 1e7);
-    // The springs of the contacts start anew with the run: what moves then has come to rest in a tenth of it.
+    // Contact history starts empty: transients end in a tenth of the run.
     let drift = |column: &str| {
         let values = case.history(column);
         (values[100] - values[10]).abs()

@@ -1,4 +1,4 @@
-//! The solid in its elastic range: Poisson's ratio, contrasts, supports, units, steps of time, large strains.
+//! Elastic solid: Poisson's ratio, contrasts, supports, units, time steps, large strains.
 
 use super::case::{Case, off};
 use super::scenes::{LISTS, TABLES, block, held, material, pressure, rollers};
@@ -16,7 +16,6 @@ rows! {
     large_strain: "strains that are not small, forces beyond all numbers";
 }
 
-/// Displacement of the node of a table nearest to `place`, given the mesh.
 fn moved(case: &Case, mesh: &Mesh, place: [f64; 3]) -> [f64; 3] {
     let distance = |x: &[f64; 3]| -> f64 { (0..3).map(|d| (x[d] - place[d]).powi(2)).sum() };
     let node = (0..mesh.node_count())
@@ -27,7 +26,7 @@ fn moved(case: &Case, mesh: &Mesh, place: [f64; 3]) -> [f64; 3] {
     [row[1], row[2], row[3]]
 }
 
-/// A quarter of a thick cylinder of radii 1 and 2 m as a plate of elements, its faces inside, and what holds it.
+/// Quarter of a thick cylinder, radii 1 and 2 m: mesh, supports, inner faces.
 pub fn cylinder(counts: [usize; 2]) -> (Mesh, Vec<Constraint>, String) {
     let mut mesh = Mesh::block([counts[0], counts[1], 1], [1.0, 1.0, 0.25]);
     let mut constraints = Vec::new();
@@ -41,7 +40,7 @@ pub fn cylinder(counts: [usize; 2]) -> (Mesh, Vec<Constraint>, String) {
         }
         *x = [radius * angle.cos(), radius * angle.sin(), x[2]];
     }
-    // The first element of each row has its face 5, the low side of the block's x, inside.
+    // Face 5, low x, of each row's first element.
     let faces: Vec<String> = (0..counts[1]).map(|k| format!("[{}, 5]", k * counts[0] + 1)).collect();
     (mesh, constraints, faces.join(", "))
 }
@@ -182,7 +181,7 @@ fn far() -> Row {
 }
 
 fn time_steps() -> Row {
-    // One element on rollers under a sudden pressure: with a lumped mass a spring and half its mass, but for its middle.
+    // Element on rollers, sudden pressure: with lumped mass a spring with half its mass.
     let text = |step: f64, end: f64| {
         let history = end / 100.0;
         block(["{ lines = [0.0, 1.0], counts = [1] }"; 3])
@@ -194,7 +193,7 @@ fn time_steps() -> Row {
             + &format!("\n[time]\nend = {end:e}\nsolid_step = {step:e}\n")
             + &TABLES.replace("tables = true", &format!("history_interval = {history:e}\nframes = 0"))
     };
-    // Consistent mass of one element: a third of 2000 kg at the top.
+    // Consistent mass: a third of 2000 kg at the top.
     let (stiffness, mass) = (24e6, 2000.0 / 3.0);
     let omega = f64::sqrt(stiffness / mass);
     let period = 2.0 * PI / omega;
@@ -203,7 +202,7 @@ fn time_steps() -> Row {
     for share in [1e-9, 1e-6, 1e-3, 0.1, 1.0, 1e3] {
         let step = share * period;
         let case = Case::run(&text(step, 1000.0 * step), &[]).good();
-        // Newmark's trapezoidal rule turns by 2 atan(ω Δt/2) in each step, whatever its length.
+        // Trapezoidal rule: 2 atan(ω Δt/2) per step.
         let turn = 2.0 * (0.5 * omega * step).atan();
         let (time, top) = (case.history("time"), case.history("top_u_z"));
         let error = time

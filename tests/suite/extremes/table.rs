@@ -1,42 +1,43 @@
-//! Rows of the table: what each holds, how the table is printed, and that its page has the rows of the code.
+//! Rows of the table of extremes, its printout, and its page.
 //!
-//! `cargo test --workspace --release --test suite extremes::table -- --ignored --nocapture` runs every row and prints the table.
+//! `cargo test --workspace --release --test suite extremes::table -- --ignored --nocapture` runs and prints
+//! every row.
 
 use super::super::support::repository;
 use super::PARTS;
 use std::fs;
 
-/// What a row has found.
+/// Result of a row.
 pub struct Row {
-    /// Values that were tried.
+    /// Tried values.
     pub tried: String,
-    /// What the program did, with the figures.
+    /// Observed outcome with numbers.
     pub outcome: String,
-    /// Where the right result comes from.
+    /// Source of the reference result.
     pub source: &'static str,
 }
 
 impl Row {
-    /// A row of `tried` values, their `outcome` and the `source` of the right result.
+    /// Creates a row.
     pub fn new(tried: impl Into<String>, outcome: impl Into<String>, source: &'static str) -> Row {
         Row { tried: tried.into(), outcome: outcome.into(), source }
     }
 }
 
-/// A row of the table before it is run.
+/// Row of the table.
 pub struct Entry {
-    /// Module and name of its function; the test is `row::` and that name in the same module.
+    /// Module and function; its test is `row::` and that name.
     pub name: &'static str,
-    /// The edge in words.
+    /// Description of the extreme.
     pub edge: &'static str,
-    /// Runs the program at the edge and asserts what it does.
+    /// Runs and asserts the row.
     pub row: fn() -> Row,
 }
 
-/// Rows of a part of the suite: a test for each, which those after `long` leave to `--ignored`, and the list for the table.
+/// Declares rows with one test each; those after `long` are `--ignored`.
 macro_rules! rows {
     ($($name:ident: $edge:literal;)* $([long $why:literal] $long:ident: $long_edge:literal;)*) => {
-        /// Rows of this file in the order of the table.
+        /// Rows of this file in table order.
         pub const ROWS: &[$crate::suite::extremes::table::Entry] = &[
             $($crate::suite::extremes::table::Entry { name: concat!(module_path!(), "::", stringify!($name)), edge: $edge, row: $name },)*
             $($crate::suite::extremes::table::Entry { name: concat!(module_path!(), "::", stringify!($long)), edge: $long_edge, row: $long },)*
@@ -50,7 +51,7 @@ macro_rules! rows {
 }
 pub(super) use rows;
 
-/// A number with two digits, as tables show it.
+/// Number with two digits.
 pub fn figure(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {
@@ -63,22 +64,20 @@ pub fn figure(x: f64) -> String {
     }
 }
 
-/// Name of a row as the table shows it: the last two parts of its path.
 fn shown(name: &str) -> &str {
     name.rsplit_once("extremes::").map_or(name, |(_, shown)| shown)
 }
 
-/// Several numbers as [`figure`] writes them.
+/// Numbers formatted by [`figure`].
 pub fn figures(values: &[f64]) -> String {
     values.iter().map(|&x| figure(x)).collect::<Vec<_>>().join(", ")
 }
 
-/// A text without what would end a cell of a Markdown table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-/// Runs every row, those of long runs too, and prints the full table; `docs/extremes.md` has its rows with the worst results only.
+/// Runs every row, long ones included; `docs/extremes.md` shows the worst results only.
 #[test]
 #[ignore = "runs every row again, the long ones too: some minutes"]
 fn printed() {
@@ -97,9 +96,8 @@ fn printed() {
     }
 }
 
-/// The page has the rows of the code, in their order, with the same edges.
 #[test]
-fn page_has_the_rows_of_the_code() {
+fn page_matches_rows() {
     let page = fs::read_to_string(repository().join("docs/extremes.md")).expect("the page is there");
     let titles = PARTS.map(|(title, _)| format!("## {title}"));
     let found: Vec<String> = page

@@ -1,4 +1,4 @@
-//! Sizes and counts are compared before memory is taken.
+//! Sizes and counts are checked before allocation.
 
 use super::super::support::{Folder, GRAINS, PLASTIC, SOLID, repository, scene_folder, trackbed};
 use super::{refused, within};
@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-/// G3: a device never ends, a pipe waits for ever.
+/// G3: devices never end, pipes block.
 #[test]
 fn only_regular_files_are_read() {
     let folder = scene_folder("devices", SOLID);
@@ -42,15 +42,14 @@ fn only_regular_files_are_read() {
         let command = if ["stl", "obj", "dat"].contains(&ending) { "stone" } else { "mesh" };
         refused([Path::new(command), Path::new("info"), &link], device);
     }
-    // A regular file that is larger than any scene.
     let large = folder.join("large.toml");
     std::fs::File::create(&large).unwrap().set_len(1 << 30).unwrap();
     refused([Path::new("check"), &large], "found 1073741824 bytes, expected at most 67108864 bytes");
 }
 
-/// G3: counts that hung or filled the memory.
+/// G3: counts that would exhaust time or memory.
 #[test]
-fn counts_are_compared_before_anything_is_made() {
+fn counts_are_checked_before_allocation() {
     let folder = Folder::new("counts");
     let plastic = folder.write("plastic.toml", PLASTIC).display().to_string();
     let check = |set: &str, words: &str| refused(["check", &plastic, "--set", set], words);
@@ -79,7 +78,7 @@ fn counts_are_compared_before_anything_is_made() {
     assert!(!folder.join("out").exists());
 }
 
-/// Heaps and values beyond reason: a rejection at once, and no number that is none.
+/// Huge heaps and values give an immediate error, and no NaN.
 #[test]
 fn absurd_sizes_are_rejected_at_once() {
     let scene = repository().join("inputs/grains/box.toml").display().to_string();
@@ -105,13 +104,13 @@ fn absurd_sizes_are_rejected_at_once() {
         let set = format!("solid.material.0.density={density}");
         refused(["modal", &beam, "--out", &out, "--set", &set], beyond);
     }
-    // A heap of usual height, of as many grains, is none of these.
+    // An ordinary heap of as many grains is accepted.
     let wide = ["grains.0.count=20000", "grains.0.fill.high=[2, 2]", "walls.2.point=[2, 0, 0]"];
     let sets = wide.iter().chain(&["walls.4.point=[0, 2, 0]"]).flat_map(|s| ["--set", s]);
     trackbed(["check", &scene].into_iter().chain(sets)).good();
 }
 
-/// F3: steps that would never end.
+/// F3: endless steps.
 #[test]
 fn runs_without_end_are_refused() {
     let folder = Folder::new("endless");
@@ -139,9 +138,9 @@ fn runs_without_end_are_refused() {
     refused(["check", &compaction, "--set", cycles], "compaction: found ");
 }
 
-/// G4: ranges stay ranges, sets in sets count once.
+/// G4: ranges stay ranges; nested sets count once.
 #[test]
-fn sets_of_an_abaqus_file_take_no_more_memory_than_the_mesh() {
+fn abaqus_sets_use_bounded_memory() {
     let folder = Folder::new("sets");
     let block = repository().join("inputs/solid/triaxial_drained.toml");
     let mesh = folder.join("mesh.inp");
@@ -161,14 +160,13 @@ fn sets_of_an_abaqus_file_take_no_more_memory_than_the_mesh() {
     assert_eq!((members(&said, "ALL"), members(&said, "ODD")), (nodes, nodes.div_ceil(2)), "{said}");
     let absent = 100_000_000 + 4_294_967_296_u64 - 2 * nodes as u64;
     assert!(said.contains(&format!("set ALL names {absent} nodes that are not there")), "{said}");
-    // Each set is twice the one before: 2^40 members, all of them the same.
+    // Each set doubles the last: 2^40 members, all equal.
     let mut nested = "*NSET, NSET=S0\n1, 2, 3\n".to_string();
     for k in 1..=40 {
         writeln!(nested, "*NSET, NSET=S{k}\nS{0}, S{0}", k - 1).unwrap();
     }
     let said = info("nested.inp", &format!("{head}{nested}")).good().stdout;
     assert_eq!(members(&said, "S40"), 3, "{said}");
-    // Members that are counted: a set of many, in many sets.
     let mut many = String::from("*NSET, NSET=MANY\n");
     (1..=20_000).for_each(|n| writeln!(many, "{}", 1_000_000 + n).unwrap());
     (0..2_000).for_each(|k| writeln!(many, "*NSET, NSET=M{k}\nMANY").unwrap());
@@ -178,12 +176,12 @@ fn sets_of_an_abaqus_file_take_no_more_memory_than_the_mesh() {
         outcome.stderr.contains("sets: found 10") && outcome.stderr.contains("expected at most 10"),
         "{outcome:?}"
     );
-    // A constraint of a node that a range names and the mesh has not.
+    // Constrained node of a range that the mesh lacks.
     let outcome = info("held.inp", &format!("{head}{ranges}*BOUNDARY\nALL, 1\n"));
     assert!(outcome.code == 2 && outcome.stderr.contains("*BOUNDARY: found node "), "{outcome:?}");
 }
 
-/// G4: files within files, each of them many times.
+/// G4: nested, repeated includes.
 #[test]
 fn includes_are_counted() {
     let folder = Folder::new("includes");
@@ -201,7 +199,7 @@ fn includes_are_counted() {
     refused([Path::new("mesh"), Path::new("info"), &folder.join("self.inp")], "expected 10 deep");
 }
 
-/// A `.vtu` file of one piece whose array of points is zeros, packed.
+/// `.vtu` file with compressed zeros as points.
 fn bomb(points: &str, zeros: usize) -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     let chunk = vec![0_u8; 1 << 20];
@@ -220,21 +218,21 @@ fn bomb(points: &str, zeros: usize) -> Vec<u8> {
     file
 }
 
-/// G4: half a megabyte that unpacks to hundreds.
+/// G4: 0.5 MB that expand to hundreds.
 #[test]
-fn packed_arrays_are_compared_with_the_counts_before_they_are_unpacked() {
+fn compressed_arrays_are_checked_before_expansion() {
     let folder = Folder::new("bomb");
     let zeros = 256 << 20;
     let file = folder.join("bomb.vtu");
     std::fs::write(&file, bomb("8", zeros)).unwrap();
     let words = "array  of Points: found 67108864 numbers, expected at most 24 numbers";
     refused([Path::new("mesh"), Path::new("info"), &file], words);
-    // With the count that goes with it, a file of this size still has no use for so many.
+    // Matching count, but too many for the file's size.
     std::fs::write(&file, bomb(&(zeros / 12).to_string(), zeros)).unwrap();
     refused([Path::new("mesh"), Path::new("info"), &file], "numbers, expected at most 1");
 }
 
-/// G4: a packing with decimal commas was read as another one.
+/// G4: decimal commas would change the values.
 #[test]
 fn packings_with_decimal_commas_are_refused() {
     let folder = Folder::new("commas");

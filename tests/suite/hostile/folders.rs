@@ -1,4 +1,4 @@
-//! Folders of results: one run at a time, nothing of worth replaced in silence, and every file of a mesh in the hash.
+//! Results directories: locking, overwriting, and mesh files in the scene hash.
 
 use super::super::support::{
     COUPLED, Folder, GRAINS, SOLID, json, repository, results, scene_folder, small_block, snapshot, trackbed,
@@ -17,9 +17,9 @@ fn arguments<'a>(scene: &'a Path, out: &'a Path, more: &[&'a str]) -> Vec<&'a st
     [&own, more].concat()
 }
 
-/// H1: the second of two runs in one folder is refused, and what a killed one leaves refuses nobody.
+/// H1: a killed run leaves no effective lock.
 #[test]
-fn one_run_at_a_time_in_a_folder() {
+fn one_run_per_directory() {
     let folder = Folder::new("locked");
     let (scene, out) = (repository().join("inputs/grains/box.toml"), folder.join("out"));
     let long = arguments(&scene, &out, &["--set", "time.end=60"]);
@@ -38,16 +38,15 @@ fn one_run_at_a_time_in_a_folder() {
     first.kill().unwrap();
     first.wait().unwrap();
     assert!(out.join("run.lock").exists());
-    // What it has written is a result: it is not replaced in silence either.
     refused(arguments(&scene, &out, &[]), "expected another --out, or --force to overwrite them");
     let short = ["--set", "grains.0.count=20", "--set", "time.end=0.01", "--force"];
     trackbed(arguments(&scene, &out, &short)).good();
     assert!(json(&out.join("summary.json"))["status"] == "done" && !out.join("run.lock").exists());
 }
 
-/// H1: a run without `--resume` does not take away what an interrupted one can go on from.
+/// H1: needs `--resume` or `--force`.
 #[test]
-fn a_checkpoint_is_not_replaced_in_silence() {
+fn checkpoint_is_not_overwritten_silently() {
     let folder = scene_folder("kept", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let options = Options {
@@ -64,11 +63,10 @@ fn a_checkpoint_is_not_replaced_in_silence() {
     refused(arguments(&scene, &out, &[]), words);
     assert!(snapshot(&out) == before, "a refusal leaves everything");
     trackbed(arguments(&scene, &out, &["--resume"])).good();
-    // Both together say two things.
     assert_eq!(trackbed(arguments(&scene, &out, &["--resume", "--force"])).code, 2);
 }
 
-/// H1: results are not replaced in silence, not even by those of the same scene; the sentence says both ways on.
+/// H1: also for the same scene; the message offers both remedies.
 #[test]
 fn results_are_not_replaced_in_silence() {
     let folder = Folder::new("again");
@@ -97,8 +95,7 @@ fn results_are_not_replaced_in_silence() {
     assert!(log.starts_with("two\\u{7}others\n"), "{log}");
 }
 
-/// H1: variants of a scene, and scenes of one name, have default folders of their own, the same ones every time; the last line
-/// says which.
+/// H1: distinct, repeatable default directories for variants and equal names; the last line prints the path.
 #[test]
 fn default_folders_are_distinct() {
     let folder = Folder::new("variants");
@@ -124,17 +121,15 @@ fn default_folders_are_distinct() {
     }
     let again: Vec<String> = runs.iter().map(|more| place(more, &["--force"])).collect();
     assert_eq!(first, again);
-    // Each is known again by --resume.
     for more in runs {
         let said = trackbed_in(folder.path(), [&["run", "--resume"], more].concat()).good();
         assert!(said.stdout.contains("nothing to resume"), "{said:?}");
     }
 }
 
-/// H1: a folder that is renamed while a run writes there takes its results along; nothing is written under the old name, and
-/// the run goes on from there to the same bytes.
+/// H1: results follow a directory renamed during a run; resuming is bitwise identical.
 #[test]
-fn a_folder_that_is_renamed_takes_its_run_along() {
+fn renamed_directory_keeps_its_run() {
     let folder = Folder::new("renamed");
     let scene = repository().join("inputs/grains/box.toml");
     let [whole, out, moved] = ["whole", "out", "moved"].map(|name| folder.join(name));
@@ -176,7 +171,7 @@ fn a_folder_that_is_renamed_takes_its_run_along() {
     whole.iter().for_each(|(name, bytes)| assert!(*bytes == moved[name], "{name} differs"));
 }
 
-/// H4: files of others in the folder stay.
+/// H4: unrelated files stay.
 #[test]
 fn files_of_others_stay() {
     let folder = scene_folder("foreign", SOLID);
@@ -192,7 +187,6 @@ fn files_of_others_stay() {
         assert_eq!(snapshot(own.path()).len(), 1);
         trackbed(arguments(&scene, own.path(), &["--force"])).good();
     }
-    // Other names are nobody's business.
     let own = Folder::new("foreign_names");
     own.write("notes.txt", "mine");
     own.write("frames/notes.txt", "mine");
@@ -200,9 +194,9 @@ fn files_of_others_stay() {
     assert_eq!(fs::read_to_string(own.join("notes.txt")).unwrap(), "mine");
 }
 
-/// H1: a mesh is not written over the file that it is read from.
+/// H1: output equals input file.
 #[test]
-fn a_mesh_is_not_converted_onto_itself() {
+fn rejects_conversion_onto_input() {
     let folder = scene_folder("onto_itself", SOLID);
     let convert = |input: &str, output: &str| trackbed_in(folder.path(), ["mesh", "convert", input, output]);
     convert(".", "mesh.inp").good();
@@ -227,9 +221,9 @@ fn a_mesh_is_not_converted_onto_itself() {
     assert_eq!(text, fs::read_to_string(folder.join("mesh.inp")).unwrap());
 }
 
-/// H2: a mesh is all of its files.
+/// H2.
 #[test]
-fn every_file_of_a_mesh_is_in_the_hash() {
+fn hash_covers_all_mesh_files() {
     let folder = Folder::new("mesh_hash");
     fs::create_dir(folder.join("lists")).unwrap();
     write_lists(&small_block(), &folder.join("lists"));
@@ -256,9 +250,9 @@ fn every_file_of_a_mesh_is_in_the_hash() {
     }
 }
 
-/// H3: one digit of the number of the form in one slot is damage of that slot, and no other form.
+/// H3: one flipped digit of the format version damages that slot only.
 #[test]
-fn a_flipped_digit_in_one_slot_leaves_the_other() {
+fn damaged_slot_leaves_other_valid() {
     let folder = scene_folder("flipped", COUPLED);
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     for (steps, resume) in [(20, false), (10, true)] {
@@ -282,9 +276,9 @@ fn a_flipped_digit_in_one_slot_leaves_the_other() {
     assert!(outcome.stderr.starts_with("warning: ") && outcome.stderr.contains(remark), "{outcome:?}");
 }
 
-/// G5: what a run would refuse after its bed has settled is refused at once, by `check` too.
+/// G5: `check` finds errors of later stages.
 #[test]
-fn check_finds_what_would_show_after_settling() {
+fn check_finds_errors_of_later_stages() {
     let folder = Folder::new("beforehand");
     let bonds = "[[bond]]\nname = \"glue\"\ngap = 0.001\nbetween = [\"pair\", \"pair\"]\n\
                  direct = { stiffness = [1e6, 1e6, 1e3, 1e3] }\n";

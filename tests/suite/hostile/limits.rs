@@ -1,11 +1,11 @@
-//! Limits of the system that leave too little: memory, files.
+//! System limits: memory, open files.
 
 use super::super::support::{Folder, GRAINS, Outcome, repository, run};
 use std::process::{Command, Stdio};
 
-/// Runs the program under a limit such as `-n 4`, with a backtrace asked for.
+/// Runs with a limit such as `-n 4` and backtraces on.
 fn limited(limit: &str, arguments: &[&str]) -> Outcome {
-    // A program that does not end has code 124.
+    // Code 124: timeout.
     let output = Command::new("timeout")
         .args(["60", "sh", "-c", &format!("ulimit {limit}; exec \"$0\" \"$@\"")])
         .arg(env!("CARGO_BIN_EXE_trackbed"))
@@ -22,7 +22,6 @@ fn limited(limit: &str, arguments: &[&str]) -> Outcome {
     }
 }
 
-/// Commands that read or write files, for the results of `GRAINS` in `results`.
 fn commands(folder: &Folder) -> Vec<Vec<String>> {
     let scene = folder.write("scene.toml", GRAINS).display().to_string();
     let results = folder.join("results").display().to_string();
@@ -54,7 +53,7 @@ fn names_missing_file_handles() {
             let end = ", expected 16 or more. Raise the system limit (ulimit -n)\n";
             let found = said.stderr.strip_prefix("error: open files: found a limit of ");
             let found = found.and_then(|t| t.strip_suffix(end)?.parse::<u32>().ok());
-            // Three are the standard streams; others may be inherited.
+            // Three standard streams, plus inherited files.
             assert!(found.is_some_and(|n| n <= handles - 3), "{handles}: {words:?}: {said:?}");
         }
     }
@@ -67,7 +66,6 @@ fn names_missing_file_handles() {
     }
 }
 
-/// Whether a command is no server and no study, which takes its time.
 fn ends_soon(words: &[String]) -> bool {
     words[0] != "study" && words.last().is_some_and(|w| w != "--no-open")
 }
@@ -81,7 +79,7 @@ fn names_missing_memory() {
         let mut named = 0;
         for more in [8_000, 20_000, 60_000, 110_000, 200_000] {
             let said = limited(&format!("-v {}", size + more), &words);
-            // 127: the system's loader of programs has too little.
+            // 127: the dynamic loader ran out of memory.
             assert!(matches!(said.code, 0 | 3 | 127), "{more}: {words:?}: {said:?}");
             if said.code == 3 {
                 assert_eq!(said.stderr.lines().count(), 1, "{more}: {words:?}: {said:?}");

@@ -1,12 +1,11 @@
-//! Scenes with one to three keys changed at random, as `--set` does it: `check` ends with 0 or 2 and says why in one line, and
-//! a scene that it takes does not end with 2 when it runs.
+//! Random changes of one to three scene keys: `check` exits with 0 or 2 and a one-line reason; an accepted
+//! scene does not exit with 2 when run.
 
 use super::super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, repository, small_block, write_lists};
 use super::within;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Values that no key expects, or too large, too small or of no sign for it.
 #[rustfmt::skip]
 const VALUES: [&str; 34] = [
     "0",
@@ -45,7 +44,6 @@ const VALUES: [&str; 34] = [
     "1979-05-27",
 ];
 
-/// A row of numbers that a seed decides.
 struct Chance(u64);
 
 impl Chance {
@@ -55,7 +53,6 @@ impl Chance {
     }
 }
 
-/// Paths of all values of a scene, with the values.
 fn leaves(path: &str, value: &toml::Value, out: &mut Vec<(String, toml::Value)>) {
     let below = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
     match value {
@@ -70,7 +67,6 @@ fn leaves(path: &str, value: &toml::Value, out: &mut Vec<(String, toml::Value)>)
     }
 }
 
-/// A number, or one with its unit, times a factor.
 fn scaled(value: &toml::Value, factor: f64) -> Option<String> {
     match value {
         toml::Value::Integer(i) if factor > 1.0 => Some(format!("{}", (*i as f64 * factor) as i64)),
@@ -87,17 +83,15 @@ fn scaled(value: &toml::Value, factor: f64) -> Option<String> {
     }
 }
 
-/// Factors on a number: most of them may well be meant.
+/// Mostly plausible factors.
 const FACTORS: [f64; 12] = [0.5, 2.0, 0.9, 1.1, 0.1, 10.0, 1e-3, 1e3, 1e-6, 1e6, -1.0, 1e12];
 
-/// One override at random.
 fn change(leaves: &[(String, toml::Value)], chance: &mut Chance) -> String {
     let (path, value) = &leaves[chance.below(leaves.len())];
     let other = VALUES[chance.below(VALUES.len())];
     match (chance.below(8), scaled(value, FACTORS[chance.below(FACTORS.len())]), value.as_array()) {
         (0, ..) => format!("{path}="),
         (1..=4, Some(text), _) => format!("{path}={text}"),
-        // One item of a list.
         (5, _, Some(items)) if !items.is_empty() => {
             let mut items: Vec<String> = items.iter().map(toml::Value::to_string).collect();
             let at = chance.below(items.len());
@@ -108,7 +102,6 @@ fn change(leaves: &[(String, toml::Value)], chance: &mut Chance) -> String {
     }
 }
 
-/// Scenes that take a moment to run.
 fn tiny(folder: &Folder) -> Vec<PathBuf> {
     write_lists(&small_block(), folder.path());
     [("solid", SOLID), ("plastic", PLASTIC), ("grains", GRAINS), ("coupled", COUPLED)]
@@ -116,7 +109,6 @@ fn tiny(folder: &Folder) -> Vec<PathBuf> {
         .to_vec()
 }
 
-/// Shipped scenes.
 fn shipped() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![repository().join("inputs")];
@@ -138,7 +130,7 @@ fn shipped() -> Vec<PathBuf> {
     found
 }
 
-/// What is wrong with the end of a command, if anything is.
+/// Error in the exit of a command, if any.
 fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String> {
     let mut arguments = vec![verb.to_string(), scene.display().to_string()];
     set.iter().for_each(|s| arguments.extend(["--set".to_string(), s.clone()]));
@@ -147,18 +139,18 @@ fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String>
     }
     let shown = format!("{verb} {} --set {}", scene.display(), set.join(" --set "));
     let Some(outcome) = within(if verb == "run" { 5 } else { 60 }, &arguments) else {
-        // A run may take its time.
+        // Runs may be slow.
         return (verb != "run").then(|| format!("no end: {shown}"));
     };
     let good = match (verb, outcome.code) {
         (_, 0) => true,
-        // A change makes one fault: no other follows from it.
+        // One error per change.
         ("check", 2) => {
             let lines: Vec<&str> = outcome.stderr.lines().collect();
             (1..=set.len()).contains(&lines.len())
                 && lines.iter().all(|l| l.starts_with("error: ") && l[7..].contains(": "))
         }
-        // What no look at a matrix shows, but its factorization.
+        // Only factorisation detects these.
         ("run", 2) => ["an ill-conditioned stiffness matrix", "expected supports that prevent"]
             .iter()
             .any(|w| outcome.stderr.contains(w)),
@@ -168,7 +160,6 @@ fn fault(verb: &str, scene: &Path, set: &[String], out: &Path) -> Option<String>
     (!good).then(|| format!("{} of {shown}: {}", outcome.code, outcome.stderr))
 }
 
-/// Changes `count` times one to three keys of each of these scenes.
 fn changed(scenes: &[PathBuf], count: usize, seed: u64, runs: bool) {
     let folder = Folder::new("mutations");
     let mut chance = Chance(seed);
@@ -182,7 +173,6 @@ fn changed(scenes: &[PathBuf], count: usize, seed: u64, runs: bool) {
             let out = folder.join("out");
             let wrong = fault("check", scene, &set, &out);
             let good = wrong.is_none() && runs && {
-                // Only what is checked without a fault runs.
                 let mut arguments = vec!["check".to_string(), scene.display().to_string()];
                 set.iter().for_each(|s| arguments.extend(["--set".to_string(), s.clone()]));
                 within(30, &arguments).is_some_and(|o| o.code == 0)
@@ -207,11 +197,11 @@ fn changed_scenes_run_or_are_refused() {
 }
 
 #[test]
-fn changed_scenes_that_are_shipped_are_checked_or_refused() {
+fn changed_shipped_scenes_pass_or_fail() {
     changed(&shipped(), 3, 2, false);
 }
 
-/// `TRACKBED_SEED` chooses other changes, `TRACKBED_CHANGES` their number.
+/// `TRACKBED_SEED` and `TRACKBED_CHANGES` (count).
 #[test]
 #[ignore = "some thousand changes, 15 min"]
 fn many_changed_scenes() {

@@ -1,5 +1,5 @@
-//! Files of every form with bytes, numbers and lines changed at random: a reader returns a mesh or one error, soon and in little
-//! memory. The same functions are the targets of `fuzz/`, whose kept inputs are read here too.
+//! Random changes to files of every format: readers return a mesh or one error, within limits of time and
+//! memory. Shared with the targets of `fuzz/`.
 
 use super::super::support::{COUPLED, Folder, PLASTIC, repository, run, small_block};
 use std::collections::BTreeMap;
@@ -11,12 +11,11 @@ use trackbed::read::{MeshFile, read_mesh_file, read_surface};
 use trackbed::write::{MeshOptions, hdf5, write_mesh_file};
 use trackbed_fem::mesh::Constraint;
 
-/// Time for a file of up to a megabyte.
+/// Limit for files up to 1 MB.
 const TIME: Duration = Duration::from_secs(1);
-/// Memory that all readers together may take more than before [bytes].
+/// Limit of additional memory for all readers [bytes].
 const MEMORY: u64 = 400 << 20;
 
-/// What takes the place of a number of a text file.
 const NUMBERS: [&str; 14] = [
     "0",
     "-1",
@@ -46,7 +45,6 @@ impl Chance {
     }
 }
 
-/// Changes bytes, a number, or lines.
 fn change(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let at = chance.below(bytes.len());
     let to = (at + 1 + chance.below(40)).min(bytes.len());
@@ -65,7 +63,6 @@ fn change(bytes: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// Replaces the number at or behind a place.
 fn number(bytes: &mut Vec<u8>, at: usize, by: &str) {
     let is_part = |b: &u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'+' | b'e' | b'E');
     let Some(first) = bytes[at..].iter().position(u8::is_ascii_digit).map(|n| at + n) else { return };
@@ -73,7 +70,6 @@ fn number(bytes: &mut Vec<u8>, at: usize, by: &str) {
     bytes.splice(first..end, by.bytes());
 }
 
-/// Takes a line away, doubles it, or changes it over with another.
 fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let mut all: Vec<Vec<u8>> = bytes.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect();
     let (a, b) = (chance.below(all.len()), chance.below(all.len()));
@@ -85,7 +81,6 @@ fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
     *bytes = all.join(&b'\n');
 }
 
-/// A mesh with sets, constraints and constants.
 fn mesh() -> MeshFile {
     let mesh = small_block();
     let constraints = (0..9).map(|node| Constraint { node, direction: 2, value: 0.0 }).collect();
@@ -100,7 +95,6 @@ fn mesh() -> MeshFile {
 
 const TRIANGLE: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
 
-/// A good file of every form, and the one of the folder that is changed.
 fn good(folder: &Folder) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for (name, msh2) in [
@@ -131,7 +125,6 @@ fn good(folder: &Folder) -> Vec<PathBuf> {
     files
 }
 
-/// Reads a mesh or a surface, whatever comes of it.
 fn read(file: &Path) {
     let ending = file.extension().unwrap().to_str().unwrap();
     match ending {
@@ -141,7 +134,7 @@ fn read(file: &Path) {
     }
 }
 
-/// Calls `target`; a panic or a long time is a fault with the name of the file that is kept.
+/// Records a panic or timeout of `target` with the saved file.
 fn judged(name: &str, bytes: &[u8], target: impl Fn(), faults: &mut Vec<String>) {
     let begun = Instant::now();
     let panicked = catch_unwind(AssertUnwindSafe(target)).is_err();
@@ -180,7 +173,7 @@ fn changed_files(count: usize, seed: u64) {
 }
 
 #[test]
-fn changed_mesh_and_surface_files_are_read_or_refused() {
+fn changed_meshes_and_surfaces_are_handled() {
     changed_files(150, 3);
 }
 
@@ -197,7 +190,6 @@ fn changed_texts(count: usize, seed: u64) {
             judged("scene.toml", &bytes, || targets::scene(&bytes), &mut faults);
         }
     }
-    // As deep as it goes.
     for open in ["[", "{ a = ", "[[a.", "a."] {
         let deep = format!("a = {}", open.repeat(50_000));
         judged("deep.toml", deep.as_bytes(), || targets::scene(deep.as_bytes()), &mut faults);
@@ -206,11 +198,11 @@ fn changed_texts(count: usize, seed: u64) {
 }
 
 #[test]
-fn changed_scenes_and_overrides_are_parsed_or_refused() {
+fn changed_scenes_and_overrides_are_handled() {
     changed_texts(300, 4);
 }
 
-/// Frames of grains, chains, walls and solid, a file of VTKHDF with its mark, a checkpoint and a study, each as its target takes it.
+/// Frames, a VTKHDF file, a checkpoint and a study, by fuzz target.
 fn good_results(folder: &Folder) -> Vec<(&'static str, Vec<u8>)> {
     let made = |name: &str, scene: &str, set: &[&str]| {
         let out = folder.join(name);
@@ -244,7 +236,6 @@ fn good_results(folder: &Folder) -> Vec<(&'static str, Vec<u8>)> {
     found
 }
 
-/// Changes results for `count` times, or for some time.
 fn changed_results(count: usize, time: Duration, seed: u64) {
     let folder = Folder::new("changed_results");
     let (mut chance, mut faults) = (Chance(seed), Vec::new());
@@ -268,7 +259,7 @@ fn changed_results_are_read_or_refused() {
     changed_results(40, Duration::ZERO, 5);
 }
 
-/// `TRACKBED_SECONDS` for each target, `TRACKBED_SEED` chooses other changes.
+/// `TRACKBED_SECONDS` per target, `TRACKBED_SEED`.
 #[test]
 #[ignore = "2 min for each of seven files"]
 fn many_changed_results() {
@@ -276,7 +267,6 @@ fn many_changed_results() {
     changed_results(1, Duration::from_secs(number("TRACKBED_SECONDS", 120)), number("TRACKBED_SEED", 12));
 }
 
-/// `TRACKBED_SEED` chooses other changes.
 #[test]
 #[ignore = "half a million changes, 10 min"]
 fn many_changed_files() {
@@ -285,9 +275,9 @@ fn many_changed_files() {
     changed_texts(30_000, seed);
 }
 
-/// Inputs that once were faults, and one of every form.
+/// Former failures, and one input of every format.
 #[test]
-fn kept_inputs_of_the_fuzz_targets_are_read_or_refused() {
+fn fuzz_corpus_is_handled() {
     let mut count = 0;
     let mut faults = Vec::new();
     for target in fs::read_dir(repository().join("fuzz/corpus")).unwrap() {

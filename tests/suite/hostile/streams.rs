@@ -1,4 +1,4 @@
-//! Outputs that nobody reads, signals, and faults of the program.
+//! Closed or full outputs, signals, and internal errors.
 
 use super::super::support::{COUPLED, Folder, PLASTIC, json, repository, results, run, scene_folder};
 use super::{refused, within};
@@ -20,7 +20,7 @@ fn program(scene: &Path, out: &Path, set: &[&str]) -> Command {
 
 const SHORT: [&str; 3] = ["grains.0.count=50", "time.end=0.02", "output.frames=1"];
 
-/// G2: a run whose outputs are closed or full ends as any other.
+/// G2: closed or full outputs do not stop a run.
 #[test]
 fn a_run_needs_nobody_who_listens() {
     let folder = Folder::new("listeners");
@@ -50,7 +50,7 @@ fn a_run_needs_nobody_who_listens() {
             assert_eq!(json(&out.join("summary.json"))["status"], "done");
         }
     }
-    // Of a command whose text is its result, a full output is a failure, and no panic.
+    // For a command whose output is text, a full device is an error.
     let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
     let full = File::options().write(true).open("/dev/full").unwrap();
     let output = command.arg("check").arg(&spheres).stdout(full).output().unwrap();
@@ -63,7 +63,6 @@ fn kill(signal: &str, child: &Child) {
     assert!(status.unwrap().success());
 }
 
-/// Waits until a run has written `rows` of its history.
 fn wait_for(rows: usize, out: &Path, child: &mut Child) {
     let begun = Instant::now();
     while fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count()) < rows {
@@ -73,9 +72,9 @@ fn wait_for(rows: usize, out: &Path, child: &mut Child) {
     }
 }
 
-/// A command that a closed terminal ends, also where the tests run under `nohup`: an ignored signal is inherited.
+/// Restores the default SIGHUP, which `nohup` would suppress in the child.
 fn with_default_hangup(mut command: Command) -> Command {
-    // SAFETY: between fork and exec the closure calls `signal` only, which is async-signal-safe.
+    // SAFETY: `signal`, the only call between fork and exec, is async-signal-safe.
     unsafe {
         command.pre_exec(|| match libc::signal(libc::SIGHUP, libc::SIG_DFL) {
             libc::SIG_ERR => Err(std::io::Error::last_os_error()),
@@ -85,7 +84,7 @@ fn with_default_hangup(mut command: Command) -> Command {
     command
 }
 
-/// G6: a terminal that is closed leaves a checkpoint; under `nohup` it is none of the run's business.
+/// G6: SIGHUP saves a checkpoint, except under `nohup`.
 #[test]
 fn hanging_up_leaves_a_checkpoint() {
     let folder = Folder::new("hang_up");
@@ -115,9 +114,9 @@ fn hanging_up_leaves_a_checkpoint() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
 }
 
-/// G6: a file that must not grow is an error of that file.
+/// G6.
 #[test]
-fn a_limit_of_file_sizes_is_an_error_that_names_the_file() {
+fn file_size_limit_names_file() {
     let folder = Folder::new("file_size");
     let scene = repository().join("inputs/grains/box.toml");
     let out = folder.join("out");
@@ -130,14 +129,12 @@ fn a_limit_of_file_sizes_is_an_error_that_names_the_file() {
     assert!(text.starts_with("error: ") && text.contains("cannot be written"), "{text}");
 }
 
-/// Ctrl-C is acknowledged within a second wherever a run is: while it makes one piece of work that keeps nothing it ends, and a
-/// long step says that it will.
+/// Ctrl-C is acknowledged within a second: a stage with nothing to save ends, a long step announces its end.
 #[test]
 fn an_interrupt_is_acknowledged_at_once() {
     let folder = Folder::new("acknowledged");
     let scene = repository().join("inputs/solid/embankment_large.toml");
     let out = folder.join("out");
-    // A static solve of some seconds.
     let set = ["solid.block.x.counts=[60]", "solid.block.y.counts=[24]", "solid.block.z.counts=[8, 8]"];
     let mut child = program(&scene, &out, &set).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
     let begun = Instant::now();
@@ -149,18 +146,18 @@ fn an_interrupt_is_acknowledged_at_once() {
     let begun = Instant::now();
     let said = child.wait_with_output().unwrap();
     let text = String::from_utf8(said.stderr).unwrap();
-    // 50 ms and what a busy machine adds.
+    // 50 ms, plus machine load.
     assert!(begun.elapsed() < Duration::from_secs(5), "{:?}: {text}", begun.elapsed());
     assert_eq!(said.status.code(), Some(130), "{text}");
     assert!(text.lines().any(|l| l == "interrupted: nothing to save"), "{text}");
 }
 
-/// G6: Ctrl-C is heard between two iterations of a plastic step, and the run goes on to the same bytes.
+/// G6: checked between plastic iterations; resuming is bitwise identical.
 #[test]
 fn a_plastic_step_hears_the_interrupt() {
     let folder = Folder::new("plastic_interrupt");
     let scene = folder.write("scene.toml", PLASTIC);
-    // Two steps of twenty iterations each.
+    // Two steps of twenty iterations.
     let set = [
         "solid.block.x.counts=[6]",
         "solid.block.y.counts=[5]",
@@ -188,9 +185,9 @@ fn a_plastic_step_hears_the_interrupt() {
     whole.iter().for_each(|(name, bytes)| assert!(*bytes == out[name], "{name} differs after a restart"));
 }
 
-/// G7: a panic, here of a library that finds no number, is one line with exit code 3.
+/// G7: a panic is one line with exit code 3.
 #[test]
-fn a_fault_of_the_program_is_one_line() {
+fn panic_is_one_line() {
     let folder = scene_folder("fault", COUPLED);
     let scene = folder.join("scene.toml");
     let set = ["solid.material.0.young=1e-200", "solid.reduction={ kind = \"surface\" }"];
@@ -205,7 +202,7 @@ fn a_fault_of_the_program_is_one_line() {
     assert!(status.starts_with("failed: internal error"), "{status}");
 }
 
-/// H4: what others wrote is shown in short and without control characters.
+/// H4: quoted input is shortened, without control characters.
 #[test]
 fn messages_are_short_and_printable() {
     let folder = Folder::new("tokens");

@@ -1,4 +1,4 @@
-//! Results of known scenes, and pictures as pixels.
+//! Result files of known scenes, and bitmaps.
 
 use crate::suite::support::Folder;
 use std::fs;
@@ -22,7 +22,7 @@ fn file(folder: &Folder, name: &str, kind: &str, piece: &str, body: &str) {
     folder.write(&format!("frames/{name}"), &text);
 }
 
-/// Spheres: centre and radius of each, each a body of its own, in groups.
+/// Spheres (centre, radius) as single bodies, in groups.
 pub fn grains(folder: &Folder, frame: usize, spheres: &[[f64; 4]], parts: &[u32]) {
     let points = joined(spheres.iter().flat_map(|s| &s[..3]));
     let data = array("Float64", "radius", 1, &joined(spheres.iter().map(|s| s[3])))
@@ -34,7 +34,7 @@ pub fn grains(folder: &Folder, frame: usize, spheres: &[[f64; 4]], parts: &[u32]
     file(folder, &format!("grains_{frame}.vtp"), "PolyData", &piece, &body);
 }
 
-/// Force chains: both ends of each.
+/// Force chains by end points.
 pub fn chains(folder: &Folder, frame: usize, ends: &[[f64; 6]], forces: &[f64]) {
     let body = format!(
         "<CellData>{}</CellData><Points>{}</Points><Lines>{}{}</Lines>",
@@ -47,7 +47,7 @@ pub fn chains(folder: &Folder, frame: usize, ends: &[[f64; 6]], forces: &[f64]) 
     file(folder, &format!("chains_{frame}.vtp"), "PolyData", &piece, &body);
 }
 
-/// A unit cube of one element with a nodal field `heat` and displacements.
+/// Unit cube element with nodal field `heat`.
 pub fn solid(
     folder: &Folder,
     frame: usize,
@@ -74,7 +74,7 @@ pub fn solid(
     );
 }
 
-/// The list of `count` frames, a second apart, of those files that were written.
+/// Series of `count` frames, 1 s apart.
 pub fn series(folder: &Folder, count: usize) {
     let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"><Collection>\n");
     for frame in 0..count {
@@ -89,7 +89,7 @@ pub fn series(folder: &Folder, count: usize) {
     folder.write("results.pvd", &(text + "</Collection></VTKFile>\n"));
 }
 
-/// A picture.
+/// Bitmap.
 pub struct Pixels {
     width: usize,
     height: usize,
@@ -97,7 +97,7 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// Reads a bitmap of 24 bits, rows from below.
+    /// Reads a 24-bit bitmap, rows bottom-up.
     pub fn read(file: &Path) -> Pixels {
         let bytes = fs::read(file).unwrap();
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -110,22 +110,22 @@ impl Pixels {
         Pixels { width, height, rows }
     }
 
-    /// A pixel, from the upper left on.
+    /// Pixel from the upper left.
     pub fn at(&self, x: usize, y: usize) -> [u8; 3] {
         self.rows[3 * (y * self.width + x)..][..3].try_into().unwrap()
     }
 
-    /// All of them.
+    /// All pixels.
     pub fn rows(self) -> Vec<u8> {
         self.rows
     }
 
-    /// Number of pixels that are not white.
+    /// Count of non-white pixels.
     pub fn count(&self) -> usize {
         self.rows.chunks_exact(3).filter(|p| **p != [255; 3]).count()
     }
 
-    /// First and last column and row of what is not white: x0, y0, x1, y1.
+    /// Bounds of non-white pixels: x0, y0, x1, y1.
     pub fn covered(&self) -> Option<[usize; 4]> {
         let places = (0..self.width * self.height).map(|k| (k % self.width, k / self.width));
         places.filter(|(x, y)| self.at(*x, *y) != [255; 3]).fold(None, |ends: Option<[usize; 4]>, (x, y)| {
@@ -134,7 +134,7 @@ impl Pixels {
         })
     }
 
-    /// Runs of pixels of a column that are not white: their middles and lengths, from above.
+    /// Non-white runs of a column: middles and lengths.
     pub fn runs(&self, x: usize) -> Vec<(usize, usize)> {
         let mut runs: Vec<(usize, usize)> = Vec::new();
         let mut from = None;

@@ -1,4 +1,4 @@
-//! Which file takes names from which, and the circles that this makes.
+//! Dependency graph of files and its cycles.
 
 use super::source::{ModulePath, Scopes};
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,17 +6,15 @@ use std::collections::{BTreeMap, BTreeSet};
 /// `from → to: names`, by file.
 pub type Graph = BTreeMap<(String, String), BTreeSet<String>>;
 
-/// What each entry reaches at once.
 type Edges = BTreeMap<String, BTreeSet<String>>;
 
-/// What a path leads to.
 enum Target {
     Module(ModulePath),
     /// File that defines an item.
     Item(String),
 }
 
-/// Names that re-exports pass on through; more is a circle of imports.
+/// Longest chain of re-exports; more is an import cycle.
 const DEPTH: usize = 16;
 
 fn lookup(scopes: &Scopes, module: &ModulePath, name: &str, depth: usize) -> Option<Target> {
@@ -32,7 +30,7 @@ fn lookup(scopes: &Scopes, module: &ModulePath, name: &str, depth: usize) -> Opt
         return None;
     }
     if let Some(import) = scope.imports.get(name) {
-        // `use name::…` of another crate leads to itself.
+        // `use name::…` of another crate resolves to itself.
         return if import.path.len() == 1 { None } else { resolve(scopes, module, &import.path, depth - 1) };
     }
     scope.globs.iter().find_map(|glob| match resolve(scopes, module, glob, depth - 1)? {
@@ -59,8 +57,8 @@ fn resolve(scopes: &Scopes, from: &ModulePath, path: &[String], depth: usize) ->
     Some(Target::Module(module))
 }
 
-/// The graph of a crate. A re-export (`pub use`) ties whoever uses the name to the file that defines it, and the file that
-/// hands it on to nothing. Methods count where the block of a type's methods stands in another file than the type.
+/// Graph of a crate. A re-export (`pub use`) ties its user to the defining file. Methods count if implemented
+/// in another file than their type.
 pub fn graph(scopes: &Scopes) -> Graph {
     let mut graph = Graph::new();
     let mut tie = |from: &str, to: String, name: &str| {
@@ -83,7 +81,7 @@ pub fn graph(scopes: &Scopes) -> Graph {
     graph
 }
 
-/// Methods of one name in the whole crate that stand in another file than their type.
+/// Unique methods implemented outside their type's file.
 fn methods_away(scopes: &Scopes) -> BTreeMap<String, String> {
     let mut all: BTreeMap<String, Vec<(String, bool)>> = BTreeMap::new();
     for (module, scope) in scopes {
@@ -101,26 +99,25 @@ fn methods_away(scopes: &Scopes) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// A circle among the entries of one folder.
+/// Cycle among entries of one directory.
 #[derive(Debug)]
 pub struct Circle {
-    /// The folder.
+    /// Directory.
     pub folder: String,
-    /// Its files and folders (with `/` at the end) that reach each other.
+    /// Files and directories (with `/`) in the cycle.
     pub entries: Vec<String>,
-    /// What ties them: `from -> to: names`.
+    /// Ties: `from -> to: names`.
     pub ties: Vec<String>,
 }
 
 impl Circle {
-    /// Whether folders are tied, or more files of one folder than read as one piece.
+    /// Whether directories, or too many files, are tied.
     pub fn too_large(&self) -> bool {
         self.entries.len() > 3 || self.entries.iter().any(|e| e.ends_with('/'))
     }
 }
 
-/// Entry of a folder that a file belongs to: itself, or the folder below (with `/`) that it lies in. `x.rs` beside a folder
-/// `x` belongs to it as `x/mod.rs` would.
+/// Entry of a directory that contains a file; `x.rs` next to `x/` counts as `x/mod.rs`.
 fn entry(folder: &str, file: &str, folders: &BTreeSet<String>) -> Option<String> {
     let rest = file.strip_prefix(folder)?;
     if rest == ".rs" {
@@ -132,7 +129,7 @@ fn entry(folder: &str, file: &str, folders: &BTreeSet<String>) -> Option<String>
     Some(if is_folder { format!("{below}/") } else { rest.to_string() })
 }
 
-/// All circles below a folder: at each level, files and folders stand for themselves and what is in them.
+/// All cycles below a directory, level by level.
 pub fn circles(graph: &Graph, folder: &str) -> Vec<Circle> {
     let parent = |file: &str| file.rsplit_once('/').map(|(above, _)| above.to_string());
     let mut folders: BTreeSet<String> = BTreeSet::new();
@@ -165,7 +162,7 @@ fn circles_at(graph: &Graph, folder: &str, folders: &BTreeSet<String>) -> Vec<Ci
     components(&edges).into_iter().map(circle).collect()
 }
 
-/// Numbers of files that reach each other, folders apart.
+/// Sizes of file cycles, ignoring directories.
 pub fn files_in_circles(graph: &Graph) -> Vec<usize> {
     let mut edges = Edges::new();
     for (from, to) in graph.keys() {
@@ -176,7 +173,7 @@ pub fn files_in_circles(graph: &Graph) -> Vec<usize> {
     sizes
 }
 
-/// Groups of two and more that reach each other.
+/// Strongly connected components of two and more.
 fn components(edges: &Edges) -> Vec<BTreeSet<String>> {
     let reached: BTreeMap<&String, BTreeSet<&String>> = edges
         .keys()

@@ -1,9 +1,9 @@
-//! Keys that sources name in messages, and keys that a scene has.
+//! Keys in messages and keys of a scene.
 
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 
-/// Functions of the program that take the name of a key beside the methods of `Table`, and in which place.
+/// Functions with a key argument and its index.
 const FUNCTIONS: [(&str, usize); 12] = [
     ("find", 2),
     ("region", 1),
@@ -19,7 +19,7 @@ const FUNCTIONS: [(&str, usize); 12] = [
     ("faulty", 0),
 ];
 
-/// Methods that take the name of a key first.
+/// Methods with a key as first argument.
 const METHODS: [&str; 13] = [
     "error",
     "missing",
@@ -36,14 +36,14 @@ const METHODS: [&str; 13] = [
     "strength",
 ];
 
-/// Adds the keys of the tables that a file declares: fields of structs and of variants, as `serde` reads them.
+/// Adds keys declared for `serde`: fields of structs and variants.
 pub fn declared(text: &str, keys: &mut BTreeSet<String>) {
     struct Fields<'a>(&'a mut BTreeSet<String>);
     impl<'ast> Visit<'ast> for Fields<'_> {
         fn visit_field(&mut self, field: &'ast syn::Field) {
             let mut key = field.ident.as_ref().map(ToString::to_string);
             for attribute in field.attrs.iter().filter(|a| a.path().is_ident("serde")) {
-                // Other attributes of serde have other values; what stands behind `rename` is all that counts.
+                // Only `rename` matters.
                 let _ = attribute.parse_nested_meta(|meta| {
                     let value = meta.value()?.parse::<syn::LitStr>()?;
                     if meta.path.is_ident("rename") {
@@ -58,7 +58,7 @@ pub fn declared(text: &str, keys: &mut BTreeSet<String>) {
     Fields(keys).visit_file(&syn::parse_file(text).expect("sources can be parsed"));
 }
 
-/// The keys that a file names as literals, with their lines; a path such as `sleeper.mass` names several.
+/// Keys in literals with lines; `sleeper.mass` is two.
 pub fn named(text: &str) -> Vec<(usize, String)> {
     struct Names(Vec<(usize, String)>);
     impl Names {
@@ -91,7 +91,6 @@ pub fn named(text: &str) -> Vec<(usize, String)> {
             visit::visit_expr_call(self, call);
         }
 
-        /// Lists of keys with what is to be known of them: `("mass", mass.is_some())`.
         fn visit_expr_tuple(&mut self, tuple: &'ast syn::ExprTuple) {
             let text = |e: &syn::Expr| matches!(e, syn::Expr::Lit(_) | syn::Expr::Macro(_));
             let sentence = |e: &syn::Expr| match e {

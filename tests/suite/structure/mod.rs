@@ -1,6 +1,6 @@
-//! The sources keep their order: no circles of folders, functions that can be read in a sitting, words of the field.
+//! Structure of the sources: no dependency cycles, short functions, standard terms.
 //!
-//! `cargo test --release --test suite structure -- --nocapture` prints what was found.
+//! `cargo test --release --test suite structure -- --nocapture` prints details.
 
 mod graph;
 mod keys;
@@ -13,20 +13,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Lines that a function may have.
 const LONGEST: usize = 80;
 
-/// Root files of the crates.
 const CRATES: [&str; 4] = ["dem/src/lib.rs", "fem/src/lib.rs", "coupling/src/lib.rs", "src/lib.rs"];
 
-/// Functions that may be longer, with the reason.
+/// Exempt functions with reasons.
 const TABLES: &[(&str, &str)] = &[];
 
 fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files below the repository with one of the endings, as (path from there, text).
+/// Files with these extensions: (path, text).
 fn files(endings: &[&str]) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![PathBuf::new()];
@@ -56,7 +54,7 @@ fn print(circle: &Circle) {
 }
 
 #[test]
-fn no_circles_between_folders_and_none_of_more_than_three_files() {
+fn dependency_cycles_are_small() {
     let mut failures = Vec::new();
     for root in CRATES {
         let scopes = read_crate(repository(), root);
@@ -80,13 +78,12 @@ fn no_circles_between_folders_and_none_of_more_than_three_files() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Elementary functions whose last bits hang on the system's library and on the processor that it picks its code for; those of
-/// the crate `libm` do not.
+/// Functions whose last bits depend on system library and CPU; use those of `libm`.
 const ELEMENTARY: &str = "sin cos tan asin acos atan atan2 sin_cos exp exp2 exp_m1 ln ln_1p log2 log10 powf cbrt sinh cosh \
                           tanh asinh acosh atanh hypot scaled_axis from_scaled_axis from_axis_angle from_euler_angles";
 
 #[test]
-fn elementary_functions_have_the_same_bits_everywhere() {
+fn elementary_functions_use_libm() {
     let mut found = Vec::new();
     for root in CRATES {
         for scope in read_crate(repository(), root).values() {
@@ -102,7 +99,7 @@ fn elementary_functions_have_the_same_bits_everywhere() {
 }
 
 #[test]
-fn functions_can_be_read_in_a_sitting() {
+fn functions_are_short() {
     let sources = files(&[".rs"]);
     let longest = sources.iter().max_by_key(|(_, text)| text.lines().count()).expect("there are sources");
     println!("longest file: {} with {} lines", longest.0, longest.1.lines().count());
@@ -116,17 +113,16 @@ fn functions_can_be_read_in_a_sitting() {
     assert!(long.is_empty(), "{} functions of more than {LONGEST} lines", long.len());
 }
 
-/// A key that an error names must be one that a scene, or a table of trains, can hold.
+/// Keys in error messages must exist in a scene or a table of trains.
 #[test]
-fn keys_that_errors_name_are_keys_of_a_scene() {
+fn keys_in_errors_exist() {
     let sources = files(&[".rs"]);
     let tables = ["src/scene/", "src/model/track/trains.rs"];
-    // The scene as a whole.
     let mut known = BTreeSet::from(["scene".to_string()]);
     for (_, text) in sources.iter().filter(|(file, _)| tables.iter().any(|t| file.starts_with(t))) {
         keys::declared(text, &mut known);
     }
-    // Files beside the scene have keys of their own.
+    // Files with separate keys.
     let others =
         ["src/model/tables.rs", "src/scene/document.rs", "src/scene/table.rs", "src/scene/wording.rs"];
     let of_scene = |file: &str| {
@@ -165,7 +161,6 @@ fn replaced_words_are_gone() {
     assert!(found == 0, "{found} uses of replaced words");
 }
 
-/// The checks themselves, on a small crate with faults.
 mod the_checks {
     use super::super::support::Folder;
     use super::words::{Ban, uses, words_of};
@@ -173,7 +168,6 @@ mod the_checks {
     use std::collections::{BTreeMap, BTreeSet};
     use std::fs;
 
-    /// Circles of a crate of these files.
     fn circles_of(name: &str, files: &[(&str, &str)]) -> Vec<(Vec<String>, bool)> {
         let folder = Folder::new(name);
         for (file, text) in files {
@@ -199,7 +193,7 @@ mod the_checks {
     }
 
     #[test]
-    fn every_way_of_naming_closes_a_circle() {
+    fn every_reference_closes_cycle() {
         let low = |text| {
             let inner = ("low/inner.rs", text);
             let face = ("low/mod.rs", "mod inner; pub use inner::Low;");
@@ -248,7 +242,7 @@ mod the_checks {
     }
 
     #[test]
-    fn keys_are_found_in_tables_and_in_errors() {
+    fn finds_keys_in_tables_and_errors() {
         let mut declared = BTreeSet::new();
         let tables = "struct A { #[serde(default)] mass: f64, #[serde(rename = \"box\")] region: B }\n\
                       enum C { D { low: f64 } }";
@@ -262,7 +256,7 @@ mod the_checks {
     }
 
     #[test]
-    fn words_are_found_in_names_and_in_text() {
+    fn finds_words_in_names_and_text() {
         assert_eq!(words_of("LoadCycle2d_ofX"), ["load", "cycle2d", "of", "x"]);
         let replaced =
             BTreeMap::from([("wheel".to_string(), Ban::Names), ("axle".to_string(), Ban::Anywhere)]);

@@ -1,4 +1,4 @@
-//! The sources of a crate as scopes: what each module defines, imports and names.
+//! Reads a crate's modules: definitions, imports, uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,41 +6,41 @@ use std::path::Path;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 
-/// Path of a module from the crate's root.
+/// Module path from the crate root.
 pub type ModulePath = Vec<String>;
 
-/// One name that a `use` brings in, or a glob.
+/// Import by `use`.
 #[derive(Debug)]
 pub struct Import {
-    /// Path as written, from `crate`, `self`, `super` or a name in scope.
+    /// Path as written.
     pub path: Vec<String>,
-    /// Whether it only hands the name on (`pub use`).
+    /// Re-export (`pub use`).
     pub public: bool,
 }
 
-/// A module, in a file of its own or not.
+/// Module, inline or a file.
 #[derive(Debug, Default)]
 pub struct Scope {
     /// File relative to the repository.
     pub file: String,
-    /// Names of the items that it defines.
+    /// Defined items.
     pub items: BTreeSet<String>,
     /// Imported names.
     pub imports: BTreeMap<String, Import>,
-    /// Modules all of whose names are imported.
+    /// Glob imports.
     pub globs: Vec<Vec<String>>,
-    /// Paths used in code, signatures and macro calls.
+    /// Paths in code, signatures and macro calls.
     pub paths: BTreeSet<Vec<String>>,
-    /// Types whose inherent methods stand here, and these methods.
+    /// Inherent methods with their types.
     pub methods: Vec<(Vec<String>, String)>,
-    /// Names of the methods called.
+    /// Called methods.
     pub calls: BTreeSet<String>,
 }
 
-/// The scopes of a crate by their module path; what is compiled for tests alone is left out.
+/// Scopes of a crate by module path, without test code.
 pub type Scopes = BTreeMap<ModulePath, Scope>;
 
-/// Reads a crate from its root file, such as `dem/src/lib.rs`.
+/// Reads a crate from its root file.
 pub fn read_crate(repository: &Path, root: &str) -> Scopes {
     let mut scopes = Scopes::new();
     let folder = root.rsplit_once('/').expect("a root file lies in a folder").0;
@@ -92,7 +92,7 @@ fn read_items(
     scopes.insert(module, scope);
 }
 
-/// Whether an item is compiled for tests only.
+/// Whether an item is test code.
 pub fn for_tests(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| {
         a.path().is_ident("test")
@@ -161,7 +161,6 @@ fn add(path: Vec<String>, name: Option<String>, public: bool, scope: &mut Scope)
     }
 }
 
-/// Collects the names that the code of a scope uses.
 struct Names<'a>(&'a mut Scope);
 
 impl<'ast> Visit<'ast> for Names<'_> {
@@ -203,7 +202,7 @@ impl<'ast> Visit<'ast> for Names<'_> {
     }
 }
 
-/// Paths and method calls among the tokens of a macro call.
+/// Paths and method calls in macro tokens.
 fn tokens(stream: proc_macro2::TokenStream, scope: &mut Scope) {
     use proc_macro2::TokenTree;
     let mut path: Vec<String> = Vec::new();
@@ -234,16 +233,16 @@ fn tokens(stream: proc_macro2::TokenStream, scope: &mut Scope) {
     }
 }
 
-/// A function: where it is and how many lines it has.
+/// Length of a function.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Length {
-    /// From its name's line to its closing brace.
+    /// Lines from name to closing brace.
     pub lines: usize,
     /// `file:line name`.
     pub place: String,
 }
 
-/// Lengths of all functions of a file, those of tests included.
+/// Lengths of all functions, tests included.
 pub fn functions(file: &str, text: &str) -> Vec<Length> {
     struct Functions<'a>(&'a str, Vec<Length>);
     impl Functions<'_> {

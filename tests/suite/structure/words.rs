@@ -1,17 +1,17 @@
-//! Words that the glossary replaces, in names and in text.
+//! Words replaced by the glossary.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Where a word may not stand.
+/// Scope of a ban.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ban {
-    /// As a part of a name in code.
+    /// Names in code.
     Names,
-    /// There, and in comments, messages and pages.
+    /// Also comments, messages and pages.
     Anywhere,
 }
 
-/// Replaced words with their ban, from the table of the page: `| word | standard term | names, or anywhere |`.
+/// Parses the table `| word | standard term | names, or anywhere |`.
 pub fn replaced(page: &str) -> BTreeMap<String, Ban> {
     let table = page.split("## Replaced words").nth(1).expect("the page has a heading for replaced words");
     let rows = table.lines().skip_while(|l| !l.starts_with("|--")).skip(1).take_while(|l| l.starts_with('|'));
@@ -29,7 +29,7 @@ pub fn replaced(page: &str) -> BTreeMap<String, Ban> {
     all
 }
 
-/// The words of a name: `LoadCycle`, `load_cycle` and `LOAD_CYCLE` have the same two.
+/// Splits `LoadCycle`, `load_cycle` or `LOAD_CYCLE` into words.
 pub fn words_of(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut before_lower = false;
@@ -46,7 +46,6 @@ pub fn words_of(name: &str) -> Vec<String> {
     words
 }
 
-/// Names in code; those of comments and texts are not among them.
 fn names(stream: proc_macro2::TokenStream, all: &mut Vec<(usize, String)>) {
     for token in stream {
         match token {
@@ -57,7 +56,7 @@ fn names(stream: proc_macro2::TokenStream, all: &mut Vec<(usize, String)>) {
     }
 }
 
-/// Places of replaced words in a file, by word.
+/// Locations of replaced words.
 pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMap<String, Vec<String>> {
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut add = |line: usize, word: String, from: &str| {

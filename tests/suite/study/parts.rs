@@ -1,12 +1,12 @@
-//! A study in parts, on several machines as it were, and one that is interrupted.
+//! Partitioned and interrupted studies.
 
 use super::{SWING, arguments, folder, steps, table, without_times};
 use crate::suite::support::{Folder, snapshot, trackbed};
 use std::fs;
 
-/// Parts and their merger give the tables of one go; what is missing is named.
+/// Merged parts equal the full study; missing parts are named.
 #[test]
-fn parts_make_the_tables_of_one_go() {
+fn merged_parts_equal_full_study() {
     let folder = folder("study_parts", &steps());
     trackbed(arguments(&folder, "whole", &[])).good();
     for part in ["1/3", "3/3"] {
@@ -18,7 +18,6 @@ fn parts_make_the_tables_of_one_go() {
     assert!(said.contains("1 of 4 runs are missing: \"step=0.1 ms\"\n"), "{said}");
     let rows = table(&folder.join("parts/study.csv"));
     assert_eq!(rows[1]["reasons"], "step=0.1 ms: missing");
-    // A part that is started again goes on.
     trackbed(arguments(&folder, "parts", &["--task", "2/3", "--resume"])).good();
     let before = snapshot(&folder.join("parts/runs"));
     let said = trackbed(arguments(&folder, "parts", &["--merge"])).good().stdout;
@@ -32,7 +31,7 @@ fn parts_make_the_tables_of_one_go() {
     assert!(!folder.join("nowhere").exists());
 }
 
-/// Ctrl-C goes on to the runs, which leave checkpoints; `--resume` ends with the same tables.
+/// Ctrl-C reaches the runs; `--resume` gives equal tables.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_study_goes_on() {
@@ -66,7 +65,7 @@ fn an_interrupted_study_goes_on() {
     trackbed(arguments(&folder, "out", &["--resume"])).good();
     assert_eq!(without_times(&folder.join("out")), without_times(&folder.join("whole")));
     assert!(!folder.join("out/runs/reference/checkpoint").exists());
-    // A run that was killed without a checkpoint begins anew.
+    // Without a checkpoint a run restarts from zero.
     let run = folder.join("out/runs/step=0.000002");
     fs::remove_file(run.join("summary.json")).unwrap();
     trackbed(arguments(&folder, "out", &["--resume"])).good();

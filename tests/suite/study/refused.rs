@@ -1,9 +1,8 @@
-//! Study files that are refused: exit code 2, one line with file, line, key, found and expected, nothing written.
+//! Bad study files: exit code 2, one line, nothing written.
 
 use super::{arguments, folder, steps};
 use crate::suite::support::trackbed;
 
-/// The study with `old` replaced is refused with this line.
 #[track_caller]
 fn refused(old: &str, new: &str, line: &str) {
     let folder = folder("study_refused", &steps());
@@ -65,7 +64,6 @@ fn settings_that_a_run_would_refuse() {
     assert!(outcome.code == 2 && words.iter().all(|w| outcome.stderr.contains(w)), "{}", outcome.stderr);
 }
 
-/// A fault of the scene itself is stated once.
 #[test]
 fn a_fault_of_all_settings() {
     let folder = folder("study_scene", &steps());
@@ -75,7 +73,7 @@ fn a_fault_of_all_settings() {
     assert!(outcome.code == 2 && words.iter().all(|w| outcome.stderr.contains(w)), "{}", outcome.stderr);
 }
 
-/// A column that runs do not leave ends the study with the first run that is done.
+/// Unknown columns stop after the first run.
 #[test]
 fn quantities_that_runs_do_not_leave() {
     let folder = folder("study_columns", &steps().replace("\"ball_z\"\ntake", "\"bal_z\"\ntake"));

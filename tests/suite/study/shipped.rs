@@ -1,4 +1,4 @@
-//! The studies of `inputs/studies`.
+//! Studies of `inputs/studies`.
 
 use super::{numbers, table};
 use crate::suite::support::{Folder, repository, trackbed};
@@ -7,7 +7,7 @@ use std::fs;
 use trackbed::failure::Failure;
 use trackbed::study::{Options, execute};
 
-/// Every setting of every study is one that `check` accepts. Nothing is run: the study is given a check that refuses all.
+/// `check` accepts every case; a failing stub prevents runs.
 #[test]
 fn every_setting_is_valid() {
     let folder = Folder::new("study_shipped");
@@ -39,9 +39,9 @@ fn every_setting_is_valid() {
     assert!(studies >= 15 && settings > 2 * studies, "{settings} settings of {studies} studies");
 }
 
-/// Newmark's method is of second order: half the step, a quarter of the error.
+/// Newmark is second order.
 #[test]
-fn the_step_of_the_solid_is_of_second_order() {
+fn solid_step_is_second_order() {
     let (folder, study) = (Folder::new("study_solid"), repository().join("inputs/studies/solid_step.toml"));
     let (study, out) = (study.display().to_string(), folder.join("out"));
     trackbed(["study", &study, "--out", &out.display().to_string(), "--quiet"]).good();
@@ -51,7 +51,7 @@ fn the_step_of_the_solid_is_of_second_order() {
         let errors = numbers(&of_alpha, "surface error");
         println!("alpha {alpha}: {errors:?}");
         for pair in errors.windows(2) {
-            // The reference has an error of its own, and the longest step is beyond the range of the order.
+            // Reference error, and a longest step outside the asymptotic range.
             assert!((3.3..4.6).contains(&(pair[0] / pair[1])), "alpha {alpha}: {errors:?}");
         }
     }

@@ -1,13 +1,12 @@
 //! Water: buoyancy and drag at any depth and tilt, current, waves, added mass.
 //!
-//! On the wet volume V of a body, which is cut by the local level of the water: −ρ V g + ρ V Du/Dt at its centre, u the water's velocity (the
-//! whole force of undisturbed waves, so that the surface is not tilted for buoyancy as well); drag ½ ρ C A |v| v there, v the
-//! velocity of the water less that of the body's centre, and −½ ρ C_M r³ A_wet |ω| ω about the centre (Liu, Long & Ji 2015, eq. 26, 27); and a mass C_m ρ V
-//! of water that is taken along, (m + C_m ρ V) a = F + C_m ρ V Du/Dt. No lift, no shelter behind other bodies, no turning of
-//! added mass; waves pass bodies without a change, which holds for bodies that are small beside their length.
+//! On the wet volume V below the local water level: −ρ V g + ρ V Du/Dt at its centre, u the water velocity
+//! (total force of undisturbed waves). Drag ½ ρ C A |v| v, v the relative velocity, and moment −½ ρ C_M r³
+//! A_wet |ω| ω about the centre (Liu, Long & Ji 2015, eq. 26, 27). Added mass C_m ρ V:
+//! (m + C_m ρ V) a = F + C_m ρ V Du/Dt.
 //!
-//! Areas of drag: `Projected` is what the wet part shows to the flow; `Wetted` all of its surface, as in the source, which
-//! overstates the drag of a flat floe tenfold.
+//! Limits: no lift, shelter, added moment of inertia or diffraction. Area `Wetted`, as in the source,
+//! overestimates the drag of a flat floe tenfold.
 //!
 //! Theory manual: equations (6.29), (6.30), (6.31) of `docs/theory/track.md`.
 
@@ -22,14 +21,13 @@ use crate::bodies::table::{Bodies, Kind};
 use crate::lanes::record::xyz;
 use std::f64::consts::PI;
 
-/// Where it is published.
 pub(super) const SOURCE: &str =
     "drag: Liu, Long & Ji, Chin. J. Theor. Appl. Mech. 47, 2015; waves: Dean & Dalrymple 1991";
 
-/// Area that drag belongs to.
+/// Reference area of drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DragArea {
-    /// What the wet part shows to the flow.
+    /// Wet area projected along the flow.
     #[default]
     Projected,
     /// The whole wet surface.
@@ -43,19 +41,19 @@ pub struct Water {
     pub level: f64,
     /// Density [kg/m³].
     pub density: f64,
-    /// Velocity along x and y [m/s].
+    /// Current along x and y [m/s].
     pub current: [f64; 2],
     /// Waves.
     pub wave: Option<Wave>,
     /// Drag coefficient of `drag_area` [-].
     pub drag: f64,
-    /// Area that it belongs to.
+    /// Reference area of `drag`.
     pub drag_area: DragArea,
-    /// Drag coefficient of the wet surface beside it [-].
+    /// Skin drag coefficient of the wet surface [-].
     pub skin_drag: f64,
-    /// Coefficient of the moment that brakes turning [-].
+    /// Coefficient of the drag moment [-].
     pub drag_moment: f64,
-    /// Mass of water that a body takes along, over that of its wet volume [-].
+    /// Added mass coefficient C_m, relative to displaced mass [-].
     pub added_mass: f64,
 }
 
@@ -77,19 +75,18 @@ impl Water {
         .map(|(what, x)| (what, x, "be zero or positive, and finite"))
     }
 
-    /// Time in which a body heaves by a radian [s]: √(m/(ρ g A)), A no less than any section of it.
+    /// Heave time per radian [s]: √(m/(ρ g A)), A an upper bound.
     pub(super) fn time_constant(&self, bodies: &Bodies, gravity: &Vec3) -> f64 {
         let stiffness = |radius: f64| self.density * gravity.norm() * PI * radius * radius;
         let time = |b: crate::bodies::table::Body| (b.mass / stiffness(b.radius)).sqrt();
         bodies.iter().map(time).fold(f64::INFINITY, f64::min)
     }
 
-    /// The surface and the water without its current at a place of the world.
+    /// Without current.
     fn orbit(&self, at: &Vec3, time: f64) -> Orbit {
         self.wave.map_or(Orbit::default(), |wave| wave.at(at.x, at.y, at.z - self.level, time))
     }
 
-    /// Adds the forces on a body.
     fn on_body(&self, seen: &Seen<'_>, k: usize, work: &mut ForceWork) {
         let block = seen.block;
         let (centre, velocity, spin) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
@@ -109,7 +106,7 @@ impl Water {
             DragArea::Wetted => self.drag * wet.area,
         } + self.skin_drag * wet.area;
         let drag = |past: &Vec3| past * (0.5 * self.density * area * past.norm());
-        // The velocity of half a step ago, brought to the time of the places with what acts there.
+        // Velocity half a step ago, advanced to the present time.
         let mass = seen.bodies.get(block.bodies[k] as usize).mass;
         let others = xyz(seen.sums[k].force()) + seen.gravity * mass + lift + carried;
         let now = past - (others + drag(&past)) * (0.5 * seen.kick / (mass + added));
@@ -130,7 +127,7 @@ impl Act for Water {
     }
 }
 
-/// What of a body is below a `level` above its centre [m], its area as seen along `past`; and the length that the moment of drag goes by [m].
+/// Part below `level` above the centre [m]; length of the drag moment [m].
 fn wet_part(seen: &Seen<'_>, k: usize, level: f64, past: &Vec3, work: &mut ForceWork) -> (Wet, f64) {
     let members = seen.members;
     let radius = work.radius[k];
@@ -164,7 +161,7 @@ fn wet_part(seen: &Seen<'_>, k: usize, level: f64, past: &Vec3, work: &mut Force
     (wet, radius)
 }
 
-/// What of a ball is below a level above its centre: a cap (Bronstein & Semendjajew).
+/// Spherical cap (Bronstein & Semendjajew).
 fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     let h = (r + level).clamp(0.0, 2.0 * r);
     let volume = PI * h * h * (r - h / 3.0);
@@ -173,7 +170,7 @@ fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     }
     let low = 2.0 * r - h;
     let arm = -0.75 * low * low / (3.0 * r - h);
-    // From the side a segment of the circle, from below the circle or less.
+    // Side view: segment; from below: circle or less.
     let s = (h - r) / r;
     let side = r * r * (0.5 * PI + libm::asin(s) + s * (1.0 - s * s).max(0.0).sqrt());
     let below = PI * if h < r { h * low } else { r * r };
@@ -186,8 +183,7 @@ fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     }
 }
 
-/// What of a clump is below a level above its centre: that of its spheres, by the share of its volume in theirs; areas are those of
-/// the sphere of its volume, by the share of the volume that is wet.
+/// Member spheres, scaled to the clump's volume; areas of the volume-equivalent sphere.
 fn clump(spheres: impl Iterator<Item = (Vec3, f64)>, whole: f64, radius: f64, level: f64) -> Wet {
     let (mut all, mut off) = (0.0, Vec3::zeros());
     let (mut volume, mut moment) = (0.0, Vec3::zeros());
@@ -203,7 +199,7 @@ fn clump(spheres: impl Iterator<Item = (Vec3, f64)>, whole: f64, radius: f64, le
         return Wet::default();
     }
     let share = volume / all;
-    // Wholly wet, its centre is that of its mass.
+    // Fully wet: centre of mass.
     let arm = (moment - off * share) / volume;
     let surface = PI * radius * radius;
     Wet { volume: whole * share, arm, area: 4.0 * surface * share, seen: surface * share }

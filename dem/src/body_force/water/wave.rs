@@ -1,81 +1,80 @@
-//! Linear (Airy) waves on water of finite depth, with a current (Dean & Dalrymple 1991, ch. 3).
+//! Linear (Airy) waves on water of finite depth with a current (Dean & Dalrymple 1991, ch. 3).
 //!
-//! η = H/2 cos θ, θ = k (x·d) − ω t + φ; (ω − k U)² = g k tanh(k h), U the current along the wave. Velocities and accelerations of
-//! the water are those of the linear field, which goes on above still water up to the crests: a small floe then drifts along as fast
-//! as the water does at the surface (Stokes).
+//! η = H/2 cos θ, θ = k (x·d) − ω t + φ; (ω − k U)² = g k tanh(k h), U the current along the wave. The linear
+//! field extends up to the crests: small floes drift (Stokes).
 //!
 //! Theory manual: equations (6.32), (6.33) of `docs/theory/track.md`.
 
 use crate::base::Vec3;
 use std::f64::consts::TAU;
 
-/// Steepest waves over tanh(k h) (Miche 1944) [-].
+/// Steepness over tanh(k h) (Miche 1944) [-].
 const STEEPEST: f64 = 0.142;
 
-/// Why there is no such wave.
+/// Reason why a wave does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum WaveError {
-    /// A quantity is out of range.
+    /// Quantity out of range.
     #[error("{0} out of range")]
     Range(&'static str),
-    /// The current carries the wave away.
+    /// Stopped by the current.
     #[error("no wave of this period exists against the current")]
     Blocked,
-    /// It would break.
+    /// Breaking wave.
     #[error("a wave of {length} m breaks at a height of {limit} m (Miche 1944)")]
     Breaks {
-        /// Its length [m].
+        /// Wavelength [m].
         length: f64,
         /// Largest height [m].
         limit: f64,
     },
 }
 
-/// What is known of a wave beside its height.
+/// Given period or length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
-    /// Its period, as seen from a fixed place [s].
+    /// Period at a fixed point [s].
     Period(f64),
-    /// Its length [m].
+    /// Length [m].
     Length(f64),
 }
 
-/// A regular wave.
+/// Regular wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
-    /// Half of the height [m].
+    /// Amplitude, half the height [m].
     pub amplitude: f64,
     /// Wave number 2π/L [1/m].
     pub number: f64,
-    /// Angular frequency as seen from a fixed place [rad/s].
+    /// Angular frequency at a fixed point [rad/s].
     pub frequency: f64,
-    /// Angular frequency as seen from the moving water [rad/s].
+    /// Intrinsic angular frequency, in the moving water [rad/s].
     pub intrinsic: f64,
-    /// Unit vector along which it runs.
+    /// Unit vector of propagation.
     pub direction: [f64; 2],
     /// Phase φ [rad].
     pub phase: f64,
-    /// Depth of the still water [m]; may be infinite.
+    /// Still-water depth [m]; may be infinite.
     pub depth: f64,
 }
 
-/// The surface and the water of a wave at a place.
+/// Water surface and motion at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Orbit {
-    /// Height of the surface above still water [m].
+    /// Surface elevation above still water [m].
     pub elevation: f64,
-    /// Velocity of the water, without the current [m/s].
+    /// Water velocity without current [m/s].
     pub velocity: Vec3,
-    /// Acceleration that a particle of the water has [m/s²].
+    /// Material acceleration of the water [m/s²].
     pub acceleration: Vec3,
 }
 
 impl Wave {
-    /// A wave of a height [m] that runs along `direction` [rad, from x to y] on water of a `depth` [m] with a `current` [m/s],
-    /// under `gravity` [m/s²].
+    /// Wave of a height [m] towards `direction` [rad, from x to y]; `depth` [m], `current` [m/s], `gravity`
+    /// [m/s²].
     ///
     /// # Errors
-    /// [`WaveError`] for a wave that would break, and for one that cannot be.
+    /// [`WaveError`] for a breaking or impossible wave.
     pub fn new(
         height: f64,
         measured: Measured,
@@ -120,24 +119,24 @@ impl Wave {
         Ok(Wave { amplitude: 0.5 * height, number, frequency, intrinsic, direction: along, phase, depth })
     }
 
-    /// Length [m].
+    /// Wavelength [m].
     pub fn length(&self) -> f64 {
         TAU / self.number
     }
 
-    /// At a place `x`, `y`, at a height `z` above still water [m], at a time [s].
+    /// Surface and water at `x`, `y`, height `z` above still water [m], `time` [s].
     pub fn at(&self, x: f64, y: f64, z: f64, time: f64) -> Orbit {
         let Wave { amplitude, number: k, frequency, intrinsic, direction: [dx, dy], phase, depth } = *self;
         let (sin, cos) = libm::sincos(k * (x * dx + y * dy) - frequency * time + phase);
         let z = z.clamp(-depth, amplitude);
-        // cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh, without numbers beyond all bounds.
+        // cosh k(z + h)/sinh kh, sinh k(z + h)/sinh kh without overflow.
         let (up, down) = (libm::exp(k * z), libm::exp(-k * (z + 2.0 * depth)));
         let whole = 1.0 - libm::exp(-2.0 * k * depth);
         let (level, upright) = ((up + down) / whole, (up - down) / whole);
         let speed = amplitude * intrinsic;
         let (u, w) = (speed * level * cos, speed * upright * sin);
         let (ux, uz) = (-k * speed * level * sin, k * speed * upright * cos);
-        // What a particle that drifts with the current sees, and what it sees on its orbit.
+        // Material derivative.
         let along = speed * intrinsic * level * sin + u * ux + w * uz;
         let rising = -speed * intrinsic * upright * cos + u * uz - w * ux;
         Orbit {
@@ -148,9 +147,9 @@ impl Wave {
     }
 }
 
-/// The smallest wave number of a frequency, of waves that run along the wave's direction; none where the current carries them away.
+/// Smallest wave number of a frequency; `None` if blocked.
 fn number(frequency: f64, with: f64, depth: f64, gravity: f64) -> Option<f64> {
-    // frequency − k U − √(g k tanh k h) falls convexly from its value at k = 0: Newton's steps from the left stay left of its zero.
+    // Convex, decreasing from k = 0: Newton converges from the left.
     let left = |k: f64| {
         let t = libm::tanh(k * depth);
         let root = (gravity * k * t).sqrt();

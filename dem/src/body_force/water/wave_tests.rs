@@ -3,8 +3,7 @@ use crate::shape::dilated::tests::rows;
 
 const G: f64 = 9.81;
 
-/// Velocities, accelerations and elevations at 120 points of four waves against a table by formulas of another form, which was checked
-/// by 40-digit differences of the potential.
+/// 120 points of four waves, against formulas checked by 40-digit differences of the potential.
 #[test]
 fn waves_are_those_of_the_table() {
     let table = rows(include_str!("../../../tests/data/water/airy.csv"));
@@ -29,7 +28,7 @@ fn waves_are_those_of_the_table() {
     }
 }
 
-/// Lengths on a current, waves that it carries away, and waves that break.
+/// Wavelengths on a current, blocked waves, breaking waves.
 #[test]
 fn lengths_are_those_of_the_table() {
     let table = rows(include_str!("../../../tests/data/water/dispersion.csv"));
@@ -61,7 +60,7 @@ fn lengths_are_those_of_the_table() {
     assert!(blocked == 2 && table.len() > 20, "{blocked} {}", table.len());
 }
 
-/// The deepest water is not beyond all numbers.
+/// Very large depth does not overflow.
 #[test]
 fn endless_depth_is_deep_water() {
     let wave = |depth| Wave::new(0.2, Measured::Period(4.0), 0.0, 0.3, depth, [0.0; 2], G).unwrap();

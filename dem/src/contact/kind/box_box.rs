@@ -1,13 +1,12 @@
-//! Two boxes: the axis of least overlap among the face normals of both and the cross products of their edges; then, on a
-//! face, the polygon in which the other box lies over it, or the closest points of two edges.
+//! Box–box contacts: axis of least overlap among face normals and edge cross products, then polygon clipped
+//! on a face, or closest edge points.
 //!
-//! The axes are those of Gottschalk, Lin & Manocha (SIGGRAPH 1996); the polygon is clipped by Sutherland & Hodgman's method.
-//! Every corner of the polygon below the face is a contact point with the whole law's stiffness where it stands for a
-//! quarter of the polygon, as the corners of a box on a plane do: with weights by the lengths of the polygon's sides, which
-//! add up to four, nothing jumps when a corner is cut off and becomes two.
+//! Axes: Gottschalk, Lin & Manocha (SIGGRAPH 1996); clipping: Sutherland & Hodgman. Polygon corners below the
+//! face are contact points, weighted by adjacent side lengths. The weights sum to four, as for a box on a
+//! plane; the force stays continuous when corners split.
 //!
-//! Limits: where the axis changes from a face to a pair of edges, the force may jump (`dem/tests/engine/boxes.rs` has what it
-//! costs); the springs of tangential forces begin anew when other features touch.
+//! Limits: the force may jump between face and edge contact (`dem/tests/engine/boxes.rs`); tangential springs
+//! restart with new features.
 
 use super::pair::{PairKind, Touch, Touches};
 use super::scene::Placed;
@@ -18,34 +17,29 @@ use nalgebra::Matrix3;
 
 pub(crate) struct BoxBox;
 
-/// An axis of edges counts where it separates the boxes better than the best face by this share of the overlap: faces that
-/// lie flat on each other keep their faces.
+/// Largest edge over face overlap for an edge axis: flat faces stay face contacts.
 const EDGE: f64 = 0.98;
 
-/// The second box's face counts only where it separates better than the first's by this share of the overlap.
+/// Likewise for the second box's faces.
 const SECOND: f64 = 0.98;
 
-/// Sine below which two edges count as parallel: faces then separate as well.
+/// Largest sine of parallel edges.
 const PARALLEL: f64 = 1e-6;
 
-/// Feature of an edge, and of a face that is clipped against.
 const ON_EDGE: u32 = 0x4000;
 const REFERENCE: u32 = 0x8000;
 
-/// Two boxes in the frame of the first.
+/// Two boxes in the first's frame.
 struct Two {
     half: [Vec3; 2],
-    /// Axes of the second box as columns.
     turn: Matrix3<f64>,
-    /// From the centre of the first to that of the second.
+    /// First centre to second centre.
     way: Vec3,
 }
 
-/// Where the boxes separate best.
+/// Separating axis.
 enum Axis {
-    /// Face of the first (0) or second (1) box.
     Face { of: usize, axis: usize },
-    /// An edge direction of each.
     Edges { first: usize, second: usize, normal: Vec3 },
 }
 
@@ -56,7 +50,7 @@ impl Two {
         Some(Two { half: [a.half()?, b.half()?], turn, way })
     }
 
-    /// The axis on which the boxes are furthest apart, and how far: negative where they overlap [m].
+    /// Axis of largest separation, negative for overlap [m].
     fn separation(&self) -> (Axis, f64) {
         let Two { half: [a, b], turn, way } = self;
         let reach = turn.abs();
@@ -125,11 +119,11 @@ impl PairKind for BoxBox {
     }
 }
 
-/// The closest points of the two edges that face each other along `normal`, which points to the first box.
+/// Closest points of edges facing along `normal`, towards the first box.
 fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: &mut Touches) {
     let Two { half: [a, b], turn, way } = two;
     let local = turn.tr_mul(normal);
-    // The middle of each edge: as far as the box reaches towards the other.
+    // Extreme edge midpoints.
     let mut p = -a.zip_map(normal, |h, n| h.copysign(n));
     let mut q = b.zip_map(&local, |h, n| h.copysign(n));
     (p[i], q[j]) = (0.0, 0.0);
@@ -139,7 +133,7 @@ fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: 
     let feature = |axis: usize, v: &Vec3| ON_EDGE | (axis as u32) << 2 | signs(v, axis);
     let features = feature(i, &p) << 16 | feature(j, &q);
     let (u, v, q) = (Vec3::ith(i, 1.0), turn.column(j).into_owned(), way + turn * q);
-    // |p + s u − q − t v| least; the directions are not parallel.
+    // Minimises |p + s u − q − t v|.
     let (w, cosine) = (q - p, u.dot(&v));
     let s = (w.dot(&u) - cosine * w.dot(&v)) / (1.0 - cosine * cosine);
     let s = s.clamp(-a[i], a[i]);
@@ -149,7 +143,7 @@ fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: 
     found.push(Touch::of(features, geometry, 1.0, 0.0));
 }
 
-/// A corner of a polygon in the plane of a face, its height over the face, and the edge that begins there.
+/// Polygon corner, height over the face, starting edge.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     at: [f64; 2],
@@ -157,12 +151,12 @@ struct Corner {
     edge: u32,
 }
 
-/// The second box over the face of the first with normal ± `axis`, in the frame of the first.
+/// Second box over face ± `axis` of the first.
 fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &mut Touches) {
     let [a, b] = half;
     let side = 1.0_f64.copysign(way[axis]);
     let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-    // The face of the second that looks at the first most.
+    // Most opposed face.
     let facing: Vec3 = turn.row(axis).transpose() * side;
     let other = facing.iamax();
     let sign = -1.0_f64.copysign(facing[other]);
@@ -188,23 +182,21 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
     let around: f64 = (0..count).map(length).sum();
     for (k, corner) in polygon.iter().enumerate().filter(|(_, c)| c.height < 0.0) {
         let before = (k + count - 1) % count;
-        // Half of the sides that meet here, of all sides, times four.
+        // Half of adjacent sides over perimeter, times four.
         let weight =
             if around > 0.0 { 2.0 * (length(k) + length(before)) / around } else { 4.0 / count as f64 };
         let mut point = Vec3::zeros();
         (point[x], point[y]) = (corner.at[0], corner.at[1]);
-        // Half the overlap below the face.
         point[axis] = side * (a[axis] + 0.5 * corner.height);
         let (one, two) = (corner.edge.min(polygon[before].edge), corner.edge.max(polygon[before].edge));
         let feature = reference << 16 | number(other, sign) << 6 | one << 3 | two;
-        // From the second box to the first.
         let normal = Vec3::ith(axis, -side);
         let geometry = ContactGeometry { point, normal, overlap: -corner.height, radius: 0.0 };
         found.push(Touch::of(feature, geometry, weight, 0.0));
     }
 }
 
-/// Leaves of a polygon what lies at `sign` × coordinate `d` ≤ `limit`; new sides have the number `edge`.
+/// Clips to `sign` × coordinate `d` ≤ `limit`; new sides are `edge`.
 fn clip(polygon: &mut Vec<Corner>, d: usize, sign: f64, limit: f64, edge: u32) {
     let old = std::mem::take(polygon);
     let beyond = |c: &Corner| sign * c.at[d] - limit;
@@ -234,8 +226,8 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// Random pairs: whichever comes first, the same points with opposite normals; moved apart by the overlap the boxes
-    /// do not touch any more; each point lies in both boxes, to half its overlap.
+    /// Random pairs, both orders: equal points, opposite normals; no contact after separation; points lie in
+    /// both boxes within half the overlap.
     #[test]
     fn random_pairs_from_both_sides() {
         let mut rng = Pcg64Mcg::new(11);
@@ -265,7 +257,7 @@ mod tests {
             };
             overlapping += 1;
             several += usize::from(one.len() > 2);
-            // Within 2 % of each other the two orders may choose faces of different boxes.
+            // Within 2 %, the two orders may choose different faces.
             let other = Two::new(&b, &a).unwrap().separation().1;
             assert!((separation - other).abs() < 0.12 * separation.abs(), "{separation} {other}");
             if separation == other && one.len() == two.len() {
@@ -291,7 +283,7 @@ mod tests {
         assert!(overlapping > 500 && several > 100, "{overlapping} {several}");
     }
 
-    /// Weights of a face add up to four whatever is cut off.
+    /// Face weights sum to four for any clipping.
     #[test]
     fn weights_of_a_face_add_up() {
         let none = Core::default();

@@ -1,4 +1,4 @@
-//! The corners of a body and a plane: with flat faces and straight edges nothing else touches first.
+//! Corner–plane contacts: flat faces and straight edges never touch first.
 
 use super::pair::{PairKind, Touch, Touches};
 use super::scene::PlaneView;
@@ -18,7 +18,7 @@ impl PairKind for CornerPlane {
 
     fn touches(&self, corner: &Corner, plane: &PlaneView, found: &mut Touches) {
         let touch = detect::sphere_plane(&corner.point, 0.0, &plane.origin, &plane.normal);
-        // A corner has no radius of its own: laws that need one take the body's size.
+        // Laws use the body size as radius.
         let touch = touch.map(|g| ContactGeometry { radius: corner.size, ..g });
         found.extend(touch.map(|g| Touch::only(g, corner.size)));
     }

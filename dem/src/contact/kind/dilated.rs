@@ -1,14 +1,13 @@
-//! Dilated polyhedra with each other, with boxes, planes and spheres.
+//! Dilated polyhedra against each other, boxes, planes and spheres.
 //!
-//! The rounded corners and edges of either body press into the other (`shape/dilated/press.rs`). A corner is a contact point with the
-//! whole stiffness k of the law; an edge has k over [`LENGTH`] times the sum of both radii per unit of length, and is one point too,
-//! where its pressure has its centre. With a linear law all of it has a potential, and the force is continuous whatever the
-//! bodies do. Crossing edges are then as stiff as crossing cylinders after Hertz at the overlap at which corners are as stiff as
-//! spheres, to a factor of four; a face is as stiff as its circumference is long.
+//! Rounded corners and edges indent the other body (`shape/dilated/press.rs`): corners with the law's
+//! stiffness k, edges with k over [`LENGTH`] times the sum of radii, per unit length, at their centre of
+//! pressure. With a linear law the force has a potential and is continuous. Where corners match spheres,
+//! crossing edges match Hertz's cylinders within a factor of four. History belongs to features; springs are
+//! weighted as their points.
 //!
-//! Memory belongs to corners and edges of bodies, so that no spring has to be handed on. Springs of friction weigh as their points do.
-//!
-//! Limits: laws whose stiffness depends on the overlap are refused (`engine/check.rs`); a core that another core reaches ends the run.
+//! Limits: of laws with overlap-dependent stiffness only Hertz's, by edge laws (`law/edges.rs`); contact of
+//! cores ends the run.
 
 use super::pair::{PairKind, Touch, Touches};
 use super::scene::{Placed, PlaneView, Pose};
@@ -26,28 +25,25 @@ use crate::spatial::separation::separation;
 use arrayvec::ArrayVec;
 use nalgebra::{Rotation3, UnitQuaternion};
 
-/// Length of edge with the stiffness of a corner, over the sum of both radii.
+/// Edge length of a corner's stiffness, over the sum of radii.
 pub(crate) const LENGTH: f64 = 2.0;
 
-/// Share of the sum of both radii above which an overlap has lost its meaning: the cores are about to meet.
+/// Overlap limit over the sum of radii.
 pub(crate) const DEEPEST: f64 = 0.9;
 
-/// Loss of distance over the sum of both radii after which a direction is looked for anew.
+/// Distance loss over the sum of radii before a new direction search.
 const STALE: f64 = 0.05;
 
-/// Share of the reach that is added to it where features are left out, so that rounding leaves out none that touches.
 pub(super) const ROUNDING: f64 = 1e-6;
 
-/// Two dilated polyhedra or disks, or one and a box.
+/// Two dilated bodies, or one and a box.
 pub(crate) struct DilatedDilated;
 
-/// A dilated polyhedron or disk and a plane.
 pub(crate) struct DilatedPlane;
 
-/// A sphere and a dilated polyhedron or disk.
 pub(crate) struct SphereDilated;
 
-/// Takes points of one body's frame to another's: both frames have unscaled lengths.
+/// Transform between body frames in unscaled lengths.
 pub(super) struct Frame {
     pub turn: Rotation3<f64>,
     pub way: Vec3,
@@ -55,7 +51,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// From the frame of `a` to that of `b`.
+    /// From `a` to `b`.
     pub fn new(a: &Pose, b: &Pose) -> Frame {
         let back: UnitQuaternion<f64> = b.orientation.inverse();
         Frame {
@@ -65,7 +61,6 @@ impl Frame {
         }
     }
 
-    /// From a frame to itself.
     fn same() -> Frame {
         Frame { turn: Rotation3::identity(), way: Vec3::zeros(), scale: 1.0 }
     }
@@ -75,12 +70,12 @@ impl Frame {
     }
 }
 
-/// How far the corners of two cores lie along a direction, in the frame of the second.
+/// Corner heights along a direction, in the second's frame.
 pub(super) struct Heights {
     pub n: Vec3,
     pub first: ArrayVec<f64, CORNERS>,
     pub second: ArrayVec<f64, CORNERS>,
-    /// The first's lowest and the second's highest.
+    /// First's minimum, second's maximum.
     pub low: f64,
     pub high: f64,
 }
@@ -91,7 +86,6 @@ impl Heights {
         Heights { n: Vec3::zeros(), first, second, low: 0.0, high: 0.0 }
     }
 
-    /// Takes them along another direction.
     fn take(&mut self, two: &Two<'_>, n: Vec3) {
         let own = two.frame.turn.inverse_transform_vector(&n) * two.frame.scale;
         let aside = n.dot(&two.frame.way);
@@ -117,7 +111,7 @@ impl Heights {
     }
 }
 
-/// What the hull of a partner is of: corners, or a flat disk.
+/// Hull: corners, or a flat disk.
 #[derive(Clone, Copy)]
 pub(super) struct Hull<'a> {
     pub corners: &'a [Vec3],
@@ -137,7 +131,7 @@ impl<'a> Hull<'a> {
     }
 }
 
-/// Two hulls, in the frame of the second.
+/// Two hulls in the second's frame.
 pub(super) struct Two<'a> {
     pub frame: Frame,
     pub first: Hull<'a>,
@@ -149,25 +143,23 @@ impl<'a> Two<'a> {
         Two { frame: Frame::new(&a.pose(), &b.pose()), first: Hull::of(a.core), second: Hull::of(b.core) }
     }
 
-    /// From the farthest point of the second to the first's that is farthest the other way, along a direction.
+    /// Support vector along a direction.
     fn between(&self, n: &Vec3) -> Vec3 {
         let first = self.first.farthest(&-self.frame.turn.inverse_transform_vector(n));
         self.frame.point(&first) - self.second.farthest(n)
     }
 
-    /// A unit vector along which the first lies beyond the second, and how far at least, from a guess; any, as soon as that is
-    /// `enough`. `None` where they overlap.
+    /// Separating direction and distance bound; any once `enough`. `None` for overlap.
     pub fn separation(&self, guess: Vec3, enough: f64) -> Option<(Vec3, f64)> {
         separation(|n| self.between(n), guess, enough)
     }
 
-    /// The line of centres, as a first guess.
+    /// Centre line, as first guess.
     pub fn line(&self) -> Vec3 {
         self.frame.way.try_normalize(0.0).unwrap_or(Vec3::z())
     }
 
-    /// Takes `heights` along a direction in which the cores are apart, but less than `reach`. The error says whether they are farther
-    /// apart, or else overlap.
+    /// Computes `heights` if closer than `reach`. Error: whether farther apart, else overlapping.
     pub fn heights(&self, hint: &mut Hint, reach: f64, heights: &mut Heights) -> Result<(), bool> {
         let mut guess = None;
         if let Some([x, y, z, before]) = *hint {
@@ -195,19 +187,18 @@ impl<'a> Two<'a> {
     }
 }
 
-/// The set of those heights for which `near` holds.
 pub(super) fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> bool) -> u64 {
     heights.into_iter().enumerate().map(|(k, h)| u64::from(near(h)) << k).sum()
 }
 
-/// Whether the spheres around two bodies are within `reach` of each other.
+/// Whether bounding spheres are within `reach`.
 fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
     let most = a.reach() + b.reach() + reach;
     (a.centre - b.centre).norm_squared() < most * most
 }
 
-/// What the corners and edges of a body, or its rim, do to a target, in the target's frame: calls `put` with the feature, from 1 on, what it does, and its
-/// weight. Only features with a corner of the set `near` can be within reach, and what of them is in the view.
+/// Calls `put` with feature (from 1), indentation and weight, in the target's frame. Features without a
+/// corner in `near` are out of reach.
 pub(super) fn skeleton(
     core: &Core,
     frame: &Frame,
@@ -244,13 +235,13 @@ pub(super) fn skeleton(
     }
 }
 
-/// Share of a corner's stiffness that an edge has, by the length of it that presses.
+/// Edge stiffness over corner stiffness.
 pub(super) fn length(pressed: &Pressed, reach: f64) -> f64 {
     pressed.force.norm() / (pressed.overlap * LENGTH * reach)
 }
 
-/// A contact point in the world. `frame` is the body in whose frame the target lies, `own` the radius of what presses [m], in that
-/// frame's unit; `sign`: −1 where the first partner is the target.
+/// Contact point in the world. `frame`: of the target; `own`: indenter radius in its unit [m]; `sign`: −1 if
+/// the first partner is the target.
 pub(super) fn touch(
     frame: &Pose,
     feature: u32,
@@ -260,7 +251,7 @@ pub(super) fn touch(
     sign: f64,
 ) -> Touch {
     let n = p.force.normalize();
-    // Half of the overlap below the surface.
+    // Half the overlap below the surface.
     let point = p.point - n * (own - 0.5 * p.overlap);
     let geometry = ContactGeometry {
         point: frame.centre + frame.orientation * (point * frame.scale),
@@ -273,13 +264,11 @@ pub(super) fn touch(
     Touch { edge, couple, ..Touch::of(feature, geometry, weight, DEEPEST * reach * frame.scale) }
 }
 
-/// Radius of a contact: that of what presses, since corners meet faces, but for a sharp one; of a length of edge it is without effect but
-/// for rolling resistance.
+/// Indenter radius, or the other's if sharp; for edges only rolling resistance depends on it.
 pub(super) fn rounding(own: f64, other: f64) -> f64 {
     if own > 0.0 { own } else { other }
 }
 
-/// What is left to say where cores overlap: too much of it.
 pub(super) fn lost(point: Vec3, normal: Vec3, reach: f64) -> Touch {
     let geometry = ContactGeometry { point, normal, overlap: reach, radius: reach };
     Touch::only(geometry, DEEPEST * reach)
@@ -318,8 +307,7 @@ impl PairKind for DilatedDilated {
                 return found.push(lost((a.centre + b.centre) * 0.5, way, sum));
             }
         }
-        // A point of one body that is nearer to the other than `reach` is so along any direction: the first's lie below a level, the
-        // second's above one.
+        // Points closer than `reach` are so along any direction.
         let most = reach * (1.0 + ROUNDING);
         let (n, level, floor) = (heights.n, heights.high + most, heights.low - most);
         let near_a = set(heights.first.iter().copied(), |h| h < level);
@@ -331,7 +319,7 @@ impl PairKind for DilatedDilated {
             let lengths = [a.radius / b.scale, reach, rounding(a.radius, b.radius)];
             found.push(touch(&b.pose(), feature << 16, pressed, weight, lengths, 1.0));
         });
-        // The same in the frame of the first.
+        // Likewise in the first's frame.
         let [level, floor] = [level, floor].map(|h| (h - n.dot(&two.frame.way)) / two.frame.scale);
         let (back, reach) = (Frame::new(&b.pose(), &a.pose()), sum / a.scale);
         let view = view.moved(&back.turn, back.scale, floor);
@@ -373,7 +361,7 @@ impl PairKind for DilatedPlane {
     }
 }
 
-/// How far a point lies outside of a core, at least.
+/// Lower bound of the distance outside a core.
 fn outside(core: &Core, p: &Vec3) -> f64 {
     match core.rim {
         Some(radius) => disk::way(radius, p).norm(),
@@ -415,7 +403,7 @@ impl PairKind for SphereDilated {
         };
         let own = sphere[3] / body.scale;
         let radius = sphere[3];
-        // A sphere may sink into a face as deep as into another sphere, but not through a disk.
+        // A sphere may penetrate a face as deep as a sphere, but not cross a disk.
         let bound = if body.core.rim.is_some() { DEEPEST * sum } else { sum };
         found.push(Touch { bound, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });
     }

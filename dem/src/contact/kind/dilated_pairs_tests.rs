@@ -1,4 +1,4 @@
-//! Dilated polyhedra against brute force: closest points by going through all faces and sides, edges integrated numerically.
+//! Dilated polyhedra against brute force: closest points over all faces and sides, numerical integration.
 
 use super::tests::{energy, placed, stones};
 use super::*;
@@ -8,7 +8,7 @@ use crate::shape::dilated::{Dilated, Face};
 use crate::shape::{Shape, cuboid};
 use crate::spatial::facet::{Facet, facets};
 
-/// A placed core, and the normal and the corners with their numbers of each of its faces.
+/// Placed core; normal and corners of each face.
 pub(super) type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
 
 pub(super) fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
@@ -21,8 +21,7 @@ pub(super) fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
     (body, body.core.faces.iter().map(face).collect())
 }
 
-/// Distance of a point outside of a placed core: the least to any face that it lies above, and to any side of a face; and which face, side or
-/// corner that is.
+/// Distance outside a core, nearest feature.
 pub(super) fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
     let local = body.orientation.inverse() * (p - body.centre) / body.scale;
     let mut best = (f64::INFINITY, [0; 2]);
@@ -51,8 +50,8 @@ pub(super) fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2])
     (best.0 * body.scale, best.1)
 }
 
-/// ∫ f by four points of Gauss, halved until that changes nothing. A stretch over which the second part of `f` changes is halved first: what is
-/// nearest to one place and to another is nearest to all between them, as such regions are convex.
+/// Four-point Gauss integral, bisected to convergence. Changes of the nearest feature (second part of `f`)
+/// are bisected first; its regions are convex.
 pub(super) fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: f64) -> f64 {
     let rule = |a: f64, b: f64| {
         let (m, h) = (0.5 * (a + b), 0.5 * (b - a));
@@ -69,7 +68,6 @@ pub(super) fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 
     integral(f, [low, middle], close) + integral(f, [middle, high], close)
 }
 
-/// Corners in the world, and the two of each edge.
 type Skeleton = (Vec<Vec3>, Vec<[usize; 2]>);
 
 fn skeleton_of(body: &Placed<'_>) -> Skeleton {
@@ -78,7 +76,7 @@ fn skeleton_of(body: &Placed<'_>) -> Skeleton {
     (body.core.corners.iter().map(world).collect(), edges.collect())
 }
 
-/// Energy of unit springs with which corners and edges press into something convex, whose distance is given, and what is nearest.
+/// Energy of unit springs of corners and edges on a convex body.
 fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usize; 2]), reach: f64) -> f64 {
     let spring = |p: &Vec3| 0.5 * (reach - distance(p).0).max(0.0).powi(2);
     let of_corners: f64 = corners.iter().map(spring).sum();
@@ -89,11 +87,11 @@ fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usiz
             let length = (b - a).norm();
             let near = |s: f64| distance(&(a + (b - a) * s));
             let at = |s: f64| near(s).0;
-            // The distance changes by no more than the way along the edge.
+            // Distance changes by at most the path along the edge.
             if at(0.5) > reach + 0.5 * length {
                 return 0.0;
             }
-            // It has one minimum, the body being convex: what is below `reach` is one stretch about it.
+            // One minimum, as the body is convex: one stretch below `reach`.
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..40 {
                 let third = (high - low) / 3.0;
@@ -125,7 +123,7 @@ fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usiz
     of_corners + of_edges
 }
 
-/// Energies of random pairs, thrown together in whatever way, flat on each other, or nearly so; from both sides to rounding.
+/// Random pairs, some flat on each other or nearly so; both orders agree to rounding.
 fn energies(count: usize) {
     let mut random = Random::new(23, 1);
     let cube: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::repeat(0.35), k)).collect();
@@ -145,7 +143,7 @@ fn energies(count: usize) {
                 continue;
             }
             let any = [0, 1].map(|_| random.orientation());
-            // Tilts of 1e-9 to 0.1 of a whole turn.
+            // Tilts of 1e-9 to 0.1 turns.
             let slight = 10.0_f64.powf(-1.0 - 8.0 * random.uniform());
             let turns = match tilt {
                 None => any,
@@ -202,14 +200,13 @@ fn energies_are_those_of_brute_force() {
     energies(200);
 }
 
-/// The same with 10⁵ pairs of each kind.
+/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
-fn energies_of_many_pairs_are_those_of_brute_force() {
+fn energies_of_many_pairs() {
     energies(100_000);
 }
 
-/// Distance of a point from a closed triangle, and what of it is nearest.
 fn from_triangle(corners: &[Vec3; 3], p: &Vec3) -> (f64, [usize; 2]) {
     let [a, b, c] = corners;
     let normal = (b - a).cross(&(c - a)).normalize();
@@ -233,14 +230,12 @@ fn from_triangle(corners: &[Vec3; 3], p: &Vec3) -> (f64, [usize; 2]) {
     if above && height.abs() <= best.0 { (height.abs(), [usize::from(height < 0.0), 9]) } else { best }
 }
 
-/// What a stone touches: the origin is amid it.
 enum Other {
     Sphere(f64),
     Plane(PlaneView),
     Triangle([Vec3; 3], Box<Facet>),
 }
 
-/// The frame of triangles.
 const WORLD: Pose = Pose {
     centre: Vec3::new(0.0, 0.0, 0.0),
     orientation: UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0)),
@@ -267,7 +262,7 @@ impl Other {
         }
     }
 
-    /// How far a body's core is apart from it; less than nothing where they overlap.
+    /// Core distance, negative for overlap.
     fn apart(&self, body: &Placed<'_>) -> f64 {
         match self {
             Other::Sphere(size) => {
@@ -286,7 +281,6 @@ impl Other {
         }
     }
 
-    /// What a body finds, the energy by brute force, and the sum of both radii.
     fn energies(&self, body: &Placed<'_>) -> (Touches, f64, f64) {
         let (mut found, own) = (Touches::new(), body.radius);
         match self {
@@ -312,7 +306,6 @@ impl Other {
     }
 }
 
-/// Energies of random stones that touch spheres, planes and triangles.
 fn energies_with_others(count: usize) {
     let mut random = Random::new(29, 1);
     let shapes = [stones(&mut random, 9, 0.06), stones(&mut random, 16, 0.08), stones(&mut random, 26, 0.05)];
@@ -323,7 +316,7 @@ fn energies_with_others(count: usize) {
             let k = (random.uniform() * shapes.len() as f64) as usize;
             let (turn, direction) = (random.orientation(), random.orientation() * Vec3::z());
             let at = |s: f64| placed(&shapes[k], &cores[k], direction * s, turn, 0.9);
-            // Overlaps of up to seven tenths of the radius.
+            // Overlaps up to 0.7 radii.
             let share = 0.3 + 0.69 * random.uniform();
             let other = Other::at_random(name, &mut random);
             if matches!(&other, Other::Plane(plane) if plane.normal.dot(&direction) < 0.2) {
@@ -348,13 +341,13 @@ fn energies_with_others(count: usize) {
 }
 
 #[test]
-fn energies_with_spheres_planes_and_triangles_are_those_of_brute_force() {
+fn energies_with_others_match_brute_force() {
     energies_with_others(300);
 }
 
-/// The same with 10⁵ pairs of each kind.
+/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
-fn energies_of_many_pairs_with_others_are_those_of_brute_force() {
+fn energies_of_many_pairs_with_others() {
     energies_with_others(100_000);
 }

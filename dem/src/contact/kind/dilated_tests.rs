@@ -15,12 +15,11 @@ pub(super) fn placed<'a>(
     Placed { centre, orientation, shape, scale, core, radius: shape.rounding(scale) }
 }
 
-/// Energy of the springs of a pair, stiffness 1 N/m.
+/// Energy of unit springs.
 pub(super) fn energy(found: &Touches) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
 
-/// Force on the first and torque on it about a point.
 pub(super) fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
     let mut sums = [Vec3::zeros(); 2];
     for t in found {
@@ -39,8 +38,8 @@ pub(super) fn stones(random: &mut Random, count: usize, radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(&points, radius).unwrap().0))
 }
 
-/// The force is the gradient of the energy in all six directions: of random stones that touch in whatever way, and of cubes and
-/// hexagons on faces, edges and corners.
+/// The force is the energy gradient in six directions: random bodies; cubes and hexagons on faces, edges and
+/// corners.
 #[test]
 fn forces_have_a_potential() {
     let mut random = Random::new(3, 1);
@@ -51,7 +50,7 @@ fn forces_have_a_potential() {
     shapes.push(Shape::Polyhedron(Box::new(Dilated::new(&cube, 0.06).unwrap().0)));
     shapes.push(box_);
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
-    // Shallow ones, as stiff springs are, and deep ones.
+    // Shallow as with stiff springs, and deep.
     let (mut tried, mut worst) = (0, [[0.0_f64; 2]; 2]);
     while tried < 2000 {
         let [i, j] = [0, 1].map(|_| (random.uniform() * shapes.len() as f64) as usize);
@@ -91,7 +90,7 @@ fn forces_have_a_potential() {
             let e = Vec3::ith(d, 1.0);
             let by_shift = slope(&|x| touches(e * x, Vec3::zeros()));
             let by_spin = slope(&|x| touches(Vec3::zeros(), e * x));
-            // Second differences of the energy, which bound the error of the first, are at most some hundred springs.
+            // The error bound, second differences, is a few hundred springs at most.
             let unit = force.norm() + 1e-4;
             worst[0] = worst[0].max((force[d] + by_shift).abs() / unit);
             worst[1] = worst[1].max((torque[d] + by_spin).abs() / unit);
@@ -103,9 +102,9 @@ fn forces_have_a_potential() {
     assert!(worst.iter().flatten().all(|w| *w < 2e-6), "{worst:?}");
 }
 
-/// Seen from the other side the same points, features exchanged.
+/// Same points in both orders, features exchanged.
 #[test]
-fn pairs_are_the_same_from_both_sides() {
+fn pairs_match_from_both_sides() {
     let mut random = Random::new(4, 1);
     let shapes: Vec<Shape> = (0..2).map(|k| stones(&mut random, 12, 0.05 + 0.05 * k as f64)).collect();
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
@@ -131,8 +130,8 @@ fn pairs_are_the_same_from_both_sides() {
     }
 }
 
-/// Overlaps of 350 pairs against a table that two other methods agree on to 3e-13: of corners on corners, edges and faces to rounding;
-/// where edges press, their means lie below the deepest point.
+/// 350 pairs against a table confirmed by two other methods to 3e-13: corners to rounding, edge means below
+/// the deepest point.
 #[test]
 fn overlaps_are_those_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/pairs_corners.csv"));
@@ -177,7 +176,7 @@ fn overlaps_are_those_of_the_table() {
         let deepest =
             found.iter().max_by(|s, t| s.geometry.overlap.total_cmp(&t.geometry.overlap)).expect(line);
         if !["VV", "VE", "VF"].contains(&kind) {
-            // The mean of an edge by itself, or a corner that is not the deepest point.
+            // Edge mean, or corner that is not deepest.
             let share = deepest.geometry.overlap / -gap;
             assert!((0.3..1.05).contains(&share), "{share}: {line}");
             crossing += 1;
@@ -190,7 +189,7 @@ fn overlaps_are_those_of_the_table() {
     assert!(compared > 80 && crossing > 100, "{compared} {crossing}");
 }
 
-/// A cube on a plane: four corners and four edges; on its edge two and one; the energy's slope is the weight.
+/// Cube on a plane: four corners and four edges; on its edge two and one; energy slope equals weight.
 #[test]
 fn a_cube_on_a_plane() {
     let cube: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::repeat(0.4), k)).collect();
@@ -209,7 +208,7 @@ fn a_cube_on_a_plane() {
         found
     };
     let mut flat = touches(0.499, UnitQuaternion::identity());
-    // The ends of the upright edges press a little as well.
+    // Ends of upright edges press slightly.
     assert_eq!(flat.len(), 12);
     assert!(flat.iter().filter(|t| t.weight < 0.004).count() == 4, "{flat:?}");
     flat.retain(|t| t.weight > 0.5);
@@ -226,27 +225,23 @@ fn a_cube_on_a_plane() {
     assert!(touches(0.501, UnitQuaternion::identity()).is_empty());
 }
 
-/// Where a body is, and how it is turned.
 type Pose = (Vec3, UnitQuaternion<f64>);
 
-/// Two bodies as a number goes from 0 to 1.
 type Sweep<'a> = &'a dyn Fn(f64) -> [Pose; 2];
 
-/// Sweeps in 1,000 steps: an edge turns from crossed to parallel over another, a block tilts from its edge to its face, a face slides off an
-/// edge, a corner walks over a corner: half as long steps have half the largest step of the force, so that it jumps nowhere. Edges that come
-/// within a degree of parallel grow stiff steeply, as lines of contact do.
+/// Sweeps in 1,000 steps: edge rotates to parallel, block tilts from edge to face, face slides off an edge,
+/// corner passes a corner. Half steps halve the largest force change. Within a degree of parallel, edges
+/// stiffen steeply.
 #[test]
 fn forces_are_continuous() {
     let half = Vec3::new(0.4, 0.3, 0.2);
     let points: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&half, k)).collect();
     let (block, _, turn) = Dilated::new(&points, 0.05).unwrap();
-    // Axes of the block as they were given.
     let given = |q: UnitQuaternion<f64>| q * turn;
     let shape = Shape::Polyhedron(Box::new(block));
     let core = shape.core();
     let about = |axis: Vec3, angle: f64| UnitQuaternion::from_scaled_axis(axis * angle);
     let eighth = std::f64::consts::FRAC_PI_4;
-    // On its edge along x.
     let edge = about(Vec3::x(), eighth);
     let tip = (0.3 + 0.2) * eighth.sin() + 0.05;
     let on_corner = UnitQuaternion::rotation_between(&half, &Vec3::z()).unwrap();
@@ -257,7 +252,7 @@ fn forces_are_continuous() {
             [(Vec3::z() * (2.0 * tip - 1e-3), above), (Vec3::zeros(), edge)]
         }),
         ("edge to face", &|x| {
-            // Its lowest corner stays 1 mm below the face.
+            // Lowest corner 1 mm below the face.
             let tilt = eighth * (1.0 - x);
             let down = 0.3 * tilt.sin() + 0.2 * tilt.cos() + 0.05;
             [
@@ -302,8 +297,7 @@ fn forces_are_continuous() {
     }
 }
 
-/// With the hint of the step before, stones that pass each other touch as without one, to the last bit: also where the hint is of
-/// long ago, or of other stones.
+/// Any hint, even old or of other bodies: bitwise as without.
 #[test]
 fn hints_change_nothing() {
     let mut random = Random::new(11, 1);
@@ -323,7 +317,6 @@ fn hints_change_nothing() {
             let (mut cold, mut warm) = (Touches::new(), Touches::new());
             DilatedDilated.touches(&a, &b, &mut cold);
             DilatedDilated.touches_again(&a, &b, &mut hint, &mut warm);
-            // Cores that overlap end a run.
             if cold.first().is_some_and(|t| t.geometry.overlap > t.bound) {
                 hint = None;
                 continue;

@@ -1,4 +1,4 @@
-//! Dilated disks: geometry of their contacts.
+//! Contacts of dilated disks.
 
 use super::pairs_tests::{distance, integral, solid};
 use super::tests::{energy, placed, stones, wrench};
@@ -13,18 +13,15 @@ fn disk(radius: f64, rounding: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::disk(radius, rounding).unwrap()))
 }
 
-/// The plane z = 0.
 fn floor() -> PlaneView {
     PlaneView { origin: Vec3::zeros(), normal: Vec3::z(), velocity: Vec3::zeros(), material: 0, open: false }
 }
 
-/// Points of the rim of a placed disk.
 fn rim_point(body: &Placed<'_>, t: f64) -> Vec3 {
     let radius = body.core.rim.unwrap() * body.scale;
     body.centre + body.orientation * Vec3::new(radius * t.cos(), radius * t.sin(), 0.0)
 }
 
-/// The way from a placed disk to a point of the world.
 fn from_disk(body: &Placed<'_>, p: &Vec3) -> Vec3 {
     let local = body.orientation.inverse() * (p - body.centre) / body.scale;
     let radius = body.core.rim.unwrap();
@@ -33,7 +30,6 @@ fn from_disk(body: &Placed<'_>, p: &Vec3) -> Vec3 {
     body.orientation * Vec3::new(local.x * out, local.y * out, local.z) * body.scale
 }
 
-/// The shortest way over a range: many points, and smaller and smaller steps from the best.
 fn shortest([low, high]: [f64; 2], at: &dyn Fn(f64) -> Vec3) -> Vec3 {
     let count = 720;
     let step = (high - low) / f64::from(count);
@@ -41,7 +37,6 @@ fn shortest([low, high]: [f64; 2], at: &dyn Fn(f64) -> Vec3) -> Vec3 {
     for k in 0..count {
         let mut s = low + step * (f64::from(k) + 0.5);
         let mut way = at(s);
-        // Only what may yet become the best is followed.
         if way.norm() > best.norm() + 0.1 {
             continue;
         }
@@ -60,10 +55,9 @@ fn shortest([low, high]: [f64; 2], at: &dyn Fn(f64) -> Vec3) -> Vec3 {
     best
 }
 
-/// Energy of unit springs along a line of some length, at a distance that is given over shares of it, with what is nearest: integrated by halves until
-/// that changes nothing, from as many pieces.
+/// Energy of unit springs along a line, bisected to convergence.
 fn along(length: f64, pieces: u32, reach: f64, at: &dyn Fn(f64) -> (f64, [usize; 2])) -> f64 {
-    // What does not press has a name of its own, so that the ends of what does are found.
+    // Unloaded parts have a separate name, to locate ends.
     let spring = |s: f64| match at(s) {
         (d, nearest) if d < reach => (0.5 * (reach - d).powi(2), nearest),
         _ => (0.0, [usize::MAX; 2]),
@@ -73,21 +67,19 @@ fn along(length: f64, pieces: u32, reach: f64, at: &dyn Fn(f64) -> (f64, [usize;
     (0..pieces).map(|k| integral(&spring, piece(k), close)).sum::<f64>() * length / (LENGTH * reach)
 }
 
-/// Distance of a point of the world from a placed disk, and whether its rim is nearest.
 fn off_disk(body: &Placed<'_>, p: &Vec3) -> (f64, [usize; 2]) {
     let way = from_disk(body, p);
     let axis = body.orientation * Vec3::z();
     (way.norm(), [usize::from((way - axis * axis.dot(&way)).norm() > 1e-12); 2])
 }
 
-/// The same of a disk's rim that meets something.
 fn pressing(body: &Placed<'_>, reach: f64, at: &dyn Fn(&Vec3) -> (f64, [usize; 2])) -> f64 {
     let around = TAU * body.core.rim.unwrap() * body.scale;
     along(around, 256, reach, &|s| at(&rim_point(body, TAU * s)))
 }
 
-/// Distances, overlaps and directions against a table that a conic programme agrees on to 2e-11: rims against disks, planes, triangles,
-/// polyhedra and cylinders. What touches presses along the shortest way, and no deeper than it says.
+/// Distances, overlaps and directions against a table confirmed by a conic programme to 2e-11. Force along
+/// the shortest direction, no deeper than stated.
 #[test]
 fn disks_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/pairs_corners.csv"));
@@ -106,7 +98,7 @@ fn disks_of_the_table() {
         let body = placed(&shape, &core, at, turn([6, 7, 8, 9].map(number)), 1.0);
         let (distance, gap) = (number(13), number(14));
         let normal = Vec3::new(number(16), number(17), number(18));
-        // From the partner to the disk.
+        // From partner to disk.
         let mut found = Touches::new();
         let way = match words[1] {
             "plane" => {
@@ -160,13 +152,12 @@ fn disks_of_the_table() {
         let deepest = found.iter().map(|t| t.geometry.overlap).fold(0.0, f64::max);
         assert!(deepest < -gap + 1e-8 && deepest > -0.3 * gap, "{deepest} for {line}");
         let force = wrench(&found, &body.centre)[0];
-        // Rims that press along some way turn their force a little.
+        // Distributed pressure rotates the force.
         assert!(force.normalize().dot(&normal) < -0.9, "{force} for {line}");
     }
     assert_eq!(compared, [25; 3]);
 }
 
-/// The same of a disk and a stone, both ways.
 fn with_stone(body: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
     let (own, stone) = (other.core, solid(other));
     let mut exact = pressing(body, reach, &|p| distance(&stone, p));
@@ -182,7 +173,6 @@ fn with_stone(body: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
     exact
 }
 
-/// How far along a line bodies are apart by a distance.
 fn close(apart: &dyn Fn(f64) -> Option<f64>, distance: f64) -> f64 {
     let (mut low, mut high) = (0.0, 8.0);
     for _ in 0..40 {
@@ -192,8 +182,8 @@ fn close(apart: &dyn Fn(f64) -> Option<f64>, distance: f64) -> f64 {
     high
 }
 
-/// Energies of random pairs against integrals over the rims by brute force. Rims that overlap flat, that cross, that only just touch: on planes, disks, and
-/// stones; both ways round the same to rounding.
+/// Random pairs against brute-force rim integrals on planes, disks and polyhedra: flat, crossing or barely
+/// touching; both orders agree to rounding.
 fn energies(count: usize) {
     let mut random = Random::new(17, 1);
     let stone = stones(&mut random, 14, 0.06);
@@ -269,7 +259,7 @@ fn energies(count: usize) {
         worst[kind] = worst[kind].max(off);
     }
     println!("energies off by {worst:?} of reach² (disks, stones, planes), {touched:?} pairs of {tried}");
-    // An edge near a rim, which is as curved as the rim is, is summed by the rule of eight points.
+    // An edge near a rim, as curved as the rim, uses eight points.
     assert!(worst[0] < 1e-9 && worst[1] < 1e-6 && worst[2] < 1e-9, "{worst:?}");
 }
 
@@ -280,18 +270,18 @@ fn rim_lowest(body: &Placed<'_>) -> f64 {
 }
 
 #[test]
-fn energies_of_disks_are_those_of_brute_force() {
+fn disk_energies_match_brute_force() {
     energies(300);
 }
 
-/// The same with 10⁵ pairs of each kind.
+/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
-fn energies_of_many_disks_are_those_of_brute_force() {
+fn energies_of_many_disks() {
     energies(100_000);
 }
 
-/// The force is the gradient of the energy in all six directions, of disks among themselves and with stones and boxes, flat ones too.
+/// The force is the energy gradient in six directions, for disks, polyhedra and boxes.
 #[test]
 fn forces_of_disks_have_a_potential() {
     let mut random = Random::new(5, 1);
@@ -343,9 +333,9 @@ fn forces_of_disks_have_a_potential() {
     assert!(worst.iter().flatten().all(|w| *w < 1e-5), "{worst:?}");
 }
 
-/// The same points from both sides, features exchanged; and with the hint of the step before, to the last bit.
+/// Same points in both orders, features exchanged; bitwise equal with hint.
 #[test]
-fn disks_are_the_same_from_both_sides_and_with_hints() {
+fn disks_match_from_both_sides() {
     let mut random = Random::new(6, 1);
     let shapes = [disk(0.5, 0.08), disk(0.35, 0.12), stones(&mut random, 12, 0.06)];
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
@@ -388,7 +378,7 @@ fn disks_are_the_same_from_both_sides_and_with_hints() {
     assert!(points > 3000, "{points}");
 }
 
-/// A disk flat on a plane: eight arcs, as deep all over, with the stiffness of its rim; it resists tilting like a ring.
+/// Disk flat on a plane: eight arcs of equal depth with the rim's stiffness; tilting stiffness of a ring.
 #[test]
 fn a_disk_flat_on_a_plane() {
     let shape = disk(0.5, 0.1);
@@ -406,7 +396,7 @@ fn a_disk_flat_on_a_plane() {
     assert!((weight - TAU * 0.5 / (LENGTH * 0.1)).abs() < 1e-12, "{weight}");
     assert!(flat.iter().all(|t| (t.geometry.overlap - 1e-3).abs() < 1e-12));
     let torque = wrench(&touches(1e-3), &(Vec3::z() * 0.099))[1].x;
-    // ∫ y² over a ring: half of its length times R².
+    // ∫ y² over a ring: half its length times R².
     let ring = weight * 0.5 * 0.25 * 1e-3;
     assert!((torque / ring + 1.0).abs() < 2e-3, "{torque} {ring}");
 }

@@ -1,4 +1,4 @@
-//! A closed triangle, an edge of it or a corner as what a body's corners and edges press into (`spatial/facet.rs`).
+//! Triangles, edges and corners as indentation targets (`spatial/facet.rs`).
 
 use crate::base::Vec3;
 use crate::shape::dilated::circle::{Circle, Turns};
@@ -7,16 +7,13 @@ use crate::shape::dilated::part::direction;
 use crate::shape::dilated::press::{Nearest, Segment, Stretch, Target};
 use crate::spatial::facet::{Facet, FacetEdge};
 
-/// A point.
 pub(super) struct Tip<'a>(pub &'a Vec3);
 
-/// A closed segment: its first end and the edge.
+/// Closed segment: first end, edge.
 pub(super) struct Rim<'a>(pub &'a Vec3, pub &'a FacetEdge);
 
-/// A closed triangle.
 pub(super) struct Closed<'a>(pub &'a Facet);
 
-/// Distance and direction of a way, within reach.
 fn near(way: Vec3, reach: f64) -> Option<(f64, Vec3)> {
     let square = way.norm_squared();
     if square >= reach * reach || square == 0.0 {
@@ -26,7 +23,6 @@ fn near(way: Vec3, reach: f64) -> Option<(f64, Vec3)> {
     Some((d, way / d))
 }
 
-/// What of a stretch is near a point.
 fn of_tip(
     mut stretch: Stretch,
     segment: &Segment,
@@ -41,7 +37,7 @@ fn of_tip(
     }
 }
 
-/// What of a stretch, which lies between the ends of an edge, is near the edge.
+/// Part of a segment near an edge, between its ends.
 fn of_rim(
     mut stretch: Stretch,
     segment: &Segment,
@@ -59,17 +55,16 @@ fn of_rim(
     }
 }
 
-/// Called with a part of a circle, and with what gives distance and direction of its points.
+/// Receives a circle part, and distance and direction of its points.
 type Put<'a> = &'a mut dyn FnMut([f64; 2], &dyn Fn(&Vec3) -> (f64, Vec3));
 
-/// What of a circle's parts is near a point.
 fn turns_of_tip(circle: &Circle, mut turns: Turns, tip: &Vec3, reach: f64, f: Put<'_>) {
     turns.cut(circle.around(tip, reach));
     let at = |p: &Vec3| direction(p - tip);
     turns.0.iter().for_each(|part| f(*part, &at));
 }
 
-/// What of a circle's parts, which lie between the ends of an edge, is near the edge.
+/// Part of circle arcs near an edge, between its ends.
 fn turns_of_rim(circle: &Circle, turns: &Turns, (end, edge): (&Vec3, &FacetEdge), reach: f64, f: Put<'_>) {
     let at = |p: &Vec3| {
         let way = p - end;
@@ -160,7 +155,6 @@ impl Target for Rim<'_> {
 }
 
 impl Closed<'_> {
-    /// Whether a point stands over it, and else the edge or corner that is nearest.
     fn way(&self, p: &Vec3) -> Vec3 {
         let Facet { corners, edges, normal, .. } = self.0;
         let mut best: Option<Vec3> = None;
@@ -196,7 +190,7 @@ impl Target for Closed<'_> {
         let Facet { corners, edges, normal, .. } = self.0;
         let whole = Stretch(segment.range);
         let (at, slope) = ((segment.from - corners[0]).dot(normal), segment.direction.dot(normal));
-        // Beyond a side, and along it.
+        // Outside a side, and along it.
         let aside = |k: usize| {
             let way = segment.from - corners[k];
             (way.dot(&edges[k].side), segment.direction.dot(&edges[k].side))
@@ -231,7 +225,6 @@ impl Target for Closed<'_> {
             if stretch.some() {
                 of_rim(stretch, segment, (&corners[k], &edges[k]), reach, &mut f);
             }
-            // Beyond the beginning of this side and the end of the one before.
             let before = (k + 2) % 3;
             let (u, u_slope) = along(before);
             let mut stretch = whole;
@@ -274,7 +267,6 @@ impl Target for Closed<'_> {
             beside.cut(along.map(|x| -x));
             beside.cut([along[0] - edge.length, along[1], along[2]]);
             turns_of_rim(circle, &beside, (corner, edge), reach, &mut f);
-            // Beyond the beginning of this side and the end of the one before.
             let mut beyond = turns.clone();
             beyond.cut_beyond(along);
             beyond.cut_beyond(circle.along(&before.direction, before.direction.dot(corner)).map(|x| -x));

@@ -1,10 +1,8 @@
-//! Kinds of pairs: which two shapes can touch, and where. A kind is one file with the geometry and one entry of [`KINDS`];
-//! search, memory, forces, slots, new orders of the bodies, checkpoints and measures are written once, in `pass.rs`, for
-//! all of them.
+//! Shape pairs in contact: each pair type is a geometry file and an entry of [`KINDS`]; `pass.rs` does
+//! everything else.
 //!
-//! Two kinds carry most contacts of a scene and have loops over lanes of their own instead: sphere with sphere
-//! (`sphere_pair.rs`, its images in `images.rs`) and sphere with plane (`planes.rs`). Patches of surfaces are joined over
-//! seams (`patches.rs`).
+//! Separate kernels: spheres (`sphere_pair.rs`, `images.rs`), planes (`planes.rs`), patches merged over seams
+//! (`patches.rs`).
 
 mod box_box;
 mod corner_plane;
@@ -31,7 +29,7 @@ use crate::contact::single::Setting;
 use crate::pairs::cross::{Cross, CrossForces};
 use pass::{Books, Of};
 
-/// All kinds. The order is that of their forces in sums, hence part of a scene's numbers.
+/// The order of summation affects results.
 pub(crate) const KINDS: [&dyn Kind; 8] = [
     &Of(sphere_box::SphereBox),
     &Of(corner_plane::CornerPlane),
@@ -43,7 +41,7 @@ pub(crate) const KINDS: [&dyn Kind; 8] = [
     &Of(sheet::DilatedSheet),
 ];
 
-/// Forces of all pairs of kinds of block `b`; their slots follow those of the spheres.
+/// Forces of block `b`; slots follow the sphere slots.
 pub(crate) fn forces(
     setting: &Setting<'_>,
     now: &Now<'_>,
@@ -52,7 +50,7 @@ pub(crate) fn forces(
     out: &mut CrossForces,
 ) {
     let mut slots = &mut out.slots[out.kinds_at..];
-    // Summed apart from what contacts of spheres took, so that these may be computed elsewhere.
+    // Separate sums: sphere contacts may be computed elsewhere.
     let (mut dashpot, mut friction) = (0.0, 0.0);
     for (kind, list) in KINDS.iter().zip(&mut lists.kinds) {
         let own;

@@ -1,4 +1,4 @@
-//! What is done with the pairs of a kind, written once for all of them.
+//! Search and forces of all pair types.
 
 use super::pair::{ContactNow, PairKind, Touch, Touches, View, Visited, share};
 use super::scene::{Now, Scene, Search};
@@ -16,28 +16,26 @@ use crate::pairs::cross::SurfaceBook;
 use crate::pairs::list::{PairList, PairName, PointMemory};
 use std::ops::Range;
 
-/// What the contacts of a block do besides the forces that go to slots.
+/// Contact results other than slots.
 pub(crate) struct Books<'a> {
-    /// Three records a pair: the force on the first partner and the torques on both.
+    /// Per pair: force on the first partner, both torques.
     pub slots: &'a mut [Record],
-    /// Energy that went into dashpots and into sliding [J].
+    /// Dashpot and sliding loss [J].
     pub dashpot: &'a mut f64,
     pub friction: &'a mut f64,
-    /// Work that planes do [J], and their impulse.
+    /// Work [J] and impulse of planes.
     pub work_walls: &'a mut f64,
     pub walls: &'a mut Impulse,
-    /// What bodies felt from each wall of patches.
+    /// Force sums by wall.
     pub wall_sums: &'a mut Vec<WallSum>,
-    /// Angular impulse about the origin that contacts across periodic borders give.
+    /// Angular impulse of periodic contacts about the origin.
     pub couple: &'a mut Vec3,
-    /// Contacts with the external surface.
     pub surface: &'a mut SurfaceBook,
     pub failure: &'a mut Option<Failure>,
 }
 
-/// A kind of pair, as search and step see it.
 pub(crate) trait Kind: Sync {
-    /// Pairs with first partners in a block that may come within `reach` [m] of each other; ascending.
+    /// Pairs of the block's first partners possibly within `reach` [m], ascending.
     fn candidates(
         &self,
         search: &Search<'_>,
@@ -47,10 +45,9 @@ pub(crate) trait Kind: Sync {
         out: &mut Vec<PairName>,
     );
 
-    /// Makes a block's list of those candidates that are within `reach` [m].
+    /// Lists the candidates within `reach` [m].
     fn refresh(&self, now: &Now<'_>, b: usize, reach: f64, candidates: &[PairName], list: &mut PairList);
 
-    /// Forces of a block's pairs.
     fn forces(
         &self,
         setting: &Setting<'_>,
@@ -60,7 +57,6 @@ pub(crate) trait Kind: Sync {
         books: &mut Books<'_>,
     );
 
-    /// Calls `f` for each contact of a block's list.
     fn visit(
         &self,
         laws: &Laws,
@@ -70,17 +66,15 @@ pub(crate) trait Kind: Sync {
         f: &mut dyn FnMut(&Visited<'_>),
     );
 
-    /// Calls `f` for each pair of a block's list with ground that is scarred.
+    /// Visits pairs with scarred ground.
     fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround));
 
-    /// Calls `share` with number of the pair, block and place of each body that takes part in it, and whether it comes
-    /// first.
+    /// Visits the bodies of each pair: pair index, block and place, whether first.
     fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool));
 
-    /// Whether both partners are bodies.
     fn of_bodies(&self) -> bool;
 
-    /// Calls `put` with block, name and points of each pair of an old list after a new order.
+    /// Visits each pair after re-sorting: block, name, points.
     fn carry(
         &self,
         names: &dyn Renamed,
@@ -90,21 +84,18 @@ pub(crate) trait Kind: Sync {
     );
 }
 
-/// A body and a patch of ground that is scarred.
 pub(crate) struct OnGround {
-    /// Place of the body in its block.
     pub place: usize,
     pub patch: u32,
-    /// Whether they touched in the last step, the ground lowered.
+    /// Contact in the last step, with lowered ground.
     pub touches: bool,
-    /// Whether the body reaches through the patch where that is.
+    /// Intersects the patch at its original position.
     pub cuts: bool,
 }
 
-/// A kind of pair as a [`Kind`].
 pub(crate) struct Of<K>(pub K);
 
-/// The partners of a pair, the second as its image that is nearest to the first, and the way to that from itself [m].
+/// Both partners, the second as nearest image, and its shift [m].
 type Partners<'a, K> = (View<'a, <K as PairKind>::First>, View<'a, <K as PairKind>::Second>, Vec3);
 
 impl<K: PairKind> Of<K> {
@@ -118,14 +109,14 @@ impl<K: PairKind> Of<K> {
             K::Second::image(&mut second, &way);
         }
         if let Some(scar) = Self::scar(scene, b, [i, other, j]) {
-            // The soil is gone where the body is: what it touches is a lower image of the ground.
+            // Displaced soil: contact with a lowered image.
             way += scar.sunk;
             K::Second::image(&mut second, &way);
         }
         (first, second, way)
     }
 
-    /// What the first partner does to the second, where that is ground that is scarred.
+    /// Scar, if the second partner is scarred ground.
     #[inline(always)]
     fn scar(scene: &(impl Scene + ?Sized), b: usize, [i, _, j]: PairName) -> Option<&Scar> {
         let scars = scene.scars();
@@ -136,25 +127,23 @@ impl<K: PairKind> Of<K> {
         K::First::body(scene, b, i).map(|k| &scars[scene.block(b).bodies[k] as usize])
     }
 
-    /// Whether the partners may come within `reach` [m], the ground lowered or not.
+    /// Within `reach` [m], ground lowered or not.
     fn near(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
         let (first, second, _) = Self::partners(scene, b, name);
         self.0.near(&first, &second, reach)
             || Self::scar(scene, b, name).is_some_and(|s| s.inside) && self.cuts(scene, b, name, reach)
     }
 
-    /// Whether they may come within `reach` [m], the ground as it is.
+    /// Within `reach` [m], ground not lowered.
     fn cuts(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
         self.0.near(&K::First::view(scene, b, name[0]), &K::Second::view(scene, b, name[2]), reach)
     }
 
-    /// Whether the points of two pairs share the mass.
     fn joined(scene: &(impl Scene + ?Sized), one: PairName, other: PairName) -> bool {
         let wall = |j: u32| K::Second::wall(scene, j);
         K::JOINED && one[0] == other[0] && wall(one[2]) == wall(other[2])
     }
 
-    /// One past the last pair of a list that shares the mass with one.
     fn last(scene: &(impl Scene + ?Sized), list: &PairList, k: usize) -> usize {
         let more = (k + 1..list.len()).take_while(|m| Self::joined(scene, list.name(k), list.name(*m)));
         k + 1 + more.count()
@@ -179,7 +168,7 @@ impl<K: PairKind> Kind for Of<K> {
             let deep = K::First::body(now, b, i).and_then(scar).map_or(0.0, |s| s.sunk.norm());
             let bounds = grown(K::First::bounds(&first), reach + deep);
             K::Second::around(search, b, bounds, row, |other, j| {
-                // Of two partners that could both come first the earlier one does.
+                // Of two possible first partners, the earlier is first.
                 let turned = K::Second::body(now, other as usize, j).is_some() && [other, j] <= [b as u32, i];
                 if turned || still && K::Second::still(now, other as usize, j) {
                     return;
@@ -204,7 +193,6 @@ impl<K: PairKind> Kind for Of<K> {
         list: &mut PairList,
         books: &mut Books<'_>,
     ) {
-        // Most blocks of a scene have no such pair.
         if list.len() == 0 {
             return;
         }
@@ -337,16 +325,15 @@ impl<K: PairKind> Kind for Of<K> {
     }
 }
 
-/// Where a pair touches, and the way to the image of the second partner [m].
+/// Contact points, and image shift [m].
 type Found<'a> = (&'a [Touch], &'a Vec3);
 
 impl<K: PairKind> Of<K> {
-    /// Materials of the partners of a pair.
     fn materials(scene: &(impl Scene + ?Sized), b: usize, [i, other, j]: PairName) -> [u32; 2] {
         [K::First::material(scene, b, i), K::Second::material(scene, other as usize, j)]
     }
 
-    /// Adds where a pair touches, as `touches` finds it, and puts that under its law: which they are, and the way to the second partner's image.
+    /// Adds contact points under their law, and image shift.
     #[inline(always)]
     fn seek<'a>(
         laws: &Laws,
@@ -363,7 +350,6 @@ impl<K: PairKind> Of<K> {
         (from..found.len(), way)
     }
 
-    /// Forces and memory of the `k`-th pair.
     fn pair(
         &self,
         setting: &Setting<'_>,
@@ -380,7 +366,6 @@ impl<K: PairKind> Of<K> {
         if found.is_empty() && points.is_empty() {
             return;
         }
-        // Mostly the same features as before, in the same order.
         let same =
             found.len() == points.len() && found.iter().zip(points).all(|(t, p)| t.feature == p.feature);
         for p in points.iter().filter(|_| !same) {
@@ -407,7 +392,6 @@ impl<K: PairKind> Of<K> {
         }
     }
 
-    /// Force of one contact point, added to the sums of its pair.
     fn force(
         &self,
         setting: &Setting<'_>,
@@ -474,8 +458,8 @@ impl<K: PairKind> Of<K> {
     }
 }
 
-/// Gives a point another weight. What comes to it comes without tension and takes its share of that of the springs, so that their
-/// force stays; what goes takes its tension along. Returns the energy that is lost either way [J].
+/// Changes a weight at constant spring force: gains carry no tension, losses take their share. Returns the
+/// energy lost [J].
 pub(super) fn weigh(
     laws: &Laws,
     [a, b]: [u32; 2],
@@ -489,7 +473,6 @@ pub(super) fn weigh(
         return 0.0;
     }
     let (_, stored) = laws.stored(a, b, g.overlap, g.radius, history);
-    // A feature has weights of one sign.
     if weight.abs() < before.abs() {
         return stored * (before - weight);
     }

@@ -1,11 +1,10 @@
-//! Dilated polyhedra with the patches of walls: triangles (`spatial/facet.rs`) and round surfaces (`round.rs`).
+//! Dilated polyhedra against wall patches: triangles (`spatial/facet.rs`) and round surfaces (`round.rs`).
 //!
-//! The corners and edges of the body press into the wall, those of the wall into the body, as between two bodies (`dilated.rs`): of a
-//! surface of triangles what a body with the same faces would do, however its faces are cut into triangles. Memory belongs to the features of
-//! both; over a seam of a flat side that of the side which a corner comes to has begun before it leaves the other, and what both share is taken
-//! away once, so that friction goes on.
+//! Features indent each other as between bodies (`dilated.rs`), independent of the triangulation. History
+//! belongs to features. At a seam, the next side's history begins before the previous ends, their common part
+//! is subtracted once, and friction continues.
 //!
-//! Limits: as between bodies; a core that meets a triangle ends the run. Triangles have two sides.
+//! Limits: as between bodies; a core that meets a triangle ends the run. Triangles are two-sided.
 
 use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, rounding, set, skeleton, touch};
 use super::facet::{Closed, Rim, Tip};
@@ -20,16 +19,15 @@ use crate::shape::dilated::press::{self, Pressed, Segment, Target};
 use crate::spatial::facet::{Facet, Share};
 use crate::spatial::patchwork::Form;
 
-/// Numbers of the features of a triangle: of the face, of edges and of corners as what is pressed into, and as what presses.
+/// Numbers of face, edges and corners as targets, then as indenters.
 const FACE: u32 = 0;
 const EDGE: u32 = 1;
 const TIP: u32 = 4;
 const PRESSING: u32 = 8;
 
-/// A dilated polyhedron or disk and a patch of a wall.
 pub(crate) struct DilatedPatch;
 
-/// A body over a facet, both in the frame of the wall.
+/// Body over a facet, in the wall's frame.
 pub(super) fn two<'a>(body: &Placed<'a>, pose: &Pose, facet: &'a Facet) -> Two<'a> {
     let frame = Frame::new(&body.pose(), pose);
     Two { frame, first: Hull::of(body.core), second: Hull { corners: &facet.corners, rim: None } }
@@ -70,17 +68,17 @@ impl PairKind for DilatedPatch {
     }
 }
 
-/// A body in the frame of a wall.
+/// Body in a wall's frame.
 pub(super) struct Whole<'a> {
     pub body: &'a Placed<'a>,
     pub frame: &'a Frame,
-    /// The set of its corners that may be near, a bit each, and what of edges may be.
+    /// Bit set of corners possibly near; view of edges.
     pub of: (u64, &'a View),
     pub pose: &'a Pose,
 }
 
 impl Whole<'_> {
-    /// What its corners and edges do to a part of the wall with a number, `count` times.
+    /// Indents a numbered part of the wall, weighted by `count`.
     pub fn press(&self, target: &impl Target, (number, count): (u32, f64), found: &mut Touches) {
         let reach = self.body.radius;
         skeleton(self.body.core, self.frame, self.of, target, reach, |feature, pressed, weight| {
@@ -90,7 +88,6 @@ impl Whole<'_> {
     }
 }
 
-/// What a body does to a facet in a frame, and the facet to it.
 pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut Hint, found: &mut Touches) {
     let (two, reach) = (two(body, pose, facet), body.radius);
     let mut heights = Heights::new();
@@ -112,7 +109,6 @@ pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut
     for (k, tip) in facet.tips.iter().enumerate().filter(|(_, t)| t.count != 0.0) {
         whole.press(&Tip(&facet.corners[k]), (TIP + k as u32, tip.count), found);
     }
-    // What the wall does to the body, in the body's frame.
     if !facet.edges.iter().map(|e| e.share).chain(facet.tips).any(|s| s.press > 0.0) {
         return;
     }
@@ -124,7 +120,7 @@ pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut
     on_body(body, facet, &back, (target.take(near), &view), found);
 }
 
-/// What the edges and corners of a facet do to a body, in the body's frame.
+/// Facet edges and corners on a body, in its frame.
 fn on_body(
     body: &Placed<'_>,
     facet: &Facet,
@@ -157,7 +153,7 @@ fn on_body(
     }
 }
 
-/// Points that press on a body, in the body's frame and unit, as corners do: number and place of each.
+/// Numbered points that indent as corners, in the body's frame and unit.
 pub(super) fn points_on_body(
     body: &Placed<'_>,
     points: impl Iterator<Item = (u32, Vec3)>,

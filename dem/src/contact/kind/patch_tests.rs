@@ -10,7 +10,7 @@ use crate::spatial::patchwork::{Patch, WallNow};
 use crate::spatial::round::Round;
 use nalgebra::UnitQuaternion;
 
-/// A wall of unit stiffness with its patches.
+/// Wall of unit stiffness.
 struct Wall {
     patches: Vec<Patch>,
     now: WallNow,
@@ -66,7 +66,6 @@ fn energy(found: &Touches) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
 
-/// Force on the body, and torque on it about a point.
 fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
     let mut sums = [Vec3::zeros(); 2];
     for t in found {
@@ -93,14 +92,14 @@ fn shapes(random: &mut Random) -> Vec<Shape> {
     shapes
 }
 
-/// Disks: flat and thick ones.
+/// Thin and thick disks.
 fn disks() -> Vec<Shape> {
     [[0.5, 0.06], [0.3, 0.12], [0.7, 0.05]]
         .map(|[big, r]| Shape::Polyhedron(Box::new(Dilated::disk(big, r).unwrap())))
         .to_vec()
 }
 
-/// A grid of `n` × `n` squares of two triangles each over the unit square, at a height that a function gives.
+/// `n` × `n` squares over the unit square.
 fn grid(n: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let at = |i: u32| f64::from(i) / f64::from(n);
     let vertices = (0..=n).flat_map(|j| (0..=n).map(move |i| [i, j]));
@@ -109,7 +108,7 @@ fn grid(n: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Vec3>, Vec<[u32; 3]>) 
     for j in 0..n {
         for i in 0..n {
             let v = |a: u32, b: u32| (j + b) * (n + 1) + i + a;
-            // Diagonals of both ways.
+            // Alternating diagonals.
             if (i + j) % 2 == 0 {
                 triangles.extend([[v(0, 0), v(1, 0), v(1, 1)], [v(0, 0), v(1, 1), v(0, 1)]]);
             } else {
@@ -120,7 +119,7 @@ fn grid(n: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Vec3>, Vec<[u32; 3]>) 
     (vertices, triangles)
 }
 
-/// The surface of a box of `n` × `n` squares a side, welded.
+/// Welded, `n` × `n` squares per side.
 fn box_mesh(half: &Vec3, n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (flat, triangles) = grid(n, |_, _| 1.0);
     let (mut vertices, mut all): (Vec<Vec3>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
@@ -148,11 +147,11 @@ fn box_mesh(half: &Vec3, n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, all)
 }
 
-/// A box cut into triangles, coarse or fine, presses as the box itself does, as a body.
+/// A triangulated box, coarse or fine, acts as the box.
 #[test]
-fn a_box_of_triangles_is_a_box() {
+fn triangulated_box_matches_box() {
     boxes_of_triangles(shapes(&mut Random::new(21, 1)), &[1, 3], 1e-8);
-    // Parts of rims end elsewhere, and so do the sums over them.
+    // Rim parts end elsewhere, which changes their sums.
     boxes_of_triangles(disks(), &[1], 2e-4);
 }
 
@@ -193,9 +192,8 @@ fn boxes_of_triangles(shapes: Vec<Shape>, cuts: &[u32], bound: f64) {
     }
 }
 
-/// On a floor of triangles a body feels the plane that they lie in.
 #[test]
-fn a_floor_of_triangles_is_a_plane() {
+fn triangulated_floor_matches_plane() {
     let mut random = Random::new(22, 1);
     let shapes = shapes(&mut random);
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
@@ -235,15 +233,14 @@ fn a_floor_of_triangles_is_a_plane() {
     assert!(worst < 1e-8, "{worst:e}");
 }
 
-/// The force is the gradient of the energy on hills and in valleys of triangles, on open borders, and on round walls inside and outside.
+/// The force is the energy gradient on hills, valleys, open borders, and both sides of round walls.
 #[test]
 fn walls_have_a_potential() {
     potentials_of_walls(shapes(&mut Random::new(23, 1)), 8, 1.0);
-    // Rims are summed up over cells that a round wall need not end with.
+    // Rims are summed over cells that need not end at a round wall.
     potentials_of_walls(disks(), 2, 1000.0);
 }
 
-/// Of the first `count` kinds of walls.
 fn potentials_of_walls(shapes: Vec<Shape>, count: usize, loose: f64) {
     let mut random = Random::new(27, 1);
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
@@ -303,7 +300,7 @@ fn potentials_of_walls(shapes: Vec<Shape>, count: usize, loose: f64) {
     }
 }
 
-/// Disks of the table on triangles and cylinders: what touches presses along the shortest way, and no deeper than it says.
+/// Tabulated disks: force along the shortest direction, no deeper than stated.
 #[test]
 fn disks_of_the_table_on_walls() {
     let table = include_str!("../../../tests/data/shapes/disk_pairs.csv");

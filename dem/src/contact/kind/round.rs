@@ -1,13 +1,12 @@
-//! Dilated polyhedra, and bodies of triangles, on round walls: the sides of frusta of cones (cylinders among them), discs, spheres, and planes that move.
+//! Dilated polyhedra and triangulated bodies on round walls: frusta (cylinders), discs, spheres, moving
+//! planes.
 //!
-//! The corners and edges of the body press on the wall as they do on a plane, by what their distance lacks to the radius. Along an edge that is
-//! integrated between the places where the wall ends or the distance is the radius; on a side of a frustum these are roots of quadratic
-//! equations. A rim that a side and a disc share counts once. The rim presses into the body too, in [`POINTS`] points; a sphere does so with its
-//! centre, as a grain does.
+//! Features indent by radius minus distance. Edges are integrated between wall ends and points at contact
+//! distance, roots of quadratic equations on a frustum. A rim shared by side and disc counts once. Rims
+//! indent the body at [`POINTS`] points, spheres with their centre.
 //!
-//! Limits: no side or sphere presses into the middle of a face with a bulge: a body that is longer than a cylinder has edges where it touches
-//! it. Inside of a frustum the nearest generator alone is felt, so that bodies must be smaller than the wall. Rims without a disc, and those that
-//! two walls share, do not press.
+//! Limits: sides and spheres do not indent face interiors; inside a frustum only the nearest generator acts
+//! (body smaller than the wall). Rims without a disc, or shared by two walls, do not indent.
 
 use super::dilated::{Frame, LENGTH, lost};
 use super::pair::Touches;
@@ -20,18 +19,16 @@ use crate::spatial::round::{Part, Round};
 use crate::spatial::separation::separation;
 use arrayvec::ArrayVec;
 
-/// Points of a rim that press into bodies.
 const POINTS: usize = 96;
 
-/// Numbers of what is pressed into, and of the first point of a rim that presses.
+/// Numbers of targets, and of the first rim point.
 const SIDE: u32 = 0;
 const RIM: u32 = 1;
 const PRESSING: u32 = 8;
 
-/// Rounds in which the nearest point of a segment to a circle is found, and the ends of what is near it.
+/// Iterations for nearest points and range ends.
 const ROUNDS: usize = 48;
 
-/// Whether a body may be within `reach` of a round patch.
 pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
     let pose = patch.pose();
     let at = pose.orientation.inverse() * (body.centre - pose.centre);
@@ -42,28 +39,26 @@ pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach
     }
 }
 
-/// What touches a round patch, in the frame of the patch.
+/// Body in a round patch's frame.
 pub(super) trait Presser {
-    /// A point amid it.
+    /// Interior point.
     fn amid(&self) -> Vec3;
 
-    /// Radius that its corners and edges are rounded with [m].
+    /// Rounding radius [m].
     fn reach(&self) -> f64;
 
-    /// Has its corners and edges press on a part of the patch with a number, `count` times.
+    /// Features indent a part of the patch, weighted by `count`.
     fn press(&mut self, target: &impl Target, number: (u32, f64));
 
-    /// Has points with numbers press on it, `own` of the sum of radii `reach` theirs [m], with a weight.
+    /// Points indent it; `own` of the sum of radii `reach` [m], weight.
     fn bear(&mut self, points: impl Iterator<Item = (u32, Vec3)>, lengths: (f64, f64, f64));
 
-    /// Whether it has come through a patch.
     fn through(&mut self, form: &Round) -> bool;
 
-    /// Notes that it has.
+    /// Records penetration.
     fn lose(&mut self, normal: &Vec3);
 }
 
-/// Where a body touches a round patch.
 pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Touches) {
     if !near(body, patch, form, 0.0) {
         return;
@@ -75,7 +70,6 @@ pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, fo
     on(form, &mut OnRound { whole, found });
 }
 
-/// A dilated polyhedron or disk on a round patch.
 struct OnRound<'a> {
     whole: Whole<'a>,
     found: &'a mut Touches,
@@ -106,7 +100,7 @@ impl Presser for OnRound<'_> {
             Round::Frustum { base, axis, height, radii, far: _ } => {
                 Side::new(base, axis, *height, *radii).meets_core(self.whole.frame, self.whole.body)
             }
-            // Its corners say so.
+            // Detected by its corners.
             _ => false,
         }
     }
@@ -116,7 +110,6 @@ impl Presser for OnRound<'_> {
     }
 }
 
-/// What something and a round patch do to each other.
 pub(super) fn on(form: &Round, presser: &mut impl Presser) {
     let reach = presser.reach();
     match form {
@@ -154,7 +147,7 @@ pub(super) fn on(form: &Round, presser: &mut impl Presser) {
     }
 }
 
-/// Whether a segment passes through a patch; never through a plane or a sphere, of which overlaps say so.
+/// Whether a segment pierces a patch; planes and spheres are checked by overlap.
 pub(super) fn pierced(form: &Round, segment: &Segment) -> bool {
     let within = |s: f64| segment.range[0] < s && s < segment.range[1];
     match form {
@@ -187,17 +180,15 @@ pub(super) fn pierced(form: &Round, segment: &Segment) -> bool {
     }
 }
 
-/// A unit vector across an axis.
 fn helper(axis: &Vec3) -> Vec3 {
     let mut x = Vec3::zeros();
     x[axis.iamin()] = 1.0;
     axis.cross(&x).normalize()
 }
 
-/// Places along a segment, in order.
+/// Ordered segment parameters.
 type Places = ArrayVec<f64, 16>;
 
-/// Calls `f` with each part of a range between places.
 fn between(range: [f64; 2], mut places: Places, mut f: impl FnMut([f64; 2])) {
     places.retain(|s| *s > range[0] && *s < range[1]);
     places.sort_by(f64::total_cmp);
@@ -210,11 +201,10 @@ fn between(range: [f64; 2], mut places: Places, mut f: impl FnMut([f64; 2])) {
     }
 }
 
-/// A segment as an axis sees it: height and square of the distance along it.
 struct Seen {
-    /// Height: value and slope.
+    /// Height: value, slope.
     z: [f64; 2],
-    /// Distance², as a polynomial of degree two.
+    /// Squared distance, quadratic polynomial.
     square: [f64; 3],
 }
 
@@ -226,7 +216,7 @@ impl Seen {
         Seen { z, square: [at.norm_squared(), 2.0 * at.dot(&slope), slope.norm_squared()] }
     }
 
-    /// Places where the distance from the axis is `level[0] + level[1] s`.
+    /// Roots of distance `level[0] + level[1] s`.
     fn at(&self, level: [f64; 2], places: &mut Places) {
         let [c, b, a] = self.square;
         let [c, b, a] = [c - level[0] * level[0], b - 2.0 * level[0] * level[1], a - level[1] * level[1]];
@@ -242,7 +232,6 @@ impl Seen {
         }
     }
 
-    /// The place where the height is `h`.
     fn at_height(&self, h: f64, places: &mut Places) {
         let s = (h - self.z[0]) / self.z[1];
         if s.is_finite() {
@@ -251,18 +240,17 @@ impl Seen {
     }
 }
 
-/// A rule of Gauss for what is neither flat nor a line.
+/// Gauss rule for curved targets.
 fn curve(range: [f64; 2], at: &dyn Fn(f64) -> (f64, Vec3), f: &mut impl FnMut([f64; 2], &Nearest)) {
     f(range, &Nearest::Curve(at));
 }
 
-/// The side of a frustum.
+/// Side of a frustum.
 struct Side {
     base: Vec3,
     axis: Vec3,
     height: f64,
     radii: [f64; 2],
-    /// Length of a generator.
     length: f64,
     near: Round,
 }
@@ -280,7 +268,7 @@ impl Side {
         }
     }
 
-    /// Whether a body outside has a core that meets the solid frustum. Inside its corners say so.
+    /// Whether an outside core meets the frustum; inside, corners detect it.
     fn meets_core(&self, frame: &Frame, body: &Placed<'_>) -> bool {
         let (point, normal, _) = self.near.closest(&frame.way);
         let outside = (frame.way - point).dot(&normal) > 0.0;
@@ -321,7 +309,7 @@ impl Target for Side {
         let seen = Seen::new(segment, &self.base, &self.axis);
         let (h, run, length) = (self.height, self.radii[1] - self.radii[0], self.length);
         let mut places = Places::new();
-        // Where a generator ends.
+        // Generator ends.
         for end in [0.0, length * length] {
             if run.abs() > 1e-12 * length {
                 seen.at([self.radii[0] + (end - seen.z[0] * h) / run, -seen.z[1] * h / run], &mut places);
@@ -329,7 +317,7 @@ impl Target for Side {
                 seen.at_height(end / h, &mut places);
             }
         }
-        // Where the distance is the reach, on either side.
+        // Distance equals the reach, either side.
         for off in [reach, -reach] {
             if h > 1e-12 * length {
                 let level = [self.radii[0] + (off * length + seen.z[0] * run) / h, seen.z[1] * run / h];
@@ -350,7 +338,7 @@ impl Target for Side {
     }
 }
 
-/// Where a distance that has one least value in a range is below the reach.
+/// Subrange of a unimodal distance below the reach.
 fn lowest(
     range: [f64; 2],
     reach: f64,
@@ -395,7 +383,6 @@ fn lowest(
     }
 }
 
-/// A circle.
 struct Circle {
     centre: Vec3,
     axis: Vec3,
@@ -424,7 +411,7 @@ impl Target for Circle {
     fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
         let seen = Seen::new(segment, &self.centre, &self.axis);
         let mut places = Places::new();
-        // As the disc and a cylinder are cut; and nearest to the axis, beyond which another part of the circle is.
+        // Cuts of disc and cylinder; point nearest to the axis.
         seen.at([self.radius, 0.0], &mut places);
         seen.at_height(0.0, &mut places);
         let middle = -0.5 * seen.square[1] / seen.square[2];
@@ -436,7 +423,6 @@ impl Target for Circle {
     }
 }
 
-/// A closed disc.
 struct Disc<'a> {
     centre: &'a Vec3,
     axis: &'a Vec3,
@@ -491,7 +477,7 @@ impl Target for Disc<'_> {
     }
 }
 
-/// The inside of a sphere.
+/// Inside of a sphere.
 struct Bowl<'a> {
     centre: &'a Vec3,
     radius: f64,

@@ -1,4 +1,4 @@
-//! Where partners of contacts are: as the step has them, or as measures look at them.
+//! Positions of contact partners.
 
 use crate::base::Vec3;
 use crate::bodies::block::Block;
@@ -15,29 +15,27 @@ use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::SheetFacet;
 use nalgebra::UnitQuaternion;
 
-/// A body that is not made of spheres, where it is.
+/// Non-spherical body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a> {
     pub centre: Vec3,
     /// Body frame to world.
     pub orientation: UnitQuaternion<f64>,
     pub shape: &'a Shape,
-    /// Factor on the lengths of the shape.
+    /// Scale factor on lengths.
     pub scale: f64,
-    /// Its faces, edges and corners, unscaled.
     pub core: &'a Core,
-    /// Radius that they are rounded with, scaled [m].
+    /// Rounding radius, scaled [m].
     pub radius: f64,
 }
 
 impl Placed<'_> {
-    /// Its frame, in lengths of the shape.
+    /// Frame in unscaled lengths.
     #[inline(always)]
     pub fn pose(&self) -> Pose {
         Pose { centre: self.centre, orientation: self.orientation, scale: self.scale }
     }
 
-    /// Half sides of a box [m]; `None` for other shapes.
     #[inline(always)]
     pub fn half(&self) -> Option<Vec3> {
         match self.shape {
@@ -46,19 +44,17 @@ impl Placed<'_> {
         }
     }
 
-    /// Whether it is a dilated polyhedron or disk.
     #[inline(always)]
     pub fn dilated(&self) -> bool {
         self.radius > 0.0
     }
 
-    /// Radius of a sphere about the centre that holds it [m].
+    /// Bounding radius [m].
     #[inline(always)]
     pub fn reach(&self) -> f64 {
         self.core.reach * self.scale + self.radius
     }
 
-    /// Bounds along the axes of the world [m].
     pub fn bounds(&self) -> Aabb {
         let turn = self.orientation.to_rotation_matrix();
         let reach = turn.matrix().abs() * self.shape.bounding_half(self.scale);
@@ -66,36 +62,32 @@ impl Placed<'_> {
     }
 }
 
-/// A plane where it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneView {
-    /// A point of it [m].
+    /// Point on it [m].
     pub origin: Vec3,
     pub normal: Vec3,
-    /// Velocity [m/s].
     pub velocity: Vec3,
     pub material: u32,
     /// Whether bodies pass through.
     pub open: bool,
 }
 
-/// A patch of a wall where it is, or an image of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchView<'a> {
     pub patch: &'a Patch,
     pub wall: &'a WallNow,
-    /// From the patch to the image [m].
+    /// Patch to image [m].
     pub shift: Vec3,
 }
 
 impl PatchView<'_> {
-    /// The frame of its wall.
+    /// Frame of its wall.
     pub fn pose(&self) -> Pose {
         Pose { centre: self.wall.origin + self.shift, orientation: self.wall.orientation, scale: 1.0 }
     }
 }
 
-/// A frame: where its origin is, how it is turned, and what a unit of it is [m].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
     pub centre: Vec3,
@@ -103,43 +95,37 @@ pub(crate) struct Pose {
     pub scale: f64,
 }
 
-/// Bodies and planes at one moment.
 pub(crate) trait Scene {
     fn block(&self, b: usize) -> &Block;
 
-    /// Centre and radius of a sphere of a block.
+    /// Sphere centre and radius.
     fn sphere(&self, b: usize, i: u32) -> &Record;
 
-    /// The place of a sphere's body.
+    /// Body of a sphere.
     fn owner(&self, b: usize, i: u32) -> usize;
 
-    /// A body of a block that is not made of spheres.
     fn placed(&self, b: usize, k: usize) -> Placed<'_>;
 
     fn plane(&self, k: usize) -> PlaneView;
 
-    /// Walls of patches; none where no body can touch them.
     fn walls(&self) -> Walls<'_>;
 
-    /// The external surface; nothing where no body can touch it.
     fn sheet(&self) -> SheetView<'_>;
 
     fn borders(&self) -> Option<&Periodic>;
 
-    /// What each body does to ground that is scarred, by number; empty where no ground is.
+    /// Scars by body; empty without scarred ground.
     fn scars(&self) -> &[Scar];
 }
 
-/// Triangles of the external surface, and what they are of.
 #[derive(Clone, Copy)]
 pub(crate) struct SheetView<'a> {
     pub facets: &'a [SheetFacet],
-    /// Material of all, or of those before the first of another material, and that.
+    /// Material of the first triangles; start and material of the others.
     pub materials: (u32, Option<(u32, u32)>),
 }
 
 impl SheetView<'_> {
-    /// Material of a triangle.
     #[inline(always)]
     pub fn material(&self, number: u32) -> u32 {
         match self.materials {
@@ -149,7 +135,7 @@ impl SheetView<'_> {
     }
 }
 
-/// Bodies as the step has them.
+/// Bodies in a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Now<'a> {
     pub blocks: Part<'a, Block>,
@@ -225,16 +211,15 @@ impl Scene for Now<'_> {
     }
 }
 
-/// What the search for pairs needs: bodies as they are, and those that are not made of spheres in a tree.
 pub(crate) struct Search<'a> {
     pub now: Now<'a>,
     pub planes: usize,
-    /// Block and place of each, ascending.
+    /// Block and place, ascending.
     pub solids: Vec<[u32; 2]>,
     tree: Bvh,
     patches: &'a Trees,
     facets: Bvh,
-    /// Where images of what is looked for may be, from the bodies [m]; no way at all without borders.
+    /// Image shifts [m].
     images: Vec<Vec3>,
 }
 
@@ -253,7 +238,7 @@ impl<'a> Search<'a> {
         Search { now, planes: now.planes.0.len(), solids, tree: Bvh::new(&bounds), patches, facets, images }
     }
 
-    /// What `query` finds within bounds, itself or an image; ascending.
+    /// Results of `query` over all images, ascending.
     fn near(&self, (low, high): Aabb, row: &mut Vec<u32>, query: impl Fn(Aabb, &mut Vec<u32>)) {
         row.clear();
         if self.images.is_empty() {
@@ -267,19 +252,19 @@ impl<'a> Search<'a> {
         row.dedup();
     }
 
-    /// Calls `f` with each patch of a wall that may come within bounds; ascending.
+    /// Visits wall patches possibly within bounds, ascending.
     pub fn patches_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
         self.near(bounds, row, |bounds, row| self.patches.query(self.now.walls.walls, bounds, row));
         row.iter().copied().for_each(f);
     }
 
-    /// Calls `f` with each triangle of the external surface that may come within bounds; ascending.
+    /// Visits surface triangles possibly within bounds, ascending.
     pub fn facets_near(&self, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32)) {
         self.near(bounds, row, |(low, high), row| self.facets.query(low, high, row));
         row.iter().copied().for_each(f);
     }
 
-    /// Calls `f` with block and place of each body, not made of spheres, that may come within bounds; ascending.
+    /// Visits block and place of bodies possibly within bounds, ascending.
     pub fn solids_near(&self, bounds: Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, u32)) {
         self.near(bounds, row, |(low, high), row| self.tree.query(low, high, row));
         for &k in row.iter() {

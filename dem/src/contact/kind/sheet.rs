@@ -1,9 +1,7 @@
-//! Dilated polyhedra with the external surface, where that is made of triangles: the faces of a solid (`spatial/sheet.rs`). They press
-//! as the triangles of walls do (`patch.rs`), whose corners the solid moves; the points of all triangles that a body touches share its mass.
+//! Dilated polyhedra on the external surface of triangles (`spatial/sheet.rs`), as on walls (`patch.rs`). A
+//! body's points share its mass.
 //!
-//! What a body feels goes back to the triangle in full: force, and the moment about where it acts.
-//!
-//! Limits: as for triangles of walls. The solid's faces have no mass here, as for spheres.
+//! Limits: as for wall triangles; faces of the solid have no mass.
 
 use super::dilated::Two;
 use super::pair::{PairKind, Touch, Touches};
@@ -22,13 +20,11 @@ use crate::spatial::bvh::Aabb;
 use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::SurfaceContact;
 
-/// A dilated polyhedron and a triangle of the external surface.
 pub(crate) struct DilatedSheet;
 
-/// Triangles of the external surface. They count with the block of their partner.
+/// Surface triangles, counted in their partner's block.
 pub(crate) struct SheetFacets;
 
-/// Triangles lie in the frame of the world.
 const WORLD: Pose = Pose {
     centre: Vec3::new(0.0, 0.0, 0.0),
     orientation: nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0)),
@@ -123,7 +119,7 @@ impl Second for SheetFacets {
     }
 }
 
-/// A contact with the surface: the body, what it touches, where and with which memory.
+/// Contact with the surface.
 pub(super) struct Met<'a> {
     pub body: u32,
     pub patch: u32,
@@ -132,20 +128,20 @@ pub(super) struct Met<'a> {
     pub history: &'a History,
 }
 
-/// Writes a contact down for the owner of the surface, and in the books of the grains.
+/// Records for the surface owner, and in the grains' totals.
 pub(super) fn book(setting: &Setting<'_>, met: &Met<'_>, f: &PairForce, books: &mut Books<'_>) {
     let Touch { geometry: g, weight, materials, .. } = met.touch;
     let force = f.force * *weight;
     let foot = met.facet.foot(&g.point);
     let couple = met.touch.couple * force.dot(&g.normal) + f.moment * *weight + foot.aside.cross(&force);
     let (velocity, spin) = met.facet.motion(&foot);
-    // The foot moves without the turn's part beside it, which the moment has.
+    // The moment contains the rotational part.
     let at_foot = velocity - spin.cross(&foot.aside);
     let surface = &mut *books.surface;
     surface.work += (force.dot(&at_foot) + couple.dot(&spin)) * setting.dt;
     surface.impulse.add(&foot.point, &(force * setting.dt));
     surface.impulse.angular += couple * setting.dt;
-    // What springs do not explain; a spring that slides holds what the limit has left to it.
+    // Dashpot part; a sliding spring holds the remaining limit.
     let (normal, tangential) = single::springs(setting.laws, *materials, g.overlap, g.radius, met.history);
     let sprung = (g.normal * normal - met.history.spring * tangential) * *weight;
     surface.contacts.push(SurfaceContact {

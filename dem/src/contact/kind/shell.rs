@@ -1,9 +1,5 @@
-//! Walls that touch each other: bodies of triangles (`spatial/shell.rs`) with surfaces of triangles and round patches.
-//!
-//! The corners and edges of either press into the other, as those of dilated polyhedra into walls (`patch.rs`, `round.rs`): of a surface of
-//! triangles what a body with the same faces would do, hollow ones among them.
-//!
-//! Limits: as of polyhedra on walls; what comes through a surface ends the run.
+//! Wall–wall contacts: triangulated bodies (`spatial/shell.rs`) with triangulated surfaces and round patches,
+//! as polyhedra with walls (`patch.rs`, `round.rs`), concave ones included. Penetration ends the run.
 
 use super::dilated::{DEEPEST, Frame, length, lost, rounding, touch};
 use super::facet::{Closed, Rim, Tip};
@@ -18,45 +14,42 @@ use crate::spatial::facet::{Facet, Share};
 use crate::spatial::round::Round;
 use crate::spatial::shell::Shell;
 
-/// Numbers of the parts of a triangle, as what presses and as what is pressed into: its face, its edges and its corners.
+/// Numbers of triangle parts as indenter and target: face, edges, corners.
 const FACE: u32 = 0;
 const EDGE: u32 = 1;
 const TIP: u32 = 4;
 const PARTS: u32 = 8;
 
-/// Numbers of a round patch's own parts.
 const ROUND_PARTS: u32 = 128;
 
-/// What belongs to the second partner, where it presses.
+/// Flag: the second partner indents.
 const TURNED: u32 = 1 << 31;
 
-/// What presses and what is pressed into: memory goes with these.
+/// History key: indenter, target.
 pub(crate) type Name = [u32; 2];
 
-/// Where two walls touch; names ascend.
+/// Wall–wall contacts; names ascend.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Met {
     pub names: Vec<Name>,
     pub touches: Touches,
-    /// Scratch of searches and of sorting.
     rows: [Vec<u32>; 2],
 }
 
 impl Met {
-    /// Forgets what was found.
     pub fn clear(&mut self) {
         self.names.clear();
         self.touches.clear();
     }
 
-    /// Puts points in the order of their names.
+    /// Sorts by name.
     fn sort(&mut self) {
         let order = &mut self.rows[0];
         order.clear();
         order.extend(0..self.names.len() as u32);
         order.sort_unstable_by_key(|k| self.names[*k as usize]);
         for to in 0..order.len() {
-            // What was put aside by a swap before.
+            // Displaced by an earlier swap.
             let mut from = order[to] as usize;
             while from < to {
                 from = order[from] as usize;
@@ -72,20 +65,18 @@ impl Met {
     }
 }
 
-/// A shell where it is.
 #[derive(Clone, Copy)]
 pub(crate) struct ShellNow<'a> {
     pub shell: &'a Shell,
     pub pose: Pose,
 }
 
-/// Adds where two shells touch.
 pub(crate) fn shells(a: &ShellNow<'_>, b: &ShellNow<'_>, found: &mut Met) {
     Pressing::new(a, b.pose, a.shell.radius + b.shell.radius, false).on_shell(b.shell, found);
     Pressing::new(b, a.pose, a.shell.radius + b.shell.radius, true).on_shell(a.shell, found);
 }
 
-/// Adds where a shell touches round patches, in the frame `pose`.
+/// Adds contacts with round patches in frame `pose`.
 pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose, found: &mut Met) {
     let pressing = Pressing::new(a, pose, a.shell.radius, false);
     for (form, first) in forms.iter().zip((0..).step_by(ROUND_PARTS as usize)) {
@@ -96,7 +87,7 @@ pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose,
         let amid = pressing.frame.point(amid);
         round::on(form, &mut OnRound { pressing: &pressing, amid, bounds, first, found: &mut *found });
     }
-    // They were found patch by patch.
+    // Found patch by patch.
     found.sort();
 }
 
@@ -110,20 +101,19 @@ fn apart((low, high): &Aabb, (from, to): &Aabb) -> bool {
 
 /// Bounds in another frame.
 fn seen(frame: &Frame, (low, high): &Aabb) -> Aabb {
-    // Of a plane they have no end.
+    // Planes are unbounded.
     let [low, high] = [low, high].map(|x| Vec3::from(x.map(|x| x.clamp(-1e18, 1e18))));
     let middle = frame.point(&((low + high) * 0.5));
     let half = frame.turn.matrix().abs() * ((high - low) * (0.5 * frame.scale));
     ((middle - half).into(), (middle + half).into())
 }
 
-/// A shell whose corners and edges press on something.
 struct Pressing<'a> {
     shell: &'a Shell,
-    /// Its own frame, and that of what it presses on.
+    /// Frames of shell and target.
     own: Pose,
     pose: Pose,
-    /// From the shell's frame to the other, and back.
+    /// Shell to target, back.
     frame: Frame,
     back: Frame,
     reach: f64,
@@ -131,7 +121,7 @@ struct Pressing<'a> {
     view: View,
 }
 
-/// A corner or an edge that presses.
+/// Indenting corner or edge.
 enum Feature {
     Corner(Vec3),
     Edge(Segment),
@@ -145,7 +135,7 @@ impl Feature {
         }
     }
 
-    /// Calls `f` with each part of a triangle that it presses on, what it does there, and how often that counts.
+    /// Visits each loaded part: number, indentation, weight.
     fn on_parts(&self, facet: &Facet, reach: f64, mut f: impl FnMut(u32, &Pressed, f64)) {
         let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
             pressed.iter().for_each(|pressed| f(part, pressed, count));
@@ -159,7 +149,6 @@ impl Feature {
         }
     }
 
-    /// Whether it lies farther above or below a triangle's plane than a reach.
     fn beside(&self, facet: &Facet, reach: f64) -> bool {
         let height = |p: &Vec3| (p - facet.corners[0]).dot(&facet.normal);
         match self {
@@ -171,7 +160,7 @@ impl Feature {
         }
     }
 
-    /// Bounds of what is within a reach of it.
+    /// Bounds including `reach`.
     fn bounds(&self, reach: f64) -> Aabb {
         let (a, b) = match self {
             Feature::Corner(p) => (*p, *p),
@@ -188,12 +177,12 @@ impl<'a> Pressing<'a> {
         Pressing { shell: of.shell, own: of.pose, pose, frame, back, reach, turned, view }
     }
 
-    /// Bounds in the frame of what it presses on.
+    /// Bounds in the target's frame.
     fn bounds(&self) -> Aabb {
         seen(&self.frame, &self.shell.bounds)
     }
 
-    /// Calls `f` with number, share and place of the corners and edges that may be within reach of bounds, in the frame of what they press on.
+    /// Visits features possibly near: number, weight, geometry in the target's frame.
     fn features(&self, within: &Aabb, row: &mut Vec<u32>, mut f: impl FnMut(u32, f64, Feature)) {
         let (low, high) = seen(&self.back, &grown(within, self.reach));
         row.clear();
@@ -215,7 +204,7 @@ impl<'a> Pressing<'a> {
         }
     }
 
-    /// A contact of a corner or an edge, on what counts `count` times.
+    /// Contact weighted by `count`.
     fn touch(&self, pressed: &Pressed, count: f64) -> Touch {
         let weight = if pressed.edge { count * length(pressed, self.reach) } else { count };
         let own = self.shell.radius;
@@ -223,7 +212,7 @@ impl<'a> Pressing<'a> {
         touch(&self.pose, 0, pressed, weight, lengths, if self.turned { -1.0 } else { 1.0 })
     }
 
-    /// That something has come through a surface.
+    /// Penetration of a surface.
     fn lost(&self, p: &Vec3, normal: &Vec3) -> Touch {
         lost(self.pose.centre + self.pose.orientation * p, self.pose.orientation * normal, self.reach)
     }
@@ -255,7 +244,6 @@ impl<'a> Pressing<'a> {
     }
 }
 
-/// Where a segment passes through a triangle.
 fn pierced(facet: &Facet, segment: &Segment) -> Option<Vec3> {
     let height = |p: &Vec3| (p - facet.corners[0]).dot(&facet.normal);
     let to = segment.from + segment.direction * segment.range[1];
@@ -268,7 +256,7 @@ fn pierced(facet: &Facet, segment: &Segment) -> Option<Vec3> {
     inside.then_some(p)
 }
 
-/// A shell on a round patch with bounds, whose first part has a number.
+/// Shell on a round patch: bounds, first part number.
 struct OnRound<'a, 'b> {
     pressing: &'b Pressing<'a>,
     amid: Vec3,

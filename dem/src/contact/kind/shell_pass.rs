@@ -1,4 +1,4 @@
-//! What is done with the points in which two walls touch (`shell.rs`).
+//! Forces of wall–wall contacts (`shell.rs`).
 
 use super::dilated::DEEPEST;
 use super::pair::{ContactNow, share};
@@ -14,7 +14,7 @@ use crate::pairs::list::PointMemory;
 use crate::pairs::meets::Meet;
 use crate::spatial::patchwork::WallNow;
 
-/// Two walls that touch: the first is a body of triangles, the second has a number.
+/// Two walls: first triangulated, second numbered.
 pub(crate) struct Two<'a> {
     pub walls: [&'a WallNow; 2],
     pub other: u32,
@@ -25,20 +25,19 @@ impl Two<'_> {
         self.walls.map(|w| w.material)
     }
 
-    /// Puts what was found under its laws.
+    /// Assigns laws to contacts.
     fn settle(&self, laws: &Laws, found: &mut Met) {
         let materials = self.materials();
         found.touches.iter_mut().for_each(|t| t.under(laws, materials));
         share(laws, &mut found.touches);
     }
 
-    /// Motions at a point.
     fn motions(&self, point: &Vec3) -> [PointMotion; 2] {
         self.walls.map(|w| PointMotion::of_whole(&w.velocity, &w.spin, point - w.centre, w.inverse_mass))
     }
 
-    /// Forces over a step of `dt` [s]: `old` is the memory of the pair, that of now is added to `new`. The sums are what the walls do to others.
-    /// Returns an overlap that is too large, and the bound of it [m].
+    /// Forces on others over `dt` [s]; `old`: history of the pair, the current one is appended to `new`.
+    /// Returns excessive overlap and its limit [m].
     pub fn forces(
         &self,
         (laws, dt): (&Laws, f64),
@@ -82,7 +81,7 @@ impl Two<'_> {
                 single::add_dashpot(&mut second.dashpots, laws, touch.materials, g, memory, &f.force, w);
             }
             if g.overlap > touch.bound && w > 0.0 && deep.is_none() {
-                // Of an edge that has come through, what it adds up to has no meaning.
+                // The sum over a penetrating edge is meaningless.
                 deep = Some([g.overlap.min(touch.bound / DEEPEST), touch.bound]);
             }
             new.push(Meet { other: self.other, name: *name, memory });
@@ -90,7 +89,6 @@ impl Two<'_> {
         deep
     }
 
-    /// Calls `f` with each contact.
     pub fn visit(&self, laws: &Laws, found: &mut Met, memory: &[Meet], f: &mut dyn FnMut(&ContactNow<'_>)) {
         self.settle(laws, found);
         for (name, touch) in found.names.iter().zip(&found.touches) {
@@ -109,7 +107,6 @@ impl Two<'_> {
     }
 }
 
-/// Memory of a point among that of the pair.
 fn known<'a>(of: &'a [Meet], name: &[u32; 2]) -> Option<&'a PointMemory> {
     let at = of.binary_search_by_key(name, |m| m.name).ok()?;
     Some(&of[at].memory)

@@ -1,10 +1,10 @@
-//! Names of points, bounds of overlaps, and what has come through a surface.
+//! Contact names, overlap limits, penetration.
 
 use super::*;
 use crate::base::random::Random;
 use nalgebra::UnitQuaternion;
 
-/// A cube of half a side 0.5 about the origin, rounded by 0.05.
+/// Cube of half side 0.5, rounding 0.05.
 fn cube() -> Shell {
     let corner = |k: u32| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.5 } else { -0.5 });
     let vertices: Vec<Vec3> = (0..8).map(corner).collect();
@@ -21,7 +21,7 @@ fn at(centre: Vec3, orientation: UnitQuaternion<f64>) -> Pose {
 const STILL: UnitQuaternion<f64> =
     UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0));
 
-/// A short pile with its ends.
+/// Short pile with ends.
 fn pile() -> Vec<Round> {
     let (base, axis, radii) = (Vec3::new(0.0, 0.0, -0.3), Vec3::z(), [0.4; 2]);
     let side = |far| Round::Frustum { base, axis, height: 0.6, radii, far };
@@ -29,7 +29,7 @@ fn pile() -> Vec<Round> {
     vec![side(false), side(true), end(-1.0), end(1.0)]
 }
 
-/// Names ascend, so that memory is found by them, and each is there once.
+/// History look-up requires unique ascending names.
 #[test]
 fn names_ascend() {
     let (shell, mut random, mut found, mut several) = (cube(), Random::new(3, 1), Met::default(), 0);
@@ -50,13 +50,11 @@ fn names_ascend() {
     assert!(several > 300, "{several}");
 }
 
-/// What says that a contact has lost its meaning: whether any has an overlap above its bound.
 fn lost_of(found: &Met) -> bool {
     found.touches.iter().any(|t| t.weight > 0.0 && t.geometry.overlap > t.bound)
 }
 
-/// A sphere may sink into a face by nine tenths of the radius of the rounding, whatever its own; an edge may not pass through an edge
-/// or a pile.
+/// Spheres may penetrate faces by 0.9 rounding radii; edges may not cross edges or piles.
 #[test]
 fn what_has_come_too_deep() {
     let (shell, mut found) = (cube(), Met::default());
@@ -67,7 +65,7 @@ fn what_has_come_too_deep() {
         rounds(&moved, &Vec3::zeros(), &ball, at(Vec3::zeros(), STILL), &mut found);
         assert!(!found.touches.is_empty() && lost_of(&found) == deep, "{depth}");
     }
-    // Edges upwards along y and downwards along x, or a face on a lying pile: how high what is above stands when what is not rounded meets.
+    // Edges along y below edges along x, or a face on a lying pile: height at contact without rounding.
     let turned = |axis: Vec3| UnitQuaternion::from_scaled_axis(axis * std::f64::consts::FRAC_PI_4);
     let edges = 2.0 * 2.0_f64.sqrt() * 0.45;
     let lying = vec![Round::Frustum {

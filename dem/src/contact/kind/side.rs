@@ -1,4 +1,4 @@
-//! What the partners of a pair can be.
+//! Partner types of pairs.
 
 use super::scene::{PatchView, Placed, PlaneView, Scene, Search};
 use crate::base::Vec3;
@@ -7,55 +7,48 @@ use crate::bodies::block::PointMotion;
 use crate::lanes::record::{Record, xyz};
 use crate::spatial::bvh::Aabb;
 
-/// Where bodies are after a new order; `None` where they do not stay.
+/// Bodies after re-sorting; `None` if removed.
 pub(crate) trait Renamed {
-    /// Block and number of what was a sphere of an old block.
     fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]>;
 
-    /// Block and place of what was a body of an old block.
     fn body(&self, block: usize, place: u32) -> Option<[u32; 2]>;
 }
 
-/// One partner of a pair. A partner has a number within its block: that of a sphere, of a body, of a corner; planes have
-/// numbers of their own.
+/// Partner type, numbered within its block or globally (planes).
 pub(crate) trait Side {
-    /// A partner where it is.
     type View<'a>;
 
-    /// Whether it is a body, which takes forces.
+    /// Whether it is a body, which receives forces.
     const BODY: bool;
 
-    /// Whether it has images across periodic borders.
     const IMAGES: bool = true;
 
-    /// Whether it belongs to another program part, which is given the contacts.
+    /// Whether contacts go to another program part.
     const EXTERNAL: bool = false;
 
-    /// The body, by its place in the block; `None` where it is none.
+    /// Body index in the block.
     fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize>;
 
     fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Self::View<'a>;
 
-    /// A point amid it [m].
+    /// Interior point [m].
     fn middle(view: &Self::View<'_>) -> Vec3;
 
-    /// Shows an image of it, moved by a way [m].
     fn image(view: &mut Self::View<'_>, way: &Vec3);
 
-    /// The wall of patches that it belongs to.
     fn wall(_scene: &(impl Scene + ?Sized), _number: u32) -> Option<usize> {
         None
     }
 
-    /// Block and number after a new order of the bodies; `None` where the body does not stay.
+    /// Block and number after re-sorting; `None` if removed.
     fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]>;
 
-    /// Displacement at a point that no velocity contains [m] ([`Surface::correction`](crate::spatial::surface::Surface::correction)).
+    /// Displacement not contained in the velocity [m]
+    /// ([`Surface::correction`](crate::spatial::surface::Surface::correction)).
     fn correction(_scene: &(impl Scene + ?Sized), _number: u32, _point: &Vec3) -> Option<Vec3> {
         None
     }
 
-    /// Motion at a point.
     #[inline(always)]
     fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
         match Self::body(scene, block, number) {
@@ -79,33 +72,29 @@ pub(crate) trait Side {
         }
     }
 
-    /// Whether it keeps its velocity whatever the forces.
+    /// Whether the velocity is prescribed.
     fn still(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> bool {
         Self::body(scene, block, number).is_none_or(|k| scene.block(block).velocity[k][3] == 0.0)
     }
 }
 
-/// A side that can come first: its partners are looked for.
 pub(crate) trait First: Side {
-    /// Its numbers within a block, in order.
+    /// Its numbers in a block, ascending.
     fn own(search: &Search<'_>, block: usize, f: impl FnMut(u32));
 
-    /// Bounds [m].
     fn bounds(view: &Self::View<'_>) -> Aabb;
 }
 
-/// A side that can come second: it is looked for.
 pub(crate) trait Second: Side {
-    /// Calls `f` with block and number of all that may come within bounds of one in `block`; ascending.
+    /// Visits block and number of partners possibly within bounds, ascending.
     fn around(search: &Search<'_>, block: usize, bounds: Aabb, row: &mut Vec<u32>, f: impl FnMut(u32, u32));
 }
 
-/// Bounds grown by a length [m].
 pub(crate) fn grown((low, high): Aabb, by: f64) -> Aabb {
     (low.map(|x| x - by), high.map(|x| x + by))
 }
 
-/// Spheres: single ones and members of clumps.
+/// Spheres, including clump members.
 pub(crate) struct Spheres;
 
 impl Side for Spheres {
@@ -122,7 +111,7 @@ impl Side for Spheres {
         scene.sphere(block, number)
     }
 
-    // Spheres come first only, and it is the second partner of which an image is shown.
+    // Only second partners are shifted to images.
     fn middle(view: &&Record) -> Vec3 {
         xyz(view)
     }
@@ -145,7 +134,7 @@ impl First for Spheres {
     }
 }
 
-/// Bodies that are not made of spheres.
+/// Non-spherical bodies.
 pub(crate) struct Solids;
 
 impl Side for Solids {
@@ -193,17 +182,14 @@ impl First for Solids {
     }
 }
 
-/// Corners that a body can have at most.
 const CORNERS: u32 = 1024;
 
-/// Corners of bodies that are not made of spheres: their number is 1024 times the place of the body, plus that of the
-/// corner.
+/// Corners of non-spherical bodies, numbered 1024 × body place + corner.
 pub(crate) struct Corners;
 
-/// A corner where it is.
 pub(crate) struct Corner {
     pub point: Vec3,
-    /// What laws take for a radius [m]; also the overlap above which a contact has lost its meaning.
+    /// Radius for laws, and overlap limit [m].
     pub size: f64,
 }
 
@@ -251,7 +237,7 @@ impl First for Corners {
     }
 }
 
-/// Infinite planes. They count with the block of their partner.
+/// Infinite planes, counted in their partner's block.
 pub(crate) struct Planes;
 
 impl Side for Planes {
@@ -269,7 +255,7 @@ impl Side for Planes {
         scene.plane(number as usize)
     }
 
-    // A plane lies along all periodic axes: it is its own image.
+    // Planes lie along all periodic axes: no image.
     fn middle(view: &PlaneView) -> Vec3 {
         view.origin
     }
@@ -287,7 +273,7 @@ impl Second for Planes {
     }
 }
 
-/// Patches of walls. They count with the block of their partner.
+/// Wall patches, counted in their partner's block.
 pub(crate) struct Patches;
 
 impl Side for Patches {

@@ -1,4 +1,4 @@
-//! A sphere and a box: the closest point of the box's surface.
+//! Sphere–box contacts.
 
 use super::pair::{PairKind, Touch, Touches};
 use super::scene::Placed;
@@ -23,7 +23,7 @@ impl PairKind for SphereBox {
     fn touches(&self, sphere: &&Record, solid: &Placed<'_>, found: &mut Touches) {
         let Some(half) = solid.half() else { return };
         let touch = detect::sphere_box(&xyz(sphere), sphere[3], &solid.centre, &solid.orientation, &half);
-        // The nearest face resolves a centre inside the box, up to one more radius.
+        // Valid for a centre inside the box, by up to one radius.
         found.extend(touch.map(|g| Touch::only(g, 2.0 * sphere[3])));
     }
 }

@@ -1,4 +1,4 @@
-//! Bonds, and the contacts of pairs that were bonded.
+//! Bonds, and contacts of debonded pairs.
 
 use super::record::{Part, keep, memory};
 use crate::bond::{debonded as loose, kernel};
@@ -43,7 +43,7 @@ fn bond() -> String {
     out.text()
 }
 
-/// The two spheres of a debonded pair.
+/// Spheres of a debonded pair.
 fn parted() -> [loose::Sphere<Recorded>; 2] {
     ["a", "b"].map(|side| loose::Sphere {
         x: vector(&format!("x{side}")),

@@ -1,4 +1,4 @@
-//! Clumps: contacts of their spheres, and their turns.
+//! Clumps: member contacts and rotation.
 
 use super::motion::{alone as single, moved, power, pushed, single_held};
 use super::record::{Part, memory};
@@ -13,7 +13,6 @@ use crate::lanes::turn::{Turn, placed};
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 
-/// Contacts of their spheres.
 pub(super) fn contacts<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("clump_contacts.c"),
@@ -22,7 +21,6 @@ pub(super) fn contacts<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::La
     }
 }
 
-/// Their turns.
 pub(super) fn motion(f: &Features) -> Part {
     let (midpoint, iterate) = half_turn();
     let [kick, after] = if f.damped { among::<true>() } else { among::<false>() };
@@ -59,7 +57,6 @@ fn member_plane<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Rec
     plane::results::<ROLL>(&f, &m)
 }
 
-/// The orientation `name`.
 fn orientation(name: &str) -> Turn<Recorded> {
     Turn { v: vector(name), s: input(format!("{name}.w")) }
 }
@@ -69,7 +66,7 @@ fn put(out: &mut Results, orientation: Turn<Recorded>) {
     out.number("(*nq).w", orientation.s);
 }
 
-/// The body before the kick.
+/// Body before the kick.
 fn rigid() -> Rigid<Recorded> {
     Rigid {
         orientation: orientation("q"),
@@ -79,7 +76,7 @@ fn rigid() -> Rigid<Recorded> {
     }
 }
 
-/// How the iterations for the turn begin, and one of them.
+/// Initial value and one iteration of the rotation.
 fn half_turn() -> (String, String) {
     tape::begin();
     let m = Midpoint::new(orientation("q"), vector("l"), vector("moments"), input("dt"));
@@ -96,13 +93,11 @@ fn half_turn() -> (String, String) {
     (begin, one.text())
 }
 
-/// The orientation that the iterations lead to.
 fn new() -> Turn<Recorded> {
     rotation::turned(orientation("q"), vector("c"))
 }
 
 fn among<const DAMPED: bool>() -> [String; 2] {
-    // Torque and the part of it that is local damping.
     let torques = || {
         let (torque, spin, damping) = (vector("s.torque"), vector("w"), input("damping"));
         let stop = |torque, spin| kick::resist(torque, spin, damping);
@@ -141,7 +136,7 @@ fn alone_kick() -> String {
     out.text()
 }
 
-/// The results of a body that moves by itself, given how it has turned and what a fixed rotation does.
+/// Results of a body integrated singly, from its rotation and the work of fixed rotations.
 fn alone_results(
     k: &kick::Kicked<Recorded>,
     turned: &Turned<Recorded>,

@@ -1,4 +1,4 @@
-//! What the processor hands over: forces of contacts that it has worked out itself.
+//! Contact forces uploaded by the CPU.
 
 use super::record::Part;
 use crate::device::layout::What;

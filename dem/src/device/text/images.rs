@@ -19,7 +19,7 @@ pub(super) fn part<L: ContactLaw, const ROLL: bool>(
     }
 }
 
-/// The first sphere, and the image of the second.
+/// First sphere, and image of the second.
 fn spheres() -> Spheres<Recorded> {
     Spheres::new(vector("xa"), input("xa.w"), vector("xb") + vector("way"), input("xb.w"))
 }
@@ -57,7 +57,7 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
     let (torque_a, torque_b) = if clumps || ROLL {
         a.torques(&b, f.force, f.moment)
     } else {
-        // Of single spheres the engine keeps the levers alone.
+        // Single spheres keep lever arms only.
         let moment = f.force.cross(touch.normal);
         (moment * -a.arm.dot(touch.normal), moment * b.arm.dot(touch.normal))
     };

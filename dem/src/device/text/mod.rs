@@ -1,5 +1,4 @@
-//! The text of the kernels of a model: frames of C (`*.c`) around the engine's own formulas, recorded. A file here is a part: one kind of
-//! force or motion, with the C beside it.
+//! Kernel source of a model: C templates (`*.c`) filled with recorded engine formulas.
 
 mod bonds;
 mod clumps;
@@ -20,10 +19,9 @@ use crate::engine::model::Model;
 use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};
 use record::Part;
 
-/// The frame; lines that begin with `//@` are to be replaced.
+/// Template; lines starting with `//@` are replaced.
 const FRAME: &str = include_str!("frame.c");
 
-/// What the text for a model is for.
 pub(super) fn features(model: &Model) -> Features {
     let damped = model.damping != 0.0;
     let fixed = (0..model.body_count()).any(|k| model.body(k).fixed != 0);
@@ -42,7 +40,7 @@ pub(super) fn features(model: &Model) -> Features {
     }
 }
 
-/// The parts that a model needs, in the order of the sums and of what they call.
+/// Parts that a model needs, in order of sums and calls.
 fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) -> Vec<Part> {
     let law = || record::law(table);
     let mut all = vec![spheres::part::<L, ROLL>(&law), planes::part::<L, ROLL>(&law)];
@@ -70,7 +68,6 @@ fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) ->
     all
 }
 
-/// The text for the laws of a model.
 pub(super) fn text(laws: &Laws, f: &Features) -> String {
     let parts = with_law!(laws, table => if f.roll { parts::<_, true>(table, f) } else { parts::<_, false>(table, f) });
     let filled = |frame: &str, formulas: &[(&str, String)]| {
@@ -91,7 +88,7 @@ pub(super) fn text(laws: &Laws, f: &Features) -> String {
     filled(FRAME, &formulas)
 }
 
-/// The lines of C that hand an entry to the function of its part.
+/// C code that dispatches an entry to the function of its part.
 fn entries(parts: &[Part]) -> String {
     let tests = parts.iter().flat_map(|p| p.entries).map(|(what, function)| {
         format!("if (what == {}u) {function}(p, c, there, second, x, v, w, &s);\n", *what as u32)
@@ -99,7 +96,7 @@ fn entries(parts: &[Part]) -> String {
     format!("        {}", tests.collect::<Vec<_>>().join("        else "))
 }
 
-/// Constants of the law of each pair of `materials`, in the order in which the text fetches them.
+/// Law constants of each pair of `materials`, in the order of use.
 pub(super) fn constants<L: ContactLaw>(table: &PairTable<L>, materials: u32) -> Vec<f64> {
     let mut out = Vec::new();
     for a in 0..materials {
@@ -112,7 +109,7 @@ pub(super) fn constants<L: ContactLaw>(table: &PairTable<L>, materials: u32) -> 
     out
 }
 
-/// As [`constants`], of whatever laws a model has.
+/// As [`constants`], for any laws.
 pub(super) fn law_constants(laws: &Laws, materials: u32) -> Vec<f64> {
     with_law!(laws, table => constants(table, materials))
 }

@@ -1,4 +1,4 @@
-//! Motion of single spheres, and of any body's centre.
+//! Motion of single spheres and of body centres.
 
 use super::record::Part;
 use crate::device::layout::Features;
@@ -15,17 +15,16 @@ pub(super) fn part(f: &Features) -> Part {
     }
 }
 
-/// What local damping and fixed motions are booked with.
 pub(super) fn books() -> Part {
     Part { frame: include_str!("held.c"), formulas: Vec::new(), entries: &[] }
 }
 
-/// Where a velocity takes a body.
+/// Displacement in a step.
 pub(super) fn moved(velocity: V3<Recorded>) -> V3<Recorded> {
     vector("x") + velocity * input("dt")
 }
 
-/// Velocity of a free body after the kick and the force of local damping on it.
+/// Velocity of a free body after the kick, and its local damping force.
 pub(super) fn pushed<const DAMPED: bool>() -> (V3<Recorded>, V3<Recorded>) {
     let (old, force, gravity) = (vector("v"), vector("s.force"), vector("g"));
     let (inverse_mass, step, damping) = (input("v.w"), input("kick"), input("damping"));
@@ -40,7 +39,7 @@ pub(super) fn pushed<const DAMPED: bool>() -> (V3<Recorded>, V3<Recorded>) {
     (V3::new(x.0, y.0, z.0), V3::new(x.1, y.1, z.1))
 }
 
-/// Power of a force of local damping over a kick, component by component.
+/// Power of a local damping force over a kick, by component.
 pub(super) fn power(load: V3<Recorded>, old: V3<Recorded>, new: V3<Recorded>) -> V3<Recorded> {
     let mean = (old + new) * input("0.5");
     V3::new(load.x * mean.x, load.y * mean.y, load.z * mean.z)
@@ -70,7 +69,6 @@ fn free<const DAMPED: bool>() -> String {
     out.text()
 }
 
-/// A body that moves by itself.
 pub(super) fn alone() -> Single<Recorded> {
     let bit = |d: usize| truth(&format!("(int)(fixed >> {d} & 1u)"));
     let none = V3::zero();
@@ -106,8 +104,8 @@ fn single(held: bool) -> String {
     out.text()
 }
 
-/// What fixed motions and local damping of a single body are booked with, in the order of `general` (`integrate/leapfrog.rs`). Given of
-/// its rotation: the mean spin, and the impulse and the work of what fixes it.
+/// Work of fixed motions and local damping of a body, in the order of `general` (`integrate/leapfrog.rs`),
+/// from the mean angular velocity and the impulse and work of the rotational constraint.
 pub(super) fn single_held(
     out: &mut Results,
     s: &Single<Recorded>,

@@ -1,4 +1,4 @@
-//! Contacts with walls of triangles. Which triangles count is decided in C as in `contact/patches.rs`; what it weighs is recorded.
+//! Wall triangle contacts: C selects triangles as in `contact/patches.rs`, weights are recorded formulas.
 
 use super::record::{Part, keep, memory};
 use crate::contact::patch_forces::{self, Touch};
@@ -35,13 +35,12 @@ pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<
     }
 }
 
-/// Three numbers of an array of C.
 fn three(array: &str, from: usize) -> V3<Recorded> {
     let at = |k: usize| input(format!("{array}[{}]", from + k));
     V3::new(at(0), at(1), at(2))
 }
 
-/// Numbers of the wall, as `device/walls.rs` lays them out.
+/// Wall pose, in the layout of `device/walls.rs`.
 fn place() -> Place<Recorded> {
     Place {
         centre: three("u", 0),
@@ -53,7 +52,7 @@ fn place() -> Place<Recorded> {
     }
 }
 
-/// The plane of the triangle, and its edges.
+/// Planes of the triangle and of its edges.
 fn planes() -> (Level<Recorded>, [Level<Recorded>; 3]) {
     let level = |from: usize| [0, 1, 2, 3].map(|k| input(format!("f[{}]", from + k)));
     (level(0), [level(4), level(8), level(12)])

@@ -15,12 +15,11 @@ pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<
     }
 }
 
-/// How far the centre of a sphere `x` is above a plane `face`.
+/// Height of sphere centre `x` above plane `face`.
 pub(super) fn height() -> Recorded {
     vector("x").dot(vector("face")) - input("face.w")
 }
 
-/// A single sphere and a plane that it touches.
 pub(super) fn touch() -> planes::Touch<Recorded> {
     planes::Touch {
         position: vector("x"),
@@ -49,13 +48,12 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
     results::<ROLL>(&f, &m)
 }
 
-/// The lines that put down what a contact with a plane does.
 pub(super) fn results<const ROLL: bool>(f: &planes::Forces<Recorded>, m: &Memory<Recorded>) -> String {
     let mut out = Results::default();
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque);
     keep::<ROLL>(&mut out, m, f.dashpot, f.friction, f.deep);
-    // Power and force, then the moment about the origin: in the order in which they are booked.
+    // In the order of the totals: power and force, then moment about the origin.
     let [fx, fy, fz] = f.force.array();
     let [ax, ay, az] = f.about_origin.array();
     let zero = Recorded::zero();

@@ -1,30 +1,26 @@
-//! A part of the text, and what the recorded formulas of all contacts share.
+//! Part of the kernel source, and formulas common to all contacts.
 
 use crate::device::layout::What;
 use crate::device::tape::{self, Recorded, Results, input, next, vector};
 use crate::law::{ContactLaw, Memory, PairTable};
 
-/// A part of the text.
 pub(super) struct Part {
-    /// C in which lines that begin with `//@` are to be replaced.
+    /// C template; lines starting with `//@` are replaced.
     pub frame: &'static str,
-    /// By what.
     pub formulas: Vec<(&'static str, String)>,
-    /// The entries of bodies that it is for, and the function of C that each is handed to.
+    /// Entry types of the part, and their C functions.
     pub entries: &'static [(What, &'static str)],
 }
 
-/// A law whose constants are those that the text is handed for a pair of materials.
+/// Law with the constants of a material pair.
 pub(super) fn law<L: ContactLaw>(table: &PairTable<L>) -> L::Lanes<Recorded> {
     L::mixed::<Recorded>([table.get(0, 0); 8], next)
 }
 
-/// What a contact remembers.
 pub(super) fn memory() -> Memory<Recorded> {
     Memory { spring: vector("m"), rate: input("m.w"), roll: vector("r"), twist: input("r.w") }
 }
 
-/// Results that contacts of all kinds have.
 pub(super) fn keep<const ROLL: bool>(
     out: &mut Results,
     m: &Memory<Recorded>,
@@ -43,7 +39,7 @@ pub(super) fn keep<const ROLL: bool>(
     out.truth("o->deep", deep);
 }
 
-/// Energy left in the springs of a contact that ends.
+/// Residual spring energy of an ended contact.
 pub(super) fn left<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>) -> String {
     tape::begin();
     let law = law(table);

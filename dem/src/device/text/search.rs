@@ -1,4 +1,4 @@
-//! The search for neighbours.
+//! Neighbour search.
 
 use super::record::Part;
 use crate::device::tape::{self, Results, input, vector};

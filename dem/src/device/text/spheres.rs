@@ -15,7 +15,7 @@ pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<
     }
 }
 
-/// Two single spheres with the names `xa`, `va`, `wa` and `xb`, `vb`, `wb`.
+/// Single spheres `xa`, `va`, `wa` and `xb`, `vb`, `wb`.
 pub(super) fn pair() -> sphere_pair::Pair<Recorded> {
     let between = vector("xa") - vector("xb");
     let radius = input("xa.w");
@@ -46,7 +46,6 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
     results::<ROLL>(&f, &m)
 }
 
-/// The lines that put down what a contact of two spheres does.
 pub(super) fn results<const ROLL: bool>(f: &sphere_pair::Forces<Recorded>, m: &Memory<Recorded>) -> String {
     let mut out = Results::default();
     out.vector("o->force", f.force);

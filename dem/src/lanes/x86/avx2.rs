@@ -1,14 +1,13 @@
-//! Four lanes in a register of AVX2.
+//! Four lanes in an AVX2 register.
 
 use crate::lanes::real::{Four, Real};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A register of four lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2(__m256d);
 
-/// Truth values of [`Avx2`]: all bits of a lane, or none.
+/// Mask: all bits of a lane, or none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2Mask(__m256d);
 

@@ -1,4 +1,4 @@
-//! Eight lanes in a register of AVX-512: two groups of four side by side.
+//! Eight lanes in an AVX-512 register: two groups of four.
 
 use super::avx2::Avx2;
 use crate::lanes::real::{Four, Real};
@@ -7,11 +7,10 @@ use crate::lanes::wide::Pack;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A register of eight lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512(__m512d);
 
-/// Truth values of [`Avx512`], a bit each.
+/// Mask: a bit per lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512Mask(__mmask8);
 
@@ -112,7 +111,7 @@ impl Real for Avx512 {
     }
 }
 
-/// Two records side by side.
+/// Concatenates two records.
 #[inline(always)]
 fn both(low: &[f64; 4], high: &[f64; 4]) -> Avx512 {
     Avx512(intrinsics!({
@@ -121,8 +120,8 @@ fn both(low: &[f64; 4], high: &[f64; 4]) -> Avx512 {
     }))
 }
 
-/// Four numbers of each lane: first those of lanes 0 and 2, 1 and 3, 4 and 6, 5 and 7, each as two pairs of the first
-/// numbers and then two of the last.
+/// Four numbers of lanes (0, 2), (1, 3), (4, 6), (5, 7), as two pairs of the first and two of the last
+/// numbers.
 #[inline(always)]
 fn halves([Avx512(a), Avx512(b), Avx512(c), Avx512(d)]: [Avx512; 4]) -> [Avx512; 4] {
     intrinsics!({
@@ -137,7 +136,7 @@ fn halves([Avx512(a), Avx512(b), Avx512(c), Avx512(d)]: [Avx512; 4]) -> [Avx512;
     })
 }
 
-/// Eight numbers of each lane from two results of [`halves`].
+/// Eight numbers per lane, from two results of [`halves`].
 #[inline(always)]
 fn join(p: [Avx512; 4], q: [Avx512; 4]) -> [Avx512; 8] {
     intrinsics!({
@@ -165,7 +164,7 @@ impl Pack for Avx512 {
     }
     #[inline(always)]
     fn less(self, o: Avx512, sign: Avx512) -> Avx512 {
-        // One rounding, as the product has none.
+        // One rounding: the product is exact.
         Avx512(intrinsics!(_mm512_fnmadd_pd(o.0, sign.0, self.0)))
     }
     #[inline(always)]
@@ -216,7 +215,7 @@ impl Pack for Avx512 {
     }
     #[inline(always)]
     fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Avx512; 4] {
-        // The pairs that two rounds of shuffles bring into the order of the lanes.
+        // Pairs that two rounds of shuffles bring into lane order.
         [
             both(record(0), record(2)),
             both(record(1), record(3)),
@@ -267,7 +266,7 @@ impl Pack for Avx512 {
         let zero = Avx512::zero();
         let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
         let [p, q, r, s] = halves([x, y, z, zero]);
-        // The fourth numbers become −0, which a sum does not feel.
+        // Fourth numbers become −0, neutral in sums.
         let back = [-p, -q, -r, -s];
         (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
     }

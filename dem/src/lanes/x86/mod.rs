@@ -1,11 +1,11 @@
-//! Lanes and prefetching of x86-64, with the instructions that the processor at hand has.
+//! Lanes and prefetching of x86-64.
 
-/// Calls of intrinsics, the one place that answers for them.
+/// The only place that calls intrinsics.
 macro_rules! intrinsics {
     ($calls:expr) => {
-        // SAFETY: the types of lanes are private to this folder and only named as the argument of a kernel below
-        // `with_avx2` and `with_avx512`, which run after the processor was found to have the features. Pointers come from
-        // references to as many numbers as are loaded or stored, and no alignment is asked for.
+        // SAFETY: lane types are private to this folder and used only in kernels below `with_avx2` and
+        // `with_avx512`, run after feature detection. Pointers come from references of sufficient length;
+        // alignment is not required.
         unsafe { $calls }
     };
 }
@@ -19,17 +19,17 @@ use avx2::Avx2;
 use avx512::Avx512;
 use std::arch::x86_64::_mm_prefetch;
 
-/// Which lanes the processor is given.
+/// Lane implementation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Simd {
     Portable,
     Avx2,
-    /// Two groups of four lanes side by side.
+    /// Two groups of four lanes.
     Avx512,
 }
 
 impl Simd {
-    /// All that this processor has.
+    /// Implementations supported by this CPU.
     #[cfg(test)]
     pub fn all() -> Vec<Simd> {
         match Simd::best() {
@@ -39,7 +39,7 @@ impl Simd {
         }
     }
 
-    /// The fastest that this processor has.
+    /// Fastest supported implementation.
     pub fn best() -> Simd {
         if !is_x86_feature_detected!("avx2") {
             return Simd::Portable;
@@ -50,7 +50,6 @@ impl Simd {
         if more { Simd::Avx512 } else { Simd::Avx2 }
     }
 
-    /// In words.
     pub fn name(self) -> &'static str {
         match self {
             Simd::Portable => "four at a time (plain arrays)",
@@ -60,14 +59,14 @@ impl Simd {
     }
 }
 
-/// Runs a kernel on the lanes chosen; `simd` must come from [`Simd::best`] or be [`Simd::Portable`].
+/// Runs a kernel; `simd` must come from [`Simd::best`] or be [`Simd::Portable`].
 #[inline]
 pub(crate) fn run<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
     match simd {
         Simd::Portable => kernel.run::<Portable>(),
-        // SAFETY: `Simd::best` found the feature.
+        // SAFETY: `Simd::best` detected AVX2.
         Simd::Avx2 => unsafe { with_avx2(kernel) },
-        // SAFETY: `Simd::best` found the features.
+        // SAFETY: `Simd::best` detected AVX-512.
         Simd::Avx512 => unsafe { with_avx512(kernel) },
     }
 }
@@ -82,11 +81,10 @@ fn with_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx512>()
 }
 
-/// Has the processor fetch so many bytes into the cache of this hint.
 #[inline(always)]
 pub(super) fn prefetch<const CACHE: i32>(from: *const i8, bytes: usize) {
     for line in (0..bytes).step_by(64) {
-        // SAFETY: a prefetch of any address changes nothing that a program sees.
+        // SAFETY: prefetching any address has no visible effect.
         unsafe { _mm_prefetch::<CACHE>(from.wrapping_add(line)) };
     }
 }

@@ -1,11 +1,11 @@
-//! Energy: what motion puts into a contact is stored or dissipated, and nothing is created.
+//! Work on a contact is stored or dissipated.
 
 use super::{Path, RADIUS, law, plain};
 use crate::base::Vec3;
 use crate::law::material::Material;
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History};
 
-/// An impact that slips, rolls and twists: all work on it is dissipated by its end, and no step gives energy back.
+/// Impact with slip, rolling and twisting: all work is dissipated, no step releases energy.
 pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
     for pace in [1.0, 50.0] {
@@ -28,7 +28,6 @@ pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
     }
 }
 
-/// A contact whose overlap and tangential displacement are led along a path.
 struct Led<L> {
     law: L,
     history: History,
@@ -44,7 +43,6 @@ impl<L: ContactLaw> Led<L> {
         Led { law, history, at: (0.0, 0.0), last: ContactForce::default(), work: 0.0, booked: 0.0 }
     }
 
-    /// Goes to overlap `d` and displacement `s` on a straight line.
     fn go(&mut self, d: f64, s: f64) {
         let (n, dt) = (4000, 1e-3);
         let (from_d, from_s) = self.at;
@@ -55,7 +53,7 @@ impl<L: ContactLaw> Led<L> {
             let g = ContactGeometry { point: Vec3::zeros(), normal: Vec3::z(), overlap, radius: RADIUS };
             let velocity = Vec3::new(rate.1, 0.0, -rate.0);
             let f = self.law.evaluate_one(10.0, &g, &velocity, &Vec3::zeros(), &mut self.history, dt);
-            // Work that the path does on the contact, by the trapezoidal rule.
+            // Work on the contact, trapezoidal rule.
             self.work -= 0.5 * (f.force + self.last.force).dot(&velocity) * dt;
             self.booked += f.friction + f.dashpot;
             self.last = f;
@@ -69,8 +67,7 @@ impl<L: ContactLaw> Led<L> {
     }
 }
 
-/// Cycles of pressing and shearing in both orders (Elata & Berryman 1996), so slow that no dashpot counts: what the path
-/// puts in is stored or dissipated, and no cycle gives energy away.
+/// Slow cycles of compression and shear in both orders (Elata & Berryman 1996).
 pub fn energy_is_stored_or_dissipated_along_a_path<L: ContactLaw>(material: &Material) {
     let (high, low, s) = (2e-5, 5e-6, 2e-6);
     let cycles = [

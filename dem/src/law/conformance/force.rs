@@ -1,4 +1,4 @@
-//! Force, restitution, symmetry, memory.
+//! Force, restitution, symmetry, contact history.
 
 use super::{GLASS, MASS, Path, RADIUS, law, plain};
 use crate::base::Vec3;
@@ -25,12 +25,11 @@ pub fn no_force_at_zero_overlap<L: ContactLaw>(material: &Material) {
     assert_eq!(law.springs(0.0, RADIUS, &History::NONE).0, 0.0);
 }
 
-/// A central impact as the engine integrates it; the wanted restitution is found to 0.5 %, at any speed.
+/// Central impact: prescribed restitution to 0.5 % at any speed.
 pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
     for wanted in [0.2, 0.5, 0.8, 1.0] {
         let law = plain::<L>(material, wanted);
         for speed in [0.01, 0.1, 1.0] {
-            // The overlap at which the spring holds the energy of the impact.
             let (mut low, mut high) = (0.0, RADIUS);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
@@ -60,7 +59,7 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
     }
 }
 
-/// Restitution of an impact that only crushes corners, in closed form: what is stored at the largest radius of the tip, by the energy before.
+/// Closed-form restitution of a crushing impact: energy stored at the largest tip radius over initial energy.
 fn kept(m: &Material, speed: f64) -> f64 {
     let Some(young) = m.young.filter(|_| m.corner_strength.is_finite()) else { return 1.0 };
     let modulus = 0.5 * young / (1.0 - m.poisson * m.poisson);
@@ -115,9 +114,9 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
     assert!(largest > 0.0);
 }
 
-/// Largest tangential force at a normal force [N] and an overlap [m], in closed form.
+/// Closed-form friction limit at normal force [N] and overlap [m].
 fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
-    // The pressure is taken over R², over the circle where corners crush: by the radius that their tip has by now.
+    // Pressure over R², or with conical damage over the current circle.
     let square = if m.corner_strength.is_finite() {
         let k = (1.0 - m.corner_angle.sin()) / m.corner_angle.sin();
         let elastic = overlap - (history.rate - RADIUS) * k;
@@ -129,7 +128,6 @@ fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
     (m.friction + if added.is_nan() { 0.0 } else { added }) * normal
 }
 
-/// Coulomb's limit, and no pull: along a path on which contacts slide and stick.
 pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
     let (mut sliding, mut sticking) = (0, 0);
@@ -147,7 +145,6 @@ pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     assert!(sliding > 100 && sticking > 100, "{sliding} sliding, {sticking} sticking");
 }
 
-/// Force and tangent stiffness of first loading against the force that the law evaluates, and against each other.
 pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
     let law = plain::<L>(material, 0.5);
     let still = Vec3::zeros();

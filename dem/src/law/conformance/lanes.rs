@@ -1,4 +1,4 @@
-//! The same bits four or eight at a time as one by one.
+//! SIMD lanes and single contacts: bitwise identical.
 
 use super::{MASS, Path, law, plain};
 use crate::base::Vec3;
@@ -7,7 +7,6 @@ use crate::law::material::{Material, Pair, PairOverride};
 use crate::law::table::{COMBINATIONS, Mixed, normal_named, tangential_named};
 use crate::law::{ContactGeometry, ContactLaw, FRESH, History, LawInput, Memory};
 
-/// A contact in the middle of a path, and its law.
 #[derive(Clone, Copy)]
 struct Case<L> {
     law: L,
@@ -18,7 +17,7 @@ struct Case<L> {
     dt: f64,
 }
 
-/// Evaluates up to eight contacts in lanes; how many, and numbers of force, moment, energies and memory.
+/// Evaluates in lanes: lane count; force, moment, energies, history.
 struct InLanes<'a, L, const ROLL: bool>(&'a [Case<L>; 8]);
 
 impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
@@ -66,12 +65,11 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
     }
 }
 
-/// Bits of the lanes, signs of zeros left out.
+/// Bits without signs of zeros.
 fn bits(numbers: &[f64; 8], lanes: usize) -> [u64; 8] {
     std::array::from_fn(|l| if l < lanes { (numbers[l] + 0.0).to_bits() } else { 0 })
 }
 
-/// One by one.
 fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
     let each = cases.each_ref().map(|c| {
         let mut h = c.history;
@@ -84,7 +82,7 @@ fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
     (0..16).map(|k| bits(&each.map(|numbers: [f64; 16]| numbers[k]), lanes)).collect()
 }
 
-/// Eight contacts at various places of a path, some of them just begun; `laws` gives the law of each.
+/// Contacts along a path, some just begun.
 fn cases<L: ContactLaw>(laws: impl Fn(usize) -> L, seed: usize) -> [Case<L>; 8] {
     std::array::from_fn(|l| {
         let law = laws(l);
@@ -119,9 +117,9 @@ pub fn lanes_give_the_bits_of_single_contacts<L: ContactLaw>(material: &Material
     compare::<L, false>(|_| plain(material, 0.5));
 }
 
-/// All laws of the table side by side: each lane has the bits that it has under its own law.
+/// All laws at once: bitwise as separately.
 #[test]
-fn laws_side_by_side_keep_their_bits() {
+fn mixed_laws_are_bitwise_identical() {
     let material = Material { stiffness: super::SOFT.stiffness, ..super::GLASS };
     let mixed = |l: usize| -> Mixed {
         let row = &COMBINATIONS[l % COMBINATIONS.len()];

@@ -1,4 +1,4 @@
-//! What every law of contact must do. A law takes part with one line of `conforms!`: its type and a material.
+//! Conformance tests of contact laws; `conforms!` registers a type and a material.
 
 mod energy;
 mod force;
@@ -13,15 +13,14 @@ use super::{ContactForce, ContactGeometry, ContactLaw, History};
 use crate::base::Vec3;
 use crate::testing::SOFT;
 
-/// Stiff enough for overlaps of some hundredths of the radius.
+/// Overlaps of a few hundredths of the radius.
 const GLASS: Material =
     Material { young: Some(6e7), poisson: 0.25, stiffness: f64::INFINITY, friction: 0.4, ..SOFT };
 
-/// Effective radius [m] and mass [kg] of the contacts.
+/// Effective radius [m] and mass [kg].
 const RADIUS: f64 = 0.005;
 const MASS: f64 = 0.1;
 
-/// Tests a law of its own module each.
 macro_rules! conforms {
     ($($name:ident: $law:ty, $material:expr;)+) => {$(
         mod $name {
@@ -88,7 +87,7 @@ conforms! {
     conical_whole: ConicalLaw, Material { corner_strength: 4e7, corner_angle: 0.2, ..GLASS };
 }
 
-/// Corners that crush from an overlap of a thousandth of the radius on, and a cone that gives way by as much again for three times the radius.
+/// Crushing from overlap 1e-3 R; the cone recedes by as much when R triples.
 const CRUSHING: Material = Material {
     corner_strength: 6.5e5,
     corner_angle: 1.4,
@@ -101,7 +100,6 @@ conforms! {
     conical: ConicalLaw, CRUSHING;
 }
 
-/// The law of two bodies of a material with resistance of every kind.
 fn law<L: ContactLaw>(material: &Material) -> L {
     let m = Material {
         tangential_damping_ratio: 0.3,
@@ -112,30 +110,27 @@ fn law<L: ContactLaw>(material: &Material) -> L {
     L::mix(&Pair { a: &m, b: &m, exception: None })
 }
 
-/// The same with no resistance against rolling and twisting, and with a restitution.
 fn plain<L: ContactLaw>(material: &Material, restitution: f64) -> L {
     let m = Material { restitution, ..*material };
     L::mix(&Pair { a: &m, b: &m, exception: None })
 }
 
-/// Relative motion of two partners: an impact that slips, rolls and twists. It starts and ends at zero overlap.
+/// Impact with slip, rolling and twisting; zero overlap at both ends.
 #[derive(Clone, Copy)]
 struct Path {
-    /// Steps in all.
     steps: usize,
     /// Largest overlap [m].
     depth: f64,
-    /// How fast everything is [1/s].
+    /// Rate [1/s].
     pace: f64,
 }
 
-/// One step of a path.
 struct Moment {
     geometry: ContactGeometry,
-    /// Velocity and spin half a step ago.
+    /// Last half step.
     velocity: Vec3,
     spin: Vec3,
-    /// The same in half a step.
+    /// Coming half step.
     next: (Vec3, Vec3),
 }
 
@@ -146,10 +141,9 @@ impl Path {
         1.0 / (self.pace * self.steps as f64)
     }
 
-    /// Part of the way after `k` steps.
     fn overlap(&self, k: f64) -> f64 {
         let part = std::f64::consts::PI * k / self.steps as f64;
-        // Two visits, the second on top of what is left of the first.
+        // Two contacts, the second with remaining deformation.
         self.depth * part.sin() * (1.0 - 0.6 * (3.0 * part).cos()).max(0.0)
     }
 

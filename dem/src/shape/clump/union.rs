@@ -1,28 +1,23 @@
 //! Volume, first and second moments of a union of balls.
 //!
-//! They are integrals over slices z = const:
-//!
 //! ```text
 //! V = ∫ A(z) dz,   A = ½ ∮ (x dy − y dx),   ∫x² dA = ⅓ ∮ x³ dy,   ∫xy dA = ½ ∮ x² y dy, …
 //! ```
 //!
-//! A slice of the union is a union of discs. Its boundary consists of the arcs of each circle that no other disc
-//! covers, and Green's theorem gives the area and the moments of the slice in closed form per arc. Along z the
-//! slice integrals are analytic between *events*: the ends of a sphere, the ends of the circle in which two
-//! spheres meet, and the points where three spheres meet. At an event they behave like powers of √|z − z₀|; the
-//! substitution z = m + ½ h (3t − t³) in each interval removes the root, and Gauss–Legendre in t then converges
-//! exponentially. The result is exact to about 1e-9 of the volume (1e-13 for one sphere); where it is not better, a
-//! second event lies just beyond the end of an interval.
+//! Green's theorem gives the slice integrals per uncovered arc. Along z they are analytic between events:
+//! ends of spheres and of intersection circles, triple points. There they behave like √|z − z₀|;
+//! z = m + ½ h (3t − t³) removes the root, so Gauss–Legendre converges exponentially. Relative error about
+//! 1e-9 (1e-13 for one sphere), limited by events just beyond an interval.
 //!
-//! Source: own derivation, checked against the closed form of two spheres (lens) and against voxels.
-//! Limits: the cost grows as n³ in the number of spheres (events of triples); meant for up to about 50 per clump.
+//! Source: own derivation, checked against two spheres (lens) and voxels.
+//!
+//! Limits: cost O(n³), up to about 50 spheres per clump.
 //!
 //! Theory manual: equation (2.1) of `docs/theory/shapes.md`.
 
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// A ball: centre and radius.
 #[derive(Clone, Copy)]
 pub(super) struct Ball {
     pub c: [f64; 3],
@@ -35,7 +30,7 @@ impl Ball {
     }
 }
 
-/// ∫dV, ∫x dV, ∫x xᵀ dV (xx, yy, zz, xy, yz, zx) over a union.
+/// ∫dV, ∫x dV, ∫x xᵀ dV (xx, yy, zz, xy, yz, zx).
 #[derive(Default)]
 pub(super) struct Moments {
     pub volume: f64,
@@ -43,7 +38,7 @@ pub(super) struct Moments {
     pub second: [f64; 6],
 }
 
-/// Abscissae and weights of the 16-point Gauss–Legendre rule, positive half.
+/// Sixteen-point Gauss–Legendre rule, positive half.
 const GAUSS16: [(f64, f64); 8] = [
     (0.095_012_509_837_637_440_2, 0.189_450_610_455_068_496_3),
     (0.281_603_550_779_258_913_2, 0.182_603_415_044_923_588_8),
@@ -55,7 +50,7 @@ const GAUSS16: [(f64, f64); 8] = [
     (0.989_400_934_991_649_932_6, 0.027_152_459_411_754_094_9),
 ];
 
-/// Moments of the union of `balls` about the origin of their frame; lengths should be of order one.
+/// Moments of the union about the origin; lengths should be of order one.
 pub(super) fn union_moments(balls: &[Ball]) -> Moments {
     let events = events(balls);
     let mut m = Moments::default();
@@ -77,8 +72,7 @@ pub(super) fn union_moments(balls: &[Ball]) -> Moments {
     m
 }
 
-/// Heights between which the slices change smoothly, rising and distinct. Events inside another sphere are not on
-/// the union's surface and are left out.
+/// Heights between which slices are smooth, ascending; covered events are excluded.
 fn events(balls: &[Ball]) -> Vec<f64> {
     let mut z: Vec<f64> = balls.iter().flat_map(|b| [b.c[2] - b.r, b.c[2] + b.r]).collect();
     let visible = |p: Vector3<f64>, skip: &[usize]| {
@@ -87,7 +81,7 @@ fn events(balls: &[Ball]) -> Vec<f64> {
     let n = balls.len();
     for i in 0..n {
         for j in i + 1..n {
-            // The circle in which spheres i and j meet: centre, unit normal, radius.
+            // Intersection circle of i and j: centre, unit normal, radius.
             let (ci, cj) = (Vector3::from(balls[i].c), Vector3::from(balls[j].c));
             let (ri, rj) = (balls[i].r, balls[j].r);
             let d = (cj - ci).norm();
@@ -105,7 +99,7 @@ fn events(balls: &[Ball]) -> Vec<f64> {
                 [centre - steepest, centre + steepest].iter().filter(|p| visible(**p, &[i, j])).map(|p| p.z),
             );
             for (k, ball) in balls.iter().enumerate().skip(j + 1) {
-                // Points of the circle at the distance r_k from c_k: q·e = s with q in the circle's plane.
+                // Points of the circle at distance r_k from c_k: q·e = s.
                 let to = Vector3::from(ball.c) - centre;
                 let flat = to - normal * to.dot(&normal);
                 let length = flat.norm();
@@ -124,7 +118,7 @@ fn events(balls: &[Ball]) -> Vec<f64> {
     z
 }
 
-/// A, ∫x, ∫y, ∫x², ∫y², ∫xy over the union's slice at height z.
+/// A, ∫x, ∫y, ∫x², ∫y², ∫xy over the slice at z.
 fn slice_moments(
     balls: &[Ball],
     z: f64,
@@ -147,7 +141,7 @@ fn slice_moments(
             if i == j || d >= ri + rj {
                 continue;
             }
-            // Of two equal discs the later one is dropped.
+            // Of two equal discs, drop the later.
             if d <= rj - ri && (rj > ri || j < i) {
                 continue 'disc;
             }
@@ -177,11 +171,11 @@ fn slice_moments(
     sum
 }
 
-/// Adds the contour integrals of one arc, x = p + r cos θ, y = q + r sin θ, θ from `a` to `b`.
+/// Arc x = p + r cos θ, y = q + r sin θ, θ from `a` to `b`.
 fn add_arc(sum: &mut [f64; 6], (p, q, r): (f64, f64, f64), a: f64, b: f64) {
     let ((sa, ca), (sb, cb)) = (libm::sincos(a), libm::sincos(b));
     let t = b - a;
-    // Integrals of products of cosines (c) and sines (s) over the arc.
+    // Integrals of cosine (c) and sine (s) products.
     let c1 = sb - sa;
     let s1 = ca - cb;
     let c2 = 0.5 * (t + sb * cb - sa * ca);

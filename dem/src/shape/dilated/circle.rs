@@ -1,23 +1,22 @@
-//! Circles, and parts of them that planes and distances cut.
+//! Circles, and arcs cut by planes and distances.
 
 use super::{CORNERS, scan};
 use crate::base::Vec3;
 use arrayvec::ArrayVec;
 use std::f64::consts::TAU;
 
-/// Cells of a circle, in each of which a distance has one extremum. They are fixed in it, so that what is left out beforehand, which depends
-/// on what is known of a pair, changes no bit.
+/// Cells of a circle with one distance extremum each; fixed, so culling does not affect results.
 const CELLS: usize = 32;
 const CELL: f64 = TAU / CELLS as f64;
 
-/// Most parts that convex faces cut a circle into.
+/// Most arcs cut by convex faces.
 const PARTS: usize = 2 * CORNERS;
 
-/// A circle: points `centre` + cos t `x` + sin t `y`.
+/// Circle `centre` + cos t `x` + sin t `y`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circle {
     pub centre: Vec3,
-    /// Two radii at a right angle.
+    /// Orthogonal radii.
     pub x: Vec3,
     pub y: Vec3,
 }
@@ -28,25 +27,25 @@ impl Circle {
         self.centre + self.x * cosine + self.y * sine
     }
 
-    /// Its point, and the derivative of that.
+    /// Point and derivative.
     pub fn moving(&self, t: f64) -> (Vec3, Vec3) {
         let (sine, cosine) = libm::sincos(t);
         (self.centre + self.x * cosine + self.y * sine, self.y * cosine - self.x * sine)
     }
 
-    /// Coefficients of n·p − level on it: of one, cosine and sine.
+    /// Coefficients of n·p − level: 1, cos, sin.
     pub fn along(&self, n: &Vec3, level: f64) -> [f64; 3] {
         [n.dot(&self.centre) - level, n.dot(&self.x), n.dot(&self.y)]
     }
 
-    /// Coefficients of what is zero or less on it within `reach` of a point.
+    /// Coefficients of a function ≤ 0 within `reach` of a point.
     pub fn around(&self, p: &Vec3, reach: f64) -> [f64; 3] {
         let way = self.centre - p;
         let square = way.norm_squared() + self.x.norm_squared() - reach * reach;
         [square, 2.0 * way.dot(&self.x), 2.0 * way.dot(&self.y)]
     }
 
-    /// Calls `put` with each part of a range in which a distance, given with its direction, is below `reach`.
+    /// Calls `put` for each arc with distance below `reach`.
     pub fn near(
         &self,
         range: [f64; 2],
@@ -63,28 +62,26 @@ impl Circle {
     }
 }
 
-/// The ends of the cells of a part of a circle.
+/// Cell boundaries within an arc.
 pub(crate) fn ends([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
     let inner = (1..CELLS).map(|k| k as f64 * CELL).filter(move |t| *t > from && *t < to);
     std::iter::once(from).chain(inner).chain(std::iter::once(to))
 }
 
-/// Parts of a circle, in order.
+/// Arcs, in order.
 #[derive(Clone, Debug)]
 pub(crate) struct Turns(pub ArrayVec<[f64; 2], PARTS>);
 
 impl Turns {
-    /// All of it.
     pub fn whole() -> Turns {
         Turns::of([0.0, TAU])
     }
 
-    /// One part.
     pub fn of(range: [f64; 2]) -> Turns {
         Turns(ArrayVec::from_iter([range]))
     }
 
-    /// The cells of which some is in one of these parts.
+    /// Cells overlapping these arcs.
     pub fn cells(&self) -> Turns {
         let mut cells: ArrayVec<[f64; 2], PARTS> = ArrayVec::new();
         for k in 0..CELLS {
@@ -104,7 +101,7 @@ impl Turns {
         !self.0.is_empty()
     }
 
-    /// Leaves what has a + b cos t + c sin t ≤ 0.
+    /// Keeps a + b cos t + c sin t ≤ 0.
     pub fn cut(&mut self, [a, b, c]: [f64; 3]) {
         let most = libm::hypot(b, c);
         if a <= -most {
@@ -114,7 +111,7 @@ impl Turns {
         if a > most {
             return;
         }
-        // cos(t − middle) ≤ −a/most: beyond an angle on either side of the highest place.
+        // cos(t − middle) ≤ −a/most excludes an arc about the maximum.
         let aside = libm::acos((-a / most).clamp(-1.0, 1.0));
         let (first, long) = (libm::atan2(c, b) + aside, TAU - 2.0 * aside);
         for [from, to] in old {
@@ -122,7 +119,7 @@ impl Turns {
             while first + TAU * turn < to {
                 let at = first + TAU * turn;
                 let part = [at.max(from), (at + long).min(to)];
-                // More parts than faces can cut do not come about.
+                // Faces cannot cut more arcs.
                 if part[0] < part[1] && self.0.try_push(part).is_err() {
                     return;
                 }
@@ -131,7 +128,7 @@ impl Turns {
         }
     }
 
-    /// The same beyond a border that another feature's region shares: what lies in the border all along is the other's.
+    /// As `cut`, but an arc entirely in a shared boundary belongs to the other feature.
     pub fn cut_beyond(&mut self, [a, b, c]: [f64; 3]) {
         if b == 0.0 && c == 0.0 && a >= 0.0 {
             self.0.clear();

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Rows of a table: the first column's name and numbers.
+/// Table rows: name, numbers.
 pub(crate) fn rows(text: &str) -> Vec<(String, Vec<f64>)> {
     let lines = text.lines().filter(|l| !l.starts_with('#')).skip(1);
     let row = |line: &str| {
@@ -11,13 +11,12 @@ pub(crate) fn rows(text: &str) -> Vec<(String, Vec<f64>)> {
     lines.map(row).collect()
 }
 
-/// Corners of a polyhedron of a table.
 pub(crate) fn corners(table: &[(String, Vec<f64>)], name: &str) -> Vec<Vec3> {
     table.iter().filter(|r| r.0 == name).map(|r| Vec3::new(r.1[0], r.1[1], r.1[2])).collect()
 }
 
-/// Volume, surface, centre and inertia against a table made by formulas of the same kind and checked by hulls of points on the
-/// spheres (2e-6) and by quasi Monte Carlo; one body lies 2 km from the origin.
+/// Reference table from similar formulas, checked by hulls of points on the spheres (2e-6) and quasi Monte
+/// Carlo; one body is 2 km from the origin.
 #[test]
 fn moments_are_those_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/geometry_corners.csv"));
@@ -42,7 +41,7 @@ fn moments_are_those_of_the_table() {
         if row[0] == 0.0 {
             continue;
         }
-        // In its own frame the body is where it says.
+        // Principal frame.
         let (own, centre, turn) = Dilated::new(&corners(&shapes, name), row[0]).unwrap();
         let back = Dilated::moments_of(&own.core, own.radius);
         assert!(back.centre.norm() < 1e-10 * size && (centre - m.centre).norm() == 0.0, "{name}");
@@ -56,7 +55,6 @@ fn moments_are_those_of_the_table() {
     }
 }
 
-/// Faces that lie in one plane are one face; edges and corners fit together.
 #[test]
 fn a_cube_has_six_faces() {
     let points: Vec<Vec3> = (0..8).map(|k| crate::shape::cuboid::corner(&Vec3::repeat(0.5), k)).collect();
@@ -70,7 +68,6 @@ fn a_cube_has_six_faces() {
     assert!(core.spokes.iter().all(|s| s.len() == 3));
 }
 
-/// The outline of a body is closed, turns outwards, and holds a little less than the body.
 #[test]
 fn outlines_are_closed() {
     let shapes = rows(include_str!("../../../tests/data/shapes/geometry_corners.csv"));
@@ -95,7 +92,6 @@ fn outlines_are_closed() {
     }
 }
 
-/// What is no convex body is refused by name.
 #[test]
 fn bodies_that_are_none() {
     let cube: Vec<Vec3> = (0..8).map(|k| crate::shape::cuboid::corner(&Vec3::repeat(0.5), k)).collect();
@@ -108,7 +104,7 @@ fn bodies_that_are_none() {
     assert_eq!(refused(&with(Vec3::new(0.1, 0.5, 0.5))), DilatedError::NotConvex(8));
     assert_eq!(refused(&with(Vec3::new(0.5, f64::NAN, 0.0))), DilatedError::NotFinite);
     assert_eq!(refused(&[&cube[..], &cube[..1]].concat()), DilatedError::NotConvex(8));
-    // A corner that hardly bends the edge of a face is one of the other faces.
+    // A corner that barely bends an edge belongs to the other faces.
     let mut bent = cube.clone();
     bent.push(Vec3::new(0.0, 0.5 + 1e-7, 0.6));
     assert_eq!(Core::new(&bent).map(|c| c.corners.len()), Ok(9));

@@ -1,22 +1,22 @@
-//! Dilated disks: a flat circular disk, rolled over by a sphere. The core is the disk, across the third axis; its rim is the only edge.
+//! Dilated disks: the core is a flat disk across axis 3 with its rim as only edge.
 //!
 //! Theory manual: equation (2.10) of `docs/theory/shapes.md`.
 
 use crate::base::Vec3;
 use std::f64::consts::{PI, TAU};
 
-/// Arcs of a rim, each a contact of its own.
+/// Rim arcs, each a separate contact.
 pub(super) const ARCS: usize = 8;
 
-/// Strips of the rim and points around it in pictures.
+/// Rendering strips and points of the rim.
 const STRIPS: usize = 4;
 const AROUND: usize = 36;
 
-/// Volume [m³], surface [m²], and moments of inertia per unit density [m⁵], about a diameter and about the axis, of a disk of radius `big`
-/// rolled over by a sphere of radius `r` [m].
+/// Volume [m³], area [m²], moments of inertia per unit density about diameter and axis [m⁵]; disk radius
+/// `big`, rounding `r` [m].
 pub(super) fn moments(big: f64, r: f64) -> [f64; 4] {
     let (r2, r3) = (r * r, r * r * r);
-    // By slices: circles of radius R + √(r² − z²).
+    // Slices: circles of radius R + √(r² − z²).
     let volume = PI * (2.0 * r * big * big + PI * big * r2 + 4.0 / 3.0 * r3);
     let area = TAU * big * big + 2.0 * PI * PI * big * r + 4.0 * PI * r2;
     // ∫ ρ⁴ dz and ∫ z² ρ² dz.
@@ -31,7 +31,7 @@ pub(super) fn moments(big: f64, r: f64) -> [f64; 4] {
     [volume, area, other, axial]
 }
 
-/// The surface of a dilated disk for pictures: points, which lie on it, and polygons.
+/// Rendering surface: points and polygons.
 pub(super) fn outline(big: f64, r: f64) -> (Vec<Vec3>, Vec<Vec<u32>>) {
     let mut points = Vec::with_capacity((STRIPS + 1) * AROUND);
     for i in 0..=STRIPS {
@@ -53,7 +53,7 @@ pub(super) fn outline(big: f64, r: f64) -> (Vec<Vec3>, Vec<Vec<u32>>) {
     (points, polygons)
 }
 
-/// The point of a flat disk that is farthest along a direction.
+/// Support point of a flat disk.
 #[inline]
 pub(crate) fn farthest(radius: f64, n: &Vec3) -> Vec3 {
     let across = libm::hypot(n.x, n.y);
@@ -61,7 +61,7 @@ pub(crate) fn farthest(radius: f64, n: &Vec3) -> Vec3 {
     Vec3::new(n.x * out, n.y * out, 0.0)
 }
 
-/// The way from the nearest point of a flat disk to a point, in the disk's frame.
+/// Vector from the closest disk point, in the disk frame.
 pub(crate) fn way(radius: f64, p: &Vec3) -> Vec3 {
     let square = p.x * p.x + p.y * p.y;
     if square <= radius * radius {
@@ -71,7 +71,7 @@ pub(crate) fn way(radius: f64, p: &Vec3) -> Vec3 {
     Vec3::new(p.x * inner, p.y * inner, p.z)
 }
 
-/// Distance of a point from a flat disk, and its direction; where it lies in the disk, any.
+/// Distance and direction from a flat disk; any direction inside.
 pub(super) fn distance(radius: f64, p: &Vec3) -> (f64, Vec3) {
     let way = way(radius, p);
     let d = way.norm();

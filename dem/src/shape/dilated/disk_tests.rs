@@ -2,9 +2,9 @@ use super::*;
 use crate::shape::dilated::tests::rows;
 use crate::shape::dilated::{Dilated, DilatedError};
 
-/// Volume, surface and moments against a table that slices agree with to 4e-16; a sphere without a disk is refused.
+/// Reference table confirmed by slices to 4e-16.
 #[test]
-fn moments_of_disks_are_those_of_the_table() {
+fn disk_moments_match_table() {
     let table = include_str!("../../../tests/data/shapes/dilated_disks.csv");
     let mut compared = 0;
     for (big, row) in rows(table) {
@@ -24,7 +24,6 @@ fn moments_of_disks_are_those_of_the_table() {
     assert!(compared >= 10, "{compared}");
 }
 
-/// Diameter and thickness are those stated; pictures lie on the surface and turn outwards.
 #[test]
 fn sizes_and_pictures() {
     let own = Dilated::disk(0.4, 0.1).unwrap();

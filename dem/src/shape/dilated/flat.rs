@@ -1,4 +1,4 @@
-//! A flat disk as what corners, edges and rims press into.
+//! Flat disk as contact target of corners, edges and rims.
 
 use super::circle::{self, Circle, Turns};
 use super::disk::distance;
@@ -6,7 +6,7 @@ use super::press::{Nearest, Segment, Stretch};
 use super::scan::{self, Places};
 use crate::base::Vec3;
 
-/// A flat disk as what is pressed into: see [`super::press::Target`].
+/// Flat disk ([`super::press::Target`]).
 pub(crate) struct Flat(pub f64);
 
 impl Flat {
@@ -16,7 +16,7 @@ impl Flat {
 
     pub fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
         let Segment { from, direction, range, .. } = segment;
-        // Where its distance from the axis is the radius, and where it passes through the plane.
+        // Where the axial distance equals the radius, and the plane crossing.
         let a = direction.x * direction.x + direction.y * direction.y;
         let b = from.x * direction.x + from.y * direction.y;
         let c = from.x * from.x + from.y * from.y - self.0 * self.0;
@@ -42,7 +42,7 @@ impl Flat {
                 }
                 return;
             }
-            // Along a line the distance has one least value.
+            // The distance along a line has one minimum.
             let gap = |s: f64| {
                 let (d, n) = at(s);
                 [d - reach, n.dot(direction)]
@@ -71,7 +71,7 @@ impl Flat {
                 if outside(middle)[0] > 0.0 {
                     return circle.near(part, reach, &at, |part| f(part, &at));
                 }
-                // A circle that does not meet the disk is on one side of it there.
+                // A circle that misses the disk lies on one side.
                 let normal = Vec3::new(0.0, 0.0, circle.at(middle).z.signum());
                 let mut over = Turns::of(part);
                 over.cut(circle.along(&normal, reach));

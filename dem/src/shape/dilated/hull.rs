@@ -1,14 +1,13 @@
-//! The convex hull of few points, as faces. Triangles of the hull that lie in one plane, to a millionth of the size, are one face,
-//! so that no two faces of a core are level with each other.
+//! Convex hull as faces. Triangles coplanar to 1e-6 of the size are merged, so no two faces of a core are
+//! level.
 
 use super::{CORNERS, Core, DilatedError, Edge, Face};
 use crate::base::Vec3;
 use crate::shape::polyhedron::hull_triangles;
 
-/// What counts as in a plane, over the size of the body.
+/// Coplanarity tolerance over body size.
 const LEVEL: f64 = 1e-6;
 
-/// See [`Core::new`].
 pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     if !(4..=CORNERS).contains(&corners.len()) {
         return Err(DilatedError::Count(corners.len()));
@@ -16,7 +15,7 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     if !corners.iter().all(|c| c.iter().all(|x| x.is_finite())) {
         return Err(DilatedError::NotFinite);
     }
-    // About a corner, so that a body far from the origin loses nothing.
+    // Local origin avoids cancellation.
     let origin = corners[0];
     let points: Vec<Vec3> = corners.iter().map(|c| c - origin).collect();
     let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
@@ -32,7 +31,7 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
     if faces.len() < 4 {
         return Err(DilatedError::Flat);
     }
-    // A point on an edge belongs to two faces, one within a face or the body to none.
+    // A point on an edge belongs to two faces, an interior point to at most one.
     let seen = |k: usize| faces.iter().filter(|f| f.corners.contains(&(k as u8))).count() >= 3;
     if let Some(k) = (0..points.len()).find(|&k| !seen(k)) {
         return Err(DilatedError::NotConvex(k));
@@ -42,15 +41,14 @@ pub(super) fn core(corners: &[Vec3]) -> Result<Core, DilatedError> {
         f.sides.iter_mut().for_each(|(side, level)| *level += side.dot(&origin));
     }
     let core = joined(corners.to_vec(), faces);
-    // Euler's formula: without it corners lie so close to an edge that faces do not fit together.
+    // Euler's formula fails if corners are too close to an edge.
     if core.corners.len() + core.faces.len() != core.edges.len() + 2 {
         return Err(DilatedError::Sliver);
     }
     Ok(core)
 }
 
-/// The triangles in groups: neighbours are in one where each lies in the other's plane, and one that is hardly more than its longest
-/// side is in that of its neighbour there.
+/// Groups mutually coplanar neighbours; slivers join the neighbour at their longest side.
 fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 3]>> {
     let at = |corner: u32| points[corner as usize];
     let mut group: Vec<usize> = (0..triangles.len()).collect();
@@ -74,7 +72,7 @@ fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 
             };
             let [here, there] = [width(c), width(d)];
             let thin = here.norm() <= slack && k == longest;
-            // How far the corner of either lies off the plane of the other.
+            // Distance of either corner from the other plane.
             let off = here.cross(&there).norm() / here.norm().min(there.norm()).max(f64::MIN_POSITIVE);
             if thin || (off <= slack && here.dot(&there) < 0.0) {
                 let [one, all] = [group[t], group[u]];
@@ -88,7 +86,6 @@ fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 
     (0..triangles.len()).map(of).filter(|triangles| !triangles.is_empty()).collect()
 }
 
-/// A core of these corners and faces, with the edges that faces have in common.
 pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     let reach = corners.iter().map(|c| c.norm()).fold(0.0, f64::max);
     let n = corners.len();
@@ -106,7 +103,6 @@ pub(super) fn joined(corners: Vec<Vec3>, faces: Vec<Face>) -> Core {
     core
 }
 
-/// The face that some triangles make together.
 fn face(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Face, DilatedError> {
     let sides = || triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
     let border: Vec<[u32; 2]> = sides().filter(|[a, b]| !sides().any(|side| side == [*b, *a])).collect();
@@ -119,12 +115,12 @@ fn face(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Face, DilatedError> {
         at = one;
     }
     let mask: u64 = corners.iter().fold(0, |mask, c| mask | 1 << c);
-    // Its border is one loop that passes every corner once.
+    // The boundary must be one loop through all corners.
     if at != u32::from(corners[0]) || mask.count_ones() as usize != corners.len() {
         return Err(DilatedError::Sliver);
     }
     let middle = corners.iter().map(|&p| points[p as usize]).sum::<Vec3>() / corners.len() as f64;
-    // Newell's normal is that of all corners rather than of three.
+    // Newell's normal uses all corners.
     let at = |k: usize| points[corners[k % corners.len()] as usize] - middle;
     let normal = (0..corners.len()).map(|k| at(k).cross(&at(k + 1))).sum::<Vec3>().normalize();
     let offset = (0..corners.len()).map(|k| normal.dot(&(at(k) + middle))).fold(f64::NEG_INFINITY, f64::max);
@@ -136,7 +132,6 @@ fn face(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<Face, DilatedError> {
     Ok(Face { normal, offset, corners, sides })
 }
 
-/// Finds the edges: each belongs to two faces.
 fn edges(core: &mut Core) {
     for (f, face) in core.faces.iter().enumerate() {
         for k in 0..face.corners.len() {

@@ -1,9 +1,8 @@
-//! Volume, surface, centre and inertia of a dilated polyhedron, exact: the core, a slab on each face, a wedge along each edge, and
-//! a sector of a sphere at each corner.
+//! Exact moments of a dilated polyhedron: core, face slabs, edge wedges, corner sectors.
 //!
-//! Volume and surface are Steiner's (J. Steiner, 1840). For a corner with the cone of normals of solid angle W, whose sides belong
-//! to the edges k with unit vectors ν away from the corner and angles t between their faces' normals n₁ and n₂:
-//! ∫n dW = −½ Σ t ν and ∫n nᵀ dW = ⅓ (W 1 − Σ ν (n₁ + n₂)ᵀ tan(t/2)).
+//! Volume and surface: J. Steiner (1840). Corner with solid angle W of normals, edges k with outgoing unit
+//! vectors ν, angles t between face normals n₁, n₂: ∫n dW = −½ Σ t ν and
+//! ∫n nᵀ dW = ⅓ (W 1 − Σ ν (n₁ + n₂)ᵀ tan(t/2)).
 //!
 //! Theory manual: equation (2.6) of `docs/theory/shapes.md`.
 
@@ -11,7 +10,7 @@ use super::{Core, DilatedMoments};
 use crate::base::Vec3;
 use nalgebra::Matrix3;
 
-/// Integrals of 1, x and x xᵀ over a body.
+/// Integrals of 1, x and x xᵀ.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     volume: f64,
@@ -27,9 +26,8 @@ impl Sums {
     }
 }
 
-/// See [`super::Dilated::moments_of`].
 pub(super) fn moments(core: &Core, r: f64) -> DilatedMoments {
-    // About the middle of the corners: nothing cancels however far away the body is.
+    // Local origin avoids cancellation.
     let middle = core.corners.iter().sum::<Vec3>() / core.corners.len() as f64;
     let at = |k: u8| core.corners[k as usize] - middle;
     let mut sums = Sums::default();
@@ -60,12 +58,10 @@ pub(super) fn moments(core: &Core, r: f64) -> DilatedMoments {
     DilatedMoments { volume: sums.volume, area, centre: centre + middle, inertia }
 }
 
-/// Angle between unit vectors.
 fn between(a: &Vec3, b: &Vec3) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
 }
 
-/// A triangle with its integrals.
 struct Triangle {
     corners: [Vec3; 3],
     area: f64,
@@ -83,7 +79,7 @@ impl Triangle {
         Triangle { corners, area, first: sum * (area / 3.0), second }
     }
 
-    /// The tetrahedron to the origin.
+    /// Tetrahedron to the origin.
     fn cone(&self, sums: &mut Sums) {
         let [a, b, c] = self.corners;
         let volume = a.dot(&b.cross(&c)) / 6.0;
@@ -92,7 +88,7 @@ impl Triangle {
         sums.add(volume, sum * (volume / 4.0), (squares + sum * sum.transpose()) * (volume / 20.0));
     }
 
-    /// The slab of thickness `r` along the normal.
+    /// Slab of thickness `r`.
     fn slab(&self, n: &Vec3, r: f64, sums: &mut Sums) {
         let mixed = self.first * n.transpose();
         sums.add(
@@ -105,7 +101,6 @@ impl Triangle {
     }
 }
 
-/// The wedge of a cylinder along an edge from `a` to `b` between the normals of its faces.
 fn wedge([a, b]: [Vec3; 2], [n1, n2]: [Vec3; 2], angle: f64, r: f64, sums: &mut Sums) {
     let length = (b - a).norm();
     let u = (n1 + n2).normalize();
@@ -126,7 +121,7 @@ fn wedge([a, b]: [Vec3; 2], [n1, n2]: [Vec3; 2], angle: f64, r: f64, sums: &mut 
     );
 }
 
-/// The sector of a sphere at a corner.
+/// Sphere sector at a corner.
 fn sector(core: &Core, corner: usize, at: &Vec3, r: f64, sums: &mut Sums) {
     let (mut first, mut second) = (Vec3::zeros(), Matrix3::zeros());
     let edges = core.edges.iter().filter_map(|e| {
@@ -155,7 +150,7 @@ fn sector(core: &Core, corner: usize, at: &Vec3, r: f64, sums: &mut Sums) {
     );
 }
 
-/// Solid angle of the normals at a corner: 2π less the sum of what its faces' corners leave of it (Gauss & Bonnet).
+/// Solid angle of normals at a corner: 2π minus the face angles (Gauss & Bonnet).
 fn solid_angle(core: &Core, corner: usize) -> f64 {
     let inner: f64 = (core.faces.iter())
         .filter_map(|f| {

@@ -1,4 +1,4 @@
-//! Those features of a core that may be near something: each with a box around what of it can be.
+//! Culling: features of a core near another body, with bounding boxes.
 
 use super::circle::{Circle, Turns};
 use super::flat::Flat;
@@ -8,14 +8,14 @@ use crate::base::Vec3;
 use arrayvec::ArrayVec;
 use nalgebra::Rotation3;
 
-/// Most edges and faces of a core, by Euler's theorem.
+/// Euler's bound on edges and faces.
 const EDGES: usize = 3 * CORNERS - 6;
 const FACES: usize = 2 * CORNERS - 4;
 
-/// Share of a reach by which boxes are too large, so that rounding leaves out nothing that is near.
+/// Relative margin of boxes against rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Where features may be near each other: above `floor` along `up`, and, as seen along that, no farther aside than `aside`.
+/// Region above `floor` along `up`, with lateral margin `aside`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     up: Vec3,
@@ -25,7 +25,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// Along a unit vector, for things within `reach` of each other; of these one lies at least `apart` above the other.
+    /// Lateral margin for bodies within `reach`, at least `apart` above each other.
     pub fn new(up: Vec3, floor: f64, reach: f64, apart: f64) -> View {
         let mut axis = Vec3::zeros();
         axis[up.iamin()] = 1.0;
@@ -35,33 +35,28 @@ impl View {
         View { up, floor, axes: [first, up.cross(&first)], aside }
     }
 
-    /// Along a unit vector, however high.
     pub fn everywhere(up: Vec3, reach: f64) -> View {
         View::new(up, f64::NEG_INFINITY, reach, 0.0)
     }
 
-    /// From the other side.
     pub fn turned(&self, floor: f64) -> View {
         View { up: -self.up, floor, ..*self }
     }
 
-    /// The same in another frame, turned and with other lengths.
     pub fn moved(&self, turn: &Rotation3<f64>, scale: f64, floor: f64) -> View {
         let [up, first, second] = [self.up, self.axes[0], self.axes[1]].map(|x| turn * x);
         View { up, floor, axes: [first, second], aside: self.aside * scale }
     }
 
-    /// What of a circle is in it: coefficients of what is zero or less there.
+    /// Coefficients of the circle's part above the floor (≤ 0 inside).
     pub fn floor_of(&self, circle: &Circle) -> [f64; 3] {
         circle.along(&-self.up, -self.floor)
     }
 
-    /// A point as it is seen: its height over the floor, and where it is across.
     fn see(&self, p: &Vec3) -> Seen {
         [self.up.dot(p) - self.floor, self.axes[0].dot(p), self.axes[1].dot(p)]
     }
 
-    /// Points of another frame, which `turn`, `scale` and `way` take to this one, as they are seen.
     pub fn all(&self, points: &[Vec3], (turn, scale, way): (&Rotation3<f64>, f64, &Vec3)) -> Sight {
         let axes = [self.up, self.axes[0], self.axes[1]];
         let own = axes.map(|x| turn.inverse_transform_vector(&x) * scale);
@@ -71,13 +66,12 @@ impl View {
     }
 }
 
-/// A point in a view: its height over the floor, and where it is across.
+/// Height above the floor, lateral coordinates.
 pub(crate) type Seen = [f64; 3];
 
-/// The corners of a core in a view.
 pub(crate) type Sight = ArrayVec<Seen, CORNERS>;
 
-/// A rectangle across a view.
+/// Lateral rectangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     low: [f64; 2],
@@ -85,10 +79,8 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Around nothing.
     const NONE: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
-    /// Around what of a segment, whose ends are seen, is in the view.
     #[inline(always)]
     fn of([a, b]: [&Seen; 2]) -> Bounds {
         let ([over, ax, ay], [under, bx, by]) = (*a, *b);
@@ -108,13 +100,12 @@ impl Bounds {
         Bounds { low: [least(ax, bx), least(ay, by)], high: [most(ax, bx), most(ay, by)] }
     }
 
-    /// Around what may be near something of a segment that is in the view.
+    /// Bounds with lateral margin.
     pub fn near(ends: [&Vec3; 2], view: &View) -> Bounds {
         let ends = ends.map(|p| view.see(p));
         Bounds::around([&ends[0], &ends[1]], view)
     }
 
-    /// The same of a segment whose ends are seen.
     #[inline(always)]
     pub fn around(ends: [&Seen; 2], view: &View) -> Bounds {
         let Bounds { low, high } = Bounds::of(ends);
@@ -139,40 +130,34 @@ impl Bounds {
     }
 }
 
-/// The lesser and the greater of two numbers: one instruction each, unlike those that look for what is not a number.
+/// Single-instruction minimum, without NaN handling.
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// See [`least`].
 fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Features of a core that may be near.
 pub(crate) struct Part<'a> {
     core: &'a Core,
     view: View,
-    /// Its corners as they are seen.
     sight: Sight,
-    /// The set of the corners, a bit each.
+    /// Bit set.
     corners: u64,
     edges: ArrayVec<(u8, Bounds), EDGES>,
     faces: ArrayVec<(u8, Bounds), FACES>,
-    /// Around all.
     bounds: Bounds,
 }
 
 impl<'a> Part<'a> {
-    /// Nothing of a core yet.
     #[inline]
     pub fn none(core: &'a Core, view: View) -> Part<'a> {
         let (edges, faces) = (ArrayVec::new(), ArrayVec::new());
         Part { core, view, sight: Sight::new(), corners: 0, edges, faces, bounds: Bounds::NONE }
     }
 
-    /// What of it is in the view: features with a corner of the set `corners`, a bit each. It is filled where it is kept: to hand
-    /// it over would cost as much.
+    /// Fills features with a corner in `corners` (bit set) in place: returning the value would cost as much.
     pub fn take(&mut self, corners: u64) -> &Part<'a> {
         let (core, part) = (self.core, &mut *self);
         part.corners = corners;
@@ -187,13 +172,12 @@ impl<'a> Part<'a> {
             let bounds = Bounds::of(edge.ends.map(|e| &part.sight[e as usize]));
             part.edges.push((k as u8, bounds));
             part.bounds.join(&bounds);
-            // Where a plane cuts a face it cuts its edges.
+            // A plane that cuts a face cuts its edges.
             edge.faces.iter().for_each(|f| part.faces[places[*f as usize] as usize].1.join(&bounds));
         }
         part
     }
 
-    /// All features.
     pub fn all(&mut self) -> &Part<'a> {
         self.take(u64::MAX)
     }
@@ -234,7 +218,7 @@ impl Target for Part<'_> {
             let t = way.dot(&edge.direction).clamp(0.0, edge.length);
             let way = way - edge.direction * t;
             let square = way.norm_squared();
-            // A point over a face is no nearer to its edges, but by rounding.
+            // Over a face, edges are nearer only by rounding.
             if square < best.0 * best.0 {
                 let d = square.sqrt();
                 best = (d, way / d);
@@ -368,7 +352,6 @@ impl Target for Part<'_> {
     }
 }
 
-/// Length and direction of a way.
 pub(crate) fn direction(way: Vec3) -> (f64, Vec3) {
     let d = way.norm();
     if d > 0.0 { (d, way / d) } else { (0.0, Vec3::z()) }

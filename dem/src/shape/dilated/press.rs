@@ -1,10 +1,8 @@
-//! How the rounded corners and edges of one body press into another.
+//! Contact of rounded corners and edges with another body.
 //!
-//! A corner, and every point of an edge, presses by R − d: R is the sum of both radii, d the distance of the point from the other
-//! core. Of an edge this is summed up along its length, piece by piece where the nearest face, edge or corner of the core is the
-//! same; each piece ends where planes say so, exactly. The distance of a fixed point from a convex body has one gradient everywhere
-//! outside of it, so the sums are smooth whatever turns into what, corners on edges into faces on faces, and forces that grow with
-//! them have a potential.
+//! Each point has overlap R − d: R the sum of radii, d the distance from the other core. Edges are integrated
+//! piecewise by nearest face, edge or corner. The distance from a convex body has a unique gradient, so sums
+//! stay smooth across contact types and forces have a potential.
 //!
 //! Theory manual: equation (2.7) of `docs/theory/shapes.md`.
 
@@ -12,7 +10,7 @@ use super::circle::{self, Circle, Turns};
 use super::part::Bounds;
 use crate::base::Vec3;
 
-/// Points and weights of Gauss's rule on [−1, 1]: for the flat pieces, where two are exact, and for others.
+/// Gauss points and weights on [−1, 1] for flat pieces: two are exact.
 const FLAT: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 1.0], [0.577_350_269_189_625_8, 1.0]];
 const ROUND: [[f64; 2]; 4] = [
     [-0.861_136_311_594_052_6, 0.347_854_845_137_453_86],
@@ -21,7 +19,7 @@ const ROUND: [[f64; 2]; 4] = [
     [0.861_136_311_594_052_6, 0.347_854_845_137_453_86],
 ];
 
-/// Points and weights for curved surfaces.
+/// For curved surfaces.
 pub(crate) const CURVED: [[f64; 2]; 8] = [
     [-0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
     [-0.796_666_477_413_626_7, 0.222_381_034_453_374_47],
@@ -33,22 +31,21 @@ pub(crate) const CURVED: [[f64; 2]; 8] = [
     [0.960_289_856_497_536_2, 0.101_228_536_290_376_26],
 ];
 
-/// Half length of a stretch, over its distance from where a line is nearest, up to which four points have eleven digits.
+/// Half length over distance below which four points give eleven digits.
 const SHORT: f64 = 0.1;
 
-/// What is pressed into.
+/// Contact target.
 pub(crate) trait Target {
-    /// Whether it may be met within some bounds.
+    /// Returns true if contact within the bounds is possible.
     fn meets(&self, around: &Bounds) -> bool;
 
-    /// Distance of a point from it, and the unit vector from it to the point; `None` for points within or out of reach.
+    /// Distance and unit vector towards the point; `None` inside or out of reach.
     fn distance(&self, p: &Vec3, reach: f64) -> Option<(f64, Vec3)>;
 
-    /// Calls `f` with each stretch of a segment that is nearer than `reach` and has one nearest feature.
+    /// Calls `f` for each piece nearer than `reach` with one nearest feature.
     fn stretches(&self, segment: &Segment, reach: f64, f: impl FnMut([f64; 2], &Nearest));
 
-    /// Calls `f` with parts of a circle, among those given, that are nearer than `reach`, and what gives distance and direction of their
-    /// points. Smooth but for the curvature within each part.
+    /// Calls `f` for given arcs nearer than `reach`; smooth within each arc.
     fn turns(
         &self,
         circle: &Circle,
@@ -67,42 +64,40 @@ pub(crate) trait Target {
     }
 }
 
-/// A segment: points `from` + s `direction` with s in `range`.
+/// Points `from` + s `direction`, s in `range`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub from: Vec3,
     pub direction: Vec3,
     pub range: [f64; 2],
-    /// What is farther from it than the reach lies beyond these.
+    /// Bounds of possible contacts.
     pub around: Bounds,
 }
 
-/// What is nearest on a stretch.
+/// Nearest feature of a piece.
 pub(crate) enum Nearest<'a> {
-    /// A plane: its normal; distance of the segment's beginning, and its slope.
+    /// Normal, initial distance, slope.
     Plane { normal: Vec3, at: f64, slope: f64 },
-    /// An edge or a corner: the vector from it to the segment's beginning, and its slope.
+    /// Edge or corner: vector to the segment start, and slope.
     Line { at: Vec3, slope: Vec3 },
-    /// A curved surface: distance and direction at a place along the segment.
+    /// Curved surface: distance and direction along the segment.
     Curve(&'a dyn Fn(f64) -> (f64, Vec3)),
 }
 
-/// What a corner or an edge does.
+/// Contact of a corner or edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pressed {
-    /// Away from what it presses into: (R − d) n at a corner, its integral along an edge.
+    /// (R − d) n at a corner, integrated along an edge; away from the target.
     pub force: Vec3,
-    /// R − d; of an edge what gives a spring with this force the energy of all of its points.
+    /// R − d; for an edge, energy-equivalent spring overlap.
     pub overlap: f64,
-    /// Where on the corner or the edge.
+    /// Contact point.
     pub point: Vec3,
-    /// Torque about that point per unit of force [m]: of an edge whose normals turn along it.
+    /// Torque about that point per force [m], if normals rotate along an edge.
     pub couple: Vec3,
-    /// Whether it is an edge.
     pub edge: bool,
 }
 
-/// What a corner does.
 pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Pressed> {
     let (d, n) = target.distance(p, reach)?;
     (d < reach).then(|| Pressed {
@@ -114,7 +109,7 @@ pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Press
     })
 }
 
-/// What the points of an edge do together, per unit of its length.
+/// Sums over an edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     /// ∫ (R − d) n ds, ∫ (R − d) n s ds and ∫ (R − d)² ds.
@@ -124,7 +119,7 @@ struct Sum {
 }
 
 impl Sum {
-    /// Adds a stretch by a rule of Gauss, where `at` gives distance and direction.
+    /// Gauss rule; `at` returns distance and direction.
     fn by_rule(
         &mut self,
         rule: &[[f64; 2]],
@@ -144,7 +139,7 @@ impl Sum {
         }
     }
 
-    /// Adds a stretch that is nearest to a point of a line, `at` + s `slope` away: in closed form, but where a rule is as good.
+    /// Piece nearest to `at` + s `slope`: closed form, or a rule of equal accuracy.
     fn of_line(&mut self, range: [f64; 2], reach: f64, (at, slope): (&Vec3, &Vec3)) {
         let a = slope.norm_squared();
         let shift = if a > 0.0 { at.dot(slope) / a } else { 0.0 };
@@ -161,9 +156,9 @@ impl Sum {
         }
         let (root, h2) = (a.sqrt(), h2.max(1e-300));
         let [du, dv] = [u, v].map(|u| (a * u * u + h2).sqrt());
-        // ∫ 1, u and u² du, and ∫ 1/d, u/d and u²/d du, with d² = a u² + h².
+        // ∫ 1, u, u² du and ∫ 1/d, u/d, u²/d du, d² = a u² + h².
         let (one, first, second) = (v - u, 0.5 * (v * v - u * u), (v * v * v - u * u * u) / 3.0);
-        // asinh(√a v/h) − asinh(√a u/h) as one logarithm, without differences of like numbers.
+        // asinh difference as one logarithm, without cancellation.
         let (ru, rv) = (root * u, root * v);
         let ratio = if u >= 0.0 {
             (rv + dv) / (ru + du)
@@ -184,7 +179,6 @@ impl Sum {
     }
 }
 
-/// What an edge does.
 pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Option<Pressed> {
     let mut sum = Sum::default();
     target.stretches(segment, reach, |range, nearest| match nearest {
@@ -199,7 +193,7 @@ pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Optio
     if size <= 0.0 {
         return None;
     }
-    // Where the force alone has the torque of all of it, nearly; anywhere, where it points along the edge.
+    // Point where the force alone best reproduces the torque; arbitrary for force along the edge.
     let (lever, torque) = (segment.direction.cross(&force), segment.direction.cross(&moment));
     let square = lever.norm_squared();
     let s = if square > 1e-16 * size * size {
@@ -208,12 +202,11 @@ pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Optio
         moment.dot(&force) / (size * size)
     };
     let couple = (torque - lever * s) / size;
-    // With this overlap a spring has the energy of all points of the edge.
+    // Energy-equivalent overlap.
     let point = segment.from + segment.direction * s;
     Some(Pressed { force, overlap: squares / size, point, couple, edge: true })
 }
 
-/// A half-space below a plane.
 pub(crate) struct HalfSpace {
     pub point: Vec3,
     pub normal: Vec3,
@@ -253,7 +246,6 @@ impl Target for HalfSpace {
     }
 }
 
-/// A stretch of a segment, from and to.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch(pub [f64; 2]);
 
@@ -262,9 +254,9 @@ impl Stretch {
         self.0[0] < self.0[1]
     }
 
-    /// Leaves what has `at` + s `slope` ≤ 0.
+    /// Keeps `at` + s `slope` ≤ 0.
     pub fn cut(&mut self, at: f64, slope: f64) {
-        // Without branches, whose ways cannot be predicted: which end is cut, if any, and nothing of what lies beyond all along.
+        // Branch-free: branches are unpredictable here.
         let end = -at / slope;
         let none = if at > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
         let high = if slope > 0.0 {
@@ -279,8 +271,7 @@ impl Stretch {
         self.0 = [if low > from { low } else { from }, if high < to { high } else { to }];
     }
 
-    /// The same beyond a border that another feature's region shares, from the same numbers: what lies in the border all along is the
-    /// other's, so that edges over edges count once.
+    /// As `cut`, but a piece entirely in a shared boundary belongs to the other feature and counts once.
     pub fn cut_beyond(&mut self, at: f64, slope: f64) {
         if slope == 0.0 && at >= 0.0 {
             self.0[1] = self.0[0];
@@ -288,7 +279,7 @@ impl Stretch {
         self.cut(at, slope);
     }
 
-    /// Leaves what has |`at` + s `slope`| ≤ `reach`.
+    /// Keeps |`at` + s `slope`| ≤ `reach`.
     pub fn near(&mut self, at: &Vec3, slope: &Vec3, reach: f64) {
         let (a, b, c) = (slope.norm_squared(), at.dot(slope), at.norm_squared() - reach * reach);
         let root = b * b - a * c;

@@ -3,7 +3,6 @@ use crate::shape::cuboid;
 use crate::shape::dilated::Core;
 use crate::shape::dilated::part::{Bounds, Part, View};
 
-/// Seen from above, however high.
 fn view() -> View {
     View::everywhere(Vec3::z(), 1.0)
 }
@@ -17,7 +16,7 @@ fn cube() -> Core {
     Core::new(&(0..8).map(|k| cuboid::corner(&Vec3::repeat(0.5), k)).collect::<Vec<_>>()).unwrap()
 }
 
-/// Distances of points over a face, beyond an edge and a corner.
+/// Over a face, beyond an edge and a corner.
 #[test]
 fn distances_from_a_cube() {
     let cube = cube();
@@ -32,10 +31,9 @@ fn distances_from_a_cube() {
     assert!(part.distance(&Vec3::new(0.2, 0.1, 0.6), 0.09).is_none());
 }
 
-/// An edge over a face, partly beyond it: the part above the face presses by its length, the rest as the distance of each point
-/// says, summed up by brute force.
+/// Edge partly over a face: analytic above it, brute-force sum beyond.
 #[test]
-fn an_edge_presses_as_its_points_do() {
+fn edge_contact_matches_point_sum() {
     let cube = cube();
     let mut part = Part::none(&cube, view());
     let part = part.all();
@@ -70,7 +68,6 @@ fn an_edge_presses_as_its_points_do() {
     assert!(edge(part, &segment(away), reach).is_none());
 }
 
-/// Over a plane the sums are those of a line.
 #[test]
 fn an_edge_over_a_plane() {
     let ground = HalfSpace { point: Vec3::zeros(), normal: Vec3::z() };

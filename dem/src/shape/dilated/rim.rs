@@ -1,5 +1,4 @@
-//! How the rim of a flat disk presses into another body: as an edge does (`press.rs`), summed up over arcs that are fixed in the disk, so
-//! that friction has points to hold at all around, and a disk that rolls comes from one to the next.
+//! Contact of a disk rim, integrated (`press.rs`) over fixed arcs, which provide friction points for rolling.
 
 use super::circle::{Circle, Turns};
 use super::disk::ARCS;
@@ -7,7 +6,7 @@ use super::press::{CURVED, Pressed, Target};
 use crate::base::Vec3;
 use std::f64::consts::TAU;
 
-/// What the points of an arc do together.
+/// Sums over an arc.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     /// ∫ (R − d) n ds, ∫ (R − d) p × n ds, ∫ (R − d) p ds, ∫ (R − d) ds and ∫ (R − d)² ds.
@@ -35,7 +34,7 @@ impl Sum {
         }
     }
 
-    /// As one force at the mean place. `radius`: that of the circle, for lengths along it.
+    /// Equivalent force at the mean position; `radius` of the circle.
     fn pressed(&self, radius: f64) -> Option<Pressed> {
         let size = self.force.norm();
         if size <= 0.0 || self.whole <= 0.0 {
@@ -47,8 +46,7 @@ impl Sum {
     }
 }
 
-/// What the arcs of a rim do to a target: calls `put` with the number of each that presses. Only what has `floor` ≤ 0 of the circle
-/// can: coefficients as in [`Circle::along`].
+/// Calls `put` with each arc in contact; `floor` ≤ 0 bounds the circle, coefficients as in [`Circle::along`].
 pub(crate) fn rim(
     target: &impl Target,
     circle: &Circle,

@@ -1,24 +1,22 @@
-//! Where a smooth function of one variable is below zero, from its values and slopes: places are bracketed by equal cells, each of which
-//! may hold one extremum, and found to rounding.
+//! Roots and negative ranges of a smooth function, bracketed by cells with one extremum each.
 
 use arrayvec::ArrayVec;
 
-/// Places, in order.
 pub(crate) type Places = ArrayVec<f64, 72>;
 
-/// Rounds in which a bracketed place is found.
+/// Most iterations per root.
 const ROUNDS: usize = 60;
 
-/// Length of a bracket that counts as a place.
+/// Bracket tolerance.
 const PLACE: f64 = 1e-15;
 
-/// How close an extremum is looked for: its value is then right to the square of it.
+/// Extremum tolerance; the value is second-order accurate.
 const EXTREMUM: f64 = 1e-9;
 
-/// Value and slope of a function.
+/// Value and slope.
 type Function<'a> = &'a dyn Fn(f64) -> [f64; 2];
 
-/// Adds where a function crosses zero between the first and the last of some points, in order: the ends of cells.
+/// Adds roots between ordered cell boundaries.
 pub(crate) fn roots(points: impl IntoIterator<Item = f64>, f: Function<'_>, out: &mut Places) {
     let mut points = points.into_iter();
     let Some(mut from) = points.next() else { return };
@@ -29,7 +27,7 @@ pub(crate) fn roots(points: impl IntoIterator<Item = f64>, f: Function<'_>, out:
         if (before[0] < 0.0) != (after[0] < 0.0) {
             out.push(crossing([from, to], before[0] < 0.0, f));
         } else if sign * before[1] < 0.0 && sign * after[1] > 0.0 {
-            // It comes nearer to zero in between.
+            // The extremum may cross zero.
             let (at, beyond) = extremum([from, to], [before[1], after[1]], sign, f);
             if beyond {
                 out.push(crossing([from, at], before[0] < 0.0, f));
@@ -40,7 +38,7 @@ pub(crate) fn roots(points: impl IntoIterator<Item = f64>, f: Function<'_>, out:
     }
 }
 
-/// The place in a bracket where a function crosses zero: by Newton's steps, or halves where these leave the bracket.
+/// Newton with bisection safeguard.
 fn crossing([mut low, mut high]: [f64; 2], rising: bool, f: Function<'_>) -> f64 {
     let mut x = 0.5 * (low + high);
     for _ in 0..ROUNDS {
@@ -60,8 +58,8 @@ fn crossing([mut low, mut high]: [f64; 2], rising: bool, f: Function<'_>) -> f64
     x
 }
 
-/// The place in a bracket where a function is nearest to zero, from slopes at its ends, and whether it lies beyond zero there; the first
-/// such place will do. `sign` is that of its values at the ends.
+/// Extremum in a bracket, from end slopes; stops at the first crossing of zero. `sign`: sign of the end
+/// values.
 fn extremum(
     [mut low, mut high]: [f64; 2],
     [mut first, mut last]: [f64; 2],
@@ -71,7 +69,7 @@ fn extremum(
     let mut x = low;
     let mut side = 0;
     for _ in 0..ROUNDS {
-        // False position after Dowell & Jarratt (BIT 11, 1971), Illinois.
+        // Illinois method (Dowell & Jarratt, BIT 11, 1971).
         let next = low + (high - low) * (first / (first - last));
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
         let near = (next - x).abs() <= EXTREMUM * (1.0 + x.abs());
@@ -100,7 +98,7 @@ fn extremum(
     (x, false)
 }
 
-/// Calls `put` with each part of a range between places, which are in order.
+/// Calls `put` with each range between ordered roots.
 pub(crate) fn between(range: [f64; 2], places: &Places, mut put: impl FnMut([f64; 2])) {
     let mut from = range[0];
     for &to in places.iter().chain([&range[1]]) {
@@ -111,7 +109,7 @@ pub(crate) fn between(range: [f64; 2], places: &Places, mut put: impl FnMut([f64
     }
 }
 
-/// Calls `put` with each part of a range, from the first to the last of some points, in which a function is below zero.
+/// Calls `put` with each range of negative values.
 pub(crate) fn below(
     points: impl IntoIterator<Item = f64>,
     range: [f64; 2],
@@ -131,7 +129,7 @@ pub(crate) fn below(
 mod tests {
     use super::*;
 
-    /// Crossings of cosines of several periods, and of one that only just reaches below zero.
+    /// Cosines of several periods, and a barely negative one.
     #[test]
     fn crossings_of_cosines() {
         for periods in 1..=8 {

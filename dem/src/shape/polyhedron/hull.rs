@@ -1,44 +1,43 @@
-//! Convex hull of points in space.
+//! Convex hull.
 //!
-//! Incremental: a first tetrahedron of far points, then each point outside replaces the faces that it sees by a fan from
-//! their border (M. de Berg et al., Computational Geometry, 3rd ed., sec. 11.2). A point nearer than 1e-10 of the size to
-//! a face's plane does not see that face, so that points on common planes do not tear the hull: it may miss them by
-//! that much.
+//! Incremental: each outside point replaces its visible faces by a fan from their boundary (M. de Berg et
+//! al., Computational Geometry, 3rd ed., sec. 11.2). Points within 1e-10 of the size from a face plane do not
+//! see that face, so coplanar points are safe; the hull may miss them by that distance.
 //!
-//! Limits: the cost grows with points times faces; meant for thousands of points.
+//! Limits: cost is points × faces; for thousands of points.
 
 use super::surface::Surface;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 
-/// Share of the points' extent that counts as nothing.
+/// Relative coplanarity tolerance.
 const FLAT: f64 = 1e-10;
 
-/// Why points have no hull with a volume.
+/// Degenerate point set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HullError {
-    /// Not four points off a plane.
+    /// Fewer than four non-coplanar points.
     #[error("the {0} points lie in one plane, or are too few: they span no volume")]
     Flat(usize),
-    /// A coordinate is not a finite number.
+    /// Non-finite coordinate.
     #[error("point {0} has a coordinate that is not a finite number")]
     NotFinite(usize),
 }
 
-/// The convex hull of points [m], as triangles wound outwards on the points that are its corners.
+/// Convex hull of points [m] as outward-oriented triangles.
 ///
 /// # Errors
-/// [`HullError`] when the points span no volume or are not finite.
+/// [`HullError`] if points are coplanar or not finite.
 pub fn convex_hull(points: &[[f64; 3]]) -> Result<Surface, HullError> {
     let x: Vec<Vector3<f64>> = points.iter().map(|p| Vector3::from(*p)).collect();
     let surface = Surface { vertices: points.to_vec(), triangles: triangles(&x)? };
     Ok(surface.without_loose_vertices())
 }
 
-/// The triangles of the convex hull of points [m], wound outwards, on their numbers.
+/// Outward-oriented hull triangles on point indices.
 ///
 /// # Errors
-/// [`HullError`] when the points span no volume or are not finite.
+/// [`HullError`] if points are coplanar or not finite.
 pub fn triangles(x: &[Vector3<f64>]) -> Result<Vec<[u32; 3]>, HullError> {
     if let Some(bad) = x.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(HullError::NotFinite(bad));
@@ -81,7 +80,7 @@ pub fn triangles(x: &[Vector3<f64>]) -> Result<Vec<[u32; 3]>, HullError> {
     Ok(faces.iter().map(|f| f.0).collect())
 }
 
-/// Four points far apart, wound so that the first three face away from the fourth, and the extent of all.
+/// Four distant points, the first three facing away from the fourth, and the extent.
 fn first_tetrahedron(x: &[Vector3<f64>]) -> Option<([u32; 4], f64)> {
     let farthest = |measure: &dyn Fn(&Vector3<f64>) -> f64| {
         (0..x.len()).fold(None, |best: Option<(usize, f64)>, i| {

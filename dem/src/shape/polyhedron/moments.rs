@@ -1,31 +1,30 @@
-//! Integrals over the inside of a closed surface.
+//! Volume integrals of a closed surface.
 //!
-//! Each triangle spans a tetrahedron with the origin; their signed sums are the integrals over the body. With
-//! d = a · (b × c) and s = a + b + c
+//! Signed sums over tetrahedra to the origin, with d = a · (b × c) and s = a + b + c:
 //!
 //! ```text
 //! V = Σ d/6,   ∫x dV = Σ d/24 s,   ∫x xᵀ dV = Σ d/120 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
 //! ```
 //!
-//! Source: the moments of a tetrahedron, as in B. Mirtich, J. Graphics Tools 1 (2), 1996, and F. Tonon, J. Math.
-//! Statistics 1, 2005. The origin is the middle of the bounding box, so that nothing cancels far from zero.
+//! Source: B. Mirtich, J. Graphics Tools 1 (2), 1996; F. Tonon, J. Math. Statistics 1, 2005. Origin at the
+//! box centre to avoid cancellation.
 
 use super::surface::Surface;
 use nalgebra::{Matrix3, Vector3};
 
-/// Volume, centroid and inertia of a body of density 1.
+/// Volume integrals at unit density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMoments {
     /// Volume [m³].
     pub volume: f64,
     /// Centroid [m].
     pub centroid: Vector3<f64>,
-    /// Tensor of inertia about the centroid per unit density [m⁵].
+    /// Inertia tensor about the centroid per unit density [m⁵].
     pub inertia: Matrix3<f64>,
 }
 
 impl BodyMoments {
-    /// Principal moments of inertia per unit density [m⁵], rising.
+    /// Principal moments of inertia per unit density [m⁵], ascending.
     pub fn principal(&self) -> [f64; 3] {
         crate::shape::clump::principal(self.inertia).0
     }

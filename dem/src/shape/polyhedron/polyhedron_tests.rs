@@ -1,4 +1,4 @@
-//! Closed forms of simple bodies, windings and faults of surfaces, distances, hulls.
+//! Closed forms, orientation, defects, distances, hulls.
 
 use super::*;
 use crate::base::random::Random;
@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use nalgebra::Rotation3;
 use std::f64::consts::PI;
 
-/// A box from `lo` to `hi`, wound outwards.
+/// Outward-oriented.
 fn brick(lo: [f64; 3], hi: [f64; 3]) -> Surface {
     let vertices =
         (0..8).map(|i| std::array::from_fn(|k| if i >> k & 1 == 0 { lo[k] } else { hi[k] })).collect();
@@ -16,7 +16,7 @@ fn brick(lo: [f64; 3], hi: [f64; 3]) -> Surface {
     Surface { vertices, triangles }
 }
 
-/// An icosahedron whose triangles are split `levels` times, on the unit sphere.
+/// Unit icosahedron, split `levels` times.
 fn icosphere(levels: usize) -> Surface {
     let g = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut points = Vec::new();
@@ -44,12 +44,12 @@ fn icosphere(levels: usize) -> Surface {
     surface
 }
 
-/// A prism of L-shaped section: concave.
+/// Concave.
 fn l_prism() -> Surface {
     joined(&[brick([0.0; 3], [2.0, 1.0, 1.0]), brick([0.0, 1.0, 0.0], [1.0, 2.0, 1.0])]).unwrap()
 }
 
-/// The skin of boxes on a grid of unit cells that share faces: cells' faces that occur once.
+/// Outer faces of boxes on a unit grid.
 fn joined(bricks: &[Surface]) -> Option<Surface> {
     let mut quads: Vec<[[f64; 3]; 4]> = Vec::new();
     for b in bricks {
@@ -76,7 +76,7 @@ fn joined(bricks: &[Surface]) -> Option<Surface> {
 }
 
 #[test]
-fn a_box_anywhere_has_its_volume_centroid_inertia_and_sphericity() {
+fn box_moments_match_closed_form() {
     let (a, b, c) = (0.3, 0.5, 0.7);
     let body = Polyhedron::new(&brick([10.0, -4.0, 2.0], [10.0 + a, -4.0 + b, 2.0 + c])).unwrap();
     let turn = Rotation3::from_euler_angles(0.3, -1.0, 2.0).into_inner();
@@ -93,19 +93,19 @@ fn a_box_anywhere_has_its_volume_centroid_inertia_and_sphericity() {
         }
         assert_relative_eq!(body.surface().area(), 2.0 * (a * b + b * c + c * a), max_relative = 1e-12);
         let mut extents = body.extents();
-        // The long side has the least moment, so it lies along x.
+        // The long side is the axis of least moment.
         assert_relative_eq!(extents[0], c, max_relative = 1e-9);
         extents.sort_by(f64::total_cmp);
         assert_relative_eq!(body.sieve_size(), b, max_relative = 1e-9);
     }
-    // Wadell's value for a cube: (π/6)^⅓.
+    // Wadell, cube: (π/6)^⅓.
     let cube = Polyhedron::new(&brick([0.0; 3], [2.0; 3])).unwrap();
     assert_relative_eq!(cube.sphericity(), (PI / 6.0).cbrt(), max_relative = 1e-12);
 }
 
 #[test]
-fn the_unit_tetrahedron_by_its_closed_form() {
-    // Corners 0, x, y, z of length 1: V = 1/6, centroid 1/4, ∫x² = 1/60, ∫xy = 1/120; central: 1/160, −1/480.
+fn unit_tetrahedron_matches_closed_form() {
+    // Unit corners: V = 1/6, centroid 1/4, ∫x² = 1/60, ∫xy = 1/120; central: 1/160, −1/480.
     let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let surface = Surface { vertices, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]] };
     let m = Polyhedron::new(&surface).unwrap().moments();
@@ -127,7 +127,7 @@ fn an_icosphere_converges_to_the_ball() {
     };
     let (coarse, fine) = (error(2), error(3));
     for (c, f) in coarse.iter().zip(fine) {
-        // Second order in the edge length: a quarter per split.
+        // Second order: a quarter per split.
         assert!(f > 0.0 && (c / f - 4.0).abs() < 0.2, "{coarse:?} {fine:?}");
     }
     assert!(fine[0] < 0.01 && fine[1] < 0.02);
@@ -135,7 +135,7 @@ fn an_icosphere_converges_to_the_ball() {
 
 #[test]
 fn windings_are_made_alike_and_outwards() {
-    // Deterministic disorder: triangles turned, and cyclically shifted.
+    // Deterministically flipped and shifted.
     let mut mixed = icosphere(2);
     let exact = Polyhedron::new(&mixed).unwrap().moments();
     for (i, t) in mixed.triangles.iter_mut().enumerate() {
@@ -149,7 +149,6 @@ fn windings_are_made_alike_and_outwards() {
     let body = Polyhedron::new(&mixed).unwrap();
     assert_relative_eq!(body.moments().volume, exact.volume, max_relative = 1e-13);
     assert_eq!(body.surface().topology().unwrap().turned_edges, 0);
-    // All of them inwards.
     let mut inward = brick([0.0; 3], [1.0; 3]);
     inward.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     assert_relative_eq!(Polyhedron::new(&inward).unwrap().moments().volume, 1.0, max_relative = 1e-14);
@@ -164,7 +163,7 @@ fn both(a: &Surface, b: &Surface) -> Surface {
 }
 
 #[test]
-fn holes_and_separate_pieces_count_as_such() {
+fn counts_holes_and_pieces() {
     let hollow = both(&brick([0.2; 3], [0.8; 3]), &brick([0.0; 3], [1.0; 3]));
     let body = Polyhedron::new(&hollow).unwrap();
     assert_relative_eq!(body.moments().volume, 1.0 - 0.6_f64.powi(3), max_relative = 1e-13);
@@ -175,27 +174,27 @@ fn holes_and_separate_pieces_count_as_such() {
     let body = Polyhedron::new(&apart).unwrap();
     assert_eq!((body.pieces(), body.holes()), (2, 0));
     assert_relative_eq!(body.moments().volume, 2.0, max_relative = 1e-13);
-    // A ball in the hole of a hollow box is a piece of its own again.
+    // A ball in a hole is a separate piece.
     let three = both(&hollow, &brick([0.4; 3], [0.6; 3]));
     let body = Polyhedron::new(&three).unwrap();
     assert_eq!((body.pieces(), body.holes()), (2, 1));
 }
 
 #[test]
-fn what_bounds_no_volume_is_refused_with_the_place() {
+fn rejects_surfaces_without_volume() {
     let mut open = brick([0.0; 3], [1.0; 3]);
     open.triangles.pop();
     let error = Polyhedron::new(&open).unwrap_err();
     assert!(matches!(error, SurfaceError::Open { edges: 3, .. }), "{error}");
     assert_eq!(open.topology().unwrap().open_edges, 3);
 
-    // Two boxes that share an edge only: it has four triangles.
+    // The common edge has four triangles.
     let pair = both(&brick([0.0; 3], [1.0; 3]), &brick([1.0, 1.0, 0.0], [2.0, 2.0, 1.0])).merged(0.0);
     let error = Polyhedron::new(&pair).unwrap_err();
     assert!(matches!(error, SurfaceError::NonManifold { edges: 1, .. }), "{error}");
     assert_eq!(pair.topology().unwrap().branching_edges, 1);
 
-    // The real projective plane on six vertices: closed, without branches, one-sided.
+    // Real projective plane on six vertices: closed, one-sided.
     let one_sided = [
         [0, 1, 2],
         [0, 2, 3],
@@ -223,7 +222,7 @@ fn what_bounds_no_volume_is_refused_with_the_place() {
 }
 
 #[test]
-fn vertices_merge_exactly_or_within_a_tolerance() {
+fn merges_vertices_within_tolerance() {
     let exact = icosphere(1);
     let soup = |shift: f64| {
         let mut soup = Surface::default();
@@ -244,14 +243,14 @@ fn vertices_merge_exactly_or_within_a_tolerance() {
     let mended = soup(1e-9).merged(1e-6);
     assert_eq!(mended.vertices.len(), 42);
     assert!(mended.topology().unwrap().is_closed_manifold());
-    // −0 and 0 are one place, and a triangle that shrinks to a line goes.
+    // −0 equals 0; degenerate triangles vanish.
     let zero =
         Surface { vertices: vec![[0.0; 3], [-0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], triangles: vec![[0, 1, 2]] };
     assert_eq!(zero.merged(0.0), Surface::default());
 }
 
 #[test]
-fn depth_of_a_box_and_a_ball_by_closed_form() {
+fn depth_matches_closed_form() {
     let body = Polyhedron::new(&brick([-1.0; 3], [1.0; 3])).unwrap();
     let distance = SurfaceDistance::new(&body);
     let mut random = Random::new(5, 99);
@@ -270,7 +269,7 @@ fn depth_of_a_box_and_a_ball_by_closed_form() {
 }
 
 #[test]
-fn the_side_agrees_with_the_winding_number_on_a_concave_body() {
+fn side_matches_winding_number() {
     let body = Polyhedron::new(&l_prism()).unwrap();
     assert_relative_eq!(body.moments().volume, 3.0, max_relative = 1e-13);
     let distance = SurfaceDistance::new(&body);
@@ -299,7 +298,7 @@ fn surface_points_are_spread_by_area() {
 }
 
 #[test]
-fn hulls_hold_their_points_and_are_closed_and_convex() {
+fn hulls_are_closed_and_convex() {
     for seed in 0..20 {
         let mut random = Random::new(seed, 98);
         let points: Vec<[f64; 3]> =
@@ -314,7 +313,7 @@ fn hulls_hold_their_points_and_are_closed_and_convex() {
             assert!(points.iter().all(|p| normal.dot(&(Vector3::from(*p) - a)) < 1e-9));
         }
     }
-    // Points on common planes: a 4 x 4 x 4 lattice spans a cube.
+    // Coplanar points of a 4 x 4 x 4 lattice.
     let lattice: Vec<[f64; 3]> =
         (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(|n| f64::from(n) / 3.0)).collect();
     let cube = Polyhedron::new(&convex_hull(&lattice).unwrap()).unwrap();

@@ -1,8 +1,7 @@
-//! Points spread over a surface by area.
+//! Area-weighted surface sampling.
 //!
-//! The i-th of n points stands for the area share [i/n, (i+1)/n): its triangle is the one that holds the share's middle
-//! when the triangles are laid end to end, its place there is that of a plane low-discrepancy sequence (M. Roberts' R2:
-//! the fractional parts of i/g and i/g² with g³ = g + 1), folded onto the triangle.
+//! Point i of n samples the area fraction [i/n, (i+1)/n): triangle at its midpoint, position from a
+//! low-discrepancy sequence (M. Roberts' R2, g³ = g + 1) folded onto the triangle.
 
 use super::surface::Surface;
 

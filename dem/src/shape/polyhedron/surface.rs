@@ -1,74 +1,74 @@
-//! Triangles as a file holds them.
+//! Raw triangle meshes.
 
 use super::topology::{Topology, topology};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Triangles on common vertices.
+/// Triangles on shared vertices.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Coordinates of the vertices [m].
+    /// Vertices [m].
     pub vertices: Vec<[f64; 3]>,
-    /// Vertices of each triangle, counted from 0.
+    /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Why a surface bounds no volume.
+/// Defect of a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SurfaceError {
-    /// No triangle with three different vertices.
+    /// No valid triangle.
     #[error("the surface has no triangle")]
     Empty,
-    /// A vertex that does not exist.
+    /// Unknown vertex.
     #[error("triangle {triangle} names vertex {vertex}, but there are only {count} (counted from 0)")]
     Index {
-        /// Index of the triangle, from 0.
+        /// Index of the triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// Vertex index.
         vertex: u32,
         /// Number of vertices.
         count: usize,
     },
-    /// A coordinate is not a finite number.
+    /// Non-finite coordinate.
     #[error("vertex {0} of the surface (counted from 0) has a coordinate that is not a finite number")]
     NotFinite(usize),
-    /// An edge with one triangle only.
+    /// Open edge.
     #[error(
         "the surface is open: {edges} edges have one triangle only, the first runs from {from:?} to {to:?}"
     )]
     Open {
-        /// Number of such edges.
+        /// Number of open edges.
         edges: usize,
-        /// One end of the first [m].
+        /// First end [m].
         from: [f64; 3],
-        /// Its other end [m].
+        /// Second end [m].
         to: [f64; 3],
     },
-    /// An edge with more than two triangles.
+    /// Edge of more than two triangles.
     #[error(
         "the surface branches: {edges} edges have more than two triangles, the first runs from {from:?} to {to:?}"
     )]
     NonManifold {
         /// Number of such edges.
         edges: usize,
-        /// One end of the first [m].
+        /// First end [m].
         from: [f64; 3],
-        /// Its other end [m].
+        /// Second end [m].
         to: [f64; 3],
     },
-    /// A one-sided surface such as a Klein bottle.
+    /// One-sided surface, such as a Klein bottle.
     #[error(
         "the surface has one side only: triangle {0} (counted from 0) cannot be wound like its neighbours"
     )]
     OneSided(usize),
-    /// A closed surface around nothing.
+    /// No enclosed volume.
     #[error("the surface encloses no volume")]
     Flat,
 }
 
 impl Surface {
-    /// Lowest and highest coordinates [m]; zeros without vertices.
+    /// Lower and upper bounds [m]; zero without vertices.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         let Some(first) = self.vertices.first() else { return [[0.0; 3]; 2] };
         self.vertices.iter().fold([*first; 2], |[lo, hi], v| {
@@ -76,7 +76,7 @@ impl Surface {
         })
     }
 
-    /// Length of the diagonal of the bounding box [m].
+    /// Bounding box diagonal [m].
     pub fn diagonal(&self) -> f64 {
         let [lo, hi] = self.bounds();
         (Vector3::from(hi) - Vector3::from(lo)).norm()
@@ -87,7 +87,7 @@ impl Surface {
         self.triangles[triangle].map(|v| Vector3::from(self.vertices[v as usize]))
     }
 
-    /// Area [m²].
+    /// Surface area [m²].
     pub fn area(&self) -> f64 {
         let twice = |t| {
             let [a, b, c] = self.corners(t);
@@ -96,8 +96,8 @@ impl Surface {
         0.5 * (0..self.triangles.len()).map(twice).sum::<f64>()
     }
 
-    /// The same surface with vertices no further apart than `tolerance` [m] taken as one, the first of them in order;
-    /// triangles left without area by that, and vertices without triangle, are dropped. Zero merges equal vertices.
+    /// Merges vertices within `tolerance` [m] (zero: identical ones) into the first; drops degenerate
+    /// triangles and unused vertices.
     pub fn merged(&self, tolerance: f64) -> Surface {
         let cell = |x: f64| {
             if tolerance > 0.0 { (x / tolerance).floor() as i64 } else { (x + 0.0).to_bits() as i64 }
@@ -136,7 +136,7 @@ impl Surface {
         merged.without_loose_vertices()
     }
 
-    /// The same triangles with the vertices that they use, in the order of the vertices.
+    /// Drops unused vertices; order is kept.
     pub fn without_loose_vertices(self) -> Surface {
         let mut used = vec![false; self.vertices.len()];
         self.triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
@@ -150,18 +150,18 @@ impl Surface {
         Surface { vertices, triangles }
     }
 
-    /// How the triangles hang together.
+    /// Computes the connectivity.
     ///
     /// # Errors
-    /// [`SurfaceError::Index`] when a triangle names a vertex that does not exist.
+    /// [`SurfaceError::Index`] if a vertex does not exist.
     pub fn topology(&self) -> Result<Topology, SurfaceError> {
         topology(self)
     }
 
-    /// Winding number of the surface about `p` [m]: 1 inside a closed surface wound outwards, 0 outside it, any number
-    /// for an open one. It needs no closed or simple surface, but a sum over all triangles.
+    /// Winding number about `p` [m]: 1 inside a closed, outward-oriented surface, 0 outside; fractional if
+    /// open.
     ///
-    /// Solid angle of a triangle: van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983), eq. 8.
+    /// Solid angle: van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983), eq. 8.
     pub fn winding_number(&self, p: [f64; 3]) -> f64 {
         let p = Vector3::from(p);
         let angle = |t: usize| {

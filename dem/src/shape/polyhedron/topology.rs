@@ -1,33 +1,32 @@
-//! Edges of a surface, and a winding that all its triangles share.
+//! Connectivity and consistent orientation of a surface.
 
 use super::moments;
 use super::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 
-/// How the triangles of a surface hang together.
+/// Connectivity of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
     /// Number of edges.
     pub edges: usize,
-    /// Edges with one triangle only: none where the surface is closed.
+    /// Edges of one triangle.
     pub open_edges: usize,
-    /// Edges with more than two triangles.
+    /// Edges of more than two triangles.
     pub branching_edges: usize,
-    /// Edges whose two triangles run through them in the same direction, so that one of the two is wound wrongly.
+    /// Edges with inconsistently oriented triangles.
     pub turned_edges: usize,
-    /// Pieces that share no edge.
+    /// Edge-connected pieces.
     pub pieces: usize,
 }
 
 impl Topology {
-    /// Whether every edge has two triangles.
+    /// Returns true if every edge has two triangles.
     pub fn is_closed_manifold(&self) -> bool {
         self.open_edges == 0 && self.branching_edges == 0
     }
 }
 
-/// The triangles of each edge: (triangle, whether it runs from the lower to the higher vertex), and the order in which
-/// the edges come first.
+/// Per edge (triangle, runs from lower to higher vertex), and edges in order of appearance.
 struct Edges {
     order: Vec<(u32, u32)>,
     users: HashMap<(u32, u32), Vec<(u32, bool)>>,
@@ -88,8 +87,7 @@ fn root(parts: &mut [u32], mut t: u32) -> u32 {
     t
 }
 
-/// Winds all triangles of a closed surface so that normals point out of the material. Returns the number of shells and
-/// how many of them bound holes.
+/// Orients all normals out of the material; returns the number of shells and of holes.
 ///
 /// # Errors
 /// An edge without exactly two triangles, or a one-sided surface.
@@ -112,7 +110,7 @@ pub(super) fn orient(surface: &mut Surface) -> Result<(usize, usize), SurfaceErr
         return Ok((1, 0));
     }
 
-    // Each shell outwards by itself, then inwards where an odd number of others hold it.
+    // Shells in an odd number of others face inwards.
     let single = |surface: &Surface, shell: &[u32]| Surface {
         vertices: surface.vertices.clone(),
         triangles: shell.iter().map(|t| surface.triangles[*t as usize]).collect(),
@@ -140,7 +138,7 @@ fn turn(surface: &mut Surface, shell: &[u32]) {
     shell.iter().for_each(|t| surface.triangles[*t as usize].swap(1, 2));
 }
 
-/// Winds each shell as its first triangle is; the triangles of each shell, in the order of their first ones.
+/// Orients each shell like its first triangle; returns the shells.
 fn wind_alike(surface: &mut Surface, found: &Edges) -> Result<Vec<Vec<u32>>, SurfaceError> {
     let count = surface.triangles.len();
     let mut turned: Vec<Option<bool>> = vec![None; count];
@@ -160,7 +158,7 @@ fn wind_alike(surface: &mut Surface, found: &Edges) -> Result<Vec<Vec<u32>>, Sur
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 let users = &found.users[&(from.min(to), from.max(to))];
                 let (other, direction) = if users[0].0 == t { users[1] } else { users[0] };
-                // Neighbours must run through their edge in opposite directions.
+                // Neighbours traverse a shared edge in opposite directions.
                 let wanted = own ^ (direction == (from < to));
                 match turned[other as usize] {
                     None => {

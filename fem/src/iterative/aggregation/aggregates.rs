@@ -1,23 +1,21 @@
-//! Groups of rows that become one row of the next level.
+//! Aggregates rows for the next level.
 //!
-//! Source: Vaněk, Mandel and Brezina, Computing 56 (1996) 179-196, section 5: groups of a row and all that it is strongly coupled
-//! to, where none of these has a group yet; what is left joins the group that it is coupled to most.
+//! Source: Vaněk, Mandel and Brezina (1996), section 5: a row with its strongly coupled rows, if all are
+//! free, forms an aggregate; leftover rows join their strongest neighbour.
 
 use super::rows::{PART, Rows};
 use rayon::prelude::*;
 
-/// A row that has no group: one that is coupled to none.
+/// Row without aggregate, coupled to no other.
 pub const NONE: u32 = u32::MAX;
 
-/// The group of each row.
 pub struct Aggregates {
-    /// Group by row, or [`NONE`].
+    /// Aggregate by row, or [`NONE`].
     pub of: Vec<u32>,
-    /// Number of groups.
     pub count: usize,
 }
 
-/// Rows that each row is strongly coupled to, with the strength: `|A_pq|² > threshold² |A_pp| |A_qq|` in the norm of Frobenius.
+/// Strong couplings of each row: `|A_pq|² > threshold² |A_pp| |A_qq|` in the Frobenius norm.
 fn strong<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Vec<Vec<(u32, f64)>> {
     let square = |b: &[[f64; N]; N]| b.iter().flatten().map(|v| v * v).sum::<f64>();
     let size: Vec<f64> = (0..rows.count())
@@ -47,7 +45,6 @@ fn strong<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Vec<Vec<(u32, 
         .collect()
 }
 
-/// Groups the rows of a matrix.
 pub fn aggregate<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Aggregates {
     let strong = strong(rows, threshold);
     let (mut of, mut count) = (vec![NONE; strong.len()], 0);

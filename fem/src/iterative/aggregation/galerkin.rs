@@ -1,14 +1,14 @@
-//! The matrix of the next level, `Pᵀ A P`.
+//! Galerkin matrix of the next level, `Pᵀ A P`.
 
 use super::rows::{Block, Blocks, Rows};
 use super::transfer::add_product;
 use rayon::prelude::*;
 
-/// Rows whose contributions are computed side by side before one thread adds them, in the order of rows.
+/// Rows per chunk, computed in parallel and added in row order.
 const CHUNK: usize = 256;
 const NONE: u32 = u32::MAX;
 
-/// `Pᵀ A P`, exactly symmetric; a diagonal entry without stiffness, which belongs to no mode, becomes 1.
+/// `Pᵀ A P`, exactly symmetric; zero diagonal entries, of unused modes, become 1.
 pub fn galerkin<const N: usize>(rows: &impl Rows<N>, p: &Blocks<N, 6>, columns: usize) -> Blocks<6, 6> {
     let mut sums: Vec<Vec<(u32, Block<6, 6>)>> = vec![Vec::new(); columns];
     let all: Vec<usize> = (0..rows.count()).collect();
@@ -25,7 +25,6 @@ pub fn galerkin<const N: usize>(rows: &impl Rows<N>, p: &Blocks<N, 6>, columns: 
             }
         }
     }
-    // Upper half and diagonal are there; the lower half is its mirror.
     let upper: Vec<Vec<(u32, Block<6, 6>)>> = sums;
     let mut whole: Vec<Vec<(u32, Block<6, 6>)>> = vec![Vec::new(); columns];
     for (a, row) in upper.into_iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Smoothed aggregation: a preconditioner for the stiffness of large bodies whose iterations hardly depend on the size of the mesh.
+//! Smoothed aggregation: a preconditioner for elastic stiffness, nearly independent of mesh size.
 //!
-//! Nodes are gathered in groups, each of which moves as a rigid body in the matrix of the next level, and so on until a dense
-//! factor is cheap. One V-cycle with polynomial smoothers is symmetric and positive definite.
+//! Aggregates move as rigid bodies; the coarsest level has a dense factor. The V-cycle is symmetric positive
+//! definite.
 //!
-//! Source: Vaněk, Mandel and Brezina, Computing 56 (1996) 179-196. Limits: elastic matrices, whose rigid motions cost no energy; bodies nearly
-//! incompressible, or of elements very flat, take more iterations.
+//! Source: Vaněk, Mandel and Brezina (1996). Limits: near incompressibility and very flat elements take more
+//! iterations.
 
 mod aggregates;
 mod galerkin;
@@ -23,35 +23,32 @@ use nalgebra::{DMatrix, DVector, Dyn, SMatrix};
 use rows::{Block, Blocks, Half, Rows};
 use transfer::{Transfer, tentative};
 
-/// Coupling below which two nodes are not grouped, on the first level; those of the next ones all are. Larger values take fewer
-/// iterations on flat elements, and more time and memory all in all.
+/// Strength threshold of the first level; larger values cost time and memory.
 const STRENGTH: f64 = 0.02;
-/// Groups of the last level at most: their matrix has six times as many rows.
+/// Most aggregates of the coarsest level.
 const COARSEST: usize = 160;
-/// Levels at most.
+/// Maximum number of levels.
 const LEVELS: usize = 8;
 
-/// The levels and the factor of the last.
+/// Levels and coarsest factor.
 pub struct Aggregation {
     finest: Level<3, Product>,
     levels: Vec<Level<6, Blocks<6, 6>>>,
     factor: Cholesky<f64, Dyn>,
-    /// Right-hand sides and solutions of the levels after the first.
     sides: Vec<[Vec<f64>; 2]>,
     last: DVector<f64>,
     memory: usize,
 }
 
-/// A matrix on a level that is not positive definite.
+/// Level matrix that is not positive definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotPositive;
 
 impl Aggregation {
-    /// Sets up the levels of a product with the stiffness alone; `jacobi` has its inverse diagonal blocks, `coordinates` the places of
-    /// the nodes.
+    /// Builds the levels from inverse diagonal blocks `jacobi` and node `coordinates`.
     ///
     /// # Errors
-    /// The matrix of a level is not positive definite: the body is not held.
+    /// A level matrix is not positive definite: insufficient constraints.
     pub fn new(
         mut product: Product,
         jacobi: &BlockJacobi,
@@ -72,7 +69,7 @@ impl Aggregation {
             let inverse = inverse_diagonal(&matrix)?;
             let largest = largest_eigenvalue(&mut matrix, &inverse);
             let (transfer, next, next_modes) = next_level(&matrix, 0.0, &modes, &inverse, largest);
-            // Groups that do not unite any more.
+            // Coarsening stagnates.
             if 2 * next.len() > matrix.len() {
                 break;
             }
@@ -94,14 +91,13 @@ impl Aggregation {
         Ok(Aggregation { finest, levels, factor, sides, last: DVector::zeros(n), memory })
     }
 
-    /// Rows of each level, from the finest on.
+    /// Rows of each level, finest first.
     pub fn sizes(&self) -> Vec<usize> {
         let first = self.finest.matrix().free().len();
         std::iter::once(first).chain(self.sides.iter().map(|[b, _]| b.len() / 6)).collect()
     }
 }
 
-/// Groups, prolongator, matrix and modes of the next level.
 fn next_level<const N: usize>(
     rows: &impl Rows<N>,
     strength: f64,
@@ -117,7 +113,6 @@ fn next_level<const N: usize>(
     (transfer, matrix, next)
 }
 
-/// Translations and rotations about the centre at the free dofs, by nodes.
 fn rigid_motions(coordinates: &[[f64; 3]], free: &[[bool; 3]]) -> Vec<Block<3, 6>> {
     let count = coordinates.len().max(1) as f64;
     let centre = [0, 1, 2].map(|k| coordinates.iter().map(|x| x[k]).sum::<f64>() / count);

@@ -1,36 +1,33 @@
-//! Matrices of blocks by rows.
+//! Block matrices by rows.
 
 use super::super::product::Product;
 use crate::assembly::Matrices;
 use crate::solver::conjugate::Operator;
 use rayon::prelude::*;
 
-/// Rows of a part that one thread computes.
+/// Rows per parallel task.
 pub const PART: usize = 64;
 
-/// A block of R rows and C columns.
 pub type Block<const R: usize, const C: usize> = [[f64; C]; R];
 
-/// A square matrix of blocks, row by row.
+/// Square block matrix by rows.
 pub trait Rows<const N: usize>: Sync {
-    /// Number of rows of blocks.
+    /// Number of block rows.
     fn count(&self) -> usize;
 
-    /// Hands over column and block of each entry of row `p`, the diagonal among them, always in the same order.
+    /// Visits the entries of row `p`, including the diagonal, in fixed order.
     fn visit(&self, p: usize, take: impl FnMut(usize, &Block<N, N>));
 }
 
-/// The stiffness on the free dofs, from its upper half; rows and columns of constrained dofs are those of the identity.
+/// Free-dof stiffness from its upper half, with identity rows for constrained dofs.
 pub struct Half<'a> {
     matrices: &'a Matrices,
     free: &'a [[bool; 3]],
-    /// Node and slot of the entries below the diagonal, row by row.
     below: Vec<[u32; 2]>,
     start: Vec<u32>,
 }
 
 impl<'a> Half<'a> {
-    /// The rows of a product with the stiffness alone.
     pub fn new(product: &'a Product) -> Half<'a> {
         let (matrices, free) = (product.matrices(), product.free());
         let nodes = matrices.node_count();
@@ -76,7 +73,7 @@ impl Rows<3> for Half<'_> {
     }
 }
 
-/// Blocks of R rows and C columns, row by row, columns ascending.
+/// Block matrix by rows, columns ascending.
 pub struct Blocks<const R: usize, const C: usize> {
     pub start: Vec<usize>,
     pub column: Vec<u32>,
@@ -84,7 +81,6 @@ pub struct Blocks<const R: usize, const C: usize> {
 }
 
 impl<const R: usize, const C: usize> Blocks<R, C> {
-    /// From columns and blocks of each row.
     pub fn from_rows(rows: impl Iterator<Item = Vec<(u32, Block<R, C>)>>) -> Blocks<R, C> {
         let mut blocks = Blocks { start: vec![0], column: Vec::new(), value: Vec::new() };
         for row in rows {
@@ -95,13 +91,11 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         blocks
     }
 
-    /// Columns and blocks of a row.
     pub fn row(&self, p: usize) -> impl Iterator<Item = (usize, &Block<R, C>)> {
         let row = self.start[p]..self.start[p + 1];
         self.column[row.clone()].iter().map(|&c| c as usize).zip(&self.value[row])
     }
 
-    /// Number of rows of blocks.
     pub fn len(&self) -> usize {
         self.start.len() - 1
     }
@@ -122,7 +116,6 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         });
     }
 
-    /// Memory [bytes].
     pub fn memory(&self) -> usize {
         size_of_val(&self.value[..]) + size_of_val(&self.column[..]) + size_of_val(&self.start[..])
     }

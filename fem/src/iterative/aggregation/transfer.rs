@@ -1,28 +1,26 @@
-//! From a level to the next and back: the smoothed prolongator.
+//! Smoothed prolongator between levels.
 //!
-//! On a group of rows the tentative prolongator T is an orthonormal base of the modes that cost little energy (rigid motions), so
-//! that it holds these exactly; one step of damped Jacobi, `P = (I - omega D⁻¹ A) T`, spreads it over the neighbours.
+//! T is an orthonormal basis of the rigid-body modes of each aggregate, smoothed by damped Jacobi,
+//! `P = (I - omega D⁻¹ A) T`.
 //!
-//! Source: Vaněk, Mandel and Brezina, Computing 56 (1996) 179-196, sections 2 to 4, omega = 4/(3 lambda), lambda the largest eigenvalue of
-//! D⁻¹ A. Limits: groups with fewer free dofs than modes have fewer columns, the rest of which are zero.
+//! Source: Vaněk, Mandel and Brezina (1996), sections 2 to 4, omega = 4/(3 lambda), lambda the largest
+//! eigenvalue of D⁻¹ A. Aggregates with fewer free dofs than modes have zero columns.
 
 use super::aggregates::{Aggregates, NONE};
 use super::rows::{Block, Blocks, PART, Rows};
 use rayon::prelude::*;
 
-/// Part of a mode below which it counts as one of those before it.
+/// Relative norm below which a mode is linearly dependent.
 const DEPENDENT: f64 = 1e-10;
 
-/// The prolongator with its transpose.
 pub struct Transfer<const N: usize> {
     /// Rows of the level, columns of the next.
     pub prolongator: Blocks<N, 6>,
-    /// Row and place among the entries of each entry of a column, column by column.
     entries: Vec<[u32; 2]>,
     start: Vec<usize>,
 }
 
-/// An orthonormal base of the modes on each group, by rows, and the modes of the next level.
+/// Orthonormal modes on each aggregate, by rows, and modes of the next level.
 pub fn tentative<const N: usize>(
     aggregates: &Aggregates,
     modes: &[Block<N, 6>],
@@ -59,7 +57,7 @@ pub fn tentative<const N: usize>(
 }
 
 impl<const N: usize> Transfer<N> {
-    /// Smooths the tentative prolongator of these groups. `inverse`: D⁻¹.
+    /// Smooths the tentative prolongator of these aggregates. `inverse`: D⁻¹.
     pub fn new(
         rows: &impl Rows<N>,
         aggregates: &Aggregates,
@@ -127,13 +125,11 @@ impl<const N: usize> Transfer<N> {
         });
     }
 
-    /// Memory [bytes].
     pub fn memory(&self) -> usize {
         self.prolongator.memory() + size_of_val(&self.entries[..]) + size_of_val(&self.start[..])
     }
 }
 
-/// `sum += a b`.
 pub fn add_product<const N: usize, const K: usize>(sum: &mut Block<N, 6>, a: &Block<N, K>, b: &Block<K, 6>) {
     for (sum, a) in sum.iter_mut().zip(a) {
         for (a, b) in a.iter().zip(b) {

@@ -1,33 +1,32 @@
 //! Preconditioned conjugate gradients.
 //!
-//! The size of a residual r is `sqrt(r·B r)`, B the preconditioner: near the energy norm of the error where B is near the
-//! inverse of A. A solve ends when it has fallen to `tolerance` times that of the right-hand side. A guess is taken only where its
-//! residual is smaller than that of zero.
+//! Convergence: `sqrt(r·B r)` relative to the right-hand side, B the preconditioner. A guess worse than zero
+//! is ignored.
 //!
-//! Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), algorithm 9.1. Limits: the residual follows from
-//! a recurrence, which parts from the true one near rounding, some 1e-16 times the condition of A.
+//! Source: Saad (2003), algorithm 9.1. Limits: the recursive residual deviates near rounding, about 1e-16
+//! times the condition of A.
 
 pub mod vectors;
 
 use thiserror::Error;
 use vectors::{add_scaled, dot, parts, scale_and_add, subtract};
 
-/// A symmetric positive definite matrix that is known by its products.
+/// Symmetric positive definite matrix, given by products.
 pub trait Operator {
-    /// `y = A x`. Both have the same length.
+    /// Computes `y = A x`, of equal length.
     fn apply(&mut self, x: &[f64], y: &mut [f64]);
 }
 
-/// An approximate inverse of a matrix, symmetric and positive definite itself.
+/// Symmetric positive definite approximate inverse.
 pub trait Preconditioner {
-    /// `z = B r`, B near the inverse of A. Both have the same length.
+    /// Computes `z = B r`, of equal length.
     fn apply(&mut self, r: &[f64], z: &mut [f64]);
 
-    /// Memory that it holds [bytes].
+    /// Memory [bytes].
     fn memory(&self) -> usize;
 }
 
-/// Work space for systems of one size; solves allocate nothing.
+/// Work space; solves allocate nothing.
 pub struct ConjugateGradients {
     r: Vec<f64>,
     z: Vec<f64>,
@@ -37,44 +36,44 @@ pub struct ConjugateGradients {
     limit: u32,
 }
 
-/// Why a solve has not found the solution.
+/// Failed solves.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Stopped {
-    /// A direction without energy, or a number that is not finite.
+    /// Direction without energy, or value not finite.
     #[error("breakdown in iteration {iteration}, residual {residual:.3e}")]
     Breakdown {
-        /// Iteration, from 1; 0 for the right-hand side itself.
+        /// Iteration, from 1; 0 for the right-hand side.
         iteration: u32,
-        /// Residual over right-hand side before it [-].
+        /// Relative residual before [-].
         residual: f64,
     },
-    /// Too many iterations.
+    /// Iteration limit.
     #[error("residual {residual:.3e} after {iterations} iterations")]
     Limit {
-        /// Iterations made.
+        /// Iterations.
         iterations: u32,
-        /// Residual over right-hand side that is left [-].
+        /// Relative residual [-].
         residual: f64,
     },
 }
 
 impl ConjugateGradients {
-    /// Work space for vectors of `values` values, and solves of at most `limit` iterations.
+    /// Work space for vectors of `values` values; iteration limit `limit`.
     pub fn new(values: usize, limit: u32) -> ConjugateGradients {
         let zero = || vec![0.0; values];
         let partial = vec![0.0; parts(values)];
         ConjugateGradients { r: zero(), z: zero(), p: zero(), q: zero(), partial, limit }
     }
 
-    /// Memory that it holds [bytes].
+    /// Memory [bytes].
     pub fn memory(&self) -> usize {
         size_of::<f64>() * (4 * self.r.len() + self.partial.len())
     }
 
-    /// Solves `A x = b` from the guess in `x` and returns the iterations.
+    /// Solves `A x = b` from the guess in `x`; returns the iterations.
     ///
     /// # Errors
-    /// [`Stopped`]; `x` is of no use then.
+    /// [`Stopped`], with invalid `x`.
     pub fn solve(
         &mut self,
         a: &mut impl Operator,
@@ -142,7 +141,7 @@ impl ConjugateGradients {
 mod tests {
     use super::*;
 
-    /// `-1, 2 + shift, -1` on a line.
+    /// Tridiagonal `-1, 2 + shift, -1`.
     struct Line(f64);
 
     impl Operator for Line {
@@ -156,7 +155,6 @@ mod tests {
         }
     }
 
-    /// A multiple of the identity.
     struct Scale(f64);
 
     impl Preconditioner for Scale {
@@ -179,22 +177,22 @@ mod tests {
         (outcome, x)
     }
 
-    /// As many iterations as distinct eigenvalues of the matrix, here all of them (Saad 2003, section 6.11.3).
+    /// Iterations equal the distinct eigenvalues (Saad 2003, section 6.11.3).
     #[test]
-    fn a_small_system_is_solved_in_as_many_iterations_as_it_has_equations() {
+    fn solves_within_equation_count() {
         let (outcome, error) = solve(12, 0.0, &[0.0; 12], 1e-13);
         assert_eq!(outcome, Ok(12));
         assert!(error.iter().all(|e| e.abs() < 1e-12));
     }
 
-    /// Iterations grow with the condition as (Saad 2003, eq. 6.128) predicts at most.
+    /// Iteration bound of Saad 2003, eq. 6.128.
     #[test]
-    fn iterations_keep_the_bound_of_the_condition() {
+    fn iterations_satisfy_condition_bound() {
         let n = 4000;
         for (shift, tolerance) in [(1.0, 1e-8), (0.1, 1e-6), (0.1, 1e-10)] {
             let condition: f64 = (4.0 + shift) / shift;
             let rate = (condition.sqrt() - 1.0) / (condition.sqrt() + 1.0);
-            // Twice the rate to the k-th in the energy norm; the residual's norm differs by the root of the condition.
+            // Energy norm; the residual norm differs by the root of the condition.
             let bound = (tolerance / (2.0 * condition.sqrt())).ln() / rate.ln();
             let (outcome, error) = solve(n, shift, &vec![0.0; n], tolerance);
             let iterations = f64::from(outcome.unwrap());

@@ -1,15 +1,13 @@
-//! Operations on vectors in parts of a fixed size: the order of sums does not depend on the number of threads.
+//! Vector operations in parts of fixed size, reproducible for any number of threads.
 
 use rayon::prelude::*;
 
-/// Nodes of a part.
+/// Nodes per part.
 pub const NODES: usize = 1024;
-/// Values of a part of a nodal vector.
+/// Values per part.
 pub const VALUES: usize = 3 * NODES;
-/// Sums that a part keeps side by side, so that they run in registers.
 const LANES: usize = 8;
 
-/// `a·b` of one part.
 fn dot_part(a: &[f64], b: &[f64]) -> f64 {
     let mut sum = [0.0; LANES];
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
@@ -22,7 +20,7 @@ fn dot_part(a: &[f64], b: &[f64]) -> f64 {
     sum.iter().sum::<f64>() + rest
 }
 
-/// `a·b`; `partial` has room for a sum of each part.
+/// `a·b`; `partial` holds one sum per part.
 pub fn dot(a: &[f64], b: &[f64], partial: &mut [f64]) -> f64 {
     (partial.par_iter_mut(), a.par_chunks(VALUES), b.par_chunks(VALUES))
         .into_par_iter()
@@ -53,7 +51,7 @@ pub fn subtract(a: &[f64], b: &[f64], y: &mut [f64]) {
     );
 }
 
-/// Number of parts of a vector of `values` values.
+/// Number of parts.
 pub fn parts(values: usize) -> usize {
     values.div_ceil(VALUES)
 }

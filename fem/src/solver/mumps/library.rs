@@ -1,11 +1,11 @@
-//! The binding to the library.
+//! Bindings to MUMPS.
 
 use super::{Coordinates, MumpsError, Settings};
 use std::ffi::{CString, c_char, c_int, c_longlong};
 use std::ptr::{NonNull, null_mut};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The structure of MUMPS, whose layout C alone knows.
+/// MUMPS structure, with a layout known to C only.
 #[repr(C)]
 struct Structure {
     private: [u8; 0],
@@ -32,37 +32,35 @@ unsafe extern "C" {
     fn trackbed_mumps_null_pivot(id: *const Structure) -> c_int;
 }
 
-/// Held while MUMPS runs: its instances share variables.
+/// Serialises MUMPS calls: its instances share variables.
 static TURN: Mutex<()> = Mutex::new(());
 
 fn turn() -> MutexGuard<'static, ()> {
-    // A panic elsewhere leaves nothing of MUMPS half done: its calls do not return in the middle.
+    // Panics cannot interrupt MUMPS calls, so poisoning is harmless.
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Jobs of MUMPS.
 const ANALYSE: c_int = 1;
 const FACTOR: c_int = 2;
 const SOLVE: c_int = 3;
 
-/// Room beyond the estimate of the analysis at first, and at most [%].
+/// Memory margin over the estimate, initial and maximum [%].
 const ROOM: c_int = 20;
 const MOST_ROOM: c_int = 320;
 
-/// Share of the largest entry of its row below which a pivot would change places: never in a matrix that is positive definite.
+/// Relative exchange threshold, never reached by positive definite matrices.
 const PIVOTING: f64 = 1e-14;
 
 impl Coordinates {
-    /// Memory of the entries [bytes].
     fn memory(&self) -> usize {
         (2 * size_of::<i32>() + size_of::<f64>()) * self.row.len()
     }
 }
 
-/// Memory that MUMPS expects to take for a matrix, its entries as given included [bytes].
+/// Memory predicted by MUMPS [bytes].
 ///
 /// # Errors
-/// As [`Factor::new`], numbers apart.
+/// As [`Factor::new`], without numerical errors.
 pub fn demand(matrix: Coordinates, settings: Settings) -> Result<usize, MumpsError> {
     if matrix.place.is_empty() {
         return Ok(0);
@@ -74,10 +72,9 @@ pub fn demand(matrix: Coordinates, settings: Settings) -> Result<usize, MumpsErr
     Ok(1_000_000 * instance.info(estimate).unsigned_abs() as usize + entries)
 }
 
-/// A factor, ready to solve.
+/// MUMPS factor.
 pub struct Factor {
     size: usize,
-    /// None where there are no equations.
     instance: Option<Instance>,
     memory: usize,
 }
@@ -86,11 +83,10 @@ impl Factor {
     /// Analyses and factors a matrix.
     ///
     /// # Errors
-    /// [`MumpsError::Pivot`] names an equation whose pivot is zero, [`MumpsError::NotPositive`] says that there are negative ones;
-    /// the others: no memory, no place for files, a matrix that is no number.
+    /// [`MumpsError::Pivot`], [`MumpsError::NotPositive`]; out of memory, I/O errors, values not finite.
     ///
     /// # Panics
-    /// Lengths that do not agree, or a row, column or place out of range.
+    /// Inconsistent lengths; row, column or position out of range.
     pub fn new(mut matrix: Coordinates, settings: Settings) -> Result<Factor, MumpsError> {
         let size = matrix.place.len();
         if size == 0 {
@@ -117,23 +113,23 @@ impl Factor {
         Ok(Factor { size, instance: Some(instance), memory })
     }
 
-    /// Number of equations.
+    /// Equation count.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// The largest memory that MUMPS has taken while it factored, the entries of the matrix as given included [bytes].
+    /// Peak memory of the factorisation [bytes].
     pub fn memory(&self) -> usize {
         self.memory
     }
 
-    /// Solves in place: the right-hand side comes in, the solution goes out. Shape `[equations]`.
+    /// Solves in place. Shape `[equations]`.
     ///
     /// # Errors
-    /// A file of the factor that cannot be read; no memory.
+    /// I/O errors; out of memory.
     ///
     /// # Panics
-    /// When `x` has another length.
+    /// If the length of `x` differs.
     pub fn solve_in_place(&mut self, x: &mut [f64]) -> Result<(), MumpsError> {
         assert_eq!(x.len(), self.size, "one value for every equation");
         match &mut self.instance {
@@ -143,24 +139,24 @@ impl Factor {
     }
 }
 
-/// An instance of MUMPS. Between calls it holds no pointer to memory that is not its own.
+/// MUMPS instance; holds no foreign pointers between calls.
 struct Instance(NonNull<Structure>);
 
-// SAFETY: an instance is owned by one `Instance` alone and bound to no thread; what instances share is changed only while `TURN` is held.
+// SAFETY: an instance has one owner and no thread affinity; shared variables change only under `TURN`.
 unsafe impl Send for Instance {}
-// SAFETY: a shared `Instance` gives nothing but integers that calls through `&mut` alone change.
+// SAFETY: a shared `Instance` only returns integers, which change only through `&mut`.
 unsafe impl Sync for Instance {}
 
 impl Drop for Instance {
     fn drop(&mut self) {
         let _turn = turn();
-        // SAFETY: the pointer comes from `trackbed_mumps_start` and is used for the last time.
+        // SAFETY: the pointer comes from `trackbed_mumps_start`; this is its last use.
         unsafe { trackbed_mumps_end(self.0.as_ptr()) }
     }
 }
 
 impl Instance {
-    /// Starts an instance and analyses the pattern. The instance knows where `matrix` lies until [`Instance::forget_matrix`].
+    /// Analyses the pattern; points to `matrix` until [`Instance::forget_matrix`].
     fn analysed(matrix: &mut Coordinates, settings: Settings) -> Result<Instance, MumpsError> {
         let Coordinates { row, column, value, place } = matrix;
         let n = c_int::try_from(place.len()).map_err(|_| MumpsError::Memory)?;
@@ -175,13 +171,13 @@ impl Instance {
         );
         let raw = {
             let _turn = turn();
-            // SAFETY: takes nothing.
+            // SAFETY: no arguments.
             unsafe { trackbed_mumps_start() }
         };
         let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::Memory)?);
         let (nnz, id) = (row.len() as c_longlong, instance.0.as_ptr());
-        // SAFETY: the four arrays have `nnz`, `nnz`, `nnz` and `n` values. They are looked at by the jobs of analysis and
-        // factorization alone, which run while the caller has the matrix.
+        // SAFETY: `nnz`, `nnz`, `nnz` and `n` values, read only by analysis and factorisation, while the
+        // caller owns them.
         unsafe {
             trackbed_mumps_matrix(
                 id,
@@ -199,12 +195,11 @@ impl Instance {
     }
 
     fn configure(&mut self, settings: Settings) -> Result<(), MumpsError> {
-        // No permutation of columns and no scaling, both for matrices without a good diagonal; the order that is given; neither
-        // parallel analysis nor refinement.
+        // No column permutation, scaling, parallel analysis or refinement; given order.
         for (index, value) in [(6, 0), (8, 0), (7, 1), (10, 0), (12, 1), (28, 1)] {
             self.set(index, value);
         }
-        // Pivots stay where they are unless one is as good as zero, which is found; with a threshold of 0 it would not be.
+        // No exchanges, but null pivot detection, which a threshold of 0 would disable.
         self.set(24, 1);
         self.set_real(1, PIVOTING);
         self.set_real(3, -settings.null_pivot);
@@ -212,7 +207,7 @@ impl Instance {
             self.set(22, 1);
             let folder = std::env::temp_dir();
             let text = folder.to_str().and_then(|f| CString::new(f).ok()).ok_or(MumpsError::Files)?;
-            // SAFETY: a text that ends with 0 and is copied.
+            // SAFETY: null-terminated text, copied by the callee.
             if unsafe { trackbed_mumps_folder(self.0.as_ptr(), text.as_ptr()) } == 0 {
                 return Err(MumpsError::Files);
             }
@@ -222,12 +217,12 @@ impl Instance {
 
     fn forget_matrix(&mut self, size: usize) {
         let (id, n) = (self.0.as_ptr(), size as c_int);
-        // SAFETY: a matrix without entries; later jobs solve, which does not look at it without refinement.
+        // SAFETY: empty matrix; solves without refinement do not read it.
         unsafe { trackbed_mumps_matrix(id, n, 0, null_mut(), null_mut(), null_mut(), null_mut()) }
     }
 
     fn solve(&mut self, x: &mut [f64]) -> Result<(), MumpsError> {
-        // SAFETY: `x` has the length of the equations (checked by the caller) and is looked at by the next job alone.
+        // SAFETY: `x` has the checked length and is read by the next job only.
         unsafe { trackbed_mumps_side(self.0.as_ptr(), x.as_mut_ptr()) };
         let result = self.run(SOLVE);
         // SAFETY: no right-hand side.
@@ -235,26 +230,23 @@ impl Instance {
         result
     }
 
-    /// Sets ICNTL(index).
     fn set(&mut self, index: c_int, value: c_int) {
-        // SAFETY: all indices of this file are those of settings.
+        // SAFETY: all indices here are valid settings.
         unsafe { trackbed_mumps_set(self.0.as_ptr(), index, value) }
     }
 
-    /// Sets CNTL(index).
     fn set_real(&mut self, index: c_int, value: f64) {
-        // SAFETY: all indices of this file are those of settings.
+        // SAFETY: all indices here are valid settings.
         unsafe { trackbed_mumps_set_real(self.0.as_ptr(), index, value) }
     }
 
-    /// INFOG(index).
     fn info(&self, index: c_int) -> c_int {
-        // SAFETY: all indices of this file are those of results.
+        // SAFETY: all indices here are valid results.
         unsafe { trackbed_mumps_info(self.0.as_ptr(), index) }
     }
 
     fn null_pivot(&self) -> usize {
-        // SAFETY: reads the list of null pivots, which is there after a factorization.
+        // SAFETY: reads the null pivot list, valid after factorisation.
         let equation = unsafe { trackbed_mumps_null_pivot(self.0.as_ptr()) };
         usize::try_from(equation - 1).unwrap_or(0)
     }
@@ -262,7 +254,7 @@ impl Instance {
     fn run(&mut self, job: c_int) -> Result<(), MumpsError> {
         let code = {
             let _turn = turn();
-            // SAFETY: what the job looks at has been set, by the callers.
+            // SAFETY: callers have set the data of the job.
             unsafe { trackbed_mumps_run(self.0.as_ptr(), job) }
         };
         match code {
@@ -280,7 +272,6 @@ impl Instance {
 mod tests {
     use super::*;
 
-    /// The symmetric matrix `[[1, off, 0], [off, last, 0], [0, 0, 1]]`.
     fn matrix(off: f64, last: f64) -> Coordinates {
         Coordinates {
             row: vec![1, 2, 2, 3],
@@ -304,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn pivots_near_zero_and_negative_ones_are_refused() {
+    fn rejects_zero_and_negative_pivots() {
         let error = factor(1.0, 1.0 + 1e-13).err().unwrap();
         assert!(matches!(error, MumpsError::Pivot { equation: 0 | 1 }), "{error}");
         assert_eq!(factor(2.0, 1.0).err(), Some(MumpsError::NotPositive { pivots: 1 }));
@@ -321,7 +312,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "rows, columns and places from 1 to 3")]
-    fn a_row_out_of_range_is_refused() {
+    fn rejects_row_out_of_range() {
         let mut wrong = matrix(0.5, 1.0);
         wrong.row[1] = 4;
         let _ = Factor::new(wrong, Settings::default());

@@ -1,13 +1,11 @@
-//! A symmetric matrix factored by MUMPS (`L D Lᵀ`), a library of its own, in the order that is given; out of core where that
-//! is asked for.
+//! Symmetric factorisation `L D Lᵀ` by MUMPS in a given order, optionally out of core.
 //!
-//! Only with the feature `mumps`; without it every function returns [`MumpsError::Missing`]. MUMPS keeps a state that all its
-//! instances share, so that calls from several threads wait for each other; it uses as many threads as it was built for. It has no say in the order of sums of the BLAS that it is linked with, so that
-//! bits are those of one machine, one library and one number of its threads.
+//! Without the feature `mumps`, every function returns [`MumpsError::Missing`]. Calls are serialised. Results
+//! are bitwise reproducible only for fixed machine, library and thread count.
 //!
-//! Source: Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23 (2001) 15-41. Limits: matrices that are not positive definite are refused; fewer than
-//! 2^31 equations. Compression of blocks (ICNTL(35)) is left out: MUMPS 5.5.1 with SCOTCH 7.0.3, as Debian 12 has them, reads memory
-//! that was never set while it groups the equations for it, and ends the program.
+//! Source: Amestoy, Duff, L'Excellent and Koster (2001). Limits: positive definite matrices, fewer than 2^31
+//! equations. No block compression (ICNTL(35)): MUMPS 5.5.1 with SCOTCH 7.0.3 (Debian 12) reads uninitialised
+//! memory in its grouping and crashes.
 
 #[cfg(feature = "mumps")]
 mod library;
@@ -19,59 +17,59 @@ pub use without::{Factor, demand};
 
 use thiserror::Error;
 
-/// Whether the program was built with the library.
+/// Whether MUMPS is built in.
 pub const BUILT_IN: bool = cfg!(feature = "mumps");
 
-/// A symmetric matrix by coordinates.
+/// Symmetric matrix in coordinate format.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coordinates {
-    /// Rows of the entries, from 1, of one triangle. Shape `[entries]`.
+    /// Rows of one triangle, from 1. Shape `[entries]`.
     pub row: Vec<i32>,
-    /// Their columns, from 1. Shape `[entries]`.
+    /// Columns, from 1. Shape `[entries]`.
     pub column: Vec<i32>,
-    /// Their values; entries at the same place are added. Shape `[entries]`.
+    /// Values; duplicates are added. Shape `[entries]`.
     pub value: Vec<f64>,
-    /// When each equation is to be eliminated, from 1. Shape `[equations]`.
+    /// Elimination position of each equation, from 1. Shape `[equations]`.
     pub place: Vec<i32>,
 }
 
-/// How a matrix is factored.
+/// Factorisation settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Whether the factor goes to files, in the folder for temporary files of the process.
+    /// Whether to store the factor in the temporary directory.
     pub out_of_core: bool,
-    /// Size at which a pivot counts as zero.
+    /// Size of a zero pivot.
     pub null_pivot: f64,
 }
 
-/// Why MUMPS has not factored or solved.
+/// MUMPS errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MumpsError {
-    /// The program was built without it.
+    /// Not built in.
     #[error("built without MUMPS; build with `cargo build --release --features mumps`")]
     Missing,
-    /// No memory.
+    /// Out of memory.
     #[error("MUMPS: out of memory for the factorization")]
     Memory,
-    /// More memory is needed than the analysis expected.
+    /// Far more memory needed than estimated.
     #[error("MUMPS: the factorization needs far more memory than estimated")]
     Room,
-    /// Files of a factor out of core.
+    /// I/O error of an out-of-core factor.
     #[error("MUMPS: I/O error in the temporary directory (variable TMPDIR, at most 255 bytes)")]
     Files,
-    /// A pivot near zero.
+    /// Zero pivot.
     #[error("MUMPS: singular matrix, zero pivot in equation {equation}")]
     Pivot {
-        /// The equation, from 0.
+        /// Equation, from 0.
         equation: usize,
     },
     /// Negative pivots.
     #[error("MUMPS: matrix not positive definite, {pivots} negative pivots")]
     NotPositive {
-        /// How many.
+        /// Count.
         pivots: u32,
     },
-    /// Another error, by the numbers of MUMPS's manual.
+    /// Other errors, as in the MUMPS manual.
     #[error("MUMPS: error INFOG(1) = {code}, INFOG(2) = {detail}")]
     Code {
         /// INFOG(1).
@@ -81,12 +79,12 @@ pub enum MumpsError {
     },
 }
 
-/// In place of the library.
+/// Replacement without the library.
 #[cfg(not(feature = "mumps"))]
 mod without {
     use super::{Coordinates, MumpsError, Settings};
 
-    /// A factor that is never made.
+    /// Uninhabited factor.
     pub enum Factor {}
 
     impl Factor {

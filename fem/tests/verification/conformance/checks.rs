@@ -1,4 +1,4 @@
-//! The checks of the conformance suite, one function each.
+//! Checks of the conformance suite.
 
 use super::paths::{Case, Owned, Random, rotated, work};
 use trackbed_fem::{PointState, Points, Region};
@@ -6,9 +6,8 @@ use trackbed_fem::{PointState, Points, Region};
 const SEEDS: [u64; 3] = [1, 7, 42];
 const STEPS: usize = 60;
 
-/// Central differences of the stress over a step of 1e-6 of the strain of the walk. Tolerance: 1e-5 of the stiffness, which
-/// truncation and rounding of the differences take up. Steps at a kink, where the two sides end in different regions, are
-/// left out; most must remain.
+/// Tolerance 1e-5 of the stiffness: truncation and rounding. Steps across a kink are skipped; most must
+/// remain.
 pub fn tangent(case: &Case) {
     let (mut compared, mut plastic, mut worst) = (0, 0, 0.0_f64);
     let h = 1e-6 * case.walk;
@@ -45,8 +44,7 @@ pub fn tangent(case: &Case) {
     assert!(case.material.is_linear() || plastic > compared / 8, "only {plastic} of {compared} yielded");
 }
 
-/// The rotated step of a rotated state gives the rotated stress and plastic strain. Tolerance: 1e-9 of the stress, since
-/// rounding of a nearly singular return is enlarged.
+/// Tolerance 1e-9: a nearly singular return amplifies rounding.
 pub fn objectivity(case: &Case) {
     let mut random = Random(3);
     case.walk(5, STEPS, |old, increment| {
@@ -72,9 +70,8 @@ pub fn objectivity(case: &Case) {
     });
 }
 
-/// Closed triangles of elastic strain, in steps so fine that the rule of integration (mean of both ends) does not count. A
-/// conservative law gives back all work and its stored energy is the work done so far, to 1e-5; another one must be seen
-/// not to, or its statement would be idle.
+/// Closed triangles of elastic strain. A conservative law recovers all work to 1e-5; any other law must not,
+/// or its declaration would be wrong.
 pub fn elastic_cycles(case: &Case) {
     let (mut random, mut largest) = (Random(11), 0.0_f64);
     for _ in 0..4 {
@@ -92,7 +89,7 @@ pub fn elastic_cycles(case: &Case) {
                 let mean: [f64; 6] =
                     std::array::from_fn(|k| 0.5 * (at.state.stress[k] + new.state.stress[k]));
                 done += work(&mean, &increment);
-                // The pressure of the start does most of the work; what counts is the stiffness.
+                // The initial pressure does most of the work; the stiffness is the relevant scale.
                 moved = moved.max(case.stiffness(&at) * case.elastic * case.elastic);
                 at = new;
                 if case.material.law.is_conservative() {
@@ -112,8 +109,7 @@ pub fn elastic_cycles(case: &Case) {
     }
 }
 
-/// `sigma : d eps_p` of the end of a step, never negative where the flow is associated (the surface encloses no stress, or
-/// the origin); plastic strain and its accumulated size grow together in every law.
+/// `sigma : d eps_p >= 0` for associated flow, since the yield surface contains zero stress.
 pub fn dissipation(case: &Case) {
     let mut yielded = 0;
     for seed in SEEDS {
@@ -137,7 +133,7 @@ pub fn dissipation(case: &Case) {
     assert!(case.material.is_linear() || yielded > STEPS / 4);
 }
 
-/// No stress outside the yield surface after a step, to 1e-9 of the stress of a step.
+/// Tolerance 1e-9 of the step stress.
 pub fn admissibility(case: &Case) {
     for seed in SEEDS {
         case.walk(seed, STEPS, |old, increment| {
@@ -148,7 +144,6 @@ pub fn admissibility(case: &Case) {
     }
 }
 
-/// Points that were written and read again go on as if they had not been.
 pub fn round_trip(case: &Case) {
     case.walk(9, STEPS, |old, increment| {
         let mut points = Points::new(1, old.values.len());
@@ -163,7 +158,6 @@ pub fn round_trip(case: &Case) {
     });
 }
 
-/// What a law says of itself agrees with what it does.
 pub fn statements(case: &Case) {
     let (law, elastic) = (&case.material.law, &case.material.elastic);
     assert!(case.material.fault().is_none() && !law.source().is_empty());

@@ -1,21 +1,18 @@
-//! A law at a point, and the strains that it is led through.
+//! Constitutive law at one point and its strain paths.
 
 use trackbed_fem::material::Response;
 use trackbed_fem::{Material, Point, PointState};
 
-/// A law to be tested.
 pub struct Case {
-    /// The material.
     pub material: Material,
-    /// Pressure of the isotropic stress at the start [Pa].
+    /// Initial isotropic pressure [Pa].
     pub pressure: f64,
-    /// Strain from the start within which no point yields.
+    /// Elastic strain limit.
     pub elastic: f64,
-    /// Size of the strain increments of the walks.
+    /// Strain increment of the walks.
     pub walk: f64,
 }
 
-/// State of a point with the law's own values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Owned {
     pub state: PointState,
@@ -29,7 +26,6 @@ impl Owned {
 }
 
 impl Case {
-    /// The point at the start.
     pub fn start(&self) -> Owned {
         let p = -self.pressure;
         let state = PointState { stress: [p, p, p, 0.0, 0.0, 0.0], ..PointState::default() };
@@ -38,7 +34,6 @@ impl Case {
         Owned { state, values }
     }
 
-    /// One step; the response and the point after it.
     pub fn step(&self, old: &Owned, increment: &[f64; 6], want_tangent: bool) -> (Response, Owned) {
         let mut values = vec![f64::NAN; old.values.len()];
         let law = &self.material.law;
@@ -48,12 +43,12 @@ impl Case {
         (response, Owned { state: response.state, values })
     }
 
-    /// A walk of random strain increments: every step with the point before it.
+    /// Random strain increments.
     pub fn walk(&self, seed: u64, steps: usize, mut visit: impl FnMut(&Owned, &[f64; 6])) {
         let (mut random, mut at) = (Random(seed), self.start());
         let mut drift = [0.0; 6];
         for i in 0..steps {
-            // A direction for some steps, so that the walk leaves the elastic range, with noise on it.
+            // Constant drift, so that the walk leaves the elastic range.
             if i % 8 == 0 {
                 drift = random.strain();
             }
@@ -64,14 +59,14 @@ impl Case {
         }
     }
 
-    /// Largest entry of the elastic matrix at a point [Pa].
+    /// Largest entry of the elastic matrix [Pa].
     pub fn stiffness(&self, at: &Owned) -> f64 {
         let matrix = self.material.law.elastic_tangent(&self.material.elastic, at.point());
         matrix.iter().flatten().fold(0.0, |m: f64, c| m.max(c.abs()))
     }
 }
 
-/// Numbers in (-1, 1) by Knuth's linear congruential generator (MMIX), upper bits.
+/// Knuth's linear congruential generator (MMIX), upper bits; range (-1, 1).
 pub struct Random(pub u64);
 
 impl Random {
@@ -84,7 +79,6 @@ impl Random {
         std::array::from_fn(|_| self.next())
     }
 
-    /// A rotation: the normalised quaternion of four random numbers.
     pub fn rotation(&mut self) -> [[f64; 3]; 3] {
         let q: [f64; 4] = std::array::from_fn(|_| self.next());
         let size = q.iter().map(|q| q * q).sum::<f64>().sqrt();
@@ -97,7 +91,7 @@ impl Random {
     }
 }
 
-/// `Q t Q^T` of a tensor in Voigt order; `shear` is 2 for strains with engineering shear, 1 for stresses.
+/// `Q t Q^T` of a Voigt tensor; `shear` is 2 for engineering strains, 1 for stresses.
 pub fn rotated(t: &[f64; 6], q: &[[f64; 3]; 3], shear: f64) -> [f64; 6] {
     let s = |k: usize| t[k] / shear;
     let full = [[t[0], s(3), s(5)], [s(3), t[1], s(4)], [s(5), s(4), t[2]]];
@@ -108,7 +102,6 @@ pub fn rotated(t: &[f64; 6], q: &[[f64; 3]; 3], shear: f64) -> [f64; 6] {
     [entry(0, 0), entry(1, 1), entry(2, 2), e(0, 1), e(1, 2), e(2, 0)]
 }
 
-/// `a : b` of a stress and a strain with engineering shear.
 pub fn work(stress: &[f64; 6], strain: &[f64; 6]) -> f64 {
     stress.iter().zip(strain).map(|(s, e)| s * e).sum()
 }

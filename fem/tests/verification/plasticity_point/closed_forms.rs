@@ -1,10 +1,9 @@
-//! Closed forms: uniaxial hardening, plane-strain cone, strength in simple shear, strength reduction.
+//! Closed forms: uniaxial hardening, plane-strain cone, simple shear, strength reduction.
 
 use super::*;
 
-/// Uniaxial tension of von Mises and Tresca with linear hardening `sigma_y = Y + H kappa`: in uniaxial flow without volume
-/// change `kappa` is the plastic axial strain, so the slope is `E H / (E + H)` (Hill, The Mathematical Theory of
-/// Plasticity, 1950, section 2.3).
+/// Linear hardening `sigma_y = Y + H kappa`: `kappa` is the plastic axial strain, slope `E H / (E + H)`
+/// (Hill, The Mathematical Theory of Plasticity, 1950, section 2.3).
 #[test]
 fn uniaxial_hardening_slope() {
     let (yield_stress, modulus) = (40e3, 8e6);
@@ -35,11 +34,10 @@ fn uniaxial_hardening_slope() {
     }
 }
 
-/// Simple shear: Tresca yields at c, von Mises at `Y / sqrt(3)`; the plane-strain cone carries `c cos(phi) - p sin(phi)`
-/// in plane strain without dilation, as Mohr–Coulomb does (Chen and Mizuno, Nonlinear Analysis in Soil Mechanics, 1990)
-/// with associated flow; the three cones meet Mohr–Coulomb where they say.
+/// Tresca yields at c, von Mises at `Y / sqrt(3)`, the plane-strain cone at `c cos(phi) - p sin(phi)` as
+/// Mohr–Coulomb (Chen and Mizuno, Nonlinear Analysis in Soil Mechanics, 1990).
 #[test]
-fn strength_in_shear_and_on_the_meridians() {
+fn shear_and_meridian_strengths_match_theory() {
     let c = COHESION;
     let shear = [0.0, 0.0, 0.0, 5e-3, 0.0, 0.0];
     let tresca = step(&Material::plastic(SOIL, MohrCoulomb::tresca(2.0 * c)), &PointState::default(), &shear);
@@ -48,12 +46,12 @@ fn strength_in_shear_and_on_the_meridians() {
         step(&Material::plastic(SOIL, DruckerPrager::von_mises(2.0 * c)), &PointState::default(), &shear);
     assert!((mises.state.stress[3] - 2.0 * c / 3.0_f64.sqrt()).abs() < 1e-9 * c);
 
-    // Plane strain, associated, sheared until the elastic strain no longer changes.
+    // Until the elastic strain is constant.
     let law = drucker_prager(c, 30.0, 30.0, Cone::PlaneStrain, None);
     let material = Material::plastic(SOIL, law);
     let mut state = PointState { stress: [-1e5, -1e5, -1e5, 0.0, 0.0, 0.0], ..PointState::default() };
     for _ in 0..400 {
-        // sx and sz (out of plane: no strain) with sy held.
+        // Constant sy, no out-of-plane strain.
         let guess = [0.0, 1e-4, 0.0];
         let (response, ..) = mixed_step_shear(&material, &state, guess, 1e-4);
         state = response.state;
@@ -87,7 +85,7 @@ fn strength_in_shear_and_on_the_meridians() {
     }
 }
 
-/// A step of simple shear `gamma` in plane strain with sx and sy held at -100 kPa.
+/// Simple shear in plane strain, sx and sy at -100 kPa.
 fn mixed_step_shear(
     material: &Material,
     old: &PointState,
@@ -109,7 +107,7 @@ fn mixed_step_shear(
     panic!("no convergence");
 }
 
-/// A perfectly plastic apex: isotropic extension ends at `c cot(phi)`, all regions of the table's soil.
+/// Isotropic extension ends at `c cot(phi)`.
 #[test]
 fn isotropic_extension_ends_at_the_apex() {
     let apex = 34641.016151377546;
@@ -129,8 +127,7 @@ fn isotropic_extension_ends_at_the_apex() {
     }
 }
 
-/// Cohesion that softens to a tenth brings the apex, `0.1 c cot(phi)`, below the cut-off of `0.4 c`: extension first ends
-/// at the cut-off, later at the apex, and the stress passes from one to the other without a jump.
+/// Softening moves the apex, `0.1 c cot(phi)`, below the cut-off of `0.4 c`.
 #[test]
 fn the_apex_takes_over_from_the_cut_off() {
     let c = COHESION;
@@ -162,7 +159,7 @@ fn the_apex_takes_over_from_the_cut_off() {
     }
 }
 
-/// Reduced strength: the yield stress of the reduced soil is that of `c/F` and `atan(tan(phi)/F)`.
+/// Reduced soil: `c/F` and `atan(tan(phi)/F)`.
 #[test]
 fn strength_reduction() {
     let factor = 1.4;

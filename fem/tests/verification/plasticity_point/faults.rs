@@ -1,4 +1,4 @@
-//! Unusable constants are named, with value and expectation.
+//! Errors of invalid constants.
 
 use super::*;
 
@@ -30,8 +30,8 @@ fn faults_of_strength_constants() {
     assert_eq!(Material::from(Elastic { young: -1.0, ..SOIL }).fault().unwrap().0, "Young's modulus");
 }
 
-/// Cohesion that falls less than the stated limit always has a return; the fault names a steeper one. On the plane the
-/// limit is exact: `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)`.
+/// Slower softening always has a return. On the plane the limit is exact:
+/// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)`.
 #[test]
 fn softening_limit() {
     let soft = |slope: f64| Hardening::Linear { initial: 20e3, modulus: slope, limit: Some(1e3) };
@@ -68,7 +68,7 @@ fn softening_limit() {
             step(&material, &PointState::default(), &random_strain(&mut random, 3e-3, 4e-3));
         }
     }
-    // On the plane, beyond the plane's own limit, the return itself reports it.
+    // Beyond the plane's own limit the return reports it.
     let steep = MohrCoulomb { cohesion: soft(-5e8), ..mohr_coulomb(20e3, 30.0, 10.0, None) };
     let result = update(
         &Material::plastic(SOIL, steep),

@@ -1,8 +1,8 @@
-//! Plastic flow: closest points for associated laws, multipliers for the others, objectivity.
+//! Plastic flow: closest points (associated), multipliers (non-associated), objectivity.
 
 use super::*;
 
-/// Surfaces of Mohr–Coulomb and cut-off in principal axes without order: gradient, flow, bound.
+/// Mohr–Coulomb and cut-off surfaces in unordered principal axes: gradient, flow, bound.
 fn surfaces(c: f64, phi: f64, psi: f64, tension: Option<f64>) -> Vec<([f64; 3], [f64; 3], f64)> {
     let mut list = Vec::new();
     let (sin, cos) = rad(phi).sin_cos();
@@ -27,8 +27,8 @@ fn dot(x: &[f64; 3], y: &[f64; 3]) -> f64 {
     (0..3).map(|i| x[i] * y[i]).sum()
 }
 
-/// Whether `e` is a combination with factors >= 0 of at most three of `flows` (Carathéodory): the largest of the smallest
-/// factors over all choices, relative to `e`.
+/// Whether `e` is a non-negative combination of at most three `flows` (Carathéodory): the largest of the
+/// smallest factors, relative to `e`.
 fn cone_margin(e: &[f64; 3], flows: &[[f64; 3]]) -> f64 {
     let size = dot(e, e).sqrt();
     let mut best = f64::NEG_INFINITY;
@@ -61,8 +61,7 @@ fn cone_margin(e: &[f64; 3], flows: &[[f64; 3]]) -> f64 {
     best
 }
 
-/// Kuhn–Tucker conditions of Mohr–Coulomb with any dilation and cut-off, checked from outside: no surface is violated,
-/// and the plastic strain is a combination with factors >= 0 of the flows of the surfaces that are reached.
+/// Kuhn–Tucker conditions for any dilation and cut-off.
 #[test]
 fn multipliers_are_not_negative() {
     let c = COHESION;
@@ -92,7 +91,7 @@ fn multipliers_are_not_negative() {
                     .map(|((_, m, _), _)| *m)
                     .collect();
                 let flow = [state.plastic_strain[0], state.plastic_strain[1], state.plastic_strain[2]];
-                // Steps that end a hair outside carry a plastic strain of rounding size.
+                // Plastic strain of rounding size.
                 if largest(&flow) < 1e-9 {
                     continue;
                 }
@@ -110,17 +109,15 @@ fn multipliers_are_not_negative() {
     assert!(checked > 4000);
 }
 
-/// Associated flow: the return is the point of the admissible set closest to the trial in the energy norm. For the convex
-/// set that means `(tau - sigma) : d eps_p <= 0` for every admissible `tau` (Simo and Hughes 1998, section 2.6.3): checked
-/// with 300 random admissible stresses per state, and with all corners and rays of the pyramid, and the energy of the
-/// return is below that of each of them.
+/// `(tau - sigma) : d eps_p <= 0` for every admissible `tau` (Simo and Hughes 1998, section 2.6.3): 300
+/// random stresses per state, and corners and rays of the pyramid.
 #[test]
 fn associated_returns_are_closest_points() {
     let c = COHESION;
     let mut states = 0;
     let mut worst = f64::NEG_INFINITY;
     for (name, material, _) in laws() {
-        // With hardening the set moves with the step; the points below are those of one fixed set.
+        // Hardening moves the admissible set.
         if !material.symmetric_tangent() || name.contains("hardening") {
             continue;
         }
@@ -142,7 +139,7 @@ fn associated_returns_are_closest_points() {
             let (s, flow) = (response.state.stress, response.state.plastic_strain);
             let scale = norm(&flow) * norm(&s).max(c);
             let energy = |difference: [f64; 6]| {
-                // sigma : D^-1 sigma of an isotropic material, shear counted twice.
+                // sigma : D^-1 sigma, shear counted twice.
                 let trace = difference[0] + difference[1] + difference[2];
                 let square: f64 =
                     (0..6).map(|k| if k < 3 { 1.0 } else { 2.0 } * difference[k] * difference[k]).sum();
@@ -163,7 +160,7 @@ fn associated_returns_are_closest_points() {
     assert!(states >= 200);
 }
 
-/// The corners and rays of the pyramid span all admissible stresses: with them the check above is complete.
+/// Corners and rays span all admissible stresses.
 #[test]
 fn associated_returns_of_mohr_coulomb_against_all_corners_and_rays() {
     let (c, phi, t) = (COHESION, 30.0, 0.4 * COHESION);
@@ -200,7 +197,6 @@ fn associated_returns_of_mohr_coulomb_against_all_corners_and_rays() {
     }
 }
 
-/// Rotated strain gives rotated stress and rotated plastic strain, and the same region and `kappa`.
 #[test]
 fn objectivity() {
     let turn = nalgebra::Rotation3::from_euler_angles(0.4, -1.1, 2.3);

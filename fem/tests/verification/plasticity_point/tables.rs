@@ -26,7 +26,7 @@ fn law(name: &str) -> Material {
     }
 }
 
-/// All 127 one-step returns: stress to 1e-9 max(|s|, c), as `case.json` asks, and the region.
+/// 127 returns; stress to 1e-9 max(|s|, c), as in `case.json`.
 #[test]
 fn point_returns_of_the_table() {
     let mut worst = 0.0_f64;
@@ -60,9 +60,9 @@ fn point_returns_of_the_table() {
     println!("{counts:?}");
 }
 
-/// Triaxial histories: 20 steps of axial strain with the lateral stresses held, and the plateaus and dilatancies of the
-/// closed forms (`s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin)/(1 - sin)`; dilatancy `k_psi - 1`, `1 - 1/k_psi`; the cones'
-/// from `case.json`). Stress to 1e-8 max(|s|, c) of the table (its 10 digits), volume strain to 1e-9 of the axial strain at the end.
+/// Closed-form plateaus `s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin)/(1 - sin)`; dilatancy `k_psi - 1`,
+/// `1 - 1/k_psi`; cones from `case.json`. Stress to 1e-8 max(|s|, c) (10 digits), volumetric strain to 1e-9
+/// of the axial strain.
 #[test]
 fn triaxial_histories_plateaus_and_dilatancies() {
     let outer = "drucker_prager_outer";

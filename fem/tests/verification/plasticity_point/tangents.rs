@@ -3,8 +3,7 @@
 use super::*;
 use std::collections::BTreeMap;
 
-/// Largest difference between the tangent and central differences, relative to `lambda + 2 mu`, the best of three step
-/// widths; none where no width stays inside one region.
+/// Error over `lambda + 2 mu`, best of three step widths; `None` if no width stays in one region.
 fn tangent_error(
     material: &Material,
     old: &PointState,
@@ -37,8 +36,7 @@ fn tangent_error(
     best
 }
 
-/// Every region of every law is reached at least 20 times, from a state with history, and the tangent equals central
-/// differences to 1e-6 of the elastic modulus.
+/// At least 20 returns per region and law, error below 1e-6 of the elastic modulus.
 #[test]
 fn tangents_equal_central_differences_in_every_region() {
     for (name, material, regions) in laws() {
@@ -77,7 +75,7 @@ fn tangents_equal_central_differences_in_every_region() {
     }
 }
 
-/// Tangents at exactly equal principal trial stresses: differences across the coincidence.
+/// Differences across equal principal trial stresses.
 #[test]
 fn tangents_with_equal_principal_values() {
     let c = COHESION;
@@ -105,9 +103,8 @@ fn tangents_with_equal_principal_values() {
     }
 }
 
-/// `symmetric_tangent` is true exactly where all tangents of random states are symmetric.
 #[test]
-fn stated_symmetry_is_that_of_the_tangent() {
+fn declared_symmetry_matches_tangent() {
     for (name, material, _) in laws() {
         let mut random = Random(5);
         let mut worst = 0.0_f64;
@@ -124,7 +121,7 @@ fn stated_symmetry_is_that_of_the_tangent() {
     }
 }
 
-/// The regularised tangent in the two-equal-lateral-stresses trap: singular without, regular with.
+/// Two equal lateral stresses: singular unless regularised.
 #[test]
 fn regularised_edge_tangent_is_regular() {
     let material = Material::plastic(SOIL, mohr_coulomb(COHESION, 30.0, 10.0, None));

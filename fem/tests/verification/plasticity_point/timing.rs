@@ -1,4 +1,4 @@
-//! Cost of one update by region. Not a check; run with `--ignored --nocapture`.
+//! Cost of one update by region; run with `--ignored --nocapture`.
 
 use super::*;
 use std::time::Instant;

@@ -1,23 +1,22 @@
-//! Random strain walks: the stress stays on or inside the surface, plastic work is never negative, nothing becomes NaN.
+//! Random strain walks: admissible stress, non-negative plastic work, finite values.
 
 use super::*;
 use trackbed_fem::material::yield_function;
 
-/// Walks `steps` steps; returns the largest `f` relative to the stress and the smallest plastic work relative to
-/// `|sigma||d eps_p|`.
+/// Largest `f` over the stress and smallest plastic work over `|sigma||d eps_p|`.
 fn walk(name: &str, material: &Material, strength: f64, size: f64, steps: usize, seed: u64) -> (f64, f64) {
     let mut random = Random(seed);
     let mut state = PointState::default();
     let (mut outside, mut work) = (f64::NEG_INFINITY, f64::INFINITY);
     for count in 0..steps {
-        // Every 50th step is a hundred times larger; a pull to the origin keeps the mean stress in range.
+        // A pull to the origin bounds the mean stress.
         let jump = if count % 50 == 0 { 100.0 } else { 1.0 };
         let mut increment = random_strain(&mut random, size * jump, size * jump);
         let p = (state.stress[0] + state.stress[1] + state.stress[2]) / 3.0;
         if p.abs() > 30.0 * strength {
             increment[..3].iter_mut().for_each(|e| *e -= p.signum() * size * 5.0);
         }
-        // Without the plastic strain of earlier steps the strain of this one keeps all its digits.
+        // Keeps all digits of this step's plastic strain.
         state.plastic_strain = [0.0; 6];
         let response =
             update(material, &state, &increment, count % 7 == 0).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -28,11 +27,10 @@ fn walk(name: &str, material: &Material, strength: f64, size: f64, steps: usize,
         let f = yield_function(material, &new) / stress;
         outside = outside.max(f);
         assert!(f <= 1e-9, "{name} step {count}: f {f:.1e} {response:?}");
-        // Stress is that of the elastic strain; kappa grows by the norm of the plastic strain; flow only on the surface.
         let flow = new.plastic_strain;
         let elastic = material.elastic.stress(&std::array::from_fn(|k| increment[k] - flow[k]));
         let (lambda, mu) = material.elastic.lame();
-        // Rounding of the trial's mean stress, divided by 2 mu, comes back multiplied by the bulk modulus.
+        // Rounding of the mean stress is amplified by the bulk modulus.
         let stiff = (lambda.abs() + 2.0 * mu) / mu;
         let trial = stiff * norm(&material.elastic.stress(&increment)).max(stress).max(norm(&state.stress));
         assert!(
@@ -50,7 +48,7 @@ fn walk(name: &str, material: &Material, strength: f64, size: f64, steps: usize,
         }
         assert!(f >= -1e-9, "{name} step {count}: inside {f:.1e} {response:?}");
         let done: f64 = (0..6).map(|k| new.stress[k] * flow[k]).sum::<f64>() / (norm(&flow) * stress);
-        // A flow of rounding size has a direction of rounding.
+        // Above rounding.
         if norm(&flow) > 1e-9 * norm(&increment) {
             work = work.min(done);
             assert!(done >= -1e-9, "{name} step {count}: {done:.1e} {response:?}");
@@ -72,7 +70,7 @@ fn walks_of_all_laws() {
     );
 }
 
-/// Extremes: phi = 60 and 85 degrees, phi -> 0, psi = 0, Poisson's ratio at both ends, units from 1e-9 to 1e15.
+/// phi = 60 and 85 degrees, phi -> 0, psi = 0, limits of Poisson's ratio, units from 1e-9 to 1e15.
 #[test]
 fn walks_at_the_extremes() {
     let (mut outside, mut work, mut count) = (f64::NEG_INFINITY, f64::INFINITY, 0);
@@ -100,9 +98,8 @@ fn walks_at_the_extremes() {
     );
 }
 
-/// A step that is not finite is an error and not a state.
 #[test]
-fn numbers_that_are_not_finite_are_refused() {
+fn rejects_non_finite_numbers() {
     for (_, material, _) in laws() {
         for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e305] {
             let result = update(&material, &PointState::default(), &[bad, 0.0, 0.0, 0.0, 0.0, 0.0], true);
@@ -111,10 +108,9 @@ fn numbers_that_are_not_finite_are_refused() {
     }
 }
 
-/// A friction angle that falls at once by 10 degrees under high pressure snaps back: an error, and the smaller fall is
-/// followed.
+/// A sudden fall by 10 degrees snaps back; a smaller one has a solution.
 #[test]
-fn steep_softening_of_friction_is_an_error() {
+fn rejects_steep_friction_softening() {
     let law = |until: f64| MohrCoulomb {
         friction: Hardening::Table(vec![(0.0, rad(35.0)), (until, rad(25.0))]),
         ..mohr_coulomb(COHESION, 35.0, 0.0, None)

@@ -8,7 +8,6 @@ use trackbed_dem::bond::{
     ShearStrength,
 };
 
-/// The kind of bond that a table describes.
 pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
     let damping = match (table.damping, table.damping_coefficients) {
         (Some(f), None) => {
@@ -81,7 +80,7 @@ pub(super) fn kind(table: &Table<BondTable>) -> Result<Bond, SceneError> {
     }
 }
 
-/// Strength that stands for none [Pa]: the first load breaks the bond.
+/// Zero strength: the bond breaks at the first load [Pa].
 const NO_STRENGTH: f64 = 1e-9;
 
 fn above_zero(x: f64) -> bool {
@@ -133,12 +132,10 @@ fn face(f: &Table<FaceTable>) -> Result<FaceBond, SceneError> {
     })
 }
 
-/// A strength, infinite where none is given [Pa].
 fn strength(given: Option<Quantity<Stress>>) -> f64 {
     given.map_or(f64::INFINITY, |s| s.si.max(NO_STRENGTH))
 }
 
-/// The shear strength of a table with these keys.
 fn shear_strength<T>(
     table: &Table<T>,
     given: Option<Quantity<Stress>>,

@@ -1,4 +1,4 @@
-//! `[[bond]]` resolved: kinds of bonds, and rules that find the pairs in the bodies that a run starts with.
+//! `[[bond]]` resolved: types and pair rules.
 
 mod kind;
 mod part;
@@ -13,7 +13,7 @@ use rule::{Joinable, rule};
 use trackbed_dem::bond::BondInput;
 use trackbed_dem::{BodyInput, ModelInput, Shape};
 
-/// Resolves the kinds of bonds, so that grains can name them.
+/// Resolved before grains refer to them.
 pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
     let mut part = BondPart::default();
     for table in scene.rows("bond", &scene.bond) {
@@ -25,7 +25,7 @@ pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
     Ok(part)
 }
 
-/// Resolves which of `count` grains in these groups are joined, when all of them are there.
+/// Resolved after all grains are known.
 pub(super) fn rules(
     scene: &Table<Scene>,
     groups: &[String],
@@ -49,10 +49,9 @@ pub(super) fn rules(
     Ok(())
 }
 
-/// Largest gap that bonds bridge, over the largest radius of the spheres.
 const WIDEST_GAP: f64 = 10.0;
 
-/// Refuses gaps many times as wide as the spheres: each would be joined to hundreds, and a bed of small ones to all of it.
+/// Rejects gaps that bond each sphere to hundreds of others.
 pub fn check_gaps(
     document: &Document,
     part: &BondPart,
@@ -69,7 +68,7 @@ pub fn check_gaps(
     Ok(())
 }
 
-/// Refuses rules that can join nothing, wherever the bodies of `input` come to lie.
+/// Rejects rules that cannot bond any pair at any positions.
 pub(super) fn check_joinable(
     document: &Document,
     part: &BondPart,
@@ -89,7 +88,7 @@ fn nothing_joined(document: &Document, part: &BondPart, kind: usize) -> SceneErr
     document.error(&format!("bond.{kind}"), found, expected)
 }
 
-/// Refuses rules that join nothing in the bodies that a run starts with.
+/// Rejects rules without any initial bond.
 pub fn check_joined(document: &Document, part: &BondPart, bonds: &[BondInput]) -> Result<(), SceneError> {
     for kind in 0..part.names.len() {
         if !bonds.iter().any(|b| b.kind == kind) {

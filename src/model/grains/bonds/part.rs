@@ -1,4 +1,4 @@
-//! Bonds of a scene, and the pairs that they join.
+//! Bonds of a scene and their pairs.
 
 use crate::scene::grains::Grains;
 use crate::scene::{SceneError, Table};
@@ -7,18 +7,16 @@ use trackbed_dem::bond::{Bond, BondInput, Face, Spread, factors, within_gap};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, ModelInput, Vec3};
 
-/// Bonds of a scene, one kind for each `[[bond]]`.
+/// Bonds, one type per `[[bond]]`.
 #[derive(Clone, Debug, Default)]
 pub struct BondPart {
-    /// Names of the kinds.
+    /// Names of the types.
     pub names: Vec<String>,
     kinds: Vec<Bond>,
     rules: Vec<Rule>,
-    /// Bonds that stones and sheets are made with.
     made: Vec<Made>,
 }
 
-/// A bond that a stone or a sheet is made with.
 #[derive(Clone, Copy, Debug)]
 struct Made {
     bodies: [usize; 2],
@@ -26,37 +24,37 @@ struct Made {
     face: Option<Face>,
 }
 
-/// Which bodies a table joins, and how strongly.
+/// Rule that bonds pairs, with strength variation.
 #[derive(Clone, Debug)]
 pub struct Rule {
-    /// Groups of both bodies; none for any.
+    /// Groups of the two bodies; any by default.
     pub between: Option<[u32; 2]>,
     /// Pairs.
     pub source: PairSource,
-    /// How strengths vary from bond to bond.
+    /// Variation of strengths.
     pub spread: Spread,
     /// Seed of the variation.
     pub seed: u64,
     /// Whether tension and shear vary together.
     pub together: bool,
-    /// How stiffnesses vary, and the seed of that.
+    /// Variation of stiffness, and its seed.
     pub stiffness: (Spread, u64),
-    /// Boxes in which bonds are weaker or stronger.
+    /// Boxes with weaker or stronger bonds.
     pub regions: Vec<BondRegion>,
 }
 
-/// Where the pairs of a rule come from.
+/// Source of the pairs.
 #[derive(Clone, Debug)]
 pub enum PairSource {
-    /// Bodies whose gap is at most this [m].
+    /// Bodies with at most this gap [m].
     Gap(f64),
     /// Given pairs.
     Pairs(Vec<[usize; 2]>),
-    /// The stones or sheets that name the table.
+    /// Bonds within bonded grains and sheets.
     Made,
 }
 
-/// A box in which bonds are weaker or stronger.
+/// Box with weaker or stronger bonds.
 #[derive(Clone, Debug)]
 pub struct BondRegion {
     /// Lower corner [m].
@@ -82,33 +80,29 @@ impl BondPart {
         self.kinds.is_empty()
     }
 
-    /// Whether stones or sheets are made with bonds.
+    /// Whether bonded grains or sheets exist.
     pub fn has_made(&self) -> bool {
         !self.made.is_empty()
     }
 
-    /// Adds a kind of bond.
     pub(super) fn add_kind(&mut self, name: &str, kind: Bond) {
         self.kinds.push(kind);
         self.names.push(name.to_string());
     }
 
-    /// Adds the rule of the kind of the same number.
     pub(super) fn add_rule(&mut self, rule: Rule) {
         self.rules.push(rule);
     }
 
-    /// Whether stones or sheets are made with bonds of a kind.
     pub(super) fn makes(&self, kind: usize) -> bool {
         self.made.iter().any(|m| m.kind == kind)
     }
 
-    /// Whether bonds of a kind fill faces.
     pub(super) fn fills_faces(&self, kind: usize) -> bool {
         self.kinds[kind].fills_faces()
     }
 
-    /// Adds a bond within a stone.
+    /// Adds a bond within a bonded grain.
     pub fn join_stone(&mut self, bodies: [usize; 2], kind: usize) {
         self.made.push(Made { bodies, kind, face: None });
     }
@@ -118,7 +112,7 @@ impl BondPart {
         self.made.push(Made { bodies, kind, face: Some(face) });
     }
 
-    /// Number of the `[[bond]]` that a group names, of those that fill faces or not.
+    /// Returns the `[[bond]]` index of a group. `faces`: bonds fill faces.
     pub fn of_group(&self, group: &Table<Grains>, name: &str, faces: bool) -> Result<usize, SceneError> {
         let of_kind = |kind: &usize| self.fills_faces(*kind) == faces;
         let known = || {
@@ -129,24 +123,23 @@ impl BondPart {
         self.find(name).filter(of_kind).ok_or_else(|| group.error("bond", format!("\"{name}\""), known()))
     }
 
-    /// Number of the `[[bond]]` with a name.
+    /// Returns the index of a named `[[bond]]`.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|n| n == name)
     }
 
-    /// Adds the bonds of the run proper to an input, for its bodies.
+    /// Adds the bonds of the main stage to an input.
     pub fn add_to(&self, input: &mut ModelInput) {
         input.bond_kinds.clone_from(&self.kinds);
         input.bonds = self.bonds(&input.bodies, &input.shapes);
     }
 
-    /// Adds the bonds within stones to an input; they do not break.
+    /// Adds unbreakable bonds within grains to an input.
     pub fn add_stones_to(&self, input: &mut ModelInput) {
         input.bond_kinds = self.kinds.iter().map(Bond::unbreakable).collect();
         input.bonds = self.made.iter().map(Made::bond).collect();
     }
 
-    /// The gap that a kind bridges and the largest radius of the spheres among these bodies [m], if it joins by gaps and there are any.
     pub(super) fn gap(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> Option<(f64, f64)> {
         let PairSource::Gap(gap) = self.rules[kind].source else { return None };
         let radii = bodies.iter().filter_map(|b| match shapes[b.shape] {
@@ -156,7 +149,7 @@ impl BondPart {
         radii.reduce(f64::max).map(|largest| (gap, largest))
     }
 
-    /// Whether the rule of a kind can join any two of these bodies, wherever they come to lie: only single spheres are joined.
+    /// Only single spheres are bonded by gap.
     pub(super) fn can_join(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> bool {
         let rule = &self.rules[kind];
         let spheres = |part: Option<u32>| {
@@ -172,7 +165,7 @@ impl BondPart {
         }
     }
 
-    /// All bonds, table by table. A pair joined by one table is left alone by those after it.
+    /// Returns all bonds, each pair by its first table.
     pub fn bonds(&self, bodies: &[BodyInput], shapes: &[Shape]) -> Vec<BondInput> {
         let sphere = |b: usize| matches!(shapes[bodies[b].shape], Shape::Sphere { .. });
         let radius = |b: &BodyInput| match shapes[b.shape] {
@@ -201,7 +194,7 @@ impl BondPart {
                 found.into_iter().filter(|p| seen.insert((p.a.min(p.b), p.a.max(p.b)))).collect();
             let tension = factors(rule.spread, rule.seed, 0, pairs.len());
             let shear = factors(rule.spread, rule.seed, u64::from(!rule.together), pairs.len());
-            // 0 and 1 are the strengths' random numbers.
+            // Streams 0 and 1 are used for strengths.
             let stiffness = factors(rule.stiffness.0, rule.stiffness.1, 2, pairs.len());
             for (k, pair) in pairs.into_iter().enumerate() {
                 let middle = (bodies[pair.a].position + bodies[pair.b].position) * 0.5;

@@ -1,4 +1,4 @@
-//! Rules that find the pairs to be joined in the bodies that a run starts with.
+//! Rules that select the initial bonded pairs.
 
 use super::part::{BondPart, BondRegion, PairSource, Rule};
 use crate::failure::Failure;
@@ -9,21 +9,20 @@ use crate::scene::{SceneError, Table};
 use trackbed_dem::Vec3;
 use trackbed_dem::bond::Spread;
 
-/// What can be joined.
+/// Bodies that can be bonded.
 pub struct Joinable<'a> {
-    /// The bonds so far.
+    /// Bonds resolved so far.
     pub bonds: &'a BondPart,
-    /// Number of the kind of bond that joins.
+    /// Index of the bond type.
     pub kind: usize,
     /// Names of the groups of grains.
     pub groups: &'a [String],
     /// Number of bodies.
     pub count: usize,
-    /// Whether grains above a level are taken away before bonds are made.
+    /// Whether grains above a level are removed first.
     pub levelled: bool,
 }
 
-/// Which bodies a table joins, and how strongly.
 pub(super) fn rule(table: &Table<BondTable>, bodies: &Joinable<'_>) -> Result<Rule, Failure> {
     let find = |name: &String| {
         let known = || format!("the name of a [[grains]]: {}", bodies.groups.join(", "));
@@ -44,7 +43,6 @@ pub(super) fn rule(table: &Table<BondTable>, bodies: &Joinable<'_>) -> Result<Ru
     Ok(Rule { between, source, spread, seed, together, stiffness, regions })
 }
 
-/// Which pairs a table joins; `between` is whether it names two groups.
 fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Result<PairSource, Failure> {
     let named = bodies.bonds.makes(bodies.kind);
     let source = match (&table.gap, &table.pairs) {
@@ -86,7 +84,6 @@ fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Res
     Ok(source)
 }
 
-/// How strengths or stiffnesses vary from bond to bond.
 fn law<T>(
     table: &Table<T>,
     kind: SpreadKind,
@@ -109,7 +106,6 @@ fn law<T>(
     }
 }
 
-/// Boxes in which bonds are weaker or stronger.
 fn regions(table: &Table<BondTable>) -> Result<Vec<BondRegion>, SceneError> {
     let mut regions = Vec::new();
     for r in table.rows("region", &table.region) {

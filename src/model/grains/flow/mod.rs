@@ -1,4 +1,4 @@
-//! Inlets of `[[grains]]` and `[[outlet]]` resolved.
+//! `[[grains]]` inlets and `[[outlet]]` resolved.
 
 mod plan;
 
@@ -13,10 +13,10 @@ use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::Vec3;
 use trackbed_dem::insert::room::GAP;
 
-/// Time between two looks at inlets and outlets, unless the scene says otherwise [s].
+/// Default check interval [s].
 const INTERVAL: f64 = 1e-3;
 
-/// The inlets of all groups and the outlets, once all grains are there.
+/// Resolved after all grains are known.
 pub(super) fn build(
     scene: &Table<Scene>,
     groups: &GroupsPart,
@@ -37,7 +37,7 @@ pub(super) fn build(
         return Ok(None);
     }
     time.check("flow_interval", interval, |t| t > 0.0, "a time above 0")?;
-    // A group that is there from the start needs an outlet that sends its grains to the inlet.
+    // A group present at the start is fed by a recirculating outlet.
     for (i, group) in scene.rows("grains", &scene.grains).enumerate().filter(|(_, g)| g.inlet.is_some()) {
         let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
         if !waits(&group) && !fed {

@@ -6,36 +6,36 @@ use trackbed_dem::measure::BoxRegion;
 /// Inlets and outlets of a run.
 #[derive(Clone, Debug)]
 pub struct FlowPlan {
-    /// Time between two looks at them [s].
+    /// Check interval [s].
     pub interval: f64,
-    /// Inlets, at most one for each group.
+    /// Inlets, at most one per group.
     pub inlets: Vec<InletPlan>,
-    /// Outlets; a grain in several is taken out by the first.
+    /// Outlets, in order of priority.
     pub outlets: Vec<OutletPlan>,
 }
 
-/// Where grains of a group come in.
+/// Inlet of a group.
 #[derive(Clone, Debug)]
 pub struct InletPlan {
-    /// Number of the group.
+    /// Group index.
     pub part: u32,
-    /// Its name.
+    /// Group name.
     pub group: String,
-    /// Box that they come in at.
+    /// Insertion box.
     pub region: BoxRegion,
-    /// How fast.
+    /// Insertion rate.
     pub rate: InletRate,
-    /// At which velocity [m/s].
+    /// Initial velocity [m/s].
     pub velocity: Vec3,
-    /// From when on [s].
+    /// Start time [s].
     pub start: f64,
-    /// Until when [s].
+    /// End time [s].
     pub stop: f64,
-    /// Seed of places and orientations.
+    /// Seed of positions and orientations.
     pub seed: u64,
 }
 
-/// How fast grains come in.
+/// Insertion rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InletRate {
     /// Mass per time [kg/s].
@@ -45,14 +45,14 @@ pub enum InletRate {
 }
 
 impl InletRate {
-    /// Rate in its own measure: kg/s or 1/s.
+    /// Returns the rate [kg/s or 1/s].
     pub fn value(&self) -> f64 {
         match self {
             InletRate::Mass(rate) | InletRate::Number(rate) => *rate,
         }
     }
 
-    /// A grain of a mass [kg] in this measure: kg, or one.
+    /// Returns a grain of `mass` [kg] in rate units.
     pub fn of(&self, mass: f64) -> f64 {
         match self {
             InletRate::Mass(_) => mass,
@@ -60,7 +60,7 @@ impl InletRate {
         }
     }
 
-    /// What it counts, for reports.
+    /// Returns the unit for reports.
     pub fn unit(&self) -> &'static str {
         match self {
             InletRate::Mass(_) => "kg",
@@ -69,36 +69,35 @@ impl InletRate {
     }
 }
 
-/// Where grains are taken out.
+/// Outlet.
 #[derive(Clone, Debug)]
 pub struct OutletPlan {
     /// Name.
     pub name: String,
-    /// Where.
+    /// Region.
     pub region: OutletRegion,
-    /// Groups that it takes.
+    /// Groups that it removes.
     pub parts: Vec<u32>,
-    /// Whether what it takes waits at the inlet of its group.
+    /// Whether removed grains return to the inlet queue.
     pub again: bool,
 }
 
-/// Where an outlet is.
+/// Region of an outlet.
 #[derive(Clone, Copy, Debug)]
 pub enum OutletRegion {
     /// A box.
     Box(BoxRegion),
-    /// All that lies beyond a plane, on the side that its unit normal points to.
+    /// Half-space on the side of the normal.
     Beyond {
-        /// A point of the plane [m].
+        /// Point on the plane [m].
         point: Vec3,
-        /// The normal.
+        /// Unit normal.
         normal: Vec3,
     },
 }
 
 impl FlowPlan {
-    /// Lines that tell of it before a run, with the names of all groups; `waiting` is the number of grains of a group that wait
-    /// at the start.
+    /// Formats lines; `waiting`: initial queue length of a group.
     pub fn lines(&self, groups: &[String], waiting: impl Fn(u32) -> usize) -> Vec<String> {
         let mut lines = Vec::new();
         for i in &self.inlets {
@@ -122,7 +121,7 @@ impl FlowPlan {
 }
 
 impl OutletRegion {
-    /// Whether it holds a point.
+    /// Whether the region contains a point.
     pub fn holds(&self, x: &Vec3) -> bool {
         match self {
             OutletRegion::Box(region) => region.holds(x),

@@ -1,4 +1,4 @@
-//! Stones that can break: each sphere of a bonded stone is a body, and the bonds of the library join them.
+//! Breakable grains: bonded spheres as separate bodies.
 
 use super::part::GroupsPart;
 use crate::failure::Failure;
@@ -10,9 +10,8 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::cluster::Cluster;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Turns the stones that a group was filled with, one body each, into their spheres and bonds. `first` is the first of
-/// these bodies, `density` that of their material [kg/m³]; the shapes of the group are the stones of the library in their
-/// order.
+/// Expands grains into spheres and bonds. `first`: first body; `density` [kg/m³]. Group shapes are the
+/// library shapes, in order.
 pub(super) fn expand(
     group: &Table<Grains>,
     first: usize,
@@ -26,7 +25,7 @@ pub(super) fn expand(
     let name = group.need("bond", group.bond.as_ref(), expected)?;
     let kind = bonds.of_group(group, name, false)?;
     let stones = part.bodies.split_off(first);
-    // One unit sphere serves all; the stones' own shapes go.
+    // One unit sphere replaces all grain shapes.
     part.shapes.truncate(first_shape);
     part.shapes.push(Shape::Sphere { radius: 1.0 });
     for stone in stones {
@@ -53,14 +52,12 @@ pub(super) fn expand(
     Ok(())
 }
 
-/// The stones of a group's library as clusters.
 pub(super) fn clusters(group: &Table<Grains>) -> Result<Vec<Cluster>, SceneError> {
     let file = group.need("library", group.library.as_ref(), "the library of the bonded stones")?;
     tables::clusters(&group.locate(file))
 }
 
-/// Shapes that stand for the stones while places are sought: spheres that hold them. Returns the scale that gives each
-/// a sieve size of 1 m.
+/// Enclosing spheres as substitutes during placement. Returns scales for a sieve size of 1 m.
 pub(super) fn stand_ins(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
     let clusters = clusters(group)?;
     part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));

@@ -1,4 +1,4 @@
-//! `region` of `[[grains]]` resolved: the container that grains are scattered in, or grown in.
+//! `region` of `[[grains]]` resolved.
 
 use crate::model::grains::check::region as box_region;
 use crate::scene::grains::Region;
@@ -9,7 +9,6 @@ use trackbed_dem::insert::closed::ClosedSurface;
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::measure::BoxRegion;
 
-/// The container of a group.
 pub(super) fn container(region: &Table<Region>) -> Result<Container, SceneError> {
     let sources = [
         ("box", region.cuboid.is_some()),
@@ -42,7 +41,6 @@ pub(super) fn container(region: &Table<Region>) -> Result<Container, SceneError>
     surface(region, file)
 }
 
-/// The inside of a closed surface from a file.
 fn surface(region: &Table<Region>, file: &std::path::Path) -> Result<Container, SceneError> {
     let surface = crate::read::read_surface(&region.locate(file))?;
     let scale = region.check("scale", region.scale.unwrap_or(1.0), |s| s > 0.0, "above 0")?;

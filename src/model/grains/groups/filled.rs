@@ -9,12 +9,11 @@ use crate::scene::units::vector;
 use trackbed_dem::BodyInput;
 use trackbed_dem::insert::place;
 
-/// Share of a loose heap that the bounding spheres of its grains fill (`trackbed_dem::insert::place`).
+/// Fill ratio of bounding spheres in a loose heap (`trackbed_dem::insert::place`).
 const LOOSE: f64 = 0.3;
-/// Highest heap [m]: grains that fall from there take 6 s and arrive at 63 m/s.
+/// Falling grains take 6 s and arrive at 63 m/s.
 const HIGHEST: f64 = 200.0;
 
-/// Grains of random sizes, places and orientations in a box.
 pub(super) fn filled(
     group: &Table<Grains>,
     fill: &FillBox,
@@ -40,7 +39,6 @@ pub(super) fn filled(
     Ok(())
 }
 
-/// Refuses a heap that is too high, before its grains are placed one by one.
 fn check_height(group: &Table<Grains>, radii: &[f64], area: f64) -> Result<(), Failure> {
     let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
     let height = volume / (LOOSE * area);
@@ -51,7 +49,6 @@ fn check_height(group: &Table<Grains>, radii: &[f64], area: f64) -> Result<(), F
     Err(group.error("count", found, format!("a heap of at most {HIGHEST:.0} m")).into())
 }
 
-/// Height above which a box is free of the grains that earlier groups have put there [m].
 fn top_of(part: &GroupsPart, low: [f64; 3], high: [f64; 2]) -> f64 {
     let mut top = f64::NEG_INFINITY;
     for body in part.bodies.iter().filter(|b| !b.absent) {

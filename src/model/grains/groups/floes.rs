@@ -1,5 +1,5 @@
-//! Fields of ice floes: prisms from the Voronoi cells of random sites (Liu, Long, Ji, Chin. J. Theor. Appl. Mech. 47(6),
-//! 2015, 1046–1057).
+//! Ice floe fields: prisms from Voronoi cells of random sites (Liu, Long, Ji, Chin. J. Theor. Appl. Mech.
+//! 47(6), 2015, 1046–1057).
 
 use super::part::GroupsPart;
 use super::polygon::{Point, area, distance_from, inset, scaled, simplified};
@@ -13,17 +13,14 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Purpose of the stream that sites are drawn from.
+/// Random stream of the sites.
 const SITES: u64 = 9;
-/// Most floes of a field.
 const MOST: f64 = 1e5;
-/// Share of the radius that a circle in the core of a floe must have at least.
+/// Smallest inscribed over rounding radius.
 const LEAST: f64 = 0.2;
 
-/// Most rounds in which sites are moved to the centroids of their cells.
 const ROUNDS: usize = 10_000;
 
-/// Adds the floes of a field.
 pub(super) fn floes(
     group: &Table<Grains>,
     field: &Table<Floes>,
@@ -82,7 +79,6 @@ pub(super) fn floes(
     Ok(())
 }
 
-/// Checks what floes of all shapes have.
 pub(super) fn check(field: &Table<Floes>) -> Result<(), SceneError> {
     for d in 0..2 {
         let low = field.check("low", field.low[d], |_| true, "a length")?.si;
@@ -99,22 +95,19 @@ pub(super) fn check(field: &Table<Floes>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Uniformly random places in the box.
 fn sites([low, high]: [Point; 2], count: usize, seed: u64) -> Vec<Point> {
     let mut random = Random::new(seed, SITES);
     let mut at = |d: usize| low[d] + random.uniform() * (high[d] - low[d]);
     (0..count).map(|_| [at(0), at(1)]).collect()
 }
 
-/// How far floes are from each other.
 enum Apart {
-    /// By their area over that of their cells.
+    /// Floe area over cell area.
     Share(f64),
-    /// By the distance between neighbours [m].
+    /// Gap between neighbours [m].
     Gap(f64),
 }
 
-/// How far the floes of a field are from each other.
 fn apart(field: &Table<Floes>) -> Result<Apart, SceneError> {
     match (field.concentration, field.gap) {
         (Some(share), None) => Ok(Apart::Share(share)),
@@ -124,7 +117,7 @@ fn apart(field: &Table<Floes>) -> Result<Apart, SceneError> {
 }
 
 impl Apart {
-    /// The straight sides of a floe, without the rounding of its corners: its cell, made smaller about its centroid, or with its sides moved in.
+    /// Without corner rounding.
     fn outline(&self, cell: &[Point]) -> Vec<Point> {
         match self {
             Apart::Share(share) => scaled(cell, share.sqrt(), area(cell).1),
@@ -133,7 +126,7 @@ impl Apart {
     }
 }
 
-/// Sites that are moved to the centroids of their cells, again and again (Lloyd, IEEE Trans. Inf. Theory 28, 1982).
+/// Lloyd iteration (Lloyd, IEEE Trans. Inf. Theory 28, 1982).
 fn relaxed(mut sites: Vec<Point>, ends: [Point; 2], rounds: usize) -> Vec<Point> {
     for _ in 0..rounds {
         sites = cells(&sites, ends).iter().map(|cell| area(cell).1).collect();
@@ -141,7 +134,7 @@ fn relaxed(mut sites: Vec<Point>, ends: [Point; 2], rounds: usize) -> Vec<Point>
     sites
 }
 
-/// The core of a floe; none of one that is too small for the radius.
+/// None for a floe too small for the radius.
 fn core(outline: &[Point], radius: f64) -> Option<Vec<Point>> {
     let none_left = inset(outline, (1.0 + LEAST) * radius).is_empty();
     let core = simplified(&inset(outline, radius));
@@ -158,7 +151,7 @@ mod tests {
         cells(&sites(BOX, count, seed), BOX).iter().map(|c| Apart::Share(0.64).outline(c)).collect()
     }
 
-    /// Mean floe, size and concentration of the fields of Liu, Long, Ji (2015): 8.0 and 3.2 m², 2.83 and 1.79 m.
+    /// Liu, Long, Ji (2015): mean areas 8.0 and 3.2 m², sizes 2.83 and 1.79 m.
     #[test]
     fn fields_have_their_mean_floe() {
         for (count, mean, size) in [(200, 8.0, 2.828_427_1), (500, 3.2, 1.788_854_4)] {
@@ -174,8 +167,8 @@ mod tests {
         }
     }
 
-    /// The spread of the areas over their mean is that of Poisson–Voronoi cells, 0.5294 (Gilbert 1962), within three
-    /// standard errors of one field of 200 (0.038); cells that the box has cut spread a little more (0.54).
+    /// Relative standard deviation of Poisson–Voronoi areas: 0.5294 (Gilbert 1962). Tolerance: three standard
+    /// errors of a field of 200 (0.038). Cells cut by the box vary more (0.54).
     #[test]
     fn areas_vary_like_poisson_voronoi_cells() {
         for seed in 1..=8 {
@@ -187,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Every core is a body; rolled over by a disk it lies within its outline and fills nearly all of it.
+    /// Each core dilated by a disc lies within its outline and nearly fills it.
     #[test]
     fn rounded_floes_fill_their_outlines() {
         let radius = 0.04;
@@ -215,7 +208,7 @@ mod tests {
         println!("rounded over straight: {}", rounded / outer);
     }
 
-    /// Cells of relaxed sites are alike: of 200 in a square the areas spread by less than a tenth, in a row of ten they are a tenth of it each.
+    /// Areas of 200 relaxed cells in a square vary by less than a tenth; ten in a row are equal.
     #[test]
     fn relaxed_floes_are_alike() {
         let spread = |sites: &[Point], ends: [Point; 2]| {
@@ -231,9 +224,9 @@ mod tests {
     }
 
     #[test]
-    fn floes_too_small_for_the_radius_go() {
+    fn removes_floes_below_rounding_radius() {
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        // Half of its width is left of 0.5 / 1.2 at least.
+        // 0.5/1.2 leaves at least half of the width.
         assert!(core(&square, 0.41).is_some());
         assert!(core(&square, 0.42).is_none());
     }

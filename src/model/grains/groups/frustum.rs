@@ -1,4 +1,4 @@
-//! One body: a frustum with regular ends, for piles and cones.
+//! Frusta for piles and cones.
 
 use super::part::GroupsPart;
 use crate::scene::grains::Frustum;
@@ -9,12 +9,10 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Sides unless given.
 const SIDES: usize = 24;
-/// Radius that edges are rounded with unless given, over the smaller radius of the body.
+/// Default rounding radius over smaller body radius.
 const ROUNDING: f64 = 0.1;
 
-/// Adds a frustum.
 pub(super) fn frustum(
     frustum: &Table<Frustum>,
     model: &BodyInput,
@@ -48,12 +46,11 @@ pub(super) fn frustum(
     Ok(())
 }
 
-/// Ends of the core: how far from the first end of the body along its axis, and the radius of their corners [m]. The
-/// faces of the body lie `radius` outside of those of the core; at its ends the circles in and about the polygons that
-/// these faces cut out have the mean radius `radii`.
+/// Axial position and corner radius of core ends [m]. Body faces lie `radius` outside the core; `radii` are
+/// means of inscribed and circumscribed radius at the ends.
 fn ends(length: f64, radii: [f64; 2], radius: f64, sides: usize) -> Option<[(f64, f64); 2]> {
     let cosine = libm::cos(PI / sides as f64);
-    // Radius of the inscribed circle for a mean of 1.
+    // Inscribed radius for a mean radius of 1.
     let share = 2.0 / (1.0 + 1.0 / cosine);
     let slope = share * (radii[1] - radii[0]) / length;
     let end = |z: f64| {
@@ -64,10 +61,9 @@ fn ends(length: f64, radii: [f64; 2], radius: f64, sides: usize) -> Option<[(f64
     (2.0 * radius < length && ends.iter().all(|(_, r)| *r > 0.0)).then_some(ends)
 }
 
-/// Corners of the core, of one end after the other.
 fn corners([from, to]: [Vec3; 2], ends: [(f64, f64); 2], sides: usize) -> Vec<Vec3> {
     let axis = (to - from).normalize();
-    // The first corner lies towards x, of a body along x towards y.
+    // First corner towards x, or y for a body along x.
     let aim = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
     let x = (aim - axis * axis.dot(&aim)).normalize();
     let y = axis.cross(&x);
@@ -82,10 +78,10 @@ fn corners([from, to]: [Vec3; 2], ends: [(f64, f64); 2], sides: usize) -> Vec<Ve
 mod tests {
     use super::*;
 
-    /// Faces of the rounded body lie where those of the stated frustum do: at its ends, and at the apothem of a polygon
-    /// whose inscribed and circumscribed circles have the stated radius on average.
+    /// Faces of the rounded body coincide with the prescribed frustum, whose radius is the mean of inscribed
+    /// and circumscribed radius.
     #[test]
-    fn the_outer_faces_are_the_stated_ones() {
+    fn outer_faces_match_prescribed_frustum() {
         for (radii, sides) in [([2.0, 2.0], 24), ([3.0, 1.0], 6), ([1.0, 2.5], 32)] {
             let (from, to, radius) = (Vec3::new(1.0, 2.0, -4.0), Vec3::new(1.0, 2.0, 2.0), 0.1);
             let corners = corners([from, to], ends(6.0, radii, radius, sides).unwrap(), sides);
@@ -101,7 +97,7 @@ mod tests {
                 }
                 let flat = libm::hypot(normal.x, normal.y);
                 for (end, r) in [from, to].iter().zip(radii) {
-                    // Where the face cuts the plane of the end.
+                    // Intersection of the face with the end plane.
                     let inscribed = (offset - normal.dot(end)) / flat;
                     let mean = 0.5 * inscribed * (1.0 + 1.0 / libm::cos(PI / sides as f64));
                     assert!((mean - r).abs() < 1e-9, "{sides} sides: {mean}");

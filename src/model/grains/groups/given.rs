@@ -1,4 +1,4 @@
-//! Grains whose places are given: by hand, or by a packing.
+//! Grains with given positions.
 
 use super::part::GroupsPart;
 use super::shapes::shapes;
@@ -11,7 +11,6 @@ use std::path::Path;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Grains whose places are given.
 pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
     let (found, expected) = match group.shape {
         GrainShape::Bonded => ("\"bonded\"", "`fill`, which bonded stones need"),
@@ -28,7 +27,6 @@ pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsP
     }
 }
 
-/// Stones of a library where a packing has them.
 fn stones(
     group: &Table<Grains>,
     file: &Path,
@@ -41,7 +39,7 @@ fn stones(
     part.bodies.extend(placed.iter().map(|p| {
         let [w, x, y, z] = p.orientation;
         let q = nalgebra::Quaternion::new(w, x, y, z);
-        // A packing that a run has written comes back bit for bit; one by hand may be rounded.
+        // Written packings are bitwise; typed quaternions may be rounded.
         let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
         BodyInput {
             shape: first + p.stone,
@@ -58,7 +56,6 @@ fn stones(
     Ok(())
 }
 
-/// Spheres by hand or from a packing.
 fn spheres(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
     let spheres = match (&group.spheres, &group.packing) {
         (Some(list), _) => {

@@ -9,7 +9,6 @@ use trackbed_dem::insert::lattice::Lattice;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Equal spheres on a lattice.
 pub(super) fn lattice(
     fill: &Table<LatticeFill>,
     model: &BodyInput,
@@ -33,7 +32,7 @@ pub(super) fn lattice(
         }
         (None, Some(high)) => {
             let high = Vec3::from(vector(high));
-            // An estimate, so that a slip of a unit does not fill the memory.
+            // A wrong unit must not exhaust memory.
             let about: f64 = (high - low).iter().map(|l| (l / fill.size.si).max(0.0)).product();
             if about > MOST {
                 few(about.round(), "high")?;
@@ -51,7 +50,6 @@ pub(super) fn lattice(
     Ok(())
 }
 
-/// Whether a group of this shape can come from a lattice.
 pub(super) fn spheres_only(group: &Table<Grains>) -> Result<(), SceneError> {
     if group.shape == GrainShape::Sphere {
         return Ok(());

@@ -1,5 +1,4 @@
-//! `[[grains]]` resolved: grains by hand or from a packing, stacked in a box, on a lattice, or in a container;
-//! fields of floes, and frusta.
+//! `[[grains]]` resolved: given, filled, lattice, container, floes, frusta.
 
 mod bonded;
 mod container;
@@ -33,7 +32,7 @@ use part::Moving;
 use sources::sources;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// `[[grains]]` resolved; notes the materials that grains consist of, and the bonds within stones.
+/// Resolves `[[grains]]`; records grain materials and inner bonds.
 pub(super) fn build(
     scene: &Table<Scene>,
     materials: &mut MaterialsPart,
@@ -64,7 +63,7 @@ pub(super) fn build(
     Ok(part)
 }
 
-/// Adds the grains of a group, all of one material, given by its number and its density [kg/m³].
+/// `(material, density)`: index, density [kg/m³].
 fn add(
     group: &Table<Grains>,
     (material, density): (usize, f64),
@@ -126,7 +125,6 @@ fn add(
     given::given(group, &model, part)
 }
 
-/// Refuses a group that is not of polyhedra.
 fn only(group: &Table<Grains>, expected: &str) -> Result<(), SceneError> {
     if group.shape == GrainShape::Polyhedron {
         return Ok(());
@@ -134,7 +132,6 @@ fn only(group: &Table<Grains>, expected: &str) -> Result<(), SceneError> {
     Err(group.error("shape", "another shape", expected))
 }
 
-/// Grips and groups that are recorded.
 fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneError> {
     let number = part.names.len() as u32 - 1;
     if let Some(motion) = &group.motion {
@@ -148,7 +145,6 @@ fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneE
     Ok(())
 }
 
-/// Refuses keys that the source of the grains has no use for.
 fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let random = group.fill.is_some() || group.region.is_some() || waits(group);
     let shapes = random || (group.packing.is_some() && group.shape != GrainShape::Sphere);

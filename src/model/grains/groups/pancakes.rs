@@ -1,4 +1,4 @@
-//! Fields of round ice floes: dilated disks at random places, as many as a concentration needs, none on another.
+//! Round ice floes: dilated disks without overlap, up to a given concentration.
 
 use super::part::GroupsPart;
 use super::sizes::SizeSource;
@@ -11,26 +11,21 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Purpose of the stream that places are drawn from.
+/// Random stream of the positions.
 const PLACES: u64 = 11;
-/// Most floes of a field.
 const MOST: f64 = 1e5;
-/// Gap between floes that is aimed at, over the mean diameter; up to all of it may be missing.
+/// Target gap over mean diameter; it may close.
 const GAP: f64 = 2e-3;
-/// Most rounds in which floes that overlap are pushed apart.
 const ROUNDS: usize = 20_000;
 
-/// A place in the plane [m].
 type Point = [f64; 2];
 
-/// Where floes may be: a box, and circles that they must not reach [m].
 struct Field {
     low: Point,
     high: Point,
     clear: Vec<[f64; 3]>,
 }
 
-/// Adds the floes of a field.
 pub(super) fn pancakes(
     group: &Table<Grains>,
     field: &Table<Floes>,
@@ -94,7 +89,6 @@ pub(super) fn pancakes(
     Ok(())
 }
 
-/// Diameters of as many floes as cover an area best [m]; none where that would be too many, or none at all.
 fn enough(sizes: &SizeSource, area: f64, seed: u64) -> Option<Vec<f64>> {
     let covered = |all: &[f64]| all.iter().map(|d| 0.25 * PI * d * d).sum::<f64>();
     let mut count = 1000.0;
@@ -109,14 +103,13 @@ fn enough(sizes: &SizeSource, area: f64, seed: u64) -> Option<Vec<f64>> {
 }
 
 impl Field {
-    /// Area of the box less that of the circles [m²].
+    /// Net area [m²].
     fn area(&self) -> f64 {
         let circles: f64 = self.clear.iter().map(|[_, _, r]| PI * r * r).sum();
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1]) - circles
     }
 
-    /// Places of circles with these radii, none on another: random ones, from which those that overlap are pushed apart, again and again. The
-    /// error is the overlap that is left [m].
+    /// Random positions, relaxed until no circles overlap. Error: remaining overlap [m].
     fn spread(&self, radii: &[f64], random: &mut Random) -> Result<Vec<Point>, f64> {
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
         let gap = 2.0 * GAP * mean;
@@ -151,7 +144,7 @@ impl Field {
                     }
                 });
             }
-            // The last pushes may have moved one out of the box or into a circle.
+            // The last moves may have left the field.
             if left < 0.5 * gap {
                 cells.sort(&at);
                 (0..at.len()).for_each(|i| {
@@ -165,7 +158,6 @@ impl Field {
         Err(left - gap)
     }
 
-    /// Moves a circle into the box and out of the circles that are to be clear; returns how far.
     fn inside(&self, at: &mut Point, radius: f64, gap: f64) -> f64 {
         let before = *at;
         for [x, y, r] in &self.clear {
@@ -183,12 +175,10 @@ impl Field {
     }
 }
 
-/// Circles by the cell of a grid that their centre lies in.
 struct Cells {
     low: Point,
     size: f64,
     count: [usize; 2],
-    /// First of each cell in `members`.
     first: Vec<u32>,
     members: Vec<u32>,
     of: Vec<u32>,
@@ -218,7 +208,6 @@ impl Cells {
         }
     }
 
-    /// True where no circle after `i` touches it.
     fn is_free(&self, i: usize, at: &[Point], radii: &[f64]) -> bool {
         let mut free = true;
         self.around(i, |j| {
@@ -227,7 +216,7 @@ impl Cells {
         free
     }
 
-    /// Calls `f` with those after circle `i` in its cell and the eight around it.
+    /// Circles after `i` in its cell and the eight neighbours.
     fn around(&self, i: usize, mut f: impl FnMut(usize)) {
         let cell = self.of[i] as usize;
         let [x, y] = [cell % self.count[0], cell / self.count[0]];
@@ -245,10 +234,10 @@ mod tests {
     use super::*;
     use trackbed_dem::insert::sizes::SizeLaw;
 
-    /// Fields of equal and of mixed floes, up to three quarters of the water: none on another, in the box, clear of the circle, as many as cover the
-    /// area to half a floe.
+    /// Uniform and mixed floes up to three quarters coverage: no overlap, inside the box, clear of the
+    /// circle, area within half a floe.
     #[test]
-    fn floes_find_room() {
+    fn floes_do_not_overlap() {
         let field = Field { low: [-10.0, 0.0], high: [20.0, 20.0], clear: vec![[5.0, 10.0, 2.0]] };
         for (law, concentration) in [
             (SizeLaw::Equal(1.5), 0.7),

@@ -1,4 +1,4 @@
-//! What the groups of a scene come to: shapes, grains, and what is done with them.
+//! Resolved groups: shapes, grains, and their treatment.
 
 use crate::model::tables::Grading;
 use trackbed_dem::insert::container::Container;
@@ -6,40 +6,40 @@ use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// The groups of a scene, and all grains where they start.
+/// Groups with all grains in initial position.
 #[derive(Clone, Default)]
 pub struct GroupsPart {
-    /// Names of the groups; rigid sleepers are the group after the last.
+    /// Group names; rigid sleepers come last.
     pub names: Vec<String>,
     /// Shapes, at scale 1.
     pub shapes: Vec<Shape>,
-    /// First shape of each group; a stone's number in its library is its shape less that.
+    /// First shape of each group; library indices are relative to it.
     pub first_shape: Vec<usize>,
-    /// All grains where they start.
+    /// All grains in their initial positions.
     pub bodies: Vec<BodyInput>,
-    /// Groups whose sizes follow a sieve curve.
+    /// Groups with a sieve curve.
     pub graded: Vec<GradedGroup>,
-    /// Groups that grow to their size before anything else.
+    /// Groups with radius expansion.
     pub growths: Vec<GrowthPlan>,
-    /// Groups of prescribed motion.
+    /// Groups with prescribed motion.
     pub moving: Vec<Moving>,
-    /// Groups that foul the bed.
+    /// Fouling groups.
     pub fouling: Vec<u32>,
-    /// Groups whose grains may overlap at the start.
+    /// Groups with accepted initial overlap.
     pub overlapping: Vec<u32>,
-    /// Groups whose mean place and force are recorded.
+    /// Groups with recorded mean position and force.
     pub recorded: Vec<u32>,
-    /// What the summary should say about them.
+    /// Warnings for the summary.
     pub remarks: Vec<String>,
 }
 
 impl GroupsPart {
-    /// Radius about its centre of mass that holds a body [m].
+    /// Returns the bounding radius about the centre of mass [m].
     pub fn reach(&self, body: &BodyInput) -> f64 {
         body.scale * bounding_radius(&self.shapes[body.shape])
     }
 
-    /// Mean bounding radius of the grains [m].
+    /// Returns the mean bounding radius of the grains [m].
     pub fn mean_reach(&self) -> f64 {
         self.bodies.iter().map(|b| self.reach(b)).sum::<f64>() / self.bodies.len().max(1) as f64
     }
@@ -49,47 +49,47 @@ impl GroupsPart {
         self.shapes.iter().any(|s| matches!(s, Shape::Polyhedron(_)))
     }
 
-    /// Adds a shape; returns its number.
+    /// Adds a shape; returns its index.
     pub fn add_shape(&mut self, shape: Shape) -> usize {
         self.shapes.push(shape);
         self.shapes.len() - 1
     }
 }
 
-/// A group of prescribed motion.
+/// Group with prescribed motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving {
-    /// Its number.
+    /// Group index.
     pub part: u32,
     /// Velocity [m/s].
     pub velocity: Vec3,
 }
 
-/// A group whose sizes follow a sieve curve.
+/// Group with a sieve curve.
 #[derive(Clone)]
 pub struct GradedGroup {
-    /// Its number.
+    /// Group index.
     pub part: u32,
-    /// Its name.
+    /// Group name.
     pub name: String,
     /// Limits and curve.
     pub grading: Grading,
 }
 
-/// Grains that grow to their size in a container.
+/// Radius expansion of grains in a container.
 #[derive(Clone)]
 pub struct GrowthPlan {
-    /// Name of the group.
+    /// Group name.
     pub group: String,
-    /// Bodies that grow.
+    /// Growing bodies.
     pub bodies: std::ops::Range<usize>,
-    /// Where.
+    /// Container.
     pub container: Container,
-    /// How.
+    /// Growth parameters.
     pub how: Growth,
 }
 
-/// Radius about the centre of mass that holds a grain of scale 1 [m].
+/// Bounding radius about the centre of mass at scale 1 [m].
 pub(super) fn bounding_radius(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } => *radius,

@@ -1,14 +1,13 @@
 //! Convex polygons in a plane: corners [m], counter-clockwise.
 
-/// A point of the plane [m].
 pub(super) type Point = [f64; 2];
 
-/// Sides shorter than this share of the size of a polygon are left out.
+/// Shortest side, relative to polygon size.
 const SHORT: f64 = 1e-3;
-/// Corners nearer than this share of the size to the line through their neighbours are left out.
+/// Smallest corner distance from the line through its neighbours, relative to polygon size.
 const LEVEL: f64 = 1e-4;
 
-/// The part of a convex polygon where `normal` · x ≤ `level` [m].
+/// Part with `normal` · x ≤ `level` [m].
 pub(super) fn clipped(corners: &[Point], normal: Point, level: f64) -> Vec<Point> {
     let beyond = |p: &Point| normal[0] * p[0] + normal[1] * p[1] - level;
     let mut kept = Vec::with_capacity(corners.len() + 1);
@@ -25,7 +24,6 @@ pub(super) fn clipped(corners: &[Point], normal: Point, level: f64) -> Vec<Point
     kept
 }
 
-/// Its sides, from corner to corner.
 pub(super) fn sides(corners: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ {
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(p, q)| [*p, *q])
 }
@@ -34,7 +32,7 @@ pub(super) fn sides(corners: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ 
 pub(super) fn area(corners: &[Point]) -> (f64, Point) {
     let Some(&[x, y]) = corners.first() else { return (0.0, [0.0; 2]) };
     let (mut double, mut moment) = (0.0, [0.0; 2]);
-    // About a corner, so that a polygon far from the origin loses nothing.
+    // Relative to a corner: distant polygons keep their accuracy.
     for [p, q] in sides(corners).map(|ends| ends.map(|p| [p[0] - x, p[1] - y])) {
         let cross = p[0] * q[1] - p[1] * q[0];
         double += cross;
@@ -43,13 +41,11 @@ pub(super) fn area(corners: &[Point]) -> (f64, Point) {
     (0.5 * double, [x + moment[0] / (3.0 * double), y + moment[1] / (3.0 * double)])
 }
 
-/// Scaled by `factor` about `middle` [m].
 pub(super) fn scaled(corners: &[Point], factor: f64, middle: Point) -> Vec<Point> {
     let scale = |p: &Point| [0, 1].map(|d| middle[d] + factor * (p[d] - middle[d]));
     corners.iter().map(scale).collect()
 }
 
-/// With every side moved inwards by `distance` [m]; without corners where nothing is left.
 pub(super) fn inset(corners: &[Point], distance: f64) -> Vec<Point> {
     let mut left = corners.to_vec();
     for [p, q] in sides(corners) {
@@ -63,8 +59,8 @@ pub(super) fn inset(corners: &[Point], distance: f64) -> Vec<Point> {
     if left.len() < 3 { Vec::new() } else { left }
 }
 
-/// Without sides and turns too small to make a face: a short side becomes the corner in its middle, a corner on the line
-/// through its neighbours goes. What is left lies within the polygon.
+/// Replaces short sides by midpoints and removes nearly collinear corners. The result lies within the
+/// polygon.
 pub(super) fn simplified(corners: &[Point]) -> Vec<Point> {
     let mut left = corners.to_vec();
     let size = area(corners).0.max(0.0).sqrt();
@@ -84,7 +80,7 @@ pub(super) fn simplified(corners: &[Point]) -> Vec<Point> {
     left
 }
 
-/// Distance of a point from a convex polygon [m]; 0 within.
+/// Distance of a point [m]; 0 inside.
 pub(super) fn distance_from(point: Point, corners: &[Point]) -> f64 {
     let inside =
         |[p, q]: [Point; 2]| (q[0] - p[0]) * (point[1] - p[1]) - (q[1] - p[1]) * (point[0] - p[0]) >= 0.0;
@@ -112,10 +108,10 @@ mod tests {
     const SQUARE: [Point; 4] = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]];
 
     #[test]
-    fn a_square_is_cut_and_moved_in() {
+    fn clips_and_insets_square() {
         let half = clipped(&SQUARE, [1.0, 0.0], 2.0);
         assert_eq!((half.len(), area(&half)), (4, (2.0, [1.5, 2.0])));
-        // A line through two corners makes no corner twice.
+        // A line through two corners duplicates no corner.
         assert_eq!(clipped(&SQUARE, [1.0, 1.0], 4.0).len(), 3);
         assert_eq!(clipped(&SQUARE, [1.0, 0.0], 0.5), Vec::<Point>::new());
         let within = inset(&SQUARE, 0.25);
@@ -124,13 +120,13 @@ mod tests {
         assert!((area(&scaled(&SQUARE, 0.5, [2.0, 2.0])).0 - 1.0).abs() < 1e-14);
     }
 
-    /// A side that vanishes when all are moved in: a right-angled triangle with a corner cut off.
+    /// Right triangle with a cut corner: the short side vanishes.
     #[test]
     fn a_side_moved_in_may_vanish() {
         let cut = [[0.1, 0.0], [4.0, 0.0], [0.0, 3.0], [0.0, 0.1]];
         let within = inset(&cut, 0.5);
         assert_eq!(within.len(), 3);
-        // Its inner circle has the radius 1: half a unit further in, half as large.
+        // Inscribed radius 1: moved in by half, half the size.
         assert!((area(&within).0 - 1.5).abs() < 1e-12, "{within:?}");
     }
 

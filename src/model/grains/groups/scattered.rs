@@ -1,4 +1,4 @@
-//! Grains scattered in containers, or made ready to grow in them.
+//! Grains at random positions in containers.
 
 use super::container::container;
 use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius};
@@ -12,11 +12,9 @@ use trackbed_dem::insert::scatter;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Share of a container that the bounding spheres of grains fill when their growth begins: random places are found
-/// without trouble.
+/// Fill ratio of bounding spheres before growth, for easy random placement.
 const SEEDLINGS: f64 = 0.22;
 
-/// Grains at random places of a container; with growth they get there in small form and grow when the run begins.
 pub(super) fn scattered(
     group: &Table<Grains>,
     region: &Table<Region>,
@@ -27,7 +25,7 @@ pub(super) fn scattered(
     let volume = container.volume();
     let first = part.shapes.len();
     let unit_scale = shapes(group, part)?;
-    // Volume and reach of a grain of sieve size 1 m, by shape.
+    // At sieve size 1 m, by shape.
     let unit = |k: usize| &part.shapes[first + k];
     let unit_volume: Vec<f64> =
         unit_scale.iter().enumerate().map(|(k, s)| s.powi(3) * shape_volume(unit(k))).collect();
@@ -67,7 +65,7 @@ pub(super) fn scattered(
         let group = group.name.clone();
         part.growths.push(GrowthPlan { group, bodies: begin..part.bodies.len(), container, how });
     }
-    // A count that growth is to make fit leaves of the curve its form alone: it is then not the one to be met.
+    // Growth to a count scales sizes; only the curve shape remains.
     if let SizeSource::Graded(grading) = source
         && (group.growth.is_none() || group.count.is_none())
     {
@@ -77,7 +75,7 @@ pub(super) fn scattered(
     Ok(())
 }
 
-/// Number of grains of a group in a container, whose volume and the mean volume of a grain are `volumes` [m³]; `porosity` is that which they grow to.
+/// `volumes`: container and mean grain [m³]; `porosity`: target of growth.
 fn count(group: &Table<Grains>, porosity: Option<f64>, volumes: [f64; 2]) -> Result<usize, SceneError> {
     group.check("concentration", group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
     let share = match (porosity, group.concentration) {

@@ -1,4 +1,4 @@
-//! Shapes and sizes of the grains of a group.
+//! Grain shapes and sizes.
 
 use super::bonded;
 use super::part::{GradedGroup, GroupsPart};
@@ -10,18 +10,14 @@ use crate::scene::{SceneError, Table, setting};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::dilated::Dilated;
 
-/// Most grains of a group.
 pub(super) const MOST: f64 = 1e7;
 
-/// Shape and scale of a grain.
 #[derive(Clone, Copy)]
 pub(super) struct Sampled {
     pub shape: usize,
     pub scale: f64,
 }
 
-/// Adds the shapes of a group of `count` grains and draws their sizes; `expected` says what the count is. A group with a
-/// gradation is noted, so that the run tells how its grains meet the curve.
 pub(super) fn sampled(
     group: &Table<Grains>,
     part: &mut GroupsPart,
@@ -47,8 +43,7 @@ pub(super) fn sampled(
     Ok(grains.map(|(size, d)| Sampled { shape: first + d, scale: size * unit_scale[d] }).collect())
 }
 
-/// Adds the shapes of a filled group; returns the scale that gives each a sieve size of 1 m, so that the scale of a
-/// body is its sieve size.
+/// Returns scales for a sieve size of 1 m.
 pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
     match (group.shape, &group.library) {
         (GrainShape::Clump, Some(file)) => {
@@ -85,8 +80,7 @@ pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec
     }
 }
 
-/// Deals `shapes` shapes out to grains in the order of their sizes, so that every shape has the sizes of all: mass per
-/// size³ differs between shapes, and would else make the sieve curve err.
+/// Deals shapes in order of size: mass per size³ differs between shapes, which would bias the sieve curve.
 pub(super) fn deal(sizes: &[f64], shapes: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));

@@ -1,22 +1,21 @@
-//! Sheets of floes that are bonded by the faces between them.
+//! Sheets of floes bonded across their common faces.
 
 use super::polygon::{Point, sides};
 use crate::model::grains::bonds::BondPart;
 use trackbed_dem::bond::Face;
 
-/// Sides shorter than this share of the size of a cell, the root of its area, join nothing.
+/// Shortest bonded side over √(cell area).
 const SHORT: f64 = 1e-3;
 
-/// A floe of a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Floe {
-    /// Number of its body.
+    /// Body index.
     pub body: usize,
-    /// Its centre of mass in plan [m].
+    /// Centre of mass in plan [m].
     pub centre: Point,
 }
 
-/// Joins those floes whose cells share a side. Shapes: `cells` and `floes` as `sites`; a site whose floe is left out has none.
+/// Bonds floes whose cells share a side. `cells` and `floes` like `sites`; removed floes are `None`.
 pub(super) fn join(
     sites: &[Point],
     cells: &[Vec<Point>],
@@ -31,17 +30,16 @@ pub(super) fn join(
     }
 }
 
-/// The face over a side between two centres in plan.
 fn face([a, b]: [Point; 2], [p, q]: [Point; 2], thickness: f64) -> Face {
     let way = [0, 1].map(|d| a[d] - b[d]);
     let length = libm::hypot(way[0], way[1]);
-    // Along the line of centres, from the face to both of them.
+    // From face to centres.
     let middle = [0, 1].map(|d| 0.5 * (p[d] + q[d]));
     let from = |centre: Point| (0..2).map(|d| (centre[d] - middle[d]) * way[d] / length).sum::<f64>();
     Face { size: [libm::hypot(q[0] - p[0], q[1] - p[1]), thickness], offset: from(a) + from(b) }
 }
 
-/// Pairs of sites whose cells share a side, the smaller number first, and that side.
+/// Pairs of sites with a common side, ascending.
 fn shared(sites: &[Point], cells: &[Vec<Point>]) -> Vec<([usize; 2], [Point; 2])> {
     let mut order: Vec<usize> = (0..sites.len()).collect();
     order.sort_by(|&a, &b| sites[a][0].total_cmp(&sites[b][0]));
@@ -54,7 +52,7 @@ fn shared(sites: &[Point], cells: &[Vec<Point>]) -> Vec<([usize; 2], [Point; 2])
             if length < SHORT * size {
                 continue;
             }
-            // The neighbour is the mirror image of the site.
+            // The neighbour is the mirror image.
             let normal = [way[1] / length, -way[0] / length];
             let off = (p[0] - sites[i][0]) * normal[0] + (p[1] - sites[i][1]) * normal[1];
             let image = [0, 1].map(|d| sites[i][d] + 2.0 * off * normal[d]);
@@ -76,7 +74,7 @@ mod tests {
     use super::*;
     use trackbed_dem::random::Random;
 
-    /// Every side of a cell within the box is shared: the lengths of all sides are twice those of the shared ones and once the box.
+    /// Total side length: twice the shared sides plus the box perimeter.
     #[test]
     fn sides_are_shared() {
         let mut random = Random::new(4, 0);
@@ -88,11 +86,11 @@ mod tests {
         let shared = shared(&sites, &cells);
         let inner: f64 = shared.iter().map(|(_, side)| length(*side)).sum();
         assert!((all - 2.0 * inner - 130.0).abs() < 1e-2, "{all} {inner}");
-        // Some three for each cell (Euler).
+        // About three per cell (Euler).
         assert!((1350..1500).contains(&shared.len()), "{}", shared.len());
     }
 
-    /// Centres 1 m and 3 m from a face of 2 m across the line between them: the lever arms differ by -2 m, whichever way the line points.
+    /// Centres 1 m and 3 m from a face of length 2 m: lever arms differ by -2 m in any direction.
     #[test]
     fn faces_lie_between_their_floes() {
         for turn in [0.0, 0.7, 2.5] {

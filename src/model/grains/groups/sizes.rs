@@ -1,4 +1,4 @@
-//! Sizes of filled grains: a sieve curve, a law, or a plain range.
+//! Grain sizes: sieve curve, distribution, or range.
 
 use crate::model::tables::{self, Grading};
 use crate::scene::grains::{Grains, Share, Sizes};
@@ -6,28 +6,25 @@ use crate::scene::units::{Length, Quantity};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::insert::sizes::SizeLaw;
 
-/// Grains whose mean volume stands for that of a law without a closed form.
+/// Sample size for means without a closed form.
 const SAMPLES: usize = 10_000;
 
-/// Where sizes come from.
 pub(super) enum SizeSource {
-    /// Sieve limits.
     Graded(Grading),
-    /// A law.
     Law(SizeLaw),
-    /// Evenly spaced sizes from the first to the second [m], in order.
+    /// Evenly spaced sizes in order [m].
     Range(f64, f64),
 }
 
 impl SizeSource {
-    /// Reads the one key of a group that tells its sizes.
+    /// Reads the size source of a group.
     pub fn of(group: &Table<Grains>) -> Result<SizeSource, SceneError> {
         match (&group.gradation, &group.size, &group.sizes) {
             (Some(g), None, None) => {
                 group.check("gradation.scale", g.scale, |s| s > 0.0, "above 0")?;
                 let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade);
                 let grading = grading.map_err(|e| match e.line {
-                    // Of the grade as a whole: the key of the scene is at fault.
+                    // The whole gradation: report the scene key.
                     None if e.key == "gradation" => group.problem("gradation", e.problem),
                     _ => e,
                 })?;
@@ -52,7 +49,7 @@ impl SizeSource {
         }
     }
 
-    /// Sieve sizes of `count` grains [m].
+    /// Draws sieve sizes [m]. Shape `[count]`.
     pub fn sample(&self, count: usize, seed: u64) -> Vec<f64> {
         match self {
             SizeSource::Graded(g) => g.curve.sample(count, seed),
@@ -63,7 +60,7 @@ impl SizeSource {
         }
     }
 
-    /// Mean of size³ over the grains [m³].
+    /// Returns the mean of size³ [m³].
     pub fn mean_cube(&self) -> f64 {
         match self {
             SizeSource::Graded(g) => g.curve.mean_cube(),

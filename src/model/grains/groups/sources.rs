@@ -1,8 +1,7 @@
-//! Where the grains of a group come from.
+//! Sources of the grains of a group.
 
 use crate::scene::grains::Grains;
 
-/// Whether the group has each of the sources of grains that are there from the start.
 pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 7] {
     [
         ("spheres", group.spheres.is_some()),
@@ -15,7 +14,7 @@ pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 7] {
     ]
 }
 
-/// Whether all grains of a group wait for their inlet.
+/// Whether all grains are queued.
 pub fn waits(group: &Grains) -> bool {
     group.inlet.is_some() && sources(group).iter().all(|(_, present)| !present)
 }

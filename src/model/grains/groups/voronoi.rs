@@ -1,10 +1,9 @@
-//! Voronoi cells in a box: of each site the part of the box that is nearer to it than to any other, found by cutting the
-//! box along the perpendicular bisectors (Okabe, Boots, Sugihara, Chiu, "Spatial tessellations", 2nd ed., 2000, 4.2).
+//! Voronoi cells in a box, by cutting along perpendicular bisectors (Okabe, Boots, Sugihara, Chiu, "Spatial
+//! tessellations", 2nd ed., 2000, 4.2).
 
 use super::polygon::{Point, clipped};
 
-/// The cells of `sites` in the box from `low` to `high` [m], counter-clockwise, in the order of the sites. Sites must
-/// differ and lie in the box.
+/// Cells of distinct sites in a box [m], counter-clockwise.
 pub(super) fn cells(sites: &[Point], [low, high]: [Point; 2]) -> Vec<Vec<Point>> {
     let mut order: Vec<usize> = (0..sites.len()).collect();
     order.sort_by(|&a, &b| sites[a][0].total_cmp(&sites[b][0]));
@@ -16,8 +15,7 @@ pub(super) fn cells(sites: &[Point], [low, high]: [Point; 2]) -> Vec<Vec<Point>>
     cells
 }
 
-/// The cell of the site that is at `rank` in the order of x. The others are taken by their distance in x; those farther
-/// off than twice the farthest corner of what is left cut nothing off.
+/// Sites beyond twice the farthest remaining corner do not cut the cell.
 fn cell(sites: &[Point], order: &[usize], rank: usize, mut corners: Vec<Point>) -> Vec<Point> {
     let own = sites[order[rank]];
     let farthest = |corners: &[Point]| {
@@ -54,7 +52,7 @@ mod tests {
     use super::super::polygon::area;
     use super::*;
 
-    /// 200 cells, of which every fifth is compared with one found by another program (see the file).
+    /// Reference: every fifth of 200 cells, from another program (see the file).
     #[test]
     fn cells_are_those_of_a_table() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/ice/voronoi.csv");
@@ -80,7 +78,7 @@ mod tests {
         assert!((all - 2500.0).abs() < 1e-9, "{all}");
     }
 
-    /// Of one site all of the box; of two, halves.
+    /// One site: the whole box; two: halves.
     #[test]
     fn few_sites() {
         let of = |sites: &[Point]| -> Vec<f64> {

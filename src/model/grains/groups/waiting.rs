@@ -1,4 +1,4 @@
-//! Grains that wait for their inlet.
+//! Grains queued at an inlet.
 
 use super::part::GroupsPart;
 use super::shapes::{Sampled, sampled};
@@ -8,10 +8,9 @@ use crate::scene::grains::Grains;
 use trackbed_dem::BodyInput;
 use trackbed_dem::random::Random;
 
-/// Purpose of the stream that the order of coming in is drawn from.
+/// Random stream of the insertion order.
 const ORDER: u64 = 8;
 
-/// Adds grains that wait for their inlet: `count` of them, in random order.
 pub(super) fn waiting(
     group: &Table<Grains>,
     model: &BodyInput,
@@ -20,7 +19,7 @@ pub(super) fn waiting(
     let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
     group.reject_with(idle, "`inlet`").map_err(|e| e.remedy("Use `inlet.velocity`"))?;
     let grains = sampled(group, part, "the number of grains to insert")?;
-    // A range gives sizes in rising order: without this the small ones would come first.
+    // Otherwise small grains would come first.
     let order = Random::new(group.seed, ORDER).permutation(grains.len());
     part.bodies.extend(order.into_iter().map(|i| {
         let Sampled { shape, scale } = grains[i];

@@ -9,10 +9,10 @@ use trackbed_coupling::track::jump::JumpPlan;
 use trackbed_coupling::track::push::PushPlan;
 use trackbed_dem::Vec3;
 
-/// Resolves what a scene says. `fixed` is why grains cannot be moved by a jump, if they cannot.
+/// `fixed`: reason why a jump cannot move grains.
 ///
 /// # Errors
-/// Bad input.
+/// Input errors.
 pub(super) fn build(
     track: &Table<TrackTable>,
     part: &TrackPart,

@@ -16,9 +16,8 @@ use trackbed_coupling::track::rail::RailInput;
 use trackbed_dem::Vec3;
 use trackbed_dem::shape::Shape;
 
-/// Sleepers, their load, and what goes on about it. The shape of rigid sleepers is added to those of the groups, and so is
-/// their name; `fixed` is why grains cannot be moved by a jump, if they cannot. Rows of sleepers have the mass of the run proper,
-/// `mass_factor` times the true one.
+/// Rigid sleepers add a shape and a group. `fixed`: reason why a jump cannot move grains. Rows of sleepers
+/// have `mass_factor` times the true mass.
 pub(super) fn build(
     scene: &Table<Scene>,
     gravity: &Vec3,
@@ -34,7 +33,7 @@ pub(super) fn build(
     let meshed = s.mesh.is_some();
     let mut mass = match s.mass {
         Some(mass) => mass.si,
-        // Its elements have one.
+        // From its elements.
         None if meshed => 0.0,
         None => return Err(s.missing("mass", "the mass of a sleeper").into()),
     };

@@ -1,4 +1,4 @@
-//! Sleepers, rail, load, and what goes on about the load cycles.
+//! Sleepers, rail, and loads.
 
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::CyclicLoad;
@@ -10,40 +10,40 @@ use trackbed_coupling::track::{SleeperRow, TrackInput};
 /// The track of a scene.
 #[derive(Clone, Default)]
 pub struct TrackPart {
-    /// The sleepers; rigid ones are the last bodies of the run proper.
+    /// Sleepers; rigid ones are the last main-stage bodies.
     pub sleeper: Option<SleeperPlan>,
-    /// The load on them.
+    /// Load on the sleepers.
     pub load: Option<CyclicLoad>,
-    /// Jumps over cycles, push at the end.
+    /// Cycle jumps and final push.
     pub after: AfterPlan,
-    /// The rail, where it is a beam; one on each seat.
+    /// Beam rail, one per seat.
     pub rail: Option<RailInput>,
 }
 
 /// Sleepers among the grains.
 #[derive(Clone, Debug)]
 pub struct SleeperPlan {
-    /// Number of their shape, where they are rigid.
+    /// Shape index of rigid sleepers.
     pub shape: usize,
-    /// Number of their material.
+    /// Material index.
     pub material: usize,
     /// The sleepers.
     pub row: SleeperRow,
 }
 
-/// What goes on about the load cycles.
+/// Cycle jumps and final push.
 #[derive(Clone, Debug, Default)]
 pub struct AfterPlan {
-    /// Jumps over cycles.
+    /// Cycle jumps.
     pub jump: Option<JumpPlan>,
     /// Lateral push at the end.
     pub push: Option<PushPlan>,
-    /// Loads between which the stiffness of the bed is taken [N]; none without a cyclic load.
+    /// Loads for bed stiffness [N].
     pub between: Option<[f64; 2]>,
 }
 
 impl TrackPart {
-    /// Longest steps of the grains [s] for which [`TrackPart::check_pads`] and [`TrackPart::check_ram`] refuse nothing.
+    /// Returns the longest step [s] accepted by [`TrackPart::check_pads`] and [`TrackPart::check_ram`].
     pub fn longest_step(&self) -> f64 {
         let pads = self.pads().map(|(pad, lightness)| {
             let stiff = (0.25 / (pad[0] * lightness)).sqrt();
@@ -54,7 +54,7 @@ impl TrackPart {
         pads.unwrap_or(f64::INFINITY).min(ram.unwrap_or(f64::INFINITY))
     }
 
-    /// Stiffness and damping of the pads, and 1/m of a seat, turning about both level axes included: a bound for all modes.
+    /// Pad stiffness and damping, and 1/m of a seat with both rotations: a bound for all modes.
     fn pads(&self) -> Option<([f64; 2], f64)> {
         let (rail, sleeper) = (self.rail.as_ref()?, &self.sleeper.as_ref()?.row);
         let [a, b, c] = sleeper.half;
@@ -63,12 +63,10 @@ impl TrackPart {
         Some((rail.pad, sleeper.seats.iter().map(seat).sum()))
     }
 
-    /// Refuses pads that are too stiff or too strongly damped for sleepers that move in steps of `dt` [s] under the pads'
-    /// force at the start of each step.
+    /// Rejects pads too stiff or damped for steps of `dt` [s].
     ///
     /// # Errors
-    /// Half a radian of the fastest motion of a sleeper on its pads is more than a step, or half a time constant of its
-    /// damping.
+    /// Half a radian or half a damping time constant of the fastest sleeper motion is below `dt`.
     pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
         let Some((pad, lightness)) = self.pads() else { return Ok(()) };
         for (key, value, most) in [
@@ -83,10 +81,10 @@ impl TrackPart {
         Ok(())
     }
 
-    /// Refuses a ram that steps of `dt` [s] cannot follow.
+    /// Rejects too stiff a ram for steps of `dt` [s].
     ///
     /// # Errors
-    /// Bad input.
+    /// Input errors.
     pub fn check_ram(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
         let (Some(push), Some(sleeper)) = (&self.after.push, &self.sleeper) else { return Ok(()) };
         let most = PushPlan::largest_stiffness(sleeper.row.mass, dt);
@@ -98,7 +96,7 @@ impl TrackPart {
         Ok(())
     }
 
-    /// Sleepers, load, rail and push for the run proper.
+    /// Returns the main-stage track input.
     pub fn input(&self) -> TrackInput<'_> {
         TrackInput {
             sleepers: self.sleeper.as_ref().map(|s| &s.row),
@@ -108,7 +106,7 @@ impl TrackPart {
         }
     }
 
-    /// The sleepers that are bodies among the grains.
+    /// Returns the rigid sleepers, if any.
     pub fn rigid_sleeper(&self) -> Option<&SleeperPlan> {
         self.sleeper.as_ref().filter(|s| !s.row.meshed)
     }

@@ -16,26 +16,25 @@ use trackbed_dem::{Plane, WallInput, WallShape};
 /// The walls of a scene.
 #[derive(Clone, Default)]
 pub struct WallsPart {
-    /// Plain planes.
+    /// Planes at constant velocity.
     pub planes: Vec<Plane>,
-    /// All others.
+    /// Other walls.
     pub others: Vec<WallInput>,
-    /// Their names.
+    /// Names of the other walls.
     pub names: Vec<String>,
-    /// Those whose force goes to the history.
+    /// Walls with recorded force.
     pub recorded: Vec<Recorded>,
 }
 
-/// A wall whose force is written to the history.
+/// Wall with recorded force.
 #[derive(Clone, Debug)]
 pub struct Recorded {
-    /// Name of the wall.
+    /// Wall name.
     pub name: String,
-    /// Number among the walls other than plain planes.
+    /// Index among non-planar walls.
     pub wall: usize,
 }
 
-/// The keys that only some kinds of wall have.
 const SPECIAL: [(&str, &[WallKind]); 13] = [
     ("point", &[WallKind::Plane]),
     ("normal", &[WallKind::Plane]),
@@ -52,7 +51,6 @@ const SPECIAL: [(&str, &[WallKind]); 13] = [
     ("caps", &[WallKind::Cylinder, WallKind::Cone]),
 ];
 
-/// `[[walls]]` resolved.
 pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     let mut part = WallsPart::default();
     for (i, wall) in scene.rows("walls", &scene.walls).enumerate() {
@@ -68,8 +66,8 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     Ok(part)
 }
 
-/// Whether a wall is a plane that stands still or moves at its velocity, and nothing more: sleepers touch these, and compaction moves
-/// them. They are numbered by themselves.
+/// Planes at rest or constant velocity: indexed separately, because sleepers contact them and compaction
+/// moves them.
 pub(super) fn is_plain(wall: &Wall) -> bool {
     wall.kind == WallKind::Plane
         && wall.angular_velocity.is_none_or(|turn| turn.iter().all(|w| w.si == 0.0))
@@ -80,7 +78,6 @@ pub(super) fn is_plain(wall: &Wall) -> bool {
         && !wall.record
 }
 
-/// Adds wall `index`.
 fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
     let present = |k: &str| match k {
         "point" => wall.point.is_some(),

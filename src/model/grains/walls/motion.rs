@@ -1,4 +1,4 @@
-//! How walls move: prescribed, pressed with a force, or as rigid bodies.
+//! Wall motion: prescribed, servo-controlled, or rigid-body.
 
 use super::shape::direction;
 use crate::scene::track::HeldMotion;
@@ -7,7 +7,6 @@ use crate::scene::walls::{Body, Pulses, Wall, WallKind};
 use crate::scene::{SceneError, Table, kinds};
 use trackbed_dem::{Motion, Mount, Oscillation, RigidBody, Servo, Vec3};
 
-/// The prescribed motion of a wall.
 pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
     let mut motion = Motion {
         velocity: wall.velocity.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v))),
@@ -52,7 +51,6 @@ pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
     Ok(motion)
 }
 
-/// The force that a wall presses with, where it does.
 pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
     let Some(s) = wall.optional("servo", &wall.servo) else { return Ok(None) };
     let along = match (s.direction, wall.normal) {
@@ -94,12 +92,11 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
     Ok(Some(Servo { direction: along, force: points, max_speed: s.max_speed.si, gain }))
 }
 
-/// Most pulses: each takes [`POINTS`] points of a table.
+/// Each pulse uses [`POINTS`] table points.
 const MOST_PULSES: u32 = 1_000_000;
-/// Points of a pulse; straight lines between them stray from the haversine by 0.5 % of its height at most.
+/// Linear interpolation errs by at most 0.5 % of the amplitude.
 const POINTS: u32 = 32;
 
-/// Points (time, force) of pulses.
 fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, SceneError> {
     pulses.check("peak", pulses.peak, |v| v >= 0.0 && v.is_finite(), "0 or more")?;
     pulses.check("frequency", pulses.frequency, |f| f > 0.0, "above 0")?;
@@ -120,7 +117,6 @@ fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, Scene
     Ok((0..=pulses.count * POINTS).map(point).collect())
 }
 
-/// The body that a wall is, where it is one.
 pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> {
     let Some(b) = wall.optional("body", &wall.body) else { return Ok(None) };
     if wall.kind == WallKind::Plane {
@@ -157,7 +153,6 @@ pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> 
     }))
 }
 
-/// The springs and dashpots that hold a body.
 fn mount(body: &Table<Body>, fixed: [bool; 6]) -> Result<Option<Mount>, SceneError> {
     let Some(m) = body.optional("mount", &body.mount) else { return Ok(None) };
     let good = |x: f64| x >= 0.0 && x.is_finite();

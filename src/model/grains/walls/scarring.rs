@@ -1,17 +1,16 @@
-//! Ground that rocks scar.
+//! Walls scarred by rocks.
 
 use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{SceneError, Table, kinds};
 use trackbed_dem::Scarring;
 
-/// Values of Lu and others (Landslides 16, 2019) for a slope of soil and scree, but for the strength, which they choose by the depth of scars.
+/// Lu et al. (Landslides 16, 2019), soil and scree slope; strength there depends on scar depth.
 const DRAG: f64 = 2.5;
 const DENSITY: f64 = 1700.0;
 const FRICTION: [f64; 2] = [0.55, 2.0];
 const GROWTH: f64 = 3.0;
 const DECAY: f64 = 185.0;
 
-/// How rocks scar a wall, where they do.
 pub(super) fn scarring(wall: &Table<Wall>) -> Result<Option<Scarring>, SceneError> {
     let Some(s) = wall.optional("scarring", &wall.scarring) else { return Ok(None) };
     if !matches!(wall.kind, WallKind::Triangles | WallKind::Mesh) {

@@ -7,7 +7,6 @@ use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::{Vec3, WallShape};
 
-/// The shape of a wall.
 pub(super) fn shape(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     let axis =
         || -> Result<Vec3, SceneError> { direction(wall, "axis", wall.axis.unwrap_or([0.0, 0.0, 1.0])) };
@@ -54,7 +53,6 @@ pub(super) fn shape(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     })
 }
 
-/// A wall of triangles in the scene.
 fn triangles(wall: &Table<Wall>) -> Result<WallShape, SceneError> {
     let expected = "the vertices and triangles of the wall";
     let vertices = wall.need("vertices", wall.vertices.as_ref(), expected)?;
@@ -66,7 +64,6 @@ fn triangles(wall: &Table<Wall>) -> Result<WallShape, SceneError> {
     Ok(WallShape::Triangles { vertices: vertices.iter().map(|v| Vec3::from(vector(v))).collect(), triangles })
 }
 
-/// A wall from a file.
 fn mesh(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     let Some(file) = &wall.file else {
         let expected = "a surface file: .stl, .obj, or a plain list";
@@ -84,7 +81,6 @@ fn mesh(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     Ok(WallShape::Triangles { vertices, triangles })
 }
 
-/// Refuses a cone without an area.
 fn check_cone(wall: &Table<Wall>, radii: [f64; 2], height: f64) -> Result<(), SceneError> {
     wall.check("height", height, |h| h >= 0.0, "0 or more")?;
     for r in radii {
@@ -97,7 +93,7 @@ fn check_cone(wall: &Table<Wall>, radii: [f64; 2], height: f64) -> Result<(), Sc
     Err(wall.error("radii", found, "radii that give the cone an area"))
 }
 
-/// Triangles that have an area; files hold some without, which nothing can touch that does not touch their neighbours.
+/// Removes degenerate triangles; their neighbours cover any contact.
 fn with_area(vertices: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     triangles.retain(|t| {
         let [a, b, c] = t.map(|v| vertices[v as usize]);
@@ -107,7 +103,6 @@ fn with_area(vertices: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// A vector with a length.
 pub(super) fn direction<T>(table: &Table<T>, key: &str, v: [f64; 3]) -> Result<Vec3, SceneError> {
     let length = Vec3::from(v).norm();
     table.check(key, length, |l| l > 0.0 && l.is_finite(), "a vector that is not null")?;

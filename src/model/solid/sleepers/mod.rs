@@ -1,7 +1,7 @@
-//! Meshed sleepers: bodies of 20-node hexahedra behind the ground in the solid's mesh, joined to nothing.
+//! Meshed sleepers: separate bodies of 20-node hexahedra after the ground in the mesh.
 //!
-//! They wait above the ground until the bed is made, and are then set down on it: matrices do not depend on a body's
-//! place. All sleepers of a scene are alike and numbered alike, so that what holds for the nodes of one does for all.
+//! They stay above the ground until the bed is deposited; matrices do not depend on position. All have
+//! identical meshes and numbering.
 
 mod shares;
 #[cfg(test)]
@@ -17,33 +17,31 @@ use trackbed_fem::ElementKind;
 use trackbed_fem::material::Material;
 use trackbed_fem::mesh::{Constraint, Mesh};
 
-/// Part of a sleeper's length within which a node counts as on a plane.
+/// Tolerance relative to sleeper length.
 const ON_PLANE: f64 = 1e-9;
 
-/// The sleepers of a solid.
+/// Sleepers of a solid.
 #[derive(Clone, Debug)]
 pub struct SleeperBodies {
     plan: MeshedSleepers,
     ground_nodes: usize,
     ground_elements: usize,
-    /// Nodes of one sleeper.
     nodes: usize,
-    /// Number of their material.
+    /// Material number.
     pub material: u32,
-    /// Height of their base while they wait [m].
+    /// Base height before set-down [m].
     waiting: f64,
-    /// Share of each node in a force on the seats; in what follows nodes are numbered within a sleeper.
+    /// Nodal weights of seat forces; nodes are numbered within a sleeper.
     seats: Vec<(u32, f64)>,
-    /// Share of each node in the mean over the volume.
     volume: Vec<f64>,
-    /// Nodes of the base: share in the mean, times the offset from the middle over the mean square of that [1/m].
+    /// Base nodes: mean weight times offset over mean square offset [1/m].
     slopes: [Vec<(u32, f64)>; 2],
-    /// Mean of both ends of the base less that of its middle.
+    /// Mean of both base ends minus the middle.
     bend: Vec<(u32, f64)>,
 }
 
 impl SleeperBodies {
-    /// Adds the sleepers to the mesh of the ground, with a material and the supports of their planes of symmetry.
+    /// Adds sleepers with material and symmetry supports.
     pub fn add(
         plan: MeshedSleepers,
         mesh: &mut Mesh,
@@ -59,7 +57,7 @@ impl SleeperBodies {
             ground_elements: mesh.element_count(),
             nodes: alone.node_count(),
             material,
-            // Far from every stone and from the ground's discs.
+            // Clear of all grains and load discs.
             waiting: top + 10.0 * plan.half.iter().sum::<f64>(),
             seats: shares::seats(&plan, &alone),
             volume: shares::volume(&alone),
@@ -93,12 +91,12 @@ impl SleeperBodies {
         bodies
     }
 
-    /// Nodes of the ground, which come first.
+    /// Number of ground nodes, which come first.
     pub fn ground_nodes(&self) -> usize {
         self.ground_nodes
     }
 
-    /// Elements of the ground, which come first.
+    /// Number of ground elements, which come first.
     pub fn ground_elements(&self) -> usize {
         self.ground_elements
     }
@@ -108,24 +106,23 @@ impl SleeperBodies {
         self.plan.centres.len()
     }
 
-    /// Mass of one [kg].
+    /// Mass of a sleeper [kg].
     pub fn mass(&self) -> f64 {
         self.plan.elastic.density * self.plan.half.iter().map(|h| 2.0 * h).product::<f64>()
     }
 
-    /// Faces of one.
+    /// Returns the number of faces per sleeper.
     pub fn face_count(&self) -> usize {
         let [x, y, z] = self.plan.elements;
         2 * (x * y + y * z + z * x)
     }
 
-    /// Nodes of sleeper `k` in the solid's mesh.
     fn nodes_of(&self, k: usize) -> Range<usize> {
         let first = self.ground_nodes + k * self.nodes;
         first..first + self.nodes
     }
 
-    /// The model with the base of each sleeper at a height [m].
+    /// Returns the model with sleeper bases at these heights [m].
     pub fn set_down(&self, model: &fem::Model, heights: &[f64]) -> fem::Model {
         let mut model = model.clone();
         for (k, height) in heights.iter().enumerate() {
@@ -134,19 +131,19 @@ impl SleeperBodies {
         model
     }
 
-    /// Centre of sleeper `k` whose base was set down at the height `base` [m].
+    /// Returns the centre of sleeper `k` on height `base` [m].
     pub fn centre(&self, k: usize, base: f64) -> [f64; 3] {
         let [x, y] = self.plan.centres[k];
         [x, y, base + self.plan.half[2]]
     }
 
-    /// Adds a downward force [N] on the seats of sleeper `k` to nodal loads, shape `[3·nodes]`.
+    /// Adds a downward seat force [N] on sleeper `k`, shape `[3·nodes]`.
     pub fn add_load(&self, k: usize, force: f64, load: &mut [f64]) {
         let first = self.nodes_of(k).start;
         self.seats.iter().for_each(|(n, share)| load[3 * (first + *n as usize) + 2] -= share * force);
     }
 
-    /// Rise of the seats of sleeper `k`, mean under the load [m], by the displacements `u`, shape `[3·nodes]`.
+    /// Returns the mean seat uplift of sleeper `k` [m]; shape of `u` `[3·nodes]`.
     pub fn rise_of_seats(&self, k: usize, u: &[f64]) -> f64 {
         self.sum_z(k, u, &self.seats)
     }
@@ -156,7 +153,7 @@ impl SleeperBodies {
         shares.iter().map(|(n, share)| share * u[3 * (first + *n as usize) + 2]).sum()
     }
 
-    /// How sleeper `k` has moved by the displacements `u`, shape `[3·nodes]`.
+    /// Returns the motion of sleeper `k`; shape of `u` `[3·nodes]`.
     pub fn moved(&self, k: usize, u: &[f64]) -> SleeperMotion {
         let first = self.nodes_of(k).start;
         let mean = |d: usize| {
@@ -171,10 +168,10 @@ impl SleeperBodies {
         }
     }
 
-    /// One sleeper as a model of its own, in the manner of `model`, and its surface.
+    /// Returns a sleeper as a separate model, with surface.
     ///
     /// # Errors
-    /// As [`fem::Model::new`]; the whole solid was made of the same before.
+    /// As [`fem::Model::new`].
     pub fn alone(&self, model: &fem::Model) -> Result<(fem::Model, SolidSurface), fem::ModelError> {
         let mesh = block(&self.plan, [0.0; 2], 0.0);
         let mut constraints = Vec::new();
@@ -198,7 +195,7 @@ impl SleeperBodies {
         Ok((body, surface))
     }
 
-    /// Faces of a sleeper's own surface that tell what masses its points offer: at a corner of the base and in its middle.
+    /// Returns base faces of extreme effective mass: corner, middle.
     pub fn telling_faces(&self, surface: &SolidSurface) -> Vec<u32> {
         let base = |k: &u32| surface.normal(*k, [0.0; 2])[2] < -0.5;
         let far = |k: u32| {
@@ -214,7 +211,6 @@ impl SleeperBodies {
     }
 }
 
-/// One sleeper with its base at a height [m].
 fn block(plan: &MeshedSleepers, centre: [f64; 2], base: f64) -> Mesh {
     let low = [centre[0] - plan.half[0], centre[1] - plan.half[1], base];
     let planes = [0, 1, 2].map(|d| {

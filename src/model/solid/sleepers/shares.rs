@@ -1,4 +1,4 @@
-//! Shares of the nodes of a sleeper in forces and means.
+//! Nodal weights of a sleeper.
 
 use super::ON_PLANE;
 use crate::model::track::sleeper::MeshedSleepers;
@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Mesh;
 
-/// Points and weights of the rule of three points on −1 to 1, exact for the shape functions along a line.
+/// Three-point Gauss rule on −1 to 1.
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// Elements of the grid along an axis that a line from `low` to `high` meets: number, natural coordinates and shares of the
-/// line of its points. A line without length is a point.
+/// Elements along an axis on a line from `low` to `high`: number, natural coordinates and weights. A zero
+/// length is a point.
 fn along_line(low: f64, high: f64, half: f64, count: usize) -> Vec<(usize, f64, f64)> {
     let step = 2.0 * half / count as f64;
     let begin = |i: usize| -half + i as f64 * step;
@@ -32,7 +32,7 @@ fn along_line(low: f64, high: f64, half: f64, count: usize) -> Vec<(usize, f64, 
     out
 }
 
-/// Shares of the nodes in a pressure on the rectangles of the seats.
+/// Pressure on the rail seats.
 pub(super) fn seats(plan: &MeshedSleepers, mesh: &Mesh) -> Vec<(u32, f64)> {
     let [nx, ny, nz] = plan.elements;
     let mut shares: BTreeMap<u32, f64> = BTreeMap::new();
@@ -55,7 +55,7 @@ pub(super) fn seats(plan: &MeshedSleepers, mesh: &Mesh) -> Vec<(u32, f64)> {
     shares.into_iter().filter(|(_, share)| *share != 0.0).collect()
 }
 
-/// Shares of the nodes in the mean over the volume of equal bricks.
+/// Volume mean of equal bricks.
 pub(super) fn volume(mesh: &Mesh) -> Vec<f64> {
     let mut shares = vec![0.0; mesh.node_count()];
     let count = mesh.element_count() as f64;
@@ -67,7 +67,7 @@ pub(super) fn volume(mesh: &Mesh) -> Vec<f64> {
     shares
 }
 
-/// Shares of the nodes of the base in its mean slope along an axis: Σ w x u / Σ w x² with the consistent weights w.
+/// Mean base slope along an axis: Σ w x u / Σ w x² with consistent weights w.
 pub(super) fn slope(mesh: &Mesh, axis: usize) -> Vec<(u32, f64)> {
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
     for face in mesh.boundary_faces() {
@@ -83,7 +83,7 @@ pub(super) fn slope(mesh: &Mesh, axis: usize) -> Vec<(u32, f64)> {
     weights.into_iter().map(|(n, w)| (n, w * x(n) / square)).collect()
 }
 
-/// Shares of the nodes in the rise of the ends of the base over its middle.
+/// Uplift of the base ends over the middle.
 pub(super) fn bend(plan: &MeshedSleepers, mesh: &Mesh) -> Vec<(u32, f64)> {
     let axis = usize::from(plan.half[1] > plan.half[0]);
     let at = |place: f64| -> Vec<u32> {

@@ -24,7 +24,7 @@ fn on_a_block(elements: [usize; 3]) -> (SleeperBodies, Mesh) {
     (bodies, mesh)
 }
 
-/// A rigid motion, and a parabola, are measured exactly, whatever the grid and for each sleeper.
+/// Rigid and parabolic motions are exact for any grid and sleeper.
 #[test]
 fn motions_are_measured_exactly() {
     for elements in [[6, 2, 1], [7, 1, 2], [1, 1, 1]] {
@@ -46,7 +46,7 @@ fn motions_are_measured_exactly() {
             close(m.way[2], 0.5 + parabola / 3.0);
             close(m.tilt, 0.02_f64.hypot(0.01).atan());
             close(m.bend, parabola);
-            // Mean of x² over a foot of 0.15 and one of 0.2 m.
+            // Mean of x² over feet of 0.15 and 0.2 m.
             let mean = |foot: f64| 0.75 * 0.75 + foot * foot / 12.0;
             close(m.seats, 0.5 - 0.01 * 0.01 + 0.04 * 0.5 * (mean(0.15) + mean(0.2)));
             let mut load = vec![0.0; u.len()];
@@ -57,7 +57,7 @@ fn motions_are_measured_exactly() {
     }
 }
 
-/// Motions of a free sleeper that its stiffness does not resist.
+/// Number of zero-energy modes.
 fn loose(elements: [usize; 3], quadrature: fem::Quadrature) -> usize {
     let body = fem::Model::new(fem::ModelInput {
         mesh: block(&plan(elements), [0.0; 2], 0.0),
@@ -88,7 +88,7 @@ fn nothing_is_loose_but_rigid_motions() {
         for rule in [fem::Quadrature::Irons14, fem::Quadrature::Gauss3] {
             assert_eq!(loose(elements, rule), 6, "{elements:?}");
         }
-        // Why a single row is refused.
+        // Why a single row is rejected.
         assert!(loose(elements, fem::Quadrature::Gauss2) > 10);
     }
 }

@@ -1,29 +1,29 @@
-//! Loads and supports of a solid alone, as functions of time.
+//! Loads and supports over time.
 
 use super::SolidKind;
 use crate::model::solid::SolidPart;
 use crate::run::checkpoint_store::Interrupt;
 use trackbed_fem::nonlinear::Loading;
 
-/// Loads and supports of a solid in time; before time 0 they are brought on from nothing.
+/// Loads and supports, ramped from zero before time 0.
 pub struct SolidLoading<'a> {
     part: &'a SolidPart,
     kind: SolidKind,
     /// Weight [N]. Shape `[3·nodes]`.
     pub gravity: Vec<f64>,
-    /// Share of the weight that acts at the beginning of the time before 0: 1 where the initial stress carries it.
+    /// Fraction of weight balanced by initial stress.
     pub carried: f64,
     interrupt: Interrupt,
 }
 
 impl<'a> SolidLoading<'a> {
-    /// All loads and the weight of a solid.
+    /// Collects loads and weight.
     pub fn new(part: &'a SolidPart, kind: SolidKind, interrupt: &Interrupt) -> SolidLoading<'a> {
         let (gravity, interrupt) = (part.model.gravity_load(), interrupt.clone());
         SolidLoading { part, kind, gravity, carried: 1.0, interrupt }
     }
 
-    /// Loads and weight at a time [N]. Shape `[3·nodes]`.
+    /// Returns loads and weight at a time [N]. Shape `[3·nodes]`.
     pub fn at(&self, time: f64) -> Vec<f64> {
         let mut load = vec![0.0; self.gravity.len()];
         self.add(time, &mut load);
@@ -31,7 +31,7 @@ impl<'a> SolidLoading<'a> {
     }
 
     fn add(&self, time: f64, load: &mut [f64]) {
-        // The order of the sum decides the last digits: it is that of all results so far.
+        // Summation order keeps results bitwise identical.
         if matches!(self.kind, SolidKind::Elastic(_)) {
             load.copy_from_slice(&self.gravity);
             self.part.add_loads(time, load);
@@ -46,7 +46,6 @@ impl<'a> SolidLoading<'a> {
         }
     }
 
-    /// The time at which loads and supports are evaluated, their share, and that of the weight.
     fn shares(&self, time: f64) -> (f64, f64, f64) {
         let share = (1.0 + time).clamp(0.0, 1.0);
         (time.max(0.0), share, self.carried + (1.0 - self.carried) * share)

@@ -1,4 +1,4 @@
-//! A solid alone: elastic or plastic through time, or in equilibrium at every step.
+//! Solid-only system: elastic, plastic, or quasi-static.
 
 mod loading;
 
@@ -18,22 +18,21 @@ use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
 use trackbed_fem::nonlinear::{Memory, QuasiStatic, Statistics, StepControl, energy};
 use trackbed_fem::{SolveError, State, TimeIntegrator};
 
-/// Parts of a time step that are tried before a dynamic run gives up.
 const SMALLEST_PART: f64 = 1.0 / 256.0;
 
-/// How a solid is stepped, which its start, its energy balance and its checkpoint depend on.
+/// Stepping method.
 #[derive(Clone, Copy)]
 pub enum SolidKind {
-    /// Dynamics of an elastic solid.
+    /// Elastic dynamics.
     Elastic(TimeMethod),
-    /// Dynamics of a plastic solid, or of one with initial stress.
+    /// Plastic dynamics, or with initial stress.
     Plastic(TimeMethod),
-    /// Equilibrium at every step.
+    /// Quasi-static.
     QuasiStatic(QuasiStaticPlan),
 }
 
 impl SolidKind {
-    /// The kind of a solid that runs alone; none where it takes no steps in time.
+    /// Returns the method; none without time steps.
     pub fn of(part: &SolidPart) -> Option<SolidKind> {
         match part.analysis {
             Analysis::Dynamic(method) if part.is_linear() => Some(SolidKind::Elastic(method)),
@@ -43,7 +42,6 @@ impl SolidKind {
         }
     }
 
-    /// The integrator for steps of length `step` [s].
     fn integrator(self, part: &SolidPart, step: f64) -> Result<Box<dyn TimeIntegrator>, SolveError> {
         let (model, newton) = (&part.model, part.newton);
         let min = step * SMALLEST_PART;
@@ -64,30 +62,28 @@ impl SolidKind {
     }
 }
 
-/// A solid alone, stepped by a method of time integration.
+/// Solid-only system.
 pub struct SolidSystem<'a> {
     part: &'a SolidPart,
     kind: SolidKind,
     loading: SolidLoading<'a>,
-    /// Memory of the integrator before a step that was given up, which the checkpoint holds then.
+    /// Before an aborted step, for checkpoints.
     given_up: Option<Memory>,
     state: State,
-    /// The state before the last step.
     before: State,
     integrator: Box<dyn TimeIntegrator>,
     step: f64,
     steps: u64,
-    /// Forces of the supports on a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
+    /// Reactions of a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
     reactions: Vec<f64>,
     spent: Spent,
 }
 
 impl<'a> SolidSystem<'a> {
-    /// The solid at time 0: with its initial stress, and the acceleration that its loads give it or in equilibrium with its weight
-    /// and the loads and supports at time 0. `step` is the length of its steps [s].
+    /// Creates the solid at time 0, accelerated by its loads or in equilibrium; `step` [s].
     ///
     /// # Errors
-    /// A body that is not held, no equilibrium at time 0, or a matrix that cannot be factored.
+    /// Insufficient constraints, no equilibrium, or failed factorization.
     pub fn new(
         part: &'a SolidPart,
         kind: SolidKind,
@@ -113,10 +109,10 @@ impl<'a> SolidSystem<'a> {
         Ok(SolidSystem { reactions, ..SolidSystem::with(part, kind, step, loading, state)? })
     }
 
-    /// The solid as a checkpoint has it.
+    /// Restores a checkpoint.
     ///
     /// # Errors
-    /// As [`SolidSystem::new`]; a checkpoint of something else.
+    /// As [`SolidSystem::new`]; unsuitable checkpoint.
     pub fn resume(
         part: &'a SolidPart,
         kind: SolidKind,
@@ -130,7 +126,7 @@ impl<'a> SolidSystem<'a> {
             let memory = loaded.take()?;
             system.integrator.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
         }
-        // The load beside the state is known from the time.
+        // The stored load follows from the time.
         match kind {
             SolidKind::Elastic(_) => (system.state, _, system.spent) = loaded.take::<(_, Vec<f64>, _)>()?,
             SolidKind::Plastic(_) => {
@@ -146,7 +142,6 @@ impl<'a> SolidSystem<'a> {
         Ok(system)
     }
 
-    /// The solid in a state, with its integrator.
     fn with(
         part: &'a SolidPart,
         kind: SolidKind,
@@ -169,19 +164,18 @@ impl<'a> SolidSystem<'a> {
         })
     }
 
-    /// Counts of the iteration; none for an elastic solid, which has none.
+    /// Returns Newton statistics; none if elastic.
     pub fn statistics(&self) -> Option<Statistics> {
         self.integrator.memory().map(|memory| memory.statistics())
     }
 
-    /// Adds the work of loads and supports since the state before, in equilibrium at both ends.
     fn add_work_at_rest(&mut self) {
         if self.state.time <= self.before.time {
             return;
         }
         let [start, end] = [self.before.time, self.state.time].map(|time| self.loading.at(time));
         let reactions = self.integrator.reactions().expect("a solid in equilibrium keeps its reactions");
-        // The mean of the forces at both ends does exactly the work of the mean stresses (virtual work).
+        // Mean end forces do the work of mean stresses (virtual work).
         let mut work = 0.0;
         for d in 0..start.len() {
             let loads = start[d] + end[d] - 2.0 * self.loading.gravity[d];
@@ -194,7 +188,6 @@ impl<'a> SolidSystem<'a> {
     }
 }
 
-/// The integrator of a solid in equilibrium, with the first and the largest length of its steps [s].
 fn quasi_static(
     part: &SolidPart,
     plan: QuasiStaticPlan,
@@ -204,8 +197,7 @@ fn quasi_static(
     QuasiStatic::new(&part.model, part.newton, StepControl { initial, min, max, target_iterations })
 }
 
-/// Brings a solid to equilibrium with all that acts at time 0, over one unit of time before it, and returns the forces of its
-/// supports [N], shape `[3·nodes]`.
+/// Over one unit of time before time 0; returns reactions [N], shape `[3·nodes]`.
 fn bring_on_loads(
     part: &SolidPart,
     plan: QuasiStaticPlan,
@@ -242,7 +234,7 @@ impl System for SolidSystem<'_> {
         let (part, elastic) = (self.part, matches!(self.kind, SolidKind::Elastic(_)));
         self.before.copy_from(&self.state);
         let (memory, spent_before) = (self.integrator.memory(), self.spent);
-        // The time of an elastic solid is the sum of its steps; the others have that of their number, whatever parts they made.
+        // Elastic time is summed; other steps may be divided.
         let to = if elastic { self.state.time + self.step } else { (self.steps + 1) as f64 * self.step };
         let spent = &mut self.spent;
         let mut work = if elastic { 0.0 } else { spent.solid_load_work };
@@ -261,13 +253,13 @@ impl System for SolidSystem<'_> {
             },
         );
         if outcome == Err(SolveError::Stopped) {
-            // The run goes on from the step before, whatever shorter steps this one has come to.
+            // Continue from the previous step.
             std::mem::swap(&mut self.state, &mut self.before);
             (self.given_up, self.spent) = (memory, spent_before);
             return Err(part.failure(&SolveError::Stopped));
         }
         self.steps += u64::from(outcome.is_ok());
-        // A step given up half-way counts as far as it came, so that the balance belongs to the state that is kept.
+        // The balance must match the kept state.
         let moved = self.state.u.iter().zip(&self.before.u).map(|(u, before)| u - before);
         let weight = self.loading.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
         match self.kind {
