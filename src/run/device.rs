@@ -9,7 +9,7 @@ use trackbed_dem::ranks::{Link, Ranks, Traffic};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
 
-/// Where the steps of the run proper are computed.
+/// Compute device of the main stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Place {
     /// CPU.

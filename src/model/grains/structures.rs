@@ -96,7 +96,7 @@ fn plan(
     plan.body = bodies.first().copied();
     if bodies.len() > 1 {
         let found = format!("{} walls that are rigid bodies", bodies.len());
-        return Err(structure.error("parts", found, "at most one, whose motion is that of the structure"));
+        return Err(structure.error("parts", found, "at most one, which moves as the structure does"));
     }
     if parts.is_empty() {
         return Err(structure.error("parts", "nothing", "names of walls or groups of grains"));

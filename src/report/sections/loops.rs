@@ -57,7 +57,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         return None;
     }
     let formulas = paragraph(
-        "Secant stiffness K: load range over the resilient deflection u, the rebound of the sleeper from its lowest position to the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
+        "Secant stiffness K: load range over the resilient deflection u, the rebound of the sleeper from its lowest position to the end of the cycle. Area of the loop E: work of the load over the cycle, settlement included. Damping \
          ratio D = 2 E/(π K u²): E over 4π times the energy of a spring K at half the range of u.",
     );
     Section::new("loops", "Load–deflection", joined([html, note, formulas]))

@@ -128,7 +128,7 @@ impl Deposit {
         while let Some((&start, _)) = next.first_key_value() {
             let (mut at, mut came, mut line) = (start, None, Vec::new());
             loop {
-                let ways = next.get_mut(&at).expect("sides of a closed line go on");
+                let ways = next.get_mut(&at).expect("sides of a closed line continue");
                 let left = |to: &[isize; 2]| {
                     came.map_or(0, |[x, y]: [isize; 2]| x * (to[1] - at[1]) - y * (to[0] - at[0]))
                 };

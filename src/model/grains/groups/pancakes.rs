@@ -45,7 +45,7 @@ pub(super) fn pancakes(
     let sizes = SizeSource::of(group)?;
     let [low, high] = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));
     let place = Field { low, high, clear: field.clear.iter().map(|c| c.map(|q| q.si)).collect() };
-    let expected = "the area of the floes over that of the box less the circles that are clear";
+    let expected = "floe area over the area of the box without its clear circles";
     let concentration = field.need("concentration", field.concentration, expected)?;
     let diameters = enough(&sizes, concentration * place.area(), group.seed).ok_or_else(|| {
         field.error("concentration", concentration.to_string(), "1 to 100000 floes, with room for each")
