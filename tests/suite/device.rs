@@ -1,6 +1,8 @@
 //! `run --device gpu`: unsupported features, and runs with stand-ins for the CUDA libraries.
 
-use super::support::{COUPLED, Folder, GRAINS, ONE_THREAD, Outcome, repository, results, run, scene_folder, trackbed};
+use super::support::{
+    COUPLED, Folder, GRAINS, ONE_THREAD, Outcome, repository, results, run, scene_folder, trackbed,
+};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
