@@ -293,7 +293,7 @@ fn cycle_jumps_conserve_energy() {
         let brought = jump["energy"].as_f64().unwrap();
         assert_eq!(brought != 0.0, method == "grains", "{brought} J");
         let summary = json(&folder.join("out/summary.json"));
-        assert_eq!(summary["energy"]["spent"]["jumps"].as_f64().unwrap(), brought);
+        assert_eq!(summary["energy"]["flows"]["jumps"].as_f64().unwrap(), brought);
         assert!(summary["momentum"]["angular"].as_f64().unwrap() < 1e-9, "{}", summary["momentum"]);
         assert!(jump["jumps"][0]["predicted_slope"].as_f64().unwrap() > 0.0);
     }

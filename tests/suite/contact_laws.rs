@@ -154,7 +154,7 @@ fn drag_matches_closed_form() {
     }
     assert!(seen > 100);
     let summary = json(&folder.join("out/summary.json"));
-    assert!(summary["energy"]["spent"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
+    assert!(summary["energy"]["flows"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-9);
     assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
 }

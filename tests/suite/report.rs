@@ -216,8 +216,8 @@ fn solid_with_factor_of_safety() {
     ];
     let (page, summary) = reported(&folder, "inputs/solid/slope.toml", &set);
     page.has(&["safety"]);
-    page.says(summary["safety"]["stands_at"].as_f64().unwrap());
-    page.says(summary["safety"]["fails_at"].as_f64().unwrap());
+    page.says(summary["safety"]["stable_at"].as_f64().unwrap());
+    page.says(summary["safety"]["unstable_at"].as_f64().unwrap());
 }
 
 #[test]
