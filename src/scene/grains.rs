@@ -51,7 +51,7 @@ pub struct Grains {
     pub seed: u64,
     /// Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`.
     pub bond: Option<String>,
-    /// Prescribed velocity without rotation, 0 during deposition [m/s]; default free.
+    /// Without rotation, 0 during deposition [m/s]; default free.
     pub prescribed_velocity: Option<[Quantity<Velocity>; 3]>,
     /// Whether mean position and force are recorded; default true with `prescribed_velocity`.
     pub record: Option<bool>,

@@ -103,7 +103,7 @@ name = "wall"
 shape = "sphere"
 material = "s"
 spheres = [[0, 0, 0, 0.01]]
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 [[grains]]
 name = "beam"
 shape = "sphere"

@@ -27,7 +27,7 @@ name = "pile"
 shape = "polyhedron"
 material = "ice"
 frustum = { from = [0, 0, 0], to = [0, 0, 2], radii = [0.8, 0.8] }
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 
 [time]
 end = "1.5 s"

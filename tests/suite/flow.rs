@@ -191,7 +191,7 @@ fn recycling_limits_backlog_rate() {
         "grains.0.lattice={ kind = \"loose\", size = \"8 mm\", low = [0.02, 0.02, 0.5], counts = [4, 3, 1] }",
         "grains.0.inlet.rate=",
         "grains.0.inlet.grains_per_second=100",
-        "outlet.0.again=true",
+        "outlet.0.recycle=true",
         "output.history_interval=0.001",
         "time.end=0.8",
     ];
@@ -354,13 +354,13 @@ inlet = { box = [[0.2, 0.2, 0.5], [1.8, 1.8, 1.0]], grains_per_second = 150, vel
 [[outlet]]
 box = [[-1, -1, -1], [3, 3, 0.085]]
 groups = ["rain"]
-again = true
+recycle = true
 
 [[outlet]]
 point = [1.7, 0, 0]
 normal = [1, 0, 0]
 groups = ["rain"]
-again = true
+recycle = true
 
 "#;
     let text = format!("{}{flow}{}", &COUPLED[..from], &COUPLED[to..]);
@@ -452,7 +452,7 @@ inlet = { box = [[0.1, 0.1, 0.6], [1.9, 1.9, 1.0]], grains_per_second = 250, vel
 [[outlet]]
 point = [1.7, 0, 0]
 normal = [1, 0, 0]
-again = true
+recycle = true
 groups = ["rain"]
 
 [deposition]

@@ -314,7 +314,7 @@ inlet = { box = [[0.0, 0.0, 0.3], [0.2, 0.2, 0.4]], grains_per_second = 20, velo
 name = "end"
 point = [0.35, 0.0, 0.0]
 normal = [1.0, 0.0, 0.0]
-again = true
+recycle = true
 
 [[walls]]
 name = "belt"

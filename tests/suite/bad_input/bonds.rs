@@ -71,5 +71,5 @@ fn bonded_stones_without_their_bond() {
 fn velocity_of_a_grip() {
     bonded()
         .scene("shape = \"sphere\"", "shape = \"sphere\"\nmotion = [0, 0, 0]\nvelocity = [0, 0, 1]")
-        .refused("scene.toml:14: grains.0.velocity: found together with `motion`, expected only one of them");
+        .refused("scene.toml:14: grains.0.velocity: found together with `prescribed_velocity`, expected only one of them");
 }

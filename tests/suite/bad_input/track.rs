@@ -78,9 +78,9 @@ fn keys_without_effect_on_meshed_sleeper() {
         "scene.toml:61: track.push: found together with [track.sleeper.mesh], expected only one of them",
     );
     meshed()
-        .append(SCENE, "[track.jump]\nmethod = \"grains\"")
+        .append(SCENE, "[track.jump]\nmethod = \"displace\"")
         .refused(
-            "scene.toml:62: track.jump.method: found \"grains\", expected \"account\". Meshed sleepers cannot be displaced",
+            "scene.toml:62: track.jump.method: found \"displace\", expected \"extrapolate\". Meshed sleepers cannot be displaced",
         );
     meshed()
         .append(SCENE, "[track.rail]\nkind = \"beam\"\nbending_stiffness = 6e6\nfoundation = 2e7")
