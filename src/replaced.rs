@@ -93,7 +93,9 @@ fn rename(table: &mut Value, path: &[&str], new: &str) {
                 entries.insert(new.to_string(), value);
             }
         }
-        (["*", below @ ..], Value::Array(list)) => list.iter_mut().for_each(|entry| rename(entry, below, new)),
+        (["*", below @ ..], Value::Array(list)) => {
+            list.iter_mut().for_each(|entry| rename(entry, below, new))
+        }
         ([key, below @ ..], Value::Object(entries)) => {
             if let Some(entry) = entries.get_mut(*key) {
                 rename(entry, below, new);

@@ -254,8 +254,9 @@ mod tests {
     /// Negative error is no gain of the dashpots; positive error is their loss.
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
-        let dashpots =
-            |dashpot, interface_dashpot_error| Spent { dashpot, interface_dashpot_error, ..Spent::default() }.losses()[0].1;
+        let dashpots = |dashpot, interface_dashpot_error| {
+            Spent { dashpot, interface_dashpot_error, ..Spent::default() }.losses()[0].1
+        };
         assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
     }
 }

@@ -94,13 +94,17 @@ fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     }
     let gone = format!("{key}=");
     let meant = match &fault.problem {
-        Problem::Value { found, expected } if found.starts_with("the unknown key") || found.starts_with('`') => {
+        Problem::Value { found, expected }
+            if found.starts_with("the unknown key") || found.starts_with('`') =>
+        {
             expected.strip_prefix('`').and_then(|e| e.strip_suffix('`'))
         }
         _ => None,
     };
     let word = match &fault.problem {
-        Problem::Value { expected, .. } if expected.starts_with('"') => Some(vec![format!("{key}={expected}")]),
+        Problem::Value { expected, .. } if expected.starts_with('"') => {
+            Some(vec![format!("{key}={expected}")])
+        }
         _ => None,
     };
     let meant = meant.zip(document.value(key));

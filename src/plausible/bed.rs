@@ -98,8 +98,8 @@ fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
         return;
     }
     let down = [0, 1, 2].map(|d| scene.gravity[d].si / weight);
-    let carried =
-        scene.walls.iter().any(|w| carries(w, down)) || scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
+    let carried = scene.walls.iter().any(|w| carries(w, down))
+        || scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
     if !carried {
         let found = "no floor: no wall and no solid below the grains";
         findings.add(true, "walls", found, "a floor that supports the grains");

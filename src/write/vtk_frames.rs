@@ -30,7 +30,9 @@ struct VtkFrames {
 
 fn begin(dir: &Path, mark: Option<&Mark>) -> Result<Box<dyn Writer>, WriteError> {
     let script = dir.join(SCRIPT);
-    atomic::write(&script, |out| out.write_all(include_bytes!("plot_frame.py")).map_err(WriteError::io(&script)))?;
+    atomic::write(&script, |out| {
+        out.write_all(include_bytes!("plot_frame.py")).map_err(WriteError::io(&script))
+    })?;
     let file = dir.join("results.pvd");
     let series = match mark {
         None => Series::new(&file),

@@ -65,6 +65,22 @@ fn wrong_usage_is_bad_input() {
     assert!(!folder.join("results").exists());
 }
 
+#[test]
+fn replaced_options_name_the_new_one() {
+    for (arguments, old, new) in [
+        (["render", "results", "--least", "0.1"], "--least", "--min-force"),
+        (["explain", "scene.toml", "--rehearse", "1"], "--rehearse", "--trial"),
+    ] {
+        let outcome = trackbed(arguments);
+        let line = format!("error: {}: found `{old}`, expected `{new}`\n", arguments[0]);
+        assert_eq!((outcome.code, outcome.stderr.as_str()), (2, line.as_str()));
+    }
+    let together = trackbed(["render", "results", "--least=0.1"]);
+    assert!(together.stderr.contains("found `--least`, expected `--min-force`"), "{together:?}");
+    let other = trackbed(["explain", "scene.toml", "--least", "1"]);
+    assert!(other.code == 2 && !other.stderr.contains("--min-force`"), "{other:?}");
+}
+
 fn scenes(dir: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(dir).unwrap() {
@@ -152,17 +168,13 @@ fn a_short_run_is_rehearsed_whole() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "the folder of the rehearsal is removed");
     assert!(explain(&["--trial", "0"]).get("time").is_none());
     let refused = trackbed(["explain", &scene, "--trial=-1"]);
-    assert!(
-        refused.code == 2 && refused.stderr.contains("--trial: found -1, expected 0 to"),
-        "{refused:?}"
-    );
+    assert!(refused.code == 2 && refused.stderr.contains("--trial: found -1, expected 0 to"), "{refused:?}");
 }
 
 #[test]
 fn long_run_is_estimated_from_trial() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
-    let words =
-        ["explain", &scene, "--json", "--threads", "1", "--trial", "0.2", "--set", "time.end=1000"];
+    let words = ["explain", &scene, "--json", "--threads", "1", "--trial", "0.2", "--set", "time.end=1000"];
     let report: serde_json::Value = serde_json::from_str(&trackbed(words).good().stdout).unwrap();
     let last = report["time"]["stages"].as_array().unwrap().last().unwrap();
     assert_eq!((last["name"].as_str(), last["known"].as_str()), (Some("run"), Some("expected")), "{report}");

@@ -237,7 +237,10 @@ fn no_room_at_the_inlet() {
     let (requested, owed) = (float(&inlet["requested"]), float(&inlet["backlog"]));
     assert!((requested - 0.15).abs() < 1e-4 && owed > 0.05 && owed < requested, "{inlet}");
     assert!((float(&inlet["amount"]["mass"]) - (requested - owed)).abs() < 1e-12, "{inlet}");
-    assert!(inlet["without_free_position"].as_u64().unwrap() > 100 && inlet["without_grains"] == 0, "{inlet}");
+    assert!(
+        inlet["without_free_position"].as_u64().unwrap() > 100 && inlet["without_grains"] == 0,
+        "{inlet}"
+    );
     let waiting = inlet["queued"].as_u64().unwrap();
     assert_eq!(waiting + flow["inserted"]["grains"].as_u64().unwrap(), 600);
 }

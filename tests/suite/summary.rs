@@ -101,7 +101,8 @@ fn coupled_energy_adds_up() {
     run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
     let summary = json(&folder.join("out/summary.json"));
     let energy = &summary["energy"];
-    let keys = ["start", "end", "flows", "error", "work", "reference_energy", "relative_error", "largest_error"];
+    let keys =
+        ["start", "end", "flows", "error", "work", "reference_energy", "relative_error", "largest_error"];
     expect_keys(energy, &[&keys[..], &["largest_relative_error"]].concat());
     let relative = energy["relative_error"].as_f64().unwrap();
     println!("energy error {:.3} % of the work of {} J", 100.0 * relative, energy["work"]);

@@ -3,7 +3,7 @@
 use super::*;
 
 const INLET: &str = "inlet = { box = [[0, 0, 1], [1, 1, 2]], rate = \"2 kg/s\" }";
-const OUTLET: &str = "[[outlet]]\npoint = [0, 0, -1]\nnormal = [0, 0, -1]\nagain = true\n\n[[walls]]";
+const OUTLET: &str = "[[outlet]]\npoint = [0, 0, -1]\nnormal = [0, 0, -1]\nrecycle = true\n\n[[walls]]";
 
 fn flow() -> Good {
     grains_scene().scene(SPHERES, &format!("{SPHERES}\n{INLET}")).scene("[[walls]]", OUTLET)
@@ -191,4 +191,11 @@ fn outlet_without_grains() {
     solid()
         .scene("[output]", "[[outlet]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n\n[output]")
         .refused("scene.toml:23: outlet: found, but it has no effect without [[grains]]");
+}
+
+#[test]
+fn replaced_key_of_outlet() {
+    flow()
+        .scene("recycle = true", "again = true")
+        .refused("scene.toml:20: outlet.0.again: found `again`, expected `recycle`");
 }

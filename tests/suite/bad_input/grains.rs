@@ -204,8 +204,7 @@ fn two_sources_of_grains() {
         .refused("scene.toml:14: grains.0.spheres: found together with `lattice`, expected only one of them");
 }
 
-const SCATTER: &str =
-    "region = { box = [[0, 0, 0], [1, 1, 1]] }\nsizes = { law = \"monodisperse\", size = 0.1 }\nconcentration = 0.1";
+const SCATTER: &str = "region = { box = [[0, 0, 0], [1, 1, 1]] }\nsizes = { law = \"monodisperse\", size = 0.1 }\nsolid_fraction = 0.1";
 
 #[test]
 fn container_that_is_too_full() {
@@ -379,4 +378,28 @@ fn radial_distribution_without_room() {
     grains_scene()
         .scene("[time]", &format!("{measure}radial = {{ reach = 0.2, bins = 0 }}\n[time]"))
         .refused("scene.toml:25: measure.0.radial.bins: found 0, expected 1 to 100000");
+}
+
+#[test]
+fn replaced_keys_of_grains() {
+    for (old, new) in
+        [("motion = [0, 0, 0]", "prescribed_velocity"), ("concentration = 0.3", "solid_fraction")]
+    {
+        let key = old.split(' ').next().unwrap();
+        grains_scene()
+            .scene(SPHERES, &format!("{SPHERES}\n{old}"))
+            .refused(&format!("scene.toml:15: grains.0.{key}: found `{key}`, expected `{new}`"));
+    }
+    grains_scene()
+        .set("grains.0.motion=[0, 0, 0]")
+        .refused("--set: grains.0.motion: found `motion`, expected `prescribed_velocity`");
+}
+
+#[test]
+fn replaced_laws_of_sizes() {
+    for (old, new) in [("equal", "monodisperse"), ("two", "bidisperse")] {
+        grains_scene()
+            .scene(SPHERES, &SCATTER.replace("monodisperse", old))
+            .refused(&format!("scene.toml:15: grains.0.sizes.law: found \"{old}\", expected \"{new}\""));
+    }
 }

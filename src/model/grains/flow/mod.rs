@@ -138,7 +138,8 @@ fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<
             return Err(outlet.here("another choice of keys", expected));
         }
     };
-    let free: Vec<usize> = (0..scene.grains.len()).filter(|&i| scene.grains[i].prescribed_velocity.is_none()).collect();
+    let free: Vec<usize> =
+        (0..scene.grains.len()).filter(|&i| scene.grains[i].prescribed_velocity.is_none()).collect();
     let parts: Vec<usize> = match &outlet.groups {
         None => free,
         Some(names) => names
@@ -146,7 +147,10 @@ fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<
             .map(|name| {
                 free.iter().copied().find(|&i| scene.grains[i].name == *name).ok_or_else(|| {
                     let free: Vec<&str> = free.iter().map(|&i| scene.grains[i].name.as_str()).collect();
-                    let expected = format!("the name of a [[grains]] without `prescribed_velocity`: {}", free.join(", "));
+                    let expected = format!(
+                        "the name of a [[grains]] without `prescribed_velocity`: {}",
+                        free.join(", ")
+                    );
                     outlet.error("groups", format!("\"{name}\""), expected)
                 })
             })
