@@ -94,7 +94,7 @@ fn rename(table: &mut Value, path: &[&str], new: &str) {
             }
         }
         (["*", below @ ..], Value::Array(list)) => {
-            list.iter_mut().for_each(|entry| rename(entry, below, new))
+            list.iter_mut().for_each(|entry| rename(entry, below, new));
         }
         ([key, below @ ..], Value::Object(entries)) => {
             if let Some(entry) = entries.get_mut(*key) {
