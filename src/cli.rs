@@ -30,9 +30,9 @@ impl Cli {
     /// # Errors
     /// A replaced option.
     pub fn read() -> Result<Cli, Failure> {
-        Cli::try_parse().or_else(|error| {
+        Cli::try_parse().map_err(|error| {
             let command = std::env::args_os().nth(1).unwrap_or_default();
-            Err(replaced_option(&error, &command.to_string_lossy()).unwrap_or_else(|| error.exit()))
+            replaced_option(&error, &command.to_string_lossy()).unwrap_or_else(|| error.exit())
         })
     }
 }
