@@ -1,13 +1,13 @@
-//! Allocator that exits with a one-line error when memory is exhausted.
+//! Allocator that exits with one line when memory is exhausted.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// System allocator; a failed request exits with code 3.
+/// System allocator; failed requests exit with code 3.
 ///
-/// The standard library would print two lines and possibly a backtrace, which may hang without memory.
+/// The standard library prints two lines and possibly a backtrace, which may hang.
 pub struct Allocator;
 
-// SAFETY: requests are passed to the system allocator; on Unix no null pointer is returned.
+// SAFETY: passed to the system allocator; on Unix no null pointer is returned.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as required by `alloc`.
@@ -61,12 +61,11 @@ fn exhausted(size: usize) {
         line[length..length + part.len()].copy_from_slice(part);
         length += part.len();
     }
-    // SAFETY: pointer and length of `line`. One call, so that lines of processes do not mix.
+    // SAFETY: pointer and length of `line`. One call, so that lines do not mix.
     unsafe { libc::write(libc::STDERR_FILENO, line.as_ptr().cast(), length) };
     signal_hook::low_level::exit(3);
 }
 
-/// The standard library aborts.
 #[cfg(not(unix))]
 #[cold]
 fn exhausted(_: usize) {}

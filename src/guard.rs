@@ -1,4 +1,4 @@
-//! Panics and aborts end a command like other failures: one line, exit code, saved data kept.
+//! Panics and aborts end a command like other failures.
 
 use crate::failure::Failure;
 use crate::machine;
@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Records the location of a panic instead of printing it; with `RUST_BACKTRACE`, also prints.
+/// Records panic locations; with `RUST_BACKTRACE`, also prints.
 pub fn install() {
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
@@ -25,10 +25,10 @@ pub fn install() {
     }));
 }
 
-/// Files and connections of a command, without viewer clients and study runs.
+/// Without viewer clients and study runs.
 const FILES: usize = 16;
 
-/// Checks the limit of open files, which could otherwise stop a run midway.
+/// Checks the limit of open files before a run.
 ///
 /// # Errors
 /// Limit too low.
@@ -55,8 +55,7 @@ pub fn check_files() -> Result<(), Failure> {
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const ARENA: u64 = 1 << 30;
 
-/// Limits malloc arenas under an address space limit: threads without an arena would allocate by mmap, 100
-/// times slower.
+/// Limits malloc arenas under an address space limit: threads without one allocate by mmap, 100 times slower.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn share_arenas() {
     let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
@@ -69,14 +68,14 @@ pub fn share_arenas() {
     }
 }
 
-/// Turns a file size limit signal (SIGXFSZ) into an I/O error.
+/// Turns SIGXFSZ into an I/O error.
 #[cfg(unix)]
 pub fn report_large_files() {
-    // Any handler prevents termination; the write then returns an error.
+    // Any handler prevents termination.
     drop(signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()));
 }
 
-/// Makes an abort, such as a stack overflow, exit with code 3 and one line.
+/// Makes an abort, such as a stack overflow, exit with code 3.
 #[cfg(unix)]
 pub fn end_at_abort() {
     const LINE: &[u8] = b"error: memory: found none free, or a stack overflow. Reduce the scene, or raise the system limits (ulimit -v, ulimit -s).\n";
@@ -85,13 +84,13 @@ pub fn end_at_abort() {
         unsafe { libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len()) };
         signal_hook::low_level::exit(3);
     };
-    // SAFETY: the action only calls `write` and `_exit`, which are async-signal-safe.
+    // SAFETY: only calls `write` and `_exit`, which are async-signal-safe.
     let registered = unsafe { signal_hook::low_level::register(libc::SIGABRT, action) };
     // Otherwise the abort signal ends the process.
     drop(registered);
 }
 
-/// Runs `work`; panics, also in joined threads, become failures with exit code 3.
+/// Runs `work`; panics, also in joined threads, become failures.
 ///
 /// # Errors
 /// Errors of `work`; panics.

@@ -3,12 +3,12 @@
 use std::io;
 use std::path::Path;
 
-/// [bytes].
+/// Resident memory [bytes].
 pub(crate) fn resident() -> Option<u64> {
     field(Path::new("/proc/self/status"), "VmRSS:")
 }
 
-/// User and system, all threads [s].
+/// CPU time, user and system, all threads [s].
 #[cfg(unix)]
 pub(crate) fn cpu_seconds() -> Option<f64> {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
@@ -17,13 +17,13 @@ pub(crate) fn cpu_seconds() -> Option<f64> {
     (code == 0).then_some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
 }
 
-/// Unknown.
+/// Unknown on this system.
 #[cfg(not(unix))]
 pub(crate) fn cpu_seconds() -> Option<f64> {
     None
 }
 
-/// Of the machine or control group [bytes].
+/// Free memory of the machine or control group [bytes].
 pub(crate) fn available() -> Option<u64> {
     let machine = field(Path::new("/proc/meminfo"), "MemAvailable:");
     let number = |file: &str| std::fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
@@ -36,7 +36,6 @@ pub(crate) fn available() -> Option<u64> {
     }
 }
 
-/// Status file entry in kB [bytes].
 fn field(file: &Path, name: &str) -> Option<u64> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find(|l| l.starts_with(name))?;
@@ -48,7 +47,7 @@ pub(crate) fn lacks_files(error: &io::Error) -> bool {
     matches!(error.raw_os_error(), Some(libc::EMFILE | libc::ENFILE))
 }
 
-/// Unknown.
+/// Unknown on this system.
 #[cfg(not(unix))]
 pub(crate) fn lacks_files(_: &io::Error) -> bool {
     false

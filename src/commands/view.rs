@@ -10,7 +10,7 @@ use crate::results::series;
 use crate::run::size;
 use crate::view::{self, Coding, Results};
 
-/// Serves results, or writes them as one HTML file.
+/// Serves results, or exports one HTML file.
 ///
 /// # Errors
 /// No results; see [`Failure`].

@@ -1,4 +1,4 @@
-//! Runs as separate processes, so that none affects another.
+//! Runs as separate processes.
 
 use crate::message::shown;
 use crate::program;
@@ -19,7 +19,7 @@ pub enum Beginning {
     Resumed,
 }
 
-/// Starts a run, with output to `log`.
+/// Starts a run, logging to `log`.
 ///
 /// # Errors
 /// I/O errors.
@@ -35,7 +35,7 @@ pub fn start(
     command.arg("run").arg(scene).arg("--out").arg(out);
     command.args(["--quiet", "--threads", &threads.to_string()]);
     command.arg(if beginning == Beginning::Anew { "--force" } else { "--resume" });
-    // Joined: an override may begin with a dash.
+    // Overrides may begin with a dash.
     command.args(set.iter().map(|assignment| format!("--set={assignment}")));
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(log)?);
     apart(&mut command);
@@ -48,7 +48,7 @@ fn apart(command: &mut Command) {
     use std::os::unix::process::CommandExt;
     command.process_group(0);
     #[cfg(target_os = "linux")]
-    // SAFETY: after fork only async-signal-safe functions are called; `prctl` is one.
+    // SAFETY: only async-signal-safe functions after fork; `prctl` is one.
     unsafe {
         command.pre_exec(|| match libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM as libc::c_ulong) {
             0 => Ok(()),
@@ -64,7 +64,7 @@ fn apart(_: &mut Command) {}
 #[cfg(unix)]
 pub fn interrupt(child: &Child) {
     if let Ok(process) = i32::try_from(child.id()) {
-        // SAFETY: plain integers. The child is not reaped, so its id is valid.
+        // SAFETY: plain integers. The child is not reaped: its id is valid.
         unsafe { libc::kill(process, libc::SIGINT) };
     }
 }
@@ -73,7 +73,7 @@ pub fn interrupt(child: &Child) {
 #[cfg(not(unix))]
 pub fn interrupt(_: &Child) {}
 
-/// Returns exit code (128 + signal number if killed) and reason of failure.
+/// Returns exit code (128 + signal) and reason of failure.
 pub fn verdict(status: ExitStatus, log: &Path) -> (i32, String) {
     match (status.code(), signal(status)) {
         (Some(0), _) => (0, String::new()),

@@ -7,7 +7,7 @@ use crate::read::source;
 use crate::replaced;
 use std::path::Path;
 
-/// Reads a quantity and its unit from `folder`.
+/// Reads a quantity and its unit.
 ///
 /// # Errors
 /// Missing file, column or number.

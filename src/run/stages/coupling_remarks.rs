@@ -20,8 +20,7 @@ pub fn unconverged(passes: &Passes) -> Option<String> {
 /// Late dissipation over reference energy.
 const LATE: f64 = 0.05;
 
-/// Warns about surface dashpots that dissipate much less than their law, because the solid moves differently
-/// from the prediction.
+/// Warns about dashpots that dissipate less than their law, because the solid deviates from its prediction.
 pub fn late(spent: &Spent) -> Option<String> {
     let law = spent.dissipated() - spent.interface_dashpot_error;
     let part = -spent.interface_dashpot_error / spent.work().abs().max(law);
