@@ -3,8 +3,11 @@
 mod convert;
 mod render;
 
+use crate::failure::Failure;
 use crate::progress::Verbosity;
+use crate::replaced;
 use crate::run::Place;
+use clap::error::{ContextKind, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -19,6 +22,26 @@ pub struct Cli {
     /// Command.
     #[command(subcommand)]
     pub command: Command,
+}
+
+impl Cli {
+    /// Parses the command line. Help, version and usage errors end the process.
+    ///
+    /// # Errors
+    /// A replaced option.
+    pub fn read() -> Result<Cli, Failure> {
+        Cli::try_parse().map_err(|error| {
+            let command = std::env::args_os().nth(1).unwrap_or_default();
+            replaced_option(&error, &command.to_string_lossy()).unwrap_or_else(|| error.exit())
+        })
+    }
+}
+
+/// Returns the failure of a replaced option of `command`, if `error` is one.
+pub fn replaced_option(error: &clap::Error, command: &str) -> Option<Failure> {
+    let option = error.get(ContextKind::InvalidArg)?.to_string();
+    let new = replaced::option(command, &option).filter(|_| error.kind() == ErrorKind::UnknownArgument)?;
+    Some(Failure::Input(format!("{command}: found `{option}`, expected `{new}`")))
 }
 
 /// The commands.
@@ -45,7 +68,7 @@ pub enum Command {
         threads: Option<usize>,
         /// Duration of the trial run [s]; 0: no trial run and no estimate of the run time.
         #[arg(long, value_name = "SECONDS", default_value_t = 3.0)]
-        rehearse: f64,
+        trial: f64,
         /// Print JSON.
         #[arg(long)]
         json: bool,

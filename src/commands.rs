@@ -29,9 +29,9 @@ use output::print;
 pub fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run_scene(args),
-        Command::Explain { args, threads, rehearse, json } => {
+        Command::Explain { args, threads, trial, json } => {
             let memory = memory(args.memory.as_deref())?;
-            let how = explain::How { memory, strict: args.strict, threads, rehearse };
+            let how = explain::How { memory, strict: args.strict, threads, trial };
             let report = explain::explain(&args.scene, &args.set, &how)?;
             print(&if json { report.json() } else { report.text() })
         }

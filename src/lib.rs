@@ -22,6 +22,7 @@ pub mod program;
 mod progress;
 pub mod read;
 pub mod render;
+mod replaced;
 pub mod report;
 pub mod results;
 pub mod run;

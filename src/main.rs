@@ -1,6 +1,5 @@
 //! Main program: command line, errors, exit code.
 
-use clap::Parser;
 use std::process::ExitCode;
 use trackbed::failure::Failure;
 use trackbed::{allocator, guard, message};
@@ -19,7 +18,7 @@ fn main() -> ExitCode {
     }
     // clap's exit code for wrong usage is also 2.
     let work = || {
-        let command = trackbed::cli::Cli::parse().command;
+        let command = trackbed::cli::Cli::read()?.command;
         guard::check_files()?;
         trackbed::commands::execute(command)
     };

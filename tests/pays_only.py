@@ -53,7 +53,7 @@ def run(program, scene, sets, out):
         raise SystemExit(f"{scene} {sets}: {done.stderr}")
     instructions = next(int(line.split(",")[0]) for line in open(count) if "instructions" in line)
     summary = json.load(open(os.path.join(out, "results", "summary.json")))
-    said = subprocess.run([program, "explain", scene, "--rehearse", "0"] + sets, capture_output=True, text=True, check=True).stdout
+    said = subprocess.run([program, "explain", scene, "--trial", "0"] + sets, capture_output=True, text=True, check=True).stdout
     lines = [line.strip() for line in said.splitlines() if re.match(r"\s*(stages|contact kernels|packed bed):", line)]
     # Machine-dependent speed.
     lines = [re.sub(r"; [0-9.]+ M sphere-steps/s.*", "", line) for line in lines]

@@ -187,7 +187,7 @@ def scene_rows(case, binary, threads, work, device):
     """Rows of a scene: reports and results."""
     scene, sets = str(ROOT / case["scene"]), [f"--set={s}" for s in case.get("set", [])]
     rows = {}
-    for word, more in (("check", []), ("explain", ["--rehearse", "0"])):
+    for word, more in (("check", []), ("explain", ["--trial", "0"])):
         done, status = execute([binary, word, scene, *sets, *more], None)
         rows[f"({word})"] = hashlib.sha256(report(status + done.stdout)).hexdigest()
     verb, more = case.get("verb", "run"), case.get("more", [])

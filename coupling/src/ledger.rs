@@ -72,7 +72,7 @@ pub struct Spent {
     pub dashpot: f64,
     /// Interface dashpot error: surface dashpots at the predicted velocity minus the law. Usually negative.
     #[serde(default)]
-    pub dashpot_lag: f64,
+    pub interface_dashpot_error: f64,
     /// Friction.
     pub friction: f64,
     /// Bond dashpots.
@@ -114,7 +114,7 @@ pub struct Spent {
     pub pads: f64,
     /// Track outside the model.
     #[serde(default)]
-    pub track_beyond: f64,
+    pub far_field_track: f64,
 }
 
 impl Spent {
@@ -128,14 +128,14 @@ impl Spent {
     pub fn dissipated(&self) -> f64 {
         let grains =
             self.dashpot + self.friction + self.bonds + self.breaks + self.local_damping + self.mounts;
-        let track = self.pads + self.track_beyond;
+        let track = self.pads + self.far_field_track;
         grains + track + self.rayleigh + self.absorbed + self.plastic + self.numerical
     }
 
     /// Named dissipations [J], non-negative except for numerical error.
     pub fn losses(&self) -> [(&'static str, f64); 11] {
         [
-            ("dashpots of contacts", self.dashpot - self.dashpot_lag.min(0.0)),
+            ("dashpots of contacts", self.dashpot - self.interface_dashpot_error.min(0.0)),
             ("friction", self.friction),
             ("dashpots of bonds", self.bonds),
             ("dashpots of mounts", self.mounts),
@@ -145,12 +145,12 @@ impl Spent {
             ("plastic flow", self.plastic),
             ("time integration of the solid", self.numerical),
             ("dashpots under rails", self.pads),
-            ("track outside the model", self.track_beyond),
+            ("track outside the model", self.far_field_track),
         ]
     }
 
     /// Sum of absolute works and dissipations [J].
-    fn turned_over(&self) -> f64 {
+    fn absolute_sum(&self) -> f64 {
         let works = [self.applied_work - self.pads_on_sleepers, self.wheels, self.wall_work];
         let rest = [self.solid_load_work, self.jumps, self.breaks];
         let losses = self.losses().into_iter().map(|(_, loss)| loss);
@@ -195,7 +195,7 @@ impl Balance {
 
     /// Reference energy [J]: the larger of Σ |work| + Σ |dissipation| and Σ |Δ stored energy|.
     pub fn turnover(&self) -> f64 {
-        self.spent.turned_over().max(self.now.changes(&self.start))
+        self.spent.absolute_sum().max(self.now.changes(&self.start))
     }
 
     /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
@@ -240,7 +240,7 @@ mod tests {
             ("absorbing boundaries", Spent { absorbed: 1.0, ..none() }, -1.0),
             ("plastic flow", Spent { plastic: 1.0, ..none() }, -1.0),
             ("pads", Spent { pads: 1.0, ..none() }, -1.0),
-            ("track outside the model", Spent { track_beyond: 1.0, ..none() }, -1.0),
+            ("track outside the model", Spent { far_field_track: 1.0, ..none() }, -1.0),
         ];
         for (name, spent, gain) in cases {
             let start = Stored { solid_strain: 5.0, ..Stored::default() };
@@ -254,8 +254,9 @@ mod tests {
     /// Negative error is no gain of the dashpots; positive error is their loss.
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
-        let dashpots =
-            |dashpot, dashpot_lag| Spent { dashpot, dashpot_lag, ..Spent::default() }.losses()[0].1;
+        let dashpots = |dashpot, interface_dashpot_error| {
+            Spent { dashpot, interface_dashpot_error, ..Spent::default() }.losses()[0].1
+        };
         assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
     }
 }

@@ -32,10 +32,15 @@ fn command(py: Python<'_>, words: Vec<String>) -> u8 {
         use clap::Parser;
         use trackbed::failure::Failure;
         use trackbed::{cli, commands, guard, message};
+        let command = words.first().cloned().unwrap_or_default();
         let words = std::iter::once("trackbed".to_string()).chain(words);
         let cli = match cli::Cli::try_parse_from(words) {
             Ok(cli) => cli,
             Err(error) => {
+                if let Some(failure) = cli::replaced_option(&error, &command) {
+                    message::error(&failure.to_string());
+                    return failure.code();
+                }
                 // Output may be closed.
                 let _ = error.print();
                 return u8::try_from(error.exit_code()).unwrap_or(2);

@@ -142,9 +142,9 @@ pub fn explain(
     scene: PathBuf,
     set: Vec<String>,
     threads: Option<usize>,
-    rehearse: f64,
+    trial: f64,
 ) -> PyResult<String> {
-    let how = explaining::How { memory: None, strict: false, threads, rehearse };
+    let how = explaining::How { memory: None, strict: false, threads, trial };
     let report = py.detach(|| explaining::explain(&scene, &set, &how));
     report.map(|report| report.json()).map_err(|failure| raised(&failure))
 }

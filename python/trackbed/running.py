@@ -77,9 +77,9 @@ def check(scene: Folder, *, set: Overrides = None, strict: bool = False) -> dict
     return report
 
 
-def explain(scene: Folder, *, set: Overrides = None, threads: int | None = None, rehearse: float = 10.0) -> dict[str, Any]:
-    """The report of `check` with the stages of a run, its memory, and `time`: seconds by stage, measured by `rehearse` seconds of it."""
-    report: dict[str, Any] = json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, rehearse))
+def explain(scene: Folder, *, set: Overrides = None, threads: int | None = None, trial: float = 10.0) -> dict[str, Any]:
+    """The report of `check` with the stages of a run, its memory, and `time`: seconds by stage, measured by a trial run of `trial` seconds."""
+    report: dict[str, Any] = json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, trial))
     return report
 
 

@@ -70,8 +70,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub bands: usize,
     /// Smallest force of chains to draw, as a fraction of the largest.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
-    pub least: f64,
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.0)]
+    pub min_force: f64,
     /// Scale factor of the thickness of chains.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub thickness: f64,

@@ -25,7 +25,7 @@ pub struct How {
     /// Threads; default all cores.
     pub threads: Option<usize>,
     /// Trial run time [s]; 0 for none.
-    pub rehearse: f64,
+    pub trial: f64,
 }
 
 /// Reports a scene with its cost.
@@ -33,9 +33,9 @@ pub struct How {
 /// # Errors
 /// Input errors.
 pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failure> {
-    if !(0.0..=LONGEST).contains(&how.rehearse) {
-        let found = how.rehearse;
-        return Err(Failure::Input(format!("--rehearse: found {found}, expected 0 to {LONGEST:.0} seconds")));
+    if !(0.0..=LONGEST).contains(&how.trial) {
+        let found = how.trial;
+        return Err(Failure::Input(format!("--trial: found {found}, expected 0 to {LONGEST:.0} seconds")));
     }
     let (document, job) = check::read(scene, set)?;
     let mut report = check::report(&document, &job, how.memory, how.strict)?;
@@ -50,9 +50,9 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
             Err(error) => report.add(format!("no estimate of memory: trial bed failed: {error}")),
         }
     }
-    if how.rehearse > 0.0 {
+    if how.trial > 0.0 {
         let pool = run::thread_pool(how.threads)?;
-        let budget = Duration::from_secs_f64(how.rehearse);
+        let budget = Duration::from_secs_f64(how.trial);
         match pool.install(|| Estimate::of(scene, set, &job, how.threads, budget)) {
             Ok(estimate) => report.estimate(&estimate),
             Err(failure) => report.add(format!("no estimate of the run time: trial run failed: {failure}")),

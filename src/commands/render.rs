@@ -75,7 +75,7 @@ fn chosen(args: &RenderArgs) -> Result<Options, Failure> {
         deform: within("deform", args.deform, -1e6, 1e6)?,
         since: args.since,
         bands: within("bands", args.bands as f64, 0.0, 256.0)? as usize,
-        least: within("least", args.least, 0.0, 1.0)?,
+        min_force: within("min-force", args.min_force, 0.0, 1.0)?,
         thickness: within("thickness", args.thickness, 0.01, 100.0)?,
         rate: within("fps", args.fps, 0.1, 240.0)?,
     })

@@ -93,8 +93,16 @@ fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
     }
     let gone = format!("{key}=");
     let meant = match &fault.problem {
-        Problem::Value { found, expected } if found.starts_with("the unknown key") => {
+        Problem::Value { found, expected }
+            if found.starts_with("the unknown key") || found.starts_with('`') =>
+        {
             expected.strip_prefix('`').and_then(|e| e.strip_suffix('`'))
+        }
+        _ => None,
+    };
+    let word = match &fault.problem {
+        Problem::Value { expected, .. } if expected.starts_with('"') => {
+            Some(vec![format!("{key}={expected}")])
         }
         _ => None,
     };
@@ -104,7 +112,7 @@ fn of_form(document: &Document, fault: &SceneError) -> Vec<Vec<String>> {
         vec![gone.clone(), format!("{table}{meant}={value}")]
     });
     let others = FORMS.iter().map(|value| vec![format!("{key}={value}")]);
-    renamed.into_iter().chain([vec![gone.clone()]]).chain(others).collect()
+    renamed.into_iter().chain(word).chain([vec![gone.clone()]]).chain(others).collect()
 }
 
 /// Values within a table, and in nested tables, may depend on each other.

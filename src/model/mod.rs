@@ -99,8 +99,8 @@ impl Job {
         }
         let jumps = grains.as_ref().and_then(|g| g.track.after.jump).is_some_and(|j| j.grains);
         if jumps && solid.as_ref().is_some_and(|s| !s.is_linear()) {
-            let expected = "\"account\". The state of a plastic solid is not extrapolated";
-            return Err(scene.error("track.jump.method", "\"grains\"", expected).into());
+            let expected = "\"extrapolate\". The state of a plastic solid is not extrapolated";
+            return Err(scene.error("track.jump.method", "\"displace\"", expected).into());
         }
         let end = duration::end_time(scene, grains.as_ref())?;
         let solid_step = duration::solid_step(scene, end)?;

@@ -149,7 +149,7 @@ fn has_extra(scene: &Scene, name: &str) -> bool {
             "displacement" | "initial_position" => scene.periodic.is_none(),
             // No other forces.
             "acceleration" => {
-                let held = scene.grains.iter().any(|g| g.motion.is_some());
+                let held = scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
                 !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
             }
             _ => !scene.bond.is_empty(),

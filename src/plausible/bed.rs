@@ -86,7 +86,7 @@ fn carries(wall: &Wall, down: [f64; 3]) -> bool {
 
 fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
     let weight = length(&scene.gravity);
-    let free = scene.grains.iter().any(|g| g.motion.is_none());
+    let free = scene.grains.iter().any(|g| g.prescribed_velocity.is_none());
     if weight == 0.0
         || !free
         || job.grains.is_none()
@@ -98,8 +98,8 @@ fn held(findings: &mut Findings, scene: &Scene, job: &Job) {
         return;
     }
     let down = [0, 1, 2].map(|d| scene.gravity[d].si / weight);
-    let carried =
-        scene.walls.iter().any(|w| carries(w, down)) || scene.grains.iter().any(|g| g.motion.is_some());
+    let carried = scene.walls.iter().any(|w| carries(w, down))
+        || scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
     if !carried {
         let found = "no floor: no wall and no solid below the grains";
         findings.add(true, "walls", found, "a floor that supports the grains");

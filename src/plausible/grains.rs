@@ -66,7 +66,7 @@ fn group(findings: &mut Findings, k: usize, g: &Grains) {
         findings.weigh(key("lattice.size"), lattice.size.si, SIZE);
     }
     findings.weigh_some(key("velocity"), g.velocity.as_ref().map(length), SPEED);
-    findings.weigh_some(key("motion"), g.motion.as_ref().map(length), SPEED);
+    findings.weigh_some(key("prescribed_velocity"), g.prescribed_velocity.as_ref().map(length), SPEED);
     findings.weigh_some(key("spin"), g.spin.as_ref().map(length), SPIN);
     if let Some(fill) = &g.fill {
         let size = g.size.as_ref().map(|s| s[1].si);

@@ -133,7 +133,7 @@ pub struct Options {
     /// Colour steps of the solid; 0 for continuous.
     pub bands: usize,
     /// Least chain force over the largest.
-    pub least: f64,
+    pub min_force: f64,
     /// Thickness factor of chains.
     pub thickness: f64,
     /// Video frame rate [1/s].

@@ -265,7 +265,7 @@ impl<'a> Parts<'a> {
         for (ends, force) in chains.ends.chunks_exact(6).zip(&forces) {
             let middle = [0, 1, 2].map(|k| 0.5 * (ends[k] + ends[k + 3]));
             let share = force.abs() / most;
-            if share < self.options.least || !self.kept(Part::Chains, &middle) {
+            if share < self.options.min_force || !self.kept(Part::Chains, &middle) {
                 continue;
             }
             let radius = (CHAIN.0 * size * self.options.thickness * share.sqrt().clamp(CHAIN.1, 1.0)) as f32;

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::read::source;
+use crate::replaced;
 use crate::results::tables::Table;
 use crate::run::RunFile;
 use crate::scene::{Document, Scene};
@@ -162,7 +163,10 @@ fn summary(file: &Path) -> Result<Value, Failure> {
     };
     let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
     match serde_json::from_slice::<Value>(&bytes) {
-        Ok(value) if value.get("status").is_some_and(Value::is_string) => Ok(value),
+        Ok(mut value) if value.get("status").is_some_and(Value::is_string) => {
+            replaced::update(&mut value);
+            Ok(value)
+        }
         Ok(_) => Err(refused("no status".into(), "the summary of a run")),
         Err(e) => Err(refused(e.to_string(), "the summary of a run")),
     }

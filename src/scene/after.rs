@@ -8,16 +8,16 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CycleJump {
-    /// Method; default `"account"`; `"grains"` not with bonds, periodic axes, plastic solid, meshed sleepers.
+    /// Method; default `"extrapolate"`; `"displace"` not with bonds, periodic axes, plastic solid, meshed sleepers.
     #[serde(default)]
     pub method: JumpMethod,
     /// Cycles before the first jump; default 100; ≥ 10, ≥ `measure` + 2, < `cycles`.
     #[serde(default = "hundred")]
     pub first: u32,
-    /// Cycles of a measured rate (`"account"`: a tenth of all or more); default 10; ≥ 2.
+    /// Cycles of a measured rate (`"extrapolate"`: a tenth of all or more); default 10; ≥ 2.
     #[serde(default = "ten")]
     pub measure: u32,
-    /// Cycles after a jump without measured rate; default 3; with `"grains"`.
+    /// Cycles after a jump without measured rate; default 3; with `"displace"`.
     pub settle: Option<u32>,
     /// Relative error below which jumps double, else halve; default 0.02; > 0, ≤ 10.
     #[serde(default = "fiftieth")]
@@ -25,7 +25,7 @@ pub struct CycleJump {
     /// Largest jump over preceding cycles, the first a quarter; default 1; > 0, ≤ 10.
     #[serde(default = "unity")]
     pub largest: f64,
-    /// Largest mean relative change of overlaps; default 0.5; > 0, ≤ 2; with `"grains"`.
+    /// Largest mean relative change of overlaps; default 0.5; > 0, ≤ 2; with `"displace"`.
     pub overlap: Option<f64>,
 }
 
@@ -35,9 +35,9 @@ pub struct CycleJump {
 pub enum JumpMethod {
     /// Advances the settlement.
     #[default]
-    Account,
+    Extrapolate,
     /// Also displaces grains and sleepers.
-    Grains,
+    Displace,
 }
 
 fn hundred() -> u32 {

@@ -139,7 +139,7 @@ pub struct StrengthSpreadTable {
     pub seed: Option<u64>,
     /// Whether tension and shear share a factor; default false.
     #[serde(default)]
-    pub together: bool,
+    pub correlated: bool,
 }
 
 /// Spread of the stiffnesses: one factor for all of a bond.

@@ -45,7 +45,7 @@ pub struct Compaction {
     pub porosity: Option<f64>,
     /// Travel that ends it with a warning [m]; default half of `region`; > 0; with `"squeeze"`.
     pub max_travel: Option<Quantity<Length>>,
-    /// Names of waiting groups; with `"pouring"`; not bonded, with `motion`, or only an `inlet`.
+    /// Names of waiting groups; with `"pouring"`; not bonded, with `prescribed_velocity`, or only an `inlet`.
     pub groups: Option<Vec<String>>,
     /// Parts dropped successively, `rest` each; default 1; 1–1000; with `"pouring"`.
     pub layers: Option<u32>,

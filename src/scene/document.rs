@@ -5,6 +5,7 @@ use super::value::Value;
 use super::wording::explain;
 use super::{Problem, SceneError};
 use crate::read::source;
+use crate::replaced;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -174,7 +175,7 @@ impl Document {
         Ok(())
     }
 
-    /// Deserialises the tree into `T`; suggests names for unknown keys.
+    /// Deserialises the tree into `T`; suggests names for unknown and replaced keys.
     ///
     /// # Errors
     /// Unknown or missing keys, wrong types or units.
@@ -183,6 +184,9 @@ impl Document {
         root.get_mut().remove(include::KEY);
         T::deserialize(Value::root(root)).map_err(|fault| {
             let tree = self.tree();
+            if let Some((key, found, expected)) = replaced_in(tree.get_ref()) {
+                return self.error(&key, found, expected);
+            }
             let value = value_at(tree.get_ref(), &fault.path);
             let (key, found, expected) = explain(&fault.message, &fault.path, value);
             self.error(&key, found, expected)
@@ -356,6 +360,32 @@ fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'
         };
     }
     Some(value)
+}
+
+/// Path, found and expected of the first replaced key or value.
+fn replaced_in(tree: &DeTable<'_>) -> Option<(String, String, String)> {
+    fn visit(path: &str, value: &DeValue<'_>) -> Option<(String, String, String)> {
+        match value {
+            DeValue::Table(entries) => table(&format!("{path}."), entries),
+            DeValue::Array(items) => {
+                items.iter().enumerate().find_map(|(k, item)| visit(&format!("{path}.{k}"), item.get_ref()))
+            }
+            DeValue::String(word) => replaced::value(path, word)
+                .map(|new| (path.to_string(), format!("\"{word}\""), format!("\"{new}\""))),
+            _ => None,
+        }
+    }
+    fn table(prefix: &str, entries: &DeTable<'_>) -> Option<(String, String, String)> {
+        entries.iter().find_map(|(key, value)| {
+            let key = key.get_ref();
+            let path = format!("{prefix}{key}");
+            match replaced::key(&path) {
+                Some(new) => Some((path, format!("`{key}`"), format!("`{new}`"))),
+                None => visit(&path, value.get_ref()),
+            }
+        })
+    }
+    table("", tree)
 }
 
 /// Line number (from 1) of a byte.

@@ -36,9 +36,9 @@ pub struct Outlet {
     pub point: Option<[Quantity<Length>; 3]>,
     /// Normal towards removed grains; with `point`.
     pub normal: Option<[f64; 3]>,
-    /// Names of removed groups; default all without `motion`.
+    /// Names of removed groups; default all without `prescribed_velocity`.
     pub groups: Option<Vec<String>>,
     /// Whether removed grains queue at their inlet; default false.
     #[serde(default)]
-    pub again: bool,
+    pub recycle: bool,
 }

@@ -31,12 +31,12 @@ pub struct Grains {
     /// Container with grains at random; or another source.
     pub region: Option<Region>,
     /// Solid fraction, 0.3 at random positions; or `count`; > 0, < 1; with `region`; not with `growth`.
-    pub concentration: Option<f64>,
+    pub solid_fraction: Option<f64>,
     /// Thickness over diameter; > 0, < 1; with `"disk"`; not with `floes`.
     pub aspect: Option<f64>,
     /// Radius expansion to a porosity; default none; with `region`.
     pub growth: Option<GrowthSource>,
-    /// Number of grains; or `concentration`; 1–10,000,000; with `fill`, `region`, only an `inlet` (queue); optional with `growth`.
+    /// Number of grains; or `solid_fraction`; 1–10,000,000; with `fill`, `region`, only an `inlet` (queue); optional with `growth`.
     pub count: Option<usize>,
     /// Sieve table; or `size`, `sizes`; with `fill`, `region`, only an `inlet`, floes of disks.
     pub gradation: Option<GradationSource>,
@@ -51,9 +51,9 @@ pub struct Grains {
     pub seed: u64,
     /// Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`.
     pub bond: Option<String>,
-    /// Prescribed velocity without rotation, 0 during deposition [m/s]; default free.
-    pub motion: Option<[Quantity<Velocity>; 3]>,
-    /// Whether mean position and force are recorded; default true with `motion`.
+    /// Without rotation, 0 during deposition [m/s]; default free.
+    pub prescribed_velocity: Option<[Quantity<Velocity>; 3]>,
+    /// Whether mean position and force are recorded; default true with `prescribed_velocity`.
     pub record: Option<bool>,
     /// Insertion during the run; default none.
     pub inlet: Option<super::flow::Inlet>,
@@ -63,9 +63,9 @@ pub struct Grains {
     /// Whether initial overlaps may exceed 10 % of a radius; default false.
     #[serde(default)]
     pub accept_overlap: bool,
-    /// Initial velocity [m/s]; default at rest; not with `motion`.
+    /// Initial velocity [m/s]; default at rest; not with `prescribed_velocity`.
     pub velocity: Option<[Quantity<Velocity>; 3]>,
-    /// Initial angular velocity [rad/s]; default none; not with `motion`.
+    /// Initial angular velocity [rad/s]; default none; not with `prescribed_velocity`.
     pub spin: Option<[Quantity<Spin>; 3]>,
 }
 
@@ -237,12 +237,12 @@ pub struct GrowthSource {
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Sizes {
     /// One size.
-    Equal {
+    Monodisperse {
         /// Size [m].
         size: Quantity<Length>,
     },
     /// Two sizes.
-    Two {
+    Bidisperse {
         /// Small size [m].
         small: Quantity<Length>,
         /// Large size [m].

@@ -10,7 +10,7 @@ use serde::Deserialize;
 pub struct Runout {
     /// Direction in plan `[x, y]`.
     pub direction: [f64; 2],
-    /// Names of sliding groups; default all without `motion`.
+    /// Names of sliding groups; default all without `prescribed_velocity`.
     pub groups: Option<Vec<String>>,
     /// Cell of the depth map [m]; default twice mean diameter; > 0.
     pub cell: Option<Quantity<Length>>,

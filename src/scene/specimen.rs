@@ -10,9 +10,9 @@ use serde::Deserialize;
 pub struct Specimen {
     /// Kind of test.
     pub test: SpecimenTest,
-    /// Recorded wall, or group with `motion`, at the lower end.
+    /// Recorded wall, or group with `prescribed_velocity`, at the lower end.
     pub bottom: String,
-    /// Recorded wall, or group with `motion`, at the upper end.
+    /// Recorded wall, or group with `prescribed_velocity`, at the upper end.
     pub top: String,
     /// Axis of loading; default `"z"`.
     #[serde(default)]
@@ -28,7 +28,7 @@ pub struct Specimen {
     pub sides: Vec<String>,
     /// Area of each side [m²]; > 0; with `sides`.
     pub side_area: Option<f64>,
-    /// Groups of the specimen; default all without `motion`.
+    /// Groups of the specimen; default all without `prescribed_velocity`.
     pub groups: Option<Vec<String>>,
     /// Peak stress fractions of the elastic constants; default `[0.2, 0.5]`; 0–1, rising.
     pub between: Option<[f64; 2]>,

@@ -2,6 +2,7 @@
 
 use super::file::{Norm, QuantityTable, Take};
 use crate::columns::{Definition, cycles};
+use crate::replaced;
 use crate::scene::{Document, Problem, SceneError};
 
 /// Resolved quantity.
@@ -150,7 +151,10 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
         let other = of_table.iter().find(|(_, given)| *given);
         return match other {
             Some((key, _)) => problem(key, Problem::conflict("`summary`")),
-            None => Ok(Source::Summary(path.clone())),
+            None => match replaced::result(path) {
+                Some(new) => fault("summary", &format!("{path:?}"), &format!("{new:?}")),
+                None => Ok(Source::Summary(path.clone())),
+            },
         };
     }
     let Some(file) = &table.file else {

@@ -4,6 +4,7 @@ use super::curve::Sample;
 use super::file::Take;
 use super::quantity::{Quantity, Source};
 use crate::read::source;
+use crate::replaced;
 use std::path::Path;
 
 /// Reads a quantity and its unit.
@@ -59,7 +60,9 @@ fn number_at(folder: &Path, path: &str) -> Result<f64, String> {
     let file = "summary.json";
     let bytes = source::bytes(&folder.join(file), source::LARGEST_TEXT)
         .map_err(|refusal| format!("{file}: {}", refusal.words(|e| e.to_string()).0))?;
-    let summary: serde_json::Value = serde_json::from_slice(&bytes).map_err(|e| format!("{file}: {e}"))?;
+    let mut summary: serde_json::Value =
+        serde_json::from_slice(&bytes).map_err(|e| format!("{file}: {e}"))?;
+    replaced::update(&mut summary);
     let mut value = &summary;
     for part in path.split('.') {
         let next = match value {

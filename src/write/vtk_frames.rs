@@ -16,12 +16,12 @@ pub const FORMAT: Format = Format {
     parts: &[Part::Solid, Part::Grains, Part::Chains, Part::Walls],
     folder: "frames",
     endings: &["vtu", "vtp"],
-    files: &["results.pvd", LOOK],
+    files: &["results.pvd", SCRIPT],
     begin,
 };
 
 /// Script that shows the results with PyVista.
-const LOOK: &str = "look.py";
+const SCRIPT: &str = "plot_frame.py";
 
 struct VtkFrames {
     dir: PathBuf,
@@ -29,8 +29,10 @@ struct VtkFrames {
 }
 
 fn begin(dir: &Path, mark: Option<&Mark>) -> Result<Box<dyn Writer>, WriteError> {
-    let look = dir.join(LOOK);
-    atomic::write(&look, |out| out.write_all(include_bytes!("look.py")).map_err(WriteError::io(&look)))?;
+    let script = dir.join(SCRIPT);
+    atomic::write(&script, |out| {
+        out.write_all(include_bytes!("plot_frame.py")).map_err(WriteError::io(&script))
+    })?;
     let file = dir.join("results.pvd");
     let series = match mark {
         None => Series::new(&file),

@@ -270,7 +270,7 @@ fn jumps(summary: &Path) -> (serde_json::Value, f64) {
 /// of 400).
 #[test]
 fn cycle_jumps_conserve_energy() {
-    for method in ["account", "grains"] {
+    for method in ["extrapolate", "displace"] {
         let folder = bed(method, JUMP);
         let set = [&format!("track.jump.method={method:?}")[..], "track.load.cycles=400"];
         go(&folder, "out", &set).good();
@@ -291,9 +291,9 @@ fn cycle_jumps_conserve_energy() {
         );
         assert!(energy < 5e-3, "{method}: energy error {energy}");
         let brought = jump["energy"].as_f64().unwrap();
-        assert_eq!(brought != 0.0, method == "grains", "{brought} J");
+        assert_eq!(brought != 0.0, method == "displace", "{brought} J");
         let summary = json(&folder.join("out/summary.json"));
-        assert_eq!(summary["energy"]["spent"]["jumps"].as_f64().unwrap(), brought);
+        assert_eq!(summary["energy"]["flows"]["jumps"].as_f64().unwrap(), brought);
         assert!(summary["momentum"]["angular"].as_f64().unwrap() < 1e-9, "{}", summary["momentum"]);
         assert!(jump["jumps"][0]["predicted_slope"].as_f64().unwrap() > 0.0);
     }
@@ -313,7 +313,7 @@ fn options(out: &Path, set: &[&str], threads: usize) -> Options {
 #[test]
 fn jumps_and_push_resume_bitwise() {
     let push = "\n[track.push]\ndirection = [1, 0]\nspeed = 0.1\ndisplacement = 0.002\nrest = 0.01\n";
-    for method in ["account", "grains"] {
+    for method in ["extrapolate", "displace"] {
         let folder = bed("resumed", &format!("{JUMP}{push}"));
         let scene = folder.join("scene.toml");
         let method = format!("track.jump.method={method:?}");

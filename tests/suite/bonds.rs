@@ -21,7 +21,7 @@ name = "foot"
 shape = "sphere"
 material = "rock"
 spheres = [[0, 0, 0, 0.01]]
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 
 [[grains]]
 name = "middle"
@@ -34,7 +34,7 @@ name = "head"
 shape = "sphere"
 material = "rock"
 spheres = [[0, 0, 0.08, 0.01]]
-motion = [0, 0, "5 mm/s"]
+prescribed_velocity = [0, 0, "5 mm/s"]
 
 {bond}
 [time]
@@ -215,7 +215,7 @@ fn rock_is_compressed() {
     let folder = Folder::new("rock");
     let out = folder.join("out");
     let scene = repository().join("inputs/geo/rock-ucs/scene.toml");
-    let set = ["time.end=0.003", "output.frames=0", "grains.2.motion=[0.0, 0.0, -0.02]"];
+    let set = ["time.end=0.003", "output.frames=0", "grains.2.prescribed_velocity=[0.0, 0.0, -0.02]"];
     run(&scene, &out, &set).good();
     assert_eq!(json(&out.join("summary.json"))["bonds"]["made"], 19480);
     let history = Table::read(&out.join("history.csv"));

@@ -65,6 +65,22 @@ fn wrong_usage_is_bad_input() {
     assert!(!folder.join("results").exists());
 }
 
+#[test]
+fn replaced_options_name_the_new_one() {
+    for (arguments, old, new) in [
+        (["render", "results", "--least", "0.1"], "--least", "--min-force"),
+        (["explain", "scene.toml", "--rehearse", "1"], "--rehearse", "--trial"),
+    ] {
+        let outcome = trackbed(arguments);
+        let line = format!("error: {}: found `{old}`, expected `{new}`\n", arguments[0]);
+        assert_eq!((outcome.code, outcome.stderr.as_str()), (2, line.as_str()));
+    }
+    let together = trackbed(["render", "results", "--least=0.1"]);
+    assert!(together.stderr.contains("found `--least`, expected `--min-force`"), "{together:?}");
+    let other = trackbed(["explain", "scene.toml", "--least", "1"]);
+    assert!(other.code == 2 && !other.stderr.contains("--min-force`"), "{other:?}");
+}
+
 fn scenes(dir: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(dir).unwrap() {
@@ -106,7 +122,7 @@ fn explain_reports_every_shipped_scene() {
     let scenes = inputs();
     assert!(scenes.len() >= 35, "{scenes:?}");
     for scene in scenes {
-        let words = [Path::new("explain"), &scene, Path::new("--rehearse"), Path::new("0.03")];
+        let words = [Path::new("explain"), &scene, Path::new("--trial"), Path::new("0.03")];
         let explained = trackbed(words).good().stdout;
         assert!(explained.contains("\n  stages: "), "{scene:?}: {explained}");
         assert!(explained.contains(", from a trial run: "), "{scene:?}: {explained}");
@@ -124,7 +140,7 @@ fn explain_survives_materials_beyond_reason() {
     let scene = repository().join("inputs/grains/column.toml").display().to_string();
     for stiffness in ["1e-300", "1e300"] {
         let set = format!("material.0.stiffness={stiffness}");
-        let outcome = trackbed(["explain", &scene, "--set", &set, "--rehearse", "0.2"]);
+        let outcome = trackbed(["explain", &scene, "--set", &set, "--trial", "0.2"]);
         assert!(!outcome.stderr.contains("panicked"), "{outcome:?}");
         assert!(outcome.code == 2 || outcome.stdout.contains("stages: "), "{outcome:?}");
     }
@@ -142,7 +158,7 @@ fn a_short_run_is_rehearsed_whole() {
         let outcome = Command::new(program).args(&words).env("TMPDIR", folder.path()).output().unwrap();
         serde_json::from_slice(&outcome.stdout).unwrap()
     };
-    let time = &explain(&["--rehearse", "60"])["time"];
+    let time = &explain(&["--trial", "60"])["time"];
     assert_eq!(time["threads"], 1);
     let stages = time["stages"].as_array().unwrap();
     assert!(stages.iter().all(|s| s["known"] == "measured"), "{time}");
@@ -150,19 +166,15 @@ fn a_short_run_is_rehearsed_whole() {
     let sum: f64 = stages.iter().map(|s| s["seconds"].as_f64().unwrap()).sum();
     assert!(sum > 0.0 && (time["seconds"].as_f64().unwrap() - sum).abs() < 1e-9 * sum, "{time}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "the folder of the rehearsal is removed");
-    assert!(explain(&["--rehearse", "0"]).get("time").is_none());
-    let refused = trackbed(["explain", &scene, "--rehearse=-1"]);
-    assert!(
-        refused.code == 2 && refused.stderr.contains("--rehearse: found -1, expected 0 to"),
-        "{refused:?}"
-    );
+    assert!(explain(&["--trial", "0"]).get("time").is_none());
+    let refused = trackbed(["explain", &scene, "--trial=-1"]);
+    assert!(refused.code == 2 && refused.stderr.contains("--trial: found -1, expected 0 to"), "{refused:?}");
 }
 
 #[test]
 fn long_run_is_estimated_from_trial() {
     let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
-    let words =
-        ["explain", &scene, "--json", "--threads", "1", "--rehearse", "0.2", "--set", "time.end=1000"];
+    let words = ["explain", &scene, "--json", "--threads", "1", "--trial", "0.2", "--set", "time.end=1000"];
     let report: serde_json::Value = serde_json::from_str(&trackbed(words).good().stdout).unwrap();
     let last = report["time"]["stages"].as_array().unwrap().last().unwrap();
     assert_eq!((last["name"].as_str(), last["known"].as_str()), (Some("run"), Some("expected")), "{report}");

@@ -23,7 +23,7 @@ fn two_laws_meet_in_one_scene() {
     let last = |name: &str| *history.column(name).last().unwrap();
     let spent = last("dissipated_dashpot") + last("dissipated_friction");
     assert!(spent > 0.5 && last("energy_error").abs() < 5e-3 * spent, "{} of {spent}", last("energy_error"));
-    let text = trackbed(["explain", &scene.display().to_string(), "--rehearse", "0"]).good().stdout;
+    let text = trackbed(["explain", &scene.display().to_string(), "--trial", "0"]).good().stdout;
     assert!(text.contains("contact kernels: Hertz-Mindlin and linear spring-dashpot"), "{text}");
 }
 
@@ -154,7 +154,7 @@ fn drag_matches_closed_form() {
     }
     assert!(seen > 100);
     let summary = json(&folder.join("out/summary.json"));
-    assert!(summary["energy"]["spent"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
+    assert!(summary["energy"]["flows"]["applied_work"].as_f64().unwrap() < -1.0, "{}", summary["energy"]);
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 1e-9);
     assert!(sources(&summary).iter().any(|s| s.contains("Haider")));
 }

@@ -61,8 +61,8 @@ fn clumps_and_sleeper_on_an_embankment() {
     let summary = json(&folder.join("2/summary.json"));
     assert!(summary["model"]["spheres"].as_u64().unwrap() >= 2500, "{}", summary["model"]);
     // Solid results depend on the grains.
-    assert!(summary["energy"]["spent"]["surface_on_grains"].as_f64().unwrap() != 0.0);
-    assert!(summary["energy"]["spent"]["dashpot"].as_f64().unwrap() > 0.0);
+    assert!(summary["energy"]["flows"]["surface_on_grains"].as_f64().unwrap() != 0.0);
+    assert!(summary["energy"]["flows"]["dashpot"].as_f64().unwrap() > 0.0);
 }
 
 #[test]

@@ -27,7 +27,7 @@ name = "pile"
 shape = "polyhedron"
 material = "ice"
 frustum = { from = [0, 0, 0], to = [0, 0, 2], radii = [0.8, 0.8] }
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 
 [time]
 end = "1.5 s"
@@ -234,7 +234,7 @@ fn a_held_frustum_carries_a_heap() {
     folder.write("heap.csv", "-0.075,0,0.05,1,0,0,0,1,0\n0.075,0,0.05,1,0,0,0,1,0\n0,0,0.15,1,0,0,0,1,0\n");
     let text = "[[material]]\nname = \"stone\"\ndensity = 2650\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.2\n\n\
          [[grains]]\nname = \"heap\"\nshape = \"polyhedron\"\nmaterial = \"stone\"\nlibrary = \"library.toml\"\npacking = \"heap.csv\"\n\n\
-         [[grains]]\nname = \"cone\"\nshape = \"polyhedron\"\nmaterial = \"stone\"\nmotion = [0, 0, 0]\n\
+         [[grains]]\nname = \"cone\"\nshape = \"polyhedron\"\nmaterial = \"stone\"\nprescribed_velocity = [0, 0, 0]\n\
          frustum = { from = [0, 0, -0.3], to = [0, 0, 0], radii = [0.5, 0.3], sides = 16, radius = \"10 mm\" }\n\n\
          [deposition]\nmax_time = \"2 s\"\nsettled_speed = \"0.1 mm/s\"\nlocal_damping = 0.3\n\n\
          [time]\nend = \"20 ms\"\n\n[output]\nframes = 1\npacking = true\n";

@@ -108,9 +108,9 @@ fn rain_in_steady_flow() {
     let later = [float(&flow["later_rate_in"]), float(&flow["later_rate_out"])];
     println!("{later:?} {} {}", summary["energy"], summary["momentum"]);
     later.iter().for_each(|r| assert!((r / 0.3 - 1.0).abs() < 0.03, "{later:?}"));
-    assert!(float(&flow["inlets"][0]["owed"]) < largest);
-    assert_eq!(flow["came_in"]["grains"], flow["inlets"][0]["amount"]["grains"]);
-    assert_eq!(flow["went_out"]["mass"], flow["outlets"][0]["amount"]["mass"]);
+    assert!(float(&flow["inlets"][0]["backlog"]) < largest);
+    assert_eq!(flow["inserted"]["grains"], flow["inlets"][0]["amount"]["grains"]);
+    assert_eq!(flow["removed"]["mass"], flow["outlets"][0]["amount"]["mass"]);
     assert_eq!((&flow["at_start"]["grains"], &flow["outlets"][0]["name"]), (&Value::from(0), &"foot".into()));
     // Sizes are mixed: the mean mass is constant over time.
     let grains = history.column("grains_in");
@@ -122,8 +122,8 @@ fn rain_in_steady_flow() {
     assert!(float(&summary["momentum"]["angular"]) < 1e-11, "{}", summary["momentum"]);
     // Potential and kinetic energy of the inserted minus the removed grains, to about 1 %.
     let height = 0.95 * G + 0.5 * 1.05;
-    let brought = float(&flow["came_in"]["mass"]) * height;
-    let removed = float(&flow["went_out"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
+    let brought = float(&flow["inserted"]["mass"]) * height;
+    let removed = float(&flow["removed"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
     let energy = float(&flow["energy_in"]);
     assert!((energy - (brought - removed)).abs() < 0.05 * brought, "{energy} {brought} {removed}");
     // One grain may be inserted or removed between a frame and a row.
@@ -191,7 +191,7 @@ fn recycling_limits_backlog_rate() {
         "grains.0.lattice={ kind = \"loose\", size = \"8 mm\", low = [0.02, 0.02, 0.5], counts = [4, 3, 1] }",
         "grains.0.inlet.rate=",
         "grains.0.inlet.grains_per_second=100",
-        "outlet.0.again=true",
+        "outlet.0.recycle=true",
         "output.history_interval=0.001",
         "time.end=0.8",
     ];
@@ -209,7 +209,7 @@ fn recycling_limits_backlog_rate() {
     }
     let summary = json(&out.join("summary.json"));
     let inlet = &summary["flow"]["inlets"][0];
-    assert!(come.last().unwrap() > &20.0 && inlet["without_room"] == 0, "{inlet}");
+    assert!(come.last().unwrap() > &20.0 && inlet["without_free_position"] == 0, "{inlet}");
     assert!(inlet["without_grains"].as_u64().unwrap() > 100, "{inlet}");
     let notes = summary["warnings"].to_string();
     assert!(
@@ -234,12 +234,15 @@ fn no_room_at_the_inlet() {
     adds_up(&out);
     let flow = &json(&out.join("summary.json"))["flow"];
     let inlet = &flow["inlets"][0];
-    let (requested, owed) = (float(&inlet["asked"]), float(&inlet["owed"]));
+    let (requested, owed) = (float(&inlet["requested"]), float(&inlet["backlog"]));
     assert!((requested - 0.15).abs() < 1e-4 && owed > 0.05 && owed < requested, "{inlet}");
     assert!((float(&inlet["amount"]["mass"]) - (requested - owed)).abs() < 1e-12, "{inlet}");
-    assert!(inlet["without_room"].as_u64().unwrap() > 100 && inlet["without_grains"] == 0, "{inlet}");
-    let waiting = inlet["waiting"].as_u64().unwrap();
-    assert_eq!(waiting + flow["came_in"]["grains"].as_u64().unwrap(), 600);
+    assert!(
+        inlet["without_free_position"].as_u64().unwrap() > 100 && inlet["without_grains"] == 0,
+        "{inlet}"
+    );
+    let waiting = inlet["queued"].as_u64().unwrap();
+    assert_eq!(waiting + flow["inserted"]["grains"].as_u64().unwrap(), 600);
 }
 
 /// Grains that cross a thin outlet between two checks are reported.
@@ -301,7 +304,7 @@ fn chute_is_identical_across_threads() {
     let folder = same_bits(&scene, &set, &["history.csv", "frames/grains_00002.vtp"]);
     let summary = json(&folder.join("2/summary.json"));
     assert!(summary["model"]["spheres"].as_u64().unwrap() >= 2500, "{}", summary["model"]);
-    assert!(summary["flow"]["went_out"]["grains"].as_u64().unwrap() > 10, "{}", summary["flow"]);
+    assert!(summary["flow"]["removed"]["grains"].as_u64().unwrap() > 10, "{}", summary["flow"]);
 }
 
 #[test]
@@ -319,7 +322,7 @@ fn a_hopper_that_is_interrupted() {
     run(&scene, folder.path(), &set).good();
     adds_up(folder.path());
     let flow = &json(&folder.join("summary.json"))["flow"];
-    assert!(flow["came_in"]["grains"].as_u64().unwrap() > 50, "{flow}");
+    assert!(flow["inserted"]["grains"].as_u64().unwrap() > 50, "{flow}");
 }
 
 #[test]
@@ -354,13 +357,13 @@ inlet = { box = [[0.2, 0.2, 0.5], [1.8, 1.8, 1.0]], grains_per_second = 150, vel
 [[outlet]]
 box = [[-1, -1, -1], [3, 3, 0.085]]
 groups = ["rain"]
-again = true
+recycle = true
 
 [[outlet]]
 point = [1.7, 0, 0]
 normal = [1, 0, 0]
 groups = ["rain"]
-again = true
+recycle = true
 
 "#;
     let text = format!("{}{flow}{}", &COUPLED[..from], &COUPLED[to..]);
@@ -376,7 +379,7 @@ fn rain_on_a_solid() {
     let summary = json(&out.join("summary.json"));
     let flow = &summary["flow"];
     println!("{flow} {} {}", summary["energy"], summary["coupling"]);
-    assert!(flow["came_in"]["grains"].as_u64().unwrap() > 30, "{flow}");
+    assert!(flow["inserted"]["grains"].as_u64().unwrap() > 30, "{flow}");
     assert!(flow["outlets"][0]["amount"]["grains"].as_u64().unwrap() > 5, "{flow}");
     assert!(float(&summary["energy"]["relative_error"]) < 0.02, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
@@ -424,7 +427,7 @@ fn periodic_insertion_above_bed() {
     let summary = json(&out.join("summary.json"));
     let flow = &summary["flow"];
     println!("{flow} {}", summary["energy"]);
-    assert!(flow["went_out"]["grains"].as_u64().unwrap() > 10, "{flow}");
+    assert!(flow["removed"]["grains"].as_u64().unwrap() > 10, "{flow}");
     assert!(float(&summary["energy"]["relative_error"]) < 0.02, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
     assert!(float(&summary["momentum"]["angular"]) < 1e-10, "{}", summary["momentum"]);
@@ -452,7 +455,7 @@ inlet = { box = [[0.1, 0.1, 0.6], [1.9, 1.9, 1.0]], grains_per_second = 250, vel
 [[outlet]]
 point = [1.7, 0, 0]
 normal = [1, 0, 0]
-again = true
+recycle = true
 groups = ["rain"]
 
 [deposition]
@@ -468,8 +471,8 @@ max_time = 0.03
     assert_eq!(history.column("grains_present")[0], 5.0);
     let summary = json(&out.join("summary.json"));
     println!("{} {} {}", summary["flow"], summary["energy"]["relative_error"], summary["momentum"]);
-    assert!(summary["flow"]["came_in"]["grains"].as_u64().unwrap() > 15, "{}", summary["flow"]);
-    assert!(summary["flow"]["went_out"]["grains"].as_u64().unwrap() > 0, "{}", summary["flow"]);
+    assert!(summary["flow"]["inserted"]["grains"].as_u64().unwrap() > 15, "{}", summary["flow"]);
+    assert!(summary["flow"]["removed"]["grains"].as_u64().unwrap() > 0, "{}", summary["flow"]);
     assert!(float(&summary["energy"]["relative_error"]) < 0.05, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-10, "{}", summary["momentum"]);
 }

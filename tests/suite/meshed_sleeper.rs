@@ -366,8 +366,8 @@ fn late_interface_dashpots_give_warning() {
         assert!(warnings.contains("coupling: interface dashpot error "), "{warnings}");
     };
     remarked(&summary);
-    let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
-    assert!(spent("dashpot_lag") < -spent("dashpot"), "{}", summary["energy"]);
+    let spent = |key: &str| summary["energy"]["flows"][key].as_f64().unwrap();
+    assert!(spent("interface_dashpot_error") < -spent("dashpot"), "{}", summary["energy"]);
     assert_eq!(summary["verdict"]["outcome"], "warned");
     let longer =
         super::support::run(&folder.join("scene.toml"), &folder.join("out"), &["coupling.substeps=60"]);

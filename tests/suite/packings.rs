@@ -76,7 +76,7 @@ fn scattered_clumps_are_read_back() {
     let library = repository().join("inputs/track/cyclic/stones.toml").display().to_string();
     let group = format!(
         "shape = \"clump\"\nlibrary = \"{library}\"\nsizes = {{ law = \"normal\", mean = \"30 mm\", deviation = \"4 mm\", \
-         low = \"20 mm\", high = \"40 mm\" }}\nregion = {{ box = [[0, 0, 0], [0.3, 0.3, 0.3]] }}\nconcentration = 0.12\nseed = 8"
+         low = \"20 mm\", high = \"40 mm\" }}\nregion = {{ box = [[0, 0, 0], [0.3, 0.3, 0.3]] }}\nsolid_fraction = 0.12\nseed = 8"
     );
     let measure = "[[measure]]\nname = \"all\"\nbox = [[0, 0, 0], [0.3, 0.3, 0.3]]\n";
     let summary = ran(&folder, &scene(&group, measure), "first");
@@ -104,9 +104,9 @@ fn containers_hold_their_grains() {
         "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nf 1 3 5\nf 2 3 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\n\
          f 4 2 6\nf 1 4 6\n",
     );
-    let sizes = "shape = \"sphere\"\nsizes = { law = \"two\", small = \"10 mm\", large = \"20 mm\", large_share = 0.5 }\n";
+    let sizes = "shape = \"sphere\"\nsizes = { law = \"bidisperse\", small = \"10 mm\", large = \"20 mm\", large_share = 0.5 }\n";
     let rock = format!(
-        "{sizes}region = {{ surface = \"rock.obj\", scale = 0.2, shift = [1, 0, 0] }}\nconcentration = 0.2"
+        "{sizes}region = {{ surface = \"rock.obj\", scale = 0.2, shift = [1, 0, 0] }}\nsolid_fraction = 0.2"
     );
     ran(&folder, &scene(&rock, ""), "rock");
     let grains = rows(&folder.join("rock/packing.csv"));
@@ -129,7 +129,7 @@ fn containers_hold_their_grains() {
 #[test]
 fn growth_meets_the_porosity() {
     let folder = Folder::new("growth");
-    let group = "shape = \"sphere\"\nsizes = { law = \"equal\", size = \"20 mm\" }\nregion = { box = [[0, 0, 0], [0.2, 0.2, 0.16]] }\n\
+    let group = "shape = \"sphere\"\nsizes = { law = \"monodisperse\", size = \"20 mm\" }\nregion = { box = [[0, 0, 0], [0.2, 0.2, 0.16]] }\n\
                  growth = { porosity = 0.41 }";
     let measure = "[[measure]]\nname = \"all\"\nbox = [[0, 0, 0], [0.2, 0.2, 0.16]]\n";
     let summary = ran(&folder, &scene(group, measure), "out");

@@ -314,7 +314,7 @@ inlet = { box = [[0.0, 0.0, 0.3], [0.2, 0.2, 0.4]], grains_per_second = 20, velo
 name = "end"
 point = [0.35, 0.0, 0.0]
 normal = [1.0, 0.0, 0.0]
-again = true
+recycle = true
 
 [[walls]]
 name = "belt"
@@ -345,7 +345,7 @@ fn polyhedra_and_disks_come_and_go() {
     let results = same_bits(&scene, &[], &["history.csv", "frames/walls_00002.vtp"]);
     let summary = json(&results.join("1/summary.json"));
     let number = |path: &str| summary.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN);
-    let (came, went) = (number("/flow/came_in/grains"), number("/flow/went_out/grains"));
+    let (came, went) = (number("/flow/inserted/grains"), number("/flow/removed/grains"));
     let (stones, plates) = (number("/flow/inlets/0/amount/grains"), number("/flow/inlets/1/amount/grains"));
     let (energy, momentum) = (number("/energy/relative_error"), number("/momentum/linear"));
     println!(

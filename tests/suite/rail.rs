@@ -52,7 +52,7 @@ fn a_bogie_on_a_beam() {
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         assert!(energy < 1e-5, "{energy} at {speed}");
         // Pad work is equal on both sides.
-        let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
+        let spent = |key: &str| summary["energy"]["flows"][key].as_f64().unwrap();
         let (seats, pads) = (spent("applied_work"), spent("pads_on_sleepers"));
         assert!((seats - pads).abs() < 1e-10 * seats.abs(), "{seats} {pads}");
         let time = history.column("time");
@@ -146,7 +146,7 @@ fn rails_restore_state_in_iterations() {
         let summary = json(&out.join("summary.json"));
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         let passes = summary["coupling"]["passes"]["passes"].as_f64().unwrap();
-        let spent = |key: &str| summary["energy"]["spent"][key].as_f64().unwrap();
+        let spent = |key: &str| summary["energy"]["flows"][key].as_f64().unwrap();
         let sides = [spent("applied_work"), spent("pads_on_sleepers")];
         println!("{scheme}: {passes} passes, energy {energy:.1e}, pads {sides:?} J");
         assert!(energy < 5e-3, "{energy}");

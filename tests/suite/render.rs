@@ -156,7 +156,7 @@ fn chain_thickness_follows_force() {
     assert!((runs[1].0.abs_diff(runs[0].0) as f64 - 0.2 * scale).abs() <= 1.5);
     let [r, g, b] = seen.at(640, runs[1].0);
     assert!(r > 180 && g > 150 && b < 130, "{r} {g} {b}");
-    let strong = picture(&folder, &[&size[..], &["--least", "0.5"]].concat());
+    let strong = picture(&folder, &[&size[..], &["--min-force", "0.5"]].concat());
     assert_eq!(strong.runs(640).len(), 1);
     assert_eq!(picture(&folder, &[&size[..], &["--hide", "chains"]].concat()).covered(), None);
 }

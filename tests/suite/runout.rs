@@ -196,9 +196,9 @@ fn stiffnesses_spread() {
         "scene.toml",
         &format!(
             "gravity = [0, 0, 0]\n[[material]]\nname = \"rock\"\ndensity = 2600\nstiffness = 1e6\nfriction = 0.5\nrestitution = 0.5\n\
-             [[grains]]\nname = \"foot\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nmotion = [0, 0, 0]\n\
+             [[grains]]\nname = \"foot\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nprescribed_velocity = [0, 0, 0]\n\
              [[grains]]\nname = \"row\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\n\
-             [[grains]]\nname = \"head\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nmotion = [0, 0, 0.01]\nrecord = true\n\
+             [[grains]]\nname = \"head\"\nshape = \"sphere\"\nmaterial = \"rock\"\nspheres = [{}]\nprescribed_velocity = [0, 0, 0.01]\nrecord = true\n\
              [[bond]]\nname = \"b\"\ngap = 1e-4\ndamping = 1.0\n[bond.parallel]\nyoung = 1e9\n\
              [time]\nend = 0.03\n[output]\nframes = 0\n",
             ends[0],

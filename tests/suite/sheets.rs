@@ -26,7 +26,7 @@ name = "pile"
 shape = "polyhedron"
 material = "ice"
 frustum = { from = [0, 0, -1], to = [0, 0, 1], radii = [0.98, 0.98] }
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 
 [[bond]]
 name = "level ice"

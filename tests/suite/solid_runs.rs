@@ -133,7 +133,7 @@ fn dynamic_plastic_column_conserves_energy() {
     run(&scene, &folder.join("out"), &set).good();
     let summary = json(&folder.join("out/summary.json"));
     let energy = &summary["energy"];
-    let spent = |key: &str| energy["spent"][key].as_f64().unwrap();
+    let spent = |key: &str| energy["flows"][key].as_f64().unwrap();
     let stored = |key: &str| energy["end"][key].as_f64().unwrap();
     let work = spent("solid_load_work");
     let stored = stored("solid_kinetic") + stored("solid_strain");
@@ -245,7 +245,7 @@ fn grains_press_into_weak_soil() {
         let summary = json(&folder.join(&format!("{out}/summary.json")));
         let energy = &summary["energy"];
         let relative = energy["relative_error"].as_f64().unwrap();
-        let plastic = energy["spent"]["plastic"].as_f64().unwrap();
+        let plastic = energy["flows"]["plastic"].as_f64().unwrap();
         println!("{out}: plastic {plastic:.3} J of {:.3} J, error {:.4} %", energy["work"], 100.0 * relative);
         assert!(relative < 0.01);
         assert_eq!(plastic > 1.0, out == "plastic");

@@ -81,7 +81,7 @@ fn slope_matches_published_factor() {
     ];
     run(&shipped("solid/slope.toml"), &folder.join("out"), &set).good();
     let safety = &json(&folder.join("out/summary.json"))["safety"];
-    let [stands, fails] = ["stands_at", "fails_at"].map(|k| safety[k].as_f64().unwrap());
+    let [stands, fails] = ["stable_at", "unstable_at"].map(|k| safety[k].as_f64().unwrap());
     println!("stable at {stands:.4}, unstable at {fails:.4}");
     assert!(stands < fails && fails - stands <= 0.05);
     near("factor of safety", 0.5 * (stands + fails), 1.380, 0.05);
@@ -248,10 +248,10 @@ fn wave_leaves_through_the_absorbing_base() {
     let (folder, history) = finished("verify/wave_column.toml", &[]);
     let energy = &json(&folder.join("out/summary.json"))["energy"];
     let of = |part: &str, key: &str| energy[part][key].as_f64().unwrap();
-    let left = (of("end", "solid_kinetic") + of("end", "solid_strain")) / of("spent", "solid_load_work");
-    println!("energy left {left:.1e} of the work, absorbed {:.5} J", of("spent", "absorbed"));
+    let left = (of("end", "solid_kinetic") + of("end", "solid_strain")) / of("flows", "solid_load_work");
+    println!("energy left {left:.1e} of the work, absorbed {:.5} J", of("flows", "absorbed"));
     assert!(left < 0.01);
-    near("absorbed", of("spent", "absorbed"), of("spent", "solid_load_work"), 1e-3);
+    near("absorbed", of("flows", "absorbed"), of("flows", "solid_load_work"), 1e-3);
     let modulus = 50e6 * 0.7 / (1.3 * 0.4);
     let exact = -10e3 * 0.5 / 40.0 / (2000.0_f64 * modulus).sqrt();
     for probe in ["top_u_z", "middle_u_z"] {
@@ -318,7 +318,7 @@ fn deflection_runs_along_with_the_axle() {
     assert!(six.2.abs() < 0.1 * six.1.abs(), "what stays: {} of {}", six.2, six.1);
     let energy = &json(&folder.join("out/summary.json"))["energy"];
     for sink in ["absorbed", "rayleigh"] {
-        assert!(energy["spent"][sink].as_f64().unwrap() > 0.0, "{sink}");
+        assert!(energy["flows"][sink].as_f64().unwrap() > 0.0, "{sink}");
     }
     let text = std::fs::read_to_string(shipped("solid/moving_load.toml")).unwrap();
     let line = |start: &str| text.lines().find(|l| l.starts_with(start)).unwrap();

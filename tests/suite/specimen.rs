@@ -17,9 +17,9 @@ fn column(bond: &str) -> String {
          {}{}{}[[bond]]\nname = \"b\"\ngap = 1e-4\ndamping = 0.7\n[bond.parallel]\nyoung = 1e9\n{bond}\n\
          [specimen]\ntest = \"compression\"\nbottom = \"foot\"\ntop = \"head\"\nlength = 0.22\narea = 0.0036\n\
          [time]\nend = 0.02\n[output]\nframes = 1\nhistory_interval = 1e-4\n",
-        layer("foot", 0.0, 1, "motion = [0, 0, 0]\nrecord = true"),
+        layer("foot", 0.0, 1, "prescribed_velocity = [0, 0, 0]\nrecord = true"),
         layer("rock", 0.02, 10, ""),
-        layer("head", 0.22, 1, "motion = [0, 0, -0.01]\nrecord = true"),
+        layer("head", 0.22, 1, "prescribed_velocity = [0, 0, -0.01]\nrecord = true"),
     )
 }
 
@@ -54,7 +54,7 @@ fn a_column_that_breaks_has_events() {
     let folder = Folder::new("breaks");
     let bond = "tensile_strength = 2e5\nshear_strength = 4e5";
     let file = folder.write("scene.toml", &column(bond));
-    let set = ["grains.head.motion=[0, 0, 0.01]", "events={ distance = 0.03, time = 1e-3 }"];
+    let set = ["grains.head.prescribed_velocity=[0, 0, 0.01]", "events={ distance = 0.03, time = 1e-3 }"];
     run(&file, &folder.join("r"), &set).good();
     let summary = json(&folder.join("r/summary.json"));
     let (bonds, events) = (&summary["bonds"], &summary["bonds"]["events"]);

@@ -101,14 +101,15 @@ fn coupled_energy_adds_up() {
     run(&folder.join("scene.toml"), &folder.join("out"), &SETTLED).good();
     let summary = json(&folder.join("out/summary.json"));
     let energy = &summary["energy"];
-    let keys = ["start", "end", "spent", "error", "work", "turned_over", "relative_error", "largest_error"];
+    let keys =
+        ["start", "end", "flows", "error", "work", "reference_energy", "relative_error", "largest_error"];
     expect_keys(energy, &[&keys[..], &["largest_relative_error"]].concat());
     let relative = energy["relative_error"].as_f64().unwrap();
     println!("energy error {:.3} % of the work of {} J", 100.0 * relative, energy["work"]);
     assert!(relative < 0.01, "{energy:#}");
 
     let total = |k: &str| energy[k].as_object().unwrap().values().map(|v| v.as_f64().unwrap()).sum::<f64>();
-    let spent = |k: &str| energy["spent"][k].as_f64().unwrap();
+    let spent = |k: &str| energy["flows"][k].as_f64().unwrap();
     let dissipated: f64 =
         ["dashpot", "friction", "local_damping", "rayleigh", "numerical"].map(spent).iter().sum();
     let work: f64 = ["applied_work", "wall_work", "solid_load_work"].map(spent).iter().sum();

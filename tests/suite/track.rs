@@ -30,7 +30,7 @@ restitution = 0.2
 name = "balls"
 shape = "sphere"
 material = "steel"
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 spheres = [{}]
 
 [track.sleeper]

@@ -56,10 +56,10 @@ fn a_small_train_on_an_embankment() {
     }
     assert!(summary["newton"]["iterations"].as_u64().unwrap() > 0);
     let energy = &summary["energy"];
-    assert!(energy["spent"]["plastic"].as_f64().unwrap() > 0.0, "{energy}");
-    assert!(energy["spent"]["pads"].as_f64().unwrap() > 0.0, "{energy}");
+    assert!(energy["flows"]["plastic"].as_f64().unwrap() > 0.0, "{energy}");
+    assert!(energy["flows"]["pads"].as_f64().unwrap() > 0.0, "{energy}");
     assert!(energy["relative_error"].as_f64().unwrap() < 0.02, "{energy}");
-    assert!(energy["spent"]["wheels"].as_f64().unwrap() > 0.0);
+    assert!(energy["flows"]["wheels"].as_f64().unwrap() > 0.0);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn breakage_and_plasticity_resume_bitwise() {
     let summary = json(&whole.join("summary.json"));
     let count = |key: &str| summary["bonds"][key].as_u64().unwrap();
     assert!(count("broken_by_tension") + count("broken_by_shear") > 0, "{}", summary["bonds"]);
-    assert!(summary["energy"]["spent"]["plastic"].as_f64().unwrap() > 0.0);
+    assert!(summary["energy"]["flows"]["plastic"].as_f64().unwrap() > 0.0);
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 0.02, "{}", summary["energy"]);
     let windows = summary["stages"].as_array().unwrap().last().unwrap()["solid_steps"].as_u64().unwrap();
     let [settled, tamped] = [0, 1].map(|k| summary["stages"][k]["grain_steps"].as_u64().unwrap());

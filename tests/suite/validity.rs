@@ -241,7 +241,7 @@ name = "w"
 shape = "sphere"
 material = "m"
 spheres = [[0, 0, 0, 0.01]]
-motion = [0, 0, 0]
+prescribed_velocity = [0, 0, 0]
 [[grains]]
 name = "b"
 shape = "sphere"

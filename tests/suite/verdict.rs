@@ -5,8 +5,8 @@ use serde_json::Value;
 use std::fs;
 
 fn judged<'a>(summary: &'a Value, what: &str) -> &'a Value {
-    let all = summary["verdict"]["judged"].as_array().expect("accounts");
-    let named = |j: &&Value| j["what"].as_str().is_some_and(|w| w.starts_with(what));
+    let all = summary["verdict"]["checks"].as_array().expect("accounts");
+    let named = |j: &&Value| j["name"].as_str().is_some_and(|w| w.starts_with(what));
     all.iter().find(named).unwrap_or_else(|| panic!("{what} in {all:#?}"))
 }
 

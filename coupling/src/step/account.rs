@@ -19,7 +19,8 @@ pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step
     let rate = |i: usize| work.rate[i];
     let found = |i: usize| (u[i] - before[i]) / model.window();
     let last = |i: usize| if state.rate.is_empty() { work.rate[i] } else { state.rate[i] };
-    state.spent.dashpot_lag += work.transfer.dashpot_lag(&work.surface, rate, last, found);
+    state.spent.interface_dashpot_error +=
+        work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
         state.rate.clear();
@@ -52,8 +53,8 @@ pub fn spent(state: &State) -> Spent {
     let solid = &state.spent;
     let grains = spent_by_grains(&state.grains);
     Spent {
-        dashpot: grains.dashpot + solid.dashpot_lag,
-        dashpot_lag: solid.dashpot_lag,
+        dashpot: grains.dashpot + solid.interface_dashpot_error,
+        interface_dashpot_error: solid.interface_dashpot_error,
         solid_load_work: solid.solid_load_work,
         rayleigh: solid.rayleigh,
         absorbed: solid.absorbed,

@@ -3,9 +3,9 @@
 //! Rounds of a simulated *stretch*, comparison with the predicted slope b = ds/d(ln N), and a jump. Relative
 //! to N it doubles if the last error is within the tolerance, else halves.
 //!
-//! * `account`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error:
+//! * `extrapolate`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error:
 //!   ln(N/n) times two standard errors of b plus the error of earlier predictions.
-//! * `grains`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles do
+//! * `displace`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles do
 //!   not count. Errors after each stretch are summed. Contact springs are kept; the next step rotates and
 //!   caps them.
 //!
@@ -24,7 +24,7 @@ use trackbed_dem::integrate::rotation;
 
 /// First jump over the largest one.
 const START: f64 = 0.25;
-/// Smallest stretch of `account` over simulated cycles.
+/// Smallest stretch of `extrapolate` over simulated cycles.
 const STRETCH: f64 = 0.1;
 /// First cycle of the slope over the last.
 const WINDOW: f64 = 0.25;
@@ -59,16 +59,16 @@ pub struct JumpRecord {
     pub predicted_slope: f64,
     /// Slope of the next stretch [m].
     pub measured_slope: Option<f64>,
-    /// Estimated settlement error [m]: of this jump (`grains`), or of all so far (`account`).
+    /// Estimated settlement error [m]: of this jump (`displace`), or of all so far (`extrapolate`).
     pub error: f64,
-    /// Mean relative change of overlaps; `grains` only.
+    /// Mean relative change of overlaps; `displace` only.
     pub overlap_change: Option<f64>,
 }
 
 /// Results of a run with jumps.
 #[derive(Clone, Debug, Serialize)]
 pub struct JumpSummary {
-    /// `"account"` or `"grains"`.
+    /// `"extrapolate"` or `"displace"`.
     pub method: &'static str,
     /// Simulated cycles.
     pub simulated: u32,
@@ -256,7 +256,7 @@ impl Jumper {
     pub fn summary(&self, plan: &JumpPlan, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
         JumpSummary {
-            method: if plan.grains { "grains" } else { "account" },
+            method: if plan.grains { "displace" } else { "extrapolate" },
             simulated: cycles.simulated(),
             skipped: cycles.number() - cycles.simulated(),
             error_estimate: cycles.jump_error,

@@ -285,7 +285,7 @@ impl<'a> Track<'a> {
             spent.wheels += energy.wheels;
             spent.pads_on_sleepers += energy.on_seats;
             spent.pads += energy.pads;
-            spent.track_beyond += energy.beyond;
+            spent.far_field_track += energy.beyond;
         }
     }
 

@@ -206,8 +206,8 @@ impl Maker<'_> {
         let most = self.diameter * d.number("DMAX/D", |r| r >= 1.0, "1 or more")?;
         let least = self.diameter * d.number("DMIN/D", |r| r > 0.0 && r <= 1.0, "above 0, at most 1")?;
         let sizes = match d.number("IPATTERN", |p| (0.0..=4.0).contains(&p) && p.fract() == 0.0, "0 to 4")? {
-            0.0 => format!("law = \"equal\", size = {:?}", self.diameter),
-            1.0 => format!("law = \"two\", small = {least:?}, large = {most:?}, large_share = 0.5"),
+            0.0 => format!("law = \"monodisperse\", size = {:?}", self.diameter),
+            1.0 => format!("law = \"bidisperse\", small = {least:?}, large = {most:?}, large_share = 0.5"),
             2.0 => format!("law = \"uniform\", low = {least:?}, high = {most:?}"),
             // The deck has no deviation: two deviations reach the limits.
             3.0 => {
@@ -227,9 +227,9 @@ impl Maker<'_> {
         };
         let high = [0, 1, 2].map(|k| low[k] + size[k]);
         self.line(&format!(
-            "region = {{ box = [{low:?}, {high:?}] }}\nconcentration = {share:?}\nsizes = {{ {sizes} }}\n"
+            "region = {{ box = [{low:?}, {high:?}] }}\nsolid_fraction = {share:?}\nsizes = {{ {sizes} }}\n"
         ));
-        self.used("cc", "concentration");
+        self.used("cc", "solid_fraction");
         for key in ["IPATTERN", "DMAX/D", "DMIN/D"] {
             self.used(
                 key,

@@ -167,9 +167,9 @@ fn refuse_company(scene: &Table<Scene>, track: &Table<TrackTable>) -> Result<(),
     if track.push.is_some() {
         return Err(track.conflict("push", "[track.sleeper.mesh]"));
     }
-    if track.jump.as_ref().is_some_and(|j| j.method == JumpMethod::Grains) {
-        let expected = "\"account\". Meshed sleepers cannot be displaced";
-        return Err(track.error("jump.method", "\"grains\"", expected));
+    if track.jump.as_ref().is_some_and(|j| j.method == JumpMethod::Displace) {
+        let expected = "\"extrapolate\". Meshed sleepers cannot be displaced";
+        return Err(track.error("jump.method", "\"displace\"", expected));
     }
     if solid.reduction.is_some() {
         return Err(scene.conflict("solid.reduction", "[track.sleeper.mesh]"));

@@ -69,7 +69,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
         runs,
         &[
             ("external work", &path("energy.work", "J")),
-            ("reference energy", &path("energy.turned_over", "J")),
+            ("reference energy", &path("energy.reference_energy", "J")),
             ("energy error at the end", &path("energy.error", "J")),
             ("energy error over reference energy", &path("energy.relative_error", "")),
             ("largest energy error", &path("energy.largest_error", "J")),
@@ -87,7 +87,7 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
 fn parts(runs: &[RunData]) -> Markup {
     joined(runs.iter().map(|run| {
         let object = |path: &str| run.value(path).as_object().cloned().unwrap_or_default();
-        let (start, end, spent) = (object("energy.start"), object("energy.end"), object("energy.spent"));
+        let (start, end, spent) = (object("energy.start"), object("energy.end"), object("energy.flows"));
         let whose = match runs.len() {
             1 => String::new(),
             _ => format!(": {}", run.label),

@@ -151,8 +151,8 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
     let sums = facts(
         runs,
         &[
-            ("largest stable factor", &path("safety.stands_at")),
-            ("smallest unstable factor", &path("safety.fails_at")),
+            ("largest stable factor", &path("safety.stable_at")),
+            ("smallest unstable factor", &path("safety.unstable_at")),
         ],
     );
     let mut rows = Vec::new();

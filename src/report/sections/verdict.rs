@@ -47,7 +47,7 @@ fn word(run: &RunData) -> &'static str {
 }
 
 fn sentence(run: &RunData) -> String {
-    let judged = run.list("verdict.judged").len();
+    let judged = run.list("verdict.checks").len();
     let reached = match run.table("history").and_then(|t| t.column(history::TIME)?.last().copied()) {
         Some(time) => format!(" Last row of the history: t = {}.", with_unit(time, "s")),
         None => " No history.".into(),
@@ -64,7 +64,7 @@ fn sentence(run: &RunData) -> String {
             };
             format!(
                 "Run completed with warnings: {} of {judged} balances and {} of {} validity checks exceed their warning limit.",
-                remarked("verdict.judged", "outcome"),
+                remarked("verdict.checks", "outcome"),
                 remarked("validity", "status"),
                 run.list("validity").len()
             )
@@ -93,10 +93,10 @@ fn sentence(run: &RunData) -> String {
 
 fn remarks(run: &RunData) -> Vec<String> {
     let mut out = Vec::new();
-    for j in run.list("verdict.judged").iter().filter(|j| j["outcome"] != "passed") {
+    for j in run.list("verdict.checks").iter().filter(|j| j["outcome"] != "passed") {
         let outcome = j["outcome"].as_str().unwrap_or("warned");
         let number = |key: &str| j[key].as_f64().map_or("?".into(), |v| format!("{v:.3e}"));
-        let what = j["what"].as_str().unwrap_or_default();
+        let what = j["name"].as_str().unwrap_or_default();
         out.push(format!("{outcome}: {what}: {} (limit {})", number("value"), number("warn_above")));
     }
     out.extend(run.list("warnings").iter().filter_map(Value::as_str).map(String::from));
@@ -122,8 +122,8 @@ fn judged(runs: &[RunData]) -> Markup {
     let several = runs.len() > 1;
     let mut rows = Vec::new();
     for run in runs {
-        for j in run.list("verdict.judged") {
-            let what = j["what"].as_str().unwrap_or_default();
+        for j in run.list("verdict.checks") {
+            let what = j["name"].as_str().unwrap_or_default();
             let name = if several { format!("{}: {what}", run.label) } else { what.to_string() };
             let number = |key: &str| Cell::of(j[key].as_f64(), "");
             let outcome = Cell::text(j["outcome"].as_str().unwrap_or_default());

@@ -168,7 +168,7 @@ impl<'a> Flow<'a> {
                 if plan.region.holds(&x) {
                     outlet.amount.add(model.mass(b));
                     leave.push(b);
-                    if plan.again
+                    if plan.recycle
                         && let Some(k) = self.plan.inlets.iter().position(|i| i.part == part)
                     {
                         self.course.inlets[k].waiting.push_back(b as u32);
@@ -262,8 +262,8 @@ impl<'a> Flow<'a> {
             interval,
             at_start: self.course.start,
             at_end: self.present(view),
-            came_in: come,
-            went_out: gone,
+            inserted: come,
+            removed: gone,
             energy_in: view.state.ledger.work_flow,
             mean_rate_in: over(come.mass, time),
             mean_rate_out: over(gone.mass, time),
@@ -303,9 +303,9 @@ fn record(plan: &InletPlan, inlet: &Inlet, time: f64) -> InletRecord {
         amount: inlet.amount,
         unit: plan.rate.unit(),
         requested,
-        owed: requested - inlet.given,
-        waiting: inlet.waiting.len(),
-        without_room: inlet.full,
+        backlog: requested - inlet.given,
+        queued: inlet.waiting.len(),
+        without_free_position: inlet.full,
         without_grains: inlet.empty,
     }
 }

@@ -28,9 +28,9 @@ pub struct FlowRecord {
     /// Grains at the end.
     pub at_end: Amount,
     /// Inserted grains.
-    pub came_in: Amount,
+    pub inserted: Amount,
     /// Removed grains, counted on each removal.
-    pub went_out: Amount,
+    pub removed: Amount,
     /// Net inflow of kinetic, gravitational (zero at the origin) and elastic energy [J], counted as wall
     /// work.
     pub energy_in: f64,
@@ -55,17 +55,16 @@ pub struct InletRecord {
     pub group: String,
     /// Inserted amount.
     pub amount: Amount,
-    /// Unit of `requested` and `owed`: `"kg"` or `"grains"`.
+    /// Unit of `requested` and `backlog`: `"kg"` or `"grains"`.
     pub unit: &'static str,
     /// Requested amount.
-    #[serde(rename = "asked")]
     pub requested: f64,
     /// Backlog.
-    pub owed: f64,
+    pub backlog: f64,
     /// Queued grains.
-    pub waiting: usize,
+    pub queued: usize,
     /// Checks without a free position.
-    pub without_room: u64,
+    pub without_free_position: u64,
     /// Checks with an empty queue.
     pub without_grains: u64,
 }
@@ -83,13 +82,13 @@ pub struct OutletRecord {
 
 impl InletRecord {
     pub(super) fn remark(&self) -> Option<String> {
-        (self.without_room + self.without_grains > 0).then(|| {
+        (self.without_free_position + self.without_grains > 0).then(|| {
             format!(
                 "inlet of \"{}\": inserted {:.4} {unit} less than the requested {:.4} {unit}. No free position at {} checks, empty queue at {}.",
                 self.group,
-                self.owed,
+                self.backlog,
                 self.requested,
-                self.without_room,
+                self.without_free_position,
                 self.without_grains,
                 unit = self.unit,
             )
@@ -111,7 +110,7 @@ impl OutletRecord {
 impl FlowRecord {
     /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
-        let (a, b) = (&self.came_in, &self.went_out);
+        let (a, b) = (&self.inserted, &self.removed);
         let mut lines = vec![format!(
             "flow: {} grains ({:.4} kg) inserted, {} ({:.4} kg) removed, {} at the start, {} at the end; {:.4} kg/s in and {:.4} kg/s out in the second half",
             a.grains,
@@ -127,10 +126,10 @@ impl FlowRecord {
             lines.push(format!(
                 "  inlet of {}: {:.4} of {:.4} {}, {} grains queued",
                 i.group,
-                i.requested - i.owed,
+                i.requested - i.backlog,
                 i.requested,
                 i.unit,
-                i.waiting
+                i.queued
             ));
         }
         for o in &self.outlets {

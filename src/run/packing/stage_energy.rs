@@ -25,7 +25,7 @@ pub struct StageEnergy {
     /// Final kinetic energy, then dropped [J].
     pub kinetic: f64,
     /// Reference energy [J].
-    pub turned_over: f64,
+    pub reference_energy: f64,
     /// Energy error [J].
     pub error: f64,
     /// Relative energy error.
@@ -62,10 +62,10 @@ impl StageEnergy {
             spent: spent_by_grains(state),
             reference: dem::measure::reference_energy(model, state),
         };
-        let (error, turned_over) = (balance.error(), balance.turnover().max(balance.floor()));
-        let relative_error = if error == 0.0 { 0.0 } else { error.abs() / turned_over };
+        let (error, reference_energy) = (balance.error(), balance.turnover().max(balance.floor()));
+        let relative_error = if error == 0.0 { 0.0 } else { error.abs() / reference_energy };
         let made = balance.now.total() - balance.start.total() - balance.spent.work();
-        let gain = made.max(0.0) / turned_over.max(f64::MIN_POSITIVE);
+        let gain = made.max(0.0) / reference_energy.max(f64::MIN_POSITIVE);
         let springs = [balance.start, balance.now].map(|s| s.contact_springs);
         let kinetic = balance.now.grains_kinetic;
         let stage = stage.to_string();
@@ -73,7 +73,7 @@ impl StageEnergy {
             stage,
             springs,
             kinetic,
-            turned_over,
+            reference_energy,
             error,
             relative_error,
             gain,
@@ -94,8 +94,8 @@ impl StageEnergy {
         });
         let error = worst(|stage| stage.relative_error).map(|worst| {
             Check::new("energy error of a packing stage over its reference energy", worst.relative_error, ERROR, || {
-                let StageEnergy { stage, error, turned_over, .. } = worst;
-                format!("{stage}: energy error {error:.3e} J, reference energy {turned_over:.3e} J. Reduce time.grain_step_fraction.")
+                let StageEnergy { stage, error, reference_energy, .. } = worst;
+                format!("{stage}: energy error {error:.3e} J, reference energy {reference_energy:.3e} J. Reduce time.grain_step_fraction.")
             })
         });
         gain.into_iter().chain(error).collect()
@@ -106,13 +106,13 @@ impl StageEnergy {
         let run = StageEnergy {
             stage: "run".into(),
             springs: [run[0]; 2],
-            turned_over: run[1],
+            reference_energy: run[1],
             ..StageEnergy::default()
         };
         let next = stages.iter().skip(1).chain([&run]);
         let made = |(before, after): (&StageEnergy, &StageEnergy)| {
             let energy = (after.springs[0] - before.springs[1]).max(0.0);
-            (energy / after.turned_over.max(f64::MIN_POSITIVE), energy, after.stage.clone())
+            (energy / after.reference_energy.max(f64::MIN_POSITIVE), energy, after.stage.clone())
         };
         let (share, energy, stage) = stages.iter().zip(next).map(made).max_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Check::new(
@@ -172,12 +172,12 @@ mod tests {
     use crate::run::validity::Outcome;
 
     fn stage(name: &str, springs: [f64; 2], [error, gain]: [f64; 2]) -> StageEnergy {
-        let turned_over = 10.0;
-        let relative_error = error / turned_over;
+        let reference_energy = 10.0;
+        let relative_error = error / reference_energy;
         StageEnergy {
             stage: name.into(),
             springs,
-            turned_over,
+            reference_energy,
             error,
             relative_error,
             gain,

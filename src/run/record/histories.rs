@@ -80,7 +80,7 @@ impl<S> Recorder<S> for Rails {
         let (stored, spent) = (&now.balance.now, &now.balance.spent);
         row.put(history::RAIL_ENERGY, stored.rail);
         row.put(history::WHEELS_WORK, spent.wheels);
-        row.put(history::DISSIPATED_TRACK, spent.pads + spent.track_beyond);
+        row.put(history::DISSIPATED_TRACK, spent.pads + spent.far_field_track);
     }
 }
 

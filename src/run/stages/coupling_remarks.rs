@@ -22,12 +22,12 @@ const LATE: f64 = 0.05;
 
 /// Warns about dashpots that dissipate less than their law, because the solid deviates from its prediction.
 pub fn late(spent: &Spent) -> Option<String> {
-    let law = spent.dissipated() - spent.dashpot_lag;
-    let part = -spent.dashpot_lag / spent.work().abs().max(law);
+    let law = spent.dissipated() - spent.interface_dashpot_error;
+    let part = -spent.interface_dashpot_error / spent.work().abs().max(law);
     (part > LATE).then(|| {
         format!(
             "coupling: interface dashpot error {:.3e} J, {:.1} % of the reference energy. Dashpots at the solid surface act on its velocity at the start of a window. Reduce coupling.substeps, or set coupling.theta above 0.5.",
-            -spent.dashpot_lag,
+            -spent.interface_dashpot_error,
             100.0 * part
         )
     })

@@ -84,8 +84,8 @@ fn bracket(
     let view = SolidView { model: &weaker, state: &standing };
     frames::write_state(stage.dir, &stage.job.output, view)?;
     summary.solid.safety = Some(SafetyRecord {
-        stands_at: found.converged,
-        fails_at: found.failed,
+        stable_at: found.converged,
+        unstable_at: found.failed,
         trials: found
             .trials
             .iter()

@@ -353,10 +353,10 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
     EnergyRecord {
         start: balance.start,
         end: balance.now,
-        spent: balance.spent,
+        flows: balance.spent,
         error: balance.error(),
         work: balance.spent.work(),
-        turned_over: balance.turnover(),
+        reference_energy: balance.turnover(),
         relative_error: watch.now(),
         largest_error: recorder.largest_error(),
         largest_relative_error: watch.worst(),

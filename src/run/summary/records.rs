@@ -66,13 +66,13 @@ pub struct EnergyRecord {
     /// Final stored energy [J].
     pub end: Stored,
     /// Work and dissipation [J].
-    pub spent: Spent,
+    pub flows: Spent,
     /// Δ stored + dissipated − work [J].
     pub error: f64,
     /// Load work [J].
     pub work: f64,
     /// Reference energy [J]: the larger of Σ|work| + Σ|dissipation| and Σ|Δ stored energy|.
-    pub turned_over: f64,
+    pub reference_energy: f64,
     /// Relative energy error: |error| over largest reference energy, at least a thousandth of elastic and
     /// kinetic plus 1e-9 of gravitational energy.
     pub relative_error: f64,
@@ -261,9 +261,9 @@ pub struct ReactionRecord {
 #[derive(Debug, Serialize)]
 pub struct SafetyRecord {
     /// Largest stable factor.
-    pub stands_at: f64,
+    pub stable_at: f64,
     /// Smallest unstable factor.
-    pub fails_at: f64,
+    pub unstable_at: f64,
     /// Trials.
     pub trials: Vec<TrialRecord>,
 }

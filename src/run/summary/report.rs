@@ -83,8 +83,8 @@ impl Summary {
         if let Some(s) = &self.solid.safety {
             lines.push(format!(
                 "factor of safety: stable at {:.4}, unstable at {:.4} ({} trials)",
-                s.stands_at,
-                s.fails_at,
+                s.stable_at,
+                s.unstable_at,
                 s.trials.len()
             ));
         }

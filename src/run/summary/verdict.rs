@@ -22,7 +22,7 @@ const NEGATIVE: f64 = 0.01;
 #[derive(Clone, Debug, Serialize)]
 pub struct Judged {
     /// Quantity.
-    pub what: String,
+    pub name: String,
     /// Value.
     pub value: f64,
     /// Warning limit.
@@ -35,7 +35,7 @@ pub struct Judged {
 }
 
 impl Judged {
-    fn new(what: impl Into<String>, value: f64, warn_above: f64, stop_above: Option<f64>) -> Judged {
+    fn new(name: impl Into<String>, value: f64, warn_above: f64, stop_above: Option<f64>) -> Judged {
         // NaN fails.
         let above = |limit: f64| value.is_nan() || value > limit;
         let outcome = match stop_above {
@@ -43,7 +43,7 @@ impl Judged {
             _ if above(warn_above) => Outcome::Warned,
             _ => Outcome::Passed,
         };
-        Judged { what: what.into(), value, warn_above, stop_above, outcome }
+        Judged { name: name.into(), value, warn_above, stop_above, outcome }
     }
 }
 
@@ -53,42 +53,42 @@ pub struct Verdict {
     /// Worst outcome of balance and validity checks.
     pub outcome: Outcome,
     /// Balance checks.
-    pub judged: Vec<Judged>,
+    pub checks: Vec<Judged>,
 }
 
 impl Verdict {
     /// Checks the balances.
     pub fn of(summary: &Summary) -> Verdict {
-        let mut judged = Vec::new();
+        let mut checks = Vec::new();
         if let Some(e) = &summary.energy {
             // The energy check stops the run itself.
             let what = "largest energy error over reference energy";
-            judged.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
-            for (name, loss) in e.spent.losses() {
-                let below = (-loss).max(0.0) / e.turned_over.max(f64::MIN_POSITIVE);
+            checks.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
+            for (name, loss) in e.flows.losses() {
+                let below = (-loss).max(0.0) / e.reference_energy.max(f64::MIN_POSITIVE);
                 if below > NEGATIVE {
                     let what = format!("energy gained from {name} over reference energy");
-                    judged.push(Judged::new(what, below, NEGATIVE, None));
+                    checks.push(Judged::new(what, below, NEGATIVE, None));
                 }
             }
         }
         if let Some(m) = &summary.momentum {
-            judged.push(Judged::new("momentum error over impulses", m.linear, MOMENTUM, None));
-            judged.push(Judged::new("angular momentum error over impulses", m.angular, MOMENTUM, None));
+            checks.push(Judged::new("momentum error over impulses", m.linear, MOMENTUM, None));
+            checks.push(Judged::new("angular momentum error over impulses", m.angular, MOMENTUM, None));
         }
         if let Some(s) = &summary.solid.statics {
             let (warn, stop) = EQUILIBRIUM;
             let what = "equilibrium error of loads and reactions";
-            judged.push(Judged::new(what, s.equilibrium_error, warn, Some(stop)));
+            checks.push(Judged::new(what, s.equilibrium_error, warn, Some(stop)));
         }
         if let Some(c) = &summary.coupling {
             let transfer = c.transfer.force.max(c.transfer.moment);
-            judged.push(Judged::new("force and moment error across the interface", transfer, TRANSFER, None));
-            judged.push(Judged::new("windows not converged", c.passes.unconverged as f64, 0.0, None));
+            checks.push(Judged::new("force and moment error across the interface", transfer, TRANSFER, None));
+            checks.push(Judged::new("windows not converged", c.passes.unconverged as f64, 0.0, None));
         }
-        let accounts = judged.iter().map(|j| j.outcome).max().unwrap_or_default();
-        let outcome = accounts.max(validity::worst(&summary.validity));
-        Verdict { outcome, judged }
+        let balances = checks.iter().map(|j| j.outcome).max().unwrap_or_default();
+        let outcome = balances.max(validity::worst(&summary.validity));
+        Verdict { outcome, checks }
     }
 
     /// Marks the run as failed.
@@ -98,14 +98,14 @@ impl Verdict {
 
     /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
-        let count = self.judged.len();
+        let count = self.checks.len();
         let noun = if count == 1 { "balance" } else { "balances" };
         let mut lines = vec![format!("checks: {}, {count} {noun}", self.outcome.word())];
-        for j in self.judged.iter().filter(|j| j.outcome != Outcome::Passed) {
+        for j in self.checks.iter().filter(|j| j.outcome != Outcome::Passed) {
             lines.push(format!(
                 "  {}: {}: {:.3e} (limit {:.0e})",
                 j.outcome.word(),
-                j.what,
+                j.name,
                 j.value,
                 j.warn_above
             ));
@@ -118,11 +118,11 @@ impl Verdict {
     /// # Errors
     /// That failure.
     pub fn judge(&self) -> Result<(), Failure> {
-        match self.judged.iter().find(|j| j.outcome == Outcome::Failed) {
+        match self.checks.iter().find(|j| j.outcome == Outcome::Failed) {
             None => Ok(()),
             Some(j) => Err(Failure::Numerical(format!(
                 "{}: {:.3e} (limit {:.0e})",
-                j.what,
+                j.name,
                 j.value,
                 j.stop_above.unwrap_or(j.warn_above)
             ))),
@@ -149,8 +149,8 @@ mod tests {
     #[test]
     fn each_account_judges_its_own_figure() {
         let remarked = |summary: &Summary| -> Vec<String> {
-            let judged = Verdict::of(summary).judged.into_iter();
-            judged.filter(|j| j.outcome != Outcome::Passed).map(|j| j.what).collect()
+            let checks = Verdict::of(summary).checks.into_iter();
+            checks.filter(|j| j.outcome != Outcome::Passed).map(|j| j.name).collect()
         };
         let grains = |linear: f64, angular: f64| Summary {
             momentum: Some(MomentumRecord { linear, angular }),

@@ -70,6 +70,14 @@ fn bonded_stones_without_their_bond() {
 #[test]
 fn velocity_of_a_grip() {
     bonded()
-        .scene("shape = \"sphere\"", "shape = \"sphere\"\nmotion = [0, 0, 0]\nvelocity = [0, 0, 1]")
-        .refused("scene.toml:14: grains.0.velocity: found together with `motion`, expected only one of them");
+        .scene("shape = \"sphere\"", "shape = \"sphere\"\nprescribed_velocity = [0, 0, 0]\nvelocity = [0, 0, 1]")
+        .refused("scene.toml:14: grains.0.velocity: found together with `prescribed_velocity`, expected only one of them");
+}
+
+#[test]
+fn replaced_key_of_strength_spread() {
+    let spread = "young = \"1 MPa\"\n[bond.spread]\nkind = \"normal\"\ndeviation = 0.1\ntogether = true";
+    bonded()
+        .scene("young = \"1 MPa\"", spread)
+        .refused("scene.toml:24: bond.0.spread.together: found `together`, expected `correlated`");
 }

@@ -3,7 +3,7 @@
 use super::*;
 
 const INLET: &str = "inlet = { box = [[0, 0, 1], [1, 1, 2]], rate = \"2 kg/s\" }";
-const OUTLET: &str = "[[outlet]]\npoint = [0, 0, -1]\nnormal = [0, 0, -1]\nagain = true\n\n[[walls]]";
+const OUTLET: &str = "[[outlet]]\npoint = [0, 0, -1]\nnormal = [0, 0, -1]\nrecycle = true\n\n[[walls]]";
 
 fn flow() -> Good {
     grains_scene().scene(SPHERES, &format!("{SPHERES}\n{INLET}")).scene("[[walls]]", OUTLET)
@@ -71,16 +71,16 @@ fn inlet_that_stops_before_it_starts() {
 
 #[test]
 fn inlet_that_nothing_comes_to() {
-    flow().scene("again = true", "again = false").refused(
-        "scene.toml:15: grains.0.inlet: found an inlet without grains to insert, expected an [[outlet]] with `again = true` for \
+    flow().scene("recycle = true", "recycle = false").refused(
+        "scene.toml:15: grains.0.inlet: found an inlet without grains to insert, expected an [[outlet]] with `recycle = true` for \
          this group, or no grains at the start",
     );
 }
 
 #[test]
 fn inlet_of_a_grip() {
-    flow().scene(INLET, &format!("motion = [0, 0, 0]\n{INLET}")).refused(
-        "scene.toml:16: grains.0.inlet: found an inlet, expected no inlet for a group with `motion`",
+    flow().scene(INLET, &format!("prescribed_velocity = [0, 0, 0]\n{INLET}")).refused(
+        "scene.toml:16: grains.0.inlet: found an inlet, expected no inlet for a group with `prescribed_velocity`",
     );
 }
 
@@ -114,7 +114,7 @@ fn inlet_across_a_border() {
 
 #[test]
 fn outlet_of_two_forms() {
-    flow().scene("again = true", "again = true\nbox = [[0, 0, 0], [1, 1, 1]]").refused(
+    flow().scene("recycle = true", "recycle = true\nbox = [[0, 0, 0], [1, 1, 1]]").refused(
         "scene.toml:17: outlet.0: found another choice of keys, expected either `box`, or `point` and `normal`",
     );
     flow().scene("normal = [0, 0, -1]\n", "").refused(
@@ -134,26 +134,26 @@ fn outlet_without_direction_or_volume() {
 
 #[test]
 fn outlet_of_unknown_groups() {
-    flow().scene("again = true", "again = true\ngroups = [\"other\"]").refused(
-        "scene.toml:21: outlet.0.groups: found \"other\", expected the name of a [[grains]] without `motion`: pair",
+    flow().scene("recycle = true", "recycle = true\ngroups = [\"other\"]").refused(
+        "scene.toml:21: outlet.0.groups: found \"other\", expected the name of a [[grains]] without `prescribed_velocity`: pair",
     );
     flow()
-        .scene("again = true", "again = true\ngroups = []")
+        .scene("recycle = true", "recycle = true\ngroups = []")
         .refused("scene.toml:21: outlet.0.groups: found none, expected at least one group that moves freely");
 }
 
 #[test]
 fn outlet_that_sends_grains_nowhere() {
     flow().scene(INLET, "").refused(
-        "scene.toml:20: outlet.0.again: found true, expected an `inlet` in the group \"pair\", which it takes",
+        "scene.toml:20: outlet.0.recycle: found true, expected an `inlet` in the group \"pair\", which it takes",
     );
 }
 
 #[test]
 fn outlets_of_one_name() {
-    let again = "again = true\nname = \"outlet1\"\n\n[[outlet]]\npoint = [0, 0, -1]\nnormal = [1, 0, 0]";
+    let again = "recycle = true\nname = \"outlet1\"\n\n[[outlet]]\npoint = [0, 0, -1]\nnormal = [1, 0, 0]";
     flow()
-        .scene("again = true", again)
+        .scene("recycle = true", again)
         .refused("scene.toml:23: outlet.1.name: found \"outlet1\" again, expected each name once");
 }
 
@@ -191,4 +191,11 @@ fn outlet_without_grains() {
     solid()
         .scene("[output]", "[[outlet]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n\n[output]")
         .refused("scene.toml:23: outlet: found, but it has no effect without [[grains]]");
+}
+
+#[test]
+fn replaced_key_of_outlet() {
+    flow()
+        .scene("recycle = true", "again = true")
+        .refused("scene.toml:20: outlet.0.again: found `again`, expected `recycle`");
 }

@@ -204,12 +204,11 @@ fn two_sources_of_grains() {
         .refused("scene.toml:14: grains.0.spheres: found together with `lattice`, expected only one of them");
 }
 
-const SCATTER: &str =
-    "region = { box = [[0, 0, 0], [1, 1, 1]] }\nsizes = { law = \"equal\", size = 0.1 }\nconcentration = 0.1";
+const SCATTER: &str = "region = { box = [[0, 0, 0], [1, 1, 1]] }\nsizes = { law = \"monodisperse\", size = 0.1 }\nsolid_fraction = 0.1";
 
 #[test]
 fn container_that_is_too_full() {
-    let full = SCATTER.replace("concentration = 0.1", "concentration = 0.6");
+    let full = SCATTER.replace("solid_fraction = 0.1", "solid_fraction = 0.6");
     let line = "scene.toml:14: grains.0.region: found no free position for a grain of radius 0.05 m after ";
     let folder = scene_folder("bad_input", super::super::support::GRAINS);
     folder.edit(SCENE, SPHERES, &full);
@@ -225,15 +224,15 @@ fn container_that_is_too_full() {
 }
 
 #[test]
-fn growth_with_a_concentration() {
+fn rejects_growth_with_solid_fraction() {
     grains_scene().scene(SPHERES, &format!("{SCATTER}\ngrowth = {{ porosity = 0.5 }}")).refused(
-        "scene.toml:16: grains.0.concentration: found together with `growth`, expected only one of them",
+        "scene.toml:16: grains.0.solid_fraction: found together with `growth`, expected only one of them",
     );
 }
 
 #[test]
 fn porosity_above_one() {
-    let growth = SCATTER.replace("concentration = 0.1", "growth = { porosity = 1.5 }");
+    let growth = SCATTER.replace("solid_fraction = 0.1", "growth = { porosity = 1.5 }");
     grains_scene()
         .scene(SPHERES, &growth)
         .refused("scene.toml:16: grains.0.growth.porosity: found 1.5, expected above 0, below 1");
@@ -379,4 +378,28 @@ fn radial_distribution_without_room() {
     grains_scene()
         .scene("[time]", &format!("{measure}radial = {{ reach = 0.2, bins = 0 }}\n[time]"))
         .refused("scene.toml:25: measure.0.radial.bins: found 0, expected 1 to 100000");
+}
+
+#[test]
+fn replaced_keys_of_grains() {
+    for (old, new) in
+        [("motion = [0, 0, 0]", "prescribed_velocity"), ("concentration = 0.3", "solid_fraction")]
+    {
+        let key = old.split(' ').next().unwrap();
+        grains_scene()
+            .scene(SPHERES, &format!("{SPHERES}\n{old}"))
+            .refused(&format!("scene.toml:15: grains.0.{key}: found `{key}`, expected `{new}`"));
+    }
+    grains_scene()
+        .set("grains.0.motion=[0, 0, 0]")
+        .refused("--set: grains.0.motion: found `motion`, expected `prescribed_velocity`");
+}
+
+#[test]
+fn replaced_laws_of_sizes() {
+    for (old, new) in [("equal", "monodisperse"), ("two", "bidisperse")] {
+        grains_scene()
+            .scene(SPHERES, &SCATTER.replace("monodisperse", old))
+            .refused(&format!("scene.toml:15: grains.0.sizes.law: found \"{old}\", expected \"{new}\""));
+    }
 }

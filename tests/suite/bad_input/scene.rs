@@ -442,16 +442,16 @@ fn jumps_pushes_and_fouling() {
         (
             jump,
             "track.jump.overlap=0.5",
-            "track.jump.overlap: found, but it has no effect without `method = \"grains\"`",
+            "track.jump.overlap: found, but it has no effect without `method = \"displace\"`",
         ),
         (
             jump,
             "track.jump.settle=1",
-            "track.jump.settle: found, but it has no effect without `method = \"grains\"`",
+            "track.jump.settle: found, but it has no effect without `method = \"displace\"`",
         ),
         (jump, "track.jump.method=\"all\"", "expected"),
         (
-            "\n[track.jump]\nmethod = \"grains\"\noverlap = 3.0",
+            "\n[track.jump]\nmethod = \"displace\"\noverlap = 3.0",
             "track.jump.first=12",
             "track.jump.overlap: found 3, expected above 0, at most 2",
         ),

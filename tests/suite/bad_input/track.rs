@@ -78,9 +78,9 @@ fn keys_without_effect_on_meshed_sleeper() {
         "scene.toml:61: track.push: found together with [track.sleeper.mesh], expected only one of them",
     );
     meshed()
-        .append(SCENE, "[track.jump]\nmethod = \"grains\"")
+        .append(SCENE, "[track.jump]\nmethod = \"displace\"")
         .refused(
-            "scene.toml:62: track.jump.method: found \"grains\", expected \"account\". Meshed sleepers cannot be displaced",
+            "scene.toml:62: track.jump.method: found \"displace\", expected \"extrapolate\". Meshed sleepers cannot be displaced",
         );
     meshed()
         .append(SCENE, "[track.rail]\nkind = \"beam\"\nbending_stiffness = 6e6\nfoundation = 2e7")
@@ -91,4 +91,13 @@ fn keys_without_effect_on_meshed_sleeper() {
     meshed().append(SCENE, "[solid.reduction]\nkind = \"surface\"").refused(
         "scene.toml:61: solid.reduction: found together with [track.sleeper.mesh], expected only one of them",
     );
+}
+
+#[test]
+fn replaced_jump_methods() {
+    for (old, new) in [("account", "extrapolate"), ("grains", "displace")] {
+        meshed()
+            .append(SCENE, &format!("[track.jump]\nmethod = \"{old}\""))
+            .refused(&format!("scene.toml:62: track.jump.method: found \"{old}\", expected \"{new}\""));
+    }
 }

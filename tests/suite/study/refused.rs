@@ -40,6 +40,9 @@ fn keys_and_values_of_a_study() {
     refused("\"0.05 ms\"", "\"0.1 ms\"", line);
     let line = "study.toml:13: quantity.0.colum: found the unknown key `colum`, expected `column`";
     refused("column = \"ball_z\"\nscale", "colum = \"ball_z\"\nscale", line);
+    let line = "study.toml:12: quantity.0.summary: found \"energy.spent.dashpot_lag\", expected \"energy.flows.interface_dashpot_error\"";
+    let path = "summary = \"energy.spent.dashpot_lag\"\nscale";
+    refused("file = \"history.csv\"\ncolumn = \"ball_z\"\nscale", path, line);
     let line =
         "study.toml:14: quantity.0.scale: found 0, expected a number above 0, with norm = \"relative\"";
     refused("scale = 0.001\nexact", "scale = 0\nexact", line);

@@ -36,7 +36,7 @@ pub struct Rule {
     /// Seed of the variation.
     pub seed: u64,
     /// Whether tension and shear vary together.
-    pub together: bool,
+    pub correlated: bool,
     /// Variation of stiffness, and its seed.
     pub stiffness: (Spread, u64),
     /// Boxes with weaker or stronger bonds.
@@ -193,7 +193,7 @@ impl BondPart {
             let pairs: Vec<_> =
                 found.into_iter().filter(|p| seen.insert((p.a.min(p.b), p.a.max(p.b)))).collect();
             let tension = factors(rule.spread, rule.seed, 0, pairs.len());
-            let shear = factors(rule.spread, rule.seed, u64::from(!rule.together), pairs.len());
+            let shear = factors(rule.spread, rule.seed, u64::from(!rule.correlated), pairs.len());
             // Streams 0 and 1 are used for strengths.
             let stiffness = factors(rule.stiffness.0, rule.stiffness.1, 2, pairs.len());
             for (k, pair) in pairs.into_iter().enumerate() {

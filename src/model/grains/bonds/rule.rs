@@ -38,9 +38,10 @@ pub(super) fn rule(table: &Table<BondTable>, bodies: &Joinable<'_>) -> Result<Ru
     let stiffness_seed = stiffness.as_ref().and_then(|s| s.seed).unwrap_or(1);
     let stiffness = stiffness.map_or(Ok(Spread::Constant), |s| law(&s, s.kind, s.deviation, s.modulus))?;
     let regions = regions(table)?;
-    let (seed, together) = table.spread.as_ref().map_or((1, false), |s| (s.seed.unwrap_or(1), s.together));
+    let (seed, correlated) =
+        table.spread.as_ref().map_or((1, false), |s| (s.seed.unwrap_or(1), s.correlated));
     let stiffness = (stiffness, stiffness_seed);
-    Ok(Rule { between, source, spread, seed, together, stiffness, regions })
+    Ok(Rule { between, source, spread, seed, correlated, stiffness, regions })
 }
 
 fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Result<PairSource, Failure> {

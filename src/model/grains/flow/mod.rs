@@ -39,9 +39,9 @@ pub(super) fn build(
     time.check("flow_interval", interval, |t| t > 0.0, "a time above 0")?;
     // A group present at the start is fed by a recirculating outlet.
     for (i, group) in scene.rows("grains", &scene.grains).enumerate().filter(|(_, g)| g.inlet.is_some()) {
-        let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
+        let fed = outlets.iter().any(|o| o.recycle && o.parts.contains(&(i as u32)));
         if !waits(&group) && !fed {
-            let expected = "an [[outlet]] with `again = true` for this group, or no grains at the start";
+            let expected = "an [[outlet]] with `recycle = true` for this group, or no grains at the start";
             return Err(group.error("inlet", "an inlet without grains to insert", expected));
         }
     }
@@ -67,8 +67,8 @@ fn inlet(
     inlet: &Table<Inlet>,
 ) -> Result<InletPlan, SceneError> {
     let group = &scene.grains[index];
-    if group.motion.is_some() {
-        let expected = "no inlet for a group with `motion`";
+    if group.prescribed_velocity.is_some() {
+        let expected = "no inlet for a group with `prescribed_velocity`";
         return Err(inlet.here("an inlet", expected));
     }
     let region = region(inlet, "box", &inlet.region)?;
@@ -138,7 +138,8 @@ fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<
             return Err(outlet.here("another choice of keys", expected));
         }
     };
-    let free: Vec<usize> = (0..scene.grains.len()).filter(|&i| scene.grains[i].motion.is_none()).collect();
+    let free: Vec<usize> =
+        (0..scene.grains.len()).filter(|&i| scene.grains[i].prescribed_velocity.is_none()).collect();
     let parts: Vec<usize> = match &outlet.groups {
         None => free,
         Some(names) => names
@@ -146,7 +147,10 @@ fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<
             .map(|name| {
                 free.iter().copied().find(|&i| scene.grains[i].name == *name).ok_or_else(|| {
                     let free: Vec<&str> = free.iter().map(|&i| scene.grains[i].name.as_str()).collect();
-                    let expected = format!("the name of a [[grains]] without `motion`: {}", free.join(", "));
+                    let expected = format!(
+                        "the name of a [[grains]] without `prescribed_velocity`: {}",
+                        free.join(", ")
+                    );
                     outlet.error("groups", format!("\"{name}\""), expected)
                 })
             })
@@ -155,12 +159,12 @@ fn outlet(scene: &Table<Scene>, index: usize, outlet: &Table<Outlet>) -> Result<
     if parts.is_empty() {
         return Err(outlet.error("groups", "none", "at least one group that moves freely"));
     }
-    if outlet.again
+    if outlet.recycle
         && let Some(&i) = parts.iter().find(|&&i| scene.grains[i].inlet.is_none())
     {
         let expected = format!("an `inlet` in the group \"{}\", which it takes", scene.grains[i].name);
-        return Err(outlet.error("again", "true", expected));
+        return Err(outlet.error("recycle", "true", expected));
     }
     let parts = parts.into_iter().map(|i| i as u32).collect();
-    Ok(OutletPlan { name, region, parts, again: outlet.again })
+    Ok(OutletPlan { name, region, parts, recycle: outlet.recycle })
 }

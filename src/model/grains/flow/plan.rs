@@ -79,7 +79,7 @@ pub struct OutletPlan {
     /// Groups that it removes.
     pub parts: Vec<u32>,
     /// Whether removed grains return to the inlet queue.
-    pub again: bool,
+    pub recycle: bool,
 }
 
 /// Region of an outlet.
@@ -112,7 +112,7 @@ impl FlowPlan {
             ));
         }
         for o in &self.outlets {
-            let what = if o.again { "come again" } else { "are gone" };
+            let what = if o.recycle { "return to their inlet" } else { "are gone" };
             let names: Vec<&str> = o.parts.iter().map(|p| groups[*p as usize].as_str()).collect();
             lines.push(format!("{}: removes {}, which then {what}", o.name, names.join(", ")));
         }

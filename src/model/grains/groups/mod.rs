@@ -134,12 +134,12 @@ fn only(group: &Table<Grains>, expected: &str) -> Result<(), SceneError> {
 
 fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneError> {
     let number = part.names.len() as u32 - 1;
-    if let Some(motion) = &group.motion {
+    if let Some(velocity) = &group.prescribed_velocity {
         let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
-        group.reject_with(idle, "`motion`")?;
-        part.moving.push(Moving { part: number, velocity: Vec3::from(vector(motion)) });
+        group.reject_with(idle, "`prescribed_velocity`")?;
+        part.moving.push(Moving { part: number, velocity: Vec3::from(vector(velocity)) });
     }
-    if group.record.unwrap_or(group.motion.is_some()) {
+    if group.record.unwrap_or(group.prescribed_velocity.is_some()) {
         part.recorded.push(number);
     }
     Ok(())
@@ -162,7 +162,7 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
             "`shape = \"disk\"` and `fill`, `region`, `packing` or only an `inlet`",
         ),
         ("library", group.library.is_some(), shapes, "`fill`, `region`, or a `packing` of stones"),
-        ("concentration", group.concentration.is_some(), group.region.is_some(), "`region`"),
+        ("solid_fraction", group.solid_fraction.is_some(), group.region.is_some(), "`region`"),
         ("growth", group.growth.is_some(), group.region.is_some(), "`region`"),
         (
             "bond",

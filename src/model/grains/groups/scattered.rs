@@ -77,22 +77,22 @@ pub(super) fn scattered(
 
 /// `volumes`: container and mean grain [m³]; `porosity`: target of growth.
 fn count(group: &Table<Grains>, porosity: Option<f64>, volumes: [f64; 2]) -> Result<usize, SceneError> {
-    group.check("concentration", group.concentration, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
-    let share = match (porosity, group.concentration) {
+    group.check("solid_fraction", group.solid_fraction, |c| c > 0.0 && c < 1.0, "above 0, below 1")?;
+    let share = match (porosity, group.solid_fraction) {
         (Some(_), Some(_)) => {
-            return Err(group.conflict("concentration", "`growth`"));
+            return Err(group.conflict("solid_fraction", "`growth`"));
         }
         (Some(porosity), None) => Some(1.0 - porosity),
         (None, share) => share,
     };
     let count = match (group.count, share) {
         (Some(_), Some(_)) if porosity.is_none() => {
-            return Err(group.conflict("count", "`concentration`"));
+            return Err(group.conflict("count", "`solid_fraction`"));
         }
         (Some(count), _) => count as f64,
         (None, Some(share)) => (share * volumes[0] / volumes[1]).round(),
         (None, None) => {
-            let expected = "`count`, `concentration` or `growth`";
+            let expected = "`count`, `solid_fraction` or `growth`";
             return Err(group.missing("count", expected));
         }
     };

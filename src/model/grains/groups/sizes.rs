@@ -72,8 +72,8 @@ impl SizeSource {
 fn law(sizes: &Sizes) -> SizeLaw {
     let ends = |low: &Quantity<Length>, high: &Quantity<Length>| (low.si, high.si);
     match sizes {
-        Sizes::Equal { size } => SizeLaw::Equal(size.si),
-        Sizes::Two { small, large, large_share } => {
+        Sizes::Monodisperse { size } => SizeLaw::Equal(size.si),
+        Sizes::Bidisperse { small, large, large_share } => {
             SizeLaw::Two { small: small.si, large: large.si, large_share: *large_share }
         }
         Sizes::Uniform { low, high, by: Share::Number } => {

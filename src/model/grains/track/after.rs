@@ -47,14 +47,14 @@ fn jump(
     let Some(load) = &part.load else {
         return Err(track.requirement("jump", "[track.load] with cycles"));
     };
-    let grains = j.method == JumpMethod::Grains;
+    let grains = j.method == JumpMethod::Displace;
     if !grains {
         let idle = [("settle", j.settle.is_some()), ("overlap", j.overlap.is_some())];
-        j.reject_without(idle, "`method = \"grains\"`")?;
+        j.reject_without(idle, "`method = \"displace\"`")?;
     }
     if let Some(why) = fixed.filter(|_| grains) {
-        let expected = format!("\"account\". Grains that {why} cannot be displaced");
-        return Err(j.error("method", "\"grains\"", expected));
+        let expected = format!("\"extrapolate\". Grains that {why} cannot be displaced");
+        return Err(j.error("method", "\"displace\"", expected));
     }
     j.check("measure", j.measure, |n| n >= 2.0, "2 or more")?;
     let least = f64::from(j.measure) + 2.0;

@@ -1,4 +1,4 @@
-"""Shows the results beside this file with PyVista: python3 look.py [TIME] [PICTURE.png]
+"""Shows the results beside this file with PyVista: python3 plot_frame.py [TIME] [PICTURE.png]
 
 Without a TIME the last frame; with a PICTURE that is written, and no window opens. What it needs: pip install pyvista
 """
