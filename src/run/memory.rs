@@ -4,8 +4,8 @@
 //! nodal vectors. A run that does not fit is rejected.
 
 use crate::failure::Failure;
-use crate::machine::{available, resident};
 use crate::model::solid::{Analysis, SolidPart};
+use crate::system::{available, resident};
 use serde_json::{Value, json};
 use trackbed_fem::{Method, Regime};
 
