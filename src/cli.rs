@@ -157,7 +157,7 @@ impl RunArgs {
 #[derive(Debug, Args)]
 pub struct DemoArgs {
     /// Directory of scene and results.
-    #[arg(long, default_value = "trackbed-demo")]
+    #[arg(long, default_value = "results/demo")]
     pub out: PathBuf,
     /// Threads; the results do not depend on it [default: all cores].
     #[arg(long)]

@@ -9,19 +9,29 @@ use std::num::NonZeroUsize;
 /// Template.
 const TEMPLATE: &str = "track";
 
-/// Overrides: a quarter of the stones, one load cycle.
-const SET: [&str; 14] = [
-    "grains.0.count=400",
-    "grains.1.count=50",
-    "grains.2.count=50",
-    "compaction.0.rest=\"0.2 s\"",
-    "compaction.1.rest=\"0.2 s\"",
-    "compaction.2.rest=\"0.2 s\"",
-    "compaction.0.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.08]]",
-    "compaction.1.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.08]]",
-    "compaction.2.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.08]]",
+/// Overrides: half a sleeper on a thinner bed, one load cycle.
+const SET: &[&str] = &[
+    "grains.0.count=420",
+    "grains.1.count=45",
+    "grains.2.count=45",
+    "grains.0.fill={ low = [-0.7, 0.0, 0.0], high = [0.7, 0.6] }",
+    "grains.1.fill={ low = [-0.7, 0.0, 0.0], high = [0.7, 0.22] }",
+    "grains.2.fill={ low = [-0.7, 0.38, 0.0], high = [0.7, 0.6] }",
+    "walls.2.point=[-0.7, 0.0, 0.0]",
+    "walls.3.point=[0.7, 0.0, 0.0]",
+    "deposition.level=\"0.17 m\"",
+    "compaction.0.region=[[-0.5, 0.1, 0.03], [0.5, 0.5, 0.13]]",
+    "compaction.1.region=[[-0.5, 0.1, 0.03], [0.5, 0.5, 0.13]]",
+    "compaction.2.region=[[-0.5, 0.1, 0.03], [0.5, 0.5, 0.13]]",
+    "compaction.0.force=\"20 kN\"",
+    "compaction.2.force=\"20 kN\"",
+    "compaction.1.level=\"0.32 m\"",
+    "compaction.1.rest=\"1.0 s\"",
+    "track.sleeper.size=[1.2, 0.28, 0.2]",
+    "track.sleeper.mass=\"170 kg\"",
+    "track.load.seats=[[-0.35, 0.0], [0.35, 0.0]]",
+    "track.load.maximum=\"40 kN\"",
     "track.load.cycles=1",
-    "track.load.frequency=\"16 Hz\"",
     "track.load.ramp=\"50 ms\"",
     "track.load.rest=\"20 ms\"",
     "output.frames=20",
@@ -47,7 +57,7 @@ pub fn demo(
         scene,
         out: Some(results.clone()),
         threads: args.threads,
-        set: SET.map(String::from).into(),
+        set: SET.iter().map(ToString::to_string).collect(),
         // The second time the completed run is shown.
         resume: results.exists(),
         ..RunArgs::default()

@@ -7,7 +7,7 @@ use crate::system;
 use std::fs::File;
 use std::io;
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 
 const LONGEST: usize = 400;
 

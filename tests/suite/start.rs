@@ -148,7 +148,8 @@ fn options(command: &clap::Command) -> impl Iterator<Item = &str> {
 fn completions_name_every_option() {
     let commands = commands();
     assert!(commands.len() > 20, "{}", commands.len());
-    for (shell, dashes) in [("bash", "--"), ("zsh", "--"), ("fish", "-l "), ("elvish", "--"), ("powershell", "--")]
+    for (shell, dashes) in
+        [("bash", "--"), ("zsh", "--"), ("fish", "-l "), ("elvish", "--"), ("powershell", "--")]
     {
         let text = trackbed(["completions", shell]).good().stdout;
         for (name, command) in &commands {
