@@ -112,7 +112,7 @@ fn ways(statics: bool, share: f64) -> Result<(), Box<dyn Error>> {
         let miss = u.iter().zip(&*other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let size = other.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         println!(
-            "{}, {}, {name}: {:.0} MB, {:.2} s ({:.2} s by the clock), {iterations:.1} iterations, {:.1} ms ({:.1}), differs by {:.0e}",
+            "{}, {}, {name}: {:.0} MB, {:.2} s ({:.2} s wall time), {iterations:.1} iterations, {:.1} ms ({:.1}), differs by {:.0e}",
             model.mesh().node_count(),
             model.free_dof_count(),
             1e-6 * memory as f64,

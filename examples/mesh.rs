@@ -1,4 +1,4 @@
-//! Reads, checks and converts a mesh, like `trackbed mesh`.
+//! Reads, checks and converts a mesh.
 //!
 //! ```sh
 //! cargo run --release --example mesh
@@ -9,7 +9,7 @@ use trackbed::mesh_tools::{check, info};
 use trackbed::read::read_mesh_file;
 use trackbed::write::{MeshOptions, write_mesh_file};
 
-/// Returns mesh volume [m³] before and after a round trip through a file with this extension.
+/// Returns mesh volumes [m³] before and after a round trip.
 pub fn round_trip(mesh: &Path, ending: &str) -> Result<[f64; 2], Box<dyn std::error::Error>> {
     let read = read_mesh_file(mesh)?;
     let faults = check(&read.mesh, &read.constraints);

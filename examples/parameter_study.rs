@@ -1,4 +1,4 @@
-//! Parameter study: contacts of settled spheres over friction.
+//! Contacts of settled spheres over friction.
 //!
 //! ```sh
 //! cargo run --release --example parameter_study
@@ -13,7 +13,7 @@ pub fn study(frictions: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> 
     let out = std::env::temp_dir().join(format!("trackbed_parameter_study_{}", std::process::id()));
     let mut found = Vec::new();
     for friction in frictions {
-        // Overrides; one frame, because only the summary is used.
+        // One frame, because only the summary is used.
         let set = vec![format!("contact.0.friction={friction}"), "output.frames=1".into()];
         // Overwrites the previous run.
         let options = Options {

@@ -1,14 +1,14 @@
-//! Allocator that exits with a one-line error when memory is exhausted.
+//! Allocator that exits with one line when memory is exhausted.
 
 use crate::system;
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// System allocator; a failed request exits with code 3.
+/// System allocator; failed requests exit with code 3.
 ///
-/// The standard library would print two lines and possibly a backtrace, which may hang without memory.
+/// The standard library prints two lines and possibly a backtrace, which may hang.
 pub struct Allocator;
 
-// SAFETY: requests are passed to the system allocator; no null pointer is returned.
+// SAFETY: passed to the system allocator; no null pointer is returned.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as required by `alloc`.

@@ -78,7 +78,7 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
 fn run_scene(args: RunArgs) -> Result<(), Failure> {
     let Some(world) = run::mpi::join()? else { return lead(args, run::Ranked::default()) };
     let (scene, set, out) = (args.scene.clone(), args.set.clone(), args.out.clone());
-    // One rank per CPU: one thread each by default.
+    // One rank per CPU, each with one thread.
     let args = RunArgs { threads: args.threads.or(Some(1)), ..args };
     let threads = args.threads;
     world.share(
@@ -110,7 +110,7 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
     match run::run(&args.scene, &options)? {
         run::Outcome::Done(_) if args.quiet => Ok(()),
         run::Outcome::Done(summary) => {
-            // Results and log are saved, so output may fail.
+            // Results are saved, so output may fail.
             let text = format!("{}results are in {}\n", summary.report(args.verbose), summary.dir.display());
             if let Err(failure) = print(&text) {
                 message::warn(&format!("standard output: {failure}"));

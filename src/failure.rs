@@ -9,13 +9,13 @@ use std::fmt;
 pub enum Failure {
     /// Input error: exit code 2. A sentence with file, line, key, found and expected.
     Input(String),
-    /// Input errors of scene keys or file positions: exit code 2. Sentences as in [`Failure::Input`].
+    /// Input errors of keys or file positions: exit code 2, as [`Failure::Input`].
     Faults(Vec<ReadError>),
     /// Numerical failure: exit code 3. Cause, place, time.
     Numerical(String),
-    /// Interrupted by the user after a checkpoint: exit code 130. Position and resume command.
+    /// Interrupted after a checkpoint: exit code 130. Position and resume command.
     Interrupted(String),
-    /// Other errors, such as I/O: exit code 1.
+    /// Other errors: exit code 1.
     Other(String),
 }
 

@@ -1,4 +1,4 @@
-//! Panics and aborts end a command like other failures: one line, exit code, saved data kept.
+//! Panics and aborts end a command like other failures.
 
 use crate::failure::Failure;
 use crate::system;
@@ -9,8 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Prepares the process, before other threads exist. The location of a panic is recorded instead of printed;
-/// with `RUST_BACKTRACE`, also printed.
+/// Prepares the process, before other threads exist; records panic locations; with `RUST_BACKTRACE`, also prints.
 pub fn install() {
     system::prepare();
     let usual = panic::take_hook();
@@ -27,10 +26,10 @@ pub fn install() {
     }));
 }
 
-/// Files and connections of a command, without viewer clients and study runs.
+/// Without viewer clients and study runs.
 const FILES: usize = 16;
 
-/// Checks the limit of open files, which could otherwise stop a run midway.
+/// Checks the limit of open files before a run.
 ///
 /// # Errors
 /// Limit too low.
@@ -53,7 +52,7 @@ pub fn check_files() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs `work`; panics, also in joined threads, become failures with exit code 3.
+/// Runs `work`; panics, also in joined threads, become failures.
 ///
 /// # Errors
 /// Errors of `work`; panics.

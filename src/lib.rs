@@ -1,9 +1,9 @@
 //! trackbed: coupled DEM–FEM solver for ballasted railway track.
 //!
-//! Data flow: a scene file ([`scene`]) is resolved into models ([`model`]), advanced by the run loop
-//! ([`mod@run`]) and written by [`mod@write`].
+//! A scene file ([`scene`]) is resolved into models ([`model`]), advanced by [`mod@run`] and written by
+//! [`mod@write`].
 
-// Closed or full output must not stop a run: see `message`.
+// Closed or full output must not stop a run.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod allocator;

@@ -229,7 +229,7 @@ mod tests {
         mesh.coordinates.push([1.0, 1.0, 4.0]);
         let constraint = |node, direction| Constraint { node, direction, value: 0.0 };
         let info = info(&mesh, &[constraint(0, 0), constraint(0, 1), constraint(0, 0)]);
-        // Nodes of an nx x ny x nz block: corners and edges of the lattice.
+        // Corners and edges of an nx x ny x nz lattice.
         assert_eq!((info.nodes, info.elements), (3 * 4 * 4 + 2 * 16 + 3 * 12 + 3 * 12 + 1, 18));
         assert_eq!(info.bounds, [[0.0; 3], [2.0, 3.0, 4.0]]);
         assert!((info.volume - 18.0).abs() < 1e-12);
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn the_worst_element_is_named() {
         let mut mesh = sample::straight_block([3, 1, 1]);
-        // Element 999: the upper far corner is moved along x.
+        // Element 999: upper far corner moved.
         let corner = mesh.connectivity[1][6] as usize;
         mesh.coordinates[corner][0] += 0.3;
         let info = info(&mesh, &[]);

@@ -1,7 +1,7 @@
 //! Messages on standard error.
 //!
-//! Output may be closed or full, which must not stop a run. Nothing here fails; a lint forbids `println!` and
-//! `eprintln!`, which would panic.
+//! Closed or full output must not stop a run: nothing here fails, and a lint forbids `println!` and
+//! `eprintln!`.
 
 use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
@@ -35,11 +35,11 @@ fn headed(head: &str, style: Style, line: &str) {
 }
 
 fn write(text: &str) {
-    // One call, so that lines of processes do not mix; errors are ignored.
+    // One call, so that lines do not mix.
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Escapes control characters of foreign text and shortens it to `longest`, with its total length.
+/// Escapes control characters and shortens to `longest`, with the total length.
 pub(crate) fn shown(text: &str, longest: usize) -> String {
     if text.len() <= longest && !text.contains(char::is_control) {
         return text.to_string();

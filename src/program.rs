@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
 
-/// Sets the start command of an embedding program, such as an interpreter; the first call counts.
+/// Sets the start command of an embedding program; the first call counts.
 pub fn started_by(words: Vec<OsString>) {
     let _ = WORDS.set(words);
 }

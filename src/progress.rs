@@ -1,4 +1,4 @@
-//! Stage progress with remaining time: a bar on terminals, else lines.
+//! Stage progress: a bar on terminals, else lines.
 
 use crate::message;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 pub enum Verbosity {
     /// Errors only.
     Quiet,
-    /// Warnings, a bar or occasional lines, and a line per completed stage.
+    /// Warnings, a bar or occasional lines, completed stages.
     #[default]
     Normal,
     /// Additionally a progress line per second.
@@ -86,7 +86,7 @@ impl Progress {
         self.before + self.begun.elapsed().as_secs_f64()
     }
 
-    /// Reports progress in the unit of `total`; `details` is called if a line is due.
+    /// Reports progress in units of `total`; `details` is called lazily.
     pub fn at(&mut self, done: f64, details: impl FnOnce() -> String) {
         self.share = (done / self.total).clamp(0.0, 1.0);
         self.bar.set_position((self.share * TICKS as f64) as u64);
@@ -114,7 +114,7 @@ impl Progress {
         format!("{:>12}  {}", self.stage, parts.join("  "))
     }
 
-    /// Sets the message after the bar, about twenty characters of eighty columns.
+    /// Sets the message after the bar.
     pub fn message(&self, text: String) {
         self.bar.set_message(text);
     }

@@ -1,7 +1,7 @@
-//! Grains of spheres from closed surfaces, for the `stone` commands.
+//! Grains of spheres from closed surfaces.
 //!
-//! Grains have sieve size 1 m and principal axes along x, y, z; scenes scale them. Results do not depend on
-//! threads: only different grains are computed in parallel.
+//! Sieve size 1 m and principal axes along x, y, z; scenes scale them. Results do not depend on threads: only
+//! different grains are computed in parallel.
 
 pub mod fill;
 pub mod grow;
@@ -19,7 +19,7 @@ use trackbed_dem::shape::polyhedron::Polyhedron;
 
 pub use measure::StoneReport;
 
-/// Smallest volume of a body over its bounding box.
+/// Volume over bounding box.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Grain type.
@@ -60,7 +60,7 @@ pub enum StoneError {
         /// Number of bodies.
         pieces: usize,
     },
-    /// Too small a fraction of its bounding box.
+    /// Too thin.
     #[error("stone '{name}': volume is {share:e} of the bounding box, too thin to be filled with spheres")]
     Thin {
         /// Name.
@@ -86,7 +86,7 @@ pub enum StoneError {
     },
 }
 
-/// Makes a grain of each source, in order.
+/// Makes a grain of each source.
 ///
 /// # Errors
 /// First [`StoneError`] in order.
@@ -100,7 +100,7 @@ fn make_one(source: &Source, kind: Kind) -> Result<Made, StoneError> {
     if source.body.pieces() != 1 {
         return Err(StoneError::Pieces { name: name(), pieces: source.body.pieces() });
     }
-    // Sieve size 1, so that tolerances are the same for all files.
+    // Tolerances are then the same for all files.
     let body = source.body.in_principal_frame();
     let body = body.scaled(1.0 / body.sieve_size());
     let [lo, hi] = body.surface().bounds();

@@ -120,7 +120,7 @@ def run_once(program, text, words):
     gain = error[-part:].mean() - error[2 * part : 3 * part].mean()
     held = value("solid_strain")[-1] + value("contact_springs")[-1]
     numbers = coupling["interface"]
-    # Kinetic energy also comes and goes with the potential one; growth is what no work explains.
+    # Kinetic energy also comes and goes with the potential one; growth is the part without work.
     risen = last - third
     grown = bool(done.returncode != 0 or (risen > 0.05 * third and risen > 1e-10 and gain > 0.5 * risen))
     row = (

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 impl Mesh {
     /// Block with one corner at the origin, `counts` elements and `size` [m] along x, y, z, of material 1.
     ///
-    /// Nodes and elements are numbered along x, then y, then z. A count of 0 gives an empty mesh.
+    /// Numbered along x, then y, then z. A count of 0 gives an empty mesh.
     pub fn block(counts: [usize; 3], size: [f64; 3]) -> Mesh {
         let lines: [Vec<f64>; 3] = std::array::from_fn(|d| {
             (0..=counts[d]).map(|i| size[d] * i as f64 / counts[d].max(1) as f64).collect()
@@ -16,7 +16,7 @@ impl Mesh {
         Mesh::grid(&lines)
     }
 
-    /// Block of hex20 elements of material 1 between grid planes at ascending coordinates [m] along x, y, z.
+    /// Hex20 block of material 1 between ascending grid planes [m] along x, y, z.
     ///
     /// Numbered as [`Mesh::block`]. Fewer than two planes along an axis give an empty mesh.
     pub fn grid(planes: &[Vec<f64>; 3]) -> Mesh {

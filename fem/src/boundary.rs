@@ -30,7 +30,7 @@ pub struct BoundaryLayer {
     pub spring_tangential: f64,
 }
 
-/// Factors of `G/R` of the springs in [`BoundaryLayer::viscous_spring`].
+/// Factors of `G/R` in [`BoundaryLayer::viscous_spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringFactors {
     /// Normal factor [-].
@@ -40,13 +40,11 @@ pub struct SpringFactors {
 }
 
 impl SpringFactors {
-    /// Three-dimensional bodies with surface loads: 4/3 and 2/3 (Liu and others 2006).
+    /// Three-dimensional bodies with surface loads (Liu and others 2006).
     pub const SPATIAL: SpringFactors = SpringFactors { normal: 4.0 / 3.0, tangential: 2.0 / 3.0 };
-    /// Exact for the static field around an expanding (u ~ 1/r², `t = 4 G u/R`) or twisted sphere
-    /// (`t = 3 G u/R`).
+    /// Exact for an expanding (u ~ 1/r², `t = 4 G u/R`) or twisted sphere (`t = 3 G u/R`).
     pub const SPHERE: SpringFactors = SpringFactors { normal: 4.0, tangential: 3.0 };
-    /// Exact for the static field around an expanding or twisted cylinder in plane strain (u ~ 1/r,
-    /// `t = 2 G u/R`).
+    /// Exact for an expanding or twisted cylinder in plane strain (u ~ 1/r, `t = 2 G u/R`).
     pub const CYLINDER: SpringFactors = SpringFactors { normal: 2.0, tangential: 2.0 };
 }
 

@@ -78,7 +78,7 @@ pub enum NewmarkError {
     /// HHT-α needs both loads.
     #[error("HHT-alpha needs the load at the start of the step, too")]
     LoadAtStart,
-    /// Final displacement independent of the final acceleration.
+    /// Not for prescribed motion.
     #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
     Prescribed,
 }

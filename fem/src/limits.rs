@@ -14,7 +14,7 @@ pub struct Extent {
     pub rotation: f64,
     /// Its element.
     pub rotated: u32,
-    /// Largest displacement relative to the element size, without the body's mean [m].
+    /// Largest displacement relative to element size, without the mean [m].
     pub displacement: f64,
     /// Longest side of that element's bounds [m].
     pub size: f64,
@@ -22,7 +22,7 @@ pub struct Extent {
     pub moved: u32,
 }
 
-/// Computes the extent of a displacement, shape `[3 * nodes]`, without its translation.
+/// Computes the extent of a displacement, shape `[3 * nodes]`.
 pub fn extent(model: &Model, u: &[f64]) -> Extent {
     let mesh = model.mesh();
     let nodes = mesh.node_count().max(1) as f64;

@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use std::collections::{HashMap, HashSet};
 
 impl Mesh {
-    /// New index of each node in [`Mesh::to_linear`]; `None` if dropped. Shape `[nodes]`.
+    /// New index of each node in [`Mesh::to_linear`]. Shape `[nodes]`.
     ///
     /// # Panics
     /// If an element refers to a missing node; [`crate::Model::new`] rejects such meshes.
@@ -25,7 +25,7 @@ impl Mesh {
     }
 
     /// Converts hex20 → hex8, wedge15 → wedge6, pyramid13 → pyramid5, tet10 → tet4; corners keep order and
-    /// numbers, indices as in [`Mesh::linear_node_map`].
+    /// numbers ([`Mesh::linear_node_map`]).
     ///
     /// # Panics
     /// As [`Mesh::linear_node_map`].
@@ -129,7 +129,7 @@ mod tests {
         let linear = mixed();
         assert!((0..4).all(|e| linear.element_volume(e) > 0.0));
         let quadratic = linear.to_quadratic();
-        // Edges: 12 of the cube, 5 more of the wedge, 4 of the pyramid, 3 of the tetrahedron.
+        // Edges: 12 (cube), 5 (wedge), 4 (pyramid), 3 (tetrahedron).
         assert_eq!((quadratic.node_count(), quadratic.element_count()), (12 + 12 + 5 + 4 + 3, 4));
         assert_eq!(quadratic.boundary_faces().len(), linear.boundary_faces().len());
         assert_eq!(quadratic.node_ids[12..], (44..68).collect::<Vec<_>>());

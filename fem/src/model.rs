@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// Model input; default: empty mesh, reduced rule, no gravity.
+/// Model input; default: empty mesh, reduced rule.
 #[derive(Clone, Debug, Default)]
 pub struct ModelInput {
     /// Mesh [m].
@@ -169,7 +169,7 @@ impl Model {
         self.materials.iter().find(|(number, m)| !m.is_linear() && used(number)).map(|(&number, _)| number)
     }
 
-    /// Whether the consistent tangent is always symmetric.
+    /// Whether the tangent is always symmetric.
     pub fn symmetric_tangent(&self) -> bool {
         self.materials.values().all(Material::symmetric_tangent)
     }
@@ -256,7 +256,7 @@ impl Model {
         self.materials.values().all(|m| m.law.has_constant_elasticity())
     }
 
-    /// Number of Gauss points of all elements.
+    /// Number of Gauss points.
     pub fn point_count(&self) -> usize {
         self.point_start(self.mesh.element_count())
     }

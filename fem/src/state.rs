@@ -43,10 +43,12 @@ impl State {
     }
 }
 
-/// Energy terms of one step.
+/// Energy terms of one step, to rounding:
 ///
-/// `external_work + support_work = change of (kinetic + strain) + damping_dissipation + boundary_dissipation + plastic_dissipation + numerical_dissipation`,
-/// to rounding; strain includes boundary springs.
+/// ```text
+/// external_work + support_work = change of (kinetic + strain) + damping_dissipation
+///     + boundary_dissipation + plastic_dissipation + numerical_dissipation
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepAudit {
     /// Work of the load [J].

@@ -66,12 +66,12 @@ impl StaticSolver {
         Ok(StaticSolver { system, enough, nodal: vec![0.0; model.dof_count()], equations })
     }
 
-    /// CG counts, if selected by [`methods`](Model::methods).
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// Memory of an iterative solver or library [bytes].
+    /// Additional solver memory [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }

@@ -99,7 +99,7 @@ impl Supports {
         }
     }
 
-    /// Node index and direction of largest free rigid motion, if any.
+    /// Node index and direction of the largest free rigid motion.
     pub fn free_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
         self.free_motion_on_springs(mesh, &[])
     }

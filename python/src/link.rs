@@ -1,4 +1,4 @@
-//! Link between a run thread and the interpreter: a paused run executes requests, then continues.
+//! Link between run thread and interpreter: a paused run executes requests.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
@@ -15,7 +15,7 @@ pub type Look = Box<dyn FnOnce(&Shown<'_>) + Send>;
 pub enum Goal {
     /// Number of windows, or the end.
     Windows(u64),
-    /// First window ending at or after this time [s], or the end.
+    /// First window ending at or after this time [s].
     Time(f64),
     /// End.
     End,
@@ -48,7 +48,7 @@ pub struct Place {
     pub windows: u64,
 }
 
-/// Force on a body at its centre of mass [N].
+/// Force on a body at its centre [N].
 #[derive(Clone, Copy, Debug)]
 pub struct Push {
     /// Body index.
@@ -112,7 +112,7 @@ impl Companion for Link {
         }
         let orders = locked(&self.orders);
         let place = Place { time: shown.time, done: shown.done, windows: shown.windows };
-        // Without a receiver the run has a stop request.
+        // Without a receiver, a stop is requested.
         if self.reports.send(Report::Paused(place)).is_err() {
             return Ok(());
         }

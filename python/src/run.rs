@@ -49,7 +49,7 @@ pub fn options(
     })
 }
 
-/// Returns the results directory of a finished run.
+/// Returns the results directory.
 ///
 /// # Errors
 /// Failures of the run.
@@ -64,7 +64,7 @@ pub fn folder(outcome: Result<Outcome, Failure>) -> PyResult<PathBuf> {
 /// Receiver usable without the interpreter.
 pub type Reports<T> = Mutex<Receiver<T>>;
 
-/// Waits for a report without the interpreter lock. A signal raises `request`; its exception is returned with
+/// Waits for a report without the interpreter lock. Signals raise `request`; their exception is returned with
 /// the report.
 ///
 /// # Errors
@@ -124,7 +124,7 @@ pub fn run(
     let (outcome, signal) = wait(py, &Mutex::new(reports), || interrupt.request())?;
     // It has reported and ends.
     let _ = worker.join();
-    // The run completed despite Ctrl-C, which is still raised.
+    // Ctrl-C is raised although the run completed.
     folder(outcome).and_then(|dir| signal.map_or(Ok(dir), Err))
 }
 

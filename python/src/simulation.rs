@@ -117,7 +117,7 @@ impl Simulation {
         if time > self.place.time { self.go(py, Goal::Time(time)) } else { Ok(()) }
     }
 
-    /// Goes on to the end of the run, where its results are written; their folder. The state is not in memory any more.
+    /// Completes the run, writes its results and returns their folder; the state is then no longer in memory.
     fn finish(&mut self, py: Python<'_>) -> PyResult<PathBuf> {
         loop {
             if let Some(folder) = &self.folder {
@@ -167,7 +167,7 @@ impl Simulation {
         self.rows(py, out, |_, state, body| state.spin(body).into())
     }
 
-    /// Unit quaternions (w, x, y, z) that turn principal axes into those of the world, shape (bodies, 4).
+    /// Unit quaternions (w, x, y, z) that turn principal axes into world axes, shape (bodies, 4).
     #[pyo3(signature = (out = None))]
     fn orientations<'py>(
         &self,
@@ -404,10 +404,10 @@ impl Simulation {
         })?;
         let lent = Lent(values.as_mut_ptr(), values.len());
         self.look(move |shown| {
-            // Capture the whole struct: its fields are not `Send`.
+            // Fields alone are not `Send`.
             let lent = lent;
             let Lent(start, count) = lent;
-            // SAFETY: the array is exclusively borrowed and alive while the caller waits.
+            // SAFETY: exclusively borrowed and alive while the caller waits.
             fill(shown, unsafe { std::slice::from_raw_parts_mut(start, count) });
             Ok(())
         })?;
@@ -445,7 +445,7 @@ impl Drop for Simulation {
 /// The owner waits.
 struct Lent(*mut f64, usize);
 
-// SAFETY: the owner waits while they are used.
+// SAFETY: the owner waits.
 unsafe impl Send for Lent {}
 
 fn table<'py, T: Element + Copy, const N: usize>(
@@ -457,6 +457,6 @@ fn table<'py, T: Element + Copy, const N: usize>(
 
 fn closed() -> PyErr {
     PyRuntimeError::new_err(
-        "the run has ended, and its last state is not in memory: a run that was stopped goes on with resume=True",
+        "the run has ended, and its last state is not in memory: resume a stopped run with resume=True",
     )
 }

@@ -57,7 +57,7 @@ class Result:
         file = self.folder / name
         if not file.exists():
             there = ", ".join(sorted(path.name for path in self.folder.glob("*.csv"))) or "none"
-            raise ValueError(f"{file}: found no such table, expected one of those of the run: {there}")
+            raise ValueError(f"{file}: found no such table, expected one of {there}")
         try:
             import pandas
         except ModuleNotFoundError:

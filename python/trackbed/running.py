@@ -41,7 +41,7 @@ def run(
     set: overrides of keys: `{"track.load.cycles": 10}`, or `["track.load.cycles=10"]`; `None` as a value takes a key away.
     threads: default all cores. The results have the same bits for any number.
     memory: most that a solid may need, such as "8GB".
-    resume: go on from the last checkpoint in `out`.
+    resume: continue from the last checkpoint in `out`.
     from_run, bed: start from the end of a finished run in that folder, or with its bed only.
     force: replace what is in `out`.
     strict: refuse values that are not plausible.
@@ -50,7 +50,7 @@ def run(
         in it ends the run with a checkpoint.
 
     Raises `ValueError` (bad input; nothing is written), `NumericalError` (the last checkpoint is kept), `OSError` (the disk), and
-    `KeyboardInterrupt` after Ctrl-C, with how to go on.
+    `KeyboardInterrupt` after Ctrl-C, with the command to resume.
     """
     options: dict[str, Any] = dict(
         out=out, threads=threads, memory=memory, resume=resume, from_run=from_run, bed=bed, force=force, strict=strict, progress=progress

@@ -27,8 +27,8 @@ class Simulation(_trackbed.Simulation):
     move, so there are no views. Row k is always the same body.
 
     At the end of the `with` block a simulation whose last window is done completes its results; another one is stopped with a
-    checkpoint, from which `resume=True` goes on. Ctrl-C during a step pauses after the present window and raises `KeyboardInterrupt`; the
-    simulation can go on.
+    checkpoint, from which `resume=True` continues. Ctrl-C during a step pauses after the present window and raises `KeyboardInterrupt`; the
+    simulation can continue.
     """
 
     def __new__(
@@ -55,7 +55,7 @@ class Simulation(_trackbed.Simulation):
     _result: Result | None
 
     def finish(self) -> Result:
-        """Goes on to the end of the run and returns its results; the state is not in memory any more."""
+        """Completes the run and returns its results; the state is then no longer in memory."""
         if self._result is None:
             self._result = Result(super().finish())
         return self._result

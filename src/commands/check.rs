@@ -1,4 +1,4 @@
-//! `trackbed check`: resolves and reports a scene without running it.
+//! `trackbed check`: resolves and reports a scene.
 
 use crate::failure::Failure;
 use crate::model::exchange::{self, CouplingPart, Windows};
@@ -26,7 +26,7 @@ impl Report {
         self.lines.iter().fold(format!("{}\n", self.title), |text, line| text + "  " + line + "\n")
     }
 
-    /// Formats as JSON: `title`, `findings`, `solid`, `grains`, `coupling` (null if absent), `lines`.
+    /// Formats as JSON: `title`, `findings`, `solid`, `grains`, `coupling`, `lines`.
     pub fn json(&self) -> String {
         let mut all = self.numbers.clone();
         all["title"] = json!(self.title);
@@ -74,7 +74,7 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
 /// Reports a scene.
 ///
 /// # Errors
-/// Input errors of models; more than `memory` [bytes]; implausible values if `strict`.
+/// Input errors; more than `memory` [bytes]; implausible values if `strict`.
 pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
     let mut findings = plausible::weigh(&document.read()?, job);
     findings.extend(plausible::near_mode(job));

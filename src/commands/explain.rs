@@ -1,4 +1,4 @@
-//! `trackbed explain`: report of `check` with stages, kernels, memory and run time.
+//! `trackbed explain`: `check` with kernels, memory and run time.
 
 use super::check::{self, Report};
 use crate::failure::Failure;
@@ -31,7 +31,7 @@ pub struct How {
 /// Reports a scene with its cost.
 ///
 /// # Errors
-/// Input errors of a run.
+/// Input errors.
 pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failure> {
     if !(0.0..=LONGEST).contains(&how.rehearse) {
         let found = how.rehearse;
@@ -61,7 +61,6 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
     Ok(report)
 }
 
-/// Small bed with the contact law of the scene.
 struct Probe {
     seconds: f64,
     bytes: f64,

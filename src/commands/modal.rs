@@ -18,7 +18,7 @@ use trackbed_fem::modal::{ModalError, Modes};
 /// Masses whose squares are accurate [kg].
 const MASS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// Computes the lowest modes; writes `modes.csv`, `results.pvd` and `.vtu` files.
+/// Writes `modes.csv`, `results.pvd` and a `.vtu` per mode.
 ///
 /// # Errors
 /// Input errors; missing modes.
@@ -32,7 +32,7 @@ pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
         return Err(document.error("solid", "nothing", "a solid").into());
     };
     run::thread_pool(args.threads)?.install(|| {
-        // Sleepers are free on the grains and excluded.
+        // Sleepers are free on the grains.
         let part = solid::build(&document, part, vector(&scene.gravity), true, None)?;
         let unknowns = part.model.free_dof_count();
         if args.count == 0 || args.count > unknowns {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use std::io::Write;
 
-/// Prints to standard output; a closed reader is no failure.
+/// Prints text; a closed reader is no failure.
 ///
 /// # Errors
 /// I/O errors.

@@ -6,10 +6,10 @@ use crate::failure::Failure;
 use crate::render::options::{self, Options, Part, refuse};
 use crate::render::{self, Written};
 
-/// Writes an image or video of results.
+/// Writes an image or video.
 ///
 /// # Errors
-/// Input errors; I/O errors.
+/// Input and I/O errors.
 pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     if !args.dir.is_dir() {
         let found = if args.dir.exists() { "a file" } else { "no such directory" };

@@ -8,7 +8,7 @@ use crate::report::{self, Options};
 /// Writes a report and prints its path.
 ///
 /// # Errors
-/// Input errors; I/O errors.
+/// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
     let options = Options { folders: args.folders, out: args.out, title: args.title };
     let page = report::write(&options)?;

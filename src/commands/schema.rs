@@ -1,4 +1,4 @@
-//! `trackbed schema`: scene keys for editors and the reference.
+//! `trackbed schema`: scene keys.
 
 use super::output::print;
 use crate::failure::Failure;
@@ -7,7 +7,7 @@ use crate::scene::{reference, schema as scene_schema};
 use crate::write::{WriteError, atomic};
 use std::path::{Path, PathBuf};
 
-/// Prints the JSON schema, or key tables with `markdown`; updates the tables of a given page.
+/// Prints the JSON schema, or key tables with `markdown`; updates a given page.
 ///
 /// # Errors
 /// I/O errors, or a mark without table.

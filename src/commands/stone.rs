@@ -1,4 +1,4 @@
-//! `trackbed stone`: grains of spheres from surfaces or random shapes; measures libraries.
+//! `trackbed stone`: grains of spheres from surfaces or random shapes.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -158,7 +158,7 @@ fn range(option: &str, text: &str, least: f64) -> Result<[f64; 2], Failure> {
     }
 }
 
-/// Rejects options of other grain types. The seed also affects random shapes.
+/// Rejects options of other types. The seed also affects random shapes.
 fn kind(args: &StoneArgs, random: bool) -> Result<Kind, Failure> {
     let share = |option: &str, value: Option<f64>, default: f64, most: f64| {
         let v = value.unwrap_or(default);
@@ -293,7 +293,7 @@ fn library_info(input: &Path) -> Result<(), Failure> {
     }
     let mut text = format!("{}: {} stones\n{}\n", library.name, library.stones.len(), library.source);
     for (i, stone) in library.stones.iter().enumerate() {
-        // Separately: rigid and bonded grains may share a file.
+        // Rigid and bonded grains may share a file.
         let alone = StoneLibrary { stones: vec![stone.clone()], ..library.clone() };
         if !stone.corners.is_empty() {
             let body = alone.polyhedra().map_err(|e| fault(&e))?.swap_remove(0);

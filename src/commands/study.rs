@@ -8,10 +8,10 @@ use crate::run::Interrupt;
 use crate::study;
 use std::path::Path;
 
-/// Runs a study and prints its table and recommendation.
+/// Runs a study and prints its table.
 ///
 /// # Errors
-/// Input errors, interrupts, a failed reference, I/O errors.
+/// Input and I/O errors, interrupts, a failed reference.
 pub fn study(args: StudyArgs) -> Result<(), Failure> {
     let quiet = args.quiet;
     let options = study::Options {
@@ -27,7 +27,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
     let text = study::execute(&args.study, &options, &check)?;
-    // The tables are saved, so output may fail.
+    // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {
         message::note(&format!("standard output: {failure}"));
     }

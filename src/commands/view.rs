@@ -11,7 +11,7 @@ use crate::run::size;
 use crate::system;
 use crate::view::{self, Coding, Results};
 
-/// Serves results, or writes them as one HTML file.
+/// Serves results, or exports one HTML file.
 ///
 /// # Errors
 /// No results; see [`Failure`].

@@ -8,8 +8,7 @@ use trackbed_coupling::track::CyclicLoad;
 const MOST: u64 = 1_000_000_000_000;
 pub(super) const TIME_INTEGRATION: &str = "[solid.dynamics] or [solid.quasi_static]";
 
-/// Time step by which a scene counts steps [s]: of the solid in a solid-only model, else the constant DEM
-/// time step.
+/// Counted time step [s]: of a solid-only model, else the constant DEM time step.
 ///
 /// # Errors
 /// The DEM time step is not constant.
@@ -32,17 +31,17 @@ fn after(scene: &Table<Scene>, steps: u64) -> Result<f64, SceneError> {
         let found = steps.to_string();
         return Err(scene.below("time", &scene.time).error("steps", found, format!("1 to {MOST}")));
     }
-    // Slightly less, so that rounding of the product adds no step.
+    // Rounding must not add a step.
     Ok(steps as f64 * step * (1.0 - 1e-13))
 }
 
 /// Duration of the main stage [s]; 0 for a static solid.
 ///
 /// # Errors
-/// No time, two times, or a time shorter than the load cycles.
+/// No time, two times, or too short for the load cycles.
 pub fn end_time(scene: &Table<Scene>, grains: Option<&GrainsPart>) -> Result<f64, SceneError> {
     let counted = grains.and_then(|g| g.track.load.as_ref()).map(CyclicLoad::end);
-    // A push follows the cycles or is the only load.
+    // After the cycles, or alone.
     let push = grains.and_then(|g| g.track.after.push).map(|p| p.duration());
     let counted = match (counted, push) {
         (Some(cycles), Some(push)) => Some(cycles + push),

@@ -1,5 +1,4 @@
-//! Reports all independent input errors of a scene: erroneous values are replaced, and the scene is read
-//! again.
+//! Reports all independent input errors: erroneous values are replaced, and the scene is read again.
 
 use super::Job;
 use crate::failure::Failure;
@@ -13,10 +12,10 @@ const LONGEST: Duration = Duration::from_secs(2);
 /// Reads a scene.
 ///
 /// # Errors
-/// Input errors: unknown or missing keys, wrong types or units.
+/// Unknown or missing keys, wrong types or units.
 pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
     let again = |rest: &Document| Ok(rest.read::<Scene>().map(drop)?);
-    // Types of keys are independent of each other.
+    // Key types are independent.
     document.read().map_err(|first| all(document, first.into(), again, of_form, |_, _| true))
 }
 

@@ -1,5 +1,4 @@
-//! Scene → models: names resolved to indices, ranges checked, derived values computed. Later code reads no
-//! scene keys.
+//! Scene → models: names resolved, ranges checked, values derived. Later code reads no scene keys.
 
 mod duration;
 pub mod exchange;
@@ -35,7 +34,7 @@ pub struct Job {
     pub grains: Option<grains::GrainsPart>,
     /// DEM–FEM coupling.
     pub coupling: Option<exchange::CouplingPart>,
-    /// Duration of the main stage [s]; 0 for a static solid.
+    /// Main-stage duration [s]; 0 for a static solid.
     pub end: f64,
     /// Time step of a solid-only model [s].
     pub solid_step: Option<f64>,
@@ -46,7 +45,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Returns the contact surface of the ground, if there are grains and a solid.
+    /// Returns the ground surface, if coupled.
     pub fn ground(&self) -> Option<SolidSurface> {
         let (plan, solid, grains) = (self.coupling.as_ref()?, self.solid.as_ref()?, self.grains.as_ref()?);
         Some(plan.ground(solid, grains))
@@ -55,7 +54,7 @@ impl Job {
     /// Resolves a scene.
     ///
     /// # Errors
-    /// Input errors with file, line, key, found and expected.
+    /// Input errors.
     pub fn new(document: &Document, scene: &Scene) -> Result<Job, Failure> {
         let scene = &Table::root(document, scene);
         if scene.solid.is_none() && scene.grains.is_empty() {
@@ -68,7 +67,7 @@ impl Job {
         let mut sleepers = track::sleeper::meshed(scene, gravity)?;
         let build = |s| solid::build(document, s, gravity, coupled, sleepers.take());
         let solid = scene.solid.as_ref().map(build).transpose()?;
-        // Every run but an elastic dynamic solid-only run starts with a static solve.
+        // Only elastic dynamic solid-only runs start without a static solve.
         if let Some(part) = &solid
             && (coupled || !matches!(part.analysis, solid::Analysis::Dynamic(_)) || !part.is_linear())
         {

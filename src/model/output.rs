@@ -34,12 +34,12 @@ pub struct OutputPlan {
     pub tensors: Vec<&'static str>,
     /// Detailed last part: duration [s], frames.
     pub last: Option<(f64, u32)>,
-    /// Frames show only contacts above the mean force.
+    /// Frames show contacts above the mean force.
     pub strong_chains: bool,
 }
 
 impl OutputPlan {
-    /// Resolves `[output]` for a main stage of `end` [s]; 0 for a static solid.
+    /// Resolves `[output]` for a main stage of `end` [s].
     ///
     /// # Errors
     /// Values out of range, or keys without effect.
@@ -103,7 +103,7 @@ fn steps(
 fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, SceneError> {
     const MOST: f64 = 100_000.0;
     let (key, frames) = match steps(scene, o, "frame", o.frame_steps, o.frames.is_some())? {
-        // The end may lie just below a whole number of steps.
+        // The end may lie just below a whole step.
         Some(interval) => ("frame_steps", (end / interval * (1.0 + 1e-9)).floor()),
         None => ("frames", f64::from(o.frames.unwrap_or(20))),
     };
@@ -147,7 +147,7 @@ fn has_extra(scene: &Scene, name: &str) -> bool {
         && match name {
             // Periodic wrapping invalidates the initial position.
             "displacement" | "initial_position" => scene.periodic.is_none(),
-            // Contacts, bonds and gravity are the only forces.
+            // No other forces.
             "acceleration" => {
                 let held = scene.grains.iter().any(|g| g.motion.is_some());
                 !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()

@@ -1,4 +1,4 @@
-//! Grain tables: sphere packings and sieve limits in CSV, grain libraries in TOML.
+//! Grain tables: packings and sieve limits in CSV, libraries in TOML.
 
 mod grading;
 mod heading;
@@ -133,10 +133,10 @@ const X: Column = Column::length("x", &["x"]);
 const Y: Column = Column::length("y", &["y"]);
 const Z: Column = Column::length("z", &["z"]);
 
-/// Reads spheres `x, y, z, r` [m]; a non-numeric first row is a heading.
+/// Reads spheres `x, y, z, r` [m], with optional heading.
 ///
 /// # Errors
-/// Missing file, too few columns, or a non-finite value.
+/// Missing file, or invalid rows.
 pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     let row = |(line, [x, y, z, r]): (usize, [f64; 4])| {
         if r > 0.0 {
@@ -148,12 +148,12 @@ pub fn packing(file: &Path) -> Result<Vec<([f64; 3], f64)>, ReadError> {
     table(file, &[X, Y, Z, radius])?.into_iter().map(row).collect()
 }
 
-/// Grain of a packing, a clump or polyhedron.
+/// Clump or polyhedron of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedStone {
     /// Centre of mass [m].
     pub position: [f64; 3],
-    /// Quaternion from principal to world axes: w, x, y, z.
+    /// Quaternion, principal to world axes: w, x, y, z.
     pub orientation: [f64; 4],
     /// Scale relative to the library.
     pub scale: f64,
@@ -161,11 +161,11 @@ pub struct PlacedStone {
     pub stone: usize,
 }
 
-/// Reads grains `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a library of `stones`; a non-numeric
-/// first row is a heading.
+/// Reads grains `x, y, z` [m], `qw, qx, qy, qz`, `scale`, `stone` of a library of `stones`, with optional
+/// heading.
 ///
 /// # Errors
-/// Missing file, too few columns, or invalid values.
+/// Missing file, or invalid rows.
 pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, ReadError> {
     let [qw, qx] = [Column::number("qw", &["qw"]), Column::number("qx", &["qx"])];
     let [qy, qz] = [Column::number("qy", &["qy"]), Column::number("qz", &["qz"])];
@@ -190,10 +190,10 @@ pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, Rea
     table(file, &columns)?.into_iter().map(row).collect()
 }
 
-/// Reads time and `value` in SI units; a non-numeric first row is a heading with units.
+/// Reads time and `value` in SI units, with optional heading.
 ///
 /// # Errors
-/// Missing file, invalid rows, unordered times, or a wrong heading.
+/// Missing file, invalid rows, unordered times, wrong heading.
 pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     let name = value.name;
@@ -218,7 +218,7 @@ pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError>
 /// Reads a library of clumps.
 ///
 /// # Errors
-/// Missing file, or not a library of clumps.
+/// Missing file, or other grains.
 pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -230,7 +230,7 @@ pub fn stones(file: &Path) -> Result<Vec<Clump>, SceneError> {
 /// Reads a library of dilated polyhedra.
 ///
 /// # Errors
-/// Missing file, or not a library of dilated polyhedra.
+/// Missing file, or other grains.
 pub fn polyhedra(file: &Path) -> Result<Vec<Dilated>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -242,7 +242,7 @@ pub fn polyhedra(file: &Path) -> Result<Vec<Dilated>, SceneError> {
 /// Reads a library of bonded clusters.
 ///
 /// # Errors
-/// Missing file, or not a library of clusters.
+/// Missing file, or other grains.
 pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
     let document = Document::open(file)?;
     let library: StoneLibrary = document.read()?;
@@ -251,7 +251,7 @@ pub fn clusters(file: &Path) -> Result<Vec<Cluster>, SceneError> {
         .map_err(|e| document.error("stones", e.to_string(), "spheres that bonds hold in one piece"))
 }
 
-/// Reads bonded pairs `a, b` of grain indices below `count`; a non-numeric first row is a heading.
+/// Reads bonded pairs `a, b` of indices below `count`, with optional heading.
 ///
 /// # Errors
 /// Missing file, or invalid pairs.

@@ -1,4 +1,4 @@
-//! Plausibility of grain positions relative to gravity, walls and solid.
+//! Plausibility of grain positions.
 
 use super::findings::{Findings, Usual, shown};
 use super::grains::length;
@@ -125,7 +125,7 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
             dot([0, 1, 2].map(|d| x[d] - point[d].si), normal) < 0.0
         };
         let share = bodies.iter().filter(behind).count() as f64 / bodies.len().max(1) as f64;
-        // A lid above a heap is closed after deposition.
+        // Lids close after deposition.
         let lid = dot(normal, [0, 1, 2].map(|d| scene.gravity[d].si)) > 0.0;
         if share > SHARE && !lid {
             let found = format!("{:.0} % of the grains behind the plane", 100.0 * share);
@@ -184,7 +184,7 @@ fn in_the_solid(findings: &mut Findings, scene: &Scene, job: &Job) {
             findings.add(true, key, "all grains outside the plan of the solid", "grains above its surface");
             continue;
         }
-        // Nodes below the bed, without sleepers on it.
+        // Nodes below the bed.
         let margin = 0.05 * whole.longest();
         let below =
             |p: &&[f64; 3]| (0..2).all(|d| p[d] >= bed.low[d] - margin && p[d] <= bed.high[d] + margin);
@@ -248,7 +248,7 @@ fn settling(findings: &mut Findings, scene: &Scene, job: &Job) {
     findings.weigh("deposition.local_damping", d.local_damping, Usual::or_zero(1e-3, 0.9, ""));
     findings.weigh("deposition.max_time", d.max_time.si, Usual::new(1e-3, 600.0, "s"));
     let Some(bed) = of_grains(job) else { return };
-    // The upper grains fall through the gaps, half of the height.
+    // Upper grains fall through gaps, half of the height.
     let fall = ((bed.high[2] - bed.low[2]) / weight).sqrt();
     if d.layers <= 1 && d.max_time.si < 0.1 * fall {
         let found = format!("{}, for a fall of about {}", shown(d.max_time.si, "s"), shown(fall, "s"));

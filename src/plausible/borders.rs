@@ -1,4 +1,4 @@
-//! Grains filled up to a solid border without a wall.
+//! Grains filled up to an open border.
 
 use super::bed::{Extent, of_solid};
 use super::findings::{Findings, shown};

@@ -1,4 +1,4 @@
-//! Implausible geometry: millimetre meshes, sleepers through walls, gravity across the bed.
+//! Implausible geometry, such as millimetre meshes.
 
 use super::bed::of_solid;
 use super::findings::{Findings, shown};
@@ -70,7 +70,7 @@ fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
                 continue;
             };
             let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // Sleeper height follows from the bed: only vertical walls are compared.
+            // Sleeper height is unknown: only vertical walls are compared.
             if size == 0.0 || n[2].abs() > 1e-6 * size {
                 continue;
             }

@@ -19,8 +19,8 @@ const ELASTIC_MODULUS: f64 = 0.33;
 /// Limit without a cyclic load, whose rate is unknown.
 const UNKNOWN: f64 = 100.0;
 
-/// Checks mass scaling by the inertial number I = ε̇ d √(f ρ / p), with strain rate ε̇ = π ν Δp/M of a
-/// haversine of frequency ν and range Δp on a bed of modulus M.
+/// Checks mass scaling by I = ε̇ d √(f ρ / p), ε̇ = π ν Δp/M for a haversine of frequency ν and range Δp on
+/// bed modulus M.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(factor) = scene.time.mass_factor.filter(|f| *f > 1.0) else { return };
     let key = "time.mass_factor";
@@ -71,8 +71,7 @@ fn modulus(material: Material, size: f64, pressure: f64) -> Option<f64> {
     };
     let force = pressure * size * size;
     let effective = young / (2.0 * (1.0 - material.poisson * material.poisson));
-    // Hertz contact radius of spheres of half the size; corners crush until the peak pressure equals their
-    // strength.
+    // Hertz radius of spheres of half the size; corners crush until the peak pressure equals their strength.
     let circle = libm::cbrt(0.75 * force * 0.25 * size / effective);
     let circle = circle.max((1.5 * force / (PI * material.corner_strength)).sqrt());
     Some(ELASTIC_MODULUS * 2.0 * effective * circle / size)

@@ -1,8 +1,7 @@
-//! Plausibility of scene values: computable, but unusual for ballast, soil or track, such as unit errors (80
-//! Pa for 80 MPa, millimetres for metres).
+//! Plausibility of scene values, such as unit errors (80 Pa for 80 MPa, millimetres for metres).
 //!
-//! Values beyond the typical range by a factor of 30 are *implausible*, others *unusual*. Ranges are wide: a
-//! false warning is worse than a missing one.
+//! Beyond the typical range by a factor of 30 is *implausible*, otherwise *unusual*. Ranges are wide: false
+//! warnings are worse than missing ones.
 
 mod bed;
 mod borders;
@@ -60,7 +59,7 @@ mod tests {
     use findings::Usual;
 
     #[test]
-    fn far_outside_is_serious_and_zero_may_be_usual() {
+    fn classifies_distance_from_range() {
         let mut findings = Findings::default();
         let young = Usual::new(1e5, 1e12, "Pa");
         for value in [1e5, 3e10, 9e4, 80.0, 4e13] {

@@ -1,5 +1,4 @@
-//! Load frequency near natural frequencies of the solid: a mesh on a rigid base resonates, real ground does
-//! not.
+//! Loads near natural frequencies: a mesh on a rigid base resonates, real ground does not.
 
 use super::findings::Finding;
 use crate::model::Job;
@@ -11,7 +10,7 @@ const MODES: usize = 12;
 const UNKNOWNS: usize = 150_000;
 /// Smallest effective over total mass.
 const SHARE: f64 = 0.1;
-/// Amplification warned about: for the dominant mode, within about a quarter of its frequency.
+/// Amplification limit: within about a quarter of the dominant frequency.
 pub const AMPLIFICATION: f64 = 2.0;
 
 /// Vertical mode with the nearest load frequency.
@@ -23,8 +22,7 @@ pub struct Resonance {
     pub mode: f64,
     /// Effective over total mass [-].
     pub share: f64,
-    /// Undamped modal deflection over static deflection of all modes, load distributed like mass: share / |1
-    /// − (f/fₙ)²| [-].
+    /// Undamped modal over static deflection, load distributed like mass: share / |1 − (f/fₙ)²| [-].
     pub amplification: f64,
 }
 
@@ -53,8 +51,7 @@ impl Resonance {
     }
 }
 
-/// Returns the mode most amplified by the track load; none without cyclic load or modes (no density,
-/// absorbing borders, too large).
+/// Returns the mode most amplified by the track load; none without cyclic load or modes.
 pub fn resonance(job: &Job) -> Option<Resonance> {
     let load = job.grains.as_ref()?.track.load.as_ref()?;
     let model = &job.solid.as_ref()?.model;

@@ -326,7 +326,7 @@ fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile
     let grouped = sections.elements.iter().filter(|e| !e.groups.is_empty()).count();
     let total = sections.elements.len();
     if grouped == 0 && total > 0 {
-        builder.warn("no physical volumes: material numbers are those of the geometric volumes");
+        builder.warn("no physical volumes: geometric volumes give the material numbers");
     } else if grouped < total {
         builder.warn(format!(
             "{} elements are in no physical volume and get material number 0",

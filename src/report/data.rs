@@ -1,4 +1,4 @@
-//! Data of a report: files of a results directory.
+//! Data of a results directory.
 
 use crate::failure::Failure;
 use crate::read::source;
@@ -26,7 +26,7 @@ pub enum State {
     Interrupted,
     /// Running.
     Running,
-    /// Ended without status: killed, or the machine went down.
+    /// Ended without status.
     Stopped,
     /// Modal analysis, without checks.
     Modes,
@@ -105,7 +105,7 @@ impl RunData {
         self.tables.iter().filter(|(_, t)| t.skipped > 0).map(|(name, t)| (*name, t.skipped))
     }
 
-    /// Returns a summary value by path such as `model.bodies`, or null.
+    /// Returns a summary value such as `model.bodies`, or null.
     pub fn value(&self, path: &str) -> &Value {
         path.split('.').fold(&self.summary, |value, key| match key.parse::<usize>() {
             Ok(index) if value.is_array() => value.get(index).unwrap_or(&Value::Null),

@@ -1,6 +1,6 @@
-//! Report of runs: a page of tables and plots, from results directories only.
+//! Report of runs, from results directories only.
 //!
-//! Each of the `sections` is omitted without data, so incomplete runs are reported up to the last output.
+//! Each of the `sections` is omitted without data, so incomplete runs are reported.
 
 mod data;
 mod page;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Results directories.
     pub folders: Vec<PathBuf>,
-    /// Output file; default `report.html` in a single directory.
+    /// Output file; default `report.html` in the directory.
     pub out: Option<PathBuf>,
     /// Page title; default: scene title.
     pub title: Option<String>,
@@ -28,7 +28,7 @@ pub struct Options {
 /// Writes a report and returns its path.
 ///
 /// # Errors
-/// Input errors, I/O errors.
+/// Input and I/O errors.
 pub fn write(options: &Options) -> Result<PathBuf, Failure> {
     let out = match (&options.out, options.folders.as_slice()) {
         (Some(out), _) => out.clone(),

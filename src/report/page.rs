@@ -1,4 +1,4 @@
-//! HTML page: style sheet, sections, tables. Also well-formed XML, and self-contained.
+//! HTML page, self-contained and well-formed XML.
 //!
 //! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants.
 
@@ -137,9 +137,9 @@ pub enum Cell {
     Nothing,
     /// Text.
     Text(String),
-    /// SI value with its own prefix; the exact value is a tooltip.
+    /// SI value with prefix; exact as tooltip.
     Value(f64, &'static str),
-    /// SI value scaled to the unit of its column.
+    /// SI value in the column unit.
     Scaled(f64, Scale, &'static str),
     /// Markup.
     Html(Markup),
@@ -214,7 +214,7 @@ fn table_of(class: Option<&str>, heads: &[&str], rows: &[(String, Vec<Cell>)]) -
     }
 }
 
-/// Formats a table of value columns (name, unit, values), each with one prefix.
+/// Formats value columns (name, unit, values), each with one prefix.
 pub fn columns(first: &str, names: &[String], columns: &[(&str, &'static str, Vec<Option<f64>>)]) -> Markup {
     let scales: Vec<Scale> = columns
         .iter()

@@ -7,7 +7,7 @@ use crate::write::svg::minus;
 pub struct Scale {
     /// Factor from SI units.
     pub factor: f64,
-    /// Unit such as `kN/m`; empty for plain numbers.
+    /// Unit such as `kN/m`, or empty.
     pub unit: String,
 }
 
@@ -16,7 +16,7 @@ const PREFIXES: [(i32, &str); 7] = [(-3, "n"), (-2, "µ"), (-1, "m"), (0, ""), (
 /// Selects the prefix for values up to `largest`.
 pub fn scale(unit: &str, largest: f64) -> Scale {
     let largest = largest.abs();
-    // Kilograms include a prefix; other units are unscaled.
+    // Other units are unscaled.
     let (base, steps, highest) = match unit {
         "N" | "Pa" | "J" | "N/m" | "N m" | "Hz" | "W" | "B" => (unit, true, 3),
         "m" | "m/s" | "s" | "rad" => (unit, true, 0),
@@ -28,9 +28,9 @@ pub fn scale(unit: &str, largest: f64) -> Scale {
     if !steps || largest == 0.0 || !largest.is_finite() {
         return Scale { factor: 1.0, unit: base.into() };
     }
-    // Values that round to 1000 use the next prefix.
+    // Rounding to 1000 needs the next prefix.
     let power = (libm::log10(largest * 1.000_001) / 3.0).floor() as i32;
-    // Lengths slightly above a metre stay in millimetres.
+    // Lengths near a metre stay in millimetres.
     let power = power.clamp(-3, highest);
     let prefix = PREFIXES.iter().find(|p| p.0 == power).map_or("", |p| p.1);
     Scale { factor: 10.0_f64.powi(-3 * power), unit: format!("{prefix}{base}") }

@@ -24,7 +24,7 @@ pub struct Bed<'a> {
 }
 
 impl<'a> Bed<'a> {
-    /// Creates the bed of a stage; `doing` names it in errors.
+    /// Creates a bed; `doing` names its stage in errors.
     pub fn new(
         model: dem::Model,
         surface: Option<&'a SolidSurface>,
@@ -59,7 +59,7 @@ impl<'a> Bed<'a> {
         self.state.dt()
     }
 
-    /// Advances one check interval of a millisecond.
+    /// Advances a millisecond, the check interval.
     ///
     /// # Errors
     /// As [`Bed::step`].
@@ -71,7 +71,7 @@ impl<'a> Bed<'a> {
         Ok(())
     }
 
-    /// Lets the bed come to rest; returns whether it did in time.
+    /// Lets the bed settle; returns whether in time.
     ///
     /// # Errors
     /// As [`Bed::step`].
@@ -87,15 +87,15 @@ impl<'a> Bed<'a> {
         Ok(false)
     }
 
-    /// Returns the energy balance of the finished stage.
+    /// Returns the energy balance of the stage.
     ///
     /// # Errors
-    /// Failed contact detection in the initial state.
+    /// Failed initial contact detection.
     pub fn energy(&self, stage: &str) -> Result<StageEnergy, Failure> {
         StageEnergy::of(stage, &self.model, &self.state, self.surface)
     }
 
-    /// Returns the first bodies at their current positions at rest, other data from `inputs`.
+    /// Returns the first bodies at rest in place, other data from `inputs`.
     pub fn at_rest(&self, inputs: &[BodyInput]) -> Vec<BodyInput> {
         let place = |(b, input): (usize, &BodyInput)| match input.absent {
             true => input.clone(),
@@ -127,8 +127,8 @@ pub fn rms_speed(model: &dem::Model, state: &dem::State) -> f64 {
     (sum / state.present_count().max(1) as f64).sqrt()
 }
 
-/// Returns the contact height [m] of a box with half sides `half` lowered at `centre` in plan; without a
-/// sphere below, the top of the solid, or 0.
+/// Returns the contact height [m] of a box lowered at `centre` in plan; without a sphere below, the top of
+/// the solid, or 0.
 pub fn top_below(
     model: &dem::Model,
     state: &dem::State,

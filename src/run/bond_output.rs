@@ -1,4 +1,4 @@
-//! Output of bonds and grain groups: columns of `history.csv`, `breaks.csv`, summary.
+//! Output of bonds and grain groups.
 
 use super::recorder::{Now, Recorder};
 use super::summary::{BondSummary, BreakageRecord};
@@ -30,7 +30,7 @@ impl<S: System> Recorder<S> for Bonds {
     }
 }
 
-/// Mean position of recorded groups, with bond and contact forces.
+/// Mean position, bond and contact force of recorded groups.
 pub struct Groups;
 
 impl<S: System> Recorder<S> for Groups {

@@ -17,10 +17,8 @@ const WATCH: Duration = Duration::from_millis(50);
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     stop: Arc<AtomicBool>,
-    /// Whether the stage saves on request.
     keeps: Arc<AtomicBool>,
     seen: Arc<AtomicBool>,
-    /// Acknowledged, or not necessary.
     acknowledged: Arc<AtomicBool>,
     steps: Option<u64>,
     trace: Option<Trace>,
@@ -32,9 +30,8 @@ pub(crate) type Trace = Arc<Mutex<Vec<(Instant, Moment)>>>;
 const TRACE: Duration = Duration::from_millis(20);
 
 impl Interrupt {
-    /// Creates a request raised by Ctrl-C (SIGINT), SIGTERM or, unless ignored (`nohup`), SIGHUP. It is
-    /// acknowledged on standard error with `after`. A second signal, or the first if nothing can be saved,
-    /// exits at once with code 130.
+    /// Creates a request raised by Ctrl-C (SIGINT), SIGTERM or, unless ignored, SIGHUP, and acknowledged with
+    /// `after`. A second signal, or the first if nothing can be saved, exits with code 130.
     ///
     /// # Errors
     /// Handlers or thread unavailable.
@@ -71,7 +68,7 @@ impl Interrupt {
 
     /// Whether a signal exits at once or waits for a save.
     pub(crate) fn end_at_once(&self, at_once: bool) {
-        // A pending request belongs to the ending stage.
+        // Pending requests belong to the ending stage.
         self.seen.fetch_or(self.stopped(), Ordering::Relaxed);
         self.keeps.store(!at_once, Ordering::Relaxed);
     }
@@ -80,7 +77,6 @@ impl Interrupt {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Raised only by [`Interrupt::request`].
     pub(crate) fn traced() -> (Interrupt, Trace) {
         let trace = Trace::default();
         (Interrupt { trace: Some(trace.clone()), ..Interrupt::default() }, trace)
@@ -115,7 +111,7 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// Creates a store with the given interval; `command` resumes the run.
+    /// Creates a store; `command` resumes the run.
     pub fn new(slots: Slots, interrupt: Interrupt, interval: Duration, command: String) -> CheckpointStore {
         let now = Cell::new(Instant::now());
         CheckpointStore {
@@ -146,7 +142,7 @@ impl CheckpointStore {
         self.interrupt.end_at_once(true);
     }
 
-    /// Writes a due checkpoint after a step, with position `moment` and parts from `fill`.
+    /// Writes a due checkpoint of `moment`, filled by `fill`.
     ///
     /// # Errors
     /// [`Failure::Interrupted`] after a requested checkpoint; I/O errors.
@@ -157,7 +153,7 @@ impl CheckpointStore {
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         if self.stopped() {
-            // A run that stops at once prints one line.
+            // Printed as one line.
             self.interrupt.acknowledged.store(true, Ordering::Relaxed);
             let moment = moment();
             let place =
@@ -166,7 +162,7 @@ impl CheckpointStore {
             return Err(Failure::Interrupted(format!("interrupted: {place}; resume with: {}", self.command)));
         }
         let due = self.due();
-        // Traced runs are discarded and only need the last checkpoint.
+        // Traced runs are discarded.
         if self.interrupt.trace.is_some() {
             self.follow(moment);
             return Ok(());
@@ -174,8 +170,7 @@ impl CheckpointStore {
         if due { self.save(moment(), fill) } else { Ok(()) }
     }
 
-    /// Handles a step of a stage that can only restart from its beginning; `time`: simulated time of the bed
-    /// [s].
+    /// Handles a step of a stage without checkpoints; `time`: simulated [s].
     ///
     /// # Errors
     /// [`Failure::Interrupted`] on request.

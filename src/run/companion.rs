@@ -1,4 +1,4 @@
-//! In-process observer of a run: reads the state after each window and may apply grain forces.
+//! In-process observer of a run, which may apply grain forces.
 
 use super::system::{GrainsView, SolidView};
 use crate::failure::Failure;
@@ -7,9 +7,9 @@ use std::sync::Arc;
 use trackbed_coupling::ledger::{Spent, Stored};
 use trackbed_dem as dem;
 
-/// State at the start of the main loop or after a window.
+/// State at the main loop start or after a window.
 pub struct Shown<'a> {
-    /// Time since the start of the main loop [s].
+    /// Main-loop time [s].
     pub time: f64,
     /// Completed windows.
     pub done: u64,
@@ -25,7 +25,7 @@ pub struct Shown<'a> {
     pub spent: Spent,
 }
 
-/// Observer of the main loop, on its thread. Its state is not saved in checkpoints.
+/// Observer of the main loop, on its thread. Not saved in checkpoints.
 pub trait Companion: Send + Sync {
     /// Observes the state before the first window and after each.
     ///

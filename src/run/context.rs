@@ -33,15 +33,15 @@ pub struct Run<'a> {
     pub device: Place,
     /// Ranks that share these steps.
     pub ranks: &'a Ranked,
-    /// Whether the directory is cleared and holds results of this run.
+    /// Whether the directory holds results of this run.
     pub prepared: Cell<bool>,
     /// Checkpoint store.
     pub checkpoints: CheckpointStore,
-    /// Whether the main loop resumes from a checkpoint and keeps existing files.
+    /// Whether the main loop resumes and keeps files.
     pub continued: bool,
     /// Solid with sleepers set down.
     pub set_down: &'a OnceCell<fem::Model>,
-    /// Earlier run whose final state is the start.
+    /// Earlier run, source of the initial state.
     pub from: Option<Source<'a>>,
     /// Observer.
     pub accompanied: &'a Accompanied,
@@ -55,7 +55,7 @@ impl Run<'_> {
         self.findings.take().iter().for_each(|finding| message::warn(&finding.to_string()));
     }
 
-    /// Error for a moved results directory; `place`: its new location, if known.
+    /// Error for a moved results directory; `place`: new location.
     pub fn gone(&self, place: Option<&Path>) -> Failure {
         let dir = self.dir.display();
         let head = format!("{dir}: results directory was renamed or removed during the run");
@@ -72,7 +72,7 @@ impl Run<'_> {
         })
     }
 
-    /// Creates the results directory; a resumed run keeps its files.
+    /// Creates the results directory; resuming keeps files.
     ///
     /// # Errors
     /// I/O errors.

@@ -9,7 +9,7 @@ use trackbed_dem::ranks::{Link, Ranks, Traffic};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
 
-/// Where the steps of the run proper are computed.
+/// Compute device of the main stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Place {
     /// CPU.
@@ -19,10 +19,10 @@ pub enum Place {
     Gpu,
 }
 
-/// Checks that the device supports a scene, before output is written.
+/// Checks that the device supports a scene.
 ///
 /// # Errors
-/// Unsupported features, or missing hardware.
+/// Unsupported features, missing hardware.
 pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     if place == Place::Cpu {
         return Ok(());
@@ -31,7 +31,7 @@ pub fn check(place: Place, job: &Job) -> Result<(), Failure> {
     let Some(grains) = &job.grains else {
         return Err(refused("not supported on a GPU: scenes without grains".into()));
     };
-    // Errors in the grains are reported where models are built, with their keys.
+    // Grain errors are reported where models are built.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
         device::check(&model).map_err(|e| refused(e.to_string()))?;
     }
@@ -44,7 +44,7 @@ pub enum Steps {
     Processor(Box<dem::Work>),
     /// GPU.
     Device(Box<Device<Cuda>>),
-    /// Several ranks, of which this process is the first.
+    /// Several ranks, this process first.
     Ranks(Box<Ranks<Box<dyn Link>>>),
 }
 
@@ -57,7 +57,7 @@ impl Steps {
     /// Creates a GPU executor that owns the state.
     ///
     /// # Errors
-    /// Unsupported features, no device, or insufficient memory.
+    /// Unsupported features, no device, insufficient memory.
     pub fn device(model: &dem::Model, state: &dem::State) -> Result<Steps, Failure> {
         let refused = |why: String| Failure::Input(format!("--device gpu: {why}"));
         let text = device::source(model).map_err(|e| refused(e.to_string()))?;
@@ -70,7 +70,7 @@ impl Steps {
     /// Creates a rank executor that owns the state; ranks build the model from `description`.
     ///
     /// # Errors
-    /// A lost rank, or one that cannot build the model.
+    /// A lost rank, or a failed model.
     pub fn ranks(
         link: Box<dyn Link>,
         model: &dem::Model,

@@ -1,10 +1,10 @@
-//! Energy check during a run: stops a run with invalid results.
+//! Energy check during a run.
 
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::ledger::Balance;
 
-/// Relative energy error above which a warning is printed, and above which the run stops.
+/// Relative energy error for a warning, and for a stop.
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
 
 /// Fraction of elastic and kinetic energy added to the reference energy, which is almost zero in the first
@@ -19,9 +19,7 @@ const FIRST: u32 = 2;
 pub struct EnergyWatch {
     /// Largest reference energy or floor [J].
     scale: f64,
-    /// Largest error [J].
     largest: f64,
-    /// Current error [J].
     error: f64,
     #[serde(default)]
     first: u32,
@@ -34,7 +32,7 @@ impl EnergyWatch {
     /// Adds a balance check.
     ///
     /// # Errors
-    /// Relative error above the stop limit.
+    /// Above the stop limit.
     pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
         self.scale = self.scale.max(balance.turnover()).max(balance.floor());
         self.error = balance.error().abs();
@@ -88,7 +86,7 @@ mod tests {
         let mut watch = EnergyWatch::default();
         watch.follow(&balance(0.2, 0.81)).unwrap();
         assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
-        // The same error at zero current reference energy.
+        // The same error, zero current reference energy.
         watch.follow(&balance(1.01, 0.0)).unwrap();
         assert!((watch.now() - 0.01 / 0.81).abs() < 1e-12, "{watch:?}");
         let failure = watch.follow(&balance(1.5, 0.0)).unwrap_err();
@@ -113,7 +111,7 @@ mod tests {
     /// Numerical energy gain keeps the balance closed: a gain of 0.3 J of 1 J stored must stop the run like
     /// an error.
     #[test]
-    fn numerical_energy_gain_stops_run() {
+    fn a_gain_of_the_time_integration_stops_a_run() {
         let closed = Balance { spent: Spent { numerical: -0.3, ..Spent::default() }, ..balance(1.3, 0.0) };
         assert!(closed.error().abs() < 1e-15);
         let mut watch = EnergyWatch::default();
@@ -145,7 +143,7 @@ mod tests {
 
     /// The error of a first contact is large relative to work, small relative to kinetic energy.
     #[test]
-    fn first_steps_use_kinetic_energy() {
+    fn the_first_steps_are_judged_by_what_moves() {
         let mut watch = EnergyWatch::default();
         watch.follow(&balance(1.001, 1e-6)).unwrap();
         assert!(watch.now() > 0.9, "the judgement at the end has no such allowance: {watch:?}");

@@ -77,7 +77,7 @@ const EVENTS: [Field<Event>; 9] = [
     (events::MAGNITUDE, Event::magnitude),
 ];
 
-/// Clusters breaks, writes `events.csv`, and computes the b-value; none without breaks.
+/// Clusters breaks and writes `events.csv`; none without breaks.
 ///
 /// # Errors
 /// I/O errors.
@@ -153,7 +153,6 @@ fn joined(breaks: &[Break], plan: Option<EventPlan>) -> Vec<Event> {
     events
 }
 
-/// Completeness, complete events, b-value with error.
 fn b_value(magnitudes: &[f64]) -> (f64, usize, Option<(f64, f64)>) {
     let bin = |m: f64| (m / BIN).round() as i64;
     let mut counts = std::collections::BTreeMap::new();

@@ -81,13 +81,13 @@ fn make(dir: &Path, output: &OutputPlan) -> io::Result<()> {
     output.formats.iter().try_for_each(|format| fs::create_dir_all(dir.join(format.folder)))
 }
 
-/// Creates the results directory and removes earlier results. Unrelated files stay.
+/// Creates the results directory and removes earlier results only.
 ///
 /// # Errors
 /// I/O errors.
 pub fn prepare(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
     let fail = failure(dir);
-    // Only in a results directory: elsewhere `nodes.csv` may be a user file.
+    // Elsewhere `nodes.csv` may be a user file.
     if dir.join("summary.json").is_file() {
         for file in files().map(|name| dir.join(name)).filter(|file| file.is_file()) {
             fs::remove_file(file).map_err(&fail)?;
@@ -100,7 +100,7 @@ pub fn prepare(dir: &Path, output: &OutputPlan) -> Result<(), Failure> {
     make(dir, output).and_then(|()| remove_halves(dir)).map_err(&fail)
 }
 
-/// Prepares the directory for a resumed run: partial files are removed.
+/// Removes partial files before resuming.
 ///
 /// # Errors
 /// I/O errors.
@@ -120,7 +120,7 @@ fn remove_halves(dir: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes frames from `next` on, which the resumed run rewrites.
+/// Removes frames from `next` on.
 ///
 /// # Errors
 /// I/O errors.

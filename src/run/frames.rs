@@ -85,7 +85,7 @@ pub struct Shown<'a> {
     pub view: GrainsView<'a>,
     /// Resolved grains.
     pub part: &'a GrainsPart,
-    /// Whether only contacts above the mean normal force are shown.
+    /// Whether only contacts above the mean force are shown.
     pub strong_only: bool,
     /// Additional grain fields.
     pub extra: &'a [&'static str],
@@ -93,7 +93,7 @@ pub struct Shown<'a> {
     pub draw: &'a dyn Fn(&mut WallFrame),
 }
 
-/// Writes frame `number` at `time` [s] in all formats, computing only displayed fields.
+/// Writes frame `number` at `time` [s], computing only displayed fields.
 ///
 /// # Errors
 /// I/O errors, or a non-finite field.
@@ -133,7 +133,7 @@ pub fn write(
     })?)
 }
 
-/// Writes a static solid as a single frame.
+/// Writes a static solid.
 ///
 /// # Errors
 /// As [`write`].
@@ -171,7 +171,6 @@ struct BodyFields<'a> {
 }
 
 struct Item {
-    /// Body index, or [`NO_BODY`].
     body: u32,
     sphere: Option<(dem::Vec3, f64)>,
 }
@@ -294,7 +293,6 @@ fn moved(x: dem::Vec3, way: Option<dem::Vec3>) -> dem::Vec3 {
     }
 }
 
-/// Lines between partners of loaded contacts.
 fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong_only: bool) -> ChainFrame {
     let mut frame = ChainFrame::default();
     let mean = dem::measure::strong_network(contacts).mean_force;
@@ -304,7 +302,7 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
             continue;
         }
         frame.strong.push(u32::from(strong));
-        // Sleepers end at the contact point: a line to the distant centre would cross unloaded grains.
+        // A line to the distant centre of a sleeper would cross unloaded grains.
         let end = |body: usize, shift: Option<dem::Vec3>| match view.model.shape(body) {
             Shape::Box { .. } => c.point,
             _ => moved(view.state.position(body), shift),
@@ -376,7 +374,7 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
                 push(&mut frame, (id, WallKind::Stone), &points, &polygons);
                 of.resize(frame.polygons.len(), body as u32);
             }
-            // Ids of grains are stable under insertion and removal.
+            // Ids are stable under insertion and removal.
             id += 1;
         }
     }

@@ -1,9 +1,8 @@
 //! Runs that start from the final state of another: `trackbed run NEXT --from DIR`.
 //!
-//! A run with grains saves its final state in `end.state`: positions, velocities, contact history, broken
-//! bonds, solid with plastic strains. Another run starts from it instead of packing, with time, balances and
-//! settlement at zero. The model must be the same except [`FREE`]. With `--bed`, only grains with the same
-//! [`BED`] are imported into another scene.
+//! `end.state` contains grains with contact history, broken bonds, and the solid with plastic strains. The
+//! next run starts from it instead of packing, with time, balances and settlement at zero. The model must be
+//! the same except [`FREE`]. With `--bed`, grains with the same [`BED`] are imported into another scene.
 
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;
@@ -75,7 +74,7 @@ pub fn carries(bed: bool) -> &'static str {
 /// Reads the final state in `dir` and checks compatibility.
 ///
 /// # Errors
-/// Input error: no state, or another model.
+/// No state, or another model.
 pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Result<Previous, Failure> {
     let file = dir.join(FILE);
     if !file.is_file() {
@@ -106,7 +105,7 @@ pub fn hash_after(scene: &str, state: &str) -> String {
     hash.hex()
 }
 
-/// Rejects a scene that would drop a part of the state.
+/// Rejects scenes that would drop part of the state.
 ///
 /// # Errors
 /// Input errors.
@@ -230,7 +229,7 @@ fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, Stri
 
 fn files(keys: &BTreeMap<String, String>, below: impl Fn(&str) -> bool) -> impl Iterator<Item = PathBuf> {
     let names = keys.iter().filter(move |(key, _)| below(key));
-    // TOML values: quoted strings, single or in lists.
+    // Quoted strings, single or in lists.
     names.flat_map(|(_, value)| value.split('"').skip(1).step_by(2)).map(PathBuf::from)
 }
 

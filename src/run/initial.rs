@@ -6,7 +6,7 @@ use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Model, State, TimeIntegrator};
 
-/// Returns the initial stress state of `model`, and the fraction of weight that it balances.
+/// Returns the initial stress state, and the fraction of weight that it balances.
 ///
 /// # Errors
 /// No equilibrium.
@@ -33,8 +33,7 @@ pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State,
     Ok((State { points, ..undeformed(model) }, 1.0))
 }
 
-/// Returns the initial state in equilibrium with `load` [N] (with weight, shape `[3·nodes]`), applied in
-/// steps.
+/// Returns the initial state in equilibrium with `load` [N], shape `[3·nodes]`, applied in steps.
 ///
 /// # Errors
 /// No equilibrium.
@@ -61,7 +60,7 @@ fn undeformed(model: &Model) -> State {
     state
 }
 
-/// [m].
+/// Against gravity [m].
 fn top(model: &Model) -> f64 {
     let g = model.gravity();
     let size = g.iter().map(|g| g * g).sum::<f64>().sqrt();

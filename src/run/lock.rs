@@ -1,7 +1,7 @@
-//! Lock of a results directory against concurrent commands.
+//! Lock of a results directory.
 //!
-//! `run.lock` contains process id and scene, under an advisory system lock that ends with the process. A file
-//! left by a killed run therefore blocks nothing.
+//! `run.lock` contains process id and scene, under an advisory lock that ends with the process. A file left
+//! by a killed run blocks nothing.
 
 use crate::failure::Failure;
 use crate::{message, system};
@@ -30,10 +30,10 @@ pub fn is_there(dir: &Path) -> bool {
 }
 
 impl Lock {
-    /// Locks a directory, which is created if missing and removed on drop if empty.
+    /// Locks a directory, created if missing, removed on drop if empty.
     ///
     /// # Errors
-    /// Input error if locked by another process or not a directory; I/O errors.
+    /// Locked by another process, no directory; I/O errors.
     pub fn take(dir: &Path) -> Result<Lock, Failure> {
         if dir.exists() && !dir.is_dir() {
             return Err(Failure::Other(format!("{}: found a file, expected a directory", dir.display())));
@@ -70,13 +70,13 @@ impl Lock {
 }
 
 impl Lock {
-    /// Adds the scene to the lock, so that scenes of the same name use other directories.
+    /// Adds the scene, so that namesakes use other directories.
     pub fn name(&mut self, scene: &Path) {
         // The name is optional.
         let _ = self.file.write_all(format!("{}\n", scene.display()).as_bytes());
     }
 
-    /// Returns the new location of a moved directory, if the system reports it.
+    /// Returns the new location of a moved directory, if known.
     pub fn moved(&self) -> Option<Option<PathBuf>> {
         if system::is_at(&self.file, &self.path) {
             return None;
@@ -106,7 +106,7 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
         file.set_len(0)?;
         file.rewind()?;
         file.write_all(own.as_bytes())?;
-        // The previous owner may have removed the file between open and lock.
+        // The previous owner may have removed the file.
         let mut there = String::new();
         match File::open(path).and_then(|mut f| f.read_to_string(&mut there)) {
             Ok(_) if there == own => return Ok(Some((file, before))),
@@ -124,7 +124,7 @@ fn remove(made: &[PathBuf]) {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Removed while locked, so that no other lock is deleted; a leftover blocks nothing.
+        // Removed while locked, so that no other lock is deleted.
         match self.moved() {
             None => drop(fs::remove_file(&self.path)),
             Some(place) => drop(place.map(|dir| fs::remove_file(dir.join(FILE)))),

@@ -1,7 +1,7 @@
 //! Memory prediction of a solid.
 //!
-//! Model memory is measured, factorization memory follows from the equation structure, results are a few
-//! nodal vectors. A run that does not fit is rejected.
+//! The model is measured, the factorization follows from the equation structure, results are a few nodal
+//! vectors.
 
 use crate::failure::Failure;
 use crate::model::solid::{Analysis, SolidPart};
@@ -29,7 +29,7 @@ impl Prediction {
     /// Predicts memory of an assembled model.
     ///
     /// # Errors
-    /// Failed analysis of the equations.
+    /// Failed analysis.
     pub fn of(part: &SolidPart) -> Result<Prediction, Failure> {
         let (model, plan) = (resident().unwrap_or(0), &part.equations);
         let (mut solver, mut flops) = (0, 0.0);
@@ -38,7 +38,7 @@ impl Prediction {
             let demand = part.model.solver_demand(symmetric).map_err(|e| part.failure(&e))?;
             (solver, flops) = (demand.bytes as u64, demand.flops);
         }
-        // Static solver memory is freed before time steps.
+        // The static solver is freed before time steps.
         for (regime, method) in plan.used().filter(|(_, method)| *method != Method::Direct) {
             solver = solver.max(method_bytes(part, method, regime)?);
         }
@@ -51,10 +51,10 @@ impl Prediction {
         self.model + self.solver + self.results
     }
 
-    /// Rejects a demand above `limit` bytes or free memory.
+    /// Rejects demand above `limit` bytes or free memory.
     ///
     /// # Errors
-    /// Input error with both values.
+    /// Input error.
     pub fn check(&self, limit: Option<u64>) -> Result<(), Failure> {
         let further = self.solver + self.results;
         if let Some(limit) = limit
@@ -71,7 +71,7 @@ impl Prediction {
     }
 }
 
-/// Returns the solvers with reason and memory, compared with alternatives.
+/// Returns solvers with reason and memory.
 ///
 /// # Errors
 /// As [`Prediction::of`].

@@ -1,4 +1,4 @@
-//! Run of a scene: packing, equilibrium, main stage, output.
+//! Run of a scene.
 
 mod bed;
 mod bond_output;
@@ -79,7 +79,7 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Overrides `key.path=value`.
     pub set: Vec<String>,
-    /// Memory limit of the solid [bytes]; default free memory.
+    /// Memory limit of the solid [bytes]; default free.
     pub memory: Option<u64>,
     /// Device of the DEM steps.
     pub device: Place,
@@ -87,7 +87,7 @@ pub struct Options {
     pub ranks: Ranked,
     /// Resume from the last checkpoint.
     pub resume: bool,
-    /// Results of a finished run whose final state is the start.
+    /// Finished run whose final state is the start.
     pub from: Option<PathBuf>,
     /// Import only the grains of that run.
     pub bed: bool,
@@ -115,7 +115,7 @@ pub enum Outcome {
 /// Runs a scene and writes its results.
 ///
 /// # Errors
-/// Input errors, before any output; numerical failures and interrupts, with output up to that time.
+/// Input errors, before any output; numerical failures, interrupts.
 pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let mut document = Document::open(scene)?;
     for assignment in &options.set {
@@ -141,7 +141,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let (scene_hash, overrides) = (origin.scene_hash.clone(), origin.overrides.clone());
     let mut slots = Slots::new(&dir, origin.clone());
     let mut loaded = None;
-    // Output before the first checkpoint may be lost.
+    // Output before the first checkpoint is no loss.
     let own = options.resume && RunFile::of(&document, source).is_of(&dir);
     if options.resume {
         if origin::was_done(&dir, &scene_hash)? {
@@ -246,7 +246,7 @@ fn weigh(
 /// Always writes the summary.
 fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<Outcome, Failure> {
     let result = guarded(|| {
-        // Main-loop errors are reported before hours of packing.
+        // Reported before hours of packing.
         let begins = state.loaded.is_none() && state.carried.is_none();
         if let Some(grains) = run.job.grains.as_ref().filter(|g| g.is_packed() && begins) {
             stages::preview(run.document, run.job, grains)?;
@@ -280,8 +280,7 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
     if let Some(place) = lock.moved() {
         return Err(run.gone(place.as_deref()));
     }
-    // Early failures find no directory, or old results. The run failure has priority over the summary
-    // failure.
+    // The directory may be missing, or hold old results. The run failure has priority.
     let cleared = if run.prepared.get() { Ok(()) } else { run.prepare() };
     let written = cleared.and_then(|()| summary.write(run.dir)).and_then(|()| summary.write_log(run.dir));
     let result = match (result, run.checkpoints.kept()) {

@@ -1,7 +1,7 @@
 //! Ranks started by `mpirun`, via rsmpi.
 //!
-//! A waiting rank checks the processes of other local ranks, because MPI only waits. `mpirun` ends all ranks
-//! soon after a death (OpenMPI 4.1: about 0.1 s), so the lost rank is reported at once.
+//! MPI only waits, so a waiting rank checks other local processes. `mpirun` ends all ranks soon after a death
+//! (OpenMPI 4.1: about 0.1 s), so the loss is reported at once.
 
 use super::origin::quoted;
 use crate::failure::Failure;
@@ -54,21 +54,21 @@ impl Peer {
     }
 }
 
-/// Joins the ranks of `mpirun`; none without it.
+/// Joins the ranks of `mpirun`, if any.
 ///
 /// # Errors
 /// MPI failures.
 pub fn join() -> Result<Option<World>, Failure> {
-    // Set by OpenMPI, MPICH and derivatives. Without them MPI would start a single process.
+    // Set by OpenMPI, MPICH and derivatives. Otherwise MPI would start for one process.
     let started =
         ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"].iter().any(|v| std::env::var_os(v).is_some());
     if !started {
         return Ok(None);
     }
-    // Otherwise OpenMPI kills a process that reads from the memory of a killed rank.
+    // Otherwise OpenMPI kills a process that reads memory of a killed rank.
     const COPY: &str = "OMPI_MCA_btl_vader_single_copy_mechanism";
     if std::env::var_os(COPY).is_none() {
-        // SAFETY: no other thread reads or writes the environment yet.
+        // SAFETY: no other thread uses the environment yet.
         unsafe { std::env::set_var(COPY, "none") };
     }
     let failed =
@@ -104,10 +104,10 @@ fn peers(world: &SimpleCommunicator) -> Vec<Peer> {
 }
 
 impl World {
-    /// Runs `lead` on the first rank and `follow` on others; `out`: results directory.
+    /// Runs `lead` on the first rank, `follow` on others; `out`: results directory.
     ///
     /// # Errors
-    /// Failures of the first rank. A lost rank ends all processes here.
+    /// Failures of the first rank. A lost rank ends all processes.
     pub fn share(
         mut self,
         lead: impl FnOnce(Box<dyn Link>) -> Result<(), Failure>,
@@ -136,10 +136,10 @@ impl World {
             }
             follow(link).map_err(|lost| Failure::Other(lost.to_string()))
         };
-        // The loss is already reported, and finalising MPI would block.
+        // Finalising MPI would block.
         let lost = self.lost.load(Ordering::Relaxed);
         if outcome.is_err() && (rank > 0 || lost) {
-            // Lower ranks that report must not see this rank as lost.
+            // Lower ranks must not report this rank as lost.
             let begun = Instant::now();
             while lost && self.peers[..rank].iter().any(|peer| !peer.has_ended()) && begun.elapsed() < PARTING
             {
@@ -170,12 +170,10 @@ struct Mpi {
     spare: Vec<Vec<u8>>,
 }
 
-// SAFETY: communicator and request are handles; MPI is initialised for serialised calls, and a link has one
-// owner.
+// SAFETY: handles; MPI is initialised for serialised calls, and a link has one owner.
 unsafe impl Send for Mpi {}
 
 impl Mpi {
-    /// Recycles buffers of sent messages.
     fn settle(&mut self) {
         while let Some((request, room)) = self.sent.pop_front() {
             match request.test() {
@@ -189,7 +187,7 @@ impl Mpi {
         let mut room = self.spare.pop().unwrap_or_default();
         room.clear();
         room.extend_from_slice(piece);
-        // SAFETY: the buffer stays in `sent`, untouched, until the message is sent, or forever.
+        // SAFETY: the buffer stays in `sent`, untouched, until sent, or forever.
         let bytes: &'static [u8] = unsafe { std::slice::from_raw_parts(room.as_ptr(), room.len()) };
         let request = self.world.process_at_rank(to as i32).immediate_send(StaticScope, bytes);
         self.sent.push_back((request, room));
@@ -198,7 +196,7 @@ impl Mpi {
     /// Reported by the first rank, or else the lowest remaining.
     fn look_for_lost(&self) -> Result<(), Lost> {
         let ended: Vec<bool> = self.peers.iter().map(Peer::has_ended).collect();
-        // The first rank exits after reporting another loss.
+        // The first rank exits after its report.
         let others = ended.iter().skip(1).position(|ended| *ended).map(|k| k + 1);
         let Some(rank) = others.or(ended[0].then_some(0)) else { return Ok(()) };
         let Peer { machine, process, .. } = &self.peers[rank];
@@ -213,7 +211,6 @@ impl Mpi {
         Err(lost)
     }
 
-    /// Returns the length of the next piece.
     fn piece(&mut self, from: usize, message: &mut Vec<u8>) -> Result<usize, Lost> {
         let (mut looks, mut since, mut watched) = (0_u32, None, Instant::now());
         loop {

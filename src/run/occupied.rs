@@ -11,7 +11,7 @@ use std::path::Path;
 
 const LONGEST: usize = 80;
 
-/// Rejects a new run in a directory with a checkpoint, results, or unrelated files of the same names.
+/// Rejects a new run over a checkpoint, results, or unrelated files.
 ///
 /// # Errors
 /// Input errors.

@@ -1,4 +1,4 @@
-//! Origin of a run (scene, overrides, files), its results directory, and resume command.
+//! Origin of a run, its results directory, and resume command.
 
 use super::checkpoint::{self, Origin};
 use super::hash::Hash;
@@ -10,10 +10,10 @@ use crate::scene::{Document, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Whether `dir` contains final results of the same scene, without a later checkpoint.
+/// Whether `dir` contains final results of the scene, without a later checkpoint.
 ///
 /// # Errors
-/// Input error: results of another scene.
+/// Results of another scene.
 pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
     let bytes = source::bytes(&dir.join("summary.json"), source::LARGEST_TEXT).unwrap_or_default();
     let summary: serde_json::Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -56,8 +56,8 @@ pub fn scene_hash(document: &Document, scene: &Scene) -> String {
     origin(document, scene).scene_hash
 }
 
-/// Returns `results/` with the scene name (or directory name for `scene.toml`), overrides and their hash. For
-/// another scene of the same name, a path hash is appended.
+/// Returns `results/` with scene name (or directory, for `scene.toml`), overrides and their hash; for
+/// namesakes also a path hash.
 pub fn default_folder(scene: &Path, set: &[String]) -> PathBuf {
     let mut name = plain_name(scene);
     if !set.is_empty() {
@@ -84,7 +84,7 @@ fn is_of_another(dir: &Path, scene: &Path, whole: &Path) -> bool {
         return same(running) == Some(false);
     }
     let Some(file) = RunFile::read(dir) else { return false };
-    // A moved scene is identified by its text.
+    // Moved scenes are identified by text.
     same(&file.scene).map_or_else(|| source::text(scene).is_ok_and(|text| text != file.text), |same| !same)
 }
 
@@ -108,7 +108,7 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
     let mut files = Vec::new();
     let named = document.included().chain(files_of(scene)).map(Path::to_path_buf);
     for file in named.chain(behind_the_mesh(document, scene)) {
-        // Missing files also change the hash; unreadable files are rejected by the model.
+        // Missing files change the hash; the model rejects unreadable ones.
         let content = source::bytes(&document.resolve(&file), source::LARGEST).unwrap_or_default();
         hash.add(&content);
         let mut own = Hash::default();
@@ -130,7 +130,7 @@ fn behind_the_mesh(document: &Document, scene: &Scene) -> Vec<PathBuf> {
     let Some(mesh) = scene.solid.as_ref().and_then(|s| s.mesh.as_ref()) else { return Vec::new() };
     let path = document.resolve(mesh);
     let files = mesh_files(&path).into_iter().filter(|file| *file != path);
-    // Relative to the scene, independent of the working directory.
+    // Independent of the working directory.
     let folder = document.file().parent().unwrap_or(Path::new(""));
     files.map(|file| file.strip_prefix(folder).map_or(file.clone(), Path::to_path_buf)).collect()
 }

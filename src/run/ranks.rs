@@ -1,5 +1,4 @@
-//! Steps shared among processes: the first rank leads with run, records and checkpoints; others compute parts
-//! of the grains.
+//! Steps shared among processes: the first rank leads, others compute parts of the grains.
 
 use super::device::Place;
 use super::threads::thread_pool;
@@ -48,7 +47,7 @@ impl Ranked {
         self.0.as_ref().map_or(1, |waiting| waiting.size)
     }
 
-    /// Shares a model of these bodies, with plane positions after packing [m].
+    /// Shares a model, with plane positions after packing [m].
     pub fn share(&self, bodies: &[dem::BodyInput], planes: &[dem::Vec3]) -> Sharing<'_> {
         let description = match &self.0 {
             None => Vec::new(),
@@ -76,7 +75,7 @@ impl Sharing<'_> {
     }
 }
 
-/// Checks that ranks support a scene, before output is written.
+/// Checks that ranks support a scene.
 ///
 /// # Errors
 /// Unsupported features.
@@ -92,7 +91,7 @@ pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
     if place != Place::Cpu {
         return Err(refused("found --device gpu, expected --device cpu".into()));
     }
-    // Errors in the grains are reported where models are built, with their keys.
+    // Grain errors are reported where models are built.
     if let Ok(model) = dem::Model::new(grains.input(grains.groups.bodies.clone())) {
         ranks::check(&model).map_err(|e| refused(e.to_string()))?;
     }
@@ -102,7 +101,7 @@ pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
 /// Follows the first rank through its run.
 ///
 /// # Errors
-/// A lost rank. Scene errors are reported by the first rank.
+/// A lost rank; the first rank reports scene errors.
 pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dyn Link>) -> Result<(), Lost> {
     let resolved = || -> Result<(rayon::ThreadPool, Job), Failure> {
         let mut document = Document::open(scene)?;

@@ -1,4 +1,4 @@
-//! Recorders that define history columns with name, unit and value.
+//! Recorders of history columns.
 
 use super::flow::Flow;
 use crate::model::Job;

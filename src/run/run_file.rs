@@ -1,4 +1,4 @@
-//! `run.json`: origin of a run, for readers without the scene and during the run.
+//! `run.json`: origin of a run.
 
 use crate::failure::Failure;
 use crate::read::source;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// File name.
 pub const FILE: &str = "run.json";
 
-/// Earlier run whose final state is the start.
+/// Earlier run, source of the initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source<'a> {
     /// Its results directory.
@@ -69,7 +69,7 @@ impl RunFile {
         serde_json::from_slice(&source::bytes(&dir.join(FILE), source::LARGEST).ok()?).ok()
     }
 
-    /// Whether results in `dir` are of the same scene and overrides.
+    /// Whether results are of the same scene and overrides.
     pub fn is_of(&self, dir: &Path) -> bool {
         RunFile::read(dir).is_some_and(|other| {
             (&other.text, &other.overrides) == (&self.text, &self.overrides)

@@ -1,4 +1,4 @@
-//! Loads and motion of structures: history columns, maxima and means.
+//! Loads and motion of structures.
 
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
@@ -9,7 +9,7 @@ use crate::write::csv::{Column, Row};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 
-/// Motion (of moving structures), total load, moment, loads by sector and height.
+/// Motion, total load, moment, loads by sector and height.
 pub struct Structures;
 
 impl<S: System> Recorder<S> for Structures {

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 
-/// Waiting threads spin and take time from working threads.
+/// Waiting threads spin.
 const MOST_PER_CPU: usize = 8;
 const MOST_ANYWHERE: usize = 16;
 
@@ -11,7 +11,7 @@ fn most_threads() -> usize {
     MOST_ANYWHERE.max(MOST_PER_CPU * cpus)
 }
 
-/// Returns the thread pool, with stacks for recursive elimination.
+/// With stacks for recursive elimination.
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     let most = most_threads();
     if let Some(threads) = threads.filter(|n| !(1..=most).contains(n)) {

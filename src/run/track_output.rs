@@ -10,7 +10,7 @@ use trackbed_coupling::track::push::PushSummary;
 
 const HALF_WIDTH: f64 = 0.035;
 
-/// Adds a ribbon per rail, half a spacing beyond the end sleepers.
+/// Adds a ribbon per rail, half a spacing beyond end sleepers.
 pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
     let Some((rails, laid, row)) = track.laid_rails() else { return };
     let along = row.axis;
@@ -39,7 +39,7 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
     }
 }
 
-/// Writes `push.csv` in `dir` and returns its results, if there is a push.
+/// Writes `push.csv` and returns its results, if any.
 ///
 /// # Errors
 /// I/O errors.

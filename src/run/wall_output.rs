@@ -10,7 +10,7 @@ use trackbed_dem::{Vec3, WallShape};
 
 const AROUND: u32 = 48;
 
-/// Support energies; force on recorded walls, moment about the wall centre, and its displacement.
+/// Support energies; force, moment about the centre and displacement of recorded walls.
 pub struct Walls;
 
 impl<S: System> Recorder<S> for Walls {
@@ -30,8 +30,8 @@ impl<S: System> Recorder<S> for Walls {
     }
 }
 
-/// Adds patch walls at their positions, numbered from `id`; `extent`: grain centre and half size of plane
-/// squares. Returns the next number.
+/// Adds patch walls, numbered from `id`; `extent`: grain centre and half size of plane squares. Returns the
+/// next number.
 pub fn polygons(
     view: GrainsView<'_>,
     part: &GrainsPart,
@@ -53,7 +53,6 @@ pub fn polygons(
     id
 }
 
-/// Points and polygons of a shape moved by `place`.
 fn picture(
     shape: &WallShape,
     place: impl Fn(Vec3) -> Vec3,
@@ -87,7 +86,7 @@ fn picture(
             (points, polygons)
         }
         WallShape::Sphere { centre, radius } => {
-            // Latitude rings; the polar caps are separate polygons.
+            // Polar caps are separate polygons.
             let rings = AROUND / 2 - 1;
             let mut points = Vec::new();
             for j in 1..=rings {

@@ -4,7 +4,7 @@ use super::units::{Force, Frequency, Length, Mass, Quantity, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// `[[compaction]]`: a stage between settling and the run proper.
+/// `[[compaction]]`: a stage between settling and the main stage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Compaction {

@@ -4,7 +4,7 @@ use super::units::{Length, Quantity, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// `[deposition]`: the filled grains fall and come to rest before the run proper.
+/// `[deposition]`: the filled grains fall and come to rest before the main stage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Deposition {

@@ -4,7 +4,7 @@ use super::units::{Length, MassRate, Quantity, Rate, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// `inlet` of a `[[grains]]`: where and how fast grains of the group come in during the run proper.
+/// `inlet` of a `[[grains]]`: where and how fast grains of the group are inserted during the main stage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Inlet {

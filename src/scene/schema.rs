@@ -18,7 +18,7 @@ pub fn schema() -> Value {
     let mut schema = keys();
     schema["title"] = json!("Scene of trackbed");
     schema["properties"][include::KEY] = json!({
-        "description": "Files whose tables are put under those of the scene; paths relative to it.",
+        "description": "Files with tables used where the scene has none; paths relative to it.",
         "type": "array",
         "items": { "type": "string" },
     });

@@ -4,7 +4,7 @@ use super::units::{Density, Quantity, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// `[wind]`: a fluid with one velocity everywhere, which drags grains along or holds them back during the run proper.
+/// `[wind]`: a fluid with one velocity everywhere, which drags grains along or holds them back during the main stage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {

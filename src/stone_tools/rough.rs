@@ -20,7 +20,7 @@ use super::measure;
 
 /// Explanation of the measures in a library.
 pub const MEASURES: &str =
-    "Volume and lengths at a sieve size of 1 m; convexity is the volume over that of the convex hull.";
+    "Volume and lengths at a sieve size of 1 m; convexity is the volume over the volume of the convex hull.";
 
 const PURPOSE: u64 = 12;
 /// Most draws per stone.

@@ -5,7 +5,7 @@ use crate::scene::{Document, SceneError};
 
 /// Most runs.
 pub const MOST_RUNS: usize = 100_000;
-/// One-at-a-time studies.
+/// Label in one-at-a-time studies.
 const BASE: &str = "base";
 
 /// Parameter set.
@@ -13,7 +13,7 @@ const BASE: &str = "base";
 pub struct Setting {
     /// Label.
     pub label: String,
-    /// Axis value labels; empty for a separate reference.
+    /// Axis value labels.
     pub levels: Vec<String>,
     /// Overrides, common ones first.
     pub set: Vec<String>,
@@ -147,7 +147,6 @@ pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<V
     Ok(picks.iter().map(setting).collect())
 }
 
-/// Least significant last.
 fn mixed_radix(mut number: usize, counts: &[usize]) -> Vec<usize> {
     let mut digits = vec![0; counts.len()];
     for (digit, count) in digits.iter_mut().zip(counts).rev() {

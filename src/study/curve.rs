@@ -1,16 +1,16 @@
-//! Samples of quantities, numbers or curves: means, scatter, distances.
+//! Samples of quantities: means, scatter, distances.
 
 /// Sample of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     /// Number.
     Number(f64),
-    /// Points (x, y) with increasing x, linearly interpolated.
+    /// Points (x, y), x ascending, linear between.
     Curve(Vec<[f64; 2]>),
 }
 
 impl Sample {
-    /// Creates a curve from unordered points; the last point per abscissa counts.
+    /// Creates a curve; the last point per abscissa counts.
     pub fn curve(mut points: Vec<[f64; 2]>) -> Sample {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
@@ -23,7 +23,7 @@ impl Sample {
         Sample::Curve(kept)
     }
 
-    /// Returns the number, or the RMS of the curve over its abscissa.
+    /// Returns the number, or the RMS of the curve.
     pub fn size(&self) -> f64 {
         match self {
             Sample::Number(value) => value.abs(),
@@ -40,8 +40,7 @@ impl Sample {
     }
 }
 
-/// Returns the size of the difference, and of `b` over the same range; none without a common abscissa, or for
-/// mixed types.
+/// Returns the size of the difference, and of `b` in the same range; none without common abscissa.
 pub fn difference(a: &Sample, b: &Sample) -> Option<(f64, f64)> {
     match (a, b) {
         (Sample::Number(a), Sample::Number(b)) => Some(((a - b).abs(), b.abs())),
@@ -56,7 +55,7 @@ pub fn difference(a: &Sample, b: &Sample) -> Option<(f64, f64)> {
     }
 }
 
-/// Returns the mean of samples of one type; none without samples or common abscissa.
+/// Returns the mean; none without samples or common abscissa.
 pub fn mean(samples: &[Sample]) -> Option<Sample> {
     let count = samples.len() as f64;
     match samples {
@@ -80,7 +79,7 @@ fn points(sample: &Sample) -> Option<&[[f64; 2]]> {
     if let Sample::Curve(points) = sample { Some(points) } else { None }
 }
 
-/// Returns the standard deviation (n − 1); none for fewer than two samples.
+/// Returns the standard deviation (n − 1); none for one sample.
 pub fn deviation(samples: &[Sample], mean: &Sample) -> Option<f64> {
     if samples.len() < 2 {
         return None;
@@ -103,7 +102,6 @@ fn common_abscissae(curves: &[&[[f64; 2]]]) -> Option<Vec<f64>> {
     (low <= high).then_some(all)
 }
 
-/// None outside.
 fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let behind = curve.partition_point(|p| p[0] < x);
     let after = curve.get(behind)?;
@@ -121,7 +119,7 @@ fn root_mean_square(points: &[[f64; 2]]) -> f64 {
     if last[0] <= first[0] {
         return last[1].abs();
     }
-    // The square of a line is a parabola.
+    // Squared line: parabola.
     let piece = |w: &[[f64; 2]]| {
         let (a, b) = (w[0][1], w[1][1]);
         (w[1][0] - w[0][0]) * (a * a + a * b + b * b) / 3.0
@@ -142,7 +140,7 @@ mod tests {
         assert_relative_eq!(line(7).size(), 3.0_f64.sqrt().recip(), max_relative = 1e-14);
         let (d, size) = difference(&line(7), &line(5)).unwrap();
         assert!(d < 1e-15 && (size - line(5).size()).abs() < 1e-15);
-        // Against y = 0 from 0.5: over the common range, ∫ x² from 1/2 to 1 is 7/24.
+        // From 0.5: ∫ x² from 1/2 to 1 is 7/24.
         let zero = Sample::curve(vec![[0.5, 0.0], [3.0, 0.0]]);
         assert_relative_eq!(
             difference(&line(3), &zero).unwrap().0,

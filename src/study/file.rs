@@ -28,7 +28,7 @@ pub struct StudyFile {
     /// Compared quantities; default: results of load cycles.
     #[serde(default)]
     pub quantity: Vec<QuantityTable>,
-    /// Largest error of the recommended set, 0 to 1 [-]; default 0.05.
+    /// Largest error of the recommended set [-]; default 0.05.
     #[serde(default = "five_percent")]
     pub tolerance: f64,
     /// Concurrent runs; default: number of cores.
@@ -52,15 +52,15 @@ pub struct Base {
     pub set: Vec<String>,
 }
 
-/// Varied parameter: a key with values, or named groups of overrides.
+/// Varied key with values, or named groups of overrides.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AxisTable {
-    /// Name in labels; default: last part of `key`.
+    /// Name; default: last part of `key`.
     pub name: Option<String>,
     /// Varied scene key.
     pub key: Option<String>,
-    /// Values; without `key`, tables with `label` and `set`.
+    /// Values, or tables with `label` and `set`.
     pub values: Vec<toml::Value>,
 }
 
@@ -71,9 +71,9 @@ pub enum Combine {
     /// All combinations.
     #[default]
     Grid,
-    /// First values together, second values together, and so on; axes of equal length.
+    /// First values together, second values, and so on.
     List,
-    /// All first values, then each axis varied alone.
+    /// First values, then each axis varied alone.
     OneAtATime,
 }
 
@@ -83,7 +83,7 @@ pub enum Combine {
 pub struct Seeds {
     /// Seeds.
     pub values: Vec<u64>,
-    /// Seed keys; default: seeds of all grain groups and every other `seed`.
+    /// Seed keys; default: all grain groups and every other `seed`.
     pub keys: Option<Vec<String>>,
 }
 
@@ -97,18 +97,18 @@ pub struct Reference {
     pub set: Option<Vec<String>>,
 }
 
-/// Quantity: a number of `summary.json` or a table column.
+/// Number of `summary.json`, or table column.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuantityTable {
-    /// Name; default: the column, or last part of the path.
+    /// Name; default: column or path.
     pub name: Option<String>,
-    /// Unit after scaling; default: of the column if `factor` is 1.
+    /// Unit after scaling; default: of the column.
     pub unit: Option<String>,
     /// Scale factor, not 0; default 1.
     #[serde(default = "one")]
     pub factor: f64,
-    /// Path in `summary.json`; list entries by index, name or `last`.
+    /// Path in `summary.json`; lists by index, name or `last`.
     pub summary: Option<String>,
     /// Results table, such as `cycles.csv`.
     pub file: Option<String>,
@@ -123,11 +123,11 @@ pub struct QuantityTable {
     /// Error norm; default relative.
     #[serde(default)]
     pub norm: Norm,
-    /// Scale of relative errors, above 0, in the unit of the quantity; default: size of the reference.
+    /// Scale of relative errors, above 0; default: the reference.
     pub scale: Option<f64>,
-    /// Exact value, in the unit of the quantity, instead of the reference.
+    /// Exact value instead of the reference.
     pub exact: Option<f64>,
-    /// Largest error of the recommended set, relative or in the unit of the quantity; default: of the study.
+    /// Largest error of the recommended set; default: of the study.
     pub tolerance: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Directory names from labels: portable, distinct, independent of the rest of the study.
+//! Directory names from labels.
 
 use crate::run::Hash;
 
@@ -7,12 +7,12 @@ const LONGEST: usize = 100;
 
 /// Returns the directory name of a run.
 ///
-/// Plain labels are kept, with `_` between parts; changed labels get a hash to stay distinct.
+/// Plain labels are kept, with `_` between parts; others get a hash.
 pub fn folder_name(label: &str) -> String {
     let joined = label.replace(", ", "_");
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-=+".contains(c);
     let safe: String = joined.chars().map(|c| if plain(c) { c } else { '-' }).collect();
-    // Not hidden, no parent directory, and distinct on case-insensitive file systems.
+    // Not hidden, no parent, distinct on case-insensitive file systems.
     let kept = safe == joined && safe.len() <= LONGEST && !safe.starts_with('.') && !safe.is_empty();
     if kept && !joined.chars().any(|c| c.is_ascii_uppercase()) && !label.contains('_') {
         return safe;

@@ -1,8 +1,7 @@
-//! Studies: variations of a scene, compared with a reference in error and cost.
+//! Studies: variations of a scene, compared in error and cost.
 //!
-//! A study (`file`) is resolved to parameter sets and runs (`plan`), run as separate processes (`schedule`)
-//! in a directory (`store`). Tables (`outcome`) depend only on that directory, so runs may be done on several
-//! machines.
+//! A `file` is resolved to a `plan`, run as separate processes (`schedule`) in a directory (`store`). Tables
+//! (`outcome`) depend only on that directory, so several machines may share a study.
 
 mod axis;
 mod curve;
@@ -44,7 +43,7 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Concurrent runs.
     pub jobs: Option<usize>,
-    /// Only runs k, k + n, k + 2n, …, counted from 1, without tables: k and n.
+    /// Only runs k, k + n, …, from 1, without tables: k and n.
     pub part: Option<(usize, usize)>,
     /// Write tables from existing runs.
     pub merge: bool,
@@ -61,7 +60,7 @@ pub struct Options {
 /// Validates a scene with overrides, like `check`.
 pub type Check<'a> = &'a dyn Fn(&Path, &[String]) -> Result<(), Failure>;
 
-/// Returns the number of runs; the scene is not checked.
+/// Returns the number of runs.
 ///
 /// # Errors
 /// Input errors.
@@ -73,7 +72,7 @@ pub fn count_runs(file: &Path) -> Result<usize, Failure> {
 /// Runs a study and returns its report.
 ///
 /// # Errors
-/// Input errors, before output; interrupts; a failed reference, after tables.
+/// Input errors, interrupts, a failed reference.
 pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<String, Failure> {
     let document = Document::open(file)?;
     let parsed: StudyFile = document.read()?;
@@ -88,7 +87,7 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
         )));
     }
     let hashes = prepare(&document, &plan, options, check)?;
-    // Parts share the directory; each run has a lock.
+    // Each run has a lock.
     let _lock = match options.part {
         None => Some(Lock::take(&dir)?),
         Some(_) => None,
@@ -110,7 +109,6 @@ fn ours(options: &Options, k: usize) -> bool {
     options.part.is_none_or(|(part, parts)| k % parts == part - 1)
 }
 
-/// Checks the scenes to run; returns hashes of all.
 fn prepare(
     document: &Document,
     plan: &Plan,

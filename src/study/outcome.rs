@@ -14,7 +14,7 @@ use serde::Serialize;
 pub struct Cost {
     /// CPU time, all threads [s].
     pub cpu_seconds: Option<f64>,
-    /// Wall time beside concurrent runs [s].
+    /// Wall time with concurrent runs [s].
     pub wall_seconds: f64,
     /// DEM and FEM steps of all stages.
     pub steps: f64,
@@ -33,7 +33,7 @@ pub struct Cell {
     pub error: Option<f64>,
     /// Standard error over seeds.
     pub scatter: Option<f64>,
-    /// Whether the error is not significant (within the standard error).
+    /// Whether the error is within the standard error.
     pub below_scatter: bool,
     /// Reason for missing data.
     pub remark: Option<String>,
@@ -56,13 +56,13 @@ pub struct Row {
     pub reasons: Vec<String>,
     /// Costs; none without completed runs.
     pub cost: Option<Cost>,
-    /// CPU time of the reference over CPU time.
+    /// CPU time, reference over set.
     pub speed_up: Option<f64>,
     /// Quantities.
     pub quantities: Vec<Cell>,
     /// Largest error over tolerance.
     pub error_over_tolerance: Option<f64>,
-    /// Whether all errors with standard error are within tolerance.
+    /// Whether all errors are within tolerance.
     pub within: bool,
 }
 
@@ -77,7 +77,7 @@ pub struct Outcome {
     pub reference: usize,
     /// Cheapest set within tolerance.
     pub recommended: Option<usize>,
-    /// Pareto front in cost and error, cheapest first.
+    /// Pareto front, cheapest first.
     pub front: Vec<usize>,
 }
 

@@ -7,7 +7,7 @@ use crate::write::scatter::{Group, Mark, ScatterPlot};
 
 /// Draws the plot; points are numbered like table rows.
 pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
-    // With one relative tolerance, plain errors are clearer than ratios.
+    // Plain errors are clearer than ratios.
     let plain = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
     let unit = if plain { plan.tolerance } else { 1.0 };
     let place = |k: usize| {
@@ -17,7 +17,7 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
     let placed: Vec<(usize, [f64; 2])> =
         (0..outcome.rows.len()).filter_map(|k| Some((k, place(k)?))).collect();
     let least = placed.iter().map(|(_, p)| p[1]).filter(|e| *e > 0.0).fold(unit, f64::min);
-    // Zero errors, such as the reference, are drawn below the others.
+    // Zero errors are drawn below the others.
     let shown = |(k, p): &(usize, [f64; 2])| {
         let y = if p[1] > 0.0 { p[1] } else { least / 5.0 };
         ((k + 1).to_string(), [p[0], y])

@@ -1,4 +1,4 @@
-//! Runs as separate processes, so that none affects another.
+//! Runs as separate processes.
 
 use crate::message::shown;
 use crate::program;
@@ -20,7 +20,7 @@ pub enum Beginning {
     Resumed,
 }
 
-/// Starts a run, with output to `log`.
+/// Starts a run, logging to `log`.
 ///
 /// # Errors
 /// I/O errors.
@@ -36,7 +36,7 @@ pub fn start(
     command.arg("run").arg(scene).arg("--out").arg(out);
     command.args(["--quiet", "--threads", &threads.to_string()]);
     command.arg(if beginning == Beginning::Anew { "--force" } else { "--resume" });
-    // Joined: an override may begin with a dash.
+    // Overrides may begin with a dash.
     command.args(set.iter().map(|assignment| format!("--set={assignment}")));
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(log)?);
     system::set_apart(&mut command);

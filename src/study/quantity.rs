@@ -17,7 +17,7 @@ pub struct Quantity {
     pub source: Source,
     /// Error norm.
     pub norm: Norm,
-    /// Scale of relative errors, if not the reference.
+    /// Scale of relative errors.
     pub scale: Option<f64>,
     /// Exact value instead of the reference.
     pub exact: Option<f64>,
@@ -45,7 +45,7 @@ pub enum Source {
     },
 }
 
-/// Resolves the quantities; `cycles`: the scene has load cycles, the default comparison.
+/// Resolves the quantities; `cycles`: the scene has load cycles.
 ///
 /// # Errors
 /// Input errors.

@@ -6,7 +6,7 @@ use super::quantity::{Quantity, Source};
 use crate::read::source;
 use std::path::Path;
 
-/// Reads a quantity and its unit from `folder`.
+/// Reads a quantity and its unit.
 ///
 /// # Errors
 /// Missing file, column or number.

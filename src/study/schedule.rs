@@ -54,7 +54,7 @@ impl Schedule<'_> {
     /// Runs `tasks`; `first` gets the first completed run and may stop the study.
     ///
     /// # Errors
-    /// Interrupts, after active runs stop; I/O errors; errors of `first`.
+    /// Interrupts; I/O errors; errors of `first`.
     pub fn carry_out(
         &self,
         tasks: Vec<Task<'_>>,
@@ -125,7 +125,7 @@ impl Schedule<'_> {
             message: String::new(),
             ..before
         };
-        // Recorded before the start, so that a crash leaves a known unfinished run.
+        // A crash then leaves a known unfinished run.
         self.store.record(run, &record)?;
         let (threads, log) = (self.threads, self.store.log(run));
         let child = process::start(self.scene, &out, &run.set, threads, beginning, &log)
@@ -135,7 +135,7 @@ impl Schedule<'_> {
 
     fn end(&self, a: Active<'_>, status: ExitStatus) -> Result<Record, Failure> {
         let (code, message) = process::verdict(status, &self.store.log(a.run));
-        // Otherwise the summary may be from an earlier attempt.
+        // Else of an earlier attempt.
         let summarized = [0, NUMERICAL, INTERRUPTED].contains(&code);
         let cpu = if summarized { self.store.cpu_seconds(a.run) } else { None };
         let sum = match (a.record.cpu_seconds, cpu) {

@@ -14,7 +14,7 @@ use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Exit code of a numerical failure, which is reproducible.
+/// Exit code of a numerical failure.
 pub const NUMERICAL: i32 = 3;
 
 /// Record of a run.
@@ -45,7 +45,7 @@ pub enum Found {
     Done(Record, serde_json::Value),
     /// Failed reproducibly.
     Failed(Record),
-    /// Interrupted, killed, or out of resources; whether with checkpoint.
+    /// Interrupted or killed; whether with checkpoint.
     Unfinished(Record, bool),
 }
 
@@ -94,7 +94,7 @@ impl Store {
         self.results(run).exists() || self.record_file(run).exists()
     }
 
-    /// Returns the results of a run with current `scene_hash`.
+    /// Returns the results of a run.
     ///
     /// # Errors
     /// Results of another scene.
@@ -119,7 +119,7 @@ impl Store {
         };
         let mut record = record.unwrap_or_else(unseen);
         if done && record.exit_code.is_none() {
-            // The study was killed before the run ended.
+            // The study was killed before.
             record.cpu_seconds =
                 summary["cpu_seconds"].as_f64().map(|s| s + record.cpu_seconds.unwrap_or(0.0));
         }
@@ -140,13 +140,13 @@ impl Store {
         write(&self.record_file(run), &text)
     }
 
-    /// Returns the CPU time of the last attempt from its summary [s].
+    /// Returns the CPU time of the last attempt [s].
     pub fn cpu_seconds(&self, run: &Run) -> Option<f64> {
         json(&self.results(run).join("summary.json"))["cpu_seconds"].as_f64()
     }
 }
 
-/// Writes a text file with final newline.
+/// Writes a text file.
 ///
 /// # Errors
 /// I/O errors.

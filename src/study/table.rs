@@ -11,7 +11,7 @@ pub fn head(quantity: &Quantity, unit: &str) -> String {
     if unit.is_empty() { quantity.name.clone() } else { format!("{} [{unit}]", quantity.name) }
 }
 
-/// Formats CSV; missing values are empty.
+/// Formats CSV.
 ///
 /// # Errors
 /// Never: writing to memory.

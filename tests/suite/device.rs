@@ -1,6 +1,6 @@
 //! `run --device gpu`: unsupported features, and runs with stand-ins for the CUDA libraries.
 
-use super::support::{COUPLED, Folder, GRAINS, Outcome, repository, results, run, scene_folder, trackbed};
+use super::support::{COUPLED, Folder, GRAINS, ONE_THREAD, Outcome, repository, results, run, scene_folder, trackbed};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -72,6 +72,7 @@ fn stand_in() -> Option<Folder> {
 fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str]) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
     command.args(arguments).env("LD_LIBRARY_PATH", libraries).env("STAND_IN_FOLDER", libraries);
+    command.env(ONE_THREAD.0, ONE_THREAD.1);
     let output = command.envs(settings.iter().copied()).output().unwrap();
     Outcome {
         code: output.status.code().unwrap_or(-1),

@@ -54,29 +54,27 @@ fn two_halves_are_a_whole() {
 #[test]
 fn track_restarts_with_changed_load() {
     let folder = Folder::new("from_track");
-    let scene = repository().join("inputs/track/cyclic/scene.toml");
+    let scene = repository().join("inputs/track/meshed_sleeper/scene.toml");
+    // A rigid sleeper on a small bed.
     let common = [
+        "track.sleeper.mesh=",
         "grains.0.count=150",
-        "grains.1.count=20",
-        "grains.2.count=20",
-        "deposition.level=\"0.12 m\"",
-        "compaction.1.level=\"0.2 m\"",
-        "compaction.0.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.1]]",
-        "compaction.1.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.1]]",
-        "compaction.2.region=[[-1.2, 0.1, 0.02], [1.2, 0.5, 0.1]]",
-        "grains.1.fill={ low = [-1.5, 0.0, 0.0], high = [1.5, 0.2] }",
+        "deposition.max_time=0.4",
+        "compaction=",
+        "track.load.frequency=\"20 Hz\"",
+        "track.load.rest=0.05",
         "track.load.cycles=2",
         "output.frames=2",
     ];
     let (first, more, soft) = (folder.join("first"), folder.join("more"), folder.join("soft"));
     run(&scene, &first, &common).good();
     from(&scene, &more, &first, &common).good();
-    let next = [&common[..], &["track.load.maximum=\"100 kN\"", "solid.material.subgrade.young=\"60 MPa\""]]
+    let next = [&common[..], &["track.load.maximum=\"100 kN\"", "solid.material.subgrade.young=\"20 MPa\""]]
         .concat();
     from(&scene, &soft, &first, &next).good();
     let [hard, soft] =
         [&more, &soft].map(|out| Table::read(&out.join("cycles.csv")).column("resilient_deflection"));
-    assert!(soft[1] > 1.1 * hard[1] && hard[1] > 0.0, "{hard:?} {soft:?}");
+    assert!(soft[0] > 1.1 * hard[0] && hard[0] > 0.0, "{hard:?} {soft:?}");
     let summary = json(&more.join("summary.json"));
     assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 0.01, "{summary:#}");
     let stages: Vec<&str> =

@@ -172,7 +172,7 @@ fn deflection_matches_beam_on_foundation() {
         "[track.load]\nkind = \"ramp\"\nminimum = {low}\nmaximum = {high}\nrise = 0.2\nhold = 0.5\nrest = 0.3\nramp = 0.2\n"
     );
     let mesh = format!("{CONCRETE}foot = [0.02, 0.28]\n");
-    // Base nodes on the centre line, at end and middle, after those of the ground (6 × 1 × 1 elements).
+    // Base nodes on the centre line, at end and middle, after the ground nodes (6 × 1 × 1 elements).
     let ground = trackbed_fem::mesh::Mesh::block([6, 1, 1], [1.0; 3]).node_count();
     let block = trackbed_fem::mesh::Mesh::block([16, 2, 2], SIZE);
     let node = |x: f64| {

@@ -76,10 +76,17 @@ impl Outcome {
     }
 }
 
+/// Threads of programs run without `--threads`: tests run side by side, and more threads than cores slow each other down.
+pub const ONE_THREAD: (&str, &str) = ("RAYON_NUM_THREADS", "1");
+
 /// Runs the program in `dir`.
 pub fn trackbed_in<A: AsRef<std::ffi::OsStr>>(dir: &Path, arguments: impl IntoIterator<Item = A>) -> Outcome {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).current_dir(dir).output().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_trackbed"))
+        .args(arguments)
+        .env(ONE_THREAD.0, ONE_THREAD.1)
+        .current_dir(dir)
+        .output()
+        .unwrap();
     Outcome {
         code: output.status.code().unwrap_or(-1),
         stdout: String::from_utf8(output.stdout).unwrap(),

@@ -2,7 +2,7 @@
 //!
 //! `sh` blocks are run; each line of the following `text` block must occur in the output (`…`: any text).
 
-use super::support::{Folder, repository};
+use super::support::{Folder, ONE_THREAD, repository};
 use std::path::Path;
 use std::process::Command;
 
@@ -56,6 +56,7 @@ fn run_page(name: &str) {
                 let done = Command::new("sh")
                     .args(["-e", "-c", &text])
                     .env("PATH", &path)
+                    .env(ONE_THREAD.0, ONE_THREAD.1)
                     .current_dir(folder.path())
                     .output()
                     .unwrap();

@@ -49,7 +49,7 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    /// Projects gradients of points: position [m], gradients, volume [m³].
+    /// Projects gradients from position [m], gradients, volume [m³].
     pub fn new(
         terms: Terms,
         points: impl Iterator<Item = ([f64; 3], ElementCoordinates, f64)> + Clone,

@@ -22,6 +22,7 @@ pub const HEX8_TERMS: usize = NODES + COUNT;
 /// Amplitude blocks: `α_m = sum_a A[m][a] u_a`, row-major.
 pub type Amplitudes = [[[f64; 9]; NODES]; COUNT];
 
+/// Modes of one element.
 #[derive(Clone, Debug)]
 pub struct Internal {
     /// Adjugate of the Jacobian at the centre [m²].
@@ -50,6 +51,7 @@ impl Internal {
         Internal { direction, amplitudes: [[[0.0; 9]; NODES]; COUNT] }
     }
 
+    /// Amplitude blocks.
     pub fn amplitudes(&self) -> &Amplitudes {
         &self.amplitudes
     }

@@ -55,8 +55,7 @@ pub fn differences<const D: usize, const N: usize>(
     }
 }
 
-/// On an affine element, monomials up to total degree `degree` are interpolated exactly, and some of the next
-/// degree are not.
+/// On an affine element, monomials up to `degree` are interpolated exactly, some of the next degree not.
 pub fn complete<const D: usize, const N: usize>(
     natural: &[[f64; D]; N],
     shape: fn([f64; D]) -> [f64; N],
@@ -132,8 +131,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// On each face, functions equal those of the 2-D element, area vectors point outward, and mid-side nodes
-/// follow their corner.
+/// On each face, functions equal the 2-D element's, area vectors point outward, mid-side nodes follow their
+/// corner.
 pub fn faces<const N: usize>(natural: &[[f64; 3]; N], shape: fn([f64; 3]) -> [f64; N], faces: &[&[usize]]) {
     let middle: [f64; 3] = std::array::from_fn(|k| natural.iter().map(|x| x[k]).sum::<f64>() / N as f64);
     for face in faces {
@@ -159,8 +158,8 @@ pub fn faces<const N: usize>(natural: &[[f64; 3]; N], shape: fn([f64; 3]) -> [f6
     }
 }
 
-/// Volume of a distorted element by `rule` agrees with the surface integral of x · n / 3 over `faces` within
-/// the relative `tolerance`. Area vectors sum to zero; the determinant is positive at every point.
+/// Volume of a distorted element equals the surface integral of x · n / 3 over `faces` within `tolerance`;
+/// area vectors sum to zero; determinants are positive.
 pub fn volume<const N: usize>(
     natural: &[[f64; 3]; N],
     gradients: fn([f64; 3]) -> [[f64; 3]; N],

@@ -14,7 +14,7 @@
 //! With `u = 1 - t`, `p = x / u`, `q = y / u` (section coordinates, in [-1, 1]):
 //! corner `N = u (x_a x + y_a y - 1)(1 + x_a p)(1 + y_a q) / 4`, apex `N = t (2 t - 1)`,
 //! mid-side of the base along x `N = u² (1 - p²)(1 + y_a q) / 2` (along y: p and q exchanged),
-//! mid-side of an upright `N = t u (1 + x_a p)(1 + y_a q)`.
+//! mid-side of an upright `N = t u (1 + x_a p)(1 + y_a q)` (signs of its corner).
 //!
 //! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108.
 //! Limits: gradients at the apex depend on direction. Closer than `1 - t` = 1e-10 the limit along the axis

@@ -87,7 +87,7 @@ impl Method {
         if let Method::Iterative { tolerance } = self { tolerance } else { 0.0 }
     }
 
-    /// Builds a solver; in statics it detects missing stiffness.
+    /// Solver; in statics it detects missing stiffness.
     ///
     /// # Errors
     /// [`SolveError::NoStiffness`], [`SolveError::Singular`], [`SolveError::Library`], or out of memory.

@@ -9,7 +9,7 @@ use crate::supports::{Supports, name};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
-/// Relative pivot below which a dof has no stiffness.
+/// Relative pivot without stiffness.
 ///
 /// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as
 /// its elements has 4e-9.

@@ -15,7 +15,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Counts and times so far.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.statistics
     }
@@ -32,9 +32,9 @@ pub struct Statistics {
     pub iterations: u64,
     /// Stress evaluations.
     pub evaluations: u64,
-    /// Factorizations L L^T.
+    /// Factorisations L L^T.
     pub factorizations_symmetric: u64,
-    /// Factorizations L U.
+    /// Factorisations L U.
     pub factorizations_unsymmetric: u64,
     /// Indefinite symmetric tangents (L U used).
     pub not_positive: u64,

@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 pub use step_control::StepControl;
 pub(crate) use step_control::StepLength;
 
-/// Loads and prescribed displacements as functions of time.
-///
-/// A closure `|time, load|` is a loading with constant supports.
+/// Loads and prescribed displacements as functions of time; a closure `|time, load|` has constant supports.
 pub trait Loading {
     /// Adds the nodal forces [N] at `time` to the zeroed `load`. Shape `[3 * nodes]`.
     fn load(&mut self, time: f64, load: &mut [f64]);

@@ -8,11 +8,9 @@ pub struct Upper<'a, T> {
     pub start: &'a [usize],
     /// Column position of each entry, diagonal first.
     pub place: &'a [u32],
-    /// Blocks by rows.
     pub blocks: &'a [[T; 9]],
     /// Multiples of the identity, times `inertia`.
     pub mass: &'a [f64],
-    /// Factor of `mass`.
     pub inertia: f64,
 }
 

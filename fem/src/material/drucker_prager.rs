@@ -97,7 +97,7 @@ impl DruckerPrager {
         }
     }
 
-    /// Softening slope `dc/dkappa` [Pa] at or below which the return may not be unique: cone
+    /// Softening slope `dc/dkappa` [Pa] of nonunique returns: cone
     /// `-(G + K eta eta_bar) / (xi sqrt(1/3 + 2 eta_bar²/9))`, apex `-3 K eta / (sqrt(2) xi)`, cap corner
     /// `-sqrt(3) G / xi`.
     pub fn softening_limit(&self, elastic: &Elastic) -> f64 {
@@ -211,8 +211,7 @@ impl ConstitutiveLaw for DruckerPrager {
         strength::SOURCE
     }
 
-    /// Cohesion softening must stay above [`DruckerPrager::softening_limit`]; friction softening depends on
-    /// stress and fails with [`ReturnError::Softening`].
+    /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
     fn fault(&self, elastic: &Elastic) -> Option<Fault> {
         self.shared().fault(|| self.softening_limit(elastic))
     }
@@ -349,8 +348,7 @@ fn add_hardening(
     }
 }
 
-/// `d sigma = 1 dp + n dq + (q / q_trial) (2 G I_dev - G n n) d eps`, n deviator direction,
-/// `dp_trial = K tr(d eps)`, `dq_trial = G n : d eps`.
+/// `d sigma = 1 dp + n dq + (q / q_trial) (2 G I_dev - G n n) d eps`, n deviator direction.
 fn stiffness(n: &Voigt, a: &[[f64; 2]; 2], ratio: f64, moduli: &Moduli) -> [[f64; 6]; 6] {
     let (k, g) = (moduli.bulk, moduli.shear);
     std::array::from_fn(|i| {

@@ -91,8 +91,7 @@ impl Hardening {
         }
     }
 
-    /// Maps every value by `change`, keeping `kappa`; a line without limit uses the initial slope of
-    /// `change`.
+    /// Maps values by `change`, keeping `kappa`; a line without limit uses its initial slope.
     pub fn map(&self, change: impl Fn(f64) -> f64) -> Hardening {
         match self {
             Hardening::Constant(value) => Hardening::Constant(change(*value)),
@@ -113,7 +112,7 @@ impl Hardening {
         }
     }
 
-    /// First invalid value. `name`: the parameter; `bounded`: growth needs a limit.
+    /// First invalid value; `bounded`: growth needs a limit.
     pub(super) fn fault(&self, name: &'static str, bounded: bool) -> Option<Fault> {
         match self {
             Hardening::Constant(value) => (!value.is_finite()).then_some((name, *value, "a finite number")),

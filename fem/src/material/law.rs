@@ -77,7 +77,7 @@ pub trait ConstitutiveLaw {
     /// Whether plastic flow is associated, so that plastic work is never negative.
     fn is_associated(&self) -> bool;
 
-    /// Whether the consistent tangent is always symmetric.
+    /// Whether the tangent is always symmetric.
     fn has_symmetric_tangent(&self) -> bool;
 
     /// State values of this law.

@@ -138,7 +138,7 @@ impl Material {
         self.law.is_linear()
     }
 
-    /// Whether the consistent tangent is always symmetric.
+    /// Whether the tangent is always symmetric.
     pub fn symmetric_tangent(&self) -> bool {
         self.law.has_symmetric_tangent()
     }

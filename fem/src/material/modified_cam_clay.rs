@@ -167,7 +167,6 @@ impl ConstitutiveLaw for ModifiedCamClay {
         values: &mut [f64],
     ) -> Result<Response, ReturnError> {
         let (p, deviator) = split(&old.state.stress);
-        // Converts engineering to tensor shear.
         let (mean, mut shear) = split(increment);
         shear[3..].iter_mut().for_each(|s| *s *= 0.5);
         let clay = self.clay();

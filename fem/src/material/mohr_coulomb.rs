@@ -43,8 +43,8 @@ impl MohrCoulomb {
         }
     }
 
-    /// Softening slope `dc/dkappa` [Pa] at or below which the return may not be unique:
-    /// `dh/dkappa = sqrt(2/3) |D^-1 ds/dc| |dc/dkappa|` reaches 1. Plane:
+    /// Softening slope `dc/dkappa` [Pa] of nonunique returns:
+    /// `dh/dkappa = sqrt(2/3) |D^-1 ds/dc| |dc/dkappa|` reaches 1; plane
     /// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)` with normal `n` and flow `m`.
     pub fn softening_limit(&self, elastic: &Elastic) -> f64 {
         let moduli = Moduli::new(elastic);
@@ -157,8 +157,7 @@ impl ConstitutiveLaw for MohrCoulomb {
         strength::SOURCE
     }
 
-    /// Cohesion softening must stay above [`MohrCoulomb::softening_limit`]; friction softening depends on
-    /// stress and fails with [`ReturnError::Softening`].
+    /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
     fn fault(&self, elastic: &Elastic) -> Option<Fault> {
         self.shared().fault(|| self.softening_limit(elastic))
     }

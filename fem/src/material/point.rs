@@ -94,7 +94,7 @@ impl<'a> IntoIterator for &'a mut Points {
 /// Region of the yield surface; principal stresses `s1 >= s2 >= s3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Region {
-    /// Inside the yield surface.
+    /// Elastic.
     Elastic,
     /// Mohr–Coulomb: plane of `s1` and `s3`.
     Plane,

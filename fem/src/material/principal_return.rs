@@ -172,7 +172,6 @@ fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     if choice.offer(Region::TensionPlane, s, [trial[0] - t, t - s[1], s[2] - s3, trial[0] - t]) {
         return true;
     }
-    // s1 = t and plane: no plastic strain along axis 2.
     let (d1, d3) = (trial[0] - t, trial[2] - s3);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d3);
     let s = [t, trial[1] - drop, s3];
@@ -180,7 +179,6 @@ fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     if choice.offer(Region::PlaneTension, s, [-e3, e1 + steep * e3, t - s[1], s[1] - s3]) {
         return true;
     }
-    // s1 = s2 = t: no plastic strain along axis 3.
     let (d1, d2) = (trial[0] - t, trial[1] - t);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d2);
     let s = [t, t, trial[2] - drop];

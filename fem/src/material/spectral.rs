@@ -84,7 +84,6 @@ fn dyad(a: &[f64; 3], b: &[f64; 3]) -> Voigt {
     ]
 }
 
-/// Tensor of principal values, tensor shear.
 pub(super) fn tensor(values: &[f64; 3], axes: &[[f64; 3]; 3]) -> Voigt {
     let m: [Voigt; 3] = std::array::from_fn(|i| dyad(&axes[i], &axes[i]));
     std::array::from_fn(|k| values[0] * m[0][k] + values[1] * m[1][k] + values[2] * m[2][k])

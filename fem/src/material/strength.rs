@@ -35,7 +35,6 @@ impl Strength<'_> {
         }
     }
 
-    /// Whether the flow is associated.
     pub fn is_associated(&self) -> bool {
         *self.friction == Hardening::Constant(self.dilation)
     }

@@ -19,7 +19,6 @@ const RESTARTS: usize = 200;
 pub struct Ritz {
     /// Eigenvalue `1/(w² + s)` [s²].
     pub value: f64,
-    /// Shape `[3 * nodes]`.
     pub vector: Vec<f64>,
 }
 
@@ -39,7 +38,6 @@ struct Space {
 }
 
 impl<'m> Operator<'m> {
-    /// Operator of a model with the factor of A.
     pub fn new(model: &'m Model, factor: Cholesky) -> Operator<'m> {
         let product = vec![0.0; model.dof_count()];
         Operator { model, factor, product, equations: Vec::new(), seed: 0x9e37_79b9_7f4a_7c15 }

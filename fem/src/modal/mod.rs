@@ -28,7 +28,7 @@ const SHIFT: f64 = 1e-3;
 const RIGID: f64 = 1e-6;
 /// Largest accepted residual.
 const REFUSE: f64 = 1e-5;
-/// Relative eigenvalue excess by rounding.
+/// Relative rounding of eigenvalues.
 const TIE: f64 = 1e-8;
 
 /// Modal analysis errors.

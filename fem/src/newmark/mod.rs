@@ -115,7 +115,7 @@ impl NewmarkSolver {
         })
     }
 
-    /// CG counts, if selected by [`methods`](Model::methods).
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
@@ -165,12 +165,12 @@ impl NewmarkSolver {
         let (new, old) = (1.0 + self.hht, -self.hht);
         let (supports, free) = (model.supports(), model.supports().free());
         let next = &mut self.next;
-        // 1. Predictor: terms without a1.
+        // Predictor: terms without a1.
         for d in 0..state.u.len() {
             next.u[d] = state.u[d] + dt * state.v[d] + dt * dt * (0.5 - beta) * state.a[d];
             next.v[d] = state.v[d] + dt * (1.0 - gamma) * state.a[d];
         }
-        // 2. Supports: a1 from the final displacement.
+        // At supports, a1 follows from the final displacement.
         next.a.fill(0.0);
         let mut accelerated = false;
         for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
@@ -184,7 +184,7 @@ impl NewmarkSolver {
                 accelerated = true;
             }
         }
-        // 3. Residual at the weighted time, C v = alpha_m M v + beta_k K v.
+        // Residual at the weighted time, C v = alpha_m M v + beta_k K v.
         for d in 0..state.u.len() {
             let (u, v) = (new * next.u[d] + old * state.u[d], new * next.v[d] + old * state.v[d]);
             self.work[d] = u + c.beta_k * v;
@@ -210,7 +210,6 @@ impl NewmarkSolver {
             model.dashpot_times(&self.work, &mut self.product);
             subtract(&mut self.equations, &self.product, free);
         }
-        // 4. Solve for a1 and correct.
         self.system.solve(supports, &mut self.equations, &|d| state.a[d])?;
         for (&a, &d) in self.equations.iter().zip(free) {
             let d = d as usize;

@@ -1,7 +1,8 @@
 //! Elastoplastic dynamics: Newmark and HHT-α with Newton iteration.
 //!
 //! ```text
-//! M a1 + (1 + h) (f(s1) + S u1 + C v1 - F1) - h (f(s0) + S u0 + C v0 - F0) = 0,   C = alpha_m M + beta_k K + D
+//! M a1 + (1 + h) (f(s1) + S u1 + C v1 - F1) - h (f(s0) + S u0 + C v0 - F0) = 0
+//! C = alpha_m M + beta_k K + D
 //! ```
 //!
 //! Unknown: displacement increment; h is HHT's α in [-1/3, 0], 0 for Newmark. Damping uses the elastic K.
@@ -91,7 +92,7 @@ impl Dynamics {
         })
     }
 
-    /// Counts and times of this solver.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }

@@ -8,7 +8,6 @@ use crate::material::{Point, PointState, Points, Region};
 use crate::mesh::Mesh;
 use crate::model::Model;
 
-/// Elements per task.
 const CHUNK: usize = 32;
 
 /// Failed return: element (index) and local point.
@@ -26,7 +25,6 @@ pub(crate) struct InternalForce {
     pub regions: Vec<Region>,
     /// Nodal forces [N]. Shape `[3 * nodes]`.
     pub force: Vec<f64>,
-    /// Yielding points.
     pub plastic: usize,
     element_force: Vec<[f64; 3]>,
 }

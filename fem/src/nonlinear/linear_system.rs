@@ -67,7 +67,6 @@ impl LinearSystem {
         })
     }
 
-    /// Matrix of the current elastic factor.
     pub fn elastic_of(&self) -> Option<Combination> {
         self.elastic_of
     }

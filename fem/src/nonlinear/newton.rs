@@ -69,13 +69,11 @@ pub(crate) struct Problem<'a> {
     pub old: &'a Points,
     /// Right-hand side [N]. Shape `[3 * nodes]`.
     pub rhs: &'a [f64],
-    /// Prescribed increments [m] by constrained dofs.
     pub fixed: &'a [f64],
     /// Matrices added to the internal force.
     pub linear: Combination,
     /// Reference force [N], if larger than the internal force; default: `rhs`.
     pub forces: Option<f64>,
-    /// Whether to abort the step.
     pub stop: &'a dyn Fn() -> bool,
 }
 
@@ -85,11 +83,9 @@ const PROGRESS: f64 = 0.5;
 const STALLED: u32 = 3;
 /// Fraction of the force tolerance that waives the energy criterion.
 const WELL_BELOW: f64 = 0.1;
-/// Shortest line search step.
 const SHORTEST: f64 = 0.1;
 /// Longest step without tangent.
 const LONGEST: f64 = 4.0;
-/// Work ratio that ends a line search.
 const ENOUGH: f64 = 0.5;
 const SEARCHES: u32 = 5;
 /// Relative residual of an aborted iteration.

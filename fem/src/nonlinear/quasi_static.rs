@@ -44,7 +44,7 @@ impl QuasiStatic {
         })
     }
 
-    /// Counts and times of this solver.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }

@@ -135,7 +135,7 @@ pub fn factor_of_safety(
     Ok(FactorOfSafety { converged: low, failed: high, trials })
 }
 
-/// Returns the model with strength divided by `factor`, and its state under the whole load.
+/// Model with strength divided by `factor`, and its state under the whole load.
 ///
 /// # Errors
 /// As [`QuasiStatic::advance`]; none at stable factors.

@@ -175,7 +175,6 @@ impl Tangent {
         }
     }
 
-    /// `y = A x`. Shapes `[3 * nodes]`.
     pub fn times(&self, model: &Model, x: &[f64], y: &mut [f64]) {
         let matrices = model.matrices();
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);

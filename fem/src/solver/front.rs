@@ -14,7 +14,6 @@ const SHARED_FLOPS: f64 = 2e7;
 
 #[derive(Clone, Copy)]
 pub(super) struct Updates<'a> {
-    /// Work space and its offset.
     pub work: &'a [f64],
     pub work_start: usize,
     /// Updates from branches to upper fronts.
@@ -101,11 +100,11 @@ pub(super) fn factor_symmetric(
     Ok(())
 }
 
-/// `first`: pivot block and rows below; `second`: transposed columns to the right.
+/// `first`: pivot block and rows below; `second`: transposed columns right of it.
 pub(super) struct Panels<'a> {
     pub first: &'a mut [f64],
     pub second: &'a mut [f64],
-    /// Row exchanged with the i-th of the pivot block, in order.
+    /// Row exchanges in the pivot block, in order.
     pub rows: &'a mut [u32],
 }
 

@@ -4,7 +4,7 @@
 //! (2003), algorithm 9.5; reorthogonalisation: Daniel, Gragg, Kaufman and Stewart, Math. Comp. 30 (1976)
 //! 772-795. Limits: may stagnate far from the factored matrix, which is reported.
 
-/// Work space of one size; solves allocate nothing.
+/// Work space; solves allocate nothing.
 pub struct Gmres {
     size: usize,
     restart: usize,

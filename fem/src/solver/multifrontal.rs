@@ -18,7 +18,7 @@ pub struct DirectSolver {
     kind: Kind,
     first: Buffer,
     second: Buffer,
-    /// Row exchanged with the i-th of its pivot block, in order.
+    /// Row exchanges in the pivot block, in order.
     rows: Vec<u32>,
     work: Buffer,
     handed: Buffer,
@@ -353,7 +353,6 @@ where
         None
     }
 
-    /// Update range of `s` in a slice from `start`.
     fn range(&self, s: usize, start: usize) -> std::ops::Range<usize> {
         let (structure, triangles) = (self.structure, self.triangles);
         let begin = triangles * structure.update[s] - start;
@@ -412,7 +411,6 @@ pub(super) struct Buffer {
 const LINE: usize = 8;
 
 impl Buffer {
-    /// Sets the length; contents are undefined.
     pub fn reserve(&mut self, len: usize) {
         if self.len != len {
             // Fresh zeroed memory is free until used.

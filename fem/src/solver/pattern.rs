@@ -48,7 +48,6 @@ impl Upper {
         Upper { start, row: found, source }
     }
 
-    /// Parent of every column, [`NONE`] for a root.
     pub fn elimination_tree(&self) -> Vec<u32> {
         let n = self.start.len() - 1;
         let (mut parent, mut ancestor) = (vec![NONE; n], vec![NONE; n]);

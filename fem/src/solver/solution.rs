@@ -21,7 +21,7 @@ pub(super) struct Vectors<'a> {
     pub analysis: &'a Analysis,
     pub first: &'a [f64],
     pub second: &'a [f64],
-    /// Row exchanged with the i-th of its pivot block, in order; for L U.
+    /// Row exchanges in the pivot block, in order; for L U.
     pub rows: Option<&'a [u32]>,
 }
 
@@ -47,7 +47,6 @@ impl Solution {
         self.x.capacity() + self.below.capacity()
     }
 
-    /// Solves `K` right-hand sides, column-major in `b`.
     pub fn solve<const K: usize>(&mut self, factor: &Vectors<'_>, b: &mut [f64]) {
         let structure = factor.analysis.structure();
         self.reserve(structure, K);

@@ -23,9 +23,7 @@ const ROUNDS: f64 = 4.0;
 /// Update rows also consecutive in the parent's front.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
-    /// First row in the update.
     pub own: u32,
-    /// First row in the parent's front.
     pub parent: u32,
     pub len: u32,
 }
@@ -122,7 +120,6 @@ impl Structure {
         w * r * r + r * w * (w + 1.0) + w * (w + 1.0) * (2.0 * w + 1.0) / 6.0
     }
 
-    /// Builds the structure from supernodes and matrix.
     pub fn new(begin: Vec<u32>, rows_start: Vec<usize>, rows: Vec<u32>, upper: &Upper) -> Structure {
         let mut structure = Structure { begin, rows_start, rows, ..Structure::default() };
         structure.link();

@@ -73,12 +73,12 @@ impl ThetaSolver {
         })
     }
 
-    /// CG counts, if selected by [`methods`](Model::methods).
+    /// CG counts, if selected.
     pub fn counts(&self) -> Option<Counts> {
         self.system.counts()
     }
 
-    /// Memory of an iterative solver or library [bytes].
+    /// Additional solver memory [bytes].
     pub fn solver_memory(&self) -> Option<usize> {
         self.system.memory()
     }
@@ -184,7 +184,7 @@ impl ThetaMethod for ThetaSolver {
         let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
         let (n, supports) = (state.u.len(), model.supports());
         let next = &mut self.next;
-        // 1. Residual with vt = v0 on free dofs; `a` holds w = vt - v0.
+        // Residual with vt = v0 on free dofs; `a` holds w = vt - v0.
         next.a.fill(0.0);
         let mut accelerated = false;
         for (i, &(dof, _)) in supports.fixed().iter().enumerate() {
@@ -219,7 +219,7 @@ impl ThetaMethod for ThetaSolver {
                 *slot -= theta * dt * self.product[d as usize];
             }
         }
-        // 2. Solve for w = vt - v0, with the last window's as guess, and advance.
+        // The last window's w is the guess.
         self.system.solve(supports, &mut self.equations, &|d| theta * dt * state.a[d])?;
         supports.scatter(&self.equations, &mut next.a);
         for d in 0..n {

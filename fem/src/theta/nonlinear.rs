@@ -1,7 +1,8 @@
 //! θ-method of an elastoplastic body.
 //!
 //! ```text
-//! M (v1 - v0)/dt + C vt + (1 - theta) (f(s0) + S u0) + theta (f(s1) + S u1) = F_mean,   vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
+//! M (v1 - v0)/dt + C vt + (1 - theta) (f(s0) + S u0) + theta (f(s1) + S u1) = F_mean
+//! vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
 //! ```
 //!
 //! Equals [`super::ThetaSolver`] for elastic bodies. After divergence, the window is split into 2, 4, … parts
@@ -69,7 +70,7 @@ impl NonlinearTheta {
         self.theta
     }
 
-    /// Counts and times of this solver.
+    /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.newton.statistics
     }
@@ -113,7 +114,7 @@ impl NonlinearTheta {
         self.newton.force.of_states(model, &state.points);
         start.copy_from_slice(&self.newton.force.force);
         model.boundary_spring_times(&state.u, start);
-        // 1. Equation over theta, for the increment.
+        // Equation over theta, for the increment.
         let square = 1.0 / (theta * theta * dt * dt);
         model.mass_times(&state.v, force);
         for d in 0..n {
@@ -130,7 +131,6 @@ impl NonlinearTheta {
         let (old, forces, stop) = (&state.points, Some(forces), &|| false);
         let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop };
         self.newton.solve(model, &problem)?;
-        // 3. Final motion and energy terms.
         let next = &mut self.next;
         for d in 0..n {
             let w = self.newton.w[d];

@@ -1,7 +1,11 @@
 //! θ-method in the basis of a reduced body.
 //!
-//! `w = V q'` with
-//! `(1 + θ dt α + θ dt (θ dt + β) s_k) q'_k + θ dt (D q')_k = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)`,
+//! ```text
+//! w = V q'
+//! (1 + θ dt α + θ dt (θ dt + β) s_k) q'_k + θ dt (D q')_k
+//!     = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)
+//! ```
+//!
 //! s_k squared frequencies, p = Vᵀ M v0, α and β Rayleigh coefficients, D dashpots. The state keeps all
 //! nodes.
 
@@ -98,7 +102,6 @@ impl ThetaMethod for ReducedTheta {
         let h = theta * dt;
         let r = &*self.reduced;
         let count = r.count();
-        // 1. Residual and velocity in the basis.
         let (velocity, right) = (self.velocity.as_mut_slice(), self.right.as_mut_slice());
         velocity.fill(0.0);
         right.fill(0.0);
@@ -117,7 +120,6 @@ impl ThetaMethod for ReducedTheta {
             self.right.gemv(-1.0, dashpots, &self.velocity, 1.0);
         }
         self.right *= h;
-        // 2. Solve for q' = (v1 - v0) theta, and advance all nodes.
         match &self.factor {
             Some(factor) => factor.solve_mut(&mut self.right),
             None => self.right.iter_mut().zip(&self.diagonal).for_each(|(x, d)| *x /= d),
@@ -139,7 +141,6 @@ impl ThetaMethod for ReducedTheta {
         }
         next.time = state.time + dt;
         check_finite(model, "the displacement", &next.u, next.time)?;
-        // 3. Energy terms in the basis.
         let excess = theta - 0.5;
         let mut audit = StepAudit { external_work, ..StepAudit::default() };
         for k in 0..count {

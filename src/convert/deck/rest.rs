@@ -34,8 +34,8 @@ impl Maker<'_> {
         self.used("BOND_MODEL", "parallel or contact_point");
         self.used(strength(d), "tensile and shear strength");
         for (key, how) in [
-            ("RPBN", "normal stiffness of the bond over that of the contact (its text says strength: wrong)"),
-            ("RPBS", "shear stiffness of the bond over that of the contact"),
+            ("RPBN", "normal stiffness ratio of bond to contact (its text says strength: wrong)"),
+            ("RPBS", "shear stiffness ratio of bond to contact"),
             ("BONDNS", "shear over tensile strength"),
         ] {
             if d.has(key) {
@@ -145,7 +145,7 @@ impl Maker<'_> {
             ("temperature", "not explained: doubtful"),
             (
                 "BRATIO",
-                "the stiffness of a part of the key block over that of the rest; which part is not said: add [[bond.region]]",
+                "the stiffness ratio of a part of the key block to the remainder; which part is not said: add [[bond.region]]",
             ),
             ("Form drag coefficient", "for water, whose level the deck has not: add [water]"),
             ("wave height", "for water, whose level the deck has not: add [water]"),

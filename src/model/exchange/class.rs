@@ -9,7 +9,7 @@ use trackbed_coupling::stability::{PointMasses, Stability, largest_d};
 /// by one window amplify them.
 pub(super) const WITH_SLEEPERS: f64 = 0.6;
 
-/// Contacts between one grain material and one material of the solid.
+/// Contacts between a grain material and a material of the solid.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ContactClass {
     /// Grain material.
@@ -18,28 +18,28 @@ pub struct ContactClass {
     pub solid: String,
     /// Contact stiffness Kₙ [N/m].
     pub stiffness: f64,
-    /// Damping ratio ζ of the contact, with the mass of the grain only.
+    /// Damping ratio ζ with the grain mass only.
     pub damping_ratio: f64,
     /// Effective nodal masses at the surface [kg].
     pub masses: PointMasses,
     /// Smallest and largest grain mass [kg].
     pub stones: [f64; 2],
-    /// Damping ratio ζ' of the lightest and heaviest grain against the lightest point.
+    /// Damping ratio ζ' of the lightest and heaviest grain at the lightest point.
     pub pair_damping: [f64; 2],
     /// W at the lightest point.
     pub w: f64,
-    /// Limit of W for this class and scheme.
+    /// Limit of W.
     pub w_limit: f64,
     /// D of the heaviest grain at the lightest point.
     pub d: f64,
-    /// Limit of D, if the scheme has one.
+    /// Limit of D, if any.
     pub d_limit: Option<f64>,
-    /// W and D of all contacts of a dense grain layer, and Ω of the lightest grain. Zero on meshed sleepers.
+    /// W and D of a dense grain layer, Ω of its lightest grain. Zero on meshed sleepers.
     pub numbers: InterfaceNumbers,
 }
 
 impl ContactClass {
-    /// Returns W or D over its limit; above 1 coupling may be unstable.
+    /// Returns W or D over its limit; unstable above 1.
     pub fn excess(&self) -> f64 {
         (self.w / self.w_limit).max(self.d_limit.map_or(0.0, |limit| self.d / limit))
     }
@@ -121,7 +121,7 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
     beyond
         .map(|c| {
             let fitting = (f64::from(substeps) / c.excess()) as u32;
-            // Only meshed sleepers have a lower limit than the scheme.
+            // Only meshed sleepers have a lower limit.
             let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
             let fewer = match fitting {
                 _ if lax => {

@@ -37,8 +37,8 @@ fn stones(model: &dem::Model, material: usize, grains: u32) -> Option<Stones> {
     })
 }
 
-/// Adds interface numbers to the classes on the ground, for windows of 1 s. `within`: whether grains can
-/// reach a face; `own`: DEM material of the ground.
+/// Adds interface numbers on the ground for windows of 1 s. `within`: whether grains reach a face; `own`: DEM
+/// material of the ground.
 pub fn add_numbers(
     classes: &mut [ContactClass],
     (grains, model, own): (&GrainsPart, &dem::Model, usize),
@@ -50,7 +50,7 @@ pub fn add_numbers(
     let bodies = grains.stone_groups();
     for (material, name) in grains.materials.touching() {
         let Some(stones) = stones(model, material, bodies) else { continue };
-        // The ratios do not depend on the overlap.
+        // Ratios do not depend on overlap.
         let law = model.linearised(material, own, stones.mass, stones.radius, 1e-3 * stones.radius);
         let (stiffness, ratio) = model.contact_stiffness(material, own);
         let share = |across: f64, along: f64| if along > 0.0 { across / along } else { 0.0 };

@@ -39,7 +39,7 @@ pub struct CouplingPart {
     /// Load transfer to the solid.
     pub transfer: TransferPlan,
     theta: Option<f64>,
-    /// Faces that grains may contact: ground first, then meshed sleepers in order.
+    /// Contact faces: ground, then meshed sleepers in order.
     pub faces: Vec<Face>,
     /// Number of ground faces.
     pub ground_faces: usize,
@@ -47,7 +47,7 @@ pub struct CouplingPart {
 
 /// Coupling windows derived from the contact classes.
 pub struct Windows {
-    /// Contact classes with their numbers for these windows.
+    /// Contact classes.
     pub classes: Vec<ContactClass>,
     /// Initial number of DEM sub-steps per window.
     pub substeps: u32,
@@ -73,12 +73,12 @@ pub enum TransferPlan {
     Point,
     /// Distributed over discs of this radius [m].
     Disc(f64),
-    /// Distributed over discs of this fraction of the mean grain radius.
+    /// Distributed over discs, fraction of the mean grain radius.
     Part(f64),
 }
 
 impl CouplingPart {
-    /// Returns the ground surface; `grains` sets the size of relative discs.
+    /// Returns the ground surface; `grains` sizes relative discs.
     pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
         let faces = self.faces[..self.ground_faces].to_vec();
         self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
@@ -89,7 +89,7 @@ impl CouplingPart {
         SolidSurface::new(solid.model.mesh(), self.faces[..self.ground_faces].to_vec()).triangles()
     }
 
-    /// Returns the whole contact surface of `model`, with sleepers set down.
+    /// Returns the contact surface of `model`.
     pub fn surface(&self, model: &fem::Model, grains: &GrainsPart) -> SolidSurface {
         self.spread(SolidSurface::new(model.mesh(), self.faces.clone()), grains)
     }
@@ -110,7 +110,7 @@ impl CouplingPart {
         }
     }
 
-    /// Determines windows and θ from the scene, or the longest stable window. `surface` is the ground.
+    /// Determines windows and θ. `surface` is the ground.
     pub fn windows(
         &self,
         grains: &GrainsPart,
@@ -131,7 +131,7 @@ impl CouplingPart {
                     1.0
                 };
                 let most = (f64::from(MOST) * growth) as u32;
-                // W and D are proportional to the window. The run divides windows if needed.
+                // W and D are proportional to the window; the run divides windows if needed.
                 let of_one = |c: ContactClass| c.excess().max(c.w / quiet_w(self.scheme));
                 let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
@@ -152,7 +152,7 @@ impl CouplingPart {
         }
     }
 
-    /// Rejects automatic windows if a single DEM time step is already too long.
+    /// Rejects automatic windows if one DEM time step is too long.
     ///
     /// # Errors
     /// Excess of at least `BEYOND`.
@@ -203,7 +203,7 @@ impl CouplingPart {
             faces.iter().map(|f| solid.model.mesh().materials[f.element as usize]).collect();
         ids.sort_unstable();
         ids.dedup();
-        // A massless solid in contact with grains is rejected elsewhere.
+        // Massless solids are rejected elsewhere.
         let within = |face: u32| reached(model, surface, face);
         let places =
             ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id, within)?)));
@@ -225,7 +225,7 @@ impl CouplingPart {
             return Vec::new();
         };
         debug_assert!(first.element as usize >= sleepers.ground_elements());
-        // Cannot fail: the whole model was built from the same bodies.
+        // Cannot fail: the whole model has the same bodies.
         let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
         let surface = self.spread(surface, grains);
         let faces = sleepers.telling_faces(&surface);
@@ -235,7 +235,7 @@ impl CouplingPart {
         let own = model.patch_material(self.ground_faces as u32);
         let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
         for class in &mut classes {
-            // Of an unresolved motion, θ leaves −(1 − θ)/θ; a dashpot that lags by one window adds −D/2θ.
+            // θ leaves −(1 − θ)/θ of an unresolved motion; a dashpot that lags by one window adds −D/2θ.
             let own = (1e6 * (4.0 * theta - 2.0)).round() / 1e6;
             class.d_limit = class.d_limit.map(|limit| limit.min(own));
             *class = class.at(window);

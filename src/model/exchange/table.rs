@@ -12,7 +12,7 @@ const PASSES: u32 = 20;
 
 const TOLERANCE: f64 = 1e-4;
 
-/// Resolves `[coupling]`. `polyhedra`: whether the model has any.
+/// Resolves `[coupling]`. `polyhedra`: in the model.
 ///
 /// # Errors
 /// Input errors.

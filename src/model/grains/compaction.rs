@@ -23,7 +23,7 @@ pub struct CompactionPlan {
     pub press: Press,
     /// Box in which porosity is measured.
     pub region: BoxRegion,
-    /// Friction, damping and rest criterion of the stage.
+    /// Friction, damping and rest criterion.
     pub rest: DepositionPlan,
 }
 

@@ -14,13 +14,13 @@ pub(super) const SOFTER: &str = "above 0, at most 1";
 pub struct DepositionPlan {
     /// Longest time [s].
     pub max_time: f64,
-    /// RMS speed below which the bed is at rest [m/s].
+    /// RMS speed of rest [m/s].
     pub settled_speed: f64,
-    /// Ratio of unbalanced to contact force below which the bed is at rest.
+    /// Unbalanced to contact force ratio of rest.
     pub unbalanced_ratio: Option<f64>,
     /// Number of layers that are dropped.
     pub layers: u32,
-    /// Height above which grains are then removed [m].
+    /// Removal height afterwards [m].
     pub level: Option<f64>,
     pub(super) friction: Option<f64>,
     /// Ratio to the true contact stiffness.
@@ -29,7 +29,7 @@ pub struct DepositionPlan {
 }
 
 impl DepositionPlan {
-    /// Whether a bed with this RMS speed [m/s] is at rest.
+    /// Whether a bed of this RMS speed [m/s] is at rest.
     pub fn settled(&self, speed: f64, model: &Model, state: &trackbed_dem::State) -> bool {
         use trackbed_dem::measure::{contacts, unbalanced_ratio};
         speed < self.settled_speed
@@ -50,7 +50,7 @@ pub(super) fn build(d: &Table<Deposition>) -> Result<DepositionPlan, SceneError>
     d.check("local_damping", d.local_damping, |a| (0.0..1.0).contains(&a), "0 or more, below 1")?;
     Ok(DepositionPlan {
         max_time: d.max_time.si,
-        // With only a force ratio, any speed is accepted.
+        // With a force ratio, any speed is accepted.
         settled_speed: match (d.settled_speed, ratio) {
             (Some(speed), _) => speed.si,
             (None, Some(_)) => f64::INFINITY,

@@ -56,7 +56,6 @@ pub(super) fn check_laws(
     Ok(())
 }
 
-/// Rejects constants of material `i` without a law.
 fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Result<(), SceneError> {
     let m = scene.row("material", &scene.material, i);
     let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
@@ -76,7 +75,7 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
     if m.corner_strength.is_some() && unused("corner_strength") {
         return Err(m.no_effect("corner_strength", "a contact law with conical damage"));
     }
-    // With asperities the linear law has a separate tangential law.
+    // Asperities add a tangential law to the linear law.
     let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
     if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {
         return Err(m.no_effect("asperity_friction", "a contact law with asperities"));

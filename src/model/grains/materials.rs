@@ -26,17 +26,17 @@ pub struct MaterialsPart {
 }
 
 impl MaterialsPart {
-    /// Returns grain materials that may contact a solid, with names. Rigid sleepers contact grains only.
+    /// Returns grain materials that may contact a solid. Rigid sleepers contact grains only.
     pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
     }
 
-    /// Returns sources of the contact laws in use and of the time integration.
+    /// Returns sources of contact laws and time integration.
     pub fn sources(&self) -> Vec<&'static str> {
         sources::of(&self.all, &self.pairs)
     }
 
-    /// Returns the pair overrides, with a common grain friction coefficient if given.
+    /// Returns pair overrides, with a common grain friction.
     pub fn pairs_with(&self, friction: Option<f64>) -> Vec<PairOverride> {
         let mut pairs = self.pairs.clone();
         let Some(friction) = friction else { return pairs };
@@ -83,7 +83,7 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
     Ok(out)
 }
 
-/// Returns material parameters with defaults; the normal law is not set.
+/// Returns material parameters without normal law.
 pub fn parameters(m: &GrainMaterial) -> Material {
     Material {
         // Required for bodies; unused for walls.
@@ -119,7 +119,6 @@ fn check_ranges<T, P>(row: &Table<T>, table: &[Parameter<P>], of: &P) -> Result<
     Ok(())
 }
 
-/// Removes SI conversion rounding.
 fn round_12(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! Initial overlaps of the grains, by their true shapes.
+//! Initial overlaps by true shapes.
 
 use super::part::GrainsPart;
 use crate::scene::{Document, SceneError};
@@ -12,11 +12,10 @@ use trackbed_dem::{Model, Partner};
 const LARGEST: f64 = 0.1;
 const ROUNDING: f64 = 1e-9;
 
-/// Rejects initial overlaps of more than a tenth of the smaller radius between grains, walls and `ground`,
-/// unless a group has `accept_overlap`.
+/// Rejects initial overlaps above a tenth of the smaller radius, unless a group has `accept_overlap`.
 ///
 /// # Errors
-/// Input error with the deepest overlap.
+/// Deepest overlap.
 pub fn check_overlaps(
     document: &Document,
     grains: &GrainsPart,
@@ -25,7 +24,7 @@ pub fn check_overlaps(
 ) -> Result<(), SceneError> {
     let mut state = dem::State::new(model);
     let mut work = dem::Work::new(model, &state);
-    // Overlaps too large for any step are reported by the run.
+    // Larger overlaps are reported by the run.
     let found = match ground {
         Some(ground) => dem::find_contacts(model, &mut state, &mut work, ground),
         None => dem::find_contacts(model, &mut state, &mut work, &NoSurface),

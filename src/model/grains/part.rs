@@ -23,7 +23,7 @@ use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInp
 pub struct GrainsPart {
     /// Materials and pair overrides.
     pub materials: MaterialsPart,
-    /// Groups with all grains in their initial positions.
+    /// Groups with all grains.
     pub groups: GroupsPart,
     /// Bonds between grains.
     pub bonds: BondPart,
@@ -62,9 +62,9 @@ pub struct GrainsPart {
 /// Contact surface of the solid.
 #[derive(Clone, Debug)]
 pub struct SurfacePlan {
-    /// DEM material of the ground; none without a solid.
+    /// DEM material of the ground.
     pub ground: Option<usize>,
-    /// First face of meshed sleepers, and their material.
+    /// First meshed sleeper face, material.
     pub sleepers: Option<(u32, usize)>,
     /// Ground surface as triangles, for polyhedra.
     pub mesh: Option<Arc<SurfaceMesh>>,
@@ -83,7 +83,7 @@ fn soften(input: &mut ModelInput, factor: f64) {
     for material in &mut input.materials {
         material.stiffness *= factor;
         material.young = material.young.map(|young| young * factor);
-        // Corners must crush at the true forces, proportional to strength³/modulus².
+        // Corners crush at true forces, proportional to strength³/modulus².
         material.corner_strength *= libm::cbrt(factor * factor);
     }
     for pair in &mut input.contacts {
@@ -102,7 +102,7 @@ impl GrainsPart {
         self.walls.others.iter().any(|w| w.scarring.is_some())
     }
 
-    /// Returns the deposition model: no sleeper, friction and damping of the deposition.
+    /// Returns the deposition model, without sleepers.
     pub fn deposition_input(&self, plan: &DepositionPlan) -> ModelInput {
         let contacts = self.materials.pairs_with(plan.friction);
         let damping = (plan.local_damping > 0.0).then_some(LocalDamping { factor: plan.local_damping });
@@ -118,7 +118,7 @@ impl GrainsPart {
         if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
             (*longest, *collisions) = (f64::INFINITY, false);
         }
-        // Walls start to move in the main stage; servo-controlled walls and rigid bodies are added there.
+        // Walls move in the main stage; servo-controlled walls and rigid bodies are added there.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
         input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());
@@ -146,7 +146,7 @@ impl GrainsPart {
         deposition.is_some() || !self.groups.growths.is_empty() || !compaction.is_empty()
     }
 
-    /// Returns the main-stage model with the given bodies of true mass.
+    /// Returns the main-stage model of bodies of true mass.
     pub fn input(&self, bodies: Vec<BodyInput>) -> ModelInput {
         let mut input = self.true_input(bodies);
         add_inertia(&mut input, self.steps.mass_factor);
@@ -189,12 +189,12 @@ impl GrainsPart {
         self.materials.all[body.material]
     }
 
-    /// Returns the number of groups that are not sleepers; these come first.
+    /// Returns the number of grain groups, which come first.
     pub fn stone_groups(&self) -> u32 {
         self.groups.names.len() as u32 - u32::from(self.track.rigid_sleeper().is_some())
     }
 
-    /// Returns the smallest and largest grain mass of a material [kg].
+    /// Returns smallest and largest grain mass [kg].
     pub fn masses_of(&self, model: &Model, material: usize) -> Option<[f64; 2]> {
         let grains = self.stone_groups();
         let own = (0..model.body_count())
@@ -215,7 +215,7 @@ impl GrainsPart {
         self.surface.sleepers = meshed.map(|s| (first, s.material));
     }
 
-    /// Returns a sleeper body above `centre` at height `z` [m], with its true mass.
+    /// Returns a sleeper of true mass above `centre` at height `z` [m].
     pub fn sleeper_body(&self, plan: &SleeperPlan, centre: [f64; 2], z: f64) -> BodyInput {
         BodyInput {
             shape: plan.shape,

@@ -5,7 +5,7 @@ use crate::scene::{Scene, SceneError, Table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Lower and upper border of each periodic axis [m].
+/// Borders of each periodic axis [m].
 pub type Borders = [Option<[f64; 2]>; 3];
 
 /// Generated grains must lie inside, given grains only with their centre.
@@ -26,7 +26,7 @@ pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders
         let slack = 1e-9 * (high - low);
         for body in groups.bodies.iter().filter(|b| !b.absent) {
             let group = &scene.grains[body.part as usize];
-            // Floes lie in their box, far inside their bounding spheres.
+            // Floes lie inside, unlike their bounding spheres.
             let placed = [group.spheres.is_some(), group.packing.is_some(), group.floes.is_some()];
             let reach =
                 if placed.contains(&true) || group.frustum.is_some() { 0.0 } else { groups.reach(body) };

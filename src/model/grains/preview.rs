@@ -1,4 +1,4 @@
-//! Grain models before the first step, so that scene errors are reported before the bed is deposited.
+//! Grain models before the first step, to report errors before deposition.
 
 use super::bonds::{check_gaps, check_joinable, check_joined};
 use super::overlap::check_overlaps;
@@ -15,11 +15,11 @@ const MOST_STEPS: f64 = 1e12;
 pub struct Preview {
     /// Without sleepers.
     pub alone: Model,
-    /// With rigid sleepers at height 0, which does not affect the step limit.
+    /// With rigid sleepers at height 0, irrelevant to the step limit.
     pub whole: Model,
 }
 
-/// Builds the models and checks their time step, bodies and contact with `ground`.
+/// Builds and checks the models.
 ///
 /// # Errors
 /// Input errors.
@@ -54,7 +54,7 @@ pub fn with_sleepers(grains: &GrainsPart) -> ModelInput {
     grains.input(grains.groups.bodies.iter().cloned().chain(sleepers).collect())
 }
 
-/// Rejects a time of too many steps of `dt` [s].
+/// Rejects times of too many steps `dt` [s].
 ///
 /// # Errors
 /// Input errors.

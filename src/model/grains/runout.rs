@@ -5,7 +5,7 @@ use crate::scene::{Scene, SceneError, Table};
 
 /// Default mass fraction behind the front.
 const SHARE: f64 = 0.99;
-/// Most cells per side of a depth map; larger deposits have larger cells.
+/// Most depth map cells per side.
 pub const MOST_CELLS: usize = 4000;
 
 /// Runout measurement.
@@ -15,9 +15,9 @@ pub struct RunoutPlan {
     pub parts: Vec<u32>,
     /// Unit direction in plan.
     pub direction: [f64; 2],
-    /// Cell size of the depth map [m]; default twice the mean diameter.
+    /// Cell size [m]; default twice the mean diameter.
     pub cell: Option<f64>,
-    /// Depth limit of the deposit [m]; default half the mean diameter.
+    /// Depth limit [m]; default half the mean diameter.
     pub depth: Option<f64>,
     /// Mass fraction behind the front.
     pub share: f64,

@@ -31,18 +31,18 @@ pub struct SpecimenPlan {
     pub length: f64,
     /// Reference area of the stress [m²].
     pub area: f64,
-    /// Side walls and the area of each [m²].
+    /// Side walls and their areas [m²].
     pub sides: (Vec<usize>, f64),
     /// Specimen groups, ascending.
     pub parts: Vec<u32>,
-    /// Peak fractions between which modulus and Poisson's ratio are evaluated.
+    /// Peak fractions of the elastic range.
     pub between: [f64; 2],
 }
 
 /// Clustering of bond breaks into events.
 #[derive(Clone, Copy, Debug)]
 pub struct EventPlan {
-    /// Largest distance between two breaks of an event [m].
+    /// Largest break distance in an event [m].
     pub distance: f64,
     /// Longest time between them [s].
     pub time: f64,

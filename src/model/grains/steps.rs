@@ -10,9 +10,9 @@ use trackbed_dem::{ModelInput, SearchSkin, TimeStep};
 /// DEM time stepping.
 #[derive(Clone, Copy, Debug)]
 pub struct StepPlan {
-    /// Fixed step, or fraction of the critical time step.
+    /// Fixed, or fraction of the critical time step.
     pub step: TimeStep,
-    /// Approach speed for the stability of stiffening contacts [m/s].
+    /// Approach speed for stiffening contacts [m/s].
     pub impact_speed: Option<f64>,
     /// Neighbour list skin.
     pub skin: SearchSkin,
@@ -20,8 +20,8 @@ pub struct StepPlan {
     pub mass_factor: f64,
 }
 
-/// Scales masses up and gravity down: same weights and contacts, more inertia. The energy balance is that of
-/// the true system with `factor` times its kinetic energy.
+/// Scales masses up and gravity down: same weights and contacts, more inertia. Energy balances equal the true
+/// ones with `factor` times the kinetic energy.
 pub(super) fn add_inertia(input: &mut ModelInput, factor: f64) {
     if factor == 1.0 {
         return;

@@ -15,9 +15,9 @@ pub struct StructurePlan {
     pub walls: Vec<usize>,
     /// Groups of grains.
     pub groups: Vec<u32>,
-    /// Its wall that is a rigid body with recorded motion.
+    /// Rigid body wall with recorded motion.
     pub body: Option<usize>,
-    /// Reference point of moments on the axis [m].
+    /// Reference point of moments [m].
     pub foot: [f64; 3],
     /// Sectors of equal angle.
     pub sectors: usize,
@@ -96,7 +96,7 @@ fn plan(
     plan.body = bodies.first().copied();
     if bodies.len() > 1 {
         let found = format!("{} walls that are rigid bodies", bodies.len());
-        return Err(structure.error("parts", found, "at most one, whose motion is that of the structure"));
+        return Err(structure.error("parts", found, "at most one, which moves as the structure does"));
     }
     if parts.is_empty() {
         return Err(structure.error("parts", "nothing", "names of walls or groups of grains"));

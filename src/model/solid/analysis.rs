@@ -39,7 +39,7 @@ pub enum TimeMethod {
 pub struct QuasiStaticPlan {
     /// Smallest fraction of the step.
     pub smallest_step: f64,
-    /// Newton iterations above which the next step is reduced.
+    /// Newton iterations that reduce the next step.
     pub target_iterations: u32,
 }
 
@@ -59,7 +59,7 @@ pub struct Plans {
     pub newton: NewtonPlan,
 }
 
-/// Resolves the analysis. `linear`: no plastic material; `coupled`: the model has grains.
+/// Resolves the analysis. `linear`: not plastic; `coupled`: with grains.
 ///
 /// # Errors
 /// Input errors.
@@ -146,7 +146,7 @@ fn quasi_static(q: &Table<QuasiStatic>) -> Result<QuasiStaticPlan, SceneError> {
         smallest_step: q.smallest_step.unwrap_or(1.0 / 1024.0),
         target_iterations: q.target_iterations.unwrap_or(40),
     };
-    // Smaller fractions are lost to rounding, so halving would not end.
+    // Smaller fractions are lost to rounding.
     q.check("smallest_step", plan.smallest_step, |s| (1e-9..=1.0).contains(&s), "1e-9 to 1")?;
     q.check("target_iterations", plan.target_iterations, |n| (2.0..=1000.0).contains(&n), "2 to 1000")?;
     Ok(plan)
@@ -165,7 +165,7 @@ fn strength_reduction(
         ..default
     };
     s.check("start", plan.start, |f| (1e-3..=1e3).contains(&f), "0.001 to 1000")?;
-    // Each bisection is a full equilibrium search; strength is known to 1 % at best.
+    // Each bisection is an equilibrium search; strength is known to 1 %.
     s.check("tolerance", plan.tolerance, |f| (1e-4..=10.0).contains(&f), "0.0001 to 10")?;
     let good = |f| f <= 1e4 && f > plan.start.max(plan.start.recip());
     s.check("largest", plan.largest, good, "above `start` and its reciprocal, at most 10000")?;

@@ -15,7 +15,7 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 pub struct Supports {
     /// Constraints with displacements at time 0.
     pub constraints: Vec<Constraint>,
-    /// Moving supports: dof (`3 * node + direction`), displacement [m], time history.
+    /// Moving supports by dof (`3 * node + direction`): displacement [m], time history.
     pub moving: BTreeMap<u32, (f64, TimeFunction)>,
     /// Named supports and their dofs.
     pub named: Vec<(String, Vec<u32>)>,
@@ -24,11 +24,11 @@ pub struct Supports {
 /// Resolves `[[solid.support]]`.
 ///
 /// # Errors
-/// Missing or contradictory keys, or conflicting displacements of a dof.
+/// Missing, contradictory or conflicting keys.
 pub fn supports(solid: &Table<Solid>, geometry: &Geometry) -> Result<Supports, SceneError> {
     let mut all =
         Supports { constraints: geometry.constraints.clone(), moving: BTreeMap::new(), named: Vec::new() };
-    // Displacement of each dof, and its scene support; none for the mesh file.
+    // Displacement and scene support; none for the mesh file.
     let mut given: BTreeMap<u32, (f64, Option<usize>)> =
         all.constraints.iter().map(|c| (3 * c.node + u32::from(c.direction), (c.value, None))).collect();
     for (i, s) in solid.rows("support", &solid.support).enumerate() {
@@ -96,7 +96,7 @@ fn directions(s: &Table<Support>) -> Result<Vec<u8>, SceneError> {
     if directions.is_empty() { Err(wrong("none".into())) } else { Ok(directions) }
 }
 
-/// Resolves `[[solid.absorbing]]`: one layer per material of the faces.
+/// Resolves `[[solid.absorbing]]`: a layer per material.
 ///
 /// # Errors
 /// No face, or a factor out of range.

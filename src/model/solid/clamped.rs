@@ -1,7 +1,7 @@
-//! Warnings about 8-node hexahedra too deep to resolve the boundary layer at a clamped face.
+//! Warnings about 8-node hexahedra too deep for the boundary layer at a clamped face.
 //!
-//! A clamped face suppresses the lateral strain ν σ/E over a depth of about a third of the section width.
-//! Deeper elements carry the error through their whole depth, in any formulation.
+//! A clamped face suppresses the lateral strain ν σ/E over about a third of the section width. Deeper
+//! elements carry the error through their depth, in any formulation.
 
 use std::collections::BTreeMap;
 use trackbed_fem::mesh::Face;
@@ -20,7 +20,7 @@ struct Section {
     depths: Vec<f64>,
 }
 
-/// Returns warnings about materials with too deep 8-node hexahedra at a clamped face.
+/// Warns about too deep 8-node hexahedra at a clamped face.
 pub fn remarks(mesh: &Mesh, materials: &BTreeMap<u32, Material>, constraints: &[Constraint]) -> Vec<String> {
     let stiff = |e: usize| {
         let poisson = materials.get(&mesh.materials[e]).map_or(0.0, |m| m.elastic.poisson);
@@ -64,7 +64,7 @@ fn free_edge(mesh: &Mesh, face: &Face, held: &[u8]) -> f64 {
 /// Warns below a quarter of the hydraulic diameter 4 A/P.
 fn remark(number: u32, poisson: f64, section: &Section) -> Option<String> {
     let width = 4.0 * section.area / section.free;
-    // Without a free edge the width is infinite, without a clamped face NaN.
+    // Infinite width without a free edge, NaN without a clamped face.
     let deep = |d: &&f64| **d > DEPTH * width * (1.0 + 1e-9);
     let count = section.depths.iter().filter(deep).count();
     let deepest = section.depths.iter().copied().fold(0.0, f64::max);

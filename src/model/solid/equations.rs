@@ -1,4 +1,4 @@
-//! Selection of equation solvers: by the scene, or by speed.
+//! Selection of equation solvers.
 
 use super::analysis::Analysis;
 use crate::scene::solid::{EquationMethod, Equations, Mass, Solid};

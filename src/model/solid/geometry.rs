@@ -18,7 +18,7 @@ pub struct Geometry {
     pub constraints: Vec<Constraint>,
     /// Node sets: node indices, ascending.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Face sets: element index and face number, ascending.
+    /// Face sets: element, face number, ascending.
     pub face_sets: BTreeMap<String, Vec<[u32; 2]>>,
     /// Element types of the file, with counts.
     pub element_types: Vec<(String, usize)>,
@@ -228,7 +228,7 @@ fn planes(axis: &Table<Axis>) -> Result<Vec<f64>, SceneError> {
     let mut planes = vec![lines[0]];
     for i in 0..intervals {
         let (low, high, count) = (lines[i], lines[i + 1], axis.counts[i]);
-        // Geometric series whose last length is `ratio` times the first.
+        // The last length is `ratio` times the first.
         let growth = if count > 1 { libm::pow(ratios[i], 1.0 / (count - 1) as f64) } else { 1.0 };
         let total: f64 = (0..count).map(|k| growth.powi(k as i32)).sum();
         let mut sum = 0.0;

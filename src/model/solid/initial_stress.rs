@@ -21,7 +21,7 @@ pub struct InitialStressPlan {
 /// Initial stress method.
 #[derive(Clone, Debug)]
 pub enum InitialStressKind {
-    /// K₀ state: overburden, and K₀ times it horizontally.
+    /// K₀ times the overburden horizontally.
     K0 {
         /// K₀ by material.
         k0: BTreeMap<u32, f64>,
@@ -90,10 +90,10 @@ fn overburden(i: &Table<InitialStress>) -> Result<Option<Overburden>, SceneError
     }
 }
 
-/// Rejects a K₀ state of several densities without layers: overburden would use the local density.
+/// Rejects a K₀ state of several densities without layers.
 ///
 /// # Errors
-/// Densities that differ, without layers.
+/// Densities that differ.
 pub fn check_overburden(
     solid: &Table<Solid>,
     plan: Option<&InitialStressPlan>,

@@ -1,4 +1,4 @@
-//! Loads on the solid as nodal forces with time histories.
+//! Nodal forces with time histories.
 
 use super::common::time_function;
 use super::geometry::Geometry;
@@ -20,7 +20,7 @@ pub struct NodalLoad {
 }
 
 impl NodalLoad {
-    /// Adds the load at time `t` [s] to `load`, shape `[3·nodes]`.
+    /// Adds the load at time `t` [s], shape `[3·nodes]`.
     pub fn add(&self, t: f64, load: &mut [f64]) {
         let factor = self.function.factor(t);
         if factor != 0.0 {
@@ -34,7 +34,7 @@ impl NodalLoad {
 /// Resolves a `[[solid.load]]`.
 ///
 /// # Errors
-/// Missing or unexpected keys, or no face.
+/// Wrong keys, or no face.
 pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalLoad, SceneError> {
     use SolidLoadKind::{Point, Pressure, Traction};
     let mesh = &geometry.mesh;

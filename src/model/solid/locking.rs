@@ -1,4 +1,4 @@
-//! Assumed strains against locking, and warnings about locking elements.
+//! Assumed strains, and warnings about locking.
 
 use crate::scene::solid::{Dilatation, Solid};
 use crate::scene::{SceneError, Table};
@@ -11,7 +11,7 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 /// Returns the assumed strains.
 ///
 /// # Errors
-/// Keys without effect on the mesh.
+/// Keys without effect.
 pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, SceneError> {
     let kinds = mesh.connectivity.kinds();
     let idle = solid.dilatation.is_some() && kinds.iter().all(|k| k.is_linear());

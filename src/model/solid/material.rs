@@ -18,7 +18,7 @@ pub struct Materials {
 /// Resolves `[[solid.material]]`.
 ///
 /// # Errors
-/// Constants missing, unexpected or out of range.
+/// Missing, unexpected or invalid constants.
 pub fn materials(solid: &Table<Solid>) -> Result<Materials, SceneError> {
     let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
     for m in solid.rows("material", &solid.material) {

@@ -39,7 +39,7 @@ use trackbed_fem::SolveError;
 pub struct SolidPart {
     /// Model.
     pub model: fem::model::Model,
-    /// Nodal loads other than gravity, with time histories.
+    /// Nodal loads without gravity.
     pub loads: Vec<NodalLoad>,
     /// Moving and recorded supports.
     pub supports: SupportPlan,
@@ -65,7 +65,7 @@ pub struct SolidPart {
 
 /// Moving and recorded supports.
 pub struct SupportPlan {
-    /// Moving supports: position in the model's fixed dofs, displacement [m], time history.
+    /// Moving supports: index of fixed dof, displacement [m], time history.
     pub moving: Vec<(usize, f64, TimeFunction)>,
     /// Named supports and their dofs.
     pub named: Vec<(String, Vec<u32>)>,
@@ -74,7 +74,7 @@ pub struct SupportPlan {
 }
 
 impl SolidPart {
-    /// Converts a solver error: input error for an unsolvable model, else numerical.
+    /// Converts a solver error: input error if unsolvable, else numerical.
     pub fn failure(&self, error: &SolveError) -> Failure {
         let file = self.supports.file.display();
         match error {
@@ -92,7 +92,7 @@ impl SolidPart {
         }
     }
 
-    /// Returns the weight [N], with sleepers at their positions. Shape `[3·nodes]`.
+    /// Returns the weight [N], shape `[3·nodes]`.
     pub fn dead_load(&self, model: &fem::Model) -> Vec<f64> {
         let mut load = model.gravity_load();
         if let (Some(sleepers), false) = (&self.sleepers, self.heavy_ground) {
@@ -101,7 +101,7 @@ impl SolidPart {
         load
     }
 
-    /// Returns the solid without its unconstrained sleepers, if it has any.
+    /// Returns the solid without its free sleepers, if any.
     ///
     /// # Errors
     /// As [`fem::Model::new`].
@@ -135,12 +135,12 @@ impl SolidPart {
         Ok(Some(model))
     }
 
-    /// Adds all loads at time `t` [s] to `load`, shape `[3·nodes]`.
+    /// Adds all loads at time `t` [s], shape `[3·nodes]`.
     pub fn add_loads(&self, t: f64, load: &mut [f64]) {
         self.loads.iter().for_each(|l| l.add(t, load));
     }
 
-    /// Sets displacements of moving supports at time `t` [m], in the order of fixed dofs.
+    /// Sets support displacements at time `t` [m], by fixed dof.
     pub fn prescribe(&self, t: f64, values: &mut [f64]) {
         for (position, value, function) in &self.supports.moving {
             values[*position] = value * function.factor(t);
@@ -164,7 +164,7 @@ impl SolidPart {
     }
 }
 
-/// Resolves `[solid]`. `coupled`: the model has grains; `sleepers` become part of the equations.
+/// Resolves `[solid]`. `coupled`: with grains; `sleepers`: meshed.
 ///
 /// # Errors
 /// Input errors.
@@ -196,7 +196,7 @@ pub fn build(
     let plans = analysis::plans(solid, &materials, linear, coupled)?;
     initial_stress::check_overburden(solid, plans.initial_stress.as_ref(), &geometry.mesh, &materials)?;
     let Geometry { mut mesh, element_file, constraint_file, warnings, .. } = geometry;
-    // Warn about defects that solvers tolerate, such as an element inverted only at a corner.
+    // Solvers tolerate some defects, such as an element inverted only at a corner.
     let faults = mesh_tools::check(&mesh, &supports.constraints);
     let inside_out = mesh_tools::all_inside_out(&mesh, &faults);
     let locking = locking::remarks(&mesh, &materials.constants, quadrature, assumed);
@@ -256,7 +256,7 @@ fn quadrature(integration: Integration) -> fem::Quadrature {
     }
 }
 
-/// Returns the mesh with all constraints.
+/// Returns the mesh with constraints.
 ///
 /// # Errors
 /// As [`geometry`], and contradictory supports.

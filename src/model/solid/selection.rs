@@ -1,4 +1,4 @@
-//! Selection of nodes and faces by side, box, set or number.
+//! Node and face selection.
 
 use super::geometry::Geometry;
 use crate::scene::solid::{Side, Support};
@@ -24,10 +24,10 @@ pub fn find_node<T>(table: &Table<T>, mesh: &Mesh, id: u32) -> Result<usize, Sce
         .ok_or_else(|| table.error("node", format!("node {id}"), "the number of a node of the mesh"))
 }
 
-/// Returns the nodes of a support, ascending.
+/// Returns support nodes, ascending.
 ///
 /// # Errors
-/// No key, several keys, or no node.
+/// Not exactly one key, or no node.
 pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, SceneError> {
     let mesh = &geometry.mesh;
     let all = 0..mesh.node_count() as u32;
@@ -56,10 +56,10 @@ pub fn nodes(support: &Table<Support>, geometry: &Geometry) -> Result<Vec<u32>, 
     }
 }
 
-/// Returns the boundary faces of a load or absorbing boundary.
+/// Returns boundary faces of a table.
 ///
 /// # Errors
-/// No key, several keys, or no face.
+/// Not exactly one key, or no face.
 pub fn faces<T>(
     table: &Table<T>,
     geometry: &Geometry,

@@ -11,7 +11,7 @@ use trackbed_dem::insert::gradation::Gradation;
 pub struct Grading {
     /// Target curve.
     pub curve: Gradation,
-    /// Rows by ascending sieve: size [m], least and largest fraction passing by mass.
+    /// By ascending sieve: size [m], least and largest fraction passing.
     pub limits: Vec<[f64; 3]>,
 }
 
@@ -28,7 +28,7 @@ fn plain(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric() || *c == '.').flat_map(char::to_lowercase).collect()
 }
 
-/// Reads the limits of a grade, and their mean curve.
+/// Reads the limits of a grade.
 ///
 /// # Errors
 /// Missing file or grade, or invalid limits.
@@ -77,7 +77,7 @@ pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, Re
     }
     table.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let limits = table.clone();
-    // Of sieves that pass everything, only the first matters.
+    // Of sieves passing everything, only the first matters.
     let full = table.iter().position(|r| r[1] + r[2] >= 2.0).unwrap_or(table.len() - 1);
     table.truncate(full + 1);
     let column = |k: usize| table.iter().map(|r| r[k]).collect::<Vec<_>>();

@@ -33,7 +33,6 @@ pub const FACTOR: Column = Column { name: "factor", names: &[], units: &[] };
 /// Force [N], any heading.
 pub const FORCE: Column = Column { name: "force", names: &[], units: Force::UNITS };
 
-/// Spelled-out units, and markers of plain numbers.
 const WORDS: [(&str, &str); 22] = [
     ("sec", "s"),
     ("secs", "s"),

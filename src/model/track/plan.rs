@@ -51,10 +51,10 @@ fn least_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64,
     table.check(key, value.number().unwrap_or(0.0), |x| x >= 0.0, "0 or more")
 }
 
-/// Resolves the load on sleepers at `places` along the track [m], through an optional `rail`.
+/// Resolves the load on sleepers at `places` [m], through an optional `rail`.
 ///
 /// # Errors
-/// Input errors, also in named files.
+/// Input errors.
 pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> Result<CyclicLoad, Failure> {
     which_keys(l)?;
     let cycles = l.check("cycles", l.cycles.unwrap_or(1), |n| n >= 1.0, "1 or more")?;

@@ -24,9 +24,9 @@ pub struct MeshedSleepers {
     pub centres: Vec<[f64; 2]>,
     /// Seat positions from the centre [m].
     pub seats: Vec<[f64; 2]>,
-    /// Loaded rectangle of each seat in x and y [m]. Shape `[seats]`.
+    /// Loaded rectangle of each seat [m]. Shape `[seats]`.
     pub feet: Vec<[f64; 2]>,
-    /// Symmetry about the middle planes normal to x and y.
+    /// Symmetry about the x and y middle planes.
     pub symmetric: [bool; 2],
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; 3],
@@ -61,7 +61,7 @@ pub fn held(s: &Sleeper) -> [bool; 6] {
     held
 }
 
-/// Returns seat positions from the centre [m].
+/// Returns seat positions [m].
 ///
 /// # Errors
 /// A seat outside the top face.
@@ -78,7 +78,7 @@ pub fn seats(track: &Table<TrackTable>, half: [f64; 3]) -> Result<Vec<[f64; 2]>,
     }
 }
 
-/// Returns sleeper centres in plan [m].
+/// Returns centres in plan [m].
 ///
 /// # Errors
 /// Invalid count or spacing.
@@ -107,7 +107,7 @@ pub fn row(s: &Table<Sleeper>) -> Result<Vec<[f64; 2]>, SceneError> {
 /// Resolves meshed sleepers, if any.
 ///
 /// # Errors
-/// Input errors, also unsupported combinations.
+/// Input errors.
 pub fn meshed(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<Option<MeshedSleepers>, SceneError> {
     let Some(track) = scene.optional("track", &scene.track) else { return Ok(None) };
     let s = &track.below("sleeper", &track.sleeper);

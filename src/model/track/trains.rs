@@ -33,7 +33,7 @@ struct Table {
 /// Reads the car of train `name`.
 ///
 /// # Errors
-/// Missing file or name, or invalid lengths.
+/// Missing file or name, invalid lengths.
 pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
     let document = Document::open(file)?;
     let table: Table = document.read()?;
@@ -59,7 +59,7 @@ pub fn car(file: &Path, name: &str) -> Result<Car, SceneError> {
 }
 
 impl Car {
-    /// Returns axle distances of `cars` cars behind the first axle [m], ascending.
+    /// Returns axle distances of `cars` cars [m], ascending.
     pub fn axles(&self, cars: u32) -> Vec<f64> {
         let layout = CarLayout {
             wheelbase: self.wheelbase.si,

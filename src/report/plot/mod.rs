@@ -1,4 +1,4 @@
-//! Plots: SVG with the legend as HTML list below, so that no text overlaps.
+//! SVG plots with an HTML legend below, so that no text overlaps.
 //!
 //! Text width is estimated as in [`crate::write::svg`]. Curves differ by colour (Okabe and Ito 2008), dashes
 //! and markers.
@@ -114,7 +114,7 @@ impl Plot {
         Plot { title: title.into(), x, y, curves }
     }
 
-    /// Draws the figure; nothing without a curve of two valid points.
+    /// Draws the figure; nothing without two valid points.
     pub fn figure(&self) -> Markup {
         let values = |d: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[d]));
         let largest = |d: usize| values(d).filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -185,7 +185,7 @@ mod tests {
         assert!(text.contains("settlement [mm]") && text.contains("cycle N") && text.contains("a &lt; b"));
         assert!(text.contains("run &lt;1&gt;") && !text.contains("NaN"), "{text}");
         assert_eq!(text.matches("<li>").count(), 2);
-        // The deepest settlement is lowest on the page.
+        // Deepest is lowest on the page.
         let line = text.split("<polyline points=\"").nth(1).unwrap().split('"').next().unwrap();
         let y: Vec<f64> = line.split(' ').map(|p| p.split(',').nth(1).unwrap().parse().unwrap()).collect();
         assert!(y.len() == 2 && y[1] > y[0], "{y:?}");

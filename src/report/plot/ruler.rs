@@ -23,14 +23,14 @@ pub struct Ruler {
 
 impl Ruler {
     /// Creates a linear scale of up to `most` steps of 1, 2 or 5 times a power of ten, at least `least`;
-    /// `tight` ends at the extreme values, else at ticks.
+    /// `tight` ends at extreme values.
     pub fn linear(values: impl Iterator<Item = f64>, most: usize, least: f64, tight: bool) -> Ruler {
         let (low, high) = widened(range(values).unwrap_or([0.0, 1.0]));
         let least = ((high - low) / most as f64).max(least);
         let power = libm::pow(10.0, libm::log10(least).floor());
         let steps = [1.0, 2.0, 5.0, 10.0].map(|m| m * power);
         let step = steps.into_iter().find(|s| *s >= least * (1.0 - 1e-9)).unwrap_or(power);
-        // Rounding beyond a tick needs no further step.
+        // Rounding needs no further step.
         let first = (low / step + 1e-6).floor();
         let last = (high / step - 1e-6).ceil().max(first + 1.0);
         let largest = step * first.abs().max(last.abs());
@@ -44,8 +44,7 @@ impl Ruler {
         Ruler { low: first * step, high: last * step, logarithmic: false, ticks }
     }
 
-    /// Creates a logarithmic scale of positive values, with labels at 1, 2 and 5 of each decade, or at
-    /// decades only.
+    /// Creates a logarithmic scale, labelled at 1, 2 and 5 of each decade, or at decades.
     pub fn logarithmic(values: impl Iterator<Item = f64>) -> Ruler {
         let [low, high] = range(values.filter(|v| *v > 0.0)).unwrap_or([1.0, 10.0]);
         let decades = libm::log10(high / low);
@@ -103,7 +102,7 @@ fn widened([low, high]: [f64; 2]) -> (f64, f64) {
     if high - low > 1e-12 * high.abs().max(low.abs()) {
         return (low, high);
     }
-    // Equal values: a range around them, including a near zero.
+    // Equal values: widen, including a near zero.
     match high.total_cmp(&0.0) {
         std::cmp::Ordering::Greater => (0.0, 2.0 * high),
         std::cmp::Ordering::Less => (2.0 * low, 0.0),

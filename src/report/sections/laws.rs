@@ -35,8 +35,8 @@ impl Law {
         })
     }
 
-    /// Returns settlement after N cycles [m]; none for an unknown law, or a reformulation of another
-    /// (Hettler's is Alva-Hurtado & Selig).
+    /// Returns settlement after N cycles [m]; none if unknown or a reformulation (Hettler's is Alva-Hurtado &
+    /// Selig).
     pub fn at(&self, n: f64) -> Option<f64> {
         let p = |name: &str| self.parameters.iter().find(|p| p.0 == name).map(|p| p.1);
         let log = libm::log10(n);

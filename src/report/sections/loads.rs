@@ -1,4 +1,4 @@
-//! Loads on structures over time, by sector and height; their motion.
+//! Loads on structures, and their motion.
 
 use super::overlay::overlay;
 use crate::columns::{Definition, Name, history};

@@ -57,7 +57,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         return None;
     }
     let formulas = paragraph(
-        "Secant stiffness K: load range over the resilient deflection u, the rebound of the sleeper from its lowest position to the end of the cycle. Area of the loop E: work of the load over the cycle, that of the settlement among it. Damping \
+        "Secant stiffness K: load range over the resilient deflection u, the rebound of the sleeper from its lowest position to the end of the cycle. Area of the loop E: work of the load over the cycle, settlement included. Damping \
          ratio D = 2 E/(π K u²): E over 4π times the energy of a spring K at half the range of u.",
     );
     Section::new("loops", "Load–deflection", joined([html, note, formulas]))
@@ -82,7 +82,7 @@ fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
         let Some(all) = loops_of(run) else { continue };
         let fine: Vec<&Loop> = all.iter().filter(|l| l.points.len() >= ROWS).collect();
         coarse |= fine.len() < all.len();
-        // Loops are numbered as cycles only if all were detected.
+        // Numbered as cycles only if all were detected.
         let counted = run.table("cycles").is_some_and(|t| t.rows() == all.len());
         for (k, one) in selected(&fine, if runs.len() > 1 { 2 } else { 6 }).into_iter().enumerate() {
             let kind = if counted { "cycle" } else { "loop" };
@@ -125,7 +125,7 @@ fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     })?;
     let least = load.iter().copied().fold(f64::INFINITY, f64::min);
     let most = load.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // The load must cross its middle range: a ramp is no cycle.
+    // Must cross the middle range: a ramp is no cycle.
     let (low, high) = (least + 0.45 * (most - least), least + 0.55 * (most - least));
     let mut rises = Vec::new();
     let mut below = true;
@@ -140,7 +140,7 @@ fn loops_of(run: &RunData) -> Option<Vec<Loop>> {
     let mut ends = Vec::new();
     for (k, &rise) in rises.iter().enumerate() {
         let from = if k == 0 { 0 } else { rises[k - 1] };
-        // Before the first rise, start at the last minimum: rest and ramp are no part of the cycle.
+        // Rest and ramp before the first rise are no part of the cycle.
         let near = |i: &usize| load[*i] <= load[lowest(from, rise).unwrap_or(from)] + 0.08 * (most - least);
         let start = if k == 0 { (from..rise).rev().find(near) } else { lowest(from, rise) };
         ends.push(start.unwrap_or(from));

@@ -1,4 +1,4 @@
-//! Report sections in page order; each is omitted without data.
+//! Report sections in page order.
 
 mod accounts;
 mod bonds;

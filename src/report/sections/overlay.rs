@@ -12,7 +12,7 @@ const FEW: usize = 60;
 /// Named curve in SI units.
 pub type Named = (String, Vec<[f64; 2]>);
 
-/// Collects the curves of all runs: coloured by curve for one run, by run for several.
+/// Collects the curves of all runs, coloured by curve or by run.
 pub fn overlay(runs: &[RunData], of: impl Fn(&RunData) -> Vec<Named>) -> Vec<Curve> {
     let several = runs.len() > 1;
     let mut curves = Vec::new();
@@ -36,7 +36,7 @@ pub fn one(runs: &[RunData], of: impl Fn(&RunData) -> Option<Vec<[f64; 2]>>) -> 
     overlay(runs, |run| of(run).map(|points| vec![(String::new(), points)]).unwrap_or_default())
 }
 
-/// Row of a fact table: name, cell of a run.
+/// Fact name, cell of a run.
 pub type Fact<'a> = (&'a str, &'a dyn Fn(&RunData) -> Cell);
 
 /// Formats a table of runs by facts, without empty rows.
@@ -51,7 +51,7 @@ pub fn facts(runs: &[RunData], rows: &[Fact<'_>]) -> Markup {
     facts_table(&heads, &rows)
 }
 
-/// Returns the component of a history vector that varies most: (axis, values).
+/// Returns the most variable component of a history vector: (axis, values).
 pub fn dominant<'a>(run: &'a RunData, vector: Name<'_>) -> Option<(&'static str, &'a [f64])> {
     let table = run.table("history")?;
     let spread = |values: &[f64]| {

@@ -1,4 +1,4 @@
-//! Solid: load–displacement, equilibrium, plasticity, factor of safety, modes.
+//! Solid: displacement, equilibrium, plasticity, safety, modes.
 
 use super::overlay::{dominant, facts, one, overlay};
 use crate::columns::{Definition, gauss, history, modes, safety};
@@ -64,7 +64,7 @@ fn load_displacement(run: &RunData) -> Vec<(String, Vec<[f64; 2]>)> {
     let moved = supports.filter_map(|s| {
         let (name, size) = (s.name.as_ref()?, s.displacement?.si);
         let [direction] = s.directions.as_slice() else { return None };
-        // A history file is not part of the results.
+        // History files are not in the results.
         let history = s.history.as_ref().filter(|h| h.file.is_none())?;
         let history = TimeFunction::new(history, None).ok().filter(|_| size != 0.0)?;
         let points = table.points(history::TIME, history::SUPPORT_REACTION.of(name).along(direction)?)?;

@@ -88,7 +88,7 @@ fn servo(wall: &Wall, all: &[Wall], table: &Table) -> Option<Servo> {
     let most = force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let start = force.iter().position(|f| f.abs() > TOUCH * most)?;
     let first = way[start];
-    // Nearest opposite plane in front of the wall.
+    // Nearest opposite plane in front.
     let faces = all.iter().filter_map(plane).filter(|(_, n)| dot(*n, normal) < -0.999);
     let gaps = faces.map(|(p, _)| dot([0, 1, 2].map(|d| p[d] - point[d]), normal) - first);
     let gap = gaps.filter(|g| *g > 0.0).min_by(f64::total_cmp)?;

@@ -149,7 +149,7 @@ impl Loaded {
     /// Reads the next part.
     ///
     /// # Errors
-    /// Part of another type, written by a different build of the same version.
+    /// Part of another type, from a different build.
     pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
         let (part, rest) = postcard::take_from_bytes(&self.bytes[self.at..self.end])
             .map_err(|e| Failure::Input(format!("--resume: found a checkpoint of another program: {e}")))?;

@@ -1,7 +1,7 @@
 //! Checkpoints from which a run resumes bitwise identically.
 //!
-//! Two slots alternate. A new file is written beside the older slot and replaces it once it is synced, so one
-//! valid checkpoint always exists.
+//! Two slots alternate. A new file replaces the older slot once it is synced, so one valid checkpoint always
+//! exists.
 
 mod form;
 mod origin;
@@ -19,10 +19,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Reads a state file: origin, state, file hash.
+/// Reads a state file: origin, state, hash.
 ///
 /// # Errors
-/// Input error if the file is unreadable, damaged or of another program.
+/// Unreadable, damaged, or of another program.
 pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     let name = file.display();
     let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
@@ -35,7 +35,7 @@ pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
     Ok((header.origin, loaded, hash.hex()))
 }
 
-/// Validates format, checksum and header of a checkpoint or state file.
+/// Validates a checkpoint or state file.
 ///
 /// # Errors
 /// As [`read_file`].
@@ -43,7 +43,7 @@ pub fn check_file(file: &Path) -> Result<(), Failure> {
     read_file(file).map(drop)
 }
 
-/// Returns the latest valid checkpoint of any run in a results directory.
+/// Returns the latest valid checkpoint of any run.
 pub fn latest(results: &Path) -> Option<Loaded> {
     let bytes =
         SLOTS.iter().filter_map(|slot| source::bytes(&results.join(FOLDER).join(slot), source::LARGEST).ok());
@@ -65,8 +65,7 @@ pub const FOLDER: &str = "checkpoint";
 const SLOTS: [&str; 2] = ["a.checkpoint", "b.checkpoint"];
 
 impl Slots {
-    /// Creates the slots of a new run. Checkpoints of an earlier run remain until the first save, or until
-    /// its results are removed.
+    /// Creates the slots of a new run. Earlier checkpoints remain until the first save.
     pub fn new(results: &Path, origin: Origin) -> Slots {
         Slots { dir: results.join(FOLDER), origin, next: 0, own: false }
     }
@@ -86,7 +85,7 @@ impl Slots {
         self.own && self.next > 0
     }
 
-    /// Writes a checkpoint filled by `fill`.
+    /// Writes a checkpoint.
     ///
     /// # Errors
     /// I/O errors; the last valid checkpoint remains.
@@ -96,7 +95,7 @@ impl Slots {
         fill: impl FnOnce(&mut Body<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         self.clear_others()?;
-        // Not recursive: a new results directory in place of a renamed one would split the run.
+        // Not recursive: a new directory at the path of a renamed one would split the run.
         match fs::create_dir(&self.dir) {
             Err(e) if e.kind() != io::ErrorKind::AlreadyExists => return Err(failure(&self.dir, &e)),
             _ => {}
@@ -133,7 +132,7 @@ impl Slots {
         if self.own { Ok(()) } else { self.clear() }
     }
 
-    /// Removes all checkpoints, and the directory if empty.
+    /// Removes all checkpoints.
     ///
     /// # Errors
     /// I/O errors.
@@ -147,17 +146,16 @@ impl Slots {
                 }
             }
         }
-        // Fails if it contains user files or is missing, both harmless.
+        // User files or a missing directory are harmless.
         let _ = fs::remove_dir(&self.dir);
         (self.own, self.next) = (true, 0);
         Ok(())
     }
 
-    /// Loads the latest valid checkpoint and continues its slots. Also returns warnings about a damaged slot
-    /// or another CPU.
+    /// Loads the latest valid checkpoint, with warnings about a damaged slot or another CPU.
     ///
     /// # Errors
-    /// Input error: none, all damaged, or of another program or scene.
+    /// None, all damaged, or of another program or scene.
     pub fn load(&mut self, document: &Document) -> Result<(Loaded, Vec<String>), Failure> {
         let refuse = |text: String| Failure::Input(format!("--resume: {text}"));
         let (mut found, mut damaged, mut forms) = (Vec::new(), Vec::new(), Vec::new());

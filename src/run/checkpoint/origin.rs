@@ -22,8 +22,8 @@ pub struct Origin {
     pub processor: String,
 }
 
-/// Returns CPU architecture and instruction sets used by solid kernels: SIMD width and fused multiply-add
-/// change rounding. Grains are bitwise identical on all.
+/// Returns architecture and instruction sets of solid kernels: SIMD width and FMA change rounding. Grains are
+/// bitwise identical on all.
 pub fn processor() -> String {
     let mut words = vec![std::env::consts::ARCH];
     #[cfg(target_arch = "x86_64")]
@@ -39,7 +39,7 @@ pub fn processor() -> String {
 }
 
 impl Origin {
-    /// Describes how this CPU differs from `old`, if results may differ.
+    /// Describes a CPU difference to `old`, if relevant.
     pub fn other_processor(&self, old: &Origin) -> Option<String> {
         (self.processor != old.processor).then(|| {
             format!(

@@ -174,7 +174,7 @@ fn another_form_is_refused() {
     let mut bytes = fs::read(&file).unwrap();
     let digits = FORM.to_string().len();
     bytes.splice(MAGIC.len()..MAGIC.len() + digits, *b"9876");
-    // With a valid checksum: a foreign format, not damage.
+    // A foreign format, not damage.
     let end = bytes.len() - CHECKSUM;
     let mut hash = Hash::default();
     hash.add(&bytes[..end]);
@@ -275,7 +275,7 @@ fn grain_state_is_bitwise_after_restarts() {
         let mut seen = Vec::new();
         while state.steps < 5400 {
             dem::step(&model, &mut state, &mut work, &dem::surface::NoSurface, &[]).unwrap();
-            // Directly after a restart: a later neighbour list rebuild would hide differences.
+            // A later neighbour list rebuild would hide differences.
             if RESTARTS.contains(&(state.steps - 1)) {
                 seen.push(postcard::to_stdvec(&state).unwrap());
             }
@@ -300,7 +300,7 @@ fn grain_state_is_bitwise_after_restarts() {
 fn checkpoint_of_a_bed() {
     use std::time::Instant;
     let side = 59_usize;
-    // FCC packing: twelve contacts per sphere, more than in any bed.
+    // FCC packing: twelve contacts per sphere.
     let pitch = 0.02 * 0.999 * std::f64::consts::SQRT_2;
     let cell = |k: usize| [k % side, k / side % side, k / side / side];
     let cells = (0..side * side * side).map(cell).filter(|c| c.iter().sum::<usize>().is_multiple_of(2));

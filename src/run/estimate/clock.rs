@@ -1,4 +1,4 @@
-//! Timing of work: CPU time on one thread, unaffected by other programs; wall time on several.
+//! CPU time on one thread, unaffected by other programs; wall time on several.
 
 use crate::system;
 use std::time::Instant;
@@ -22,7 +22,7 @@ impl Clock {
     pub fn seconds(&self) -> f64 {
         let used = self.used.zip(system::cpu_seconds()).map(|(before, now)| now - before);
         let elapsed = self.begun.elapsed().as_secs_f64();
-        // CPU time above wall time is from other threads of the process.
+        // The rest is from other threads.
         used.map_or(elapsed, |used| used.min(elapsed))
     }
 

@@ -1,5 +1,5 @@
-//! Column of the bed: a sample of the grains of full height settles between smooth planes. It yields settling
-//! time, step size and cost per step.
+//! Column of the bed: a full-height sample of grains settles between smooth planes, to find settling time,
+//! step size and cost.
 
 use super::clock::Clock;
 use crate::model::grains::{DepositionPlan, GrainsPart};
@@ -28,17 +28,17 @@ const STRIDE: u32 = 50;
 pub struct Column {
     /// Ratio of scene spheres to column spheres.
     pub share: f64,
-    /// Ratio of contacts per grain in column and bed.
+    /// Contacts per grain, column over bed.
     pub full: f64,
-    /// Settling time [s], or the simulated time when the budget ended.
+    /// Settling time [s], or simulated time at the end of the budget.
     pub rest: f64,
     /// Whether it came to rest.
     pub rested: bool,
     /// Elapsed seconds on one thread.
     pub seconds: f64,
-    /// Seconds per simulated second at the end of settling, on one thread.
+    /// Seconds per simulated second at the end of settling, one thread.
     pub late: f64,
-    /// Seconds per simulated second at rest with main-stage contacts, on one thread.
+    /// Seconds per simulated second at rest with main-stage contacts, one thread.
     pub pace: f64,
     /// The same including the initial short steps.
     pub first: f64,
@@ -46,7 +46,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// Settles a column, if the scene deposits its bed, within about `budget` of wall time.
+    /// Settles a column, if the bed is deposited, within about `budget`.
     ///
     /// # Errors
     /// No stable time step.
@@ -111,7 +111,7 @@ impl Column {
         input.bonds = among(&below, &bonds, bodies.len());
         input.planes.extend(planes.iter().copied());
         smooth(&mut input, planes.len());
-        // An unsettled or cut bed may overlap main-stage walls; assume its earlier cost.
+        // Otherwise the bed may overlap main-stage walls; assume its earlier cost.
         let late = late(&course).unwrap_or(seconds / rest.max(f64::MIN_POSITIVE));
         let paces =
             if rested || plan.is_none() { paces(input, surface, budget / 3) } else { Ok((late, late)) };
@@ -122,7 +122,7 @@ impl Column {
         Ok(Column { share, full, rest, rested, seconds, late, pace, first, course })
     }
 
-    /// Returns the seconds between two simulated times [s], on one thread; none if not reached.
+    /// Returns the seconds between two simulated times [s]; none if not reached.
     pub fn between(&self, [from, to]: [f64; 2]) -> Option<f64> {
         let at = |time: f64| {
             let k = self.course.partition_point(|c| c[0] < time);
@@ -133,13 +133,12 @@ impl Column {
     }
 }
 
-/// Last quarter.
 fn late(course: &[[f64; 2]]) -> Option<f64> {
     let ([t0, s0], [t1, s1]) = (course[3 * course.len() / 4], *course.last()?);
     (t1 > t0).then(|| (s1 - s0) / (t1 - t0))
 }
 
-/// Spheres, or equivalent cost.
+/// Counts spheres, or equivalent cost.
 fn members(shape: &Shape) -> usize {
     match shape {
         Shape::Clump(clump) => clump.spheres.len(),
@@ -207,7 +206,7 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
         normal[d] = -sign;
         Plane { point, normal, material: 0, velocity: Vec3::zeros() }
     };
-    // Two thirds of contacts are lateral; in a row of n grains one contact becomes a cheap plane contact.
+    // Two thirds of contacts are lateral; one of n in a row becomes a cheap plane contact.
     let mean = there.iter().map(|b| 2.0 * reach(b)).sum::<f64>() / there.len() as f64;
     let full = 1.0 - 2.0 / 3.0 * (mean / side).min(1.0);
     (inside, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec(), full)
@@ -246,7 +245,7 @@ fn paces(
     let (mut state, begun, clock) = (dem::State::new(&model), Instant::now(), Clock::start(1));
     let mut work = dem::Work::new(&model, &state);
     let mut looks = vec![(0.0, 0.0)];
-    // New friction and stiffness restart motion, so steps are short at first.
+    // New friction and stiffness cause motion and short steps.
     while looks.len() < 2 || (state.time < AT_REST && begun.elapsed() < budget) {
         for _ in 0..STRIDE {
             step(&model, &mut state, &mut work, surface)?;

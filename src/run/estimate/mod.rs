@@ -1,4 +1,4 @@
-//! Run time estimate: a trial run of the first seconds, a settling column of the bed, and some solid steps.
+//! Run time estimate from a trial run, a column of the bed, and some solid steps.
 
 mod clock;
 mod column;
@@ -20,7 +20,6 @@ use std::time::Duration;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 
-/// In trial budgets.
 const SETTLE: u32 = 15;
 /// Parallel efficiency of additional cores.
 const SPEED_UP: f64 = 0.8;
@@ -35,7 +34,7 @@ pub enum Known {
     Expected,
     /// Upper bound.
     AtMost,
-    /// Unknown: the stage ends when its work is done.
+    /// Unknown.
     Unknown,
 }
 
@@ -60,11 +59,10 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Estimates the run time of a scene, resolved in `job`, by a trial run of `budget` wall time; takes up
-    /// to forty times `budget`.
+    /// Estimates the run time of `job` by a trial run of `budget`; takes up to forty times `budget`.
     ///
     /// # Errors
-    /// Failures of the run in its first seconds; no stable time step.
+    /// Failures of the trial run; no stable time step.
     pub fn of(
         scene: &Path,
         set: &[String],
@@ -130,7 +128,7 @@ fn left(
     let growing =
         grains.groups.growths.iter().map(|g| format!("growing {}", g.group)).filter(|g| !is_done(g));
     if !grains.groups.growths.is_empty() {
-        // Growing grains are not representative of the final bed.
+        // Not representative of the final bed.
         let names = growing.chain([RUN.to_string()]);
         return Ok(names
             .enumerate()
@@ -143,14 +141,14 @@ fn left(
         _ => None,
     };
     let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done(SETTLING));
-    // One thread: a column is too small to parallelise like the bed.
+    // A column is too small to parallelise.
     let settle = || Column::settle(grains, deposition, ground.as_ref(), SETTLE * budget).ok();
     let Some(column) = run::thread_pool(Some(1))?.install(settle) else {
         // Some grains behave differently from the rest.
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
     };
     let whole = column.share / cores(threads);
-    // A bed that starts to fall has few contacts, as the column then has.
+    // Few contacts at first, in bed and column.
     let whole = whole * beside(&column, rehearsed, whole) / column.full;
     if let Some(plan) = deposition {
         // Each layer falls on the previous ones.
@@ -158,7 +156,7 @@ fn left(
         if plan.layers > 1 && !is_done("layers") {
             stages.push(expected("layers", 0.5 * (layers - 1.0) * whole * column.seconds));
         }
-        // Budget exhausted before the column was at rest.
+        // Budget exhausted.
         let (known, left) = match column.rested {
             true => (Known::Expected, 0.0),
             false => (Known::AtMost, plan.max_time - column.rest),

@@ -1,4 +1,4 @@
-//! Trial run: first seconds of a run in a temporary directory.
+//! Trial run in a temporary directory.
 
 use super::clock::Clock;
 use crate::failure::Failure;
@@ -14,9 +14,9 @@ use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Budgets up to the main loop.
+/// Budgets up to the main loop with growth.
 const GROWTH: u32 = 8;
-/// Without growth.
+/// Budgets up to the main loop without growth.
 const PREPARATION: u32 = 3;
 /// Fraction of the main loop to reach within [`LOOP`] budgets: a resting bed may flow once a wall has turned.
 /// With moving walls or flow, [`MOVED`] budgets: a ship enters ice gradually.
@@ -47,9 +47,9 @@ pub struct Rehearsal {
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for about `budget` of wall time, half as long again if a stage has just begun. Stages before
-/// the main loop may take [`PREPARATION`] budgets, or [`GROWTH`] with growth, followed by another `budget`:
-/// only complete growth yields the final bed, and a flowing bed costs more than a resting one.
+/// Runs a scene for about `budget`, half as long again after a stage change. Stages before the main loop may
+/// take [`PREPARATION`] budgets, or [`GROWTH`] with growth, plus another `budget`: only complete growth
+/// yields the final bed, and a flowing bed costs more.
 ///
 /// # Errors
 /// Failures of the run; temporary directory not writable.
@@ -76,7 +76,7 @@ pub fn rehearse(
         while on && begun.elapsed() < most * budget && come(&followed).is_none() {
             on = passes(LOOK);
         }
-        // The start of a stage is not representative.
+        // Not representative.
         on = on
             && passes(budget)
             && passes((budget / 2).saturating_sub(stage_age(&followed).unwrap_or(budget)));
@@ -169,7 +169,6 @@ fn settling(trace: &[(Instant, Moment)]) -> Option<([f64; 2], f64)> {
     Some(([first.1.time, last.1.time], (last.0 - first.0).as_secs_f64()))
 }
 
-/// Temporary directory, removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -179,7 +178,7 @@ impl Folder {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
             let dir = std::env::temp_dir().join(format!("trackbed-{}-{number}", std::process::id()));
             match std::fs::create_dir(&dir) {
-                // Left by a process of the same id.
+                // Of a process with the same id.
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
                 made => return made.map(|()| Folder(dir)),
             }

@@ -1,4 +1,4 @@
-//! Cost of a solid step, measured, and of a static solve, predicted.
+//! Cost of solid steps and static solves.
 
 use super::clock::Clock;
 use super::{Known, StageTime};
@@ -16,7 +16,7 @@ const ENOUGH: Duration = Duration::from_millis(500);
 /// Load change per window over weight, so that plastic solids iterate.
 const RESTLESS: f64 = 0.01;
 
-/// Returns seconds per step of `dt` [s] under gravity, without a factorization shared by all steps.
+/// Returns seconds per step of `dt` [s] under gravity, without a shared factorization.
 ///
 /// # Errors
 /// Failed factorization; no equilibrium.
@@ -48,8 +48,7 @@ const ORDER: usize = 512;
 /// Stiffness products of a static CG solve: about 60 iterations of 12, mostly single precision, and set-up.
 const PRODUCTS: f64 = 560.0;
 
-/// Estimates the static solve of a large solid from factorization operations or a product; none if short or
-/// absent.
+/// Estimates the static solve of a large solid; none if short or absent.
 pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     let part = job.solid.as_ref().filter(|s| matches!(s.analysis, Analysis::Static))?;
     if job.grains.is_some() {

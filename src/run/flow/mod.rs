@@ -1,7 +1,7 @@
-//! Inlets and outlets, checked at an interval of windows, with balances.
+//! Inlets and outlets with balances.
 //!
-//! The inserted amount never exceeds rate × (t − start) and lags by less than one grain, unless no free
-//! position or no queued grain exists. The backlog is then inserted at twice the rate.
+//! The inserted amount never exceeds rate × (t − start) and lags by less than one grain, unless no position
+//! or queued grain is free. The backlog is inserted at twice the rate.
 
 mod record;
 
@@ -32,7 +32,6 @@ struct Inlet {
     allowed: f64,
     given: f64,
     amount: Amount,
-    /// Checks without free position, with empty queue.
     full: u64,
     empty: u64,
 }
@@ -66,7 +65,7 @@ pub struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    /// Creates inlets and outlets, if any, at the start of the main stage of `end` [s].
+    /// Creates inlets and outlets, if any, for a main stage of `end` [s].
     pub fn new(
         part: Option<&'a GrainsPart>,
         view: Option<GrainsView<'_>>,
@@ -135,7 +134,7 @@ impl<'a> Flow<'a> {
         sum
     }
 
-    /// Inserts and removes due grains after window `k` at `time` [s].
+    /// Inserts and removes grains after window `k` at `time` [s].
     ///
     /// # Errors
     /// Failed insertion or removal.
@@ -224,7 +223,7 @@ impl<'a> Flow<'a> {
                 });
                 let Some((position, orientation)) = room.place(model.radius(body), &mut inlet.places) else {
                     inlet.full += 1;
-                    // While no position is free, at most one grain is accumulated.
+                    // Without a free position, at most one grain is due.
                     inlet.allowed = inlet.allowed.min(inlet.given + amount);
                     break;
                 };

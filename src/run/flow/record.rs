@@ -23,7 +23,7 @@ impl Amount {
 pub struct FlowRecord {
     /// Check interval [s].
     pub interval: f64,
-    /// Grains at the start of the main stage.
+    /// Initial grains of the main stage.
     pub at_start: Amount,
     /// Grains at the end.
     pub at_end: Amount,
@@ -31,15 +31,16 @@ pub struct FlowRecord {
     pub came_in: Amount,
     /// Removed grains, counted on each removal.
     pub went_out: Amount,
-    /// Net energy inflow: kinetic, gravitational (zero at the origin), elastic [J]. Counted as work of walls.
+    /// Net inflow of kinetic, gravitational (zero at the origin) and elastic energy [J], counted as wall
+    /// work.
     pub energy_in: f64,
     /// Mean inflow rate [kg/s].
     pub mean_rate_in: f64,
     /// Mean outflow rate [kg/s].
     pub mean_rate_out: f64,
-    /// Mean inflow rate in the second half [kg/s].
+    /// Mean inflow rate, second half [kg/s].
     pub later_rate_in: f64,
-    /// Mean outflow rate in the second half [kg/s].
+    /// Mean outflow rate, second half [kg/s].
     pub later_rate_out: f64,
     /// Inlets.
     pub inlets: Vec<InletRecord>,

@@ -1,5 +1,4 @@
-//! Final packing: porosity, coordination, fabric, stress, sieve curves; `gradation.csv`, `gradation.svg`,
-//! `radial.csv`, `packing.csv`.
+//! Final packing and its files: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
 mod files;
 mod records;
@@ -20,7 +19,7 @@ use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{self, BoxRegion, ContactRecord};
 
-/// Measures the final grains and writes their files.
+/// Measures the final grains.
 ///
 /// # Errors
 /// I/O errors.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct GrowthRecord {
     /// Group name.
     pub group: String,
-    /// Porosity of the container, with overlaps counted once.
+    /// Container porosity, overlaps counted once.
     pub porosity: f64,
     /// Largest overlap over the effective contact radius.
     pub largest_overlap: f64,
@@ -22,9 +22,9 @@ pub struct CompactionRecord {
     pub kind: String,
     /// Porosity before.
     pub porosity_before: f64,
-    /// Porosity after, in the region cut at a moved plane.
+    /// Porosity after, cut at a moved plane.
     pub porosity_after: f64,
-    /// Force on the moved plane [N]. Always written: checkpoint fields are unnamed.
+    /// Force on the moved plane [N]. Always written: fields are unnamed.
     pub wall_force: Option<f64>,
 }
 
@@ -33,21 +33,21 @@ pub struct CompactionRecord {
 pub struct PackingRecord {
     /// Mean coordination number.
     pub coordination: f64,
-    /// Mean coordination number without rattlers and their contacts.
+    /// Mean coordination number without rattlers.
     pub mechanical_coordination: f64,
     /// Fraction of grains with at most one neighbour.
     pub rattlers: f64,
     /// Number of grains by coordination number.
     pub neighbours: Vec<usize>,
-    /// Fabric: mean of n ⊗ n over grain contacts, xx, yy, zz, xy, yz, zx.
+    /// Fabric n ⊗ n of grain contacts: xx, yy, zz, xy, yz, zx.
     pub fabric: [f64; 6],
     /// Mean normal contact force [N].
     pub mean_contact_force: f64,
     /// Fraction of contacts above the mean force.
     pub strong_contacts: f64,
-    /// Fraction of the total normal force that they bear.
+    /// Fraction of normal force that they bear.
     pub strong_load: f64,
-    /// Mean unbalanced over mean contact force; none without contacts.
+    /// Mean unbalanced over mean contact force.
     pub unbalanced_ratio: Option<f64>,
     /// Measurement boxes.
     pub measures: Vec<MeasureRecord>,
@@ -61,12 +61,12 @@ pub struct PackingRecord {
 /// Fouling (Selig & Waters 1994; Indraratna, Su & Rujikiatkamjorn, Can. Geotech. J. 48, 2011).
 #[derive(Debug, Serialize)]
 pub struct FoulingRecord {
-    /// Fines mass over total grain mass: fouling index, if fines pass the 4.75 mm sieve.
+    /// Fouling index: mass fraction of fines, if they pass the 4.75 mm sieve.
     pub fouling_index: f64,
-    /// Solid volume of fines over other grains: relative ballast fouling ratio.
+    /// Relative ballast fouling ratio: solid volume of fines over other grains.
     pub relative_fouling_ratio: f64,
-    /// Boxes: name, porosity without fines, solid volume of fines over the remaining voids. The void
-    /// contaminant index is 1 + e_f times the latter, e_f the void ratio of fines.
+    /// Name, porosity without fines, solid volume of fines over remaining voids. Void contaminant index: 1 +
+    /// e_f times the latter, e_f the void ratio of fines.
     pub boxes: Vec<(String, f64, f64)>,
 }
 
@@ -85,7 +85,7 @@ pub struct MeasureRecord {
     pub mechanical_coordination: f64,
     /// Fabric: xx, yy, zz, xy, yz, zx.
     pub fabric: [f64; 6],
-    /// Mean stress with voids [Pa]: xx, yy, zz, xy, yz, zx, tension positive.
+    /// Mean stress [Pa]: xx, yy, zz, xy, yz, zx, tension positive.
     pub stress: [f64; 6],
 }
 

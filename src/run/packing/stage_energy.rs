@@ -1,4 +1,4 @@
-//! Energy balance of a packing stage, and of removed grains.
+//! Energy balance of a packing stage.
 
 use crate::failure::Failure;
 use crate::run::validity::{Check, Limits};
@@ -20,9 +20,9 @@ const CHANGE: Limits = Limits { warn: 0.1, fail: Some(0.5) };
 pub struct StageEnergy {
     /// Stage name.
     pub stage: String,
-    /// Elastic contact energy at start and end [J].
+    /// Initial and final elastic contact energy [J].
     pub springs: [f64; 2],
-    /// Final kinetic energy, not transferred to the next stage [J].
+    /// Final kinetic energy, then dropped [J].
     pub kinetic: f64,
     /// Reference energy [J].
     pub turned_over: f64,
@@ -30,7 +30,7 @@ pub struct StageEnergy {
     pub error: f64,
     /// Relative energy error.
     pub relative_error: f64,
-    /// Spurious energy: stored energy beyond initial energy and work, over reference energy.
+    /// Spurious energy over reference energy.
     pub gain: f64,
     /// Grains removed above the level.
     pub removed: usize,
@@ -39,7 +39,7 @@ pub struct StageEnergy {
 }
 
 impl StageEnergy {
-    /// Computes the balance of a stage from initial `model` to `state`; `surface`: rigid solid.
+    /// Computes the balance from initial `model` to `state`; `surface`: rigid solid.
     ///
     /// # Errors
     /// Failed initial contact detection.
@@ -81,7 +81,7 @@ impl StageEnergy {
         })
     }
 
-    /// Checks energy gain and error of all stages; none without stages.
+    /// Checks energy gain and error of all stages.
     pub fn checks(stages: &[StageEnergy]) -> Vec<Check> {
         let worst = |of: fn(&StageEnergy) -> f64| stages.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let gain = worst(|stage| stage.gain).map(|worst| {
@@ -101,8 +101,7 @@ impl StageEnergy {
         gain.into_iter().chain(error).collect()
     }
 
-    /// Checks elastic energy gained between stages; `run`: initial elastic and reference energy of the main
-    /// stage [J].
+    /// Checks elastic energy gained between stages; `run`: initial elastic and reference energy [J].
     pub fn check_changes(stages: &[StageEnergy], run: [f64; 2]) -> Option<Check> {
         let run = StageEnergy {
             stage: "run".into(),
@@ -128,8 +127,8 @@ impl StageEnergy {
         ))
     }
 
-    /// Records removed grains. Warns about the fastest that rises above all initial heights in `before`,
-    /// impossible under gravity alone.
+    /// Records removed grains. Warns about the fastest above all heights in `before`, impossible under
+    /// gravity.
     pub fn remove(
         &mut self,
         model: &dem::Model,

@@ -31,7 +31,7 @@ fn load_of(job: &Job) -> Option<&CyclicLoad> {
     job.grains.as_ref()?.track.load.as_ref()
 }
 
-/// Records a cycle; `broken`: bonds broken in tension and shear so far.
+/// Records a cycle; `broken`: bonds broken in tension, in shear.
 pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
     row.put(cycles::CYCLE, f64::from(c.number));
     row.put(cycles::SETTLEMENT, c.settlement);

@@ -1,4 +1,4 @@
-//! History columns of sleepers, interface, energies, rails, supports, probes, flow.
+//! Recorders of `history.csv`.
 
 use crate::columns::history;
 use crate::model::Observed;

@@ -1,4 +1,4 @@
-//! Output during a run: `history.csv`, `cycles.csv`, frames, settlement curves.
+//! Output during a run.
 
 mod columns;
 mod cycle_file;
@@ -45,12 +45,10 @@ struct Course {
     frame: usize,
     cycles: Option<CycleRecorder>,
     jumper: Option<Jumper>,
-    /// Energy of cycle jumps [J].
     jump_energy: f64,
     /// Energy error before a jump, whose energy follows from the next window [J].
     before_jump: Option<f64>,
     balance: Balance,
-    /// Largest |energy error| [J].
     largest_error: f64,
     watch: EnergyWatch,
     settlement: Vec<Vec<[f64; 2]>>,
@@ -58,7 +56,6 @@ struct Course {
     first_heights: Vec<f64>,
     #[serde(default)]
     loads: Vec<LoadRecord>,
-    /// Largest kinetic energy [J].
     #[serde(default)]
     largest_kinetic: f64,
 }
@@ -100,7 +97,7 @@ impl<'a> Results<'a> {
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
-    /// Resumes output files at a checkpoint and truncates later rows.
+    /// Resumes output and truncates later rows.
     ///
     /// # Errors
     /// Files of another run; I/O errors.
@@ -131,7 +128,7 @@ impl<'a> Results<'a> {
         Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
     }
 
-    /// Saves the state for [`Results::resume`] after flushing rows.
+    /// Saves the state after flushing rows.
     ///
     /// # Errors
     /// I/O errors.
@@ -185,7 +182,7 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    /// Follows load cycles after each window.
+    /// Follows load cycles.
     ///
     /// # Errors
     /// Non-finite values; I/O errors.
@@ -195,7 +192,7 @@ impl<'a> Results<'a> {
         system: &mut S,
         track: &Track<'_>,
     ) -> Result<Option<Cycle>, Failure> {
-        // The error of the window after a jump is energy of the jump.
+        // The error of this window is energy of the jump.
         if let Some(before) = self.course.before_jump.take() {
             self.course.jump_energy += self.energy_error(system) - before;
         }
@@ -221,7 +218,6 @@ impl<'a> Results<'a> {
         Ok(Some(cycle))
     }
 
-    /// [J].
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
@@ -302,7 +298,7 @@ impl<'a> Results<'a> {
         &self.course.watch
     }
 
-    /// Evaluates the specimen and plots its curve.
+    /// Evaluates and plots the specimen.
     ///
     /// # Errors
     /// I/O errors.

@@ -16,7 +16,7 @@ impl Results<'_> {
         self.plot_cycles()
     }
 
-    /// Draws `specimen.svg`: stress over axial and lateral strain.
+    /// Draws `specimen.svg`.
     ///
     /// # Errors
     /// I/O errors.
@@ -40,7 +40,6 @@ impl Results<'_> {
         Ok(plot.write(&self.dir.join("specimen.svg"))?)
     }
 
-    /// `sleeper.svg`.
     fn plot_lowering(&self) -> Result<(), Failure> {
         let lowering = &self.course.settlement;
         if lowering.is_empty() {
@@ -58,7 +57,6 @@ impl Results<'_> {
         Ok(plot.write(&self.dir.join("sleeper.svg"))?)
     }
 
-    /// `settlement.svg`.
     fn plot_cycles(&self) -> Result<(), Failure> {
         let cycles = self.cycles();
         if cycles.is_empty() {

@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 pub struct Deposit {
     /// Grid.
     pub plan: Plan,
-    /// Ground height at cell centres [m], or of the lowest grain.
+    /// Ground height at cell centres, or lowest grain [m].
     pub ground: Vec<f64>,
-    /// Highest grain point above ground [m]; 0 if empty.
+    /// Depth above ground [m]; 0 if empty.
     pub depth: Vec<f64>,
     /// Grain volume over cell area [m].
     pub solid: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct Deposit {
     pub inside: Vec<bool>,
 }
 
-/// Measures the deposit of bodies `slide`; `travel` of bodies [m], shape `[bodies]`.
+/// Measures the deposit of bodies `slide`; `travel` [m], shape `[bodies]`.
 pub fn measure(
     view: GrainsView<'_>,
     part: &GrainsPart,
@@ -41,7 +41,7 @@ pub fn measure(
     }
     let side = (high[0] - low[0]).max(high[1] - low[1]);
     let cell = runout.cell.unwrap_or(2.0 * diameter).max(side / MOST_CELLS as f64);
-    // Cell borders at whole multiples make maps comparable; an empty rim closes the outline.
+    // Whole multiples make maps comparable; an empty rim closes the outline.
     let low = low.map(|x| ((x / cell).floor() - 1.0) * cell);
     let counts = [0, 1].map(|d| ((high[d] - low[d]) / cell).ceil() as usize + 1);
     let plan = Plan { low, cell, counts };
@@ -50,7 +50,7 @@ pub fn measure(
     for (x, r) in spheres() {
         for j in plan.along(1, x.y - r)..=plan.along(1, x.y + r) {
             for i in plan.along(0, x.x - r)..=plan.along(0, x.x + r) {
-                // The highest point over a cell is at its point closest to the sphere axis.
+                // At the cell point closest to the sphere axis.
                 let [cx, cy] = plan.middle(i, j);
                 let beyond = |c: f64, x: f64| ((x - c).abs() - 0.5 * cell).max(0.0);
                 let distance2 = beyond(cx, x.x).powi(2) + beyond(cy, x.y).powi(2);
@@ -92,7 +92,7 @@ impl Deposit {
             .filter(|(i, j)| self.inside[self.plan.index(*i, *j)])
     }
 
-    /// Returns the extent along a direction with cell size [m]; 0 if empty.
+    /// Returns the extent along a direction [m]; 0 if empty.
     pub fn extent(&self, direction: [f64; 2]) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (i, j) in self.cells() {
@@ -103,13 +103,13 @@ impl Deposit {
         if low <= high { high - low + self.plan.cell } else { 0.0 }
     }
 
-    /// Returns closed outlines along cell borders, deposit on the left; inner ones are holes.
+    /// Returns closed outlines, deposit on the left; inner ones are holes.
     pub fn outlines(&self) -> Vec<Vec<[f64; 2]>> {
         let is_in = |i: isize, j: isize| {
             let [nx, ny] = self.plan.counts.map(|n| n as isize);
             i >= 0 && j >= 0 && i < nx && j < ny && self.inside[self.plan.index(i as usize, j as usize)]
         };
-        // Directed cell borders; at diagonal corners the line turns left.
+        // At diagonal corners the line turns left.
         let mut next: BTreeMap<[isize; 2], Vec<[isize; 2]>> = BTreeMap::new();
         for (i, j) in self.cells().map(|(i, j)| (i as isize, j as isize)) {
             let sides = [
@@ -128,7 +128,7 @@ impl Deposit {
         while let Some((&start, _)) = next.first_key_value() {
             let (mut at, mut came, mut line) = (start, None, Vec::new());
             loop {
-                let ways = next.get_mut(&at).expect("sides of a closed line go on");
+                let ways = next.get_mut(&at).expect("sides of a closed line continue");
                 let left = |to: &[isize; 2]| {
                     came.map_or(0, |[x, y]: [isize; 2]| x * (to[1] - at[1]) - y * (to[0] - at[0]))
                 };

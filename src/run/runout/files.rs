@@ -1,4 +1,4 @@
-//! Runout files: `runout.vti` and `runout.png` (depth map), `outline.csv`, `fragments.csv`, `origins.csv`.
+//! Files `runout.vti`, `runout.png`, `outline.csv`, `fragments.csv`, `origins.csv`.
 
 use super::deposit::Deposit;
 use super::records::FragmentRecord;

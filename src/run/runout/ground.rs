@@ -1,4 +1,4 @@
-//! Ground height on a grid, from fixed planes and triangles that are not vertical.
+//! Ground height from fixed planes and triangles.
 
 use crate::model::grains::GrainsPart;
 use crate::run::system::GrainsView;
@@ -43,8 +43,7 @@ impl Plan {
     }
 }
 
-/// Returns ground heights at cell centres [m]; the highest surface counts, so closed terrain bodies are
-/// valid.
+/// Returns ground heights at cell centres [m], of the highest surface.
 pub fn heights(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan) -> Vec<Option<f64>> {
     let cells = (0..plan.counts[1]).flat_map(|j| (0..plan.counts[0]).map(move |i| (i, j)));
     under(view, part, plan, &cells.map(|(i, j)| plan.middle(i, j)).collect::<Vec<_>>())

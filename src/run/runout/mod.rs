@@ -1,11 +1,9 @@
-//! Runout of a slide: front, reach, deposit, fragments, origin of grains.
+//! Runout of a slide.
 //!
-//! The *head* is the initial position of the highest grain; the *toe* is the final front grain, behind which
-//! a given mass fraction lies. H and L are their vertical and horizontal distances. The reach angle atan(H/L)
-//! is Heim's Fahrböschung (Heim, Bergsturz und Menschenleben, 1932; Scheidegger, Rock Mech. 5, 1973); the
-//! travel angle connects the initial and final centres of mass.
-//!
-//! Initial positions are those of the main stage.
+//! *Head*: initial position of the highest grain. *Toe*: final front grain, behind which a given mass
+//! fraction lies. H and L: their vertical and horizontal distances. The reach angle atan(H/L) is Heim's
+//! Fahrböschung (Heim, Bergsturz und Menschenleben, 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle
+//! connects the centres of mass.
 //!
 //! Theory manual: equation (6.39) of `docs/theory/track.md`.
 
@@ -27,7 +25,7 @@ use trackbed_dem::{self as dem, Vec3};
 
 const LISTED: usize = 10;
 
-/// Returns initial body positions [m]. Shape `[bodies]`.
+/// Returns initial body positions in the main stage [m]. Shape `[bodies]`.
 pub fn origins(model: &dem::Model) -> Vec<Vec3> {
     let start = dem::State::new(model);
     (0..model.body_count()).map(|b| start.position(b)).collect()
@@ -38,7 +36,7 @@ fn slide(view: GrainsView<'_>, plan: &RunoutPlan) -> Vec<usize> {
     (0..model.body_count()).filter(|&b| state.present(b) && plan.has(model.part(b))).collect()
 }
 
-/// [m].
+/// Along the slide [m].
 fn along(plan: &RunoutPlan, x: &Vec3) -> f64 {
     x.x * plan.direction[0] + x.y * plan.direction[1]
 }
@@ -61,14 +59,12 @@ fn front(
     at.or(ordered.len().checked_sub(1)).map(|k| ordered[k].1)
 }
 
-/// [m].
 fn centre(view: GrainsView<'_>, bodies: &[usize], place: impl Fn(usize) -> Vec3) -> Vec3 {
     let mass: f64 = bodies.iter().map(|&b| view.model.mass(b)).sum();
     let sum: Vec3 = bodies.iter().map(|&b| place(b) * view.model.mass(b)).sum();
     sum / mass.max(f64::MIN_POSITIVE)
 }
 
-/// [J].
 fn kinetic(view: GrainsView<'_>, bodies: &[usize]) -> f64 {
     let energy = |b: usize| {
         let (v, q) = (view.state.velocity(b), view.state.orientation(view.model, b));
@@ -78,7 +74,7 @@ fn kinetic(view: GrainsView<'_>, bodies: &[usize]) -> f64 {
     bodies.iter().map(|&b| energy(b)).sum()
 }
 
-/// Front, centre of mass, kinetic energy and largest fragment over time.
+/// Front, centre of mass, kinetic energy, largest fragment.
 pub struct Slides;
 
 impl<S: System> Recorder<S> for Slides {
@@ -96,7 +92,7 @@ impl<S: System> Recorder<S> for Slides {
     }
 }
 
-/// Measures the final runout and writes its files.
+/// Measures the final runout.
 ///
 /// # Errors
 /// I/O errors.
@@ -162,7 +158,7 @@ pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Opt
     }))
 }
 
-/// Vertical, horizontal [m].
+/// Vertical, horizontal distance [m].
 fn fall(plan: &RunoutPlan, from: &Vec3, to: &Vec3) -> (f64, f64) {
     (from.z - to.z, along(plan, to) - along(plan, from))
 }

@@ -13,9 +13,9 @@ pub struct RunoutRecord {
     pub mass: f64,
     /// Solid volume [m³].
     pub solid_volume: f64,
-    /// Mass fraction that moved more than its grain diameter.
+    /// Mass fraction moved more than a grain diameter.
     pub moved_share: f64,
-    /// Front coordinate along the slide, ahead of the mass fraction [m].
+    /// Front coordinate along the slide [m].
     pub front: f64,
     /// Advance of the front [m].
     pub advance: f64,

@@ -1,9 +1,8 @@
 //! Stress and strain of a specimen between platens.
 //!
-//! Stress is the mean platen force over the section; in the Brazilian test the tension 2 F/(π D t) at the
-//! disc centre (Carneiro 1943; ISRM 1978). Platen strain is the approach over their distance. Grain strains
-//! are least-squares slopes of displacement over initial position, so platen gaps do not affect Poisson's
-//! ratio. Compression is positive; lateral strain is positive for bulging.
+//! Stress is the mean platen force over the section; in the Brazilian test 2 F/(π D t) at the disc centre
+//! (Carneiro 1943; ISRM 1978). Grain strains are least-squares slopes of displacement over initial position,
+//! so platen gaps do not affect Poisson's ratio. Compression is positive, laterally bulging.
 //!
 //! Theory manual: equation (6.40) of `docs/theory/track.md`.
 
@@ -29,9 +28,9 @@ pub struct Point {
     pub strain: f64,
     /// Stress [Pa].
     pub stress: f64,
-    /// Axial strain of the grains, compression positive.
+    /// Axial grain strain, compression positive.
     pub axial: f64,
-    /// Mean lateral strain of the grains, bulging positive.
+    /// Mean lateral strain, bulging positive.
     pub lateral: f64,
     /// Mean confining pressure [Pa].
     pub confinement: f64,

@@ -16,7 +16,7 @@ pub struct SpecimenRecord {
     pub peak_strain: f64,
     /// Mean confining pressure at peak [Pa].
     pub confinement: f64,
-    /// Secant modulus from grain strain between two peak fractions [Pa].
+    /// Secant modulus from grain strain [Pa].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub modulus: Option<f64>,
     /// Secant modulus from platen strain [Pa].
@@ -31,9 +31,9 @@ pub struct SpecimenRecord {
     pub tension_cracks_at_peak: usize,
     /// Shear cracks up to the peak.
     pub shear_cracks_at_peak: usize,
-    /// Crack initiation: stress at 1 % of the bond breaks before peak, over peak stress.
+    /// Crack initiation: stress at 1 % of pre-peak bond breaks, over peak.
     pub crack_initiation: f64,
-    /// Fraction of tension cracks within 30° of the axis; one half if random.
+    /// Tension cracks within 30° of the axis; one half if random.
     pub axial_cracks: f64,
 }
 
@@ -84,7 +84,6 @@ fn axial(plan: &SpecimenPlan, breaks: &[Break], view: GrainsView<'_>) -> f64 {
     along / all.max(1.0)
 }
 
-/// None for fewer than three points or a vertical line.
 fn slope(points: &[&Point], x: fn(&Point) -> f64, y: fn(&Point) -> f64) -> Option<f64> {
     let count = points.len() as f64;
     let mean = |of: fn(&Point) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;

@@ -1,7 +1,7 @@
-//! Seating of sleepers during compaction, and pouring of grains around them.
+//! Seating of sleepers, and pouring of grains around them.
 //!
-//! A sleeper placed on loose grains rests on the highest ones and then settles by a fraction of their size.
-//! Pressing it with rigid ground before the main stage avoids this.
+//! On loose grains a sleeper settles by a fraction of their size. Pressing it with rigid ground before the
+//! main stage avoids this.
 
 use super::stage::Settled;
 use crate::failure::Failure;
@@ -24,7 +24,7 @@ pub fn set_down(bed: &Bed<'_>, grains: &GrainsPart, surface: Option<&SolidSurfac
     plan.row.centres.iter().map(place).collect()
 }
 
-/// Presses bodies from `first` on with F sin²(πft) each.
+/// Presses bodies from `first` on with F sin²(πft).
 ///
 /// # Errors
 /// As [`Bed::step`].
@@ -48,7 +48,7 @@ pub fn press(
     Ok(())
 }
 
-/// Returns queued grains of `parts` in `count` equal layers, lowest first.
+/// Returns queued grains in `count` equal layers, lowest first.
 pub fn layers(bodies: &[BodyInput], parts: &[u32], count: u32) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> =
         (0..bodies.len()).filter(|&b| bodies[b].absent && parts.contains(&bodies[b].part)).collect();
@@ -63,7 +63,7 @@ pub fn layers(bodies: &[BodyInput], parts: &[u32], count: u32) -> Vec<Vec<usize>
 pub fn let_in(grains: &GrainsPart, settled: &mut Settled, layer: &[usize]) {
     let reach = |b: &BodyInput| grains.groups.reach(b);
     let there = settled.bodies.iter().filter(|b| !b.absent).map(|b| b.position.z + reach(b));
-    // Seated sleepers are tilted: use the highest corner.
+    // Seated sleepers are tilted.
     let half = grains.track.sleeper.as_ref().map_or([0.0; 3], |s| s.row.half);
     let top = there.chain(settled.sleepers.iter().map(|s| highest_corner(s, half)));
     let top = top.fold(f64::NEG_INFINITY, f64::max);
@@ -77,13 +77,12 @@ pub fn let_in(grains: &GrainsPart, settled: &mut Settled, layer: &[usize]) {
     }
 }
 
-/// [m].
 fn highest_corner(block: &BodyInput, half: [f64; 3]) -> f64 {
     let up = block.orientation.inverse() * Vec3::z();
     block.position.z + up.abs().dot(&Vec3::from(half))
 }
 
-/// Removes poured grains above the level; `bed`: final model, started from `before`.
+/// Removes grains above the level; `bed`: final model from `before`.
 pub fn cut(settled: &mut Settled, bed: &Bed<'_>, before: &[BodyInput], parts: &[u32], level: Option<f64>) {
     let above = |b: &BodyInput| level.is_some_and(|level| b.position.z > level);
     let goes = |b: &BodyInput| !b.absent && parts.contains(&b.part) && above(b);
@@ -106,7 +105,7 @@ pub struct Poured<'b> {
     pub rested: bool,
 }
 
-/// Lets grains settle layer by layer, in models from `new`.
+/// Pours layer by layer, in models from `new`.
 ///
 /// # Errors
 /// As [`Bed::step`].

@@ -13,16 +13,16 @@ pub(super) struct Cadence {
     last: Option<(u64, u64)>,
     /// Windows per history row.
     pub every: u64,
-    /// Windows per energy check, independent of history rows.
+    /// Windows per energy check.
     pub checked: u64,
     /// Windows after the last cycle.
     pub tail: u64,
-    /// Whether cycles are jumped over, so that steps do not measure progress.
+    /// Whether cycles are jumped over; steps then measure no progress.
     pub jumps: bool,
 }
 
 impl Cadence {
-    /// Creates the intervals for `windows` of length `window` [s]; `jumps`: cycles of `load` are jumped over.
+    /// Creates intervals for `windows` of length `window` [s]; `jumps`: over cycles of `load`.
     pub fn new(job: &Job, window: f64, windows: u64, load: Option<&CyclicLoad>, jumps: bool) -> Cadence {
         let every = |interval: f64| ((interval / window).round() as u64).max(1);
         Cadence {
@@ -39,9 +39,9 @@ impl Cadence {
         }
     }
 
-    /// Returns the frame after `next`, if due at window `reached` of `whole`.
+    /// Returns the frame after `next`, if due at `reached` of `whole`.
     pub fn frame_after(&self, next: u64, reached: u64, whole: u64) -> Option<u64> {
-        // First-part frames are counted before the last part.
+        // The first part is counted first.
         let (begin, last) = self.last.unwrap_or((whole, 0));
         let first = if begin > 0 { self.frames } else { 0 };
         let (count, from, done, of) = if next > first && last > 0 {

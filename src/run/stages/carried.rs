@@ -1,7 +1,6 @@
 //! Bed imported from another run: `trackbed run NEXT --from DIR --bed`.
 //!
-//! Both scenes have the same `[[grains]]`. Positions, velocities, contact and bond history between grains are
-//! kept. Walls, sleepers, solid and loads are new, with new contacts.
+//! Grains keep positions, velocities, contact and bond history. Walls, sleepers, solid and loads are new.
 
 use super::stage::Settled;
 use crate::failure::Failure;
@@ -14,14 +13,13 @@ use trackbed_fem as fem;
 
 /// Imported bed.
 pub struct Carried {
-    /// If different from the scene.
     begun: Option<Vec<BodyInput>>,
     state: dem::State,
     count: usize,
 }
 
 impl Carried {
-    /// Reads the final state of a run, `coupled` or DEM only.
+    /// Reads a final state, `coupled` or DEM only.
     ///
     /// # Errors
     /// State of another program.
@@ -49,7 +47,7 @@ impl Carried {
         state.remember(model, &self.state, self.count);
     }
 
-    /// Sets the bed in the initial state of a model.
+    /// Sets the bed in an initial state.
     ///
     /// # Errors
     /// Different grains.

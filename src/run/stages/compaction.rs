@@ -1,4 +1,4 @@
-//! Compaction of a deposited bed: vibration, tamping, seating, squeezing.
+//! Compaction of a deposited bed.
 
 use super::bedding::{self, Poured};
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
@@ -23,14 +23,13 @@ struct Pressed<'a> {
     steps: u64,
     rested: bool,
     region: BoxRegion,
-    /// [N].
     wall_force: Option<f64>,
 }
 
 /// Activity shown in progress and errors.
 pub const COMPACTED: &str = "being compacted";
 
-/// Returns the longest simulated time of a press with its rests [s].
+/// Returns the longest simulated time of a press with rests [s].
 pub fn longest(plan: &CompactionPlan) -> f64 {
     let rest = plan.rest.max_time;
     match &plan.press {
@@ -195,7 +194,7 @@ fn tamp<'b>(
         if k > 0 {
             settled.energy.push(done.bed.energy(name)?);
         }
-        // One model with platen per position, and one without for the rest.
+        // Separate models with and without platen.
         let mut all = done.bed.at_rest(bodies);
         let z = top_below(&done.bed.model, &done.bed.state, *place, half, surface) + half[2];
         all.push(BodyInput { position: Vec3::new(place[0], place[1], z), ..plate.clone() });
@@ -221,7 +220,7 @@ fn shake(
     let at = |t: f64| if t < end { libm::sin(TAU * frequency * t) } else { 0.0 };
     while bed.state.time - begun < end {
         let (t, dt) = (bed.state.time - begun, bed.dt());
-        // Velocity that moves the plane exactly to its next position.
+        // Moves the plane exactly.
         let velocity = amplitude * ((at(t + dt) - at(t)) / dt);
         planes.iter().for_each(|&p| bed.state.set_plane_velocity(p, velocity));
         bed.step(&[])?;

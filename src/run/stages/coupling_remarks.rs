@@ -20,8 +20,7 @@ pub fn unconverged(passes: &Passes) -> Option<String> {
 /// Late dissipation over reference energy.
 const LATE: f64 = 0.05;
 
-/// Warns about surface dashpots that dissipate much less than their law, because the solid moves differently
-/// from the prediction.
+/// Warns about dashpots that dissipate less than their law, because the solid deviates from its prediction.
 pub fn late(spent: &Spent) -> Option<String> {
     let law = spent.dissipated() - spent.dashpot_lag;
     let part = -spent.dashpot_lag / spent.work().abs().max(law);

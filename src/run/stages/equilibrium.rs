@@ -1,4 +1,4 @@
-//! Coupling of grains and solid, in equilibrium under weight and bed.
+//! Coupling of grains and solid in equilibrium.
 
 use super::carried::Carried;
 use super::stage::{CoupledRun, RunState, Stage};
@@ -23,7 +23,7 @@ use trackbed_coupling::track::CyclicLoad;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
-/// Static equilibrium of the solid with grains at rest.
+/// Static equilibrium with grains at rest.
 pub struct Equilibrium;
 
 impl Stage for Equilibrium {
@@ -112,7 +112,7 @@ fn couple<'b>(
             }
             let reference = state.u.clone();
             let start = coupling::step::State::new(state, resting);
-            // Only the lagged scheme continues with the previous load.
+            // Only the lagged scheme keeps the previous load.
             let lagged = plan.scheme == Scheme::Lagged;
             (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
         }
@@ -227,7 +227,7 @@ fn equilibrium(
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;
     }
-    // Sleepers are not yet on the grains: only the ground is solved.
+    // Sleepers do not yet rest on the grains.
     let ground = solid.ground().map_err(|e| Failure::Other(e.to_string()))?;
     let standing = ground.as_ref().unwrap_or(model);
     let (load, dead_load) = (&load[..standing.dof_count()], &dead_load[..standing.dof_count()]);

@@ -7,7 +7,7 @@ use crate::run::checkpoint::Moment;
 use crate::run::context::Run;
 use crate::run::packing::StageEnergy;
 
-/// End of packing: saves the bed with wall positions.
+/// Saves the bed with wall positions.
 pub struct FinishedBed;
 
 impl Stage for FinishedBed {

@@ -14,7 +14,7 @@ use trackbed_dem::BodyInput;
 /// Drop gap over the largest grain radius.
 const GAP: f64 = 1e-3;
 
-/// Drops all layers but the last, which is placed above the bed for the settling stage.
+/// Drops all layers but the last, which is placed above the bed.
 ///
 /// # Errors
 /// Numerical failures, interrupts.

@@ -19,7 +19,7 @@ use crate::run::validity::{grains_below_walls, load_near_mode, lost_bodies, smal
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 
-/// Main loop, with load cycles, inlets, outlets and final push.
+/// Main loop with loads, flow and push.
 pub struct MainLoop;
 
 impl Stage for MainLoop {

@@ -1,4 +1,4 @@
-//! Stages of a run in order, listed in [`STAGES`] for `run`, `check` and `explain`.
+//! Stages of a run in order: [`STAGES`].
 
 mod bedding;
 mod cadence;
@@ -42,7 +42,7 @@ static STAGES: [&dyn Stage; 9] = [
 /// Builds the grain models before the first step.
 ///
 /// # Errors
-/// Input errors of the main loop, or too many steps.
+/// Main-loop input errors, or too many steps.
 pub fn preview(document: &Document, job: &Job, grains: &GrainsPart) -> Result<Preview, SceneError> {
     let preview = grains::preview(document, grains, job.ground().as_ref())?;
     for stage in of(job) {

@@ -8,8 +8,7 @@ use crate::run::bed;
 use crate::run::context::Run;
 use trackbed_dem as dem;
 
-/// Places sleepers just above the highest grain, unless seated by compaction; meshed sleepers only get base
-/// heights.
+/// Places unseated sleepers on the highest grain; meshed sleepers only get base heights.
 pub struct SetDown;
 
 impl Stage for SetDown {

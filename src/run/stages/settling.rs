@@ -20,7 +20,7 @@ const LOOK: f64 = 1e-3;
 /// Acceleration time before low speed means rest [s].
 const START_OF_SETTLING: f64 = 0.05;
 
-/// Deposition, in layers or at once, and removal above the level.
+/// Deposition, and removal above the level.
 pub struct Settling;
 
 impl Stage for Settling {
@@ -88,7 +88,7 @@ fn settle(
         if bed::passed(&state, LOOK) {
             work.download(&model, &mut state).map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
             let speed = bed::rms_speed(&model, &state);
-            // Free fall must start before low speed means rest.
+            // Free fall must have started.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
             going = !settled && state.time < plan.max_time;
             progress.message(format!("rms {speed:.2e} m/s"));

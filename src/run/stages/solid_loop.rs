@@ -29,7 +29,6 @@ pub fn solid_alone(run: &Run<'_>, solid: &SolidPart, state: &mut RunState<'_>) -
     outcome
 }
 
-/// Advances to the end and writes the final state.
 fn march(
     run: &Run<'_>,
     solid: &SolidPart,
@@ -40,7 +39,7 @@ fn march(
     summary.model.solid_step = run.job.solid_step;
     run.prepare()?;
     let outcome = time_loop::advance(run, system, None, resumed, None, summary);
-    // Without equilibrium, the last converged state is written.
+    // The last converged state.
     match &outcome {
         Ok(()) => {}
         Err(Failure::Numerical(_)) if system.keeps_its_state() => {}

@@ -2,7 +2,7 @@
 
 use crate::model::Job;
 
-/// Warns about loads and supports that act only between solid steps or history rows.
+/// Warns about loads that act only between solid steps or history rows.
 pub fn missed(job: &Job) -> Vec<String> {
     let (Some(solid), Some(step)) = (&job.solid, job.solid_step) else { return Vec::new() };
     let loads = solid.loads.iter().enumerate().map(|(i, l)| (format!("solid.load.{i}"), &l.function));

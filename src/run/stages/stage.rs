@@ -40,7 +40,7 @@ pub enum GrainTime {
 /// Formats the DEM steps in a time [s].
 pub type Steps<'a> = &'a dyn Fn(f64) -> String;
 
-/// Stage of a run, also reported by `check` and `explain`.
+/// Stage, also reported by `check` and `explain`.
 pub trait Stage: Sync {
     /// User-visible name; none for the end of the previous stage.
     fn name(&self) -> Option<&'static str>;
@@ -123,16 +123,14 @@ impl Settled {
     }
 }
 
-/// Checkpoint header within packing.
 #[derive(Deserialize)]
 struct Packing {
     done: Packed,
-    /// Grains to deposit.
     bodies: Vec<BodyInput>,
     bed: Settled,
 }
 
-/// Returns progress of the run in `dir`: completed packing stages, main-loop time [s].
+/// Returns completed packing stages and main-loop time [s] of the run in `dir`.
 pub fn reached(dir: &Path, job: &Job) -> (Vec<StageRecord>, Option<f64>) {
     let Some(mut loaded) = checkpoint::latest(dir) else { return Default::default() };
     let time = loaded.moment.time;
@@ -163,7 +161,7 @@ pub struct GrainsState {
 }
 
 impl GrainsState {
-    /// Returns the initial state of a model with these grains first.
+    /// Returns the initial state of a model.
     ///
     /// # Errors
     /// Imported bed of other grains.
@@ -227,7 +225,7 @@ impl RunState<'_> {
         RunState { loaded, carried: None, grains: None, coupled: None, summary }
     }
 
-    /// Loads the grains of the scene or checkpoint.
+    /// Loads the grains.
     ///
     /// # Errors
     /// Checkpoint with other content.
@@ -238,7 +236,7 @@ impl RunState<'_> {
         let mut grains =
             GrainsState { part, done: Packed::Nothing, bed, ground, bodies, bases, carried: None };
         if let Some(mut carried) = self.carried.take().filter(|_| self.loaded.is_none()) {
-            // Bonds refer to the initial positions; current positions follow with the state.
+            // Bonds refer to initial positions; current ones follow with the state.
             let bodies = carried.bodies(&grains.part);
             match is_packed(job) {
                 true => {
@@ -250,7 +248,7 @@ impl RunState<'_> {
             }
             grains.carried = Some(carried);
         } else if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
-            // The initial bed of the earlier run; its state follows.
+            // Initial bed; its state follows.
             match loaded.take::<Option<Settled>>()? {
                 Some(bed) => (grains.bed, grains.done) = (bed, Packed::Finished),
                 None => grains.bodies.clone_from(&grains.part.groups.bodies),
@@ -275,7 +273,7 @@ impl RunState<'_> {
         Ok(())
     }
 
-    /// Builds the main-loop grain model and fills the summary.
+    /// Builds the main-loop grain model.
     ///
     /// # Errors
     /// Input errors.

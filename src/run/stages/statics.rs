@@ -1,4 +1,4 @@
-//! Static solve of a solid with reactions and tables.
+//! Static solve of a solid.
 
 use super::stage::{RunState, Stage, Steps};
 use crate::columns::{gauss, nodes};
@@ -40,7 +40,7 @@ impl Stage for Statics {
     }
 }
 
-/// Solves the static problem and writes results into `dir`, created by `prepare` after success.
+/// `prepare` creates `dir` after success.
 ///
 /// # Errors
 /// Insufficient constraints, or an invalid result.
@@ -134,8 +134,7 @@ const GAUSS: [Field<GaussPoint>; 11] = [
     (gauss::EQUIVALENT_PLASTIC_STRAIN, |p| p.kappa),
 ];
 
-/// Writes `nodes.csv` (displacements, reactions) and `gauss.csv` (stresses, equivalent plastic strain of
-/// plastic solids).
+/// Writes `nodes.csv` (displacements, reactions) and `gauss.csv` (stresses, plastic strain).
 ///
 /// # Errors
 /// Non-finite values; I/O errors.

@@ -55,7 +55,7 @@ impl Stage for StrengthReduction {
     }
 }
 
-/// Brackets the factor of safety; writes `safety.csv` and the state at the largest stable factor.
+/// Writes `safety.csv` and the state at the largest stable factor.
 ///
 /// # Errors
 /// No stable, or no unstable factor.
@@ -76,7 +76,7 @@ fn bracket(
         strength_reduction::factor_of_safety(model, &state, &load, plan).map_err(|e| part.failure(&e))?;
     progress.finish(&format!("factor of safety {:.4} to {:.4}", found.converged, found.failed));
 
-    // The displacements at the limit show the mechanism.
+    // Its displacements show the mechanism.
     let (weaker, standing) = strength_reduction::at_factor(model, &state, &load, plan, found.converged)
         .map_err(|e| part.failure(&e))?;
     stage.prepare()?;

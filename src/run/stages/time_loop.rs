@@ -36,13 +36,11 @@ pub struct Start {
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Place {
-    /// Completed windows.
     done: u64,
-    /// Next frame, without the initial one.
+    /// Without the initial frame.
     next_frame: u64,
-    /// Wall time [s].
     seconds: f64,
-    /// Total windows, fewer with cycle jumps.
+    /// Fewer with cycle jumps.
     windows: u64,
 }
 
@@ -58,7 +56,7 @@ struct TimeLoop<'a> {
     progress: Progress,
 }
 
-/// Runs the main loop of a scene with grains.
+/// Runs the main loop with grains.
 ///
 /// # Errors
 /// As [`advance`].
@@ -102,8 +100,7 @@ pub fn with_grains<S: System>(
     Ok(())
 }
 
-/// Advances a system to the end with output, from checkpoint `resumed` if any. `settled`: initial bed, for
-/// checkpoints.
+/// Advances a system to the end, from checkpoint `resumed` if any. `settled`: initial bed, for checkpoints.
 ///
 /// # Errors
 /// Numerical failures, interrupts, I/O errors.
@@ -170,7 +167,6 @@ impl<'a> TimeLoop<'a> {
         Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
     }
 
-    /// Advances one window and writes its output.
     fn window<S: System>(&mut self, system: &mut S) -> Result<(), Failure> {
         let (k, track) = (self.place.done + 1, &mut self.track);
         let time = k as f64 * self.cadence.window;
@@ -219,7 +215,6 @@ impl<'a> TimeLoop<'a> {
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }
 
-    /// Calls the observer.
     fn show<S: System>(&self, system: &S) -> Result<(), Failure> {
         let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
         let Place { done, windows, .. } = self.place;
@@ -272,7 +267,6 @@ impl<'a> TimeLoop<'a> {
         )
     }
 
-    /// Saves the final state for `--from`.
     fn keep_end<S: System>(&self, system: &S) -> Result<(), Failure> {
         if self.grains.is_none() || !self.run.job.output.state {
             return Ok(());
@@ -285,9 +279,9 @@ impl<'a> TimeLoop<'a> {
         })
     }
 
-    /// Results of the loop; `failed`: a step had no solution.
+    /// `failed`: a step had no solution.
     fn finish<S: System>(mut self, system: &S, failed: bool, summary: &mut Summary) -> Result<(), Failure> {
-        // Without equilibrium, the last converged state is shown.
+        // The last converged state.
         if failed
             && system.keeps_its_state()
             && let Some(time) = system.solid().map(|s| s.state.time)
@@ -345,7 +339,7 @@ impl<'a> TimeLoop<'a> {
     }
 }
 
-/// Progress and total: cycles if some are jumped over, else windows.
+/// Cycles if some are jumped over, else windows.
 fn share(cadence: &Cadence, recorder: &Results<'_>, place: &Place) -> (u64, u64) {
     match recorder.progress() {
         Some((number, total)) if cadence.jumps => (u64::from(number), u64::from(total)),
@@ -369,7 +363,7 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
     }
 }
 
-/// Validity checks during the run: cyclic stiffness, kinetic energy with mass scaling, bond rotation.
+/// Cyclic stiffness, kinetic energy with mass scaling, bond rotation.
 fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Results<'_>) -> Vec<Check> {
     let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
     let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
@@ -397,7 +391,7 @@ fn settlement(
     let slowing =
         (half > 0).then(|| mean(&increments[increments.len() - half..]) / mean(&increments[..half]));
     let last: Vec<f64> = cycles[cycles.len().saturating_sub(10)..].iter().map(|c| c.bed_stiffness).collect();
-    // Cycles that never span both loads give no stiffness.
+    // Cycles that never span both loads.
     let between = grains.and_then(|g| g.track.after.between).filter(|_| last.iter().any(|k| *k > 0.0));
     let bed_stiffness = between.map(|between| BedStiffness {
         between,
@@ -410,7 +404,6 @@ fn settlement(
     Some(SettlementRecord { seating, per_cycle, increments, slowing, fits, bed_stiffness, jump })
 }
 
-/// Progress text after window `k` at `time` [s].
 fn details<S: System>(system: &S, time: f64, k: u64) -> String {
     let (grain_steps, solid_steps) = system.steps_done(k);
     let mut parts = vec![format!("{time:.4e} s")];

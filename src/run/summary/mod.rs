@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use trackbed_coupling::track::extremes::TrackRecord;
 use trackbed_coupling::track::push::PushSummary;
 
-/// Content of `summary.json`, with flattened parts in this order.
+/// Content of `summary.json`, in this order.
 #[derive(Debug, Default, Serialize)]
 pub struct Summary {
     /// Results directory.
@@ -40,7 +40,7 @@ pub struct Summary {
     /// Energy balance of the main stage.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergyRecord>,
-    /// Momentum balance of the grains in the main stage.
+    /// Momentum balance of the grains.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumRecord>,
     /// Bonds between grains.
@@ -76,7 +76,7 @@ pub struct RunRecord {
     pub title: String,
     /// Program version.
     pub version: String,
-    /// 64-bit FNV-1a hash of scene, overrides and files, hexadecimal.
+    /// 64-bit FNV-1a hash of scene, overrides, files.
     pub scene_hash: String,
     /// Command-line overrides.
     pub overrides: Vec<String>,
@@ -84,7 +84,7 @@ pub struct RunRecord {
     pub threads: usize,
     /// Peak resident memory [bytes], if available.
     pub peak_memory: Option<u64>,
-    /// CPU time of all threads since the last start [s], if available.
+    /// CPU time of all threads since the last start [s].
     pub cpu_seconds: Option<f64>,
 }
 
@@ -162,7 +162,7 @@ impl Summary {
         Ok(())
     }
 
-    /// Writes `log.txt` in `dir`: report, status, sources.
+    /// Writes `log.txt` in `dir`.
     ///
     /// # Errors
     /// I/O errors.
@@ -177,7 +177,7 @@ impl Summary {
     }
 }
 
-/// Returns the peak resident memory [bytes], according to the system.
+/// Returns the peak resident memory [bytes].
 pub fn peak_memory() -> Option<u64> {
     crate::system::peak_memory()
 }

@@ -54,7 +54,7 @@ pub struct ModelRecord {
     pub reduction: Option<trackbed_fem::reduction::Estimate>,
     /// Predicted memory of the solid [bytes].
     pub predicted_memory: Option<u64>,
-    /// Initial mean coordination number of the main stage.
+    /// Initial mean coordination number.
     pub coordination: Option<f64>,
 }
 
@@ -71,9 +71,10 @@ pub struct EnergyRecord {
     pub error: f64,
     /// Load work [J].
     pub work: f64,
-    /// Reference energy: larger of Σ|work| + Σ|dissipation| and Σ|Δ stored energy| [J].
+    /// Reference energy [J]: the larger of Σ|work| + Σ|dissipation| and Σ|Δ stored energy|.
     pub turned_over: f64,
-    /// |error| over largest reference energy, or a floor: a thousandth of elastic and kinetic plus 1e-9 of gravitational energy.
+    /// Relative energy error: |error| over largest reference energy, at least a thousandth of elastic and
+    /// kinetic plus 1e-9 of gravitational energy.
     pub relative_error: f64,
     /// Largest |error| at any history row [J].
     pub largest_error: f64,
@@ -86,7 +87,7 @@ pub struct EnergyRecord {
 pub struct MomentumRecord {
     /// Largest linear momentum error over Σ|impulse|.
     pub linear: f64,
-    /// Largest angular momentum error about the origin over Σ|angular impulse|.
+    /// Largest angular momentum error over Σ|angular impulse|.
     pub angular: f64,
 }
 
@@ -116,9 +117,9 @@ pub struct BondSummary {
 /// Breakage of bonded grains by sieve curves.
 #[derive(Debug, Serialize)]
 pub struct BreakageRecord {
-    /// Marsal's index: decrease retained on sieves, as mass fraction.
+    /// Marsal's index.
     pub marsal: f64,
-    /// Ballast breakage index (Indraratna, Lackenby & Christie), if defined.
+    /// Ballast breakage index (Indraratna, Lackenby & Christie).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ballast_index: Option<f64>,
     /// Sieves [m].
@@ -132,7 +133,7 @@ pub struct BreakageRecord {
 /// Interface record.
 #[derive(Debug, Serialize)]
 pub struct CouplingRecord {
-    /// Largest relative force and moment errors of load transfer.
+    /// Largest relative load transfer errors.
     pub transfer: TransferAudit,
     /// Coupling scheme.
     pub scheme: Scheme,
@@ -150,7 +151,7 @@ pub struct CouplingRecord {
     pub classes: Vec<ContactClass>,
     /// Windows and repetitions.
     pub passes: Passes,
-    /// Interface work on grains plus on the solid [J], ideally zero.
+    /// Interface work on grains plus solid [J], ideally zero.
     pub interface_work_error: f64,
     /// Load transfer method.
     pub transfer_kind: String,
@@ -163,7 +164,7 @@ pub struct StaticsRecord {
     pub load: [f64; 3],
     /// Sum of all reactions [N].
     pub reaction: [f64; 3],
-    /// |Σ load + Σ reaction| over the sum of absolute values.
+    /// |Σ load + Σ reaction| over the sum of sizes.
     pub equilibrium_error: f64,
     /// Largest displacement [m] and node number.
     pub largest_displacement: (f64, u32),
@@ -292,7 +293,7 @@ pub struct SettlementRecord {
     pub per_cycle: Vec<f64>,
     /// Settlement increment per cycle [m].
     pub increments: Vec<f64>,
-    /// Mean increment of the second half of cycles over the first half.
+    /// Mean increment, second over first half of cycles.
     pub slowing: Option<f64>,
     /// Settlement laws fitted from cycle ten.
     pub fits: Vec<Fit>,
@@ -311,7 +312,7 @@ pub struct BedStiffness {
     pub between: [f64; 2],
     /// Last cycle [N/m].
     pub last: f64,
-    /// Mean of the last ten cycles [N/m].
+    /// Mean of ten cycles [N/m].
     pub mean_of_last_ten: f64,
 }
 
@@ -320,21 +321,21 @@ pub struct BedStiffness {
 pub struct LoadRecord {
     /// Structure name.
     pub name: String,
-    /// Largest horizontal load at any history row [N], and its time [s].
+    /// Largest horizontal load [N], and time [s].
     pub largest: f64,
     pub time: f64,
     /// Mean horizontal load vector [N].
     pub mean: [f64; 2],
-    /// Largest load per sector, towards the axis [N].
+    /// Largest load per sector [N].
     pub sectors: Vec<f64>,
     /// Number of rows.
     pub rows: u64,
-    /// Motion of a moving structure. Always written: checkpoint fields are unnamed.
+    /// Motion, if it moves. Always written: fields are unnamed.
     #[serde(default)]
     pub motion: Option<MotionRecord>,
 }
 
-/// Horizontal motion of a structure at history rows.
+/// Horizontal motion at history rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct MotionRecord {
     /// Largest displacement [m].

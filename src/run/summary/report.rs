@@ -231,7 +231,6 @@ impl Summary {
 }
 
 impl CouplingRecord {
-    /// Stability numbers of coupling windows.
     fn stability_lines(&self) -> Vec<String> {
         let (s, n) = (&self.stability, &self.interface);
         let mut lines = vec![format!("  stability: W = {:.2}, D = {:.2}", s.stiffness, s.damping)];

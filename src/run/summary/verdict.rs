@@ -1,4 +1,4 @@
-//! Balance checks of a run, with limits for warning and failure.
+//! Balance checks of a run.
 
 use super::Summary;
 use crate::failure::Failure;
@@ -6,16 +6,16 @@ use crate::run::energy_watch::ENERGY;
 use crate::run::validity::{self, Outcome};
 use serde::Serialize;
 
-/// Static imbalance over the sum of absolute forces: warning, failure.
+/// Static imbalance: warning, failure.
 const EQUILIBRIUM: (f64, f64) = (1e-3, 0.05);
 
-/// Momentum is conserved to rounding.
+/// Conserved to rounding.
 const MOMENTUM: f64 = 1e-6;
 
-/// Interface force and moment are conserved to rounding.
+/// Conserved to rounding.
 const TRANSFER: f64 = 1e-8;
 
-/// Negative dissipation over reference energy that is warned about.
+/// Negative dissipation over reference energy.
 const NEGATIVE: f64 = 0.01;
 
 /// Check.
@@ -61,7 +61,7 @@ impl Verdict {
     pub fn of(summary: &Summary) -> Verdict {
         let mut judged = Vec::new();
         if let Some(e) = &summary.energy {
-            // The energy check during the run stops it at its row.
+            // The energy check stops the run itself.
             let what = "largest energy error over reference energy";
             judged.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
             for (name, loss) in e.spent.losses() {

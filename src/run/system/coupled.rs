@@ -28,13 +28,12 @@ pub struct Meshed<'a> {
 }
 
 impl Meshed<'_> {
-    /// Adds seat forces at time `t` [s] to `load`, shape `[3·nodes]`.
     fn add_load(&self, t: f64, load: &mut [f64]) {
         let Some(cycles) = self.load else { return };
         (0..self.bodies.count()).for_each(|k| self.bodies.add_load(k, cycles.on(k, t), load));
     }
 
-    /// Work of seat forces at time `t` [s] for displacements `u` [J].
+    /// Work of seat forces at time `t` [J].
     fn work_at(&self, t: f64, u: &[f64]) -> f64 {
         let on = |k: usize| self.load.map_or(0.0, |l| l.on(k, t));
         (0..self.bodies.count()).map(|k| -on(k) * self.bodies.rise_of_seats(k, u)).sum()
@@ -49,11 +48,11 @@ pub struct CoupledSystem<'a> {
     pub state: coupling::step::State,
     /// Scratch memory and factors.
     pub work: coupling::step::Work<Steps>,
-    /// Whether grains on a device must be uploaded.
+    /// Whether grains must be uploaded to a device.
     pub changed: bool,
-    /// Length of the last window division [s], the period of contact impulses.
+    /// Last window division [s], the period of contact impulses.
     pub last_window: f64,
-    /// Whether windows may be divided for interface stability.
+    /// Whether windows may be divided.
     pub automatic: bool,
     /// Loads on the solid.
     pub loads: &'a [crate::model::solid::NodalLoad],
@@ -85,7 +84,6 @@ impl CoupledSystem<'_> {
         Ok(())
     }
 
-    /// Saves states, solver history and seat load work [J].
     fn put(
         &self,
         memory: Option<fem::nonlinear::Memory>,
@@ -136,7 +134,7 @@ impl System for CoupledSystem<'_> {
         if std::mem::take(&mut self.changed) && self.work.grains.elsewhere() {
             self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
         }
-        // A new division applies from the next window.
+        // Applies from the next window.
         self.last_window = self.model.window();
         for _ in 0..self.model.division {
             self.part_of_window(applied)?;

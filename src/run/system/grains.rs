@@ -18,12 +18,10 @@ pub struct GrainsSystem {
     pub model: dem::Model,
     /// State.
     pub state: dem::State,
-    /// Step executor.
     work: Steps,
-    /// Whether a device state must be uploaded.
+    /// Whether an upload is due.
     changed: bool,
     applied: Vec<dem::AppliedForce>,
-    /// Window length [s].
     window: f64,
 }
 
@@ -31,7 +29,7 @@ impl GrainsSystem {
     /// Creates the initial system; `interval` of the history [s].
     ///
     /// # Errors
-    /// Initial overlaps too large, or unsupported by the device.
+    /// Initial overlaps too large, or unsupported device.
     pub fn new(
         model: dem::Model,
         mut state: dem::State,
@@ -45,7 +43,7 @@ impl GrainsSystem {
         GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
-    /// Restores a checkpoint; `interval` as in [`GrainsSystem::new`].
+    /// Restores a checkpoint.
     ///
     /// # Errors
     /// Unsuitable checkpoint or device.
@@ -100,8 +98,8 @@ impl GrainsSystem {
     }
 }
 
-/// Window length [s]: one step if constant, else 1, 1.25, 2, 2.5 or 5 times a power of ten, limited so that
-/// few longer steps fit. Round times are multiples, and windows depend on the history only for close rows.
+/// One step if constant, else 1, 1.25, 2, 2.5 or 5 times a power of ten [s], limited so that few longer steps
+/// fit. Windows depend on the history only for close rows.
 fn window(model: &dem::Model, interval: f64) -> f64 {
     match model.measured() {
         None => model.dt(),
@@ -111,12 +109,12 @@ fn window(model: &dem::Model, interval: f64) -> f64 {
 
 const STEPS: f64 = 64.0;
 
-/// Longest round window [s] that approximately divides the history interval [s]; for close rows, a multiple
-/// of the first step.
+/// Longest round window [s] that nearly divides the history interval; for close rows, a multiple of the first
+/// step.
 fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     let decade = libm::floor(libm::log10(longest)) as i32;
     let round = [0, -1].into_iter().flat_map(|less| {
-        // Division by a power of ten rounds once, its inverse twice.
+        // Dividing rounds once, multiplying by the inverse twice.
         let unit = libm::exp10(f64::from((decade + less).abs()));
         [5.0, 2.5, 2.0, 1.25, 1.0].map(|n| if decade + less < 0 { n / unit } else { n * unit })
     });
@@ -130,7 +128,6 @@ fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     round.into_iter().find(fits).filter(|window| 2.0 * window >= part).unwrap_or_else(whole)
 }
 
-/// Largest relative deviation from the requested row interval.
 const MISFIT: f64 = 0.05;
 
 impl TrackSystem for GrainsSystem {
@@ -201,7 +198,7 @@ mod tests {
     #[test]
     fn windows_are_round_without_close_rows() {
         let window = |longest: f64, interval: f64| round_window([longest / STEPS, longest], interval);
-        // Intervals divisible by a round window, or long.
+        // Divisible by a round window, or long.
         for interval in [1.0, 0.5, 0.05, 1e-3, 2e-3, 0.0213, 0.037] {
             assert_eq!(window(1.47e-4, interval), 1.25e-4, "{interval}");
         }
@@ -210,7 +207,7 @@ mod tests {
         {
             assert_eq!(window(longest, 1e4 * round), round);
         }
-        // Close rows: a round fraction, or an approximate one in whole steps.
+        // Close rows.
         assert_eq!(window(1.47e-4, 1e-4), 1e-4);
         assert_eq!(window(6.4e-3, 1.7e-3), 17.0 * 1e-4);
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);

@@ -1,4 +1,4 @@
-//! Systems advanced by the main loop: solid, grains, or both.
+//! Systems advanced by the main loop.
 
 mod coupled;
 mod grains;
@@ -17,7 +17,7 @@ use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 
-/// Callback for forces on bodies at a time.
+/// Forces on bodies at a time.
 pub type Applied<'a> = &'a mut dyn FnMut(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);
 
 /// Solid of a running system.
@@ -90,7 +90,7 @@ pub trait System: TrackSystem {
     }
 }
 
-/// Returns strain and gravitational energy of a solid with nodal weights `gravity` [N], shape `[3·nodes]`.
+/// Returns strain and gravitational energy [J]; nodal weights `gravity` [N], shape `[3·nodes]`.
 pub fn stored_at_rest(model: &fem::Model, state: &fem::state::State, gravity: &[f64]) -> Stored {
     Stored {
         solid_strain: fem::energy::strain(model, state),

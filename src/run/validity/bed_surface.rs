@@ -2,7 +2,7 @@
 
 use trackbed_dem::measure::BoxRegion;
 
-/// Most columns per direction, enough for a mean.
+/// Enough for a mean.
 const MOST: usize = 32;
 
 /// Highest grain per column [m].
@@ -29,7 +29,7 @@ impl BedSurface {
         }
     }
 
-    /// Adds a grain with centre `x` and radius [m] to the columns whose axes it intersects.
+    /// Adds a grain with centre and radius [m] to its columns.
     pub fn add(&mut self, x: [f64; 3], radius: f64) {
         let range = |d: usize| {
             let place = |edge: f64| (edge - self.low[d]) / self.size[d] - 0.5;
@@ -50,7 +50,7 @@ impl BedSurface {
         }
     }
 
-    /// Returns the mean surface height [m]; empty columns count as the box bottom.
+    /// Returns the mean surface height [m]; empty columns count as bottom.
     pub fn height(&self) -> f64 {
         let tops = self.top.iter().map(|z| if z.is_finite() { *z } else { self.floor });
         tops.sum::<f64>() / self.top.len() as f64

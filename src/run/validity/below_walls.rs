@@ -1,15 +1,15 @@
-//! Check for grains fallen below all walls, without a solid.
+//! Check for grains fallen below all walls.
 
 use super::{Check, Limits};
 use crate::model::grains::GrainsPart;
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::{State, Vec3, WallShape};
 
-/// Lost over all grains. Runs may intentionally lose grains, so no failure.
+/// No failure: runs may lose grains intentionally.
 const LOST: Limits = Limits { warn: 0.01, fail: None };
 
-/// Checks for grains that fell below the lowest wall point. `None` without gravity, with a bounding plane,
-/// without bounded walls, and for slides, which count lost grains separately.
+/// Checks for grains below the lowest wall point. `None` without gravity, with a bounding plane, without
+/// bounded walls, and for slides, which count lost grains.
 pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<Check> {
     let (model, state) = (view.model, view.state);
     let up = -model.gravity().try_normalize(0.0)?;
@@ -35,7 +35,7 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
         };
         lowest = lowest.min(low);
     }
-    // Fixed grains, such as a floor, support others.
+    // Fixed grains support others.
     let start = State::new(model);
     let prescribed = |b: &usize| grains.groups.moving.iter().any(|m| m.part == model.part(*b));
     let supports = (0..model.body_count()).filter(prescribed);

@@ -1,10 +1,10 @@
-//! Check for large bond rotations, where linear springs are invalid.
+//! Check for bond rotations beyond linear springs.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::largest_rotation;
 
-/// Bond rotation [rad]: linear springs err by 2 % at the first limit, by half at the second.
+/// Rotation [rad]: linear springs err by 2 % at the first limit, by half at the second.
 const ROTATION: Limits = Limits { warn: 0.3, fail: Some(1.5) };
 
 /// Checks the final unbroken bonds; none without rotational stiffness.

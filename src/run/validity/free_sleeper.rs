@@ -3,7 +3,7 @@
 use super::{Check, Limits};
 use trackbed_coupling::track::extremes::TrackRecord;
 
-/// Time without contact over main-stage time. Short uplifts next to wheels are normal.
+/// Time without contact over main-stage time; wheels uplift neighbours.
 const FREE: Limits = Limits { warn: 0.1, fail: Some(0.9) };
 
 /// Checks sleepers over `duration` [s]; none without sleepers.

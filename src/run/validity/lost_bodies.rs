@@ -6,7 +6,7 @@ use trackbed_coupling::track::GrainsView;
 /// Lost over all bodies.
 const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };
 
-/// Checks for bodies below the lowest point of the solid [m]; with a message if any is lost.
+/// Checks for bodies below the solid's lowest point [m]; message if any.
 pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>) {
     let (model, state) = (view.model, view.state);
     let lost = |b: &usize| state.present(*b) && state.position(*b).z < lowest - model.radius(*b);

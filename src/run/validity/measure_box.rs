@@ -1,14 +1,14 @@
-//! Check for measurement boxes above the bed, whose porosity includes air.
+//! Check for measurement boxes above the bed.
 
 use super::bed_surface::BedSurface;
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::BoxRegion;
 
-/// Box height above the bed surface over box height.
+/// Height above the surface over box height.
 const EMPTY: Limits = Limits { warn: 0.0, fail: None };
 
-/// Bed surface height over a box [m]; none unless gravity acts downwards.
+/// Surface height over a box [m]; none unless gravity acts downwards.
 fn surface(view: GrainsView<'_>, region: &BoxRegion, is_grain: &impl Fn(usize) -> bool) -> Option<f64> {
     let (model, state) = (view.model, view.state);
     let gravity = model.gravity();

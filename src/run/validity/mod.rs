@@ -1,5 +1,4 @@
-//! Validity checks: whether a run stays within the limits of its theory. Balances may close although the
-//! equations do not apply.
+//! Validity checks: limits of the theory. Balances may close although the equations do not apply.
 
 mod bed_surface;
 mod below_walls;
@@ -48,7 +47,7 @@ impl Outcome {
     }
 }
 
-/// Limits of a value for warning and failure.
+/// Limits for warning and failure.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Warning limit.
@@ -76,7 +75,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Compares a value with its limits; `message` is only called above a limit.
+    /// Compares a value with its limits; `message` is called lazily.
     pub fn new(
         name: impl Into<String>,
         value: f64,

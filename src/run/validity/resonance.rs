@@ -1,13 +1,13 @@
-//! Check for loads near a natural frequency, where results depend on the mesh base.
+//! Check for loads near a natural frequency.
 
 use super::{Check, Limits};
 use crate::model::Job;
 use crate::plausible::{AMPLIFICATION, resonance};
 
-/// Undamped dynamic over static deflection of a vertical mode.
+/// Undamped dynamic over static deflection.
 const AMPLIFIED: Limits = Limits { warn: AMPLIFICATION, fail: None };
 
-/// Checks the track load; none without a single-frequency load or modes.
+/// Checks the track load; none without a frequency or modes.
 pub fn load_near_mode(job: &Job) -> Option<Check> {
     let found = resonance(job)?;
     Some(Check::new(

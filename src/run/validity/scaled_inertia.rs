@@ -1,10 +1,9 @@
-//! Check of mass scaling (`time.mass_factor`), valid only for quasi-static motion.
+//! Check of mass scaling (`time.mass_factor`), valid if quasi-static.
 
 use super::{Check, Limits};
 use trackbed_coupling::track::GrainsView;
 
-/// Kinetic energy over the smaller of reference energy and weight times grain radius; quasi-static beds stay
-/// far below.
+/// Kinetic energy over the smaller of reference energy and weight times grain radius.
 const INERTIA: Limits = Limits { warn: 0.05, fail: Some(0.25) };
 
 /// Weight and size of the grains.
@@ -17,7 +16,7 @@ pub struct Fall {
 }
 
 impl Fall {
-    /// Evaluates a running system, whose gravity is reduced by the mass scaling factor.
+    /// Evaluates a running system with reduced gravity.
     pub fn of(view: GrainsView<'_>) -> Fall {
         let (model, count) = (view.model, view.model.body_count());
         let mass: f64 = (0..count).map(|b| model.mass(b)).sum();
@@ -26,8 +25,7 @@ impl Fall {
     }
 }
 
-/// Checks the largest kinetic energy [J] of a run with masses scaled by `factor` against its reference energy
-/// [J].
+/// Checks the largest kinetic energy [J] with masses scaled by `factor` against the reference energy [J].
 pub fn scaled_inertia(factor: f64, kinetic: f64, reference: f64, fall: Fall) -> Check {
     let share = |whole: f64| match kinetic {
         0.0 => 0.0,

@@ -4,17 +4,16 @@ use super::{Check, Limits};
 use trackbed_fem::limits::{Extent, extent};
 use trackbed_fem::model::Model;
 
-/// Strain: small-strain theory is poor, or invalid (neglected terms are half of those kept).
+/// Poor, and invalid: neglected terms are half of those kept.
 const STRAIN: Limits = Limits { warn: 0.05, fail: Some(1.0) };
 
-/// Displacement relative to the body mean over element size.
+/// Relative to the body mean, over element size.
 const DISPLACEMENT: Limits = Limits { warn: 1.0, fail: Some(10.0) };
 
 /// Rotation [rad]: cosine differs from 1 by 2 %; rigid-rotation strain is half of it.
 const ROTATION: Limits = Limits { warn: 0.2, fail: Some(1.0) };
 
-/// Strain and rotation of a quasi-static collapse, valid up to the mechanism: the limit load is correct while
-/// strains grow without bound.
+/// Quasi-static collapse: the limit load is correct while strains grow without bound.
 const COLLAPSE: Limits = Limits { warn: 1.0, fail: Some(10.0) };
 
 /// Checks strains, rotations and displacements; shape of `u` `[3·nodes]` [m].

@@ -1,11 +1,11 @@
-//! Check for cyclic softening, a sign of failure or ground resonance.
+//! Check for cyclic softening.
 
 use super::{Check, Limits};
 
-/// Loss of secant stiffness from second to last cycle, over the second.
+/// Second to last cycle, over the second.
 const LOSS: Limits = Limits { warn: 0.25, fail: None };
 
-/// Checks secant stiffnesses of cycles in order [N/m]; none for fewer than three.
+/// Checks cyclic secant stiffnesses [N/m]; none for fewer than three.
 pub fn stiffness_drift(secants: &[f64]) -> Option<Check> {
     // The first cycle seats the sleeper.
     let (&second, &last) = (secants.get(1)?, secants.get(2..)?.last()?);

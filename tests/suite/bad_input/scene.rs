@@ -471,7 +471,7 @@ fn jumps_pushes_and_fouling() {
         (
             "",
             "track.bed_stiffness=[2000, 6000]",
-            "expected two rising loads from 1000 to 5000, those of the cycles",
+            "expected two rising loads from 1000 to 5000, the loads of the cycles",
         ),
         (
             "",

@@ -200,9 +200,22 @@ fn replaced_words_are_gone() {
     assert!(found == 0, "{found} uses of replaced words");
 }
 
+#[test]
+fn replaced_phrases_are_gone() {
+    let page = fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("the page is there");
+    let phrases = words::replaced_phrases(&page);
+    let texts = files(&[".rs", ".md", ".py"]);
+    let found: Vec<String> = texts
+        .iter()
+        .filter(|(file, _)| file != "ARCHITECTURE.md" && !file.starts_with("tests/suite/structure/"))
+        .flat_map(|(file, text)| words::phrases_in(file, text, &phrases))
+        .collect();
+    assert!(found.is_empty(), "replaced phrases:\n{}", found.join("\n"));
+}
+
 mod the_checks {
     use super::super::support::Folder;
-    use super::words::{Ban, uses, words_of};
+    use super::words::{Ban, phrases_in, uses, words_of};
     use super::{circles, functions, graph, keys, read_crate};
     use std::collections::{BTreeMap, BTreeSet};
     use std::fs;
@@ -303,5 +316,13 @@ mod the_checks {
         let found = uses("x.rs", text, &replaced);
         assert_eq!(found["wheel"], ["x.rs:2 first_wheel", "x.rs:3 WheelList"]);
         assert_eq!(found["axle"], ["x.rs:2 axle", "x.rs:1 /// An axle, a wheel."]);
+    }
+
+    #[test]
+    fn finds_phrases_across_lines() {
+        let phrases = [("goes on".to_string(), true), ("refused".to_string(), false)];
+        let text = "/// A run goes\n/// on. It goes. On refused, it \"Goes on\".\n";
+        assert_eq!(phrases_in("x.rs", text, &phrases), ["x.rs:1: goes on", "x.rs:2: goes on"]);
+        assert_eq!(phrases_in("x.md", "| refused |\n", &phrases), ["x.md:1: refused"]);
     }
 }

@@ -84,3 +84,47 @@ pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMa
     }
     found
 }
+
+/// Parses the table `| phrase | standard term | pages, or anywhere |`: each phrase with true if it is banned anywhere.
+pub fn replaced_phrases(page: &str) -> Vec<(String, bool)> {
+    let table = page.split("## Replaced phrases").nth(1).expect("the page has a heading for replaced phrases");
+    let rows = table.lines().skip_while(|l| !l.starts_with("|--")).skip(1).take_while(|l| l.starts_with('|'));
+    let mut all = Vec::new();
+    for row in rows {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let anywhere = match cells[2] {
+            "pages" => false,
+            "anywhere" => true,
+            other => panic!("{other:?}: expected pages or anywhere in {row}"),
+        };
+        all.extend(cells[0].split(", ").map(|phrase| (phrase.to_string(), anywhere)));
+    }
+    assert!(!all.is_empty(), "the table of replaced phrases is empty");
+    all
+}
+
+/// Places of replaced phrases in a file, also across the lines of a paragraph or comment.
+pub fn phrases_in(file: &str, text: &str, phrases: &[(String, bool)]) -> Vec<String> {
+    // Words in lower case with their lines; a sentence or another mark ends a phrase.
+    let mut words: Vec<(usize, String)> = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim_start().trim_start_matches(['/', '!', '#', '|', '>', '*']);
+        for piece in line.split_inclusive([' ', '.', ',', ';', ':', '(', ')', '"', '`', '|']) {
+            let word = piece.trim_end_matches([' ', '.', ',', ';', ':', '(', ')', '"', '`', '|']);
+            if !word.is_empty() {
+                words.push((number + 1, word.to_lowercase()));
+            }
+            if piece.trim_end_matches(' ').len() > word.len() {
+                words.push((number + 1, String::new()));
+            }
+        }
+    }
+    let is_page = file.ends_with(".md");
+    let mut found = Vec::new();
+    for (phrase, _) in phrases.iter().filter(|(_, anywhere)| *anywhere || is_page) {
+        let parts: Vec<&str> = phrase.split(' ').collect();
+        let places = words.windows(parts.len()).filter(|w| w.iter().map(|(_, word)| word).eq(parts.iter()));
+        found.extend(places.map(|w| format!("{file}:{}: {phrase}", w[0].0)));
+    }
+    found
+}

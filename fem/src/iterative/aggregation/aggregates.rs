@@ -9,11 +9,9 @@ use rayon::prelude::*;
 /// Row without aggregate, coupled to no other.
 pub const NONE: u32 = u32::MAX;
 
-/// Aggregate of each row.
 pub struct Aggregates {
     /// Aggregate by row, or [`NONE`].
     pub of: Vec<u32>,
-    /// Number of aggregates.
     pub count: usize,
 }
 
@@ -47,7 +45,6 @@ fn strong<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Vec<Vec<(u32, 
         .collect()
 }
 
-/// Aggregates the rows of a matrix.
 pub fn aggregate<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Aggregates {
     let strong = strong(rows, threshold);
     let (mut of, mut count) = (vec![NONE; strong.len()], 0);

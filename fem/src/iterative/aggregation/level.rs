@@ -68,7 +68,6 @@ fn blocks_times<const N: usize>(
 }
 
 impl<const N: usize, A: Operator> Level<N, A> {
-    /// Builds a level.
     pub fn new(matrix: A, inverse: Vec<Block<N, N>>, largest: f64, transfer: Transfer<N>) -> Level<N, A> {
         let zero = || vec![0.0; N * inverse.len()];
         let (r, d, q) = (zero(), zero(), zero());
@@ -112,12 +111,10 @@ impl<const N: usize, A: Operator> Level<N, A> {
         }
     }
 
-    /// Matrix.
     pub fn matrix(&self) -> &A {
         &self.matrix
     }
 
-    /// Memory without the matrix [bytes].
     pub fn memory(&self) -> usize {
         size_of_val(&self.inverse[..]) + 24 * self.r.len() + self.transfer.memory()
     }

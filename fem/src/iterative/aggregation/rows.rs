@@ -8,7 +8,6 @@ use rayon::prelude::*;
 /// Rows per parallel task.
 pub const PART: usize = 64;
 
-/// Block of R rows and C columns.
 pub type Block<const R: usize, const C: usize> = [[f64; C]; R];
 
 /// Square block matrix by rows.
@@ -29,7 +28,6 @@ pub struct Half<'a> {
 }
 
 impl<'a> Half<'a> {
-    /// Rows of a stiffness product.
     pub fn new(product: &'a Product) -> Half<'a> {
         let (matrices, free) = (product.matrices(), product.free());
         let nodes = matrices.node_count();
@@ -83,7 +81,6 @@ pub struct Blocks<const R: usize, const C: usize> {
 }
 
 impl<const R: usize, const C: usize> Blocks<R, C> {
-    /// Builds from columns and blocks of each row.
     pub fn from_rows(rows: impl Iterator<Item = Vec<(u32, Block<R, C>)>>) -> Blocks<R, C> {
         let mut blocks = Blocks { start: vec![0], column: Vec::new(), value: Vec::new() };
         for row in rows {
@@ -94,13 +91,11 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         blocks
     }
 
-    /// Columns and blocks of a row.
     pub fn row(&self, p: usize) -> impl Iterator<Item = (usize, &Block<R, C>)> {
         let row = self.start[p]..self.start[p + 1];
         self.column[row.clone()].iter().map(|&c| c as usize).zip(&self.value[row])
     }
 
-    /// Number of block rows.
     pub fn len(&self) -> usize {
         self.start.len() - 1
     }
@@ -121,7 +116,6 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
         });
     }
 
-    /// Memory [bytes].
     pub fn memory(&self) -> usize {
         size_of_val(&self.value[..]) + size_of_val(&self.column[..]) + size_of_val(&self.start[..])
     }

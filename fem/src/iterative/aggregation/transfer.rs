@@ -13,7 +13,6 @@ use rayon::prelude::*;
 /// Relative norm below which a mode is linearly dependent.
 const DEPENDENT: f64 = 1e-10;
 
-/// Prolongator with its transpose.
 pub struct Transfer<const N: usize> {
     /// Rows of the level, columns of the next.
     pub prolongator: Blocks<N, 6>,
@@ -126,7 +125,6 @@ impl<const N: usize> Transfer<N> {
         });
     }
 
-    /// Memory [bytes].
     pub fn memory(&self) -> usize {
         self.prolongator.memory() + size_of_val(&self.entries[..]) + size_of_val(&self.start[..])
     }

@@ -26,7 +26,7 @@ pub trait Preconditioner {
     fn memory(&self) -> usize;
 }
 
-/// Work space of one size; solves allocate nothing.
+/// Work space; solves allocate nothing.
 pub struct ConjugateGradients {
     r: Vec<f64>,
     z: Vec<f64>,

@@ -69,7 +69,7 @@ pub enum MumpsError {
         /// Count.
         pivots: u32,
     },
-    /// Other errors, numbered as in the MUMPS manual.
+    /// Other errors, as in the MUMPS manual.
     #[error("MUMPS: error INFOG(1) = {code}, INFOG(2) = {detail}")]
     Code {
         /// INFOG(1).

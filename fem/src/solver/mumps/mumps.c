@@ -1,5 +1,4 @@
-/* What Rust needs of MUMPS. The layout of its structure changes from version to version, so that it stays in C, compiled against the
-   header of the library that is linked. */
+/* C interface to MUMPS: the layout of its structure depends on the version, so only its own header can define it. */
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +10,8 @@ _Static_assert(sizeof(MUMPS_INT) == sizeof(int), "a MUMPS with integers of 32 bi
 /* MPI_COMM_WORLD for every version of MUMPS. */
 enum { WORLD = -987654 };
 
-/* An instance for symmetric matrices, without output; a null pointer where there is no memory. Its matrix may be indefinite by MUMPS's
-   naming (SYM = 2): only so are pivots near zero found and named. */
+/* Returns a silent instance for symmetric matrices, or null if out of memory. SYM = 2 (indefinite) is needed for the
+   detection of null pivots. */
 DMUMPS_STRUC_C *trackbed_mumps_start(void) {
     DMUMPS_STRUC_C *id = calloc(1, sizeof *id);
     if (!id) {
@@ -34,7 +33,7 @@ DMUMPS_STRUC_C *trackbed_mumps_start(void) {
     return id;
 }
 
-/* Ends an instance; its files are removed. */
+/* Ends an instance and removes its files. */
 void trackbed_mumps_end(DMUMPS_STRUC_C *id) {
     id->job = -2;
     dmumps_c(id);
@@ -51,7 +50,7 @@ void trackbed_mumps_set_real(DMUMPS_STRUC_C *id, int index, double value) {
     id->cntl[index - 1] = value;
 }
 
-/* Sets the folder for files, a text that ends with 0; 0 where it is too long. */
+/* Sets the directory of out-of-core files; returns 0 if the name is too long. */
 int trackbed_mumps_folder(DMUMPS_STRUC_C *id, const char *folder) {
     if (strlen(folder) >= sizeof id->ooc_tmpdir) {
         return 0;
@@ -60,7 +59,7 @@ int trackbed_mumps_folder(DMUMPS_STRUC_C *id, const char *folder) {
     return 1;
 }
 
-/* Sets the matrix by coordinates from 1, one triangle, and the place of each equation in the elimination, from 1. */
+/* Sets one triangle by coordinates and the elimination position of each equation, all from 1. */
 void trackbed_mumps_matrix(DMUMPS_STRUC_C *id, int n, long long nnz, int *row, int *column, double *value, int *place) {
     id->n = n;
     id->nnz = nnz;
@@ -70,7 +69,7 @@ void trackbed_mumps_matrix(DMUMPS_STRUC_C *id, int n, long long nnz, int *row, i
     id->perm_in = place;
 }
 
-/* Sets the right-hand side, where the solution will be. */
+/* Sets the right-hand side, overwritten by the solution. */
 void trackbed_mumps_side(DMUMPS_STRUC_C *id, double *x) {
     id->rhs = x;
     id->nrhs = 1;
@@ -89,7 +88,7 @@ int trackbed_mumps_info(const DMUMPS_STRUC_C *id, int index) {
     return id->infog[index - 1];
 }
 
-/* The first equation whose pivot is near zero, from 1, where INFOG(28) says that there are any. */
+/* Returns the first equation with a null pivot, from 1; valid if INFOG(28) > 0. */
 int trackbed_mumps_null_pivot(const DMUMPS_STRUC_C *id) {
     return id->pivnul_list ? id->pivnul_list[0] : 0;
 }

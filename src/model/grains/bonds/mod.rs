@@ -1,4 +1,4 @@
-//! `[[bond]]` resolved: bond types, and rules that select the initial pairs.
+//! `[[bond]]` resolved: types and pair rules.
 
 mod kind;
 mod part;
@@ -13,7 +13,7 @@ use rule::{Joinable, rule};
 use trackbed_dem::bond::BondInput;
 use trackbed_dem::{BodyInput, ModelInput, Shape};
 
-/// Before grains refer to them.
+/// Resolved before grains refer to them.
 pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
     let mut part = BondPart::default();
     for table in scene.rows("bond", &scene.bond) {
@@ -25,7 +25,7 @@ pub(super) fn kinds(scene: &Table<Scene>) -> Result<BondPart, Failure> {
     Ok(part)
 }
 
-/// After all grains are known.
+/// Resolved after all grains are known.
 pub(super) fn rules(
     scene: &Table<Scene>,
     groups: &[String],
@@ -49,13 +49,9 @@ pub(super) fn rules(
     Ok(())
 }
 
-/// Ratio of bond gap to largest sphere radius.
 const WIDEST_GAP: f64 = 10.0;
 
-/// Rejects gaps many times the sphere radius, which would bond each sphere to hundreds of others.
-///
-/// # Errors
-/// Input errors.
+/// Rejects gaps that bond each sphere to hundreds of others.
 pub fn check_gaps(
     document: &Document,
     part: &BondPart,
@@ -93,9 +89,6 @@ fn nothing_joined(document: &Document, part: &BondPart, kind: usize) -> SceneErr
 }
 
 /// Rejects rules without any initial bond.
-///
-/// # Errors
-/// Input errors.
 pub fn check_joined(document: &Document, part: &BondPart, bonds: &[BondInput]) -> Result<(), SceneError> {
     for kind in 0..part.names.len() {
         if !bonds.iter().any(|b| b.kind == kind) {

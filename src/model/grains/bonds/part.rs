@@ -7,7 +7,7 @@ use trackbed_dem::bond::{Bond, BondInput, Face, Spread, factors, within_gap};
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, ModelInput, Vec3};
 
-/// Bonds of a scene, one type per `[[bond]]`.
+/// Bonds, one type per `[[bond]]`.
 #[derive(Clone, Debug, Default)]
 pub struct BondPart {
     /// Names of the types.
@@ -112,10 +112,7 @@ impl BondPart {
         self.made.push(Made { bodies, kind, face: Some(face) });
     }
 
-    /// Returns the index of the `[[bond]]` named by a group. `faces`: bonds fill faces.
-    ///
-    /// # Errors
-    /// Input errors.
+    /// Returns the `[[bond]]` index of a group. `faces`: bonds fill faces.
     pub fn of_group(&self, group: &Table<Grains>, name: &str, faces: bool) -> Result<usize, SceneError> {
         let of_kind = |kind: &usize| self.fills_faces(*kind) == faces;
         let known = || {
@@ -143,7 +140,6 @@ impl BondPart {
         input.bonds = self.made.iter().map(Made::bond).collect();
     }
 
-    /// Bond gap and largest sphere radius [m], if bonded by gap.
     pub(super) fn gap(&self, kind: usize, bodies: &[BodyInput], shapes: &[Shape]) -> Option<(f64, f64)> {
         let PairSource::Gap(gap) = self.rules[kind].source else { return None };
         let radii = bodies.iter().filter_map(|b| match shapes[b.shape] {
@@ -169,7 +165,7 @@ impl BondPart {
         }
     }
 
-    /// Returns all bonds, table by table. Each pair is bonded once, by its first table.
+    /// Returns all bonds, each pair by its first table.
     pub fn bonds(&self, bodies: &[BodyInput], shapes: &[Shape]) -> Vec<BondInput> {
         let sphere = |b: usize| matches!(shapes[bodies[b].shape], Shape::Sphere { .. });
         let radius = |b: &BodyInput| match shapes[b.shape] {

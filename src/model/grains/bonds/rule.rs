@@ -19,7 +19,7 @@ pub struct Joinable<'a> {
     pub groups: &'a [String],
     /// Number of bodies.
     pub count: usize,
-    /// Whether grains above a level are removed before bonding.
+    /// Whether grains above a level are removed first.
     pub levelled: bool,
 }
 

@@ -16,7 +16,7 @@ use trackbed_dem::insert::room::GAP;
 /// Default check interval [s].
 const INTERVAL: f64 = 1e-3;
 
-/// After all grains are known.
+/// Resolved after all grains are known.
 pub(super) fn build(
     scene: &Table<Scene>,
     groups: &GroupsPart,
@@ -37,7 +37,7 @@ pub(super) fn build(
         return Ok(None);
     }
     time.check("flow_interval", interval, |t| t > 0.0, "a time above 0")?;
-    // A group present at the start needs a recirculating outlet to feed its inlet.
+    // A group present at the start is fed by a recirculating outlet.
     for (i, group) in scene.rows("grains", &scene.grains).enumerate().filter(|(_, g)| g.inlet.is_some()) {
         let fed = outlets.iter().any(|o| o.again && o.parts.contains(&(i as u32)));
         if !waits(&group) && !fed {

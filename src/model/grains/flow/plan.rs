@@ -10,7 +10,7 @@ pub struct FlowPlan {
     pub interval: f64,
     /// Inlets, at most one per group.
     pub inlets: Vec<InletPlan>,
-    /// Outlets; the first that contains a grain removes it.
+    /// Outlets, in order of priority.
     pub outlets: Vec<OutletPlan>,
 }
 
@@ -52,7 +52,7 @@ impl InletRate {
         }
     }
 
-    /// Returns a grain of `mass` [kg] in units of the rate: kg, or 1.
+    /// Returns a grain of `mass` [kg] in rate units.
     pub fn of(&self, mass: f64) -> f64 {
         match self {
             InletRate::Mass(_) => mass,
@@ -78,7 +78,7 @@ pub struct OutletPlan {
     pub region: OutletRegion,
     /// Groups that it removes.
     pub parts: Vec<u32>,
-    /// Whether removed grains return to the inlet queue of their group.
+    /// Whether removed grains return to the inlet queue.
     pub again: bool,
 }
 
@@ -87,7 +87,7 @@ pub struct OutletPlan {
 pub enum OutletRegion {
     /// A box.
     Box(BoxRegion),
-    /// Half-space beyond a plane, on the side of its normal.
+    /// Half-space on the side of the normal.
     Beyond {
         /// Point on the plane [m].
         point: Vec3,
@@ -97,7 +97,7 @@ pub enum OutletRegion {
 }
 
 impl FlowPlan {
-    /// Returns a description with group names; `waiting` is the initial queue length of a group.
+    /// Formats lines; `waiting`: initial queue length of a group.
     pub fn lines(&self, groups: &[String], waiting: impl Fn(u32) -> usize) -> Vec<String> {
         let mut lines = Vec::new();
         for i in &self.inlets {

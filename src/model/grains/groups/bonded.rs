@@ -1,4 +1,4 @@
-//! Breakable grains: one body per sphere, joined by the bonds of the library.
+//! Breakable grains: bonded spheres as separate bodies.
 
 use super::part::GroupsPart;
 use crate::failure::Failure;
@@ -10,8 +10,8 @@ use trackbed_dem::shape::Shape;
 use trackbed_dem::shape::cluster::Cluster;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Expands grains into spheres and bonds. `first`: first body; `density` [kg/m³]. Group shapes are those of
-/// the library, in order.
+/// Expands grains into spheres and bonds. `first`: first body; `density` [kg/m³]. Group shapes are the
+/// library shapes, in order.
 pub(super) fn expand(
     group: &Table<Grains>,
     first: usize,

@@ -1,4 +1,4 @@
-//! `region` of `[[grains]]` resolved: container for random placement or growth.
+//! `region` of `[[grains]]` resolved.
 
 use crate::model::grains::check::region as box_region;
 use crate::scene::grains::Region;

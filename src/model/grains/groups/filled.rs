@@ -49,7 +49,6 @@ fn check_height(group: &Table<Grains>, radii: &[f64], area: f64) -> Result<(), F
     Err(group.error("count", found, format!("a heap of at most {HIGHEST:.0} m")).into())
 }
 
-/// Top of earlier groups in a box [m].
 fn top_of(part: &GroupsPart, low: [f64; 3], high: [f64; 2]) -> f64 {
     let mut top = f64::NEG_INFINITY;
     for body in part.bodies.iter().filter(|b| !b.absent) {

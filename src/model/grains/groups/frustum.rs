@@ -1,4 +1,4 @@
-//! Frusta with regular polygonal ends, for piles and cones.
+//! Frusta for piles and cones.
 
 use super::part::GroupsPart;
 use crate::scene::grains::Frustum;
@@ -63,7 +63,7 @@ fn ends(length: f64, radii: [f64; 2], radius: f64, sides: usize) -> Option<[(f64
 
 fn corners([from, to]: [Vec3; 2], ends: [(f64, f64); 2], sides: usize) -> Vec<Vec3> {
     let axis = (to - from).normalize();
-    // First corner towards x, or towards y for a body along x.
+    // First corner towards x, or y for a body along x.
     let aim = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
     let x = (aim - axis * axis.dot(&aim)).normalize();
     let y = axis.cross(&x);

@@ -1,4 +1,4 @@
-//! Grains with given positions, from a list or a packing.
+//! Grains with given positions.
 
 use super::part::GroupsPart;
 use super::shapes::shapes;
@@ -39,7 +39,7 @@ fn stones(
     part.bodies.extend(placed.iter().map(|p| {
         let [w, x, y, z] = p.orientation;
         let q = nalgebra::Quaternion::new(w, x, y, z);
-        // Written packings are restored bitwise; typed quaternions may be rounded.
+        // Written packings are bitwise; typed quaternions may be rounded.
         let exact = (q.norm_squared() - 1.0).abs() < 1e-14;
         BodyInput {
             shape: first + p.stone,

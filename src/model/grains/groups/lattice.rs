@@ -32,7 +32,7 @@ pub(super) fn lattice(
         }
         (None, Some(high)) => {
             let high = Vec3::from(vector(high));
-            // Estimate first: a wrong unit must not exhaust memory.
+            // A wrong unit must not exhaust memory.
             let about: f64 = (high - low).iter().map(|l| (l / fill.size.si).max(0.0)).product();
             if about > MOST {
                 few(about.round(), "high")?;

@@ -1,4 +1,4 @@
-//! `[[grains]]` resolved: given or packed grains, box filling, lattices, containers, floe fields, frusta.
+//! `[[grains]]` resolved: given, filled, lattice, container, floes, frusta.
 
 mod bonded;
 mod container;
@@ -145,7 +145,6 @@ fn prescribed(group: &Table<Grains>, part: &mut GroupsPart) -> Result<(), SceneE
     Ok(())
 }
 
-/// Rejects keys without effect.
 fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let random = group.fill.is_some() || group.region.is_some() || waits(group);
     let shapes = random || (group.packing.is_some() && group.shape != GrainShape::Sphere);

@@ -1,4 +1,4 @@
-//! Fields of round ice floes: dilated disks at random non-overlapping positions up to a given concentration.
+//! Round ice floes: dilated disks without overlap, up to a given concentration.
 
 use super::part::GroupsPart;
 use super::sizes::SizeSource;
@@ -45,7 +45,7 @@ pub(super) fn pancakes(
     let sizes = SizeSource::of(group)?;
     let [low, high] = [&field.low, &field.high].map(|corner| corner.map(|x| x.si));
     let place = Field { low, high, clear: field.clear.iter().map(|c| c.map(|q| q.si)).collect() };
-    let expected = "the area of the floes over that of the box less the circles that are clear";
+    let expected = "floe area over the area of the box without its clear circles";
     let concentration = field.need("concentration", field.concentration, expected)?;
     let diameters = enough(&sizes, concentration * place.area(), group.seed).ok_or_else(|| {
         field.error("concentration", concentration.to_string(), "1 to 100000 floes, with room for each")
@@ -89,7 +89,6 @@ pub(super) fn pancakes(
     Ok(())
 }
 
-/// Draws diameters [m] until their area fits best.
 fn enough(sizes: &SizeSource, area: f64, seed: u64) -> Option<Vec<f64>> {
     let covered = |all: &[f64]| all.iter().map(|d| 0.25 * PI * d * d).sum::<f64>();
     let mut count = 1000.0;
@@ -145,7 +144,7 @@ impl Field {
                     }
                 });
             }
-            // The last moves may have left the box or entered a circle.
+            // The last moves may have left the field.
             if left < 0.5 * gap {
                 cells.sort(&at);
                 (0..at.len()).for_each(|i| {
@@ -159,7 +158,6 @@ impl Field {
         Err(left - gap)
     }
 
-    /// Moves a circle inside; returns the distance moved.
     fn inside(&self, at: &mut Point, radius: f64, gap: f64) -> f64 {
         let before = *at;
         for [x, y, r] in &self.clear {

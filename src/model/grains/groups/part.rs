@@ -6,14 +6,14 @@ use trackbed_dem::insert::grow::Growth;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
-/// Groups of a scene with all grains in their initial positions.
+/// Groups with all grains in initial position.
 #[derive(Clone, Default)]
 pub struct GroupsPart {
-    /// Group names; rigid sleepers form the group after the last.
+    /// Group names; rigid sleepers come last.
     pub names: Vec<String>,
     /// Shapes, at scale 1.
     pub shapes: Vec<Shape>,
-    /// First shape of each group; a grain's library index is its shape minus this.
+    /// First shape of each group; library indices are relative to it.
     pub first_shape: Vec<usize>,
     /// All grains in their initial positions.
     pub bodies: Vec<BodyInput>,

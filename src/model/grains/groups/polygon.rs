@@ -32,7 +32,7 @@ pub(super) fn sides(corners: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ 
 pub(super) fn area(corners: &[Point]) -> (f64, Point) {
     let Some(&[x, y]) = corners.first() else { return (0.0, [0.0; 2]) };
     let (mut double, mut moment) = (0.0, [0.0; 2]);
-    // Relative to a corner, so that distant polygons keep their accuracy.
+    // Relative to a corner: distant polygons keep their accuracy.
     for [p, q] in sides(corners).map(|ends| ends.map(|p| [p[0] - x, p[1] - y])) {
         let cross = p[0] * q[1] - p[1] * q[0];
         double += cross;
@@ -46,7 +46,6 @@ pub(super) fn scaled(corners: &[Point], factor: f64, middle: Point) -> Vec<Point
     corners.iter().map(scale).collect()
 }
 
-/// Moves all sides inwards; may return no corners.
 pub(super) fn inset(corners: &[Point], distance: f64) -> Vec<Point> {
     let mut left = corners.to_vec();
     for [p, q] in sides(corners) {
@@ -127,7 +126,7 @@ mod tests {
         let cut = [[0.1, 0.0], [4.0, 0.0], [0.0, 3.0], [0.0, 0.1]];
         let within = inset(&cut, 0.5);
         assert_eq!(within.len(), 3);
-        // Inscribed radius 1: moved in by half of it, half the size.
+        // Inscribed radius 1: moved in by half, half the size.
         assert!((area(&within).0 - 1.5).abs() < 1e-12, "{within:?}");
     }
 

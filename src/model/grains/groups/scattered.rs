@@ -1,4 +1,4 @@
-//! Grains at random positions in containers, with or without growth.
+//! Grains at random positions in containers.
 
 use super::container::container;
 use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius};
@@ -25,7 +25,7 @@ pub(super) fn scattered(
     let volume = container.volume();
     let first = part.shapes.len();
     let unit_scale = shapes(group, part)?;
-    // Volume and bounding radius at sieve size 1 m, by shape.
+    // At sieve size 1 m, by shape.
     let unit = |k: usize| &part.shapes[first + k];
     let unit_volume: Vec<f64> =
         unit_scale.iter().enumerate().map(|(k, s)| s.powi(3) * shape_volume(unit(k))).collect();
@@ -65,7 +65,7 @@ pub(super) fn scattered(
         let group = group.name.clone();
         part.growths.push(GrowthPlan { group, bodies: begin..part.bodies.len(), container, how });
     }
-    // If growth must fit a count, sizes are scaled and only the shape of the curve remains.
+    // Growth to a count scales sizes; only the curve shape remains.
     if let SizeSource::Graded(grading) = source
         && (group.growth.is_none() || group.count.is_none())
     {

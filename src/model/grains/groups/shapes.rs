@@ -1,4 +1,4 @@
-//! Shapes and sizes of the grains of a group.
+//! Grain shapes and sizes.
 
 use super::bonded;
 use super::part::{GradedGroup, GroupsPart};
@@ -18,7 +18,6 @@ pub(super) struct Sampled {
     pub scale: f64,
 }
 
-/// Adds shapes and draws sizes; `expected` describes the count.
 pub(super) fn sampled(
     group: &Table<Grains>,
     part: &mut GroupsPart,

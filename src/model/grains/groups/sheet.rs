@@ -7,7 +7,6 @@ use trackbed_dem::bond::Face;
 /// Shortest bonded side over √(cell area).
 const SHORT: f64 = 1e-3;
 
-/// Floe of a field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Floe {
     /// Body index.
@@ -34,7 +33,7 @@ pub(super) fn join(
 fn face([a, b]: [Point; 2], [p, q]: [Point; 2], thickness: f64) -> Face {
     let way = [0, 1].map(|d| a[d] - b[d]);
     let length = libm::hypot(way[0], way[1]);
-    // Along the line of centres, from face to centres.
+    // From face to centres.
     let middle = [0, 1].map(|d| 0.5 * (p[d] + q[d]));
     let from = |centre: Point| (0..2).map(|d| (centre[d] - middle[d]) * way[d] / length).sum::<f64>();
     Face { size: [libm::hypot(q[0] - p[0], q[1] - p[1]), thickness], offset: from(a) + from(b) }
@@ -53,7 +52,7 @@ fn shared(sites: &[Point], cells: &[Vec<Point>]) -> Vec<([usize; 2], [Point; 2])
             if length < SHORT * size {
                 continue;
             }
-            // The neighbour is the mirror image of the site.
+            // The neighbour is the mirror image.
             let normal = [way[1] / length, -way[0] / length];
             let off = (p[0] - sites[i][0]) * normal[0] + (p[1] - sites[i][1]) * normal[1];
             let image = [0, 1].map(|d| sites[i][d] + 2.0 * off * normal[d]);

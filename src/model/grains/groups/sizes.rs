@@ -12,22 +12,19 @@ const SAMPLES: usize = 10_000;
 pub(super) enum SizeSource {
     Graded(Grading),
     Law(SizeLaw),
-    /// Evenly spaced sizes between these limits [m], in order.
+    /// Evenly spaced sizes in order [m].
     Range(f64, f64),
 }
 
 impl SizeSource {
     /// Reads the size source of a group.
-    ///
-    /// # Errors
-    /// Input errors.
     pub fn of(group: &Table<Grains>) -> Result<SizeSource, SceneError> {
         match (&group.gradation, &group.size, &group.sizes) {
             (Some(g), None, None) => {
                 group.check("gradation.scale", g.scale, |s| s > 0.0, "above 0")?;
                 let grading = tables::gradation(&group.locate(&g.file), &g.standard, &g.grade);
                 let grading = grading.map_err(|e| match e.line {
-                    // Concerns the whole gradation: report the key of the scene.
+                    // The whole gradation: report the scene key.
                     None if e.key == "gradation" => group.problem("gradation", e.problem),
                     _ => e,
                 })?;

@@ -2,7 +2,6 @@
 
 use crate::scene::grains::Grains;
 
-/// Sources of initial grains, with presence.
 pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 7] {
     [
         ("spheres", group.spheres.is_some()),
@@ -15,7 +14,7 @@ pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 7] {
     ]
 }
 
-/// Whether all grains of a group are queued at its inlet.
+/// Whether all grains are queued.
 pub fn waits(group: &Grains) -> bool {
     group.inlet.is_some() && sources(group).iter().all(|(_, present)| !present)
 }

@@ -19,7 +19,7 @@ pub(super) fn waiting(
     let idle = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())];
     group.reject_with(idle, "`inlet`").map_err(|e| e.remedy("Use `inlet.velocity`"))?;
     let grains = sampled(group, part, "the number of grains to insert")?;
-    // Sizes of a range ascend; unshuffled, small grains would come first.
+    // Otherwise small grains would come first.
     let order = Random::new(group.seed, ORDER).permutation(grains.len());
     part.bodies.extend(order.into_iter().map(|i| {
         let Sampled { shape, scale } = grains[i];

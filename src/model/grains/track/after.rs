@@ -28,7 +28,7 @@ pub(super) fn build(
         (Some(loads), Some([least, most])) => {
             let [low, high] = loads.map(|f| f.si);
             if !(least <= low && low < high && high <= most) {
-                let expected = format!("two rising loads from {least} to {most}, those of the cycles");
+                let expected = format!("two rising loads from {least} to {most}, the loads of the cycles");
                 return Err(track.error("bed_stiffness", format!("{low} and {high}"), expected));
             }
             Some([low, high])

@@ -10,7 +10,7 @@ use trackbed_coupling::track::{SleeperRow, TrackInput};
 /// The track of a scene.
 #[derive(Clone, Default)]
 pub struct TrackPart {
-    /// Sleepers; rigid ones are the last bodies of the main stage.
+    /// Sleepers; rigid ones are the last main-stage bodies.
     pub sleeper: Option<SleeperPlan>,
     /// Load on the sleepers.
     pub load: Option<CyclicLoad>,
@@ -38,13 +38,12 @@ pub struct AfterPlan {
     pub jump: Option<JumpPlan>,
     /// Lateral push at the end.
     pub push: Option<PushPlan>,
-    /// Loads between which bed stiffness is evaluated [N].
+    /// Loads for bed stiffness [N].
     pub between: Option<[f64; 2]>,
 }
 
 impl TrackPart {
-    /// Returns the longest DEM time step [s] that [`TrackPart::check_pads`] and [`TrackPart::check_ram`]
-    /// accept.
+    /// Returns the longest step [s] accepted by [`TrackPart::check_pads`] and [`TrackPart::check_ram`].
     pub fn longest_step(&self) -> f64 {
         let pads = self.pads().map(|(pad, lightness)| {
             let stiff = (0.25 / (pad[0] * lightness)).sqrt();
@@ -64,10 +63,10 @@ impl TrackPart {
         Some((rail.pad, sleeper.seats.iter().map(seat).sum()))
     }
 
-    /// Rejects pads too stiff or too damped for explicit steps of `dt` [s].
+    /// Rejects pads too stiff or damped for steps of `dt` [s].
     ///
     /// # Errors
-    /// Half a radian, or half a damping time constant, of the fastest sleeper motion is below `dt`.
+    /// Half a radian or half a damping time constant of the fastest sleeper motion is below `dt`.
     pub fn check_pads(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
         let Some((pad, lightness)) = self.pads() else { return Ok(()) };
         for (key, value, most) in [
@@ -82,7 +81,7 @@ impl TrackPart {
         Ok(())
     }
 
-    /// Rejects a ram too stiff for steps of `dt` [s].
+    /// Rejects too stiff a ram for steps of `dt` [s].
     ///
     /// # Errors
     /// Input errors.

@@ -1,7 +1,7 @@
 //! Meshed sleepers: separate bodies of 20-node hexahedra after the ground in the mesh.
 //!
-//! They stay above the ground until the bed is deposited, and are then set down; matrices do not depend on
-//! position. All sleepers have identical meshes and numbering.
+//! They stay above the ground until the bed is deposited; matrices do not depend on position. All have
+//! identical meshes and numbering.
 
 mod shares;
 #[cfg(test)]
@@ -33,7 +33,6 @@ pub struct SleeperBodies {
     waiting: f64,
     /// Nodal weights of seat forces; nodes are numbered within a sleeper.
     seats: Vec<(u32, f64)>,
-    /// Nodal weights of the volume mean.
     volume: Vec<f64>,
     /// Base nodes: mean weight times offset over mean square offset [1/m].
     slopes: [Vec<(u32, f64)>; 2],
@@ -42,7 +41,7 @@ pub struct SleeperBodies {
 }
 
 impl SleeperBodies {
-    /// Adds sleepers to the ground mesh, with material and symmetry supports.
+    /// Adds sleepers with material and symmetry supports.
     pub fn add(
         plan: MeshedSleepers,
         mesh: &mut Mesh,
@@ -132,19 +131,19 @@ impl SleeperBodies {
         model
     }
 
-    /// Returns the centre of sleeper `k` for base height `base` [m].
+    /// Returns the centre of sleeper `k` on height `base` [m].
     pub fn centre(&self, k: usize, base: f64) -> [f64; 3] {
         let [x, y] = self.plan.centres[k];
         [x, y, base + self.plan.half[2]]
     }
 
-    /// Adds a downward seat force [N] on sleeper `k` to `load`, shape `[3·nodes]`.
+    /// Adds a downward seat force [N] on sleeper `k`, shape `[3·nodes]`.
     pub fn add_load(&self, k: usize, force: f64, load: &mut [f64]) {
         let first = self.nodes_of(k).start;
         self.seats.iter().for_each(|(n, share)| load[3 * (first + *n as usize) + 2] -= share * force);
     }
 
-    /// Returns the mean uplift of the seats of sleeper `k` [m] for displacements `u`, shape `[3·nodes]`.
+    /// Returns the mean seat uplift of sleeper `k` [m]; shape of `u` `[3·nodes]`.
     pub fn rise_of_seats(&self, k: usize, u: &[f64]) -> f64 {
         self.sum_z(k, u, &self.seats)
     }
@@ -154,7 +153,7 @@ impl SleeperBodies {
         shares.iter().map(|(n, share)| share * u[3 * (first + *n as usize) + 2]).sum()
     }
 
-    /// Returns the motion of sleeper `k` for displacements `u`, shape `[3·nodes]`.
+    /// Returns the motion of sleeper `k`; shape of `u` `[3·nodes]`.
     pub fn moved(&self, k: usize, u: &[f64]) -> SleeperMotion {
         let first = self.nodes_of(k).start;
         let mean = |d: usize| {
@@ -169,7 +168,7 @@ impl SleeperBodies {
         }
     }
 
-    /// Returns a sleeper as a separate model like `model`, with its surface.
+    /// Returns a sleeper as a separate model, with surface.
     ///
     /// # Errors
     /// As [`fem::Model::new`].
@@ -196,7 +195,7 @@ impl SleeperBodies {
         Ok((body, surface))
     }
 
-    /// Returns base faces with extreme effective nodal masses: corner and middle.
+    /// Returns base faces of extreme effective mass: corner, middle.
     pub fn telling_faces(&self, surface: &SolidSurface) -> Vec<u32> {
         let base = |k: &u32| surface.normal(*k, [0.0; 2])[2] < -0.5;
         let far = |k: u32| {

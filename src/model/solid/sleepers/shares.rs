@@ -1,4 +1,4 @@
-//! Nodal weights of a sleeper for forces and means.
+//! Nodal weights of a sleeper.
 
 use super::ON_PLANE;
 use crate::model::track::sleeper::MeshedSleepers;

@@ -1,17 +1,17 @@
-//! Loads and supports of a solid-only model over time.
+//! Loads and supports over time.
 
 use super::SolidKind;
 use crate::model::solid::SolidPart;
 use crate::run::checkpoint_store::Interrupt;
 use trackbed_fem::nonlinear::Loading;
 
-/// Loads and supports over time, ramped from zero before time 0.
+/// Loads and supports, ramped from zero before time 0.
 pub struct SolidLoading<'a> {
     part: &'a SolidPart,
     kind: SolidKind,
     /// Weight [N]. Shape `[3·nodes]`.
     pub gravity: Vec<f64>,
-    /// Initial fraction of the weight: 1 if balanced by initial stress.
+    /// Fraction of weight balanced by initial stress.
     pub carried: f64,
     interrupt: Interrupt,
 }
@@ -46,7 +46,6 @@ impl<'a> SolidLoading<'a> {
         }
     }
 
-    /// Evaluation time, load fraction, weight fraction.
     fn shares(&self, time: f64) -> (f64, f64, f64) {
         let share = (1.0 + time).clamp(0.0, 1.0);
         (time.max(0.0), share, self.carried + (1.0 - self.carried) * share)

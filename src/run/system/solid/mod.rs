@@ -18,10 +18,9 @@ use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
 use trackbed_fem::nonlinear::{Memory, QuasiStatic, Statistics, StepControl, energy};
 use trackbed_fem::{SolveError, State, TimeIntegrator};
 
-/// Smallest fraction of a dynamic time step.
 const SMALLEST_PART: f64 = 1.0 / 256.0;
 
-/// Stepping method, which determines start, energy balance and checkpoints.
+/// Stepping method.
 #[derive(Clone, Copy)]
 pub enum SolidKind {
     /// Elastic dynamics.
@@ -33,7 +32,7 @@ pub enum SolidKind {
 }
 
 impl SolidKind {
-    /// Returns the method of a solid-only model; none without time steps.
+    /// Returns the method; none without time steps.
     pub fn of(part: &SolidPart) -> Option<SolidKind> {
         match part.analysis {
             Analysis::Dynamic(method) if part.is_linear() => Some(SolidKind::Elastic(method)),
@@ -68,22 +67,20 @@ pub struct SolidSystem<'a> {
     part: &'a SolidPart,
     kind: SolidKind,
     loading: SolidLoading<'a>,
-    /// Integrator history before an aborted step, for checkpoints.
+    /// Before an aborted step, for checkpoints.
     given_up: Option<Memory>,
     state: State,
-    /// State before the last step.
     before: State,
     integrator: Box<dyn TimeIntegrator>,
     step: f64,
     steps: u64,
-    /// Support reactions of a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
+    /// Reactions of a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
     reactions: Vec<f64>,
     spent: Spent,
 }
 
 impl<'a> SolidSystem<'a> {
-    /// Creates the solid at time 0 with initial stress, accelerated by its loads or in equilibrium; `step`
-    /// [s].
+    /// Creates the solid at time 0, accelerated by its loads or in equilibrium; `step` [s].
     ///
     /// # Errors
     /// Insufficient constraints, no equilibrium, or failed factorization.
@@ -172,14 +169,13 @@ impl<'a> SolidSystem<'a> {
         self.integrator.memory().map(|memory| memory.statistics())
     }
 
-    /// Adds load and support work between two equilibrium states.
     fn add_work_at_rest(&mut self) {
         if self.state.time <= self.before.time {
             return;
         }
         let [start, end] = [self.before.time, self.state.time].map(|time| self.loading.at(time));
         let reactions = self.integrator.reactions().expect("a solid in equilibrium keeps its reactions");
-        // Mean end forces do the exact work of mean stresses (virtual work).
+        // Mean end forces do the work of mean stresses (virtual work).
         let mut work = 0.0;
         for d in 0..start.len() {
             let loads = start[d] + end[d] - 2.0 * self.loading.gravity[d];
@@ -192,7 +188,6 @@ impl<'a> SolidSystem<'a> {
     }
 }
 
-/// Quasi-static integrator with first and largest step [s].
 fn quasi_static(
     part: &SolidPart,
     plan: QuasiStaticPlan,
@@ -202,8 +197,7 @@ fn quasi_static(
     QuasiStatic::new(&part.model, part.newton, StepControl { initial, min, max, target_iterations })
 }
 
-/// Brings a solid to equilibrium at time 0 over one unit of time; returns support reactions [N], shape
-/// `[3·nodes]`.
+/// Over one unit of time before time 0; returns reactions [N], shape `[3·nodes]`.
 fn bring_on_loads(
     part: &SolidPart,
     plan: QuasiStaticPlan,
@@ -240,7 +234,7 @@ impl System for SolidSystem<'_> {
         let (part, elastic) = (self.part, matches!(self.kind, SolidKind::Elastic(_)));
         self.before.copy_from(&self.state);
         let (memory, spent_before) = (self.integrator.memory(), self.spent);
-        // Elastic time is summed; other methods use the step count, because steps may be divided.
+        // Elastic time is summed; other steps may be divided.
         let to = if elastic { self.state.time + self.step } else { (self.steps + 1) as f64 * self.step };
         let spent = &mut self.spent;
         let mut work = if elastic { 0.0 } else { spent.solid_load_work };
@@ -259,13 +253,13 @@ impl System for SolidSystem<'_> {
             },
         );
         if outcome == Err(SolveError::Stopped) {
-            // Continue from the previous step, whatever sub-steps were done.
+            // Continue from the previous step.
             std::mem::swap(&mut self.state, &mut self.before);
             (self.given_up, self.spent) = (memory, spent_before);
             return Err(part.failure(&SolveError::Stopped));
         }
         self.steps += u64::from(outcome.is_ok());
-        // Partial steps count, so that the balance matches the kept state.
+        // The balance must match the kept state.
         let moved = self.state.u.iter().zip(&self.before.u).map(|(u, before)| u - before);
         let weight = self.loading.gravity.iter().zip(moved).map(|(f, du)| f * du).sum::<f64>();
         match self.kind {
