@@ -1,5 +1,6 @@
 //! Allocator that exits with one line when memory is exhausted.
 
+use crate::system;
 use std::alloc::{GlobalAlloc, Layout, System};
 
 /// System allocator; failed requests exit with code 3.
@@ -7,7 +8,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 /// The standard library prints two lines and possibly a backtrace, which may hang.
 pub struct Allocator;
 
-// SAFETY: passed to the system allocator; on Unix no null pointer is returned.
+// SAFETY: passed to the system allocator; no null pointer is returned.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as required by `alloc`.
@@ -39,7 +40,6 @@ fn given(pointer: *mut u8, size: usize) -> *mut u8 {
 }
 
 /// Must not allocate.
-#[cfg(unix)]
 #[cold]
 fn exhausted(size: usize) {
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -61,16 +61,11 @@ fn exhausted(size: usize) {
         line[length..length + part.len()].copy_from_slice(part);
         length += part.len();
     }
-    // SAFETY: pointer and length of `line`. One call, so that lines do not mix.
-    unsafe { libc::write(libc::STDERR_FILENO, line.as_ptr().cast(), length) };
+    // One call, so that lines of processes do not mix.
+    system::write_error(&line[..length]);
     signal_hook::low_level::exit(3);
 }
 
-#[cfg(not(unix))]
-#[cold]
-fn exhausted(_: usize) {}
-
-#[cfg(unix)]
 fn decimal(mut number: usize, digits: &mut [u8; 20]) -> &[u8] {
     let mut first = digits.len();
     loop {
@@ -83,7 +78,7 @@ fn decimal(mut number: usize, digits: &mut [u8; 20]) -> &[u8] {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::decimal;
 

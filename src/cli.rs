@@ -77,6 +77,8 @@ pub enum Command {
     Study(StudyArgs),
     /// Write an HTML report with tables and plots of one run, or a comparison of several.
     Report(ReportArgs),
+    /// Run a small track, about one minute, and show it in a browser.
+    Demo(DemoArgs),
     /// Create a directory with a commented example scene; without arguments, list the templates.
     New(NewArgs),
     /// Print the JSON schema of scene files, for completion and validation in editors.
@@ -92,6 +94,11 @@ pub enum Command {
     Completions {
         /// Shell.
         shell: clap_complete::Shell,
+    },
+    /// Write a manual page of each command into a directory.
+    Manual {
+        /// Directory, created if missing.
+        folder: PathBuf,
     },
     /// Compute natural frequencies and modes of the solid of a scene.
     Modal(ModalArgs),
@@ -116,7 +123,7 @@ pub enum Command {
 }
 
 /// Arguments of `run`.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct RunArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
@@ -167,6 +174,20 @@ impl RunArgs {
             _ => Verbosity::Normal,
         }
     }
+}
+
+/// Arguments of `demo`.
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Directory of scene and results.
+    #[arg(long, default_value = "results/demo")]
+    pub out: PathBuf,
+    /// Threads; the results do not depend on it [default: all cores].
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// End after the run, without the viewer.
+    #[arg(long)]
+    pub no_view: bool,
 }
 
 /// Arguments of `new`.

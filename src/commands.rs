@@ -2,7 +2,9 @@
 
 pub mod check;
 mod convert;
+mod demo;
 pub mod explain;
+mod manual;
 mod mesh;
 mod modal;
 mod output;
@@ -13,13 +15,12 @@ mod stone;
 mod study;
 mod view;
 
-use crate::cli::{Cli, Command, MeshCommand, NewArgs, RunArgs};
+use crate::cli::{Command, MeshCommand, NewArgs, RunArgs};
 use crate::columns;
 use crate::failure::Failure;
 use crate::message;
 use crate::run;
 use crate::start;
-use clap::CommandFactory;
 use output::print;
 
 /// Executes a command.
@@ -42,7 +43,9 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::New(args) => new(&args),
         Command::Schema { columns: true, .. } => print(&columns::list()),
         Command::Schema { markdown, .. } => schema::schema(markdown),
-        Command::Completions { shell } => completions(shell),
+        Command::Completions { shell } => manual::completions(shell),
+        Command::Manual { folder } => manual::manual(&folder),
+        Command::Demo(args) => demo::demo(args, run_scene, view::view),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),
         Command::Modal(args) => print(&modal::modal(&args)?),
@@ -64,12 +67,6 @@ fn new(args: &NewArgs) -> Result<(), Failure> {
     let scene = start::make(template, &folder)?;
     let scene = scene.display();
     print(&format!("{scene} written; next: trackbed check {scene}, trackbed run {scene}\n"))
-}
-
-fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
-    let mut text = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "trackbed", &mut text);
-    print(&String::from_utf8_lossy(&text))
 }
 
 #[cfg(not(feature = "mpi"))]

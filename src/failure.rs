@@ -1,7 +1,7 @@
 //! Failures and exit codes.
 
-use crate::machine;
 use crate::read::ReadError;
+use crate::system;
 use std::fmt;
 
 /// Failure of a command.
@@ -91,7 +91,7 @@ impl From<ReadError> for Failure {
 
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Failure {
-        Failure::Other(machine::words(&error))
+        Failure::Other(system::words(&error))
     }
 }
 

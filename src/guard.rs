@@ -1,16 +1,17 @@
 //! Panics and aborts end a command like other failures.
 
 use crate::failure::Failure;
-use crate::machine;
+use crate::system;
 use std::any::Any;
 use std::fs::File;
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Records panic locations; with `RUST_BACKTRACE`, also prints.
+/// Prepares the process, before other threads exist; records panic locations; with `RUST_BACKTRACE`, also prints.
 pub fn install() {
+    system::prepare();
     let usual = panic::take_hook();
     panic::set_hook(Box::new(move |panic| {
         let place = panic.location().map(ToString::to_string);
@@ -35,9 +36,9 @@ const FILES: usize = 16;
 pub fn check_files() -> Result<(), Failure> {
     let mut open = Vec::with_capacity(FILES);
     while open.len() < FILES {
-        match File::open("/dev/null") {
+        match File::open(system::NULL_DEVICE) {
             Ok(file) => open.push(file),
-            Err(error) if machine::lacks_files(&error) => {
+            Err(error) if system::lacks_files(&error) => {
                 let found = open.len();
                 let text = format!(
                     "open files: found a limit of {found}, expected {FILES} or more. Raise the system limit (ulimit -n)"
@@ -49,45 +50,6 @@ pub fn check_files() -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Address space per malloc arena [bytes]; 64 MiB are reserved.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
-const ARENA: u64 = 1 << 30;
-
-/// Limits malloc arenas under an address space limit: threads without one allocate by mmap, 100 times slower.
-#[cfg(all(target_os = "linux", target_env = "gnu"))]
-pub fn share_arenas() {
-    let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
-    // SAFETY: `getrlimit` only writes the given struct.
-    let code = unsafe { libc::getrlimit(libc::RLIMIT_AS, &mut limit) };
-    if code == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
-        let arenas = (limit.rlim_cur / ARENA).clamp(1, 1024) as libc::c_int;
-        // SAFETY: set before other threads exist.
-        unsafe { libc::mallopt(libc::M_ARENA_MAX, arenas) };
-    }
-}
-
-/// Turns SIGXFSZ into an I/O error.
-#[cfg(unix)]
-pub fn report_large_files() {
-    // Any handler prevents termination.
-    drop(signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()));
-}
-
-/// Makes an abort, such as a stack overflow, exit with code 3.
-#[cfg(unix)]
-pub fn end_at_abort() {
-    const LINE: &[u8] = b"error: memory: found none free, or a stack overflow. Reduce the scene, or raise the system limits (ulimit -v, ulimit -s).\n";
-    let action = || {
-        // SAFETY: pointer and length of a constant.
-        unsafe { libc::write(libc::STDERR_FILENO, LINE.as_ptr().cast(), LINE.len()) };
-        signal_hook::low_level::exit(3);
-    };
-    // SAFETY: only calls `write` and `_exit`, which are async-signal-safe.
-    let registered = unsafe { signal_hook::low_level::register(libc::SIGABRT, action) };
-    // Otherwise the abort signal ends the process.
-    drop(registered);
 }
 
 /// Runs `work`; panics, also in joined threads, become failures.

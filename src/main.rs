@@ -8,14 +8,7 @@ use trackbed::{allocator, guard, message};
 static ALLOCATOR: allocator::Allocator = allocator::Allocator;
 
 fn main() -> ExitCode {
-    #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    guard::share_arenas();
     guard::install();
-    #[cfg(unix)]
-    {
-        guard::report_large_files();
-        guard::end_at_abort();
-    }
     // clap's exit code for wrong usage is also 2.
     let work = || {
         let command = trackbed::cli::Cli::read()?.command;

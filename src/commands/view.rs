@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::message;
 use crate::results::series;
 use crate::run::size;
+use crate::system;
 use crate::view::{self, Coding, Results};
 
 /// Serves results, or exports one HTML file.
@@ -58,11 +59,7 @@ fn serve(args: &ViewArgs) -> Result<(), Failure> {
 }
 
 fn open(address: &str) {
-    let program = match std::env::consts::OS {
-        "windows" => "explorer",
-        "macos" => "open",
-        _ => "xdg-open",
-    };
+    let program = system::BROWSER;
     let quiet = std::process::Stdio::null;
     let started = std::process::Command::new(program)
         .arg(address)

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read, Take};
 use std::path::Path;
 
-use crate::machine;
+use crate::system;
 
 /// Largest file of a scene, stone library or table [bytes].
 pub(crate) const LARGEST_TEXT: u64 = 64 << 20;
@@ -29,7 +29,7 @@ impl Refusal {
     }
 
     pub fn sentence(self, file: &Path) -> String {
-        let (found, expected) = self.words(|e| machine::words(&e));
+        let (found, expected) = self.words(|e| system::words(&e));
         format!("{}: found {found}, expected {expected}", file.display())
     }
 }
@@ -67,7 +67,7 @@ fn too_large(size: u64, most: u64, why: &str) -> Refusal {
 /// As [`open`]; insufficient memory.
 pub(crate) fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
     let mut source = open(file, most)?;
-    let free = machine::available().map_or(most, |free| free / SHARE);
+    let free = system::available().map_or(most, |free| free / SHARE);
     let (least, why) = if free < most { (free, ", what the free memory allows") } else { (most, "") };
     let size = source.get_ref().metadata()?.len();
     if size > least {

@@ -6,6 +6,7 @@ use crate::replaced;
 use crate::results::tables::Table;
 use crate::run::RunFile;
 use crate::scene::{Document, Scene};
+use crate::system;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -176,7 +177,7 @@ fn summary(file: &Path) -> Result<Value, Failure> {
 fn lock(dir: &Path) -> Option<(u32, bool)> {
     let text = std::fs::read_to_string(dir.join("run.lock")).ok()?;
     let process: u32 = text.lines().next()?.trim().parse().ok()?;
-    Some((process, Path::new("/proc").join(process.to_string()).exists()))
+    Some((process, system::is_running(process)))
 }
 
 /// Makes labels unique by longer paths, then numbers.

@@ -140,7 +140,8 @@ pub fn folders(root: &Path) -> Vec<String> {
     while let Some((folder, depth)) = open.pop() {
         looked += 1;
         if root.join(&folder).join(SERIES).is_file() {
-            found.push(folder.to_string_lossy().into_owned());
+            let names: Vec<_> = folder.iter().map(|name| name.to_string_lossy()).collect();
+            found.push(names.join("/"));
         }
         let Ok(entries) = fs::read_dir(root.join(&folder)) else { continue };
         for entry in entries.flatten() {

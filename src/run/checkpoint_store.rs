@@ -3,6 +3,7 @@
 use super::checkpoint::{Body, Moment, Slots};
 use crate::failure::Failure;
 use crate::message;
+use crate::system;
 use std::cell::{Cell, RefCell};
 use std::io;
 use std::path::Path;
@@ -35,20 +36,11 @@ impl Interrupt {
     /// # Errors
     /// Handlers or thread unavailable.
     pub fn on_signals(after: &'static str) -> Result<Interrupt, Failure> {
-        use signal_hook::consts::{SIGINT, SIGTERM};
         use signal_hook::flag;
-        let mut signals = vec![SIGINT, SIGTERM];
-        #[cfg(unix)]
-        {
-            use signal_hook::consts::SIGHUP;
-            if !is_ignored(SIGHUP) {
-                signals.push(SIGHUP);
-            }
-        }
         let interrupt = Interrupt::default();
         let again = Arc::new(AtomicBool::new(false));
-        for signal in signals {
-            // The first signal finds `again` unset, the second set.
+        for signal in system::stop_signals() {
+            // Order matters: the first signal finds `again` unset, the second set.
             flag::register_conditional_shutdown(signal, 130, again.clone())?;
             flag::register(signal, again.clone())?;
             flag::register(signal, interrupt.stop.clone())?;
@@ -99,15 +91,6 @@ impl Interrupt {
     pub fn after(steps: u64) -> Interrupt {
         Interrupt { steps: Some(steps), ..Interrupt::default() }
     }
-}
-
-/// Whether the signal was ignored at program start.
-#[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
-    mask & (1 << (signal - 1)) != 0
 }
 
 /// Target time between clock checks, from half to twice.

@@ -4,7 +4,7 @@
 //! by a killed run blocks nothing.
 
 use crate::failure::Failure;
-use crate::{machine, message};
+use crate::{message, system};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ impl Lock {
         if dir.exists() && !dir.is_dir() {
             return Err(Failure::Other(format!("{}: found a file, expected a directory", dir.display())));
         }
-        let system = |e: io::Error| Failure::Other(format!("{}: {}", dir.display(), machine::words(&e)));
+        let system = |e: io::Error| Failure::Other(format!("{}: {}", dir.display(), system::words(&e)));
         let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
         let mut made: Vec<PathBuf> = missing.map(PathBuf::from).collect();
         made.reverse();
@@ -78,39 +78,15 @@ impl Lock {
 
     /// Returns the new location of a moved directory, if known.
     pub fn moved(&self) -> Option<Option<PathBuf>> {
-        if self.is_there() {
+        if system::is_at(&self.file, &self.path) {
             return None;
         }
         Some(
-            place(&self.file)
+            system::path_of(&self.file)
                 .and_then(|file| Some(file.parent()?.to_path_buf()))
                 .filter(|dir| dir.join(FILE).exists()),
         )
     }
-
-    /// The file may have been replaced.
-    #[cfg(unix)]
-    fn is_there(&self) -> bool {
-        use std::os::unix::fs::MetadataExt;
-        let (Ok(own), Ok(named)) = (self.file.metadata(), fs::metadata(&self.path)) else { return false };
-        (own.dev(), own.ino()) == (named.dev(), named.ino())
-    }
-
-    #[cfg(not(unix))]
-    fn is_there(&self) -> bool {
-        self.path.exists()
-    }
-}
-
-#[cfg(target_os = "linux")]
-fn place(file: &File) -> Option<PathBuf> {
-    use std::os::fd::AsRawFd;
-    fs::read_link(format!("/proc/self/fd/{}", file.as_raw_fd())).ok()
-}
-
-#[cfg(not(target_os = "linux"))]
-fn place(_: &File) -> Option<PathBuf> {
-    None
 }
 
 /// File, and whether it existed; none if locked by another process.
@@ -119,7 +95,7 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
     for _ in 0..TRIES {
         let before = path.exists();
         let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
-        match file.try_lock() {
+        match system::try_lock(&file) {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Ok(None),
             // Some file systems do not support locks.

@@ -4,8 +4,8 @@
 //! vectors.
 
 use crate::failure::Failure;
-use crate::machine::{available, resident};
 use crate::model::solid::{Analysis, SolidPart};
+use crate::system::{available, resident};
 use serde_json::{Value, json};
 use trackbed_fem::{Method, Regime};
 

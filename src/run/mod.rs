@@ -58,7 +58,6 @@ pub use crate::progress::Verbosity;
 
 use crate::failure::Failure;
 use crate::guard::guarded;
-use crate::machine;
 use crate::message;
 use crate::model::{self, Job};
 use crate::plausible;
@@ -265,7 +264,7 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
         summary.verdict.fail();
     }
     summary.run.peak_memory = peak_memory();
-    summary.run.cpu_seconds = machine::cpu_seconds();
+    summary.run.cpu_seconds = crate::system::cpu_seconds();
     match &result {
         Ok(()) => summary.run.status = "done".into(),
         // Input errors leave no files.

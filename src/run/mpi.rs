@@ -6,12 +6,12 @@
 use super::origin::quoted;
 use crate::failure::Failure;
 use crate::message;
+use crate::system;
 use ::mpi::environment::Universe;
 use ::mpi::request::{Request, StaticScope};
 use ::mpi::topology::SimpleCommunicator;
 use ::mpi::traits::*;
 use ::mpi::{Threading, initialize_with_threading};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
@@ -50,11 +50,7 @@ struct Peer {
 
 impl Peer {
     fn has_ended(&self) -> bool {
-        // State Z: ended, not yet reaped.
-        let state = |text: String| text.rsplit(')').next().and_then(|rest| rest.trim_start().chars().next());
-        self.here
-            && std::fs::read_to_string(format!("/proc/{}/stat", self.process))
-                .map_or(true, |text| matches!(state(text), Some('Z' | 'X')))
+        self.here && system::has_ended(self.process)
     }
 }
 
@@ -90,10 +86,8 @@ pub fn join() -> Result<Option<World>, Failure> {
 }
 
 fn peers(world: &SimpleCommunicator) -> Vec<Peer> {
-    let machine = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let mut own = [0_u8; NAME + 4];
-    let name = machine.trim().bytes().take(NAME);
-    own.iter_mut().zip(name).for_each(|(to, from)| *to = from);
+    system::host_name(&mut own[..NAME]);
     own[NAME..].copy_from_slice(&std::process::id().to_le_bytes());
     let mut all = vec![0_u8; own.len() * world.size() as usize];
     world.all_gather_into(&own[..], &mut all[..]);
@@ -136,8 +130,8 @@ impl World {
         let outcome = if rank == 0 {
             lead(link)
         } else {
-            // Other ranks detect the end of the first.
-            for signal in [SIGTERM, SIGINT, SIGHUP] {
+            // The first rank ends the run; others detect its loss.
+            for signal in system::stop_signals() {
                 _ = signal_hook::flag::register(signal, Arc::default());
             }
             follow(link).map_err(|lost| Failure::Other(lost.to_string()))
@@ -158,9 +152,7 @@ impl World {
     }
 
     fn crowded(&self) -> bool {
-        // SAFETY: `sysconf` has no preconditions.
-        let processors = unsafe { libc::sysconf(libc::_SC_NPROCESSORS_ONLN) };
-        self.peers.iter().filter(|peer| peer.here).count() > usize::try_from(processors).unwrap_or(1)
+        self.peers.iter().filter(|peer| peer.here).count() > system::processors()
     }
 }
 

@@ -3,10 +3,11 @@
 use crate::message::shown;
 use crate::program;
 use crate::read::source;
+use crate::system;
 use std::fs::File;
 use std::io;
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 
 const LONGEST: usize = 400;
 
@@ -38,59 +39,23 @@ pub fn start(
     // Overrides may begin with a dash.
     command.args(set.iter().map(|assignment| format!("--set={assignment}")));
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(log)?);
-    apart(&mut command);
+    system::set_apart(&mut command);
     command.spawn()
 }
 
-/// Separate process group: Ctrl-C arrives once, through the study. Interrupted if the study is killed.
-#[cfg(unix)]
-fn apart(command: &mut Command) {
-    use std::os::unix::process::CommandExt;
-    command.process_group(0);
-    #[cfg(target_os = "linux")]
-    // SAFETY: only async-signal-safe functions after fork; `prctl` is one.
-    unsafe {
-        command.pre_exec(|| match libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM as libc::c_ulong) {
-            0 => Ok(()),
-            _ => Err(io::Error::last_os_error()),
-        });
-    }
-}
-
-#[cfg(not(unix))]
-fn apart(_: &mut Command) {}
-
 /// Requests a checkpoint and stop.
-#[cfg(unix)]
 pub fn interrupt(child: &Child) {
-    if let Ok(process) = i32::try_from(child.id()) {
-        // SAFETY: plain integers. The child is not reaped: its id is valid.
-        unsafe { libc::kill(process, libc::SIGINT) };
-    }
+    system::interrupt(child);
 }
 
-/// Without signals the study waits for the run.
-#[cfg(not(unix))]
-pub fn interrupt(_: &Child) {}
-
-/// Returns exit code (128 + signal) and reason of failure.
+/// Returns exit code (128 + signal number if killed) and reason of failure.
 pub fn verdict(status: ExitStatus, log: &Path) -> (i32, String) {
-    match (status.code(), signal(status)) {
+    match (status.code(), system::signal_of(status)) {
         (Some(0), _) => (0, String::new()),
         (Some(code), _) => (code, reason(log)),
         (None, Some(signal)) => (128 + signal, format!("ended by signal {signal}")),
         (None, None) => (1, "ended without an exit code".into()),
     }
-}
-
-#[cfg(unix)]
-fn signal(status: ExitStatus) -> Option<i32> {
-    std::os::unix::process::ExitStatusExt::signal(&status)
-}
-
-#[cfg(not(unix))]
-fn signal(_: ExitStatus) -> Option<i32> {
-    None
 }
 
 fn reason(log: &Path) -> String {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::machine;
+use crate::system;
 
 /// Error of writing a result file.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// I/O error.
-    #[error("{}: cannot be written: {}", file.display(), machine::words(source))]
+    #[error("{}: cannot be written: {}", file.display(), system::words(source))]
     Io {
         /// Path of the file.
         file: PathBuf,

@@ -1,5 +1,5 @@
 //! Hostile input and environment.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 
 mod files;
 mod folders;

@@ -1,9 +1,11 @@
 //! First steps: `new`, scene schema, completions, `check --json`, overrides by name.
 
-use super::support::{Folder, repository, trackbed};
+use super::support::{Folder, json, repository, trackbed};
 use boon::{Compiler, SchemaIndex, Schemas};
+use clap::CommandFactory;
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use trackbed::cli::Cli;
 use trackbed::scene::schema;
 use trackbed::start::TEMPLATES;
 
@@ -123,17 +125,79 @@ fn the_schema_explains_keys() {
     assert!(without.is_empty(), "no description: {without:?}");
 }
 
-#[test]
-fn completions_know_the_commands() {
-    for shell in ["bash", "zsh", "fish"] {
-        let text = trackbed(["completions", shell]).good().stdout;
-        assert!(
-            ["report", "view", "--resume", "--strict"]
-                .iter()
-                .all(|word| text.contains(word.trim_start_matches('-'))),
-            "{shell}"
-        );
+/// All commands with their names, such as `trackbed-mesh-info`.
+fn commands() -> Vec<(String, clap::Command)> {
+    fn collect(command: &clap::Command, name: &str, all: &mut Vec<(String, clap::Command)>) {
+        all.push((name.to_string(), command.clone()));
+        for inner in command.get_subcommands() {
+            collect(inner, &format!("{name}-{}", inner.get_name()), all);
+        }
     }
+    let mut command = Cli::command().disable_help_subcommand(true);
+    command.build();
+    let mut all = Vec::new();
+    collect(&command, "trackbed", &mut all);
+    all
+}
+
+fn options(command: &clap::Command) -> impl Iterator<Item = &str> {
+    command.get_arguments().filter_map(clap::Arg::get_long)
+}
+
+#[test]
+fn completions_name_every_option() {
+    let commands = commands();
+    assert!(commands.len() > 20, "{}", commands.len());
+    for (shell, dashes) in
+        [("bash", "--"), ("zsh", "--"), ("fish", "-l "), ("elvish", "--"), ("powershell", "--")]
+    {
+        let text = trackbed(["completions", shell]).good().stdout;
+        for (name, command) in &commands {
+            assert!(text.contains(command.get_name()), "{shell}: {name}");
+            for option in options(command) {
+                assert!(text.contains(&format!("{dashes}{option}")), "{shell}: {name}: {option}");
+            }
+        }
+    }
+}
+
+#[test]
+fn manual_has_a_page_for_every_command() {
+    let folder = Folder::new("manual");
+    let pages = folder.join("man/man1");
+    trackbed(["manual", pages.to_str().unwrap()]).good();
+    let commands = commands();
+    for (name, command) in &commands {
+        let page = std::fs::read_to_string(pages.join(format!("{name}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH {name} 1")), "{page}");
+        for option in options(command) {
+            let written = format!("--{option}").replace('-', r"\-");
+            assert!(page.contains(&written), "{name}: {written} is missing in\n{page}");
+        }
+    }
+    assert_eq!(std::fs::read_dir(&pages).unwrap().count(), commands.len());
+    let file = folder.write("file", "");
+    let outcome = trackbed(["manual", file.to_str().unwrap()]);
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (1, 1), "{outcome:?}");
+    assert!(outcome.stderr.ends_with(", expected a writable directory\n"), "{outcome:?}");
+}
+
+#[test]
+fn demo_runs_a_small_track() {
+    let folder = Folder::new("demo");
+    let out = folder.join("demo");
+    let words = ["demo", "--no-view", "--out", out.to_str().unwrap()];
+    let first = trackbed(words).good();
+    for stage in ["settling", "compacting", "equilibrium", "running"] {
+        assert!(first.stderr.contains(stage), "{stage} is missing in {first:?}");
+    }
+    assert!(!first.stderr.contains("warning: "), "{}", first.stderr);
+    let summary = json(&out.join("results/summary.json"));
+    assert_eq!(summary["status"], "done");
+    assert!(out.join("scene/scene.toml").is_file() && out.join("results/results.pvd").is_file());
+    // The second time it only reads the results.
+    let second = trackbed(words).good();
+    assert!(second.stdout.ends_with("run completed, nothing to resume\n"), "{second:?}");
 }
 
 #[test]

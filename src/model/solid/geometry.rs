@@ -1,10 +1,10 @@
 //! Mesh of a solid: from files, or generated.
 
 use crate::failure::Failure;
-use crate::machine;
 use crate::read::{self, MeshFile};
 use crate::scene::solid::{Axis, Block, Order, Solid};
 use crate::scene::{SceneError, Table};
+use crate::system;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use trackbed_fem::mesh::{Constraint, Mesh};
@@ -156,7 +156,7 @@ fn check_counts(block: &Table<Block>, order: Option<Order>) -> Result<(), SceneE
     if elements > MOST_ELEMENTS {
         return Err(block.here(found, format!("at most {MOST_ELEMENTS}")));
     }
-    match machine::available() {
+    match system::available() {
         Some(free) if elements * bytes > free => {
             let expected = format!("at most {}, for whose model the free memory may do", free / bytes);
             Err(block.here(found, expected))

@@ -1,6 +1,6 @@
 //! CPU time on one thread, unaffected by other programs; wall time on several.
 
-use crate::machine;
+use crate::system;
 use std::time::Instant;
 
 /// Running clock.
@@ -14,13 +14,13 @@ pub struct Clock {
 impl Clock {
     /// Starts a clock for work on `threads` threads.
     pub fn start(threads: usize) -> Clock {
-        let used = if threads == 1 { machine::cpu_seconds() } else { None };
+        let used = if threads == 1 { system::cpu_seconds() } else { None };
         Clock { begun: Instant::now(), used }
     }
 
     /// Returns elapsed seconds.
     pub fn seconds(&self) -> f64 {
-        let used = self.used.zip(machine::cpu_seconds()).map(|(before, now)| now - before);
+        let used = self.used.zip(system::cpu_seconds()).map(|(before, now)| now - before);
         let elapsed = self.begun.elapsed().as_secs_f64();
         // The rest is from other threads.
         used.map_or(elapsed, |used| used.min(elapsed))

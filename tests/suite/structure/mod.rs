@@ -98,6 +98,45 @@ fn elementary_functions_use_libm() {
     assert!(found.is_empty(), "{} uses", found.len());
 }
 
+/// Names and paths of one operating system.
+const SYSTEM: [&str; 10] = [
+    "std::os::unix",
+    "std::os::fd",
+    "std::os::linux",
+    "std::os::windows",
+    "libc::",
+    "windows_sys::",
+    "cfg(unix)",
+    "cfg(windows)",
+    "target_os",
+    "target_env",
+];
+
+const SYSTEM_PATHS: [&str; 4] = ["\"/proc/", "\"/dev/", "\"/sys/", "\"/tmp"];
+
+/// Lines of production code, without comments and the test modules at the end of files.
+fn production(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));
+    lines.enumerate().map(|(k, line)| (k + 1, line)).filter(|(_, line)| !line.trim_start().starts_with("//"))
+}
+
+#[test]
+fn only_one_module_differs_between_systems() {
+    let of_program = |file: &str| {
+        ["src/", "dem/src/", "fem/src/", "coupling/src/"].iter().any(|folder| file.starts_with(folder))
+            && !file.starts_with("src/system/")
+            && !file.ends_with("tests.rs")
+            && !file.contains("/tests/")
+    };
+    let mut found = Vec::new();
+    for (file, text) in files(&[".rs"]).iter().filter(|(file, _)| of_program(file)) {
+        let uses = |line: &str| SYSTEM.iter().chain(&SYSTEM_PATHS).any(|name| line.contains(name));
+        let lines = production(text).filter(|(_, line)| uses(line));
+        found.extend(lines.map(|(number, line)| format!("{file}:{number}: {}", line.trim())));
+    }
+    assert!(found.is_empty(), "expected in src/system only:\n{}", found.join("\n"));
+}
+
 #[test]
 fn functions_are_short() {
     let sources = files(&[".rs"]);
