@@ -1,6 +1,6 @@
 //! Body forces: forces without a contact partner, other than gravity and local damping.
 //!
-//! A body force is one file with an `Act` and one line in `body_forces!`.
+//! A body force is one file with an `BodyForceModel` and one line in `body_forces!`.
 //!
 //! Added mass mₐ reacts to all other forces F with −mₐ F/(m + mₐ), stable for any mₐ. Velocities are half a
 //! step old: drag is first order in its relative change of velocity per step.
@@ -17,13 +17,13 @@ pub use water::{DragArea, Measured, Orbit, Water, Wave, WaveError};
 pub use wind::Wind;
 
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
-use crate::bodies::sums::Sums;
+use crate::base::balance_terms::BalanceTerms;
+use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
 use crate::lanes::record::xyz;
 use crate::shape::Shape;
 pub(crate) use skin::Skin;
-pub(crate) use work::{Act, ForceWork, Seen};
+pub(crate) use work::{BodyForceModel, ForceInput, ForceWork};
 
 impl BodyForce {
     pub(crate) fn wave(&self) -> Option<&Wave> {
@@ -46,7 +46,7 @@ macro_rules! body_forces {
         }
 
         impl BodyForce {
-            fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+            fn act(&self, seen: &ForceInput<'_>, work: &mut ForceWork) {
                 match self { $(BodyForce::$name(force) => force.act(seen, work)),+ }
             }
 
@@ -97,10 +97,10 @@ pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Ve
 
 impl ForceWork {
     /// Computes forces and records their impulse; [`ForceWork::add_to`] adds them.
-    pub fn act(&mut self, forces: &[BodyForce], seen: Seen<'_>, ledger: &mut Ledger) {
+    pub fn act(&mut self, forces: &[BodyForce], seen: ForceInput<'_>, ledger: &mut BalanceTerms) {
         let (block, sums, kick) = (seen.block, seen.sums, seen.kick);
         self.acting.clear();
-        self.acting.resize(block.bodies.len(), Sums::default());
+        self.acting.resize(block.bodies.len(), ForceTorque::default());
         self.added.clear();
         for force in forces {
             force.act(&seen, self);

@@ -38,7 +38,7 @@ pub(crate) struct Motion<R> {
 
 /// Shear displacement [m] and relative rotation [rad] of a against b.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Memory<R> {
+pub(crate) struct BondHistory<R> {
     pub shear: V3<R>,
     pub turn: V3<R>,
 }
@@ -74,7 +74,7 @@ pub(crate) fn carry<R: Real>(
     offset: R,
     a: &Motion<R>,
     b: &Motion<R>,
-    memory: &mut Memory<R>,
+    memory: &mut BondHistory<R>,
     dt: R,
 ) -> Frame<R> {
     let half = R::splat(0.5);
@@ -134,7 +134,7 @@ pub(crate) fn respond<R: Real>(
     a: &Motion<R>,
     b: &Motion<R>,
     frame: &Frame<R>,
-    memory: &Memory<R>,
+    memory: &BondHistory<R>,
 ) -> Response<R> {
     let n = frame.normal;
     let tension = k[STIFFNESS] * (frame.length - k[LENGTH]);
@@ -176,7 +176,7 @@ pub(crate) fn holds<R: Real>(r: &Response<R>) -> R::Mask {
 
 /// Elastic energy: tension, shear, bending, twisting [J].
 #[inline(always)]
-pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>) -> f64 {
+pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &BondHistory<f64>) -> f64 {
     let stretch = frame.length - k[LENGTH];
     let (twist, bend) = split(memory.turn, frame.normal);
     0.5 * (k[STIFFNESS] * stretch * stretch
@@ -191,7 +191,7 @@ pub(crate) fn half_step_energy(
     k: &[f64; COUNT],
     a: &Motion<f64>,
     b: &Motion<f64>,
-    memory: &Memory<f64>,
+    memory: &BondHistory<f64>,
     dt: f64,
     since: f64,
 ) -> f64 {

@@ -1,7 +1,7 @@
 //! Selection of sphere pairs to bond.
 
 use crate::base::Vec3;
-use crate::lanes::record::Record;
+use crate::lanes::record::Vec4;
 use crate::spatial::cells::Cells;
 
 /// Pairs (a, b), a < b, with surface gap below `gap` [m] that `accept` selects, ascending. `spheres`:
@@ -11,7 +11,7 @@ pub fn within_gap(
     gap: f64,
     accept: impl Fn(usize, usize) -> bool,
 ) -> Vec<[usize; 2]> {
-    let points: Vec<_> = spheres.iter().map(|(c, r)| Record([c.x, c.y, c.z, *r])).collect();
+    let points: Vec<_> = spheres.iter().map(|(c, r)| Vec4([c.x, c.y, c.z, *r])).collect();
     let radii = points.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), p| (lo.min(p[3]), hi.max(p[3])));
     let mut out = Vec::new();
     if points.is_empty() {

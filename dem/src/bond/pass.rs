@@ -1,16 +1,16 @@
 //! Bond passes of a step: between blocks (slots), within blocks, then breakage in a fixed order.
 
 use super::kernel::{self, COUNT, Motion, carry, respond};
-use super::loops::{Across, Bonds, Within};
+use super::loops::{Bonds, InterBlock, IntraBlock};
 use super::slot::BondSlot;
 use super::store::{BondList, BondState, Entry};
 use super::{BreakMode, Constants, debonded};
 use crate::base::Vec3;
+use crate::base::capacity::capacity_bytes;
 use crate::base::failure::Failure;
-use crate::base::held::held;
 use crate::bodies::block::Block;
-use crate::bodies::sums::Sums;
-use crate::lanes::record::Record;
+use crate::bodies::sums::ForceTorque;
+use crate::lanes::record::Vec4;
 use crate::lanes::{self, Simd, V3};
 use crate::law::Laws;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// Debonded pairs follow bonds.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Share {
+pub(crate) struct BondForces {
     pub place: u32,
     pub block: u32,
     pub slot: u32,
@@ -41,7 +41,7 @@ pub(crate) struct Broken {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ListWork {
-    pub constants: Vec<[Record; COUNT]>,
+    pub constants: Vec<[Vec4; COUNT]>,
     pub slots: Vec<BondSlot>,
     pub found: Vec<u32>,
     pub broken: Vec<Broken>,
@@ -55,7 +55,7 @@ pub(crate) struct ListWork {
 pub(crate) struct BondWork {
     simd: Simd,
     pub cross: Vec<ListWork>,
-    shares: Vec<Vec<Share>>,
+    shares: Vec<Vec<BondForces>>,
 }
 
 impl Default for BondWork {
@@ -66,7 +66,7 @@ impl Default for BondWork {
 
 impl BondWork {
     /// Contributions of bonds between blocks, in summation order.
-    pub fn shares(&self, block: usize) -> &[Share] {
+    pub fn shares(&self, block: usize) -> &[BondForces] {
         self.shares.get(block).map_or(&[], |s| s)
     }
 
@@ -99,15 +99,15 @@ pub(crate) fn link(cross: &[BondList], work: &mut BondWork) {
         let debonded = list.debonded.iter().map(|r| (r.i, r.block, r.j));
         for (slot, (i, block, j)) in list.iter().map(|e| (e.i, e.block, e.j)).chain(debonded).enumerate() {
             w.slots.push(BondSlot::default());
-            let share = Share { place: i, block: b as u32, slot: slot as u32, first: true };
+            let share = BondForces { place: i, block: b as u32, slot: slot as u32, first: true };
             work.shares[b].push(share);
-            work.shares[block as usize].push(Share { place: j, first: false, ..share });
+            work.shares[block as usize].push(BondForces { place: j, first: false, ..share });
         }
     }
 }
 
 fn motion(block: &Block, k: usize) -> Motion<f64> {
-    let vector = |v: &Record| V3::new(v[0], v[1], v[2]);
+    let vector = |v: &Vec4| V3::new(v[0], v[1], v[2]);
     Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
 }
 
@@ -171,7 +171,7 @@ pub(crate) fn cross(
                 groups: &mut list.groups,
                 constants: &w.constants,
                 count: list.count as usize,
-                bodies: Across { own: &blocks[b], blocks, slots: &mut w.slots },
+                bodies: InterBlock { own: &blocks[b], blocks, slots: &mut w.slots },
                 found: &mut w.found,
                 dt: parts.since(),
             };
@@ -207,7 +207,7 @@ pub(crate) fn within(
     b: usize,
     block: &Block,
     list: &mut BondList,
-    sums: &mut [Sums],
+    sums: &mut [ForceTorque],
     w: &mut ListWork,
     shared: &BondWork,
 ) {
@@ -221,7 +221,7 @@ pub(crate) fn within(
             groups: &mut list.groups,
             constants: &w.constants,
             count: list.count as usize,
-            bodies: Within { block, sums },
+            bodies: IntraBlock { block, sums },
             found: &mut w.found,
             dt: parts.since(),
         };
@@ -241,13 +241,17 @@ pub(crate) fn within(
 
 impl ListWork {
     pub fn bytes(&self) -> usize {
-        held(&self.constants) + held(&self.slots) + held(&self.found) + held(&self.broken)
+        capacity_bytes(&self.constants)
+            + capacity_bytes(&self.slots)
+            + capacity_bytes(&self.found)
+            + capacity_bytes(&self.broken)
     }
 }
 
 impl BondWork {
     pub fn bytes(&self) -> usize {
-        self.cross.iter().map(ListWork::bytes).sum::<usize>() + self.shares.iter().map(held).sum::<usize>()
+        self.cross.iter().map(ListWork::bytes).sum::<usize>()
+            + self.shares.iter().map(capacity_bytes).sum::<usize>()
     }
 }
 

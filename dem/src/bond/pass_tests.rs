@@ -96,8 +96,8 @@ fn bonds_survive_a_new_order() {
     let places = state.places.clone();
     // A resting cube stays sorted: permute the axes.
     let positions: Vec<Vec3> = (0..1331).map(|b| state.position(1330 - b).yzx()).collect();
-    let all = crate::engine::order::Turnover::none(&state);
-    crate::engine::order::reorder(&mut state, &model, &positions, &all);
+    let all = crate::engine::reordering::BodyChanges::none(&state);
+    crate::engine::reordering::reorder(&mut state, &model, &positions, &all);
     assert!(places != state.places);
     let moved = places.iter().zip(&state.places).filter(|(a, b)| a[0] != b[0]).count();
     assert!(moved > 100, "{moved}");

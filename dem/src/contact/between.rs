@@ -1,16 +1,16 @@
 //! Contacts of a block's spheres with spheres of other blocks.
 
-use super::ends::{Far, Own};
-use super::group_memory::{FAR, Mix, Spent, four, records, side_by_side};
+use super::ends::{LocalBodies, RemoteBodies};
+use super::group_memory::{Dissipation, FAR, LawLanes, four, records, side_by_side};
 use super::prefetch;
 use super::sphere_pair::contacts;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::lanes::record::Record;
-use crate::lanes::{self, Four, Kernel, Pack, V3};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::lanes::record::Vec4;
+use crate::lanes::{self, Kernel, Simd4, SimdPack, V3};
 use crate::law::{ContactLaw, PairTable};
 use crate::pairs::cross::{Cross, CrossForces};
 use crate::pairs::groups::Group;
@@ -19,10 +19,10 @@ use crate::pairs::groups::Group;
 const AHEAD: usize = 4;
 
 /// Contacts of block `b` with other blocks; forces go to slots.
-pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
+pub(crate) struct Between<'a, L, const CLUMPS: bool, const ROLLING: bool> {
     pub laws: &'a PairTable<L>,
-    pub blocks: Part<'a, Block>,
-    pub members: Part<'a, Members>,
+    pub blocks: BlockSlice<'a, Block>,
+    pub members: BlockSlice<'a, BlockBodies>,
     /// Common material, if any.
     pub material: Option<u32>,
     pub b: usize,
@@ -31,32 +31,32 @@ pub(crate) struct Between<'a, L, const RIGID: bool, const ROLL: bool> {
     pub dt: f64,
 }
 
-impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, L, RIGID, ROLL> {
+impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Between<'_, L, CLUMPS, ROLLING> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Pack>(self) {
+    fn run<R: SimdPack>(self) {
         let Between { laws, blocks, members, material, b: own, lists, out, dt } = self;
         let (mine, own) = (&blocks[own], &members[own]);
         let pairs = &mut lists.spheres;
         let len = pairs.len();
-        let law = Mix::<L, R>::new(laws, material, material);
-        let mut spent = Spent::new();
+        let law = LawLanes::<L, R>::new(laws, material, material);
+        let mut spent = Dissipation::new();
         let (mut spare, mut spare_turn, mut no_turn) =
-            (Group::EMPTY, [Record::default(); 4], [Record::default(); 4]);
+            (Group::EMPTY, [Vec4::default(); 4], [Vec4::default(); 4]);
         let n = mine.centre.len();
         let even = mine.velocity.len() == n && mine.spin.len() == n;
-        assert!(RIGID || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
+        assert!(CLUMPS || len == 0 || even && (pairs.most()[0] as usize) < n, "names are places of bodies");
         let mut deepest = None;
         for g in (0..len.div_ceil(4)).step_by(R::GROUPS) {
             lanes::ahead(&pairs.groups, g + FAR, R::GROUPS);
-            if !RIGID {
+            if !CLUMPS {
                 for ahead in pairs.groups.iter().skip(g + AHEAD).take(R::GROUPS) {
                     prefetch::partners(blocks, ahead);
                 }
             }
             let (p, q) = side_by_side::<R, _>(&mut pairs.groups[g..], &mut spare);
-            let turns = if ROLL {
+            let turns = if ROLLING {
                 side_by_side::<R, _>(&mut pairs.turns[g..], &mut spare_turn)
             } else {
                 (&mut no_turn, &mut spare_turn)
@@ -64,26 +64,26 @@ impl<L: ContactLaw, const RIGID: bool, const ROLL: bool> Kernel for Between<'_, 
             let count = (len - 4 * g).min(R::LANES);
             let ((p, first), (q, second)) = (p.parts(), q.parts());
             // SAFETY: compared above.
-            let a = unsafe { Own::<RIGID>::new::<R>(mine, own, [&p[0], &q[0]]) };
+            let a = unsafe { LocalBodies::<CLUMPS>::new::<R>(mine, own, [&p[0], &q[0]]) };
             let (block, sphere) = ([&p[1], &q[1]], [&p[2], &q[2]]);
-            let mut b = Far { blocks, members, rigid: RIGID, block, sphere, body: [0; 8] };
-            if RIGID {
+            let mut b = RemoteBodies { blocks, members, rigid: CLUMPS, block, sphere, body: [0; 8] };
+            if CLUMPS {
                 for l in 0..count {
                     b.body[l] = members[b.block(l)].body(sphere[l / 4][l % 4]) as usize;
                 }
             }
             let (there, springs) = (R::below(count), (first, second));
-            let width = if RIGID || ROLL { 3 } else { 2 };
+            let width = if CLUMPS || ROLLING { 3 } else { 2 };
             lanes::ahead(&out.slots, (4 * g + 2 * FAR) * width, R::LANES * width);
             let slots = &mut out.slots[4 * g * width..(4 * g + count) * width];
-            match contacts::<L, R, RIGID, ROLL>(&law, &a, &b, springs, turns, there, &mut spent, dt) {
-                None => slots.fill(Record::default()),
+            match contacts::<L, R, CLUMPS, ROLLING>(&law, &a, &b, springs, turns, there, &mut spent, dt) {
+                None => slots.fill(Vec4::default()),
                 Some(found) => {
                     let o = &found.forces;
-                    if RIGID || ROLL {
+                    if CLUMPS || ROLLING {
                         let on_a = records::<R>(o.force, o.torque_a);
                         let on_b = records::<R>(o.torque_b, V3::zero());
-                        let mut last = [Record::default(); 2];
+                        let mut last = [Vec4::default(); 2];
                         for (l, slot) in slots.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                             let [force, torque_a, torque_b] = slot;
                             R::put(on_a[l], &mut last);

@@ -1,103 +1,103 @@
 //! Contact partners in lanes.
 
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::bodies::sums::Tally;
-use crate::lanes::Pack;
-use crate::lanes::record::Record;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::bodies::sums::BlockTotals;
+use crate::lanes::SimdPack;
+use crate::lanes::record::Vec4;
 
 /// Index per lane; with four lanes the others are unused.
-pub(crate) type Names = [usize; 8];
+pub(crate) type LaneIndices = [usize; 8];
 
 /// Contact partner in lanes, with its body's motion.
-pub(crate) trait End {
-    fn sphere(&self, lane: usize) -> &Record;
-    fn centre(&self, lane: usize) -> &Record;
-    fn velocity(&self, lane: usize) -> &Record;
-    fn spin(&self, lane: usize) -> &Record;
+pub(crate) trait BodyLanes {
+    fn sphere(&self, lane: usize) -> &Vec4;
+    fn centre(&self, lane: usize) -> &Vec4;
+    fn velocity(&self, lane: usize) -> &Vec4;
+    fn spin(&self, lane: usize) -> &Vec4;
 }
 
-pub(crate) struct Own<'a, const RIGID: bool> {
-    spheres: &'a [Record],
-    centre: &'a [Record],
-    velocity: &'a [Record],
-    spin: &'a [Record],
+pub(crate) struct LocalBodies<'a, const CLUMPS: bool> {
+    spheres: &'a [Vec4],
+    centre: &'a [Vec4],
+    velocity: &'a [Vec4],
+    spin: &'a [Vec4],
     names: [&'a [u32; 4]; 2],
     /// Clumps and boxes only.
-    body: Names,
+    body: LaneIndices,
 }
 
-impl<'a, const RIGID: bool> Own<'a, RIGID> {
+impl<'a, const CLUMPS: bool> LocalBodies<'a, CLUMPS> {
     /// `names`: spheres by lane.
     ///
     /// # Safety
-    /// If `RIGID = false`, names are below the block's body count.
+    /// If `CLUMPS = false`, names are below the block's body count.
     #[inline(always)]
-    pub unsafe fn new<R: Pack>(
+    pub unsafe fn new<R: SimdPack>(
         block: &'a Block,
-        members: &'a Members,
+        members: &'a BlockBodies,
         names: [&'a [u32; 4]; 2],
-    ) -> Own<'a, RIGID> {
+    ) -> LocalBodies<'a, CLUMPS> {
         let mut body = [0; 8];
-        if RIGID {
+        if CLUMPS {
             for l in 0..R::LANES {
                 body[l] = members.body(names[l / 4][l % 4]) as usize;
             }
         }
         let Block { centre, velocity, spin, .. } = block;
-        Own { spheres: members.spheres(block), centre, velocity, spin, names, body }
+        LocalBodies { spheres: members.spheres(block), centre, velocity, spin, names, body }
     }
 
     #[inline(always)]
     pub fn body(&self, lane: usize) -> usize {
-        if RIGID { self.body[lane] } else { self.names[lane / 4][lane % 4] as usize }
+        if CLUMPS { self.body[lane] } else { self.names[lane / 4][lane % 4] as usize }
     }
 
     #[inline(always)]
-    fn of_body(&self, list: &'a [Record], lane: usize) -> &'a Record {
+    fn of_body(&self, list: &'a [Vec4], lane: usize) -> &'a Vec4 {
         let k = self.body(lane);
         // SAFETY: promised by the caller of `new`; lists have equal length.
-        if RIGID { &list[k] } else { unsafe { list.get_unchecked(k) } }
+        if CLUMPS { &list[k] } else { unsafe { list.get_unchecked(k) } }
     }
 }
 
 /// Whether records and sums have equal length above `most`.
-pub(crate) fn within(block: &Block, tally: &Tally, most: u32) -> bool {
+pub(crate) fn within(block: &Block, totals: &BlockTotals, most: u32) -> bool {
     let n = block.centre.len();
-    block.velocity.len() == n && block.spin.len() == n && tally.sums.len() == n && (most as usize) < n
+    block.velocity.len() == n && block.spin.len() == n && totals.sums.len() == n && (most as usize) < n
 }
 
-impl<const RIGID: bool> End for Own<'_, RIGID> {
+impl<const CLUMPS: bool> BodyLanes for LocalBodies<'_, CLUMPS> {
     #[inline(always)]
-    fn sphere(&self, lane: usize) -> &Record {
-        if RIGID { &self.spheres[self.names[lane / 4][lane % 4] as usize] } else { self.centre(lane) }
+    fn sphere(&self, lane: usize) -> &Vec4 {
+        if CLUMPS { &self.spheres[self.names[lane / 4][lane % 4] as usize] } else { self.centre(lane) }
     }
     #[inline(always)]
-    fn centre(&self, lane: usize) -> &Record {
+    fn centre(&self, lane: usize) -> &Vec4 {
         self.of_body(self.centre, lane)
     }
     #[inline(always)]
-    fn velocity(&self, lane: usize) -> &Record {
+    fn velocity(&self, lane: usize) -> &Vec4 {
         self.of_body(self.velocity, lane)
     }
     #[inline(always)]
-    fn spin(&self, lane: usize) -> &Record {
+    fn spin(&self, lane: usize) -> &Vec4 {
         self.of_body(self.spin, lane)
     }
 }
 
-pub(crate) struct Far<'a> {
-    pub blocks: Part<'a, Block>,
-    pub members: Part<'a, Members>,
+pub(crate) struct RemoteBodies<'a> {
+    pub blocks: BlockSlice<'a, Block>,
+    pub members: BlockSlice<'a, BlockBodies>,
     /// Whether clumps are possible.
     pub rigid: bool,
     pub block: [&'a [u32; 4]; 2],
     pub sphere: [&'a [u32; 4]; 2],
-    pub body: Names,
+    pub body: LaneIndices,
 }
 
-impl<'a> Far<'a> {
+impl<'a> RemoteBodies<'a> {
     #[inline(always)]
     pub fn block(&self, lane: usize) -> usize {
         self.block[lane / 4][lane % 4] as usize
@@ -108,9 +108,9 @@ impl<'a> Far<'a> {
     }
 }
 
-impl End for Far<'_> {
+impl BodyLanes for RemoteBodies<'_> {
     #[inline(always)]
-    fn sphere(&self, lane: usize) -> &Record {
+    fn sphere(&self, lane: usize) -> &Vec4 {
         if self.rigid {
             let block = self.block(lane);
             &self.members[block].spheres(&self.blocks[block])[self.sphere[lane / 4][lane % 4] as usize]
@@ -119,15 +119,15 @@ impl End for Far<'_> {
         }
     }
     #[inline(always)]
-    fn centre(&self, lane: usize) -> &Record {
+    fn centre(&self, lane: usize) -> &Vec4 {
         &self.blocks[self.block(lane)].centre[self.body(lane)]
     }
     #[inline(always)]
-    fn velocity(&self, lane: usize) -> &Record {
+    fn velocity(&self, lane: usize) -> &Vec4 {
         &self.blocks[self.block(lane)].velocity[self.body(lane)]
     }
     #[inline(always)]
-    fn spin(&self, lane: usize) -> &Record {
+    fn spin(&self, lane: usize) -> &Vec4 {
         &self.blocks[self.block(lane)].spin[self.body(lane)]
     }
 }

@@ -1,8 +1,8 @@
 //! Contact history in lanes; law constants, dissipation.
 
-use crate::lanes::record::Record;
-use crate::lanes::{Four, Pack, Real, V3};
-use crate::law::{ContactLaw, FRESH, Memory, PairTable};
+use crate::lanes::record::Vec4;
+use crate::lanes::{Real, Simd4, SimdPack, V3};
+use crate::law::{ContactLaw, HistoryLanes, NO_CONTACT, PairTable};
 use crate::pairs::groups::Springs;
 
 /// Prefetch distance [groups], more than a page.
@@ -10,23 +10,26 @@ pub(crate) const FAR: usize = 32;
 
 /// Groups for the lanes; a missing second one is the spare.
 #[inline(always)]
-pub(crate) fn side_by_side<'a, R: Pack, T>(list: &'a mut [T], spare: &'a mut T) -> (&'a mut T, &'a mut T) {
+pub(crate) fn side_by_side<'a, R: SimdPack, T>(
+    list: &'a mut [T],
+    spare: &'a mut T,
+) -> (&'a mut T, &'a mut T) {
     let (first, rest) = list.split_at_mut(1);
     (&mut first[0], if R::GROUPS > 1 { &mut rest[0] } else { spare })
 }
 
 /// Law in lanes, uniform or mixed.
-pub(crate) struct Mix<'a, L: ContactLaw, R: Real> {
+pub(crate) struct LawLanes<'a, L: ContactLaw, R: Real> {
     laws: &'a PairTable<L>,
     /// Set if one side has a single material.
     one: Option<L::Lanes<R>>,
 }
 
-impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
+impl<'a, L: ContactLaw, R: SimdPack> LawLanes<'a, L, R> {
     /// `a`, `b`: common material of each side, if any.
     #[inline(always)]
-    pub fn new(laws: &'a PairTable<L>, a: Option<u32>, b: Option<u32>) -> Mix<'a, L, R> {
-        Mix { laws, one: a.zip(b).map(|(a, b)| laws.get(a, b).splat()) }
+    pub fn new(laws: &'a PairTable<L>, a: Option<u32>, b: Option<u32>) -> LawLanes<'a, L, R> {
+        LawLanes { laws, one: a.zip(b).map(|(a, b)| laws.get(a, b).splat()) }
     }
 
     #[inline(always)]
@@ -39,42 +42,42 @@ impl<'a, L: ContactLaw, R: Pack> Mix<'a, L, R> {
 }
 
 /// Dissipation by lane.
-pub(crate) struct Spent<Q> {
+pub(crate) struct Dissipation<Q> {
     pub dashpot: Q,
     pub friction: Q,
 }
 
-impl<Q: Four> Spent<Q> {
+impl<Q: Simd4> Dissipation<Q> {
     #[inline(always)]
-    pub fn new() -> Spent<Q> {
-        Spent { dashpot: Q::zero(), friction: Q::zero() }
+    pub fn new() -> Dissipation<Q> {
+        Dissipation { dashpot: Q::zero(), friction: Q::zero() }
     }
 }
 
 #[inline(always)]
-pub(crate) fn recall<R: Pack, const ROLL: bool>(
+pub(crate) fn recall<R: SimdPack, const ROLLING: bool>(
     springs: &(&mut Springs, &mut Springs),
-    turns: &(&mut [Record; 4], &mut [Record; 4]),
-) -> Memory<R> {
+    turns: &(&mut [Vec4; 4], &mut [Vec4; 4]),
+) -> HistoryLanes<R> {
     let (p, q) = springs;
     let [x, y, z] = [0, 1, 2].map(|d| (&p.spring[d], &q.spring[d]));
     let spring = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
     let rate = R::join(&p.rate, &q.rate);
-    if ROLL {
+    if ROLLING {
         let [x, y, z, t] = [0, 1, 2, 3].map(|d| (&turns.0[d], &turns.1[d]));
         let roll = V3::new(R::join(x.0, x.1), R::join(y.0, y.1), R::join(z.0, z.1));
-        Memory { spring, rate, roll, twist: R::join(t.0, t.1) }
+        HistoryLanes { spring, rate, roll, twist: R::join(t.0, t.1) }
     } else {
-        Memory { spring, rate, roll: V3::zero(), twist: R::zero() }
+        HistoryLanes { spring, rate, roll: V3::zero(), twist: R::zero() }
     }
 }
 
 /// Writes history in lanes `on`, resets the others.
 #[inline(always)]
-pub(crate) fn remember<R: Pack, const ROLL: bool>(
+pub(crate) fn remember<R: SimdPack, const ROLLING: bool>(
     springs: &mut (&mut Springs, &mut Springs),
-    turns: &mut (&mut [Record; 4], &mut [Record; 4]),
-    memory: &Memory<R>,
+    turns: &mut (&mut [Vec4; 4], &mut [Vec4; 4]),
+    memory: &HistoryLanes<R>,
     on: R::Mask,
 ) {
     let (p, q) = springs;
@@ -82,8 +85,8 @@ pub(crate) fn remember<R: Pack, const ROLL: bool>(
     spring.x.split(&mut p.spring[0], &mut q.spring[0]);
     spring.y.split(&mut p.spring[1], &mut q.spring[1]);
     spring.z.split(&mut p.spring[2], &mut q.spring[2]);
-    R::select(on, memory.rate, R::splat(FRESH)).split(&mut p.rate, &mut q.rate);
-    if ROLL {
+    R::select(on, memory.rate, R::splat(NO_CONTACT)).split(&mut p.rate, &mut q.rate);
+    if ROLLING {
         let (p, q) = turns;
         let roll = memory.roll.only(on);
         roll.x.split(&mut p[0], &mut q[0]);
@@ -99,6 +102,6 @@ pub(crate) fn four<R: Real>(v: V3<R>, last: R) -> [R; 4] {
 }
 
 #[inline(always)]
-pub(crate) fn records<R: Pack>(force: V3<R>, torque: V3<R>) -> [R::Record; 8] {
+pub(crate) fn records<R: SimdPack>(force: V3<R>, torque: V3<R>) -> [R::Vec4Pair; 8] {
     R::records(four(force, R::zero()), four(torque, R::zero()))
 }

@@ -14,14 +14,14 @@
 
 use super::dispatch;
 use super::patch_forces::PatchForce;
-use super::single::{self, Setting};
+use super::single::{self, StepContext};
 use crate::base::Vec3;
+use crate::base::balance_terms::Impulse;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
-use crate::base::ledger::Impulse;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::sums::{Tally, WallSum};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::sums::{BlockTotals, WallSum};
 use crate::lanes::record::xyz;
 use crate::lanes::{Real, V3};
 use crate::law::{ContactGeometry, History};
@@ -42,19 +42,19 @@ pub(crate) struct PatchWork {
     /// Force sums by wall; empty without walls nearby.
     pub wall_sums: Vec<WallSum>,
     /// Wall contacts for another back end.
-    pub aside: Aside,
+    pub aside: SavedForces,
 }
 
 /// Saved contact forces.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Aside {
+pub(crate) struct SavedForces {
     /// In the order of spheres.
     pub forces: Vec<PatchForce>,
     pub dashpot: f64,
     pub friction: f64,
 }
 
-impl Aside {
+impl SavedForces {
     pub fn clear(&mut self) {
         self.forces.clear();
         (self.dashpot, self.friction) = (0.0, 0.0);
@@ -67,12 +67,12 @@ impl PatchWork {
         &self.forces
     }
 
-    /// Moves the latest contacts and their dissipation out of `tally`.
-    pub fn set_aside(&mut self, tally: &mut Tally) {
+    /// Moves the latest contacts and their dissipation out of `totals`.
+    pub fn set_aside(&mut self, totals: &mut BlockTotals) {
         let PatchWork { forces, aside, .. } = self;
         std::mem::swap(forces, &mut aside.forces);
-        aside.dashpot = std::mem::take(&mut tally.ledger.dissipated_dashpot);
-        aside.friction = std::mem::take(&mut tally.ledger.dissipated_friction);
+        aside.dashpot = std::mem::take(&mut totals.ledger.dissipated_dashpot);
+        aside.friction = std::mem::take(&mut totals.ledger.dissipated_friction);
     }
 }
 
@@ -84,7 +84,7 @@ const SMOOTH: f64 = 0.984_807_753_012_208;
 const SIMILAR: f64 = 0.9;
 
 #[derive(Default)]
-pub(crate) struct Exchange {
+pub(crate) struct SurfaceExchange {
     pub work: f64,
     pub impulse: Impulse,
 }
@@ -214,7 +214,7 @@ pub(crate) fn passed<R: Real>(normal: V3<R>, side: R, old: (V3<R>, R)) -> R::Mas
     old.0.dot(normal).lt(R::splat(-0.5)) & (old.1 * side).le(R::zero())
 }
 
-pub(crate) struct Rest<R: Real> {
+pub(crate) struct InteriorContact<R: Real> {
     pub normal: V3<R>,
     pub overlap: R,
     /// Cosine of contact and patch normal.
@@ -225,12 +225,12 @@ pub(crate) struct Rest<R: Real> {
 
 /// Sphere on a patch interior, centre at `offset` from its foot; motion per step is too small to cross.
 #[inline(always)]
-pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> Rest<R> {
+pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> InteriorContact<R> {
     let along = offset.dot(outward);
     let distance = along.abs();
     let normal = V3::select(along.lt(R::zero()), -outward, outward);
     let stays = distance.lt(r) & (R::splat(SMOOTH) * r).lt(distance);
-    Rest { normal, overlap: r - distance, side: normal.dot(outward), stays }
+    InteriorContact { normal, overlap: r - distance, side: normal.dot(outward), stays }
 }
 
 #[inline(always)]
@@ -278,7 +278,8 @@ fn resting<S: Surface>(
         return None;
     }
     let [point, outward, velocity] = surface.foot(old.patch, [x.x, x.y, x.z])?;
-    let Rest { normal, overlap, side, stays } = rest(V3::from_vec(&(x - point)), V3::from_vec(&outward), r);
+    let InteriorContact { normal, overlap, side, stays } =
+        rest(V3::from_vec(&(x - point)), V3::from_vec(&outward), r);
     stays.then(|| PatchContact { point, normal: normal.to_vec(), velocity, overlap, side, ..*old })
 }
 
@@ -306,7 +307,7 @@ fn after(last: (f64, usize), k: usize, t: &PatchTouch) -> bool {
     t.geometry.overlap < last.0 || (t.geometry.overlap == last.0 && k > last.1)
 }
 
-pub(crate) struct Against<'a, S, M, P> {
+pub(crate) struct ContactSurface<'a, S, M, P> {
     pub surface: &'a S,
     /// By patch: material (index), partner name.
     pub material: M,
@@ -319,16 +320,16 @@ pub(crate) struct Against<'a, S, M, P> {
 
 /// Contacts of a block with a surface: detection, law, application.
 pub(crate) fn contacts<S: Surface>(
-    setting: &Setting<'_>,
-    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
+    setting: &StepContext<'_>,
+    against: &ContactSurface<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
     list: &mut PatchList,
-    (block, members): (&Block, &Members),
-    tally: &mut Tally,
+    (block, members): (&Block, &BlockBodies),
+    totals: &mut BlockTotals,
     work: &mut PatchWork,
-) -> Exchange {
-    find(setting, against, list, (block, members), tally, work);
+) -> SurfaceExchange {
+    find(setting, against, list, (block, members), totals, work);
     dispatch::patch_forces(setting, work.turning, block, &mut work.forces);
-    let exchange = apply(setting, against, (block, members), tally, work);
+    let exchange = apply(setting, against, (block, members), totals, work);
     std::mem::swap(&mut list.live, &mut work.live);
     exchange
 }
@@ -336,14 +337,14 @@ pub(crate) fn contacts<S: Surface>(
 /// Detects contacts and transfers history; results in `work`.
 #[inline(always)]
 fn find<S: Surface>(
-    setting: &Setting<'_>,
-    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
+    setting: &StepContext<'_>,
+    against: &ContactSurface<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
     list: &mut PatchList,
-    (block, members): (&Block, &Members),
-    tally: &mut Tally,
+    (block, members): (&Block, &BlockBodies),
+    totals: &mut BlockTotals,
     work: &mut PatchWork,
 ) {
-    let Against { surface, material, gone, .. } = against;
+    let ContactSurface { surface, material, gone, .. } = against;
     let (surface, gone) = (*surface, *gone);
     let PatchWork { found, live, forces, .. } = work;
     live.clear();
@@ -397,10 +398,10 @@ fn find<S: Surface>(
         }
         for (t, contact) in found.iter().filter(|t| t.counts).zip(now) {
             if let Some((overlap, bound)) = go_on(surface, contact, t, r)
-                && tally.failure.is_none()
+                && totals.failure.is_none()
             {
                 let partner = (against.partner)(t.patch);
-                tally.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
+                totals.failure = Some(Failure::Overlap { body: block.bodies[a], partner, overlap, bound });
             }
             if let Some(way) = surface.correction(t.patch, t.closest.local) {
                 contact.history.displace(&way.into(), &contact.normal);
@@ -432,23 +433,23 @@ fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r:
 
 #[inline(always)]
 fn apply<S: Surface>(
-    setting: &Setting<'_>,
-    against: &Against<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
-    (block, members): (&Block, &Members),
-    tally: &mut Tally,
+    setting: &StepContext<'_>,
+    against: &ContactSurface<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
+    (block, members): (&Block, &BlockBodies),
+    totals: &mut BlockTotals,
     work: &mut PatchWork,
-) -> Exchange {
-    let (Against { surface, material, external, .. }, dt) = (against, setting.dt);
+) -> SurfaceExchange {
+    let (ContactSurface { surface, material, external, .. }, dt) = (against, setting.dt);
     let PatchWork { live, forces, contacts, wall_sums, .. } = work;
     let (mut dashpot, mut friction) = (0.0, work.ended);
-    let mut exchange = Exchange::default();
+    let mut exchange = SurfaceExchange::default();
     for (result, contact) in forces.iter().zip(live) {
         let before = std::mem::replace(&mut contact.history, result.history());
         let (a, force, moment) = (result.body as usize, result.force(), result.moment());
         let spent = result.dissipated();
         dashpot += spent.0;
         friction += spent.1;
-        tally.sums[a].push(&force, &result.torque());
+        totals.sums[a].push(&force, &result.torque());
         let materials = [block.material(a), material(contact.patch)];
         if *external {
             exchange.work += force.dot(&contact.velocity) * dt;
@@ -496,8 +497,8 @@ fn apply<S: Surface>(
             }
         }
     }
-    tally.ledger.dissipated_dashpot += dashpot;
-    tally.ledger.dissipated_friction += friction;
+    totals.ledger.dissipated_dashpot += dashpot;
+    totals.ledger.dissipated_friction += friction;
     exchange
 }
 

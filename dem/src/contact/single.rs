@@ -8,7 +8,7 @@ use crate::lanes::{Real, Simd, V3};
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History, Laws, with_law};
 
 #[derive(Clone, Copy)]
-pub(crate) struct Setting<'a> {
+pub(crate) struct StepContext<'a> {
     pub laws: &'a Laws,
     pub simd: Simd,
     pub dt: f64,

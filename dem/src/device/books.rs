@@ -1,12 +1,12 @@
 //! Sums the block totals of a device in the engine's order.
 
-use super::layout::{Booked, Features, WALL_BOOKED};
+use super::layout::{Features, TotalsPart, WALL_TOTALS};
 use crate::base::Vec3;
-use crate::base::ledger::{Impulse, Ledger};
-use crate::bodies::sums::{Tally, WallSum};
+use crate::base::balance_terms::{BalanceTerms, Impulse};
+use crate::bodies::sums::{BlockTotals, WallSum};
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::engine::step::Collected;
+use crate::engine::step::StepTotals;
 use crate::engine::work::Work;
 
 /// Sums the totals of a step block by block; wall and bond totals go to `work`. `mass`: per block [kg].
@@ -17,27 +17,28 @@ pub(super) fn add_up(
     model: &Model,
     state: &State,
     work: &mut Work,
-) -> Collected {
-    let dt = state.pace.kick();
+) -> StepTotals {
+    let dt = state.step_size.kick();
     let impulse = model.gravity * dt;
-    let mut all = Collected::default();
-    let Collected { sum, fastest, failure } = &mut all;
+    let mut all = StepTotals::default();
+    let StepTotals { sum, fastest, failure } = &mut all;
     let mut fastest2 = 0.0_f64;
     work.surface_contacts.clear();
     for ((b, booked), mass) in books.chunks_exact(f.quantities()).enumerate().zip(mass) {
         if f.beside && work.members[b].solid() {
-            let tally = &work.blocks[b].tally;
-            *sum += &tally.ledger;
-            *fastest = fastest.max(tally.fastest);
-            *failure = failure.or(work.cross[b].failure).or(tally.failure);
+            let totals = &work.blocks[b].totals;
+            *sum += &totals.ledger;
+            *fastest = fastest.max(totals.fastest);
+            *failure = failure.or(work.cross[b].failure).or(totals.failure);
             add_pairs(sum, work, b, [0.0; 2]);
             continue;
         }
-        let of = |part: Booked| &booked[f.booked(part)];
-        let (spheres, planes, motion) = (of(Booked::Spheres), of(Booked::Planes), of(Booked::Motion));
+        let of = |part: TotalsPart| &booked[f.booked(part)];
+        let (spheres, planes, motion) =
+            (of(TotalsPart::Spheres), of(TotalsPart::Planes), of(TotalsPart::Motion));
         let mut spent = [spheres[2] + planes[0], spheres[3] + planes[1]];
         if f.walls > 0 {
-            let q = of(Booked::Patches);
+            let q = of(TotalsPart::Patches);
             spent = [spent[0] + q[0], spent[1] + q[1]];
             let sum = |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
             if !f.beside {
@@ -45,11 +46,11 @@ pub(super) fn add_up(
             }
             let sums = &mut work.blocks[b].patches.wall_sums;
             sums.clear();
-            sums.extend(q[2..].chunks_exact(WALL_BOOKED).map(sum));
+            sums.extend(q[2..].chunks_exact(WALL_TOTALS).map(sum));
         }
         // Order of the engine's sums: contacts in the block, then cross-block.
         if f.beside {
-            let Tally { ledger, failure: wrong, .. } = &work.blocks[b].tally;
+            let BlockTotals { ledger, failure: wrong, .. } = &work.blocks[b].totals;
             let aside = &work.blocks[b].patches.aside;
             spent = [spent[0] + aside.dashpot, spent[1] + aside.friction];
             spent = [spent[0] + ledger.dissipated_dashpot, spent[1] + ledger.dissipated_friction];
@@ -72,13 +73,13 @@ pub(super) fn add_up(
         sum.gravity.angular += vector(motion, 0).cross(&impulse);
         fastest2 = fastest2.max(motion[3]);
         if f.held {
-            add_held(sum, of(Booked::Held), dt, f.damped);
+            add_held(sum, of(TotalsPart::Held), dt, f.damped);
         }
         if f.periodic {
-            sum.periodic.angular += vector(of(Booked::Images), 0);
+            sum.periodic.angular += vector(of(TotalsPart::Images), 0);
         }
         if f.bonds {
-            let q = of(Booked::Bonds);
+            let q = of(TotalsPart::Bonds);
             let lists = [&mut work.bonds.cross[b], &mut work.blocks[b].bonds];
             for (k, list) in lists.into_iter().enumerate() {
                 list.reset();
@@ -92,7 +93,7 @@ pub(super) fn add_up(
 }
 
 /// Adds CPU pairs of a block, and the loss [J] of its cross-block sphere contacts.
-fn add_pairs(sum: &mut Ledger, work: &mut Work, b: usize, [dashpot, friction]: [f64; 2]) {
+fn add_pairs(sum: &mut BalanceTerms, work: &mut Work, b: usize, [dashpot, friction]: [f64; 2]) {
     let cross = &work.cross[b];
     sum.dissipated_dashpot += dashpot + cross.dashpot;
     sum.dissipated_friction += friction + cross.friction;
@@ -108,7 +109,7 @@ fn vector(q: &[f64], k: usize) -> Vec3 {
     Vec3::new(q[k], q[k + 1], q[k + 2])
 }
 
-fn add_held(sum: &mut Ledger, q: &[f64], kick: f64, damped: bool) {
+fn add_held(sum: &mut BalanceTerms, q: &[f64], kick: f64, damped: bool) {
     let vector = |k: usize| vector(q, k);
     sum.work_constraints += q[7];
     sum.constraints += &Impulse { linear: vector(8), angular: vector(11) };

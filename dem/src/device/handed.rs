@@ -4,11 +4,11 @@ use super::bodies::quaternion;
 use super::layout::{Count, Slot};
 use super::machine::{Call, Machine};
 use crate::contact::patch_forces::PatchForce;
-use crate::engine::beside::{self, Kept};
+use crate::engine::cpu_part::{self, SavedHistory};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::lanes::record::Record;
+use crate::lanes::record::Vec4;
 use crate::spatial::surface::Surface;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub(super) enum Source {
 }
 
 #[derive(Default)]
-pub(super) struct Handed {
+pub(super) struct CpuForces {
     sources: Vec<Source>,
     /// Bodies whose motion the CPU needs: block, index, global index.
     watched: Vec<[u32; 3]>,
@@ -31,20 +31,20 @@ pub(super) struct Handed {
     forces: Vec<[f64; 4]>,
     picked: Vec<[f64; 4]>,
     /// Contact history before the step, if the step may be repeated.
-    kept: Option<Kept>,
+    kept: Option<SavedHistory>,
 }
 
 #[derive(Default)]
-struct InTurn {
+struct BodyOrder {
     block: u32,
     next: usize,
 }
 
-impl InTurn {
+impl BodyOrder {
     /// Appends the forces of a body (block, index); bodies must come in order.
     fn add(&mut self, all: &[PatchForce], [block, place]: [u32; 2], to: &mut Vec<[f64; 4]>) {
         if block != self.block {
-            *self = InTurn { block, next: 0 };
+            *self = BodyOrder { block, next: 0 };
         }
         let own = all[self.next..].iter().take_while(|f| f.body == place);
         for force in own {
@@ -55,13 +55,13 @@ impl InTurn {
     }
 }
 
-impl Handed {
+impl CpuForces {
     fn collect(&mut self, work: &Work) {
-        let Handed { sources, start, forces, .. } = self;
+        let CpuForces { sources, start, forces, .. } = self;
         start.clear();
         forces.clear();
         // Wall and surface contacts are stored in body order.
-        let (mut on_walls, mut on_surface) = (InTurn::default(), InTurn::default());
+        let (mut on_walls, mut on_surface) = (BodyOrder::default(), BodyOrder::default());
         for source in &*sources {
             start.push(forces.len() as u32 / 2);
             match *source {
@@ -80,10 +80,10 @@ impl Handed {
     }
 }
 
-impl Handed {
+impl CpuForces {
     /// Empty. `again`: whether valid steps may have to be repeated on the CPU.
-    pub fn new(again: bool) -> Handed {
-        Handed { kept: again.then(Kept::default), ..Handed::default() }
+    pub fn new(again: bool) -> CpuForces {
+        CpuForces { kept: again.then(SavedHistory::default), ..CpuForces::default() }
     }
 
     pub fn take_over<M: Machine>(
@@ -112,7 +112,7 @@ impl Handed {
         if let Some(kept) = &mut self.kept {
             kept.keep(state);
         }
-        beside::forces(model, state, work, surface);
+        cpu_part::forces(model, state, work, surface);
         self.collect(work);
         machine.put_counts(call.buffer(Slot::HandedStart), &self.start)?;
         machine.put(call.buffer(Slot::Handed), self.forces.as_flattened())
@@ -129,7 +129,7 @@ impl Handed {
         (machine, call): (&mut M, &Call),
         (state, work): (&mut State, &mut Work),
     ) -> Result<(), String> {
-        let Handed { watched, picked, .. } = self;
+        let CpuForces { watched, picked, .. } = self;
         if watched.is_empty() {
             return Ok(());
         }
@@ -139,9 +139,9 @@ impl Handed {
         for ([block, place, _], row) in watched.iter().zip(picked.chunks_exact(width)) {
             let (block, k) = (*block as usize, *place as usize);
             let (members, block) = (&mut work.members[block], &mut state.blocks[block]);
-            block.centre[k] = Record(row[0]);
-            block.velocity[k] = Record(row[1]);
-            block.spin[k] = Record(row[2]);
+            block.centre[k] = Vec4(row[0]);
+            block.velocity[k] = Vec4(row[1]);
+            block.spin[k] = Vec4(row[2]);
             if members.rigid {
                 block.rotation[k].orientation = quaternion(&row[3]);
                 members.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);

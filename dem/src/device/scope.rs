@@ -1,6 +1,6 @@
 //! Model features supported by a device.
 
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::shape::Shape;
 
@@ -16,7 +16,7 @@ pub struct Unsupported(pub &'static str);
 pub fn check(model: &Model) -> Result<(), Unsupported> {
     let shape = |k: usize| model.shape(k);
     let bodies = || 0..model.body_count();
-    let solid = |k: usize| model.body(k).kind == Kind::Solid;
+    let solid = |k: usize| model.body(k).kind == BodyKind::Solid;
     // Rotation about some axes only requires solving a system of equations.
     let about_some = |k: usize| {
         let fixed = model.body(k).fixed >> 3;

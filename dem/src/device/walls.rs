@@ -86,14 +86,14 @@ fn joined(list: &PatchList) -> impl Iterator<Item = Option<&PatchContact>> {
 /// Pair data besides the law's history: remaining distance; in contact also point and overlap, normal and
 /// side, wall velocity and a flag of 1.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct PatchHistory {
     pub spare: Vec<f64>,
     pub touch: Vec<[[f64; 4]; 3]>,
 }
 
-impl Kept {
-    pub fn zeros(pairs: usize) -> Kept {
-        Kept { spare: vec![0.0; pairs], touch: vec![[[0.0; 4]; 3]; pairs] }
+impl PatchHistory {
+    pub fn zeros(pairs: usize) -> PatchHistory {
+        PatchHistory { spare: vec![0.0; pairs], touch: vec![[[0.0; 4]; 3]; pairs] }
     }
 
     /// Appends pairs of a block; `f` gets their histories.

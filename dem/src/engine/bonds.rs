@@ -5,10 +5,10 @@ use super::state::State;
 use super::work::Work;
 use crate::base::failure::Failure;
 use crate::bond::debonded::{self, DebondedPair};
-use crate::bond::kernel::Memory;
+use crate::bond::kernel::BondHistory;
 use crate::bond::pass::{self, Broken, Parts};
 use crate::bond::store::Entry;
-use crate::bond::{BondList, Break, BreakMode, Held};
+use crate::bond::{BondList, BondedPairs, Break, BreakMode};
 use crate::lanes::record::xyz;
 use crate::law::History;
 
@@ -22,7 +22,7 @@ pub(crate) fn arrange(model: &Model, state: &State, work: &mut Work) {
     work.bonds.arrange(&model.bonds, lists, &state.bonds);
 }
 
-pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
+pub(crate) fn hold(model: &Model, state: &State, held: &mut BondedPairs) {
     let mut pairs = Vec::new();
     if !model.bonds.is_empty() {
         state.each_bond(|number, _| {
@@ -36,51 +36,51 @@ pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
     held.set(model.body_count(), pairs);
 }
 
-enum Filed {
-    Bond(u32, Memory<f64>),
+enum BondEntry {
+    Bond(u32, BondHistory<f64>),
     Debonded(DebondedPair),
 }
 
 pub(crate) fn start(model: &Model, state: &mut State) {
     state.bonds.fresh = true;
-    let all = (0..model.bonds.len() as u32).map(|k| Filed::Bond(k, Memory::NONE)).collect();
+    let all = (0..model.bonds.len() as u32).map(|k| BondEntry::Bond(k, BondHistory::NONE)).collect();
     file(model, state, all);
 }
 
-pub(crate) fn take(state: &mut State) -> Unfiled {
+pub(crate) fn take(state: &mut State) -> PendingBonds {
     let mut all = Vec::new();
     let inner: Vec<BondList> = state.lists.iter_mut().map(|l| std::mem::take(&mut l.bonds)).collect();
     for list in inner.into_iter().chain(std::mem::take(&mut state.bonds.cross)) {
-        all.extend(list.iter().map(|e| Filed::Bond(e.number, e.memory)));
-        all.extend(list.debonded.iter().map(|r| Filed::Debonded(*r)));
+        all.extend(list.iter().map(|e| BondEntry::Bond(e.number, e.memory)));
+        all.extend(list.debonded.iter().map(|r| BondEntry::Debonded(*r)));
     }
-    Unfiled(all)
+    PendingBonds(all)
 }
 
-pub(crate) struct Unfiled(Vec<Filed>);
+pub(crate) struct PendingBonds(Vec<BondEntry>);
 
-pub(crate) fn put(model: &Model, state: &mut State, unfiled: Unfiled) {
+pub(crate) fn put(model: &Model, state: &mut State, unfiled: PendingBonds) {
     file(model, state, unfiled.0);
 }
 
-fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
+fn file(model: &Model, state: &mut State, all: Vec<BondEntry>) {
     let blocks = state.blocks.len();
     state.bonds.cross.clear();
     state.bonds.cross.resize_with(blocks, BondList::default);
     let mut entries: [Vec<Vec<Entry>>; 2] = [vec![Vec::new(); blocks], vec![Vec::new(); blocks]];
     for filed in all {
         let number = match &filed {
-            Filed::Bond(number, _) => *number,
-            Filed::Debonded(r) => r.number,
+            BondEntry::Bond(number, _) => *number,
+            BondEntry::Debonded(r) => r.number,
         };
         // First body by model index, independent of block order: signs never flip.
         let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
         let across = usize::from(b != block);
         match filed {
-            Filed::Bond(number, memory) => {
+            BondEntry::Bond(number, memory) => {
                 entries[across][b as usize].push(Entry { number, i, block, j, memory });
             }
-            Filed::Debonded(r) => {
+            BondEntry::Debonded(r) => {
                 let list = if across == 1 {
                     &mut state.bonds.cross[b as usize]
                 } else {
@@ -173,7 +173,7 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
     // Forces use velocities half a step old, work their mean with the next: c v² + ½ c v·Δv. The second term
     // sums to a quarter of the change of power.
     let last = if state.bonds.fresh { power } else { state.bonds.power };
-    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.pace.kick();
+    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.step_size.kick();
     state.bonds.power = power;
     state.bonds.fresh = false;
     changed |= hand_over(state);
@@ -199,7 +199,7 @@ fn part(
     if !bond.contact && mobile {
         let (one, two) = (p.material(i), q.material(j));
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
-        let dt = state.pace.dt;
+        let dt = state.step_size.dt;
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
         // One step and half a step ago, the latter at the new velocity.
         let half = ra + rb - (x - v * (0.5 * dt)).norm();
@@ -226,7 +226,7 @@ fn part(
     pair
 }
 
-pub(crate) const LOOKS: u64 = debonded::EVERY;
+pub(crate) const CHECK_INTERVAL: u64 = debonded::EVERY;
 
 pub(crate) fn any_debonded(state: &State) -> bool {
     let mut any = false;
@@ -243,7 +243,7 @@ pub(crate) fn parted(state: &State) -> ((u64, u64), usize) {
 
 /// Separation checks need current positions and history.
 pub(crate) fn looks_at_separation(state: &State) -> bool {
-    state.steps.is_multiple_of(LOOKS) && any_debonded(state)
+    state.steps.is_multiple_of(CHECK_INTERVAL) && any_debonded(state)
 }
 
 pub(crate) fn hand_over(state: &mut State) -> bool {

@@ -4,13 +4,13 @@
 //! triangle.
 
 use super::block_work::Ground;
-use super::candidates;
+use super::broad_phase;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
+use crate::bodies::block_bodies::BlockBodies;
 use crate::contact::kind::{KINDS, OnGround};
 use crate::lanes::record::xyz;
 use crate::law::scarring::{Scar, Scarring};
@@ -27,7 +27,7 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
         let mut ground = std::mem::take(&mut work.ground);
         ground.clear();
         ground.resize(state.blocks[b].bodies.len(), Ground::default());
-        let now = candidates::now(model, state, &work.members, (&work.walls, &work.sheet));
+        let now = broad_phase::now(model, state, &work.members, (&work.walls, &work.sheet));
         for (kind, list) in KINDS.iter().zip(&state.cross[b].kinds) {
             kind.grounds(&now, b, list, &mut |on: &OnGround| {
                 let patch = &model.patches[on.patch as usize];
@@ -37,12 +37,12 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
                 }
             });
         }
-        let State { blocks, scars, stale, pace, .. } = &mut *state;
+        let State { blocks, scars, stale, step_size, .. } = &mut *state;
         for (k, own) in ground.iter().enumerate() {
             let scar = &mut scars[blocks[b].bodies[k] as usize];
             let body = Body { model, block: &blocks[b], members: &work.members[b], k, down: &down };
             let before = scar.inside;
-            body.follow(scar, own, pace.kick(), &mut heights);
+            body.follow(scar, own, step_size.kick(), &mut heights);
             // Sinking brings further ground within the cut-off.
             *stale |= scar.inside != before;
         }
@@ -78,7 +78,7 @@ fn beneath(facet: &Facet, x: &Vec3, down: &Vec3) -> bool {
 struct Body<'a> {
     model: &'a Model,
     block: &'a Block,
-    members: &'a Members,
+    members: &'a BlockBodies,
     k: usize,
     down: &'a Vec3,
 }

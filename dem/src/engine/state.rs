@@ -1,15 +1,15 @@
 //! State of a run; checkpoints resume bitwise identically.
 //!
-//! Bodies are stored in spatial blocks (`order.rs`); public methods use input indices. Positions are at
+//! Bodies are stored in spatial blocks (`reordering.rs`); public methods use input indices. Positions are at
 //! `time`, velocities half a step earlier (leapfrog). Contact history is stored with the neighbour list.
 
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::block::{Block, spin_of};
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::bond::{BondList, BondState};
 use crate::engine::model::Model;
-use crate::integrate::pace::Pace;
+use crate::integrate::step_size::StepSize;
 use crate::lanes::record::{set_xyz, xyz};
 use crate::law::scarring::Scar;
 use crate::pairs::cross::Cross;
@@ -39,13 +39,13 @@ pub struct State {
     pub steps: u64,
     pub(crate) before: u64,
     /// Work, dissipation and impulse.
-    pub ledger: Ledger,
+    pub ledger: BalanceTerms,
     pub(crate) places: Vec<[u32; 2]>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) lists: Vec<BlockLists>,
     /// By block of the first sphere.
     pub(crate) cross: Vec<Cross>,
-    pub(crate) pace: Pace,
+    pub(crate) step_size: StepSize,
     pub(crate) bonds: BondState,
     pub(crate) planes: Vec<PlaneMotion>,
     pub(crate) walls: Vec<WallState>,
@@ -63,7 +63,7 @@ pub struct State {
     pub(crate) stale: bool,
 }
 
-pub(crate) const NOWHERE: [u32; 2] = [u32::MAX, 0];
+pub(crate) const ABSENT: [u32; 2] = [u32::MAX, 0];
 
 impl State {
     /// Steps since the start or [`State::begin_anew`].
@@ -73,32 +73,32 @@ impl State {
 
     /// Next time step [s]; initially [`Model::dt`].
     pub fn dt(&self) -> f64 {
-        self.pace.dt
+        self.step_size.dt
     }
 
     /// Last time step [s].
     pub fn last_dt(&self) -> f64 {
-        self.pace.last
+        self.step_size.last
     }
 
     /// Velocity increment time [s]: mean of next and last step.
     pub fn kick(&self) -> f64 {
-        self.pace.kick()
+        self.step_size.kick()
     }
 
     /// Last critical time step [s] ([`crate::stability`]).
     pub fn measured_limit(&self) -> Option<f64> {
-        (self.pace.limit > 0.0).then_some(self.pace.limit)
+        (self.step_size.limit > 0.0).then_some(self.step_size.limit)
     }
 
     /// Sets the time step [s].
     pub fn set_dt(&mut self, dt: f64) {
-        self.pace.dt = dt;
+        self.step_size.dt = dt;
     }
 
     /// Returns true if the body is present; absent bodies have no position.
     pub fn present(&self, body: usize) -> bool {
-        self.places[body] != NOWHERE
+        self.places[body] != ABSENT
     }
 
     /// Number of bodies present.
@@ -108,14 +108,14 @@ impl State {
 
     pub(crate) fn number(&mut self, model: &Model) {
         self.places.clear();
-        self.places.resize(model.bodies.len(), NOWHERE);
+        self.places.resize(model.bodies.len(), ABSENT);
         for (b, block) in self.blocks.iter().enumerate() {
             for (k, &body) in block.bodies.iter().enumerate() {
                 self.places[body as usize] = [b as u32, k as u32];
             }
         }
         // Re-inserted bodies start without a scar.
-        let absent = self.scars.iter_mut().zip(&self.places).filter(|(_, place)| **place == NOWHERE);
+        let absent = self.scars.iter_mut().zip(&self.places).filter(|(_, place)| **place == ABSENT);
         absent.for_each(|(scar, _)| *scar = Scar::default());
     }
 
@@ -174,7 +174,7 @@ impl State {
         let place = xyz(&block.centre[k]) + shift;
         set_xyz(&mut block.centre[k], &place);
         if let Some(r) = block.rotation.get_mut(k)
-            && constants.kind != Kind::Sphere
+            && constants.kind != BodyKind::Sphere
             && !(3..6).any(fixed)
         {
             r.orientation = turn * r.orientation;
@@ -261,7 +261,7 @@ impl State {
         self.time = 0.0;
         // The total count fixes sorting steps, hence rounding.
         self.before = self.steps;
-        self.ledger = Ledger::default();
+        self.ledger = BalanceTerms::default();
         self.driven_speed = 0.0;
         self.bonds.breaks.clear();
     }

@@ -7,8 +7,8 @@ use super::model::Model;
 use super::state::State;
 use super::work::Work;
 use crate::base::Vec3;
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
 use crate::bodies::sums::WallSum;
 use crate::integrate::rotation;
 use crate::shape::plane::PlaneMotion;
@@ -31,9 +31,9 @@ pub(crate) fn advance(
     model: &Model,
     state: &mut State,
     work: &Work,
-    ledger: &mut Ledger,
+    ledger: &mut BalanceTerms,
 ) -> (f64, Option<Failure>) {
-    let (kick, dt) = (state.pace.kick(), state.pace.dt);
+    let (kick, dt) = (state.step_size.kick(), state.step_size.dt);
     let bound = 0.5 * model.radii.0 / dt;
     let mut fastest = 0.0_f64;
     let mut failure = None;
@@ -47,7 +47,7 @@ pub(crate) fn advance(
                 let ground = ground(model, &state.planes, kick);
                 let (force, torque) = body::stand(&ground, b, wall.material, own, ledger);
                 let (force, torque) = (force + own.force, torque + own.moment);
-                b.advance(own, &force, &torque, &model.gravity, &state.pace, ledger);
+                b.advance(own, &force, &torque, &model.gravity, &state.step_size, ledger);
                 b.speed(own)
             }
             None => {

@@ -5,7 +5,7 @@
 use super::scatter::Grid;
 use crate::base::Vec3;
 use crate::base::random::Random;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::record::xyz;
@@ -22,7 +22,7 @@ const TRIES: usize = 1000;
 pub const GAP: f64 = 1e-3;
 
 /// Snapshot of an insertion box.
-pub struct Room<'a> {
+pub struct FreeSpace<'a> {
     model: &'a Model,
     state: &'a State,
     surface: &'a dyn Surface,
@@ -33,7 +33,7 @@ pub struct Room<'a> {
     patches: Vec<u32>,
 }
 
-impl<'a> Room<'a> {
+impl<'a> FreeSpace<'a> {
     /// Free space left by all bodies but `without`, for grains of bounding radii up to `largest` [m].
     pub fn new(
         model: &'a Model,
@@ -42,7 +42,7 @@ impl<'a> Room<'a> {
         region: BoxRegion,
         largest: f64,
         without: impl Fn(usize) -> bool,
-    ) -> Room<'a> {
+    ) -> FreeSpace<'a> {
         let mut near: Vec<(Vec3, f64)> = Vec::new();
         let mut boxes = Vec::new();
         let meets = |x: &Vec3, r: f64| (0..3).all(|d| x[d] + r > region.low[d] && x[d] - r < region.high[d]);
@@ -54,7 +54,7 @@ impl<'a> Room<'a> {
                     continue;
                 }
                 let (centre, reach) = (xyz(&block.centre[k]), block.centre[k][3]);
-                let solid = model.bodies.kind(body) == Kind::Solid;
+                let solid = model.bodies.kind(body) == BodyKind::Solid;
                 if solid && !model.shape(body).dilated() {
                     boxes.push((centre, block.rotation[k].orientation, model.half(body)));
                     continue;
@@ -77,7 +77,7 @@ impl<'a> Room<'a> {
         let radii = near.iter().map(|s| s.1).fold(largest, f64::max) * (1.0 + GAP);
         let mut spheres = Grid::new(region.low, region.high, 2.0 * radii, radii);
         near.into_iter().for_each(|(x, r)| spheres.add(x, r));
-        Room { model, state, surface, region, spheres, boxes, patches: Vec::new() }
+        FreeSpace { model, state, surface, region, spheres, boxes, patches: Vec::new() }
     }
 
     /// Occupies the position of a simultaneously inserted grain; `radius` [m].
@@ -87,7 +87,7 @@ impl<'a> Room<'a> {
 
     /// Finds and occupies a random position and orientation for a grain of bounding `radius` [m]; `None` if
     /// the box is full.
-    pub fn place(&mut self, radius: f64, random: &mut Places) -> Option<(Vec3, UnitQuaternion<f64>)> {
+    pub fn place(&mut self, radius: f64, random: &mut FreePositions) -> Option<(Vec3, UnitQuaternion<f64>)> {
         let r = radius * (1.0 + GAP);
         let (low, high) = (self.region.low.add_scalar(r), self.region.high.add_scalar(-r));
         let mut stream = random.next();
@@ -103,7 +103,7 @@ impl<'a> Room<'a> {
     }
 
     fn free(&mut self, x: &Vec3, r: f64) -> bool {
-        let Room { model, state, .. } = *self;
+        let FreeSpace { model, state, .. } = *self;
         let clear_of_planes = model
             .planes
             .iter()
@@ -152,15 +152,15 @@ fn images(model: &Model) -> Vec<Vec3> {
 
 /// Random streams, one per grain: values depend on seed and request count only, also after a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Places {
+pub struct FreePositions {
     seed: u64,
     requests: u64,
 }
 
-impl Places {
+impl FreePositions {
     /// Starts the streams of a seed.
-    pub fn new(seed: u64) -> Places {
-        Places { seed, requests: 0 }
+    pub fn new(seed: u64) -> FreePositions {
+        FreePositions { seed, requests: 0 }
     }
 
     fn next(&mut self) -> Random {

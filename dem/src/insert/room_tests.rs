@@ -48,8 +48,10 @@ fn grains_touch_nothing() {
         let model = model(periodic);
         let state = State::new(&model);
         let fill = || {
-            let (mut room, mut places) =
-                (Room::new(&model, &state, &NoSurface, region, RADIUS, |_| false), Places::new(11));
+            let (mut room, mut places) = (
+                FreeSpace::new(&model, &state, &NoSurface, region, RADIUS, |_| false),
+                FreePositions::new(11),
+            );
             let mut found = Vec::new();
             while let Some((x, _)) = room.place(RADIUS, &mut places) {
                 found.push(x);
@@ -103,14 +105,14 @@ fn room_for_one() {
     let state = State::new(&model);
     let low = Vec3::new(0.5, 0.4, 0.8);
     let region = BoxRegion { low, high: low.add_scalar(0.2) };
-    let mut places = Places::new(1);
-    let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |_| false);
+    let mut places = FreePositions::new(1);
+    let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |_| false);
     assert_eq!(room.place(0.06, &mut places), None);
-    let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
+    let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     assert_eq!(room.place(0.11, &mut places), None);
     let first = room.place(0.06, &mut places).unwrap();
     // A later request sees the same space, but draws another position.
-    let mut room = Room::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
+    let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     let second = room.place(0.06, &mut places).unwrap();
     assert!(first.0 != second.0 && first.1 != second.1);
 }

@@ -1,12 +1,12 @@
 //! Kicks and rotations of oriented bodies.
 
 use super::rotation;
-use crate::lanes::turn::{self, Turn, over};
+use crate::lanes::turn::{self, QuaternionLanes, over};
 use crate::lanes::{Real, V3};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rigid<R> {
-    pub orientation: Turn<R>,
+    pub orientation: QuaternionLanes<R>,
     /// Global axes.
     pub momentum: V3<R>,
     pub spin: V3<R>,
@@ -15,7 +15,7 @@ pub(crate) struct Rigid<R> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned<R> {
-    pub orientation: Turn<R>,
+    pub orientation: QuaternionLanes<R>,
     pub momentum: V3<R>,
     pub spin: V3<R>,
     /// Mean angular velocity of the kick.
@@ -30,7 +30,7 @@ pub(crate) fn kicked<R: Real>(body: &Rigid<R>, torque: V3<R>, kick: R) -> V3<R> 
 /// Orientation, angular velocity, power of the local damping torque.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Among<R> {
-    pub orientation: Turn<R>,
+    pub orientation: QuaternionLanes<R>,
     pub spin: V3<R>,
     pub power: R,
 }
@@ -42,7 +42,7 @@ pub(crate) fn among<R: Real, const DAMPED: bool>(
     sphere: R::Mask,
     (impulse, stop): (V3<R>, V3<R>),
     momentum: V3<R>,
-    new: Turn<R>,
+    new: QuaternionLanes<R>,
 ) -> Among<R> {
     let Rigid { orientation: old, spin: before, inertia, .. } = *body;
     let rate = new.apply(over(new.back(momentum), inertia));
@@ -55,7 +55,10 @@ pub(crate) fn among<R: Real, const DAMPED: bool>(
         power = stop.dot(before + kicked) * R::splat(0.5);
     }
     Among {
-        orientation: Turn { v: V3::select(sphere, old.v, new.v), s: R::select(sphere, old.s, new.s) },
+        orientation: QuaternionLanes {
+            v: V3::select(sphere, old.v, new.v),
+            s: R::select(sphere, old.s, new.s),
+        },
         spin: V3::select(sphere, of_sphere, rate),
         power,
     }
@@ -63,7 +66,7 @@ pub(crate) fn among<R: Real, const DAMPED: bool>(
 
 /// `momentum`, `new`: after the step.
 #[inline(always)]
-pub(crate) fn alone<R: Real>(body: &Rigid<R>, momentum: V3<R>, new: Turn<R>) -> Turned<R> {
+pub(crate) fn alone<R: Real>(body: &Rigid<R>, momentum: V3<R>, new: QuaternionLanes<R>) -> Turned<R> {
     let kicked = turn::spin(body.orientation, momentum, body.inertia);
     let spin = turn::spin(new, momentum, body.inertia);
     Turned { orientation: new, momentum, spin, mean: (body.spin + kicked) * R::splat(0.5) }

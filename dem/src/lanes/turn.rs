@@ -5,12 +5,12 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Unit quaternion: vector and scalar part.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn<R> {
+pub(crate) struct QuaternionLanes<R> {
     pub v: V3<R>,
     pub s: R,
 }
 
-impl<R: Real> Turn<R> {
+impl<R: Real> QuaternionLanes<R> {
     #[inline(always)]
     pub fn apply(self, x: V3<R>) -> V3<R> {
         let t = self.v.cross(x) * R::splat(2.0);
@@ -24,7 +24,7 @@ impl<R: Real> Turn<R> {
         x + t * self.s + t.cross(self.v)
     }
 
-    /// As [`Turn::apply`], with nalgebra's bits, for bodies integrated singly.
+    /// As [`QuaternionLanes::apply`], with nalgebra's bits, for bodies integrated singly.
     #[inline(always)]
     pub fn times(self, x: V3<R>) -> V3<R> {
         let t = self.v.cross(x) * R::splat(2.0);
@@ -32,14 +32,14 @@ impl<R: Real> Turn<R> {
     }
 
     #[inline(always)]
-    pub fn inverse(self) -> Turn<R> {
-        Turn { v: -self.v, s: self.s }
+    pub fn inverse(self) -> QuaternionLanes<R> {
+        QuaternionLanes { v: -self.v, s: self.s }
     }
 
     /// Columns of the rotation matrix.
     #[inline(always)]
     pub fn columns(self) -> [V3<R>; 3] {
-        let Turn { v: V3 { x: i, y: j, z: k }, s } = self;
+        let QuaternionLanes { v: V3 { x: i, y: j, z: k }, s } = self;
         let two = R::splat(2.0);
         let (ii, jj, kk, ss) = (i * i, j * j, k * k, s * s);
         let (ij, ik, jk) = (i * j * two, i * k * two, j * k * two);
@@ -52,10 +52,10 @@ impl<R: Real> Turn<R> {
     }
 }
 
-impl Turn<f64> {
+impl QuaternionLanes<f64> {
     #[inline(always)]
-    pub fn of(q: &UnitQuaternion<f64>) -> Turn<f64> {
-        Turn { v: V3::new(q.i, q.j, q.k), s: q.w }
+    pub fn of(q: &UnitQuaternion<f64>) -> QuaternionLanes<f64> {
+        QuaternionLanes { v: V3::new(q.i, q.j, q.k), s: q.w }
     }
 
     #[inline(always)]
@@ -78,13 +78,13 @@ pub(crate) fn over<R: Real>(a: V3<R>, inertia: V3<R>) -> V3<R> {
 
 /// Angular velocity from angular momentum, global axes.
 #[inline(always)]
-pub(crate) fn spin<R: Real>(q: Turn<R>, momentum: V3<R>, inertia: V3<R>) -> V3<R> {
+pub(crate) fn spin<R: Real>(q: QuaternionLanes<R>, momentum: V3<R>, inertia: V3<R>) -> V3<R> {
     q.times(over(q.inverse().times(momentum), inertia))
 }
 
 /// Angular momentum from angular velocity, global axes.
 #[inline(always)]
-pub(crate) fn momentum<R: Real>(q: Turn<R>, spin: V3<R>, inertia: V3<R>) -> V3<R> {
+pub(crate) fn momentum<R: Real>(q: QuaternionLanes<R>, spin: V3<R>, inertia: V3<R>) -> V3<R> {
     let local = q.inverse().times(spin);
     q.times(V3::new(local.x * inertia.x, local.y * inertia.y, local.z * inertia.z))
 }
@@ -102,7 +102,7 @@ mod tests {
             let vector = |i: i32| Vec3::new(x(i), x(i + 1), x(i + 2));
             let q = UnitQuaternion::new_normalize(Quaternion::new(x(0), x(1), x(2), x(3)));
             let (a, b, inertia) = (vector(4), vector(7), vector(10).map(|i| 1.5 + i));
-            let (turn, of) = (Turn::of(&q), V3::from_vec);
+            let (turn, of) = (QuaternionLanes::of(&q), V3::from_vec);
             let local = q.inverse_transform_vector(&a);
             let found = spin(turn, of(&a), of(&inertia)).to_vec();
             assert_eq!(found, q * local.component_div(&inertia));

@@ -12,14 +12,14 @@
 
 use super::adhesion;
 use super::constants::{Constants, constants};
-use super::contact::{FRESH, History, LawInput, LawOutput, Linearised, Memory};
+use super::contact::{History, HistoryLanes, LawInput, LawOutput, Linearised, NO_CONTACT};
 use super::contact_law::ContactLaw;
 use super::damping::Damping;
 use super::material::{LawName, Pair, harmonic};
-use super::normal::{Expected, NormalLaw, Touch};
+use super::normal::{Expected, NormalInput, NormalLaw};
 use super::slide;
 use super::tangential::TangentialLaw;
-use super::turning::{self, Turning, turning};
+use super::turning::{self, RollingTwisting, turning};
 use crate::lanes::{Real, V3};
 
 /// Pair constants with normal law `N` and tangential law `T`.
@@ -145,23 +145,23 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     #[inline(always)]
-    fn evaluate<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLLING: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
-        memory: &mut Memory<R>,
+        memory: &mut HistoryLanes<R>,
         on: R::Mask,
         step: R,
     ) -> LawOutput<R> {
         let (n, overlap, common) = (touch.normal, touch.overlap, &law.common);
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
-        let fresh = memory.rate.equals(R::splat(FRESH));
+        let fresh = memory.rate.equals(R::splat(NO_CONTACT));
         // Other history: the last half-step speed serves; its errors cancel over an oscillation.
         let remembered_approach = if N::REMEMBERS { approach } else { memory.rate };
         let Onset { now, time, weight } =
-            onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLL);
+            onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLLING);
 
-        let pressed = Touch {
+        let pressed = NormalInput {
             inverse_mass: touch.inverse_mass,
             radius: touch.radius,
             overlap,
@@ -197,7 +197,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
 
         let (mut moment, mut net) = (V3::zero(), normal);
-        if ROLL {
+        if ROLLING {
             net = normal - common.pull * touch.radius * weight;
             if let Some(c) = &carried {
                 let length2 = memory.roll.norm2() + memory.twist * memory.twist;
@@ -205,7 +205,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
                 memory.roll = memory.roll * c.kept;
                 memory.twist = memory.twist * c.kept;
             }
-            let part = Turning {
+            let part = RollingTwisting {
                 stiffness: grip.stiffness,
                 damping: cs,
                 rolling: common.rolling,
@@ -245,10 +245,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     #[inline(always)]
-    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R {
+    fn stored_in_springs<R: Real, const ROLLING: bool>(law: &Self::Lanes<R>, memory: &HistoryLanes<R>) -> R {
         let Some(stiffness) = T::at_end::<R>(&law.tangential) else { return R::zero() };
         let mut length2 = memory.spring.norm2();
-        if ROLL {
+        if ROLLING {
             length2 = length2 + memory.roll.norm2() + memory.twist * memory.twist;
         }
         R::splat(0.5) * stiffness * length2
@@ -266,7 +266,8 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let law = self.normal.splat::<f64>();
         let (remembered, fresh) = (history.rate, history.is_fresh());
         let inverse_mass = 1.0 / mass;
-        let touch = Touch { inverse_mass, radius, overlap, approach: 0.0, remembered, fresh, step: 0.0 };
+        let touch =
+            NormalInput { inverse_mass, radius, overlap, approach: 0.0, remembered, fresh, step: 0.0 };
         let damping = if N::DASHPOT { N::respond(&law, &touch).damping } else { 0.0 };
         let tangential = self.tangential.stiffness(self.normal.circle(overlap, radius, remembered));
         let (c, turn) = (&self.common, tangential * radius * radius);

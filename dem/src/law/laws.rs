@@ -5,8 +5,8 @@ use super::contact_law::ContactLaw;
 use super::edges;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
-use super::table::{ConicalLaw, HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
-use crate::lanes::Pack;
+use super::table::{AnyLaw, ConicalLaw, HertzLaw, LinearLaw, RoughLaw, Row, number_of, once, title};
+use crate::lanes::SimdPack;
 
 /// Mixed constants of all pairs.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl<L: ContactLaw> PairTable<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
+    pub(crate) fn lanes<R: SimdPack>(&self, a: R, b: R) -> L::Lanes<R> {
         let (a, b) = (a.numbers(), b.numbers());
         let mut laws = [&self.pairs[0]; 8];
         for l in 0..R::LANES {
@@ -87,7 +87,7 @@ pub(crate) enum Laws {
     Rough(PairTable<RoughLaw>),
     Hertz(PairTable<HertzLaw>),
     Conical(PairTable<ConicalLaw>),
-    Mixed(PairTable<Mixed>),
+    AnyLaw(PairTable<AnyLaw>),
 }
 
 /// Evaluates with the table in use.
@@ -98,7 +98,7 @@ macro_rules! with_law {
             $crate::law::Laws::Rough($table) => $body,
             $crate::law::Laws::Hertz($table) => $body,
             $crate::law::Laws::Conical($table) => $body,
-            $crate::law::Laws::Mixed($table) => $body,
+            $crate::law::Laws::AnyLaw($table) => $body,
         }
     };
 }
@@ -123,7 +123,7 @@ impl Laws {
             // Bitwise Hertz for pairs without crushing corners.
             Laws::Conical(PairTable::new(materials, exceptions))
         } else {
-            Laws::Mixed(PairTable::new(materials, exceptions))
+            Laws::AnyLaw(PairTable::new(materials, exceptions))
         }
     }
 

@@ -11,7 +11,7 @@
 use super::constants::constants;
 use super::lag;
 use super::material::Pair;
-use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
+use super::normal::{ConstantStiffness, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -42,7 +42,7 @@ impl NormalLaw for Linear {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(law: &Linear<R>, touch: &Touch<R>) -> Response<R> {
+    fn respond<R: Real>(law: &Linear<R>, touch: &NormalInput<R>) -> Response<R> {
         let root = touch.inverse_mass.sqrt();
         let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * touch.step * root);
         let circle = (touch.radius * touch.overlap).sqrt();

@@ -15,7 +15,7 @@
 use super::constants::constants;
 use super::hertz::Hertz;
 use super::material::{LawName, Material, Pair};
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -47,15 +47,15 @@ impl TangentialLaw<Hertz> for Mindlin {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &Mindlin<R>, circle: R) -> Grip<R> {
-        Grip { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
+    fn grip<R: Real>(law: &Mindlin<R>, circle: R) -> SpringInput<R> {
+        SpringInput { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
     }
 
     #[inline(always)]
-    fn carry<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<Carried<R>> {
+    fn carry<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
         let kept = (before / circle).min(R::splat(1.0));
         let loss = R::splat(4.0) * law.shear * (before - circle * kept * kept);
-        Some(Carried { kept, loss })
+        Some(SpringTransfer { kept, loss })
     }
 
     /// Stiffness and energy vanish with the overlap; only the last step's loss is neglected.

@@ -4,56 +4,56 @@
 macro_rules! combinations {
     ($($row:ident($normal:ty, $tangential:ty) = $title:literal),+ $(,)?) => {
         /// All law combinations.
-        pub const COMBINATIONS: &[Combination] =
-            &[$(Combination::of::<$normal, $tangential>($title)),+];
+        pub const COMBINATIONS: &[LawInfo] =
+            &[$(LawInfo::of::<$normal, $tangential>($title)),+];
 
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub(super) enum Row { $($row),+ }
 
         /// Any row of the table.
         #[derive(Clone, Copy, Debug)]
-        pub(crate) enum Mixed { $($row(Composed<$normal, $tangential>)),+ }
+        pub(crate) enum AnyLaw { $($row(Composed<$normal, $tangential>)),+ }
 
         /// Constants of all rows, and the row of each lane.
         #[derive(Clone, Copy, Debug)]
         #[allow(non_snake_case)]
-        pub(crate) struct MixedLanes<R: $crate::lanes::Real> {
+        pub(crate) struct AnyLawLanes<R: $crate::lanes::Real> {
             number: R,
             $($row: <Composed<$normal, $tangential> as $crate::law::constants::Constants>::Lanes<R>),+
         }
 
-        impl Mixed {
+        impl AnyLaw {
             #[inline(always)]
             fn number(&self) -> f64 {
-                match self { $(Mixed::$row(_) => Row::$row as usize as f64),+ }
+                match self { $(AnyLaw::$row(_) => Row::$row as usize as f64),+ }
             }
         }
 
-        impl $crate::law::constants::Constants for Mixed {
-            type Lanes<R: $crate::lanes::Real> = MixedLanes<R>;
+        impl $crate::law::constants::Constants for AnyLaw {
+            type Lanes<R: $crate::lanes::Real> = AnyLawLanes<R>;
 
-            const ZERO: Mixed = {
-                [$(Mixed::$row(<Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO)),+][0]
+            const ZERO: AnyLaw = {
+                [$(AnyLaw::$row(<Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO)),+][0]
             };
 
             #[inline(always)]
-            fn splat<R: $crate::lanes::Real>(&self) -> MixedLanes<R> {
-                MixedLanes {
+            fn splat<R: $crate::lanes::Real>(&self) -> AnyLawLanes<R> {
+                AnyLawLanes {
                     number: R::splat(self.number()),
                     $($row: match self {
-                        Mixed::$row(own) => own.splat(),
+                        AnyLaw::$row(own) => own.splat(),
                         _ => <Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO.splat(),
                     }),+
                 }
             }
 
             #[inline(always)]
-            fn mixed<R: $crate::lanes::Real>(all: [&Mixed; 8], join: fn(&[f64; 8]) -> R) -> MixedLanes<R> {
-                MixedLanes {
+            fn mixed<R: $crate::lanes::Real>(all: [&AnyLaw; 8], join: fn(&[f64; 8]) -> R) -> AnyLawLanes<R> {
+                AnyLawLanes {
                     number: join(&all.map(|law| law.number())),
                     $($row: {
                         let zero = <Composed<$normal, $tangential> as $crate::law::constants::Constants>::ZERO;
-                        let own = all.map(|law| if let Mixed::$row(own) = law { *own } else { zero });
+                        let own = all.map(|law| if let AnyLaw::$row(own) = law { *own } else { zero });
                         let [a, b, c, d, e, f, g, h] = &own;
                         $crate::law::constants::Constants::mixed([a, b, c, d, e, f, g, h], join)
                     }),+
@@ -61,51 +61,51 @@ macro_rules! combinations {
             }
         }
 
-        impl ContactLaw for Mixed {
-            fn mix(pair: &Pair<'_>) -> Mixed {
+        impl ContactLaw for AnyLaw {
+            fn mix(pair: &Pair<'_>) -> AnyLaw {
                 // Rigid pairs have no contacts; others are validated.
                 let number = number_of(pair).ok().flatten().unwrap_or(0);
-                [$(|pair: &Pair<'_>| Mixed::$row(ContactLaw::mix(pair))),+][number](pair)
+                [$(|pair: &Pair<'_>| AnyLaw::$row(ContactLaw::mix(pair))),+][number](pair)
             }
 
-            fn with_friction(&self, friction: f64) -> Mixed {
-                match self { $(Mixed::$row(own) => Mixed::$row(own.with_friction(friction))),+ }
+            fn with_friction(&self, friction: f64) -> AnyLaw {
+                match self { $(AnyLaw::$row(own) => AnyLaw::$row(own.with_friction(friction))),+ }
             }
 
             #[inline(always)]
-            fn evaluate<R: $crate::lanes::Real, const ROLL: bool>(
-                law: &MixedLanes<R>,
+            fn evaluate<R: $crate::lanes::Real, const ROLLING: bool>(
+                law: &AnyLawLanes<R>,
                 touch: &$crate::law::contact::LawInput<R>,
-                memory: &mut $crate::law::contact::Memory<R>,
+                memory: &mut $crate::law::contact::HistoryLanes<R>,
                 on: R::Mask,
                 step: R,
             ) -> $crate::law::contact::LawOutput<R> {
-                use $crate::law::contact::{LawOutput, Memory};
+                use $crate::law::contact::{LawOutput, HistoryLanes};
                 let before = *memory;
                 let mut out = LawOutput::none();
                 $({
                     let own = law.number.equals(R::splat(Row::$row as usize as f64)) & on;
                     if R::any(own) {
                         let mut after = before;
-                        let force = <Composed<$normal, $tangential>>::evaluate::<R, ROLL>(
+                        let force = <Composed<$normal, $tangential>>::evaluate::<R, ROLLING>(
                             &law.$row, touch, &mut after, own, step,
                         );
                         out = LawOutput::select(own, &force, &out);
-                        *memory = Memory::select(own, &after, memory);
+                        *memory = HistoryLanes::select(own, &after, memory);
                     }
                 })+
                 out
             }
 
             #[inline(always)]
-            fn stored_in_springs<R: $crate::lanes::Real, const ROLL: bool>(
-                law: &MixedLanes<R>,
-                memory: &$crate::law::contact::Memory<R>,
+            fn stored_in_springs<R: $crate::lanes::Real, const ROLLING: bool>(
+                law: &AnyLawLanes<R>,
+                memory: &$crate::law::contact::HistoryLanes<R>,
             ) -> R {
                 let mut out = R::zero();
                 $({
                     let own = law.number.equals(R::splat(Row::$row as usize as f64));
-                    let left = <Composed<$normal, $tangential>>::stored_in_springs::<R, ROLL>(&law.$row, memory);
+                    let left = <Composed<$normal, $tangential>>::stored_in_springs::<R, ROLLING>(&law.$row, memory);
                     out = R::select(own, left, out);
                 })+
                 out

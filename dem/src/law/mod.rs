@@ -37,7 +37,9 @@ pub mod walton_braun;
 mod conformance;
 
 pub use constants::Constants;
-pub use contact::{ContactForce, ContactGeometry, FRESH, History, LawInput, LawOutput, Linearised, Memory};
+pub use contact::{
+    ContactForce, ContactGeometry, History, HistoryLanes, LawInput, LawOutput, Linearised, NO_CONTACT,
+};
 pub use contact_law::ContactLaw;
 pub(crate) use laws::{Laws, with_law};
 pub use laws::{PairTable, sources};

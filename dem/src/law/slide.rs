@@ -9,10 +9,10 @@
 //!
 //! Theory manual: eqs (1.5), (1.6), `docs/theory/contacts.md`.
 
-use super::tangential::Grip;
+use super::tangential::SpringInput;
 use crate::lanes::{Real, V3};
 
-pub(crate) struct Slid<V, R> {
+pub(crate) struct SliderOutput<V, R> {
     pub force: V,
     pub dashpot: R,
     pub friction: R,
@@ -24,13 +24,13 @@ pub(crate) fn plane<R: Real>(
     spring: &mut V3<R>,
     normal: V3<R>,
     velocity: V3<R>,
-    grip: &Grip<R>,
+    grip: &SpringInput<R>,
     damping: R,
     limit: R,
     time: R,
     step: R,
     on: R::Mask,
-) -> Slid<V3<R>, R> {
+) -> SliderOutput<V3<R>, R> {
     let stiffness = grip.stiffness;
     let along = spring.dot(normal);
     let flat = *spring - normal * along;
@@ -77,7 +77,7 @@ pub(crate) fn plane<R: Real>(
         force = V3::select(slides, limited, force);
         *spring = V3::select(slides, short, stretched);
     }
-    Slid { force, dashpot, friction }
+    SliderOutput { force, dashpot, friction }
 }
 
 #[inline(always)]
@@ -89,7 +89,7 @@ pub(crate) fn line<R: Real>(
     limit: R,
     time: R,
     step: R,
-) -> Slid<R, R> {
+) -> SliderOutput<R, R> {
     let before = *spring;
     let stretched = before + velocity * time;
     let viscous = velocity * damping;
@@ -105,7 +105,7 @@ pub(crate) fn line<R: Real>(
     let lost = held.only(damped) + (R::splat(0.5) * stiffness * (short + before)).only(!damped);
     *spring = R::select(slides, short, stretched);
     let power = R::select(slides & damped, rate * rate * damping, viscous * velocity);
-    Slid { force, dashpot: power * step, friction: (lost * slide).only(slides) }
+    SliderOutput { force, dashpot: power * step, friction: (lost * slide).only(slides) }
 }
 
 #[cfg(test)]
@@ -128,7 +128,7 @@ mod tests {
                         &mut flat,
                         n,
                         v,
-                        &Grip { stiffness, compliance: None },
+                        &SpringInput { stiffness, compliance: None },
                         damping,
                         limit,
                         dt,

@@ -8,7 +8,7 @@
 use super::constants::constants;
 use super::material::{LawName, Pair, harmonic};
 use super::normal::ConstantStiffness;
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 pub(super) const SOURCE: &str =
@@ -38,12 +38,12 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Spring {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &Spring<R>, _: R) -> Grip<R> {
-        Grip { stiffness: law.stiffness, compliance: Some(law.compliance) }
+    fn grip<R: Real>(law: &Spring<R>, _: R) -> SpringInput<R> {
+        SpringInput { stiffness: law.stiffness, compliance: Some(law.compliance) }
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<Carried<R>> {
+    fn carry<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
         None
     }
 

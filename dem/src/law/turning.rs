@@ -2,14 +2,14 @@
 //!
 //! Theory manual: eq. (1.14), `docs/theory/contacts.md`.
 
-use super::slide::{Slid, line, plane};
-use super::tangential::Grip;
+use super::slide::{SliderOutput, line, plane};
+use super::tangential::SpringInput;
 use crate::lanes::{Real, V3};
 
 pub(super) const SOURCE: &str = "rolling and twisting resistance: Luding, Granular Matter 10, 2008";
 
 /// Tangential stiffness and damping, limits over normal force.
-pub(crate) struct Turning<R> {
+pub(crate) struct RollingTwisting<R> {
     pub stiffness: R,
     pub damping: R,
     pub rolling: R,
@@ -27,14 +27,14 @@ pub(crate) struct Turning<R> {
 /// Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C).
 #[inline(always)]
 pub(crate) fn turning<R: Real>(
-    t: &Turning<R>,
+    t: &RollingTwisting<R>,
     roll: &mut V3<R>,
     twist: &mut R,
     normal: V3<R>,
     spin: V3<R>,
     step: R,
     on: R::Mask,
-) -> Slid<V3<R>, R> {
+) -> SliderOutput<V3<R>, R> {
     let about = spin.dot(normal);
     let rolling = (spin - normal * about) * t.radius;
     let rolls = R::zero().lt(t.rolling);
@@ -43,7 +43,7 @@ pub(crate) fn turning<R: Real>(
         roll,
         normal,
         rolling,
-        &Grip { stiffness: t.stiffness.only(rolls), compliance: None },
+        &SpringInput { stiffness: t.stiffness.only(rolls), compliance: None },
         t.damping.only(rolls),
         t.rolling * t.normal_force,
         t.time,
@@ -61,7 +61,7 @@ pub(crate) fn turning<R: Real>(
     );
     *roll = roll.only(rolls);
     *twist = twist.only(twists);
-    Slid {
+    SliderOutput {
         force: (r.force.only(rolls) + normal * w.force.only(twists)) * t.radius,
         dashpot: r.dashpot.only(rolls) + w.dashpot.only(twists),
         friction: r.friction.only(rolls) + w.friction.only(twists),

@@ -1,6 +1,6 @@
 //! Contact kernels and memory use.
 
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
@@ -39,7 +39,7 @@ pub fn bytes(state: &State, work: &Work) -> usize {
     let bonds: usize = state.bonds.cross.iter().map(|l| l.bytes()).sum();
     let members: usize = work.members.iter().map(|m| m.bytes()).sum();
     let scratch: usize = work.blocks.iter().map(|w| w.bytes()).sum();
-    let slots: usize = work.cross.iter().map(|c| held(&c.slots)).sum();
-    let state_sum = held(&state.places) + blocks + lists.sum::<usize>() + cross + bonds;
+    let slots: usize = work.cross.iter().map(|c| capacity_bytes(&c.slots)).sum();
+    let state_sum = capacity_bytes(&state.places) + blocks + lists.sum::<usize>() + cross + bonds;
     state_sum + members + scratch + slots + work.bonds.bytes()
 }

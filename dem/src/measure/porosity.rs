@@ -6,7 +6,7 @@
 
 use super::{BoxRegion, sphere_box_volume};
 use crate::base::Vec3;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::shape::Shape;
@@ -68,7 +68,7 @@ fn volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f
                 spans.push((c.z - rise2.sqrt(), c.z + rise2.sqrt()));
             }
         }
-        if model.body(body).kind == Kind::Solid {
+        if model.body(body).kind == BodyKind::Solid {
             spans.extend(column_of_solid(model, state, body, x, y));
         }
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -96,7 +96,7 @@ pub fn porosity(model: &Model, state: &State, region: &BoxRegion) -> f64 {
 }
 
 fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) -> (Vec3, Vec3) {
-    if model.body(body).kind == Kind::Solid {
+    if model.body(body).kind == BodyKind::Solid {
         let turn = state.orientation(model, body).to_rotation_matrix();
         let reach = turn.matrix().abs() * model.shape(body).bounding_half(model.scale(body));
         let x = state.position(body);

@@ -1,8 +1,8 @@
 //! Messages of block totals to the first rank.
 
 use super::code::{put, take};
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
 use crate::bodies::sums::WallSum;
 use crate::bond::pass::{Broken, ListWork};
 use crate::engine::work::Work;
@@ -24,7 +24,7 @@ struct Book {
 const LEDGER: usize = 128;
 
 /// Zeros, except −0, take one bit.
-fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
+fn put_ledger(out: &mut Vec<u8>, ledger: &BalanceTerms) {
     let mut room = [0; 8 * LEDGER];
     let count = words(ledger, &mut room);
     for eight in room.as_chunks::<8>().0[..count].chunks(8) {
@@ -35,13 +35,13 @@ fn put_ledger(out: &mut Vec<u8>, ledger: &Ledger) {
 }
 
 /// Returns the number of eight-byte words.
-fn words(ledger: &Ledger, room: &mut [u8]) -> usize {
+fn words(ledger: &BalanceTerms, room: &mut [u8]) -> usize {
     postcard::to_slice(ledger, room).expect("a ledger is so many numbers").len().div_ceil(8)
 }
 
-fn take_ledger(rest: &mut &[u8]) -> Option<Ledger> {
+fn take_ledger(rest: &mut &[u8]) -> Option<BalanceTerms> {
     let mut room = [0; 8 * LEDGER];
-    let count = words(&Ledger::default(), &mut room);
+    let count = words(&BalanceTerms::default(), &mut room);
     for eight in room.as_chunks_mut::<8>().0[..count].chunks_mut(8) {
         let (mask, left) = rest.split_first()?;
         *rest = left;
@@ -92,17 +92,17 @@ pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u
         write_bonds(&work.bonds.cross[b], out);
     }
     for (w, cross) in work.blocks[own.clone()].iter().zip(&work.cross[own]) {
-        let (tally, walls) = (&w.tally, &w.patches.wall_sums);
+        let (totals, walls) = (&w.totals, &w.patches.wall_sums);
         let book = Book {
-            fastest: tally.fastest,
-            failure: tally.failure,
+            fastest: totals.fastest,
+            failure: totals.failure,
             dashpot: cross.dashpot,
             friction: cross.friction,
             failure_across: cross.failure,
             wall_sums: walls.len() as u32,
         };
         put(out, &book);
-        put_ledger(out, &tally.ledger);
+        put_ledger(out, &totals.ledger);
         walls.iter().for_each(|sum| put(out, sum));
     }
 }
@@ -117,8 +117,8 @@ pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &
         let book: Book = take(rest)?;
         cross.clear_books();
         (cross.dashpot, cross.friction, cross.failure) = (book.dashpot, book.friction, book.failure_across);
-        let tally = &mut w.tally;
-        (tally.ledger, tally.fastest, tally.failure) = (take_ledger(rest)?, book.fastest, book.failure);
+        let totals = &mut w.totals;
+        (totals.ledger, totals.fastest, totals.failure) = (take_ledger(rest)?, book.fastest, book.failure);
         w.patches.wall_sums.clear();
         for _ in 0..book.wall_sums {
             w.patches.wall_sums.push(take::<WallSum>(rest)?);

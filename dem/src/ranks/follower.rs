@@ -2,9 +2,9 @@
 
 use super::code::{put, put_numbers, take, take_numbers};
 use super::link::{Link, Lost};
-use super::orders::{self, Now, Order};
+use super::orders::{self, Command, StepCommand};
 use super::rank::Rank;
-use super::traffic::Kind;
+use super::traffic::MessageKind;
 use super::{books, parcel};
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -22,7 +22,7 @@ pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, 
         link.receive(FIRST, &mut message)?;
         let rest = &mut &message[..];
         match take(rest) {
-            Some(Order::Model { bodies, dt }) => {
+            Some(Command::Model { bodies, dt }) => {
                 let made = make(rest).and_then(|model| same(model, bodies, dt));
                 let mut out = Vec::new();
                 put(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
@@ -31,7 +31,7 @@ pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, 
                     return follow(link, &model);
                 }
             }
-            Some(Order::End) => return Ok(()),
+            Some(Command::End) => return Ok(()),
             _ => return Err(Lost::garbled(FIRST)),
         }
     }
@@ -55,8 +55,8 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     link.receive(FIRST, &mut message)?;
     let rest = &mut &message[..];
     match take(rest) {
-        Some(Order::Take) => {}
-        Some(Order::End) => return Ok(()),
+        Some(Command::Take) => {}
+        Some(Command::End) => return Ok(()),
         _ => return Err(Lost::garbled(FIRST)),
     }
     let (mut state, partition) = parcel::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
@@ -67,38 +67,43 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
         match take(rest) {
-            Some(Order::Step(now)) => {
+            Some(Command::Step(now)) => {
                 let read = orders::read_step(&mut state, &now, &mut rank.work.applied, rest);
                 read.ok_or(Lost::garbled(FIRST))?;
                 step(&mut rank, model, &mut state, &now)?;
             }
-            Some(Order::Give) => {
+            Some(Command::Give) => {
                 rank.out.clear();
                 put(&mut rank.out, &rank.traffic);
                 parcel::write_back(&state, rank.work.own.clone(), &mut rank.out);
-                rank.send(Kind::State, FIRST)?;
+                rank.send(MessageKind::State, FIRST)?;
                 rank.out = Vec::new();
             }
-            Some(Order::Take) => {
+            Some(Command::Take) => {
                 let (fresh, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
                 state = fresh;
                 rank.message = Vec::new();
                 rank.take_over(model, &state, partition)?;
             }
-            Some(Order::End) => return Ok(()),
+            Some(Command::End) => return Ok(()),
             _ => return Err(Lost::garbled(FIRST)),
         }
     }
 }
 
-fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now) -> Result<(), Lost> {
+fn step<L: Link>(
+    rank: &mut Rank<L>,
+    model: &Model,
+    state: &mut State,
+    now: &StepCommand,
+) -> Result<(), Lost> {
     if now.renew {
         let moved2 = rank.moved2(state);
         rank.boxes = rank.bounds(state).collect();
         rank.out.clear();
         put_numbers(&mut rank.out, [moved2]);
         put(&mut rank.out, &rank.boxes);
-        rank.send(Kind::NearList, FIRST)?;
+        rank.send(MessageKind::NearList, FIRST)?;
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
         let [approach] = take_numbers(rest).ok_or(Lost::garbled(FIRST))?;
@@ -110,6 +115,6 @@ fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now
     rank.advance(model, state)?;
     rank.out.clear();
     books::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
-    rank.send(Kind::Books, FIRST)?;
+    rank.send(MessageKind::Books, FIRST)?;
     rank.await_ghosts(state)
 }

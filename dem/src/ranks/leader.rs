@@ -3,10 +3,10 @@
 use super::code::{put, put_numbers, take, take_numbers};
 use super::halo::Bounds;
 use super::link::{Link, Lost};
-use super::orders::{self, Order};
+use super::orders::{self, Command};
 use super::partition::Partition;
 use super::rank::Rank;
-use super::traffic::{Kind, Traffic};
+use super::traffic::{MessageCounters, MessageKind};
 use super::{books, parcel};
 use crate::base::error::StepError;
 use crate::engine::back_end::BackEnd;
@@ -14,7 +14,7 @@ use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{applied, bonds, neighbours, order, step};
+use crate::engine::{applied, bonds, neighbour_list, reordering, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// Steps on several ranks. The state is complete after [`BackEnd::download`].
@@ -26,7 +26,7 @@ pub struct Ranks<L: Link> {
     whole: bool,
     /// Whether debonded spheres are still in contact.
     debonded: bool,
-    traffic: Traffic,
+    traffic: MessageCounters,
 }
 
 impl<L: Link> Ranks<L> {
@@ -41,7 +41,7 @@ impl<L: Link> Ranks<L> {
             ahead: false,
             whole: true,
             debonded: false,
-            traffic: Traffic::default(),
+            traffic: MessageCounters::default(),
         };
         ranks.introduce(model, description).and_then(|()| ranks.deal_out(model, state)).map_err(at(time))?;
         Ok(ranks)
@@ -51,9 +51,9 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Model { bodies: model.body_count() as u64, dt: model.dt() });
+            put(&mut rank.out, &Command::Model { bodies: model.body_count() as u64, dt: model.dt() });
             rank.out.extend_from_slice(description);
-            rank.send(Kind::State, other)?;
+            rank.send(MessageKind::State, other)?;
         }
         for other in rank.others() {
             rank.receive(other)?;
@@ -66,7 +66,7 @@ impl<L: Link> Ranks<L> {
     }
 
     /// Messages of all ranks up to the last download.
-    pub fn traffic(&self) -> &Traffic {
+    pub fn traffic(&self) -> &MessageCounters {
         &self.traffic
     }
 
@@ -80,9 +80,9 @@ impl<L: Link> Ranks<L> {
         let partition = Partition::of(state, rank.link.size());
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Take);
+            put(&mut rank.out, &Command::Take);
             parcel::write(state, &partition, other, &mut rank.out);
-            rank.send(Kind::State, other)?;
+            rank.send(MessageKind::State, other)?;
         }
         rank.take_over(model, state, partition)?;
         // Such large messages are rare.
@@ -98,15 +98,15 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Give);
-            rank.send(Kind::Order, other)?;
+            put(&mut rank.out, &Command::Give);
+            rank.send(MessageKind::Order, other)?;
         }
-        self.traffic = Traffic::default();
+        self.traffic = MessageCounters::default();
         for other in rank.others() {
             rank.link.receive(other, &mut rank.message)?;
             let rest = &mut &rank.message[..];
             let part = rank.partition.of_rank(other);
-            let sent: Traffic = take(rest).ok_or(Lost::garbled(other))?;
+            let sent: MessageCounters = take(rest).ok_or(Lost::garbled(other))?;
             parcel::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
             self.traffic.add(&sent);
         }
@@ -123,7 +123,7 @@ impl<L: Link> Ranks<L> {
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         let lost = at(state.time);
-        if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
+        if state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY) {
             self.fetch(state).map_err(&lost)?;
             state.reorder(model);
             self.deal_out(model, state).map_err(&lost)?;
@@ -138,16 +138,16 @@ impl<L: Link> Ranks<L> {
             bonds::arrange(model, state, &mut self.rank.work);
         }
         let bonded = !model.bonds.is_empty();
-        let renew = neighbours::due(state);
+        let renew = neighbour_list::due(state);
         if renew {
-            neighbours::adapt(model, state);
+            neighbour_list::adapt(model, state);
         }
         let mut make = || {
             let rank = &mut self.rank;
             for other in rank.others() {
                 rank.out.clear();
                 orders::write_step(state, renew, &rank.work.applied, &mut rank.out);
-                rank.send(Kind::Order, other)?;
+                rank.send(MessageKind::Order, other)?;
             }
             self.ahead = true;
             if renew {
@@ -165,7 +165,7 @@ impl<L: Link> Ranks<L> {
         };
         make().map_err(&lost)?;
         // Breakage is processed on the complete state, which is then distributed again.
-        let look = self.debonded && state.steps.is_multiple_of(bonds::LOOKS);
+        let look = self.debonded && state.steps.is_multiple_of(bonds::CHECK_INTERVAL);
         if bonded && (look || books::any_broken(&self.rank.work)) {
             self.fetch(state).map_err(&lost)?;
             bonds::arrange(model, state, &mut self.rank.work);
@@ -198,15 +198,15 @@ fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State
     rank.work.searched.surface_drift += state.wall_drift;
     let approach = match moved2 {
         far if far.is_infinite() => far,
-        near => neighbours::approach(model, state, &rank.work, near),
+        near => neighbour_list::approach(model, state, &rank.work, near),
     };
     for other in rank.others() {
         rank.out.clear();
         put_numbers(&mut rank.out, [approach]);
-        if neighbours::too_far(model, state, approach) {
+        if neighbour_list::too_far(model, state, approach) {
             put(&mut rank.out, &rank.boxes);
         }
-        rank.send(Kind::NearList, other)?;
+        rank.send(MessageKind::NearList, other)?;
     }
     rank.renew(model, state, approach)
 }
@@ -250,7 +250,7 @@ impl<L: Link> Drop for Ranks<L> {
 /// Ends [`serve`](super::serve) on all other ranks, if no [`Ranks`] does.
 pub fn dismiss(link: &mut impl Link) {
     let mut end = Vec::new();
-    put(&mut end, &Order::End);
+    put(&mut end, &Command::End);
     let own = link.rank();
     for other in (0..link.size()).filter(|&other| other != own) {
         // Lost ranks are ignored.

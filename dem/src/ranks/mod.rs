@@ -27,4 +27,4 @@ pub use leader::{Ranks, dismiss};
 pub use link::{Link, Lost};
 pub use local::{Local, local};
 pub use scope::{Unsupported, check};
-pub use traffic::{Kind, Traffic};
+pub use traffic::{MessageCounters, MessageKind};

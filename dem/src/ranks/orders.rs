@@ -4,29 +4,29 @@ use super::code::{put, take};
 use crate::base::Vec3;
 use crate::engine::state::State;
 use crate::integrate::leapfrog::Applied;
-use crate::integrate::pace::Pace;
+use crate::integrate::step_size::StepSize;
 use crate::shape::plane::PlaneMotion;
 use serde::{Deserialize, Serialize};
 
 /// Command; data follow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Order {
+pub(super) enum Command {
     Model {
         /// Number of bodies, and initial time step [s].
         bodies: u64,
         dt: f64,
     },
     Take,
-    Step(Now),
+    Step(StepCommand),
     Give,
     End,
 }
 
 /// Step data of all blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Now {
+pub(super) struct StepCommand {
     time: f64,
-    pace: Pace,
+    step_size: StepSize,
     near: f64,
     drift: f64,
     wall_drift: f64,
@@ -45,9 +45,9 @@ struct Force {
 
 /// With wall and plane motion.
 pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &mut Vec<u8>) {
-    let &State { time, pace, near, drift, wall_drift, .. } = state;
+    let &State { time, step_size, near, drift, wall_drift, .. } = state;
     let fresh = state.bonds.fresh;
-    put(out, &Order::Step(Now { time, pace, near, drift, wall_drift, fresh, renew }));
+    put(out, &Command::Step(StepCommand { time, step_size, near, drift, wall_drift, fresh, renew }));
     state.planes.iter().for_each(|plane| put(out, plane));
     put(out, &state.walls);
     put(out, &(applied.len() as u32));
@@ -59,11 +59,11 @@ pub(super) fn write_step(state: &State, renew: bool, applied: &[Applied], out: &
 /// `None` if the message is malformed.
 pub(super) fn read_step(
     state: &mut State,
-    now: &Now,
+    now: &StepCommand,
     applied: &mut Vec<Applied>,
     rest: &mut &[u8],
 ) -> Option<()> {
-    (state.time, state.pace, state.near) = (now.time, now.pace, now.near);
+    (state.time, state.step_size, state.near) = (now.time, now.step_size, now.near);
     (state.drift, state.wall_drift, state.bonds.fresh) = (now.drift, now.wall_drift, now.fresh);
     for plane in &mut state.planes {
         *plane = take::<PlaneMotion>(rest)?;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Message type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum MessageKind {
     /// Command: one per step and rank.
     Order,
     /// Ghost motion: one per step and receiving rank.
@@ -23,7 +23,7 @@ const NAMES: [&str; 6] = ["orders", "ghosts", "books", "near lists", "searches",
 
 /// Messages sent by one or several ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Traffic {
+pub struct MessageCounters {
     /// Messages of each type.
     pub messages: [u64; 6],
     /// Bytes of each type.
@@ -32,13 +32,13 @@ pub struct Traffic {
     pub ghosts: u64,
 }
 
-impl Traffic {
-    pub(super) fn count(&mut self, kind: Kind, bytes: usize) {
+impl MessageCounters {
+    pub(super) fn count(&mut self, kind: MessageKind, bytes: usize) {
         self.messages[kind as usize] += 1;
         self.bytes[kind as usize] += bytes as u64;
     }
 
-    pub(super) fn add(&mut self, other: &Traffic) {
+    pub(super) fn add(&mut self, other: &MessageCounters) {
         for k in 0..NAMES.len() {
             self.messages[k] += other.messages[k];
             self.bytes[k] += other.bytes[k];

@@ -1,6 +1,6 @@
 //! Periodic boundaries.
 //!
-//! Positions are unwrapped between two sortings (`order.rs`). Contacts across a boundary are image pairs in a
+//! Positions are unwrapped between two sortings (`reordering.rs`). Contacts across a boundary are image pairs in a
 //! separate list.
 //!
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2 (minimum image convention).
@@ -10,7 +10,7 @@
 
 use super::cells::Cells;
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::record::{Vec4, xyz};
 
 pub(crate) type Turns = [i32; 3];
 
@@ -77,17 +77,17 @@ impl Periodic {
 /// Wrapped spheres.
 pub(crate) struct Space {
     periodic: Periodic,
-    pub points: Vec<Record>,
+    pub points: Vec<Vec4>,
     turns: Vec<Turns>,
     largest: f64,
 }
 
 impl Space {
-    pub fn new(periodic: Periodic, spheres: &[Record], largest: f64) -> Space {
+    pub fn new(periodic: Periodic, spheres: &[Vec4], largest: f64) -> Space {
         let turns: Vec<Turns> = spheres.iter().map(|p| periodic.turns(&xyz(p))).collect();
-        let back = |(p, t): (&Record, &Turns)| {
+        let back = |(p, t): (&Vec4, &Turns)| {
             let x = xyz(p) - periodic.way(t);
-            Record([x.x, x.y, x.z, p[3]])
+            Vec4([x.x, x.y, x.z, p[3]])
         };
         let points = spheres.iter().zip(&turns).map(back).collect();
         Space { periodic, points, turns, largest }
@@ -108,7 +108,7 @@ impl Space {
             for b in y.clone() {
                 for c in z.clone() {
                     let at = xyz(p) - self.periodic.way(&[a, b, c]);
-                    cells.near(&Record([at.x, at.y, at.z, p[3]]), skin, |j| {
+                    cells.near(&Vec4([at.x, at.y, at.z, p[3]]), skin, |j| {
                         let q = &self.points[j as usize];
                         let reach = p[3] + q[3] + skin;
                         if j > i && (at - xyz(q)).norm_squared() < reach * reach {

@@ -7,13 +7,13 @@
 use super::enclosed::{Enclosed, enclosed};
 use super::input::{Mount, RigidBody, WallShape};
 use super::mount;
-use super::state::{Foot, WallState};
+use super::state::{VertexContact, WallState};
 use crate::base::Vec3;
+use crate::base::balance_terms::{BalanceTerms, Impulse};
 use crate::base::error::ModelError;
-use crate::base::ledger::{Impulse, Ledger};
 use crate::bodies::block::Rotation;
 use crate::contact::single;
-use crate::integrate::pace::Pace;
+use crate::integrate::step_size::StepSize;
 use crate::law::{ContactGeometry, History, Laws};
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
@@ -131,10 +131,10 @@ impl Body {
         force: &Vec3,
         torque: &Vec3,
         gravity: &Vec3,
-        pace: &Pace,
-        ledger: &mut Ledger,
+        step_size: &StepSize,
+        ledger: &mut BalanceTerms,
     ) {
-        let (kick, dt) = (pace.kick(), pace.dt);
+        let (kick, dt) = (step_size.kick(), step_size.dt);
         let x = self.centre + state.offset;
         let (v0, w0) = (state.velocity, state.spin);
         let pull = gravity * self.mass;
@@ -311,7 +311,7 @@ pub(crate) fn stand(
     body: &Body,
     material: u32,
     state: &mut WallState,
-    ledger: &mut Ledger,
+    ledger: &mut BalanceTerms,
 ) -> (Vec3, Vec3) {
     let &Ground { laws, planes, motions, dt, .. } = ground;
     let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
@@ -330,7 +330,7 @@ pub(crate) fn stand(
         for (v, vertex) in body.vertices.iter().enumerate() {
             let at = state.to_world(&body.centre, vertex);
             let Some(g) = ground.tip(&at, &origin, &plane.normal) else { continue };
-            let mut foot = Foot { plane: p as u32, vertex: v as u32, history: History::NONE };
+            let mut foot = VertexContact { plane: p as u32, vertex: v as u32, history: History::NONE };
             if let Some(known) = old.iter_mut().find(|f| (f.plane, f.vertex) == (foot.plane, foot.vertex)) {
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }

@@ -1,7 +1,7 @@
 //! Energy and momentum balances of whole scenes.
 
 use crate::scene::{Random, Run, pile, plane, sphere, stone, weightless};
-use trackbed_dem::ledger::Impulse;
+use trackbed_dem::balance_terms::Impulse;
 use trackbed_dem::{AppliedForce, BodyInput, LocalDamping, Material, Shape, TimeStep, Vec3, measure};
 
 fn energy_left(run: &Run) -> f64 {

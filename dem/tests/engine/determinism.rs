@@ -232,7 +232,7 @@ fn skin_changes_nothing_at_walls() {
         // Sums follow the grouping of contacts: last bits may differ.
         let l = run.state.ledger;
         let sums = [l.dissipated_dashpot, l.dissipated_friction, l.work_walls, l.work_servo];
-        run.state.ledger = trackbed_dem::ledger::Ledger::default();
+        run.state.ledger = trackbed_dem::balance_terms::BalanceTerms::default();
         (bits(&run), sums)
     };
     let mut seen = Vec::new();

@@ -3,7 +3,7 @@
 use crate::bonds_many::crash;
 use crate::determinism::mill;
 use crate::scene::{FOLLOWED, Random, pile, plane, sphere, stone};
-use trackbed_dem::ranks::{Kind, Link, Local, Lost, Ranks, Traffic, check, local, serve};
+use trackbed_dem::ranks::{Link, Local, Lost, MessageCounters, MessageKind, Ranks, check, local, serve};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
     AppliedForce, BackEnd, BodyForce, Material, Model, ModelInput, Plane, Shape, State, StepError, Vec3,
@@ -132,7 +132,7 @@ fn same_bits(name: &str, input: ModelInput, how: How) -> State {
         let differs = seen.iter().zip(&expected).position(|(a, b)| a != b);
         assert_eq!(differs, None, "{name}: the first look at which {size} ranks differ");
         // Each rank but the first reports after a step.
-        let books = traffic.messages[Kind::Books as usize];
+        let books = traffic.messages[MessageKind::Books as usize];
         assert_eq!(books, (how.steps * (size - 1)) as u64, "{name}: reports of {size} ranks");
         assert!(size == 1 || traffic.ghosts > 60, "{name}: {} ghosts", traffic.ghosts);
         println!(
@@ -267,6 +267,6 @@ fn other_models_and_features_are_refused() {
 
 #[test]
 fn traffic_is_counted_by_kind() {
-    let lines = Traffic { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);
-    assert_eq!(lines[Kind::Ghosts as usize], "ghosts: 0.500 messages per step, 10 bytes per step");
+    let lines = MessageCounters { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);
+    assert_eq!(lines[MessageKind::Ghosts as usize], "ghosts: 0.500 messages per step, 10 bytes per step");
 }

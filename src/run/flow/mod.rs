@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::io;
 use trackbed_dem as dem;
 use trackbed_dem::flow::Arrival;
-use trackbed_dem::insert::room::{Places, Room};
+use trackbed_dem::insert::room::{FreePositions, FreeSpace};
 use trackbed_dem::measure::BoxRegion;
 
 /// Insertion rate over requested rate during a backlog.
@@ -27,7 +27,7 @@ const SLACK: f64 = 1e-9;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Inlet {
     waiting: VecDeque<u32>,
-    places: Places,
+    places: FreePositions,
     /// Requested and inserted amounts.
     allowed: f64,
     given: f64,
@@ -80,7 +80,7 @@ impl<'a> Flow<'a> {
                 |b: &u32| !view.state.present(*b as usize) && view.model.part(*b as usize) == inlet.part;
             Inlet {
                 waiting: (0..view.model.body_count() as u32).filter(waits).collect(),
-                places: Places::new(inlet.seed),
+                places: FreePositions::new(inlet.seed),
                 allowed: 0.0,
                 given: 0.0,
                 amount: Amount::default(),
@@ -218,7 +218,7 @@ impl<'a> Flow<'a> {
                 }
                 let room = room.get_or_insert_with(|| {
                     let largest = inlet.waiting.iter().map(|&b| model.radius(b as usize)).fold(0.0, f64::max);
-                    let mut room = Room::new(model, state, surface, plan.region, largest, leaves);
+                    let mut room = FreeSpace::new(model, state, surface, plan.region, largest, leaves);
                     arrive.iter().for_each(|a| room.fill(&a.position, model.radius(a.body)));
                     room
                 });

@@ -78,7 +78,7 @@ pub fn with_grains<S: System>(
         None => {
             let view = system.grains().expect("a system with grains");
             let coordination = dem::measure::coordination(view.model, view.state);
-            let dem::ledger::Impulse { linear, angular } = momentum(system);
+            let dem::balance_terms::Impulse { linear, angular } = momentum(system);
             Start { coordination, linear, angular }
         }
     };

@@ -8,8 +8,8 @@
 //! Limits: the force may jump between face and edge contact (`dem/tests/engine/boxes.rs`); tangential springs
 //! restart with new features.
 
-use super::pair::{PairKind, Touch, Touches};
-use super::scene::Placed;
+use super::pair::{Manifold, PairContactPoint, ShapePair};
+use super::scene::PosedBody;
 use super::side::Solids;
 use crate::base::Vec3;
 use crate::law::ContactGeometry;
@@ -44,7 +44,7 @@ enum Axis {
 }
 
 impl Two {
-    fn new(a: &Placed<'_>, b: &Placed<'_>) -> Option<Two> {
+    fn new(a: &PosedBody<'_>, b: &PosedBody<'_>) -> Option<Two> {
         let turn = (a.orientation.inverse() * b.orientation).to_rotation_matrix().into_inner();
         let way = a.orientation.inverse_transform_vector(&(b.centre - a.centre));
         Some(Two { half: [a.half()?, b.half()?], turn, way })
@@ -81,15 +81,15 @@ impl Two {
     }
 }
 
-impl PairKind for BoxBox {
+impl ShapePair for BoxBox {
     type First = Solids;
     type Second = Solids;
 
-    fn near(&self, first: &Placed<'_>, second: &Placed<'_>, reach: f64) -> bool {
+    fn near(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
         Two::new(first, second).is_some_and(|two| two.separation().1 < reach)
     }
 
-    fn touches(&self, first: &Placed<'_>, second: &Placed<'_>, found: &mut Touches) {
+    fn touches(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, found: &mut Manifold) {
         let Some(two) = Two::new(first, second) else { return };
         let (axis, apart) = two.separation();
         if apart >= 0.0 {
@@ -120,7 +120,7 @@ impl PairKind for BoxBox {
 }
 
 /// Closest points of edges facing along `normal`, towards the first box.
-fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: &mut Touches) {
+fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: &mut Manifold) {
     let Two { half: [a, b], turn, way } = two;
     let local = turn.tr_mul(normal);
     // Extreme edge midpoints.
@@ -140,7 +140,7 @@ fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: 
     let t = (v.dot(&(p + u * s - q))).clamp(-b[j], b[j]);
     let point = (p + u * s + q + v * t) * 0.5;
     let geometry = ContactGeometry { point, normal: *normal, overlap, radius: 0.0 };
-    found.push(Touch::of(features, geometry, 1.0, 0.0));
+    found.push(PairContactPoint::of(features, geometry, 1.0, 0.0));
 }
 
 /// Polygon corner, height over the face, starting edge.
@@ -152,7 +152,7 @@ struct Corner {
 }
 
 /// Second box over face ± `axis` of the first.
-fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &mut Touches) {
+fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &mut Manifold) {
     let [a, b] = half;
     let side = 1.0_f64.copysign(way[axis]);
     let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -192,7 +192,7 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
         let feature = reference << 16 | number(other, sign) << 6 | one << 3 | two;
         let normal = Vec3::ith(axis, -side);
         let geometry = ContactGeometry { point, normal, overlap: -corner.height, radius: 0.0 };
-        found.push(Touch::of(feature, geometry, weight, 0.0));
+        found.push(PairContactPoint::of(feature, geometry, weight, 0.0));
     }
 }
 
@@ -237,7 +237,7 @@ mod tests {
         let shapes = [Shape::Box { half: [0.3, 0.5, 0.2] }, Shape::Box { half: [0.4, 0.1, 0.6] }];
         let (mut overlapping, mut several) = (0, 0);
         for _ in 0..2000 {
-            let [a, mut b] = [0, 1].map(|k| Placed {
+            let [a, mut b] = [0, 1].map(|k| PosedBody {
                 centre: vector(1.2),
                 orientation: UnitQuaternion::from_scaled_axis(vector(6.0)),
                 shape: &shapes[k],
@@ -245,7 +245,7 @@ mod tests {
                 core: &none,
                 radius: 0.0,
             });
-            let (mut one, mut two) = (Touches::new(), Touches::new());
+            let (mut one, mut two) = (Manifold::new(), Manifold::new());
             BoxBox.touches(&a, &b, &mut one);
             BoxBox.touches(&b, &a, &mut two);
             assert_eq!(one.is_empty(), two.is_empty());
@@ -262,7 +262,7 @@ mod tests {
             assert!((separation - other).abs() < 0.12 * separation.abs(), "{separation} {other}");
             if separation == other && one.len() == two.len() {
                 for s in &one {
-                    let same = |t: &&Touch| t.feature == s.feature.rotate_left(16);
+                    let same = |t: &&PairContactPoint| t.feature == s.feature.rotate_left(16);
                     let t = two.iter().find(same).expect("the same features");
                     assert!((s.geometry.point - t.geometry.point).norm() < 1e-12);
                     assert!((s.geometry.normal + t.geometry.normal).norm() < 1e-12);
@@ -276,7 +276,7 @@ mod tests {
                 }
             }
             b.centre -= touch.geometry.normal * (1.0 + 1e-9) * -separation.min(-touch.geometry.overlap);
-            let mut apart = Touches::new();
+            let mut apart = Manifold::new();
             BoxBox.touches(&a, &b, &mut apart);
             assert!(apart.is_empty(), "{separation}");
         }
@@ -289,7 +289,7 @@ mod tests {
         let none = Core::default();
         let shapes = [Shape::Box { half: [0.3, 0.5, 0.2] }, Shape::Box { half: [0.4, 0.3, 0.1] }];
         for (turn, aside, least) in [(0.0, 0.0, 4), (0.7, 0.0, 6), (0.0, 0.5, 4), (0.3, 0.45, 3)] {
-            let placed = |k: usize, centre: Vec3, turn: f64| Placed {
+            let placed = |k: usize, centre: Vec3, turn: f64| PosedBody {
                 centre,
                 orientation: UnitQuaternion::from_axis_angle(&Vec3::z_axis(), turn),
                 shape: &shapes[k],
@@ -297,7 +297,7 @@ mod tests {
                 core: &none,
                 radius: 0.0,
             };
-            let mut found = Touches::new();
+            let mut found = Manifold::new();
             let above = Vec3::new(aside, 0.1 * aside, 0.2999);
             BoxBox.touches(&placed(0, Vec3::zeros(), 0.0), &placed(1, above, turn), &mut found);
             let sum: f64 = found.iter().map(|t| t.weight).sum();

@@ -1,6 +1,6 @@
 //! Corner–plane contacts: flat faces and straight edges never touch first.
 
-use super::pair::{PairKind, Touch, Touches};
+use super::pair::{Manifold, PairContactPoint, ShapePair};
 use super::scene::PlaneView;
 use super::side::{Corner, Corners, Planes};
 use crate::law::ContactGeometry;
@@ -8,7 +8,7 @@ use crate::spatial::detect;
 
 pub(crate) struct CornerPlane;
 
-impl PairKind for CornerPlane {
+impl ShapePair for CornerPlane {
     type First = Corners;
     type Second = Planes;
 
@@ -16,10 +16,10 @@ impl PairKind for CornerPlane {
         !plane.open && (corner.point - plane.origin).dot(&plane.normal) < reach
     }
 
-    fn touches(&self, corner: &Corner, plane: &PlaneView, found: &mut Touches) {
+    fn touches(&self, corner: &Corner, plane: &PlaneView, found: &mut Manifold) {
         let touch = detect::sphere_plane(&corner.point, 0.0, &plane.origin, &plane.normal);
         // Laws use the body size as radius.
         let touch = touch.map(|g| ContactGeometry { radius: corner.size, ..g });
-        found.extend(touch.map(|g| Touch::only(g, corner.size)));
+        found.extend(touch.map(|g| PairContactPoint::only(g, corner.size)));
     }
 }

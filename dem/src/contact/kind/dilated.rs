@@ -9,16 +9,16 @@
 //! Limits: of laws with overlap-dependent stiffness only Hertz's, by edge laws (`law/edges.rs`); contact of
 //! cores ends the run.
 
-use super::pair::{PairKind, Touch, Touches};
-use super::scene::{Placed, PlaneView, Pose};
+use super::pair::{Manifold, PairContactPoint, ShapePair};
+use super::scene::{PlaneView, Pose, PosedBody};
 use super::side::{Planes, Solids, Spheres};
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::record::{Vec4, xyz};
 use crate::law::ContactGeometry;
 use crate::pairs::list::Hint;
 use crate::shape::dilated::circle::Circle;
 use crate::shape::dilated::part::{Bounds, Part, View};
-use crate::shape::dilated::press::{self, HalfSpace, Pressed, Segment, Target};
+use crate::shape::dilated::press::{self, HalfSpace, Indentation, Segment, Target};
 use crate::shape::dilated::rim;
 use crate::shape::dilated::{CORNERS, Core, disk, farthest};
 use crate::spatial::separation::separation;
@@ -139,7 +139,7 @@ pub(super) struct Two<'a> {
 }
 
 impl<'a> Two<'a> {
-    fn new(a: &Placed<'a>, b: &Placed<'a>) -> Two<'a> {
+    fn new(a: &PosedBody<'a>, b: &PosedBody<'a>) -> Two<'a> {
         Two { frame: Frame::new(&a.pose(), &b.pose()), first: Hull::of(a.core), second: Hull::of(b.core) }
     }
 
@@ -192,7 +192,7 @@ pub(super) fn set(heights: impl IntoIterator<Item = f64>, near: impl Fn(f64) -> 
 }
 
 /// Whether bounding spheres are within `reach`.
-fn around(a: &Placed<'_>, b: &Placed<'_>, reach: f64) -> bool {
+fn around(a: &PosedBody<'_>, b: &PosedBody<'_>, reach: f64) -> bool {
     let most = a.reach() + b.reach() + reach;
     (a.centre - b.centre).norm_squared() < most * most
 }
@@ -205,7 +205,7 @@ pub(super) fn skeleton(
     (near, view): (u64, &View),
     target: &impl Target,
     reach: f64,
-    mut put: impl FnMut(u32, &Pressed, f64),
+    mut put: impl FnMut(u32, &Indentation, f64),
 ) {
     for k in core.corners_of(near) {
         if let Some(pressed) = press::corner(target, &frame.point(&core.corners[k]), reach) {
@@ -236,7 +236,7 @@ pub(super) fn skeleton(
 }
 
 /// Edge stiffness over corner stiffness.
-pub(super) fn length(pressed: &Pressed, reach: f64) -> f64 {
+pub(super) fn length(pressed: &Indentation, reach: f64) -> f64 {
     pressed.force.norm() / (pressed.overlap * LENGTH * reach)
 }
 
@@ -245,11 +245,11 @@ pub(super) fn length(pressed: &Pressed, reach: f64) -> f64 {
 pub(super) fn touch(
     frame: &Pose,
     feature: u32,
-    p: &Pressed,
+    p: &Indentation,
     weight: f64,
     [own, reach, radius]: [f64; 3],
     sign: f64,
-) -> Touch {
+) -> PairContactPoint {
     let n = p.force.normalize();
     // Half the overlap below the surface.
     let point = p.point - n * (own - 0.5 * p.overlap);
@@ -261,7 +261,11 @@ pub(super) fn touch(
     };
     let couple = frame.orientation * p.couple * (sign * frame.scale);
     let edge = if p.edge { LENGTH * reach * frame.scale } else { 0.0 };
-    Touch { edge, couple, ..Touch::of(feature, geometry, weight, DEEPEST * reach * frame.scale) }
+    PairContactPoint {
+        edge,
+        couple,
+        ..PairContactPoint::of(feature, geometry, weight, DEEPEST * reach * frame.scale)
+    }
 }
 
 /// Indenter radius, or the other's if sharp; for edges only rolling resistance depends on it.
@@ -269,17 +273,17 @@ pub(super) fn rounding(own: f64, other: f64) -> f64 {
     if own > 0.0 { own } else { other }
 }
 
-pub(super) fn lost(point: Vec3, normal: Vec3, reach: f64) -> Touch {
+pub(super) fn lost(point: Vec3, normal: Vec3, reach: f64) -> PairContactPoint {
     let geometry = ContactGeometry { point, normal, overlap: reach, radius: reach };
-    Touch::only(geometry, DEEPEST * reach)
+    PairContactPoint::only(geometry, DEEPEST * reach)
 }
 
-impl PairKind for DilatedDilated {
+impl ShapePair for DilatedDilated {
     type First = Solids;
     type Second = Solids;
     const SHARED: bool = true;
 
-    fn near(&self, first: &Placed<'_>, second: &Placed<'_>, reach: f64) -> bool {
+    fn near(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
         if !(first.dilated() || second.dilated()) || !around(first, second, reach) {
             return false;
         }
@@ -288,11 +292,11 @@ impl PairKind for DilatedDilated {
         two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
     }
 
-    fn touches(&self, a: &Placed<'_>, b: &Placed<'_>, found: &mut Touches) {
+    fn touches(&self, a: &PosedBody<'_>, b: &PosedBody<'_>, found: &mut Manifold) {
         self.touches_again(a, b, &mut None, found);
     }
 
-    fn touches_again(&self, a: &Placed<'_>, b: &Placed<'_>, hint: &mut Hint, found: &mut Touches) {
+    fn touches_again(&self, a: &PosedBody<'_>, b: &PosedBody<'_>, hint: &mut Hint, found: &mut Manifold) {
         if !around(a, b, 0.0) {
             return;
         }
@@ -332,18 +336,18 @@ impl PairKind for DilatedDilated {
     }
 }
 
-impl PairKind for DilatedPlane {
+impl ShapePair for DilatedPlane {
     type First = Solids;
     type Second = Planes;
     const SHARED: bool = true;
 
-    fn near(&self, body: &Placed<'_>, plane: &PlaneView, reach: f64) -> bool {
+    fn near(&self, body: &PosedBody<'_>, plane: &PlaneView, reach: f64) -> bool {
         body.dilated()
             && !plane.open
             && (body.centre - plane.origin).dot(&plane.normal) < body.reach() + reach
     }
 
-    fn touches(&self, body: &Placed<'_>, plane: &PlaneView, found: &mut Touches) {
+    fn touches(&self, body: &PosedBody<'_>, plane: &PlaneView, found: &mut Manifold) {
         let height = (body.centre - plane.origin).dot(&plane.normal);
         if height >= body.reach() {
             return;
@@ -369,11 +373,11 @@ fn outside(core: &Core, p: &Vec3) -> f64 {
     }
 }
 
-impl PairKind for SphereDilated {
+impl ShapePair for SphereDilated {
     type First = Spheres;
     type Second = Solids;
 
-    fn near(&self, sphere: &&Record, body: &Placed<'_>, reach: f64) -> bool {
+    fn near(&self, sphere: &&Vec4, body: &PosedBody<'_>, reach: f64) -> bool {
         if !body.dilated() {
             return false;
         }
@@ -382,7 +386,7 @@ impl PairKind for SphereDilated {
         outside(body.core, &local) * body.scale < most
     }
 
-    fn touches(&self, sphere: &&Record, body: &Placed<'_>, found: &mut Touches) {
+    fn touches(&self, sphere: &&Vec4, body: &PosedBody<'_>, found: &mut Manifold) {
         if !body.dilated() {
             return;
         }
@@ -405,7 +409,10 @@ impl PairKind for SphereDilated {
         let radius = sphere[3];
         // A sphere may penetrate a face as deep as a sphere, but not cross a disk.
         let bound = if body.core.rim.is_some() { DEEPEST * sum } else { sum };
-        found.push(Touch { bound, ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0) });
+        found.push(PairContactPoint {
+            bound,
+            ..touch(&body.pose(), 0, &pressed, 1.0, [own, reach, radius], 1.0)
+        });
     }
 }
 

@@ -9,9 +9,9 @@ use crate::shape::{Shape, cuboid};
 use crate::spatial::facet::{Facet, facets};
 
 /// Placed core; normal and corners of each face.
-pub(super) type Solid<'a> = (&'a Placed<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
+pub(super) type Solid<'a> = (&'a PosedBody<'a>, Vec<(Vec3, Vec<(Vec3, usize)>)>);
 
-pub(super) fn solid<'a>(body: &'a Placed<'a>) -> Solid<'a> {
+pub(super) fn solid<'a>(body: &'a PosedBody<'a>) -> Solid<'a> {
     let face = |face: &Face| {
         let numbers = face.corners.iter().map(|c| *c as usize);
         let corners: Vec<_> = numbers.map(|c| (body.core.corners[c], c)).collect();
@@ -70,7 +70,7 @@ pub(super) fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 
 
 type Skeleton = (Vec<Vec3>, Vec<[usize; 2]>);
 
-fn skeleton_of(body: &Placed<'_>) -> Skeleton {
+fn skeleton_of(body: &PosedBody<'_>) -> Skeleton {
     let world = |c: &Vec3| body.centre + body.orientation * c * body.scale;
     let edges = body.core.edges.iter().map(|edge| edge.ends.map(|e| e as usize));
     (body.core.corners.iter().map(world).collect(), edges.collect())
@@ -171,10 +171,10 @@ fn energies(count: usize) {
                 }
             }
             let a = at(high);
-            let (mut one, mut two) = (Touches::new(), Touches::new());
+            let (mut one, mut two) = (Manifold::new(), Manifold::new());
             DilatedDilated.touches(&a, &b, &mut one);
             DilatedDilated.touches(&b, &a, &mut two);
-            let into = |one: &Placed<'_>, other: &Placed<'_>| {
+            let into = |one: &PosedBody<'_>, other: &PosedBody<'_>| {
                 let other = solid(other);
                 pressing(&skeleton_of(one), &|p| distance(&other, p), reach)
             };
@@ -263,7 +263,7 @@ impl Other {
     }
 
     /// Core distance, negative for overlap.
-    fn apart(&self, body: &Placed<'_>) -> f64 {
+    fn apart(&self, body: &PosedBody<'_>) -> f64 {
         match self {
             Other::Sphere(size) => {
                 let local = body.orientation.inverse() * -body.centre / body.scale;
@@ -281,11 +281,11 @@ impl Other {
         }
     }
 
-    fn energies(&self, body: &Placed<'_>) -> (Touches, f64, f64) {
-        let (mut found, own) = (Touches::new(), body.radius);
+    fn energies(&self, body: &PosedBody<'_>) -> (Manifold, f64, f64) {
+        let (mut found, own) = (Manifold::new(), body.radius);
         match self {
             Other::Sphere(size) => {
-                let sphere = Record::of(&Vec3::zeros(), *size);
+                let sphere = Vec4::of(&Vec3::zeros(), *size);
                 SphereDilated.touches(&&sphere, body, &mut found);
                 let reach = size + own;
                 let overlap = (reach - distance(&solid(body), &Vec3::zeros()).0).max(0.0);

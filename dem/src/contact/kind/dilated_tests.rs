@@ -11,16 +11,16 @@ pub(super) fn placed<'a>(
     centre: Vec3,
     orientation: UnitQuaternion<f64>,
     scale: f64,
-) -> Placed<'a> {
-    Placed { centre, orientation, shape, scale, core, radius: shape.rounding(scale) }
+) -> PosedBody<'a> {
+    PosedBody { centre, orientation, shape, scale, core, radius: shape.rounding(scale) }
 }
 
 /// Energy of unit springs.
-pub(super) fn energy(found: &Touches) -> f64 {
+pub(super) fn energy(found: &Manifold) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
 
-pub(super) fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
+pub(super) fn wrench(found: &Manifold, about: &Vec3) -> [Vec3; 2] {
     let mut sums = [Vec3::zeros(); 2];
     for t in found {
         let force = t.geometry.normal * (t.weight * t.geometry.overlap);
@@ -72,7 +72,7 @@ fn forces_have_a_potential() {
             )
         };
         let touches = |shift: Vec3, spin: Vec3| {
-            let mut found = Touches::new();
+            let mut found = Manifold::new();
             DilatedDilated.touches(&at(shift, spin), &b, &mut found);
             found
         };
@@ -85,7 +85,7 @@ fn forces_have_a_potential() {
         let worst = &mut worst[usize::from(deepest > 0.05)];
         let [force, torque] = wrench(&found, &(b.centre + way));
         let h = 1e-7;
-        let slope = |f: &dyn Fn(f64) -> Touches| (energy(&f(h)) - energy(&f(-h))) / (2.0 * h);
+        let slope = |f: &dyn Fn(f64) -> Manifold| (energy(&f(h)) - energy(&f(-h))) / (2.0 * h);
         for d in 0..3 {
             let e = Vec3::ith(d, 1.0);
             let by_shift = slope(&|x| touches(e * x, Vec3::zeros()));
@@ -113,7 +113,7 @@ fn pairs_match_from_both_sides() {
         let a = placed(&shapes[0], &cores[0], Vec3::zeros(), random.orientation(), 1.0);
         let way = random.orientation() * Vec3::z() * (0.5 + 0.6 * random.uniform());
         let b = placed(&shapes[1], &cores[1], way, random.orientation(), 0.7);
-        let (mut one, mut two) = (Touches::new(), Touches::new());
+        let (mut one, mut two) = (Manifold::new(), Manifold::new());
         DilatedDilated.touches(&a, &b, &mut one);
         DilatedDilated.touches(&b, &a, &mut two);
         assert_eq!(one.len(), two.len());
@@ -162,7 +162,7 @@ fn overlaps_are_those_of_the_table() {
         let cores = [a.0.core(), b.0.core()];
         let (a, b) = (placed(&a.0, &cores[0], a.1, a.2, 1.0), placed(&b.0, &cores[1], b.1, b.2, 1.0));
         let (gap, normal) = (number(21), Vec3::new(number(23), number(24), number(25)));
-        let mut found = Touches::new();
+        let mut found = Manifold::new();
         DilatedDilated.touches(&a, &b, &mut found);
         if gap >= 0.0 {
             assert!(found.is_empty(), "{line}");
@@ -203,7 +203,7 @@ fn a_cube_on_a_plane() {
         open: false,
     };
     let touches = |height: f64, turn: UnitQuaternion<f64>| {
-        let mut found = Touches::new();
+        let mut found = Manifold::new();
         DilatedPlane.touches(&placed(&shape, &core, Vec3::z() * height, turn, 1.0), &plane, &mut found);
         found
     };
@@ -272,7 +272,7 @@ fn forces_are_continuous() {
     for (name, sweep) in sweeps {
         let force = |x: f64| {
             let [a, b] = sweep(x).map(|(at, q)| placed(&shape, &core, at, given(q), 1.0));
-            let mut found = Touches::new();
+            let mut found = Manifold::new();
             DilatedDilated.touches(&a, &b, &mut found);
             wrench(&found, &b.centre)
         };
@@ -314,15 +314,15 @@ fn hints_change_nothing() {
             let turn = UnitQuaternion::new(spin * t);
             let a = placed(&shapes[i], &cores[i], centre, turn, 1.0);
             let b = placed(&shapes[j], &cores[j], Vec3::zeros(), UnitQuaternion::identity(), 1.1);
-            let (mut cold, mut warm) = (Touches::new(), Touches::new());
+            let (mut cold, mut warm) = (Manifold::new(), Manifold::new());
             DilatedDilated.touches(&a, &b, &mut cold);
             DilatedDilated.touches_again(&a, &b, &mut hint, &mut warm);
             if cold.first().is_some_and(|t| t.geometry.overlap > t.bound) {
                 hint = None;
                 continue;
             }
-            let bits = |found: &Touches| -> Vec<(u32, [u64; 5])> {
-                let of = |t: &Touch| {
+            let bits = |found: &Manifold| -> Vec<(u32, [u64; 5])> {
+                let of = |t: &PairContactPoint| {
                     let [x, y, z] = t.geometry.normal.into();
                     [t.geometry.overlap, t.weight, x, y, z].map(f64::to_bits)
                 };

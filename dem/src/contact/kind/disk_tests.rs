@@ -17,12 +17,12 @@ fn floor() -> PlaneView {
     PlaneView { origin: Vec3::zeros(), normal: Vec3::z(), velocity: Vec3::zeros(), material: 0, open: false }
 }
 
-fn rim_point(body: &Placed<'_>, t: f64) -> Vec3 {
+fn rim_point(body: &PosedBody<'_>, t: f64) -> Vec3 {
     let radius = body.core.rim.unwrap() * body.scale;
     body.centre + body.orientation * Vec3::new(radius * t.cos(), radius * t.sin(), 0.0)
 }
 
-fn from_disk(body: &Placed<'_>, p: &Vec3) -> Vec3 {
+fn from_disk(body: &PosedBody<'_>, p: &Vec3) -> Vec3 {
     let local = body.orientation.inverse() * (p - body.centre) / body.scale;
     let radius = body.core.rim.unwrap();
     let rho = local.x.hypot(local.y);
@@ -67,13 +67,13 @@ fn along(length: f64, pieces: u32, reach: f64, at: &dyn Fn(f64) -> (f64, [usize;
     (0..pieces).map(|k| integral(&spring, piece(k), close)).sum::<f64>() * length / (LENGTH * reach)
 }
 
-fn off_disk(body: &Placed<'_>, p: &Vec3) -> (f64, [usize; 2]) {
+fn off_disk(body: &PosedBody<'_>, p: &Vec3) -> (f64, [usize; 2]) {
     let way = from_disk(body, p);
     let axis = body.orientation * Vec3::z();
     (way.norm(), [usize::from((way - axis * axis.dot(&way)).norm() > 1e-12); 2])
 }
 
-fn pressing(body: &Placed<'_>, reach: f64, at: &dyn Fn(&Vec3) -> (f64, [usize; 2])) -> f64 {
+fn pressing(body: &PosedBody<'_>, reach: f64, at: &dyn Fn(&Vec3) -> (f64, [usize; 2])) -> f64 {
     let around = TAU * body.core.rim.unwrap() * body.scale;
     along(around, 256, reach, &|s| at(&rim_point(body, TAU * s)))
 }
@@ -99,7 +99,7 @@ fn disks_of_the_table() {
         let (distance, gap) = (number(13), number(14));
         let normal = Vec3::new(number(16), number(17), number(18));
         // From partner to disk.
-        let mut found = Touches::new();
+        let mut found = Manifold::new();
         let way = match words[1] {
             "plane" => {
                 let plane = floor();
@@ -158,7 +158,7 @@ fn disks_of_the_table() {
     assert_eq!(compared, [25; 3]);
 }
 
-fn with_stone(body: &Placed<'_>, other: &Placed<'_>, reach: f64) -> f64 {
+fn with_stone(body: &PosedBody<'_>, other: &PosedBody<'_>, reach: f64) -> f64 {
     let (own, stone) = (other.core, solid(other));
     let mut exact = pressing(body, reach, &|p| distance(&stone, p));
     for edge in &own.edges {
@@ -221,13 +221,13 @@ fn energies(count: usize) {
             _ => placed(&stone, &own, Vec3::new(1.0, -2.0, 3.0), other_turn, scale),
         };
         let at = |s: f64| placed(&one, &cores[0], other.centre + direction * s, q, 1.1);
-        let mut found = Touches::new();
+        let mut found = Manifold::new();
         let (mut exact, reach);
         if kind == 2 {
             let body = at(0.0);
             reach = body.radius;
             let low = rim_lowest(&body);
-            let body = Placed { centre: body.centre - Vec3::z() * (low - share * reach), ..body };
+            let body = PosedBody { centre: body.centre - Vec3::z() * (low - share * reach), ..body };
             let plane = floor();
             DilatedPlane.touches(&body, &plane, &mut found);
             exact = pressing(&body, reach, &|p| (p.z, [0; 2]));
@@ -246,7 +246,7 @@ fn energies(count: usize) {
             } else {
                 exact = with_stone(&body, &other, reach);
             }
-            let mut back = Touches::new();
+            let mut back = Manifold::new();
             DilatedDilated.touches(&other, &body, &mut back);
             assert!((energy(&back) - energy(&found)).abs() < 1e-13 * reach * reach, "{back:?} {found:?}");
         }
@@ -263,7 +263,7 @@ fn energies(count: usize) {
     assert!(worst[0] < 1e-9 && worst[1] < 1e-6 && worst[2] < 1e-9, "{worst:?}");
 }
 
-fn rim_lowest(body: &Placed<'_>) -> f64 {
+fn rim_lowest(body: &PosedBody<'_>) -> f64 {
     let radius = body.core.rim.unwrap() * body.scale;
     let axis = body.orientation * Vec3::z();
     body.centre.z - radius * axis.x.hypot(axis.y)
@@ -308,7 +308,7 @@ fn forces_of_disks_have_a_potential() {
             placed(&shapes[i], &cores[i], b.centre + way + shift, q, 1.1)
         };
         let touches = |shift: Vec3, spin: Vec3| {
-            let mut found = Touches::new();
+            let mut found = Manifold::new();
             DilatedDilated.touches(&at(shift, spin), &b, &mut found);
             found
         };
@@ -321,7 +321,7 @@ fn forces_of_disks_have_a_potential() {
         let worst = &mut worst[usize::from(deepest > 0.05)];
         let [force, torque] = wrench(&found, &(b.centre + way));
         let h = 1e-7;
-        let slope = |f: &dyn Fn(f64) -> Touches| (energy(&f(h)) - energy(&f(-h))) / (2.0 * h);
+        let slope = |f: &dyn Fn(f64) -> Manifold| (energy(&f(h)) - energy(&f(-h))) / (2.0 * h);
         for d in 0..3 {
             let e = Vec3::ith(d, 1.0);
             let unit = force.norm() + 1e-4;
@@ -349,7 +349,7 @@ fn disks_match_from_both_sides() {
             let t = 0.01 * f64::from(step) - 1.0;
             let a = placed(&shapes[i], &cores[i], from + way * (0.3 * t), UnitQuaternion::new(spin * t), 1.0);
             let b = placed(&shapes[j], &cores[j], Vec3::zeros(), UnitQuaternion::identity(), 0.9);
-            let [mut cold, mut warm, mut back] = [Touches::new(), Touches::new(), Touches::new()];
+            let [mut cold, mut warm, mut back] = [Manifold::new(), Manifold::new(), Manifold::new()];
             DilatedDilated.touches(&a, &b, &mut cold);
             DilatedDilated.touches_again(&a, &b, &mut hint, &mut warm);
             DilatedDilated.touches(&b, &a, &mut back);
@@ -357,8 +357,8 @@ fn disks_match_from_both_sides() {
                 hint = None;
                 continue;
             }
-            let bits = |found: &Touches| -> Vec<(u32, [u64; 8])> {
-                let of = |t: &Touch| {
+            let bits = |found: &Manifold| -> Vec<(u32, [u64; 8])> {
+                let of = |t: &PairContactPoint| {
                     let ([x, y, z], p) = (t.geometry.normal.into(), t.geometry.point);
                     [t.geometry.overlap, t.weight, x, y, z, p.x, p.y, p.z].map(f64::to_bits)
                 };
@@ -385,7 +385,7 @@ fn a_disk_flat_on_a_plane() {
     let core = shape.core();
     let plane = floor();
     let touches = |tilt: f64| {
-        let mut found = Touches::new();
+        let mut found = Manifold::new();
         let turn = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), tilt);
         DilatedPlane.touches(&placed(&shape, &core, Vec3::z() * 0.099, turn, 1.0), &plane, &mut found);
         found

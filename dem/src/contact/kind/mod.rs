@@ -20,31 +20,31 @@ mod side;
 mod sphere_box;
 
 pub(crate) use dilated::{DEEPEST, LENGTH};
-pub(crate) use pair::{ContactNow, Visited};
-pub(crate) use pass::{Kind, OnGround};
-pub(crate) use scene::{Now, Placed, PlaneView, Pose, Scene, Search, SheetView};
-pub(crate) use side::Renamed;
+pub(crate) use pair::{ContactView, Visited};
+pub(crate) use pass::{OnGround, PairHandler};
+pub(crate) use scene::{BodyAccess, Configuration, PlaneView, Pose, PosedBody, Search, SheetView};
+pub(crate) use side::Renumbering;
 
-use crate::contact::single::Setting;
+use crate::contact::single::StepContext;
 use crate::pairs::cross::{Cross, CrossForces};
-use pass::{Books, Of};
+use pass::{ContactTotals, Handler};
 
 /// The order of summation affects results.
-pub(crate) const KINDS: [&dyn Kind; 8] = [
-    &Of(sphere_box::SphereBox),
-    &Of(corner_plane::CornerPlane),
-    &Of(box_box::BoxBox),
-    &Of(dilated::SphereDilated),
-    &Of(dilated::DilatedPlane),
-    &Of(dilated::DilatedDilated),
-    &Of(patch::DilatedPatch),
-    &Of(sheet::DilatedSheet),
+pub(crate) const KINDS: [&dyn PairHandler; 8] = [
+    &Handler(sphere_box::SphereBox),
+    &Handler(corner_plane::CornerPlane),
+    &Handler(box_box::BoxBox),
+    &Handler(dilated::SphereDilated),
+    &Handler(dilated::DilatedPlane),
+    &Handler(dilated::DilatedDilated),
+    &Handler(patch::DilatedPatch),
+    &Handler(sheet::DilatedSheet),
 ];
 
 /// Forces of block `b`; slots follow the sphere slots.
 pub(crate) fn forces(
-    setting: &Setting<'_>,
-    now: &Now<'_>,
+    setting: &StepContext<'_>,
+    now: &Configuration<'_>,
     b: usize,
     lists: &mut Cross,
     out: &mut CrossForces,
@@ -55,7 +55,7 @@ pub(crate) fn forces(
     for (kind, list) in KINDS.iter().zip(&mut lists.kinds) {
         let own;
         (own, slots) = slots.split_at_mut(3 * list.len());
-        let mut books = Books {
+        let mut books = ContactTotals {
             slots: own,
             dashpot: &mut dashpot,
             friction: &mut friction,

@@ -6,7 +6,7 @@ use crate::law::{ContactGeometry, Laws};
 use crate::pairs::list::Hint;
 
 /// Shape pair geometry.
-pub(crate) trait PairKind: Sync {
+pub(crate) trait ShapePair: Sync {
     /// First partner, which receives the force.
     type First: First;
     /// Second partner.
@@ -22,15 +22,15 @@ pub(crate) trait PairKind: Sync {
     fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
 
     /// Finds contact points.
-    fn touches(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, found: &mut Touches);
+    fn touches(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, found: &mut Manifold);
 
-    /// [`PairKind::touches`] with the previous hint, bitwise identical.
+    /// [`ShapePair::touches`] with the previous hint, bitwise identical.
     fn touches_again(
         &self,
         first: &View<'_, Self::First>,
         second: &View<'_, Self::Second>,
         _hint: &mut Hint,
-        found: &mut Touches,
+        found: &mut Manifold,
     ) {
         self.touches(first, second, found);
     }
@@ -40,7 +40,7 @@ pub(crate) type View<'a, S> = <S as Side>::View<'a>;
 
 /// Contact point of a pair.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct PairContactPoint {
     /// History key: first partner's feature in the upper 16 bits, second's in the lower.
     pub feature: u32,
     pub geometry: ContactGeometry,
@@ -52,19 +52,19 @@ pub(crate) struct Touch {
     pub bound: f64,
     /// Torque on the first partner per normal force [m].
     pub couple: Vec3,
-    /// Materials of the law; equivalent contacts sharing the pair's mass ([`Touch::under`]).
+    /// Materials of the law; equivalent contacts sharing the pair's mass ([`PairContactPoint::under`]).
     pub materials: [u32; 2],
     pub share: f64,
 }
 
-impl Touch {
-    pub fn only(geometry: ContactGeometry, bound: f64) -> Touch {
-        Touch::of(0, geometry, 1.0, bound)
+impl PairContactPoint {
+    pub fn only(geometry: ContactGeometry, bound: f64) -> PairContactPoint {
+        PairContactPoint::of(0, geometry, 1.0, bound)
     }
 
-    pub fn of(feature: u32, geometry: ContactGeometry, weight: f64, bound: f64) -> Touch {
+    pub fn of(feature: u32, geometry: ContactGeometry, weight: f64, bound: f64) -> PairContactPoint {
         let (couple, materials) = (Vec3::zeros(), [0; 2]);
-        Touch { feature, geometry, weight, edge: 0.0, bound, couple, materials, share: 1.0 }
+        PairContactPoint { feature, geometry, weight, edge: 0.0, bound, couple, materials, share: 1.0 }
     }
 
     /// Selects the pair's law, or edge law (`law/edges.rs`).
@@ -79,22 +79,23 @@ impl Touch {
     }
 }
 
-pub(crate) type Touches = Vec<Touch>;
+pub(crate) type Manifold = Vec<PairContactPoint>;
 
 /// Smallest mass share, for barely touching edges.
 const LEAST: f64 = 1e-9;
 
 /// Distributes the pair's mass by stiffness.
-pub(super) fn share(laws: &Laws, found: &mut [Touch]) {
+pub(super) fn share(laws: &Laws, found: &mut [PairContactPoint]) {
     if found.iter().all(|t| t.edge == 0.0 && laws.edges(t.materials).is_none()) {
         let sum = found.iter().map(|t| t.weight).sum::<f64>().max(LEAST);
         return found.iter_mut().for_each(|t| t.share = sum);
     }
-    let stiffness =
-        |t: &Touch| laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius);
+    let stiffness = |t: &PairContactPoint| {
+        laws.stiffness(t.materials[0], t.materials[1], t.geometry.overlap, t.geometry.radius)
+    };
     let sum: f64 = found.iter().map(|t| t.weight * stiffness(t)).sum();
     // Edge weights are lengths.
-    let least = |t: &Touch| if t.edge > 0.0 { LEAST * t.edge } else { LEAST };
+    let least = |t: &PairContactPoint| if t.edge > 0.0 { LEAST * t.edge } else { LEAST };
     found.iter_mut().for_each(|t| t.share = (sum / stiffness(t)).max(least(t)));
 }
 
@@ -104,10 +105,10 @@ pub(crate) struct Visited<'a> {
     pub partner: crate::base::error::Partner,
     /// Partner to image [m].
     pub shift: Vec3,
-    pub contact: ContactNow<'a>,
+    pub contact: ContactView<'a>,
 }
 
-pub(crate) struct ContactNow<'a> {
+pub(crate) struct ContactView<'a> {
     pub geometry: ContactGeometry,
     pub weight: f64,
     /// Velocity at the contact point, first minus second [m/s].

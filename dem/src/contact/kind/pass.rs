@@ -1,25 +1,25 @@
 //! Search and forces of all pair types.
 
-use super::pair::{ContactNow, PairKind, Touch, Touches, View, Visited, share};
-use super::scene::{Now, Scene, Search};
-use super::sheet::{self, Met};
-use super::side::{First, Renamed, Second, Side, grown};
+use super::pair::{ContactView, Manifold, PairContactPoint, ShapePair, View, Visited, share};
+use super::scene::{BodyAccess, Configuration, Search};
+use super::sheet::{self, SurfaceContactRef};
+use super::side::{First, Renumbering, Second, Side, grown};
 use crate::base::Vec3;
+use crate::base::balance_terms::Impulse;
 use crate::base::failure::Failure;
-use crate::base::ledger::Impulse;
 use crate::bodies::sums::WallSum;
-use crate::contact::single::{self, Setting};
-use crate::lanes::record::Record;
+use crate::contact::single::{self, StepContext};
+use crate::lanes::record::Vec4;
 use crate::law::scarring::Scar;
 use crate::law::{ContactGeometry, Laws};
-use crate::pairs::cross::SurfaceBook;
-use crate::pairs::list::{PairList, PairName, PointMemory};
+use crate::pairs::cross::SurfaceTotals;
+use crate::pairs::list::{ContactHistory, PairList, PairName};
 use std::ops::Range;
 
 /// Contact results other than slots.
-pub(crate) struct Books<'a> {
+pub(crate) struct ContactTotals<'a> {
     /// Per pair: force on the first partner, both torques.
-    pub slots: &'a mut [Record],
+    pub slots: &'a mut [Vec4],
     /// Dashpot and sliding loss [J].
     pub dashpot: &'a mut f64,
     pub friction: &'a mut f64,
@@ -30,11 +30,11 @@ pub(crate) struct Books<'a> {
     pub wall_sums: &'a mut Vec<WallSum>,
     /// Angular impulse of periodic contacts about the origin.
     pub couple: &'a mut Vec3,
-    pub surface: &'a mut SurfaceBook,
+    pub surface: &'a mut SurfaceTotals,
     pub failure: &'a mut Option<Failure>,
 }
 
-pub(crate) trait Kind: Sync {
+pub(crate) trait PairHandler: Sync {
     /// Pairs of the block's first partners possibly within `reach` [m], ascending.
     fn candidates(
         &self,
@@ -46,41 +46,54 @@ pub(crate) trait Kind: Sync {
     );
 
     /// Lists the candidates within `reach` [m].
-    fn refresh(&self, now: &Now<'_>, b: usize, reach: f64, candidates: &[PairName], list: &mut PairList);
+    fn refresh(
+        &self,
+        now: &Configuration<'_>,
+        b: usize,
+        reach: f64,
+        candidates: &[PairName],
+        list: &mut PairList,
+    );
 
     fn forces(
         &self,
-        setting: &Setting<'_>,
-        now: &Now<'_>,
+        setting: &StepContext<'_>,
+        now: &Configuration<'_>,
         b: usize,
         list: &mut PairList,
-        books: &mut Books<'_>,
+        books: &mut ContactTotals<'_>,
     );
 
     fn visit(
         &self,
         laws: &Laws,
-        scene: &dyn Scene,
+        scene: &dyn BodyAccess,
         b: usize,
         list: &PairList,
         f: &mut dyn FnMut(&Visited<'_>),
     );
 
     /// Visits pairs with scarred ground.
-    fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround));
+    fn grounds(&self, now: &Configuration<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround));
 
     /// Visits the bodies of each pair: pair index, block and place, whether first.
-    fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool));
+    fn shares(
+        &self,
+        now: &Configuration<'_>,
+        b: usize,
+        list: &PairList,
+        share: &mut dyn FnMut(usize, [u32; 2], bool),
+    );
 
     fn of_bodies(&self) -> bool;
 
     /// Visits each pair after re-sorting: block, name, points.
     fn carry(
         &self,
-        names: &dyn Renamed,
+        names: &dyn Renumbering,
         b: usize,
         list: &PairList,
-        put: &mut dyn FnMut(usize, PairName, &[PointMemory]),
+        put: &mut dyn FnMut(usize, PairName, &[ContactHistory]),
     );
 }
 
@@ -93,14 +106,18 @@ pub(crate) struct OnGround {
     pub cuts: bool,
 }
 
-pub(crate) struct Of<K>(pub K);
+pub(crate) struct Handler<K>(pub K);
 
 /// Both partners, the second as nearest image, and its shift [m].
-type Partners<'a, K> = (View<'a, <K as PairKind>::First>, View<'a, <K as PairKind>::Second>, Vec3);
+type Partners<'a, K> = (View<'a, <K as ShapePair>::First>, View<'a, <K as ShapePair>::Second>, Vec3);
 
-impl<K: PairKind> Of<K> {
+impl<K: ShapePair> Handler<K> {
     #[inline(always)]
-    fn partners<'a>(scene: &'a (impl Scene + ?Sized), b: usize, [i, other, j]: PairName) -> Partners<'a, K> {
+    fn partners<'a>(
+        scene: &'a (impl BodyAccess + ?Sized),
+        b: usize,
+        [i, other, j]: PairName,
+    ) -> Partners<'a, K> {
         let first = K::First::view(scene, b, i);
         let mut second = K::Second::view(scene, other as usize, j);
         let mut way = Vec3::zeros();
@@ -118,7 +135,7 @@ impl<K: PairKind> Of<K> {
 
     /// Scar, if the second partner is scarred ground.
     #[inline(always)]
-    fn scar(scene: &(impl Scene + ?Sized), b: usize, [i, _, j]: PairName) -> Option<&Scar> {
+    fn scar(scene: &(impl BodyAccess + ?Sized), b: usize, [i, _, j]: PairName) -> Option<&Scar> {
         let scars = scene.scars();
         if scars.is_empty() {
             return None;
@@ -128,29 +145,29 @@ impl<K: PairKind> Of<K> {
     }
 
     /// Within `reach` [m], ground lowered or not.
-    fn near(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
+    fn near(&self, scene: &Configuration<'_>, b: usize, name: PairName, reach: f64) -> bool {
         let (first, second, _) = Self::partners(scene, b, name);
         self.0.near(&first, &second, reach)
             || Self::scar(scene, b, name).is_some_and(|s| s.inside) && self.cuts(scene, b, name, reach)
     }
 
     /// Within `reach` [m], ground not lowered.
-    fn cuts(&self, scene: &Now<'_>, b: usize, name: PairName, reach: f64) -> bool {
+    fn cuts(&self, scene: &Configuration<'_>, b: usize, name: PairName, reach: f64) -> bool {
         self.0.near(&K::First::view(scene, b, name[0]), &K::Second::view(scene, b, name[2]), reach)
     }
 
-    fn joined(scene: &(impl Scene + ?Sized), one: PairName, other: PairName) -> bool {
+    fn joined(scene: &(impl BodyAccess + ?Sized), one: PairName, other: PairName) -> bool {
         let wall = |j: u32| K::Second::wall(scene, j);
         K::JOINED && one[0] == other[0] && wall(one[2]) == wall(other[2])
     }
 
-    fn last(scene: &(impl Scene + ?Sized), list: &PairList, k: usize) -> usize {
+    fn last(scene: &(impl BodyAccess + ?Sized), list: &PairList, k: usize) -> usize {
         let more = (k + 1..list.len()).take_while(|m| Self::joined(scene, list.name(k), list.name(*m)));
         k + 1 + more.count()
     }
 }
 
-impl<K: PairKind> Kind for Of<K> {
+impl<K: ShapePair> PairHandler for Handler<K> {
     fn candidates(
         &self,
         search: &Search<'_>,
@@ -180,18 +197,25 @@ impl<K: PairKind> Kind for Of<K> {
         });
     }
 
-    fn refresh(&self, now: &Now<'_>, b: usize, reach: f64, candidates: &[PairName], list: &mut PairList) {
+    fn refresh(
+        &self,
+        now: &Configuration<'_>,
+        b: usize,
+        reach: f64,
+        candidates: &[PairName],
+        list: &mut PairList,
+    ) {
         let near = candidates.iter().copied().filter(|name| self.near(now, b, *name, reach));
         list.replace(near);
     }
 
     fn forces(
         &self,
-        setting: &Setting<'_>,
-        now: &Now<'_>,
+        setting: &StepContext<'_>,
+        now: &Configuration<'_>,
         b: usize,
         list: &mut PairList,
-        books: &mut Books<'_>,
+        books: &mut ContactTotals<'_>,
     ) {
         if list.len() == 0 {
             return;
@@ -199,7 +223,7 @@ impl<K: PairKind> Kind for Of<K> {
         if K::JOINED {
             books.wall_sums.resize(now.walls.walls.len(), WallSum::default());
         }
-        let (mut found, mut memory, mut parts) = (Touches::new(), Vec::new(), Vec::new());
+        let (mut found, mut memory, mut parts) = (Manifold::new(), Vec::new(), Vec::new());
         let mut k = 0;
         while k < list.len() {
             let end = Self::last(now, list, k);
@@ -207,7 +231,7 @@ impl<K: PairKind> Kind for Of<K> {
             parts.clear();
             for m in k..end {
                 let name = list.name(m);
-                let again = |a: &_, b: &_, found: &mut Touches| {
+                let again = |a: &_, b: &_, found: &mut Manifold| {
                     self.0.touches_again(a, b, list.hint_mut(m), found);
                 };
                 parts.push(Self::seek(setting.laws, now, (b, name), &mut found, again));
@@ -225,19 +249,19 @@ impl<K: PairKind> Kind for Of<K> {
     fn visit(
         &self,
         laws: &Laws,
-        scene: &dyn Scene,
+        scene: &dyn BodyAccess,
         b: usize,
         list: &PairList,
         f: &mut dyn FnMut(&Visited<'_>),
     ) {
-        let (mut found, mut parts, mut at, mut end) = (Touches::new(), Vec::new(), 0, 0);
+        let (mut found, mut parts, mut at, mut end) = (Manifold::new(), Vec::new(), 0, 0);
         for k in 0..list.len() {
             if k == end {
                 (at, end) = (k, Self::last(scene, list, k));
                 found.clear();
                 parts.clear();
                 for m in k..end {
-                    let touches = |a: &_, b: &_, found: &mut Touches| self.0.touches(a, b, found);
+                    let touches = |a: &_, b: &_, found: &mut Manifold| self.0.touches(a, b, found);
                     parts.push(Self::seek(laws, scene, (b, list.name(m)), &mut found, touches));
                 }
                 if K::SHARED {
@@ -257,12 +281,12 @@ impl<K: PairKind> Kind for Of<K> {
                     body: scene.block(b).bodies[body],
                     partner: K::Second::partner(scene, other, j),
                     shift: *way,
-                    contact: ContactNow {
+                    contact: ContactView {
                         geometry: touch.geometry,
                         weight: touch.weight,
                         velocity: own.at_point() - its.at_point(),
                         inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
-                        history: &memory.unwrap_or(&PointMemory::FRESH).history,
+                        history: &memory.unwrap_or(&ContactHistory::FRESH).history,
                         spin: own.spin() - its.spin(),
                         materials: touch.materials,
                         friction: Self::scar(scene, b, list.name(k)).map(|s| s.friction),
@@ -272,7 +296,7 @@ impl<K: PairKind> Kind for Of<K> {
         }
     }
 
-    fn grounds(&self, now: &Now<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround)) {
+    fn grounds(&self, now: &Configuration<'_>, b: usize, list: &PairList, f: &mut dyn FnMut(&OnGround)) {
         for k in 0..list.len() {
             let name @ [i, _, patch] = list.name(k);
             if Self::scar(now, b, name).is_none() {
@@ -284,7 +308,13 @@ impl<K: PairKind> Kind for Of<K> {
         }
     }
 
-    fn shares(&self, now: &Now<'_>, b: usize, list: &PairList, share: &mut dyn FnMut(usize, [u32; 2], bool)) {
+    fn shares(
+        &self,
+        now: &Configuration<'_>,
+        b: usize,
+        list: &PairList,
+        share: &mut dyn FnMut(usize, [u32; 2], bool),
+    ) {
         for k in 0..list.len() {
             let [i, other, j] = list.name(k);
             if let Some(place) = K::First::body(now, b, i) {
@@ -302,10 +332,10 @@ impl<K: PairKind> Kind for Of<K> {
 
     fn carry(
         &self,
-        names: &dyn Renamed,
+        names: &dyn Renumbering,
         b: usize,
         list: &PairList,
-        put: &mut dyn FnMut(usize, PairName, &[PointMemory]),
+        put: &mut dyn FnMut(usize, PairName, &[ContactHistory]),
     ) {
         for k in 0..list.len() {
             let [i, other, j] = list.name(k);
@@ -318,7 +348,7 @@ impl<K: PairKind> Kind for Of<K> {
             if first < second {
                 put(first[0] as usize, [first[1], second[0], second[1]], list.points(k));
             } else {
-                let turned: Vec<PointMemory> = list.points(k).iter().map(PointMemory::turned).collect();
+                let turned: Vec<ContactHistory> = list.points(k).iter().map(ContactHistory::turned).collect();
                 put(second[0] as usize, [second[1], first[0], first[1]], &turned);
             }
         }
@@ -326,10 +356,10 @@ impl<K: PairKind> Kind for Of<K> {
 }
 
 /// Contact points, and image shift [m].
-type Found<'a> = (&'a [Touch], &'a Vec3);
+type Found<'a> = (&'a [PairContactPoint], &'a Vec3);
 
-impl<K: PairKind> Of<K> {
-    fn materials(scene: &(impl Scene + ?Sized), b: usize, [i, other, j]: PairName) -> [u32; 2] {
+impl<K: ShapePair> Handler<K> {
+    fn materials(scene: &(impl BodyAccess + ?Sized), b: usize, [i, other, j]: PairName) -> [u32; 2] {
         [K::First::material(scene, b, i), K::Second::material(scene, other as usize, j)]
     }
 
@@ -337,10 +367,10 @@ impl<K: PairKind> Of<K> {
     #[inline(always)]
     fn seek<'a>(
         laws: &Laws,
-        scene: &'a (impl Scene + ?Sized),
+        scene: &'a (impl BodyAccess + ?Sized),
         (b, name): (usize, PairName),
-        found: &mut Touches,
-        touches: impl FnOnce(&View<'a, K::First>, &View<'a, K::Second>, &mut Touches),
+        found: &mut Manifold,
+        touches: impl FnOnce(&View<'a, K::First>, &View<'a, K::Second>, &mut Manifold),
     ) -> (Range<usize>, Vec3) {
         let (first, second, way) = Self::partners(scene, b, name);
         let from = found.len();
@@ -352,16 +382,16 @@ impl<K: PairKind> Of<K> {
 
     fn pair(
         &self,
-        setting: &Setting<'_>,
-        now: &Now<'_>,
+        setting: &StepContext<'_>,
+        now: &Configuration<'_>,
         (b, k): (usize, usize),
         (found, way): Found<'_>,
         list: &mut PairList,
-        memory: &mut Vec<PointMemory>,
-        books: &mut Books<'_>,
+        memory: &mut Vec<ContactHistory>,
+        books: &mut ContactTotals<'_>,
     ) {
         let name = list.name(k);
-        books.slots[3 * k..][..3].fill(Record::default());
+        books.slots[3 * k..][..3].fill(Vec4::default());
         let points = list.points(k);
         if found.is_empty() && points.is_empty() {
             return;
@@ -379,7 +409,7 @@ impl<K: PairKind> Of<K> {
         memory.clear();
         for (n, touch) in found.iter().enumerate() {
             let known = if same { points.get(n) } else { points.iter().find(|p| p.feature == touch.feature) };
-            let mut point = *known.unwrap_or(&PointMemory::FRESH);
+            let mut point = *known.unwrap_or(&ContactHistory::FRESH);
             (point.feature, point.edge) = (touch.feature, touch.edge > 0.0);
             self.force(setting, now, (b, name), (touch, way), &mut point, &mut sums, books);
             memory.push(point);
@@ -387,22 +417,22 @@ impl<K: PairKind> Of<K> {
         list.set(k, memory);
         if !found.is_empty() {
             for (record, sum) in books.slots[3 * k..][..3].iter_mut().zip(&sums) {
-                *record = Record::of(sum, 0.0);
+                *record = Vec4::of(sum, 0.0);
             }
         }
     }
 
     fn force(
         &self,
-        setting: &Setting<'_>,
-        now: &Now<'_>,
+        setting: &StepContext<'_>,
+        now: &Configuration<'_>,
         (b, [i, other, j]): (usize, PairName),
-        (touch, way): (&Touch, &Vec3),
-        memory: &mut PointMemory,
+        (touch, way): (&PairContactPoint, &Vec3),
+        memory: &mut ContactHistory,
         sums: &mut [Vec3; 3],
-        books: &mut Books<'_>,
+        books: &mut ContactTotals<'_>,
     ) {
-        let &Touch { geometry: ref g, weight, materials, share, .. } = touch;
+        let &PairContactPoint { geometry: ref g, weight, materials, share, .. } = touch;
         let other = other as usize;
         let (own, its) =
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
@@ -427,7 +457,7 @@ impl<K: PairKind> Of<K> {
         if K::Second::EXTERNAL {
             let body = now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()];
             let (facet, history) = (&now.sheet.facets[j as usize], &memory.history);
-            sheet::book(setting, &Met { body, patch: j, facet, touch, history }, &f, books);
+            sheet::book(setting, &SurfaceContactRef { body, patch: j, facet, touch, history }, &f, books);
         } else if let Some(wall) = K::Second::wall(now, j) {
             let sum = &mut books.wall_sums[wall];
             sum.force += force;
@@ -464,7 +494,7 @@ pub(super) fn weigh(
     laws: &Laws,
     [a, b]: [u32; 2],
     g: &ContactGeometry,
-    memory: &mut PointMemory,
+    memory: &mut ContactHistory,
     weight: f64,
 ) -> f64 {
     let before = std::mem::replace(&mut memory.weight, weight);

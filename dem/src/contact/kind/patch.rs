@@ -8,15 +8,15 @@
 
 use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, rounding, set, skeleton, touch};
 use super::facet::{Closed, Rim, Tip};
-use super::pair::{PairKind, Touch, Touches};
+use super::pair::{Manifold, PairContactPoint, ShapePair};
 use super::round;
-use super::scene::{PatchView, Placed, Pose};
+use super::scene::{PatchView, Pose, PosedBody};
 use super::side::{Patches, Solids};
 use crate::base::Vec3;
 use crate::pairs::list::Hint;
 use crate::shape::dilated::part::{Bounds, Part, View};
-use crate::shape::dilated::press::{self, Pressed, Segment, Target};
-use crate::spatial::facet::{Facet, Share};
+use crate::shape::dilated::press::{self, Indentation, Segment, Target};
+use crate::spatial::facet::{Facet, FeatureWeight};
 use crate::spatial::patchwork::Form;
 
 /// Numbers of face, edges and corners as targets, then as indenters.
@@ -28,18 +28,18 @@ const PRESSING: u32 = 8;
 pub(crate) struct DilatedPatch;
 
 /// Body over a facet, in the wall's frame.
-pub(super) fn two<'a>(body: &Placed<'a>, pose: &Pose, facet: &'a Facet) -> Two<'a> {
+pub(super) fn two<'a>(body: &PosedBody<'a>, pose: &Pose, facet: &'a Facet) -> Two<'a> {
     let frame = Frame::new(&body.pose(), pose);
     Two { frame, first: Hull::of(body.core), second: Hull { corners: &facet.corners, rim: None } }
 }
 
-impl PairKind for DilatedPatch {
+impl ShapePair for DilatedPatch {
     type First = Solids;
     type Second = Patches;
     const SHARED: bool = true;
     const JOINED: bool = true;
 
-    fn near(&self, body: &Placed<'_>, patch: &PatchView<'_>, reach: f64) -> bool {
+    fn near(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, reach: f64) -> bool {
         if !body.dilated() || patch.wall.open {
             return false;
         }
@@ -53,11 +53,17 @@ impl PairKind for DilatedPatch {
         }
     }
 
-    fn touches(&self, body: &Placed<'_>, patch: &PatchView<'_>, found: &mut Touches) {
+    fn touches(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, found: &mut Manifold) {
         self.touches_again(body, patch, &mut None, found);
     }
 
-    fn touches_again(&self, body: &Placed<'_>, patch: &PatchView<'_>, hint: &mut Hint, found: &mut Touches) {
+    fn touches_again(
+        &self,
+        body: &PosedBody<'_>,
+        patch: &PatchView<'_>,
+        hint: &mut Hint,
+        found: &mut Manifold,
+    ) {
         if patch.wall.open {
             return;
         }
@@ -70,7 +76,7 @@ impl PairKind for DilatedPatch {
 
 /// Body in a wall's frame.
 pub(super) struct Whole<'a> {
-    pub body: &'a Placed<'a>,
+    pub body: &'a PosedBody<'a>,
     pub frame: &'a Frame,
     /// Bit set of corners possibly near; view of edges.
     pub of: (u64, &'a View),
@@ -79,7 +85,7 @@ pub(super) struct Whole<'a> {
 
 impl Whole<'_> {
     /// Indents a numbered part of the wall, weighted by `count`.
-    pub fn press(&self, target: &impl Target, (number, count): (u32, f64), found: &mut Touches) {
+    pub fn press(&self, target: &impl Target, (number, count): (u32, f64), found: &mut Manifold) {
         let reach = self.body.radius;
         skeleton(self.body.core, self.frame, self.of, target, reach, |feature, pressed, weight| {
             let feature = feature << 16 | number;
@@ -88,7 +94,13 @@ impl Whole<'_> {
     }
 }
 
-pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut Hint, found: &mut Touches) {
+pub(super) fn on_facet(
+    body: &PosedBody<'_>,
+    pose: &Pose,
+    facet: &Facet,
+    hint: &mut Hint,
+    found: &mut Manifold,
+) {
     let (two, reach) = (two(body, pose, facet), body.radius);
     let mut heights = Heights::new();
     match two.heights(hint, reach, &mut heights) {
@@ -122,16 +134,16 @@ pub(super) fn on_facet(body: &Placed<'_>, pose: &Pose, facet: &Facet, hint: &mut
 
 /// Facet edges and corners on a body, in its frame.
 fn on_body(
-    body: &Placed<'_>,
+    body: &PosedBody<'_>,
     facet: &Facet,
     back: &Frame,
     (target, view): (&impl Target, &View),
-    found: &mut Touches,
+    found: &mut Manifold,
 ) {
     let reach = body.radius / body.scale;
     let corners = facet.corners.map(|x| back.point(&x));
-    let presses = |share: &Share| share.press > 0.0;
-    let mut put = |number: u32, pressed: &Pressed, weight: f64| {
+    let presses = |share: &FeatureWeight| share.press > 0.0;
+    let mut put = |number: u32, pressed: &Indentation, weight: f64| {
         let lengths = [0.0, reach, body.radius];
         found.push(touch(&body.pose(), PRESSING + number, pressed, weight, lengths, -1.0));
     };
@@ -155,10 +167,10 @@ fn on_body(
 
 /// Numbered points that indent as corners, in the body's frame and unit.
 pub(super) fn points_on_body(
-    body: &Placed<'_>,
+    body: &PosedBody<'_>,
     points: impl Iterator<Item = (u32, Vec3)>,
     (own, reach, weight): (f64, f64, f64),
-    found: &mut Touches,
+    found: &mut Manifold,
 ) {
     let mut target = Part::none(body.core, View::everywhere(Vec3::z(), reach));
     let target = target.all();
@@ -167,7 +179,10 @@ pub(super) fn points_on_body(
         if let Some(pressed) = press::corner(target, &p, reach) {
             let lengths = [own, reach, rounding(own * body.scale, body.radius)];
             let touch = touch(&body.pose(), number, &pressed, weight, lengths, -1.0);
-            found.push(Touch { bound: (DEEPEST * body.radius).max(touch.bound - own * body.scale), ..touch });
+            found.push(PairContactPoint {
+                bound: (DEEPEST * body.radius).max(touch.bound - own * body.scale),
+                ..touch
+            });
         }
     }
 }

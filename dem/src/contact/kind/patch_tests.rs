@@ -6,20 +6,20 @@ use crate::contact::kind::scene::PlaneView;
 use crate::shape::dilated::{Core, Dilated};
 use crate::shape::{Shape, cuboid};
 use crate::spatial::facet::facets;
-use crate::spatial::patchwork::{Patch, WallNow};
+use crate::spatial::patchwork::{Patch, WallView};
 use crate::spatial::round::Round;
 use nalgebra::UnitQuaternion;
 
 /// Wall of unit stiffness.
 struct Wall {
     patches: Vec<Patch>,
-    now: WallNow,
+    now: WallView,
 }
 
 impl Wall {
     fn of(forms: Vec<Form>, at: Vec3, orientation: UnitQuaternion<f64>) -> Wall {
         let patches = forms.into_iter().map(|f| Patch::new(0, f, Partner::Wall(0))).collect();
-        let now = WallNow {
+        let now = WallView {
             origin: at,
             orientation,
             centre: at,
@@ -40,8 +40,8 @@ impl Wall {
         Wall::of(forms.collect(), at, orientation)
     }
 
-    fn touches(&self, body: &Placed<'_>) -> Touches {
-        let mut found = Touches::new();
+    fn touches(&self, body: &PosedBody<'_>) -> Manifold {
+        let mut found = Manifold::new();
         for patch in &self.patches {
             let view = PatchView { patch, wall: &self.now, shift: Vec3::zeros() };
             if DilatedPatch.near(body, &view, 0.0) {
@@ -58,15 +58,15 @@ fn placed<'a>(
     centre: Vec3,
     q: UnitQuaternion<f64>,
     scale: f64,
-) -> Placed<'a> {
-    Placed { centre, orientation: q, shape, scale, core, radius: shape.rounding(scale) }
+) -> PosedBody<'a> {
+    PosedBody { centre, orientation: q, shape, scale, core, radius: shape.rounding(scale) }
 }
 
-fn energy(found: &Touches) -> f64 {
+fn energy(found: &Manifold) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
 
-fn wrench(found: &Touches, about: &Vec3) -> [Vec3; 2] {
+fn wrench(found: &Manifold, about: &Vec3) -> [Vec3; 2] {
     let mut sums = [Vec3::zeros(); 2];
     for t in found {
         let normal = t.weight * t.geometry.overlap;
@@ -173,7 +173,7 @@ fn boxes_of_triangles(shapes: Vec<Shape>, cuts: &[u32], bound: f64) {
             // Some lie flat.
             let q = if tried % 3 == 0 { turn } else { random.orientation() };
             let body = placed(&shapes[k], &cores[k], at + way, q, 1.1);
-            let (mut as_body, on_wall) = (Touches::new(), wall.touches(&body));
+            let (mut as_body, on_wall) = (Manifold::new(), wall.touches(&body));
             DilatedDilated.touches(&body, &itself, &mut as_body);
             let deepest = as_body.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
             if as_body.is_empty() || deepest > 0.5 {
@@ -217,7 +217,7 @@ fn triangulated_floor_matches_plane() {
         );
         let q = if tried % 3 == 0 { UnitQuaternion::identity() } else { random.orientation() };
         let body = placed(&shapes[k], &cores[k], at, q, 1.0);
-        let (mut on_plane, on_wall) = (Touches::new(), wall.touches(&body));
+        let (mut on_plane, on_wall) = (Manifold::new(), wall.touches(&body));
         DilatedPlane.touches(&body, &plane, &mut on_plane);
         let deepest = on_plane.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
         if on_plane.is_empty() || deepest > 0.5 {

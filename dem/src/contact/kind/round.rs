@@ -9,9 +9,9 @@
 //! (body smaller than the wall). Rims without a disc, or shared by two walls, do not indent.
 
 use super::dilated::{Frame, LENGTH, lost};
-use super::pair::Touches;
+use super::pair::Manifold;
 use super::patch::{Whole, points_on_body};
-use super::scene::{PatchView, Placed};
+use super::scene::{PatchView, PosedBody};
 use crate::base::Vec3;
 use crate::shape::dilated::part::{Bounds, View};
 use crate::shape::dilated::press::{HalfSpace, Nearest, Segment, Stretch, Target};
@@ -29,7 +29,7 @@ const PRESSING: u32 = 8;
 /// Iterations for nearest points and range ends.
 const ROUNDS: usize = 48;
 
-pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
+pub(super) fn near(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
     let pose = patch.pose();
     let at = pose.orientation.inverse() * (body.centre - pose.centre);
     match form {
@@ -40,7 +40,7 @@ pub(super) fn near(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, reach
 }
 
 /// Body in a round patch's frame.
-pub(super) trait Presser {
+pub(super) trait Indenter {
     /// Interior point.
     fn amid(&self) -> Vec3;
 
@@ -59,7 +59,7 @@ pub(super) trait Presser {
     fn lose(&mut self, normal: &Vec3);
 }
 
-pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Touches) {
+pub(super) fn touches(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Manifold) {
     if !near(body, patch, form, 0.0) {
         return;
     }
@@ -72,10 +72,10 @@ pub(super) fn touches(body: &Placed<'_>, patch: &PatchView<'_>, form: &Round, fo
 
 struct OnRound<'a> {
     whole: Whole<'a>,
-    found: &'a mut Touches,
+    found: &'a mut Manifold,
 }
 
-impl Presser for OnRound<'_> {
+impl Indenter for OnRound<'_> {
     fn amid(&self) -> Vec3 {
         self.whole.frame.way
     }
@@ -110,7 +110,7 @@ impl Presser for OnRound<'_> {
     }
 }
 
-pub(super) fn on(form: &Round, presser: &mut impl Presser) {
+pub(super) fn on(form: &Round, presser: &mut impl Indenter) {
     let reach = presser.reach();
     match form {
         Round::Plane { point, normal } => {
@@ -269,7 +269,7 @@ impl Side {
     }
 
     /// Whether an outside core meets the frustum; inside, corners detect it.
-    fn meets_core(&self, frame: &Frame, body: &Placed<'_>) -> bool {
+    fn meets_core(&self, frame: &Frame, body: &PosedBody<'_>) -> bool {
         let (point, normal, _) = self.near.closest(&frame.way);
         let outside = (frame.way - point).dot(&normal) > 0.0;
         let farthest = |n: &Vec3| {

@@ -2,22 +2,22 @@
 
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::lanes::record::{Record, xyz};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::lanes::record::{Vec4, xyz};
 use crate::law::scarring::Scar;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::bvh::{Aabb, Bvh};
-use crate::spatial::patchwork::{Patch, Trees, WallNow, Walls};
+use crate::spatial::patchwork::{Patch, Trees, WallView, Walls};
 use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::SheetFacet;
 use nalgebra::UnitQuaternion;
 
 /// Non-spherical body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed<'a> {
+pub(crate) struct PosedBody<'a> {
     pub centre: Vec3,
     /// Body frame to world.
     pub orientation: UnitQuaternion<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct Placed<'a> {
     pub radius: f64,
 }
 
-impl Placed<'_> {
+impl PosedBody<'_> {
     /// Frame in unscaled lengths.
     #[inline(always)]
     pub fn pose(&self) -> Pose {
@@ -76,7 +76,7 @@ pub(crate) struct PlaneView {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchView<'a> {
     pub patch: &'a Patch,
-    pub wall: &'a WallNow,
+    pub wall: &'a WallView,
     /// Patch to image [m].
     pub shift: Vec3,
 }
@@ -95,16 +95,16 @@ pub(crate) struct Pose {
     pub scale: f64,
 }
 
-pub(crate) trait Scene {
+pub(crate) trait BodyAccess {
     fn block(&self, b: usize) -> &Block;
 
     /// Sphere centre and radius.
-    fn sphere(&self, b: usize, i: u32) -> &Record;
+    fn sphere(&self, b: usize, i: u32) -> &Vec4;
 
     /// Body of a sphere.
     fn owner(&self, b: usize, i: u32) -> usize;
 
-    fn placed(&self, b: usize, k: usize) -> Placed<'_>;
+    fn placed(&self, b: usize, k: usize) -> PosedBody<'_>;
 
     fn plane(&self, k: usize) -> PlaneView;
 
@@ -137,9 +137,9 @@ impl SheetView<'_> {
 
 /// Bodies in a step.
 #[derive(Clone, Copy)]
-pub(crate) struct Now<'a> {
-    pub blocks: Part<'a, Block>,
-    pub members: Part<'a, Members>,
+pub(crate) struct Configuration<'a> {
+    pub blocks: BlockSlice<'a, Block>,
+    pub members: BlockSlice<'a, BlockBodies>,
     pub shapes: &'a [Shape],
     pub cores: &'a [Core],
     pub planes: (&'a [Plane], &'a [PlaneMotion]),
@@ -149,14 +149,14 @@ pub(crate) struct Now<'a> {
     pub scars: &'a [Scar],
 }
 
-impl Scene for Now<'_> {
+impl BodyAccess for Configuration<'_> {
     #[inline(always)]
     fn block(&self, b: usize) -> &Block {
         &self.blocks[b]
     }
 
     #[inline(always)]
-    fn sphere(&self, b: usize, i: u32) -> &Record {
+    fn sphere(&self, b: usize, i: u32) -> &Vec4 {
         &self.members[b].spheres(&self.blocks[b])[i as usize]
     }
 
@@ -166,9 +166,9 @@ impl Scene for Now<'_> {
     }
 
     #[inline(always)]
-    fn placed(&self, b: usize, k: usize) -> Placed<'_> {
+    fn placed(&self, b: usize, k: usize) -> PosedBody<'_> {
         let (block, (shape, scale)) = (&self.blocks[b], self.members[b].solids[k]);
-        Placed {
+        PosedBody {
             centre: xyz(&block.centre[k]),
             orientation: block.rotation[k].orientation,
             shape: &self.shapes[shape as usize],
@@ -212,7 +212,7 @@ impl Scene for Now<'_> {
 }
 
 pub(crate) struct Search<'a> {
-    pub now: Now<'a>,
+    pub now: Configuration<'a>,
     pub planes: usize,
     /// Block and place, ascending.
     pub solids: Vec<[u32; 2]>,
@@ -224,7 +224,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(now: Now<'a>, patches: &'a Trees) -> Search<'a> {
+    pub fn new(now: Configuration<'a>, patches: &'a Trees) -> Search<'a> {
         let mut solids = Vec::new();
         for (b, (block, members)) in now.blocks.list.iter().zip(now.members.list).enumerate() {
             if members.solid() {

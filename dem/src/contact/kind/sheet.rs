@@ -4,16 +4,16 @@
 //! Limits: as for wall triangles; faces of the solid have no mass.
 
 use super::dilated::Two;
-use super::pair::{PairKind, Touch, Touches};
-use super::pass::Books;
+use super::pair::{Manifold, PairContactPoint, ShapePair};
+use super::pass::ContactTotals;
 use super::patch;
-use super::scene::{Placed, Pose, Scene, Search};
+use super::scene::{BodyAccess, Pose, PosedBody, Search};
 use super::side::{Second, Side, Solids};
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::PointMotion;
-use crate::contact::kind::Renamed;
-use crate::contact::single::{self, PairForce, Setting};
+use crate::contact::kind::Renumbering;
+use crate::contact::single::{self, PairForce, StepContext};
 use crate::law::History;
 use crate::pairs::list::Hint;
 use crate::spatial::bvh::Aabb;
@@ -31,13 +31,13 @@ const WORLD: Pose = Pose {
     scale: 1.0,
 };
 
-impl PairKind for DilatedSheet {
+impl ShapePair for DilatedSheet {
     type First = Solids;
     type Second = SheetFacets;
     const SHARED: bool = true;
     const JOINED: bool = true;
 
-    fn near(&self, body: &Placed<'_>, it: &&SheetFacet, reach: f64) -> bool {
+    fn near(&self, body: &PosedBody<'_>, it: &&SheetFacet, reach: f64) -> bool {
         if !body.dilated() {
             return false;
         }
@@ -46,11 +46,11 @@ impl PairKind for DilatedSheet {
         two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
     }
 
-    fn touches(&self, body: &Placed<'_>, it: &&SheetFacet, found: &mut Touches) {
+    fn touches(&self, body: &PosedBody<'_>, it: &&SheetFacet, found: &mut Manifold) {
         self.touches_again(body, it, &mut None, found);
     }
 
-    fn touches_again(&self, body: &Placed<'_>, it: &&SheetFacet, hint: &mut Hint, found: &mut Touches) {
+    fn touches_again(&self, body: &PosedBody<'_>, it: &&SheetFacet, hint: &mut Hint, found: &mut Manifold) {
         patch::on_facet(body, &WORLD, &it.facet, hint, found);
     }
 }
@@ -62,12 +62,12 @@ impl Side for SheetFacets {
     const EXTERNAL: bool = true;
 
     #[inline(always)]
-    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+    fn body(_: &(impl BodyAccess + ?Sized), _: usize, _: u32) -> Option<usize> {
         None
     }
 
     #[inline(always)]
-    fn view(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> &SheetFacet {
+    fn view(scene: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> &SheetFacet {
         &scene.sheet().facets[number as usize]
     }
 
@@ -77,32 +77,32 @@ impl Side for SheetFacets {
 
     fn image(_: &mut &SheetFacet, _: &Vec3) {}
 
-    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(_: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         Some([block as u32, number])
     }
 
     #[inline(always)]
-    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+    fn motion(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
         let facet = Self::view(scene, block, number);
         let (velocity, spin) = facet.motion(&facet.foot(point));
         PointMotion::of_whole(&velocity, &spin, Vec3::zeros(), 0.0)
     }
 
-    fn correction(scene: &(impl Scene + ?Sized), number: u32, point: &Vec3) -> Option<Vec3> {
+    fn correction(scene: &(impl BodyAccess + ?Sized), number: u32, point: &Vec3) -> Option<Vec3> {
         let facet = Self::view(scene, 0, number);
         facet.correction.is_some().then(|| facet.correction(&facet.foot(point))).flatten()
     }
 
     #[inline(always)]
-    fn material(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> u32 {
+    fn material(scene: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> u32 {
         scene.sheet().material(number)
     }
 
-    fn partner(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Partner {
+    fn partner(_: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> Partner {
         Partner::Patch(number)
     }
 
-    fn still(_: &(impl Scene + ?Sized), _: usize, _: u32) -> bool {
+    fn still(_: &(impl BodyAccess + ?Sized), _: usize, _: u32) -> bool {
         true
     }
 }
@@ -120,17 +120,22 @@ impl Second for SheetFacets {
 }
 
 /// Contact with the surface.
-pub(super) struct Met<'a> {
+pub(super) struct SurfaceContactRef<'a> {
     pub body: u32,
     pub patch: u32,
     pub facet: &'a SheetFacet,
-    pub touch: &'a Touch,
+    pub touch: &'a PairContactPoint,
     pub history: &'a History,
 }
 
 /// Records for the surface owner, and in the grains' totals.
-pub(super) fn book(setting: &Setting<'_>, met: &Met<'_>, f: &PairForce, books: &mut Books<'_>) {
-    let Touch { geometry: g, weight, materials, .. } = met.touch;
+pub(super) fn book(
+    setting: &StepContext<'_>,
+    met: &SurfaceContactRef<'_>,
+    f: &PairForce,
+    books: &mut ContactTotals<'_>,
+) {
+    let PairContactPoint { geometry: g, weight, materials, .. } = met.touch;
     let force = f.force * *weight;
     let foot = met.facet.foot(&g.point);
     let couple = met.touch.couple * force.dot(&g.normal) + f.moment * *weight + foot.aside.cross(&force);

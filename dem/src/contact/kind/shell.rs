@@ -3,14 +3,14 @@
 
 use super::dilated::{DEEPEST, Frame, length, lost, rounding, touch};
 use super::facet::{Closed, Rim, Tip};
-use super::pair::{Touch, Touches};
-use super::round::{self, Presser};
+use super::pair::{Manifold, PairContactPoint};
+use super::round::{self, Indenter};
 use super::scene::Pose;
 use crate::base::Vec3;
 use crate::shape::dilated::part::{Bounds, View};
-use crate::shape::dilated::press::{self, Pressed, Segment, Target};
+use crate::shape::dilated::press::{self, Indentation, Segment, Target};
 use crate::spatial::bvh::Aabb;
-use crate::spatial::facet::{Facet, Share};
+use crate::spatial::facet::{Facet, FeatureWeight};
 use crate::spatial::round::Round;
 use crate::spatial::shell::Shell;
 
@@ -30,13 +30,13 @@ pub(crate) type Name = [u32; 2];
 
 /// Wall–wall contacts; names ascend.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Met {
+pub(crate) struct WallContactList {
     pub names: Vec<Name>,
-    pub touches: Touches,
+    pub touches: Manifold,
     rows: [Vec<u32>; 2],
 }
 
-impl Met {
+impl WallContactList {
     pub fn clear(&mut self) {
         self.names.clear();
         self.touches.clear();
@@ -59,26 +59,32 @@ impl Met {
         }
     }
 
-    fn push(&mut self, name: Name, touch: Touch) {
+    fn push(&mut self, name: Name, touch: PairContactPoint) {
         self.names.push(name);
         self.touches.push(touch);
     }
 }
 
 #[derive(Clone, Copy)]
-pub(crate) struct ShellNow<'a> {
+pub(crate) struct ShellPose<'a> {
     pub shell: &'a Shell,
     pub pose: Pose,
 }
 
-pub(crate) fn shells(a: &ShellNow<'_>, b: &ShellNow<'_>, found: &mut Met) {
-    Pressing::new(a, b.pose, a.shell.radius + b.shell.radius, false).on_shell(b.shell, found);
-    Pressing::new(b, a.pose, a.shell.radius + b.shell.radius, true).on_shell(a.shell, found);
+pub(crate) fn shells(a: &ShellPose<'_>, b: &ShellPose<'_>, found: &mut WallContactList) {
+    ShellIndenter::new(a, b.pose, a.shell.radius + b.shell.radius, false).on_shell(b.shell, found);
+    ShellIndenter::new(b, a.pose, a.shell.radius + b.shell.radius, true).on_shell(a.shell, found);
 }
 
 /// Adds contacts with round patches in frame `pose`.
-pub(crate) fn rounds(a: &ShellNow<'_>, amid: &Vec3, forms: &[Round], pose: Pose, found: &mut Met) {
-    let pressing = Pressing::new(a, pose, a.shell.radius, false);
+pub(crate) fn rounds(
+    a: &ShellPose<'_>,
+    amid: &Vec3,
+    forms: &[Round],
+    pose: Pose,
+    found: &mut WallContactList,
+) {
+    let pressing = ShellIndenter::new(a, pose, a.shell.radius, false);
     for (form, first) in forms.iter().zip((0..).step_by(ROUND_PARTS as usize)) {
         let bounds = form.bounds();
         if apart(&pressing.bounds(), &grown(&bounds, a.shell.radius)) {
@@ -108,7 +114,7 @@ fn seen(frame: &Frame, (low, high): &Aabb) -> Aabb {
     ((middle - half).into(), (middle + half).into())
 }
 
-struct Pressing<'a> {
+struct ShellIndenter<'a> {
     shell: &'a Shell,
     /// Frames of shell and target.
     own: Pose,
@@ -128,7 +134,7 @@ enum Feature {
 }
 
 impl Feature {
-    fn on(&self, target: &impl Target, reach: f64) -> Option<Pressed> {
+    fn on(&self, target: &impl Target, reach: f64) -> Option<Indentation> {
         match self {
             Feature::Corner(p) => press::corner(target, p, reach),
             Feature::Edge(segment) => press::edge(target, segment, reach),
@@ -136,8 +142,8 @@ impl Feature {
     }
 
     /// Visits each loaded part: number, indentation, weight.
-    fn on_parts(&self, facet: &Facet, reach: f64, mut f: impl FnMut(u32, &Pressed, f64)) {
-        let mut put = |part: u32, pressed: Option<Pressed>, count: f64| {
+    fn on_parts(&self, facet: &Facet, reach: f64, mut f: impl FnMut(u32, &Indentation, f64)) {
+        let mut put = |part: u32, pressed: Option<Indentation>, count: f64| {
             pressed.iter().for_each(|pressed| f(part, pressed, count));
         };
         put(FACE, self.on(&Closed(facet), reach), 1.0);
@@ -170,11 +176,11 @@ impl Feature {
     }
 }
 
-impl<'a> Pressing<'a> {
-    fn new(of: &ShellNow<'a>, pose: Pose, reach: f64, turned: bool) -> Pressing<'a> {
+impl<'a> ShellIndenter<'a> {
+    fn new(of: &ShellPose<'a>, pose: Pose, reach: f64, turned: bool) -> ShellIndenter<'a> {
         let (frame, back) = (Frame::new(&of.pose, &pose), Frame::new(&pose, &of.pose));
         let view = View::everywhere(Vec3::z(), reach);
-        Pressing { shell: of.shell, own: of.pose, pose, frame, back, reach, turned, view }
+        ShellIndenter { shell: of.shell, own: of.pose, pose, frame, back, reach, turned, view }
     }
 
     /// Bounds in the target's frame.
@@ -189,7 +195,7 @@ impl<'a> Pressing<'a> {
         self.shell.tree.query(low, high, row);
         for &t in row.iter() {
             let Facet { corners, edges, tips, .. } = &self.shell.facets[t as usize];
-            let presses = |share: &Share| share.press > 0.0;
+            let presses = |share: &FeatureWeight| share.press > 0.0;
             for (k, edge) in edges.iter().enumerate().filter(|(_, e)| presses(&e.share)) {
                 let from = self.frame.point(&corners[k]);
                 let to = self.frame.point(&corners[(k + 1) % 3]);
@@ -205,7 +211,7 @@ impl<'a> Pressing<'a> {
     }
 
     /// Contact weighted by `count`.
-    fn touch(&self, pressed: &Pressed, count: f64) -> Touch {
+    fn touch(&self, pressed: &Indentation, count: f64) -> PairContactPoint {
         let weight = if pressed.edge { count * length(pressed, self.reach) } else { count };
         let own = self.shell.radius;
         let lengths = [own, self.reach, rounding(own, self.reach)];
@@ -213,11 +219,11 @@ impl<'a> Pressing<'a> {
     }
 
     /// Penetration of a surface.
-    fn lost(&self, p: &Vec3, normal: &Vec3) -> Touch {
+    fn lost(&self, p: &Vec3, normal: &Vec3) -> PairContactPoint {
         lost(self.pose.centre + self.pose.orientation * p, self.pose.orientation * normal, self.reach)
     }
 
-    fn on_shell(&self, target: &Shell, found: &mut Met) {
+    fn on_shell(&self, target: &Shell, found: &mut WallContactList) {
         let [mut row, mut near] = std::mem::take(&mut found.rows);
         self.features(&target.bounds, &mut row, |number, share, feature| {
             let number = number | if self.turned { TURNED } else { 0 };
@@ -258,14 +264,14 @@ fn pierced(facet: &Facet, segment: &Segment) -> Option<Vec3> {
 
 /// Shell on a round patch: bounds, first part number.
 struct OnRound<'a, 'b> {
-    pressing: &'b Pressing<'a>,
+    pressing: &'b ShellIndenter<'a>,
     amid: Vec3,
     bounds: Aabb,
     first: u32,
-    found: &'b mut Met,
+    found: &'b mut WallContactList,
 }
 
-impl Presser for OnRound<'_, '_> {
+impl Indenter for OnRound<'_, '_> {
     fn amid(&self) -> Vec3 {
         self.amid
     }
@@ -300,7 +306,10 @@ impl Presser for OnRound<'_, '_> {
                     let lengths = [own, reach, rounding(own, shell.radius)];
                     let touch = touch(&pressing.own, 0, pressed, weight * count, lengths, -1.0);
                     let bound = (DEEPEST * shell.radius).max(touch.bound - own);
-                    found.push([TURNED | (self.first + number), t * PARTS + part], Touch { bound, ..touch });
+                    found.push(
+                        [TURNED | (self.first + number), t * PARTS + part],
+                        PairContactPoint { bound, ..touch },
+                    );
                 });
             }
         }

@@ -1,22 +1,22 @@
 //! Forces of wall–wall contacts (`shell.rs`).
 
 use super::dilated::DEEPEST;
-use super::pair::{ContactNow, share};
+use super::pair::{ContactView, share};
 use super::pass::weigh;
-use super::shell::Met;
+use super::shell::WallContactList;
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::block::PointMotion;
 use crate::bodies::sums::WallSum;
 use crate::contact::single;
 use crate::law::Laws;
-use crate::pairs::list::PointMemory;
-use crate::pairs::meets::Meet;
-use crate::spatial::patchwork::WallNow;
+use crate::pairs::list::ContactHistory;
+use crate::pairs::meets::WallContactHistory;
+use crate::spatial::patchwork::WallView;
 
 /// Two walls: first triangulated, second numbered.
 pub(crate) struct Two<'a> {
-    pub walls: [&'a WallNow; 2],
+    pub walls: [&'a WallView; 2],
     pub other: u32,
 }
 
@@ -26,7 +26,7 @@ impl Two<'_> {
     }
 
     /// Assigns laws to contacts.
-    fn settle(&self, laws: &Laws, found: &mut Met) {
+    fn settle(&self, laws: &Laws, found: &mut WallContactList) {
         let materials = self.materials();
         found.touches.iter_mut().for_each(|t| t.under(laws, materials));
         share(laws, &mut found.touches);
@@ -41,10 +41,10 @@ impl Two<'_> {
     pub fn forces(
         &self,
         (laws, dt): (&Laws, f64),
-        found: &mut Met,
-        (old, new): (&[Meet], &mut Vec<Meet>),
+        found: &mut WallContactList,
+        (old, new): (&[WallContactHistory], &mut Vec<WallContactHistory>),
         [first, second]: [&mut WallSum; 2],
-        ledger: &mut Ledger,
+        ledger: &mut BalanceTerms,
     ) -> Option<[f64; 2]> {
         self.settle(laws, found);
         let mut deep = None;
@@ -56,7 +56,7 @@ impl Two<'_> {
         }
         for (name, touch) in found.names.iter().zip(&found.touches) {
             let g = &touch.geometry;
-            let mut memory = known(old, name).copied().unwrap_or(PointMemory::FRESH);
+            let mut memory = known(old, name).copied().unwrap_or(ContactHistory::FRESH);
             memory.edge = touch.edge > 0.0;
             ledger.dissipated_friction += weigh(laws, touch.materials, g, &mut memory, touch.weight);
             let [own, its] = self.motions(&g.point);
@@ -84,21 +84,27 @@ impl Two<'_> {
                 // The sum over a penetrating edge is meaningless.
                 deep = Some([g.overlap.min(touch.bound / DEEPEST), touch.bound]);
             }
-            new.push(Meet { other: self.other, name: *name, memory });
+            new.push(WallContactHistory { other: self.other, name: *name, memory });
         }
         deep
     }
 
-    pub fn visit(&self, laws: &Laws, found: &mut Met, memory: &[Meet], f: &mut dyn FnMut(&ContactNow<'_>)) {
+    pub fn visit(
+        &self,
+        laws: &Laws,
+        found: &mut WallContactList,
+        memory: &[WallContactHistory],
+        f: &mut dyn FnMut(&ContactView<'_>),
+    ) {
         self.settle(laws, found);
         for (name, touch) in found.names.iter().zip(&found.touches) {
             let [own, its] = self.motions(&touch.geometry.point);
-            f(&ContactNow {
+            f(&ContactView {
                 geometry: touch.geometry,
                 weight: touch.weight,
                 velocity: own.at_point() - its.at_point(),
                 inverse_mass: (own.inverse_mass() + its.inverse_mass()) * touch.share,
-                history: &known(memory, name).unwrap_or(&PointMemory::FRESH).history,
+                history: &known(memory, name).unwrap_or(&ContactHistory::FRESH).history,
                 spin: own.spin() - its.spin(),
                 materials: touch.materials,
                 friction: None,
@@ -107,7 +113,7 @@ impl Two<'_> {
     }
 }
 
-fn known<'a>(of: &'a [Meet], name: &[u32; 2]) -> Option<&'a PointMemory> {
+fn known<'a>(of: &'a [WallContactHistory], name: &[u32; 2]) -> Option<&'a ContactHistory> {
     let at = of.binary_search_by_key(name, |m| m.name).ok()?;
     Some(&of[at].memory)
 }

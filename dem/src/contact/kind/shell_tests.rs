@@ -32,16 +32,17 @@ fn pile() -> Vec<Round> {
 /// History look-up requires unique ascending names.
 #[test]
 fn names_ascend() {
-    let (shell, mut random, mut found, mut several) = (cube(), Random::new(3, 1), Met::default(), 0);
+    let (shell, mut random, mut found, mut several) =
+        (cube(), Random::new(3, 1), WallContactList::default(), 0);
     for k in 0..2000 {
         let pose =
             at(random.orientation() * Vec3::x() * (0.7 + 0.6 * random.uniform()), random.orientation());
-        let moved = ShellNow { shell: &shell, pose };
+        let moved = ShellPose { shell: &shell, pose };
         found.clear();
         if k % 2 == 0 {
             rounds(&moved, &Vec3::zeros(), &pile(), at(Vec3::zeros(), STILL), &mut found);
         } else {
-            shells(&moved, &ShellNow { shell: &shell, pose: at(Vec3::zeros(), STILL) }, &mut found);
+            shells(&moved, &ShellPose { shell: &shell, pose: at(Vec3::zeros(), STILL) }, &mut found);
         }
         assert_eq!(found.names.len(), found.touches.len());
         assert!(found.names.is_sorted_by(|a, b| a < b), "{k}: {:?}", found.names);
@@ -50,17 +51,17 @@ fn names_ascend() {
     assert!(several > 300, "{several}");
 }
 
-fn lost_of(found: &Met) -> bool {
+fn lost_of(found: &WallContactList) -> bool {
     found.touches.iter().any(|t| t.weight > 0.0 && t.geometry.overlap > t.bound)
 }
 
 /// Spheres may penetrate faces by 0.9 rounding radii; edges may not cross edges or piles.
 #[test]
 fn what_has_come_too_deep() {
-    let (shell, mut found) = (cube(), Met::default());
+    let (shell, mut found) = (cube(), WallContactList::default());
     let ball = [Round::Sphere { centre: Vec3::zeros(), radius: 2.0 }];
     for (depth, deep) in [(0.04, false), (0.05, true)] {
-        let moved = ShellNow { shell: &shell, pose: at(Vec3::z() * (2.5 - depth), STILL) };
+        let moved = ShellPose { shell: &shell, pose: at(Vec3::z() * (2.5 - depth), STILL) };
         found.clear();
         rounds(&moved, &Vec3::zeros(), &ball, at(Vec3::zeros(), STILL), &mut found);
         assert!(!found.touches.is_empty() && lost_of(&found) == deep, "{depth}");
@@ -78,11 +79,11 @@ fn what_has_come_too_deep() {
     for (below, meet) in [(None, edges), (Some(lying), 0.5 * edges + 0.4)] {
         for (height, crossed) in [(meet + 0.049, false), (meet - 0.04, true), (meet - 0.2, true)] {
             let moved =
-                ShellNow { shell: &shell, pose: at(Vec3::new(0.03, 0.02, height), turned(Vec3::y())) };
+                ShellPose { shell: &shell, pose: at(Vec3::new(0.03, 0.02, height), turned(Vec3::y())) };
             found.clear();
             match &below {
                 None => {
-                    let other = ShellNow { shell: &shell, pose: at(Vec3::zeros(), turned(Vec3::x())) };
+                    let other = ShellPose { shell: &shell, pose: at(Vec3::zeros(), turned(Vec3::x())) };
                     shells(&moved, &other, &mut found);
                 }
                 Some(forms) => rounds(&moved, &Vec3::zeros(), forms, at(Vec3::zeros(), STILL), &mut found),

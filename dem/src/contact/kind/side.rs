@@ -1,14 +1,14 @@
 //! Partner types of pairs.
 
-use super::scene::{PatchView, Placed, PlaneView, Scene, Search};
+use super::scene::{BodyAccess, PatchView, PlaneView, PosedBody, Search};
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::PointMotion;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::record::{Vec4, xyz};
 use crate::spatial::bvh::Aabb;
 
 /// Bodies after re-sorting; `None` if removed.
-pub(crate) trait Renamed {
+pub(crate) trait Renumbering {
     fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]>;
 
     fn body(&self, block: usize, place: u32) -> Option<[u32; 2]>;
@@ -27,30 +27,30 @@ pub(crate) trait Side {
     const EXTERNAL: bool = false;
 
     /// Body index in the block.
-    fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize>;
+    fn body(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> Option<usize>;
 
-    fn view<'a>(scene: &'a (impl Scene + ?Sized), block: usize, number: u32) -> Self::View<'a>;
+    fn view<'a>(scene: &'a (impl BodyAccess + ?Sized), block: usize, number: u32) -> Self::View<'a>;
 
     /// Interior point [m].
     fn middle(view: &Self::View<'_>) -> Vec3;
 
     fn image(view: &mut Self::View<'_>, way: &Vec3);
 
-    fn wall(_scene: &(impl Scene + ?Sized), _number: u32) -> Option<usize> {
+    fn wall(_scene: &(impl BodyAccess + ?Sized), _number: u32) -> Option<usize> {
         None
     }
 
     /// Block and number after re-sorting; `None` if removed.
-    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]>;
+    fn renamed(names: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]>;
 
     /// Displacement not contained in the velocity [m]
     /// ([`Surface::correction`](crate::spatial::surface::Surface::correction)).
-    fn correction(_scene: &(impl Scene + ?Sized), _number: u32, _point: &Vec3) -> Option<Vec3> {
+    fn correction(_scene: &(impl BodyAccess + ?Sized), _number: u32, _point: &Vec3) -> Option<Vec3> {
         None
     }
 
     #[inline(always)]
-    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+    fn motion(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
         match Self::body(scene, block, number) {
             Some(k) => scene.block(block).motion(k, point),
             None => PointMotion::of_plane(&scene.plane(number as usize).velocity),
@@ -58,14 +58,14 @@ pub(crate) trait Side {
     }
 
     #[inline(always)]
-    fn material(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> u32 {
+    fn material(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> u32 {
         match Self::body(scene, block, number) {
             Some(k) => scene.block(block).material(k),
             None => scene.plane(number as usize).material,
         }
     }
 
-    fn partner(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Partner {
+    fn partner(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> Partner {
         match Self::body(scene, block, number) {
             Some(k) => Partner::Body(scene.block(block).bodies[k] as usize),
             None => Partner::Plane(number as usize),
@@ -73,7 +73,7 @@ pub(crate) trait Side {
     }
 
     /// Whether the velocity is prescribed.
-    fn still(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> bool {
+    fn still(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> bool {
         Self::body(scene, block, number).is_none_or(|k| scene.block(block).velocity[k][3] == 0.0)
     }
 }
@@ -98,27 +98,27 @@ pub(crate) fn grown((low, high): Aabb, by: f64) -> Aabb {
 pub(crate) struct Spheres;
 
 impl Side for Spheres {
-    type View<'a> = &'a Record;
+    type View<'a> = &'a Vec4;
     const BODY: bool = true;
 
     #[inline(always)]
-    fn body(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Option<usize> {
+    fn body(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> Option<usize> {
         Some(scene.owner(block, number))
     }
 
     #[inline(always)]
-    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> &Record {
+    fn view(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> &Vec4 {
         scene.sphere(block, number)
     }
 
     // Only second partners are shifted to images.
-    fn middle(view: &&Record) -> Vec3 {
+    fn middle(view: &&Vec4) -> Vec3 {
         xyz(view)
     }
 
-    fn image(_: &mut &Record, _: &Vec3) {}
+    fn image(_: &mut &Vec4, _: &Vec3) {}
 
-    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(names: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         names.sphere(block, number)
     }
 }
@@ -128,7 +128,7 @@ impl First for Spheres {
         (0..search.now.members[block].count as u32).for_each(f);
     }
 
-    fn bounds(view: &&Record) -> Aabb {
+    fn bounds(view: &&Vec4) -> Aabb {
         let x = [view[0], view[1], view[2]];
         grown((x, x), view[3])
     }
@@ -138,28 +138,28 @@ impl First for Spheres {
 pub(crate) struct Solids;
 
 impl Side for Solids {
-    type View<'a> = Placed<'a>;
+    type View<'a> = PosedBody<'a>;
     const BODY: bool = true;
 
     #[inline(always)]
-    fn body(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Option<usize> {
+    fn body(_: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> Option<usize> {
         Some(number as usize)
     }
 
     #[inline(always)]
-    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Placed<'_> {
+    fn view(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> PosedBody<'_> {
         scene.placed(block, number as usize)
     }
 
-    fn middle(view: &Placed<'_>) -> Vec3 {
+    fn middle(view: &PosedBody<'_>) -> Vec3 {
         view.centre
     }
 
-    fn image(view: &mut Placed<'_>, way: &Vec3) {
+    fn image(view: &mut PosedBody<'_>, way: &Vec3) {
         view.centre += way;
     }
 
-    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(names: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         names.body(block, number)
     }
 }
@@ -177,7 +177,7 @@ impl First for Solids {
         }
     }
 
-    fn bounds(view: &Placed<'_>) -> Aabb {
+    fn bounds(view: &PosedBody<'_>) -> Aabb {
         view.bounds()
     }
 }
@@ -198,12 +198,12 @@ impl Side for Corners {
     const BODY: bool = true;
 
     #[inline(always)]
-    fn body(_: &(impl Scene + ?Sized), _: usize, number: u32) -> Option<usize> {
+    fn body(_: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> Option<usize> {
         Some((number / CORNERS) as usize)
     }
 
     #[inline(always)]
-    fn view(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Corner {
+    fn view(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> Corner {
         let body = scene.placed(block, (number / CORNERS) as usize);
         let (point, size) = body.shape.corner((number % CORNERS) as usize, body.scale);
         Corner { point: body.centre + body.orientation * point, size }
@@ -217,7 +217,7 @@ impl Side for Corners {
         view.point += way;
     }
 
-    fn renamed(names: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(names: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         let [block, k] = names.body(block, number / CORNERS)?;
         Some([block, k * CORNERS + number % CORNERS])
     }
@@ -246,12 +246,12 @@ impl Side for Planes {
     const IMAGES: bool = false;
 
     #[inline(always)]
-    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+    fn body(_: &(impl BodyAccess + ?Sized), _: usize, _: u32) -> Option<usize> {
         None
     }
 
     #[inline(always)]
-    fn view(scene: &(impl Scene + ?Sized), _: usize, number: u32) -> PlaneView {
+    fn view(scene: &(impl BodyAccess + ?Sized), _: usize, number: u32) -> PlaneView {
         scene.plane(number as usize)
     }
 
@@ -262,7 +262,7 @@ impl Side for Planes {
 
     fn image(_: &mut PlaneView, _: &Vec3) {}
 
-    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(_: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         Some([block as u32, number])
     }
 }
@@ -281,12 +281,12 @@ impl Side for Patches {
     const BODY: bool = false;
 
     #[inline(always)]
-    fn body(_: &(impl Scene + ?Sized), _: usize, _: u32) -> Option<usize> {
+    fn body(_: &(impl BodyAccess + ?Sized), _: usize, _: u32) -> Option<usize> {
         None
     }
 
     #[inline(always)]
-    fn view<'a>(scene: &'a (impl Scene + ?Sized), _: usize, number: u32) -> PatchView<'a> {
+    fn view<'a>(scene: &'a (impl BodyAccess + ?Sized), _: usize, number: u32) -> PatchView<'a> {
         let walls = scene.walls();
         let patch = &walls.patches[number as usize];
         PatchView { patch, wall: &walls.walls[patch.wall as usize], shift: Vec3::zeros() }
@@ -300,30 +300,30 @@ impl Side for Patches {
         view.shift = *way;
     }
 
-    fn wall(scene: &(impl Scene + ?Sized), number: u32) -> Option<usize> {
+    fn wall(scene: &(impl BodyAccess + ?Sized), number: u32) -> Option<usize> {
         Some(scene.walls().patches[number as usize].wall as usize)
     }
 
-    fn renamed(_: &dyn Renamed, block: usize, number: u32) -> Option<[u32; 2]> {
+    fn renamed(_: &dyn Renumbering, block: usize, number: u32) -> Option<[u32; 2]> {
         Some([block as u32, number])
     }
 
     #[inline(always)]
-    fn motion(scene: &(impl Scene + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
+    fn motion(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32, point: &Vec3) -> PointMotion {
         let wall = Self::view(scene, block, number).wall;
         PointMotion::of_whole(&wall.velocity, &wall.spin, point - wall.centre, wall.inverse_mass)
     }
 
     #[inline(always)]
-    fn material(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> u32 {
+    fn material(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> u32 {
         Self::view(scene, block, number).wall.material
     }
 
-    fn partner(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> Partner {
+    fn partner(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> Partner {
         Self::view(scene, block, number).patch.partner
     }
 
-    fn still(scene: &(impl Scene + ?Sized), block: usize, number: u32) -> bool {
+    fn still(scene: &(impl BodyAccess + ?Sized), block: usize, number: u32) -> bool {
         Self::view(scene, block, number).wall.inverse_mass == 0.0
     }
 }

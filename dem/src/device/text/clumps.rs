@@ -4,20 +4,23 @@ use super::motion::{alone as single, moved, power, pushed, single_held};
 use super::record::{Part, memory};
 use super::{planes as plane, spheres};
 use crate::contact::{planes, sphere_pair};
-use crate::device::layout::{Features, What};
-use crate::device::tape::{self, Recorded, Results, Truth, input, vector};
+use crate::device::layout::{EntryKind, Features};
+use crate::device::tape::{self, Recorded, RecordedMask, Results, input, vector};
 use crate::integrate::kick;
 use crate::integrate::rotation::{self, Midpoint};
 use crate::integrate::turning::{self, Rigid, Turned};
-use crate::lanes::turn::{Turn, placed};
+use crate::lanes::turn::{QuaternionLanes, placed};
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 
-pub(super) fn contacts<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn contacts<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("clump_contacts.c"),
-        formulas: vec![("MEMBERS", members::<L, ROLL>(law)), ("MEMBER_PLANE", member_plane::<L, ROLL>(law))],
-        entries: &[(What::Members, "member_contact"), (What::MemberPlane, "member_plane_contact")],
+        formulas: vec![
+            ("MEMBERS", members::<L, ROLLING>(law)),
+            ("MEMBER_PLANE", member_plane::<L, ROLLING>(law)),
+        ],
+        entries: &[(EntryKind::Members, "member_contact"), (EntryKind::MemberPlane, "member_plane_contact")],
     }
 }
 
@@ -40,28 +43,28 @@ pub(super) fn motion(f: &Features) -> Part {
     }
 }
 
-fn members<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn members<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
+    let (law, mut m, on) = (law(), memory(), RecordedMask::Known(true));
     let offsets = (vector("xa") - vector("ca"), vector("xb") - vector("cb"));
     let pair = sphere_pair::Pair { offsets, ..spheres::pair() };
-    let f = sphere_pair::forces::<L, Recorded, true, ROLL>(&law, &pair, &mut m, on, input("step"));
-    spheres::results::<ROLL>(&f, &m)
+    let f = sphere_pair::forces::<L, Recorded, true, ROLLING>(&law, &pair, &mut m, on, input("step"));
+    spheres::results::<ROLLING>(&f, &m)
 }
 
-fn member_plane<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn member_plane<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
-    let touch = planes::Touch { offset: vector("x") - vector("centre"), ..plane::touch() };
-    let f = planes::forces::<L, Recorded, true, ROLL>(&law, &touch, &mut m, on, input("step"));
-    plane::results::<ROLL>(&f, &m)
+    let (law, mut m, on) = (law(), memory(), RecordedMask::Known(true));
+    let touch = planes::PlaneContact { offset: vector("x") - vector("centre"), ..plane::touch() };
+    let f = planes::forces::<L, Recorded, true, ROLLING>(&law, &touch, &mut m, on, input("step"));
+    plane::results::<ROLLING>(&f, &m)
 }
 
-fn orientation(name: &str) -> Turn<Recorded> {
-    Turn { v: vector(name), s: input(format!("{name}.w")) }
+fn orientation(name: &str) -> QuaternionLanes<Recorded> {
+    QuaternionLanes { v: vector(name), s: input(format!("{name}.w")) }
 }
 
-fn put(out: &mut Results, orientation: Turn<Recorded>) {
+fn put(out: &mut Results, orientation: QuaternionLanes<Recorded>) {
     out.vector("(*nq)", orientation.v);
     out.number("(*nq).w", orientation.s);
 }
@@ -93,7 +96,7 @@ fn half_turn() -> (String, String) {
     (begin, one.text())
 }
 
-fn new() -> Turn<Recorded> {
+fn new() -> QuaternionLanes<Recorded> {
     rotation::turned(orientation("q"), vector("c"))
 }
 

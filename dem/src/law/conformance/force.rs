@@ -3,7 +3,7 @@
 use super::{GLASS, MASS, Path, RADIUS, law, plain};
 use crate::base::Vec3;
 use crate::law::material::Material;
-use crate::law::{ContactGeometry, ContactLaw, FRESH, History};
+use crate::law::{ContactGeometry, ContactLaw, History, NO_CONTACT};
 use nalgebra::Rotation3;
 
 fn touch(overlap: f64) -> ContactGeometry {
@@ -13,7 +13,7 @@ fn touch(overlap: f64) -> ContactGeometry {
 pub fn no_force_at_zero_overlap<L: ContactLaw>(material: &Material) {
     let law = plain::<L>(material, 0.5);
     let still = Vec3::zeros();
-    for rate in [FRESH, law.begun(0.0)] {
+    for rate in [NO_CONTACT, law.begun(0.0)] {
         let mut history = History { rate, ..History::NONE };
         let f = law.evaluate_one(1.0 / MASS, &touch(0.0), &still, &still, &mut history, 1e-5);
         assert_eq!(f.force.norm(), 0.0, "{f:?}");
@@ -131,8 +131,8 @@ fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
 pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
     let (mut sliding, mut sticking) = (0, 0);
-    for pace in [5.0, 50.0] {
-        let path = Path { pace, ..Path::USUAL };
+    for step_size in [5.0, 50.0] {
+        let path = Path { step_size, ..Path::USUAL };
         let mut history = History::NONE;
         for m in path.moments() {
             let f = m.evaluate(&law, &mut history, path.dt());

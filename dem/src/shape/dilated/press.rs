@@ -86,7 +86,7 @@ pub(crate) enum Nearest<'a> {
 
 /// Contact of a corner or edge.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pressed {
+pub(crate) struct Indentation {
     /// (R − d) n at a corner, integrated along an edge; away from the target.
     pub force: Vec3,
     /// R − d; for an edge, energy-equivalent spring overlap.
@@ -98,9 +98,9 @@ pub(crate) struct Pressed {
     pub edge: bool,
 }
 
-pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Pressed> {
+pub(crate) fn corner(target: &impl Target, p: &Vec3, reach: f64) -> Option<Indentation> {
     let (d, n) = target.distance(p, reach)?;
-    (d < reach).then(|| Pressed {
+    (d < reach).then(|| Indentation {
         force: n * (reach - d),
         overlap: reach - d,
         point: *p,
@@ -179,7 +179,7 @@ impl Sum {
     }
 }
 
-pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Option<Pressed> {
+pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Option<Indentation> {
     let mut sum = Sum::default();
     target.stretches(segment, reach, |range, nearest| match nearest {
         Nearest::Plane { normal, at, slope } => {
@@ -204,7 +204,7 @@ pub(crate) fn edge(target: &impl Target, segment: &Segment, reach: f64) -> Optio
     let couple = (torque - lever * s) / size;
     // Energy-equivalent overlap.
     let point = segment.from + segment.direction * s;
-    Some(Pressed { force, overlap: squares / size, point, couple, edge: true })
+    Some(Indentation { force, overlap: squares / size, point, couple, edge: true })
 }
 
 pub(crate) struct HalfSpace {

@@ -1,24 +1,24 @@
-//! Broad-phase candidate pairs closer than the search skin, from cell grids and trees; `neighbours.rs` checks
+//! Broad-phase candidate pairs closer than the search skin, from cell grids and trees; `neighbour_list.rs` checks
 //! their validity.
 
 use super::block_work::{BlockWork, Candidates};
-use super::hulls::Hulls;
+use super::clump_bounds::ClumpBounds;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::bond::Held;
-use crate::contact::kind::{KINDS, Now, Search};
-use crate::lanes::record::{Record, xyz};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::bond::BondedPairs;
+use crate::contact::kind::{Configuration, KINDS, Search};
+use crate::lanes::record::{Vec4, xyz};
 use crate::law::scarring::Scar;
 use crate::pairs::cross::ImageName;
 use crate::pairs::patch_search as patches;
 use crate::shape::cuboid;
 use crate::shape::plane::PlaneMotion;
 use crate::spatial::cells::Cells;
-use crate::spatial::patchwork::{WallNow, Walls};
+use crate::spatial::patchwork::{WallView, Walls};
 use crate::spatial::periodic::Space;
 use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::Surface;
@@ -100,17 +100,17 @@ fn hand_back(works: &mut [BlockWork], own: &Range<usize>) {
 struct All<'a> {
     model: &'a Model,
     state: &'a State,
-    members: &'a [Members],
-    held: &'a Held,
+    members: &'a [BlockBodies],
+    held: &'a BondedPairs,
     own: &'a Range<usize>,
-    points: Vec<Record>,
+    points: Vec<Vec4>,
     /// Block and local index.
     names: Vec<[u32; 2]>,
     first: Vec<u32>,
     cells: Cells,
     space: Option<Space>,
     /// If most spheres are in clumps.
-    hulls: Option<Hulls>,
+    clump_bounds: Option<ClumpBounds>,
     listed: Listed,
 }
 
@@ -118,8 +118,8 @@ impl<'a> All<'a> {
     fn new(
         model: &'a Model,
         state: &'a State,
-        members: &'a [Members],
-        held: &'a Held,
+        members: &'a [BlockBodies],
+        held: &'a BondedPairs,
         (own, halo): (&'a Range<usize>, &[[u32; 2]]),
         listed: Listed,
     ) -> All<'a> {
@@ -141,20 +141,25 @@ impl<'a> All<'a> {
         }
         let space = model.periodic.map(|p| Space::new(p, &points, model.radii.1));
         // With few clumps a second level does not pay.
-        let in_clumps: usize = members[own.clone()].iter().map(Members::in_clumps).sum();
+        let in_clumps: usize = members[own.clone()].iter().map(BlockBodies::in_clumps).sum();
         let among_spheres = listed == Listed::All;
         let by_bodies = among_spheres && space.is_none() && 2 * in_clumps > points.len();
-        let hulls = by_bodies.then(|| {
+        let clump_bounds = by_bodies.then(|| {
             let body = |[block, sphere]: [u32; 2]| members[block as usize].body(sphere);
-            Hulls::new(&points, names.iter().map(|&name| (name[0], body(name))), members.len(), model.skin)
+            ClumpBounds::new(
+                &points,
+                names.iter().map(|&name| (name[0], body(name))),
+                members.len(),
+                model.skin,
+            )
         });
-        if hulls.is_none() && (among_spheres || space.is_some()) {
+        if clump_bounds.is_none() && (among_spheres || space.is_some()) {
             cells.build(space.as_ref().map_or(&points, |s| &s.points), model.radii, model.skin);
         }
-        All { model, state, members, held, own, points, names, first, cells, space, hulls, listed }
+        All { model, state, members, held, own, points, names, first, cells, space, clump_bounds, listed }
     }
 
-    fn of_block(&self, b: usize) -> &[Record] {
+    fn of_block(&self, b: usize) -> &[Vec4] {
         &self.points[self.first[b] as usize..][..self.members[b].count]
     }
 
@@ -182,14 +187,14 @@ impl<'a> All<'a> {
             self.of_block(b).iter().for_each(|p| c.reference.push(&xyz(p)));
             return;
         }
-        match &self.hulls {
-            Some(hulls) => {
+        match &self.clump_bounds {
+            Some(clump_bounds) => {
                 let mut near = Vec::new();
-                for body in hulls.of_block(b) {
-                    let me = self.body(hulls.spheres(body).start);
-                    self.near_hulls(hulls, body, me, &mut near);
-                    for global in hulls.spheres(body) {
-                        self.within_hulls(hulls, &near, global, &mut c.row);
+                for body in clump_bounds.of_block(b) {
+                    let me = self.body(clump_bounds.spheres(body).start);
+                    self.near_hulls(clump_bounds, body, me, &mut near);
+                    for global in clump_bounds.spheres(body) {
+                        self.within_hulls(clump_bounds, &near, global, &mut c.row);
                         self.list(b, global, me, c);
                     }
                 }
@@ -237,17 +242,17 @@ impl<'a> All<'a> {
         !both_still && !self.held.has(self.number(me), self.number(other))
     }
 
-    fn near_hulls(&self, hulls: &Hulls, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
-        let (skin, p) = (self.model.skin, &hulls.around[body as usize]);
+    fn near_hulls(&self, clump_bounds: &ClumpBounds, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
+        let (skin, p) = (self.model.skin, &clump_bounds.around[body as usize]);
         // Blocks before the first local one have no later partners.
-        let before = hulls.of_block(self.own.start).start;
+        let before = clump_bounds.of_block(self.own.start).start;
         near.clear();
-        hulls.cells.near(p, skin, |other| {
-            let q = &hulls.around[other as usize];
+        clump_bounds.cells.near(p, skin, |other| {
+            let q = &clump_bounds.around[other as usize];
             let reach = p[3] + q[3] + skin;
             if (other > body || other < before)
                 && (xyz(p) - xyz(q)).norm_squared() < reach * reach
-                && self.may_touch(me, self.body(hulls.spheres(other).start))
+                && self.may_touch(me, self.body(clump_bounds.spheres(other).start))
             {
                 near.push(other);
             }
@@ -256,16 +261,16 @@ impl<'a> All<'a> {
     }
 
     #[inline(always)]
-    fn within_hulls(&self, hulls: &Hulls, near: &[u32], global: u32, row: &mut Vec<u32>) {
+    fn within_hulls(&self, clump_bounds: &ClumpBounds, near: &[u32], global: u32, row: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &self.points[global as usize]);
-        let close = |q: &Record| {
+        let close = |q: &Vec4| {
             let reach = p[3] + q[3] + skin;
             (xyz(p) - xyz(q)).norm_squared() < reach * reach
         };
         row.clear();
         for &body in near {
-            if close(&hulls.around[body as usize]) {
-                row.extend(hulls.spheres(body).filter(|&j| close(&self.points[j as usize])));
+            if close(&clump_bounds.around[body as usize]) {
+                row.extend(clump_bounds.spheres(body).filter(|&j| close(&self.points[j as usize])));
             }
         }
     }
@@ -308,21 +313,21 @@ impl<'a> All<'a> {
 pub(crate) fn now<'a>(
     model: &'a Model,
     state: &'a State,
-    members: &'a [Members],
-    standing: (&'a [WallNow], &'a [SheetFacet]),
-) -> Now<'a> {
-    let bodies = (Part { first: 0, list: &state.blocks[..] }, Part { first: 0, list: members });
+    members: &'a [BlockBodies],
+    standing: (&'a [WallView], &'a [SheetFacet]),
+) -> Configuration<'a> {
+    let bodies = (BlockSlice { first: 0, list: &state.blocks[..] }, BlockSlice { first: 0, list: members });
     now_of(model, bodies, &state.planes, standing, &state.scars)
 }
 
 pub(crate) fn now_of<'a>(
     model: &'a Model,
-    (blocks, members): (Part<'a, Block>, Part<'a, Members>),
+    (blocks, members): (BlockSlice<'a, Block>, BlockSlice<'a, BlockBodies>),
     planes: &'a [PlaneMotion],
-    (walls, sheet): (&'a [WallNow], &'a [SheetFacet]),
+    (walls, sheet): (&'a [WallView], &'a [SheetFacet]),
     scars: &'a [Scar],
-) -> Now<'a> {
-    Now {
+) -> Configuration<'a> {
+    Configuration {
         blocks,
         members,
         shapes: &model.shapes,
@@ -336,5 +341,5 @@ pub(crate) fn now_of<'a>(
 }
 
 #[cfg(test)]
-#[path = "candidates_tests.rs"]
+#[path = "broad_phase_tests.rs"]
 mod tests;

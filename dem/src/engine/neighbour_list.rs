@@ -3,14 +3,14 @@
 //! It is rebuilt when a bound on speeds exceeds its cut-off, the candidates when true displacements exceed
 //! the skin. Pairs are sorted and distant pairs add nothing, so rebuild times do not affect results.
 
-use super::arrange::link;
 use super::block_work::Candidates;
-use super::candidates::{self, Listed};
+use super::broad_phase::{self, Listed};
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::walls;
 use super::work::Work;
-use crate::bodies::part::Part;
+use super::workspace_layout::link;
+use crate::bodies::block_slice::BlockSlice;
 use crate::contact::kind::KINDS;
 use crate::lanes::V3;
 use crate::lanes::record::xyz;
@@ -42,7 +42,7 @@ pub(crate) fn update<S: Surface>(
         approach(model, state, work, moved2(state, work))
     };
     if too_far(model, state, approach) {
-        candidates::search(model, state, work, surface, listed);
+        broad_phase::search(model, state, work, surface, listed);
         approach = 0.0;
     }
     renew(model, state, work, surface, approach);
@@ -128,8 +128,8 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let Work { members, blocks: works, merging: pool, parallel, walls: standing, sheet, .. } = &mut *work;
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
-    let bodies = (Part { first: 0, list: blocks }, Part { first: 0, list: members });
-    let now = candidates::now_of(model, bodies, planes, (standing, sheet), scars);
+    let bodies = (BlockSlice { first: 0, list: blocks }, BlockSlice { first: 0, list: members });
+    let now = broad_phase::now_of(model, bodies, planes, (standing, sheet), scars);
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {
         let mut merging = pool.take();

@@ -1,12 +1,12 @@
 //! Spatial re-sorting of bodies, contacts and bonds.
 
+use super::block_layout::{self, BodyState};
 use super::bonds;
 use super::model::Model;
-use super::place::{self, Row};
 use super::state::{BlockLists, State};
 use crate::base::Vec3;
 use crate::bodies::block::{Block, Rotation};
-use crate::contact::kind::{KINDS, Renamed};
+use crate::contact::kind::{KINDS, Renumbering};
 use crate::lanes::record::xyz;
 use crate::law::History;
 use crate::pairs::cross::{Cross, ImageName, ImagePair};
@@ -18,16 +18,19 @@ use std::collections::BTreeMap;
 pub(crate) const EVERY: u64 = 5000;
 
 /// Bodies present after re-sorting.
-pub(crate) struct Turnover {
+pub(crate) struct BodyChanges {
     /// Remaining bodies. Shape `[bodies]`.
     pub stays: Vec<bool>,
     /// Inserted bodies; removed ones may be re-inserted.
-    pub come: BTreeMap<u32, Row>,
+    pub come: BTreeMap<u32, BodyState>,
 }
 
-impl Turnover {
-    pub fn none(state: &State) -> Turnover {
-        Turnover { stays: (0..state.places.len()).map(|b| state.present(b)).collect(), come: BTreeMap::new() }
+impl BodyChanges {
+    pub fn none(state: &State) -> BodyChanges {
+        BodyChanges {
+            stays: (0..state.places.len()).map(|b| state.present(b)).collect(),
+            come: BTreeMap::new(),
+        }
     }
 
     /// Positions [m], zero if absent. Shape `[bodies]`.
@@ -41,25 +44,25 @@ impl Turnover {
     }
 }
 
-pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turnover: &Turnover) {
-    let Turnover { stays, come } = turnover;
+pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], changes: &BodyChanges) {
+    let BodyChanges { stays, come } = changes;
     let present = |b: usize| stays[b] || come.contains_key(&(b as u32));
     let bonds = bonds::take(state);
     let old_places = state.places.clone();
-    let old = Old {
+    let old = PreviousLists {
         blocks: std::mem::take(&mut state.blocks),
         lists: std::mem::take(&mut state.lists),
         cross: std::mem::take(&mut state.cross),
     };
-    for bodies in place::blocks(model, positions, present) {
-        let block = place::block(model, bodies, |body| match come.get(&body) {
+    for bodies in block_layout::blocks(model, positions, present) {
+        let block = block_layout::block(model, bodies, |body| match come.get(&body) {
             Some(row) => *row,
             None => {
                 let [b, k] = old_places[body as usize];
                 old.row(model, body as usize, b as usize, k as usize)
             }
         });
-        let (lists, cross) = place::lists(model, &block);
+        let (lists, cross) = block_layout::lists(model, &block);
         state.blocks.push(block);
         state.lists.push(lists);
         state.cross.push(cross);
@@ -67,7 +70,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], turn
     state.number(model);
     bonds::put(model, state, bonds);
 
-    let names = Names::new(state, model, &old, |b| model.member_count(b as usize), stays);
+    let names = SphereMap::new(state, model, &old, |b| model.member_count(b as usize), stays);
     old.pairs(&names, state);
     old.images(&names, state);
     old.kinds(&names, state, false);
@@ -92,13 +95,13 @@ pub(super) fn sort(state: &mut State) {
     state.stale = true;
 }
 
-pub(super) struct Old {
+pub(super) struct PreviousLists {
     pub blocks: Vec<Block>,
     pub lists: Vec<BlockLists>,
     pub cross: Vec<Cross>,
 }
 
-pub(super) struct Names<'a> {
+pub(super) struct SphereMap<'a> {
     /// Body and member of each sphere, by old block.
     old: Vec<Vec<[u32; 2]>>,
     stays: &'a [bool],
@@ -107,14 +110,14 @@ pub(super) struct Names<'a> {
     first: Vec<u32>,
 }
 
-impl<'a> Names<'a> {
+impl<'a> SphereMap<'a> {
     pub fn new(
         state: &State,
         model: &Model,
-        old: &Old,
+        old: &PreviousLists,
         members: impl Fn(u32) -> u32,
         stays: &'a [bool],
-    ) -> Names<'a> {
+    ) -> SphereMap<'a> {
         let members = &members;
         let spheres = |block: &Block| -> Vec<[u32; 2]> {
             block.bodies.iter().flat_map(|&b| (0..members(b)).map(move |m| [b, m])).collect()
@@ -128,7 +131,7 @@ impl<'a> Names<'a> {
             }
         }
         let old = old.blocks.iter().map(spheres).collect();
-        Names { old, stays, places: state.places.clone(), first }
+        SphereMap { old, stays, places: state.places.clone(), first }
     }
 
     /// `None` if the body is removed.
@@ -138,12 +141,12 @@ impl<'a> Names<'a> {
     }
 }
 
-struct Moved<'a> {
-    names: &'a Names<'a>,
+struct BodyMap<'a> {
+    names: &'a SphereMap<'a>,
     old: &'a [Block],
 }
 
-impl Renamed for Moved<'_> {
+impl Renumbering for BodyMap<'_> {
     fn sphere(&self, block: usize, sphere: u32) -> Option<[u32; 2]> {
         self.names.sphere(block, sphere).map(|(block, sphere)| [block, sphere])
     }
@@ -154,12 +157,12 @@ impl Renamed for Moved<'_> {
     }
 }
 
-impl Old {
-    fn row(&self, model: &Model, body: usize, b: usize, k: usize) -> Row {
+impl PreviousLists {
+    fn row(&self, model: &Model, body: usize, b: usize, k: usize) -> BodyState {
         let from = &self.blocks[b];
         // Blocks of single spheres store no orientation.
         let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
-        Row {
+        BodyState {
             centre: from.centre[k],
             velocity: from.velocity[k],
             spin: from.spin[k],
@@ -167,7 +170,7 @@ impl Old {
         }
     }
 
-    pub fn pairs(&self, names: &Names<'_>, state: &mut State) {
+    pub fn pairs(&self, names: &SphereMap<'_>, state: &mut State) {
         let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
             let (Some(a), Some(b)) = (a, b) else { return };
             // The spring acts on the first body: reverse it.
@@ -191,7 +194,7 @@ impl Old {
         }
     }
 
-    pub fn images(&self, names: &Names<'_>, state: &mut State) {
+    pub fn images(&self, names: &SphereMap<'_>, state: &mut State) {
         for (b, cross) in self.cross.iter().enumerate() {
             for &ImagePair { name, history } in &cross.images {
                 let (x, y) = (names.sphere(b, name.i), names.sphere(name.block as usize, name.j));
@@ -205,8 +208,8 @@ impl Old {
         }
     }
 
-    pub fn kinds(&self, names: &Names<'_>, state: &mut State, bodies: bool) {
-        let names = Moved { names, old: &self.blocks };
+    pub fn kinds(&self, names: &SphereMap<'_>, state: &mut State, bodies: bool) {
+        let names = BodyMap { names, old: &self.blocks };
         for (b, cross) in self.cross.iter().enumerate() {
             let kinds = KINDS.iter().zip(&cross.kinds).enumerate();
             for (k, (kind, list)) in kinds.filter(|(_, (kind, _))| !bodies || kind.of_bodies()) {
@@ -217,7 +220,7 @@ impl Old {
         }
     }
 
-    fn walls(&self, names: &Names<'_>, state: &mut State) {
+    fn walls(&self, names: &SphereMap<'_>, state: &mut State) {
         for (b, lists) in self.lists.iter().enumerate() {
             for ([i, plane], history) in lists.planes.iter() {
                 let Some((block, i)) = names.sphere(b, i) else { continue };
@@ -245,7 +248,7 @@ impl State {
         if let Some(periodic) = &model.periodic {
             super::periodic::wrap(periodic, model, self);
         }
-        let all = Turnover::none(self);
+        let all = BodyChanges::none(self);
         let positions = all.positions(self);
         reorder(self, model, &positions, &all);
     }

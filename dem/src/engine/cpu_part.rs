@@ -5,13 +5,13 @@ use super::block_work::BlockWork;
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::work::Work;
-use super::{applied, candidates, step};
-use crate::base::ledger::Ledger;
-use crate::bodies::part::Part;
-use crate::bodies::sums::Sums;
+use super::{applied, broad_phase, step};
+use crate::base::balance_terms::BalanceTerms;
+use crate::bodies::block_slice::BlockSlice;
+use crate::bodies::sums::ForceTorque;
 use crate::contact::dispatch;
 use crate::contact::kind;
-use crate::contact::single::Setting;
+use crate::contact::single::StepContext;
 use crate::integrate::leapfrog;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::pairs::list::PairList;
@@ -29,34 +29,34 @@ pub(crate) fn walls(model: &Model) -> bool {
 
 /// Resets block totals. The neighbour list must be valid.
 pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let setting = Setting { laws: &model.laws, simd: work.simd, dt: state.pace.kick() };
+    let setting = StepContext { laws: &model.laws, simd: work.simd, dt: state.step_size.kick() };
     let gone = state.drift + state.wall_drift;
     let State { blocks, lists, cross, planes, scars, walls: moved, .. } = &mut *state;
     let (blocks, planes) = (&blocks[..], &planes[..]);
     let Work { members, blocks: works, cross: slots, walls: standing, sheet, parallel, .. } = work;
     let members = &members[..];
-    let bodies = (Part { first: 0, list: blocks }, Part { first: 0, list: members });
-    let now = candidates::now_of(model, bodies, planes, (standing, sheet), scars);
+    let bodies = (BlockSlice { first: 0, list: blocks }, BlockSlice { first: 0, list: members });
+    let now = broad_phase::now_of(model, bodies, planes, (standing, sheet), scars);
     let placed = walls(model).then(|| model.walls.placed(moved));
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossForces))| {
         out.clear_books();
         kind::forces(&setting, &now, b, pairs, out);
     };
     let own = |(b, (list, w)): (usize, (&mut BlockLists, &mut BlockWork))| {
-        w.tally.ledger = Ledger::default();
-        w.tally.failure = None;
+        w.totals.ledger = BalanceTerms::default();
+        w.totals.failure = None;
         w.patches.contacts.clear();
         let bodies = (&blocks[b], &members[b]);
         if placed.is_some() || !list.surface.is_empty() {
-            w.tally.sums.clear();
-            w.tally.sums.resize(blocks[b].bodies.len(), Sums::default());
+            w.totals.sums.clear();
+            w.totals.sums.resize(blocks[b].bodies.len(), ForceTorque::default());
         }
         if let Some(walls) = &placed {
             w.patches.wall_sums.clear();
             w.patches.aside.clear();
             if !list.walls.is_empty() {
                 step::on_walls(model, &setting, (walls, gone), &mut list.walls, bodies, w);
-                w.patches.set_aside(&mut w.tally);
+                w.patches.set_aside(&mut w.totals);
             }
         }
         if !list.surface.is_empty() {
@@ -74,20 +74,20 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
 
 /// Contact history before a step, for repeating it.
 #[derive(Debug, Default)]
-pub(crate) struct Kept {
-    blocks: Vec<KeptOfBlock>,
+pub(crate) struct SavedHistory {
+    blocks: Vec<SavedBlockHistory>,
 }
 
 #[derive(Debug, Default)]
-struct KeptOfBlock {
+struct SavedBlockHistory {
     kinds: Vec<PairList>,
     /// Walls, external surface.
     patches: [PatchList; 2],
 }
 
-impl Kept {
+impl SavedHistory {
     pub fn keep(&mut self, state: &State) {
-        self.blocks.resize_with(state.blocks.len(), KeptOfBlock::default);
+        self.blocks.resize_with(state.blocks.len(), SavedBlockHistory::default);
         for (kept, (cross, lists)) in self.blocks.iter_mut().zip(state.cross.iter().zip(&state.lists)) {
             copy_kinds(&mut kept.kinds, &cross.kinds);
             let [walls, surface] = &mut kept.patches;
@@ -112,15 +112,15 @@ fn copy_kinds(to: &mut Vec<PairList>, from: &[PairList]) {
 }
 
 pub(crate) fn motion(model: &Model, state: &mut State, work: &mut Work) {
-    let drive = step::drive(model, state.pace);
+    let drive = step::drive(model, state.step_size);
     let Work { members, blocks: works, cross, applied, simd, .. } = work;
-    let slots = Slots { own: Part { first: 0, list: &cross[..] }, beyond: &[] };
+    let slots = Slots { own: BlockSlice { first: 0, list: &cross[..] }, beyond: &[] };
     let blocks = state.blocks.iter_mut().zip(members).zip(works).enumerate();
     for (b, ((block, members), w)) in blocks.filter(|(_, ((_, members), _))| members.solid()) {
-        let tally = &mut w.tally;
-        tally.sums.clear();
-        tally.sums.resize(block.bodies.len(), Sums::default());
-        dispatch::gather(*simd, &w.shares, &mut tally.sums, slots);
-        leapfrog::advance(*simd, &drive, block, members, tally, applied::of_block(applied, b));
+        let totals = &mut w.totals;
+        totals.sums.clear();
+        totals.sums.resize(block.bodies.len(), ForceTorque::default());
+        dispatch::gather(*simd, &w.shares, &mut totals.sums, slots);
+        leapfrog::advance(*simd, &drive, block, members, totals, applied::of_block(applied, b));
     }
 }

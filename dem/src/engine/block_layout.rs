@@ -8,9 +8,9 @@ use super::model::Model;
 use super::state::BlockLists;
 use crate::base::Vec3;
 use crate::bodies::block::{Block, Rotation};
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::contact::kind::KINDS;
-use crate::lanes::record::Record;
+use crate::lanes::record::Vec4;
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use crate::pairs::list::PairList;
@@ -21,7 +21,7 @@ const SOLIDS: usize = 256;
 pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) -> bool) -> Vec<Vec<u32>> {
     let of_kind = |solids: bool| -> Vec<u32> {
         (0..positions.len() as u32)
-            .filter(|&b| present(b as usize) && (model.bodies.kind(b as usize) == Kind::Solid) == solids)
+            .filter(|&b| present(b as usize) && (model.bodies.kind(b as usize) == BodyKind::Solid) == solids)
             .collect()
     };
     let mut round = of_kind(false);
@@ -66,27 +66,27 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
-    pub centre: Record,
-    pub velocity: Record,
-    pub spin: Record,
+pub(crate) struct BodyState {
+    pub centre: Vec4,
+    pub velocity: Vec4,
+    pub spin: Vec4,
     pub rotation: Rotation,
 }
 
-impl Row {
-    pub fn at_rest(model: &Model, body: usize, centre: &Vec3, rotation: Rotation) -> Row {
+impl BodyState {
+    pub fn at_rest(model: &Model, body: usize, centre: &Vec3, rotation: Rotation) -> BodyState {
         let b = model.body(body);
-        Row {
-            centre: Record([centre.x, centre.y, centre.z, b.radius]),
-            velocity: Record([0.0, 0.0, 0.0, b.inverse_mass]),
-            spin: Record([0.0, 0.0, 0.0, f64::from(b.material)]),
+        BodyState {
+            centre: Vec4([centre.x, centre.y, centre.z, b.radius]),
+            velocity: Vec4([0.0, 0.0, 0.0, b.inverse_mass]),
+            spin: Vec4([0.0, 0.0, 0.0, f64::from(b.material)]),
             rotation,
         }
     }
 }
 
-pub(crate) fn block(model: &Model, bodies: Vec<u32>, row: impl Fn(u32) -> Row) -> Block {
-    let rigid = bodies.iter().any(|&b| model.bodies.kind(b as usize) != Kind::Sphere);
+pub(crate) fn block(model: &Model, bodies: Vec<u32>, row: impl Fn(u32) -> BodyState) -> Block {
+    let rigid = bodies.iter().any(|&b| model.bodies.kind(b as usize) != BodyKind::Sphere);
     let mut block = Block::default();
     for &body in &bodies {
         let row = row(body);

@@ -1,9 +1,9 @@
 //! Transfer of a bed to another model, with motion and contact history.
 
+use super::block_layout::{self, BodyState};
 use super::bonds;
 use super::model::Model;
-use super::order::{Names, Old, Turnover, reorder, sort};
-use super::place::{self, Row};
+use super::reordering::{BodyChanges, PreviousLists, SphereMap, reorder, sort};
 use super::state::State;
 use crate::base::Vec3;
 use crate::bodies::block::Rotation;
@@ -24,20 +24,20 @@ impl State {
         if let Some(k) = (0..count).find(|k| !same(k)) {
             return Err(k);
         }
-        let come: BTreeMap<u32, Row> = (0..count)
+        let come: BTreeMap<u32, BodyState> = (0..count)
             .filter(|&k| other.present(k))
             .map(|k| (k as u32, self.row_of(model, k, other)))
             .collect();
         let stays = (0..self.places.len()).map(|k| k >= count && self.present(k)).collect();
-        let turnover = Turnover { stays, come };
-        let positions = turnover.positions(self);
+        let changes = BodyChanges { stays, come };
+        let positions = changes.positions(self);
         bonds::take(self);
-        reorder(self, model, &positions, &turnover);
+        reorder(self, model, &positions, &changes);
         bonds::put(model, self, bonds::take(&mut other.clone()));
         (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
         self.bonds.power = other.bonds.power;
         // Velocities are half of the last step old.
-        self.pace.last = other.pace.last;
+        self.step_size.last = other.step_size.last;
         self.remember(model, other, count);
         Ok(())
     }
@@ -45,7 +45,7 @@ impl State {
     /// Restores the mutual contact history of carried bodies; contact detection takes a step.
     pub fn remember(&mut self, model: &Model, other: &State, count: usize) {
         for (b, block) in self.blocks.iter().enumerate() {
-            let (fresh, cross) = place::lists(model, block);
+            let (fresh, cross) = block_layout::lists(model, block);
             self.lists[b].pairs = fresh.pairs;
             let found = std::mem::replace(&mut self.cross[b], cross);
             let kinds = KINDS.iter().zip(found.kinds).zip(&mut self.cross[b].kinds);
@@ -53,9 +53,9 @@ impl State {
         }
         let carried: Vec<bool> = (0..other.places.len()).map(|k| k < count && other.present(k)).collect();
         let State { blocks, lists, cross, .. } = other.clone();
-        let old = Old { blocks, lists, cross };
+        let old = PreviousLists { blocks, lists, cross };
         let members = |b: u32| if (b as usize) < count { model.member_count(b as usize) } else { 0 };
-        let names = Names::new(self, model, &old, members, &carried);
+        let names = SphereMap::new(self, model, &old, members, &carried);
         old.pairs(&names, self);
         if model.periodic.is_some() {
             old.images(&names, self);
@@ -71,12 +71,12 @@ impl State {
         self.blocks[b as usize].centre[k as usize].0[3]
     }
 
-    fn row_of(&self, model: &Model, body: usize, other: &State) -> Row {
+    fn row_of(&self, model: &Model, body: usize, other: &State) -> BodyState {
         let [b, k] = other.places[body].map(|n| n as usize);
         let from = &other.blocks[b];
         let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
         let rotation = from.rotation.get(k).copied().unwrap_or_else(unturned);
-        let mut row = Row::at_rest(model, body, &xyz(&from.centre[k]), rotation);
+        let mut row = BodyState::at_rest(model, body, &xyz(&from.centre[k]), rotation);
         let given = model.body(body).fixed != 0;
         let (velocity, spin) = match given && self.present(body) {
             true => (self.velocity(body), self.spin(body)),
@@ -139,7 +139,7 @@ mod tests {
             &mut forgotten,
             &other,
             &(0..=count).map(|k| carried.position(k)).collect::<Vec<_>>(),
-            &Turnover {
+            &BodyChanges {
                 stays: vec![false; count + 1],
                 come: (0..=count as u32).map(|k| (k, carried.row_of(&other, k as usize, &carried))).collect(),
             },

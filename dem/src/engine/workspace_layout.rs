@@ -1,13 +1,13 @@
 //! Layout of scratch data: constants in block order, contact slots and gather lists.
 
+use super::block_layout;
 use super::model::Model;
-use super::place;
 use super::state::State;
 use super::wall_contacts::WallContacts;
 use super::work::{Searched, Work};
-use super::{bonds, candidates};
-use crate::bodies::members::{Members, common};
-use crate::bond::Held;
+use super::{bonds, broad_phase};
+use crate::bodies::block_bodies::{BlockBodies, common};
+use crate::bond::BondedPairs;
 use crate::bond::pass::BondWork;
 use crate::contact::kind::KINDS;
 use crate::lanes::Simd;
@@ -26,7 +26,7 @@ impl Work {
             cross: Vec::new(),
             beyond: Vec::new(),
             bonds: BondWork::default(),
-            held: Held::default(),
+            held: BondedPairs::default(),
             applied: Vec::new(),
             surface_contacts: Vec::new(),
             buffers: Buffers::default(),
@@ -69,16 +69,17 @@ impl Work {
         self.searched.listed = None;
         self.own = 0..state.blocks.len();
         self.halo.clear();
-        self.members.resize_with(state.blocks.len(), Members::default);
+        self.members.resize_with(state.blocks.len(), BlockBodies::default);
         self.blocks.resize_with(state.blocks.len(), Default::default);
         self.cross.resize_with(state.blocks.len(), CrossForces::default);
         for ((members, w), block) in self.members.iter_mut().zip(&mut self.blocks).zip(&state.blocks) {
             members.arrange(&model.bodies, &model.shapes, block);
-            w.tally.sums = Vec::new();
+            w.totals.sums = Vec::new();
             if model.acts_on_bodies() {
                 w.body_forces.arrange(block, |b| model.volume(b));
             }
-            w.patches.turning = model.laws.rolls_among(&place::materials(block), &model.patch_materials);
+            w.patches.turning =
+                model.laws.rolls_among(&block_layout::materials(block), &model.patch_materials);
         }
         // A block without bodies has no common material.
         self.material = common(self.members.iter().map(|m| m.material)).flatten();
@@ -91,7 +92,7 @@ impl Work {
 pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     let mut counts = vec![0; state.blocks.len()];
     let Work { members, blocks: works, cross: forces, walls, sheet, .. } = work;
-    let now = candidates::now(model, state, members, (walls, sheet));
+    let now = broad_phase::now(model, state, members, (walls, sheet));
     for (b, cross) in state.cross.iter().enumerate() {
         counts[b] += cross.spheres.len();
         (0..cross.spheres.len()).for_each(|k| counts[cross.spheres.name(k)[1] as usize] += 1);

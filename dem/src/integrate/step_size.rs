@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Pace {
+pub(crate) struct StepSize {
     /// Next step [s].
     pub dt: f64,
     /// Last step [s]; velocities are half as old.
@@ -20,9 +20,9 @@ pub(crate) struct Pace {
     pub interval: u64,
 }
 
-impl Pace {
-    pub fn new(dt: f64) -> Pace {
-        Pace { dt, last: dt, wanted: dt, limit: 0.0, look: 0, interval: 0 }
+impl StepSize {
+    pub fn new(dt: f64) -> StepSize {
+        StepSize { dt, last: dt, wanted: dt, limit: 0.0, look: 0, interval: 0 }
     }
 
     /// Time increment of velocities [s].

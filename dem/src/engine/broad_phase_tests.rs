@@ -20,7 +20,7 @@ fn thrown(seed: u64) -> ModelInput {
     };
     let shapes = vec![clump(2), clump(6), Shape::Sphere { radius: 0.008 }, clump(4)];
     let mut input = ModelInput {
-        materials: vec![Material { density: 2600.0, stiffness: 1e5, ..Material::RIGID }],
+        materials: vec![Material { density: 2600.0, stiffness: 1e5, ..Material::CLUMPS }],
         shapes,
         ..ModelInput::default()
     };
@@ -47,14 +47,14 @@ fn hulls_find_what_spheres_find() {
         search(&model, &state, &mut work, &NoSurface, Listed::All);
         let own = (&(0..state.blocks.len()), &[][..]);
         let mut all = All::new(&model, &state, &work.members, &work.held, own, Listed::All);
-        assert!(all.hulls.take().is_some());
+        assert!(all.clump_bounds.take().is_some());
         all.cells.build(&all.points, model.radii, model.skin);
         let mut count = 0;
         for b in 0..state.blocks.len() {
-            let (mut spheres, hulls) = (Candidates::default(), &work.blocks[b].candidates);
+            let (mut spheres, clump_bounds) = (Candidates::default(), &work.blocks[b].candidates);
             all.spheres(b, &mut spheres);
-            assert_eq!((&spheres.pairs, &spheres.cross), (&hulls.pairs, &hulls.cross));
-            assert_eq!(spheres.planes, hulls.planes);
+            assert_eq!((&spheres.pairs, &spheres.cross), (&clump_bounds.pairs, &clump_bounds.cross));
+            assert_eq!(spheres.planes, clump_bounds.planes);
             count += spheres.pairs.len() + spheres.cross.len();
         }
         assert!(count > 3000, "{count}");

@@ -34,7 +34,7 @@ impl AddAssign<&Impulse> for Impulse {
 
 /// Energy and momentum totals: dissipation lost, work and impulse received by the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ledger {
+pub struct BalanceTerms {
     /// Dissipation by dashpots [J].
     pub dissipated_dashpot: f64,
     /// Dissipation by sliding [J].
@@ -96,7 +96,7 @@ pub struct Ledger {
     pub flow: Impulse,
 }
 
-impl Ledger {
+impl BalanceTerms {
     /// Returns total dissipation [J].
     pub fn dissipated(&self) -> f64 {
         self.dissipated_dashpot
@@ -132,8 +132,8 @@ impl Ledger {
     }
 }
 
-impl AddAssign<&Ledger> for Ledger {
-    fn add_assign(&mut self, other: &Ledger) {
+impl AddAssign<&BalanceTerms> for BalanceTerms {
+    fn add_assign(&mut self, other: &BalanceTerms) {
         self.dissipated_dashpot += other.dissipated_dashpot;
         self.dissipated_friction += other.dissipated_friction;
         self.dissipated_local_damping += other.dissipated_local_damping;

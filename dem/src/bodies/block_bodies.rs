@@ -1,25 +1,25 @@
 //! Constants of a block's bodies in block order, and their spheres.
 
 use super::block::Block;
-use super::table::{Bodies, Kind, for_members};
+use super::table::{Bodies, BodyKind, for_members};
 use crate::base::Vec3;
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::lanes::V3;
-use crate::lanes::record::{Record, xyz};
-use crate::lanes::turn::{Turn, placed};
+use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::turn::{QuaternionLanes, placed};
 use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
 use std::ops::Range;
 
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Members {
+pub(crate) struct BlockBodies {
     /// Whether any body is not a single sphere, so that sphere and body indices differ.
     pub rigid: bool,
     pub round: bool,
     pub mass_sum: f64,
     pub material: Option<u32>,
     /// Like the next fields, empty for single spheres.
-    pub kind: Vec<Kind>,
+    pub kind: Vec<BodyKind>,
     pub inertia: Vec<Vec3>,
     /// Bounding radius; zero for single spheres.
     pub reach: Vec<f64>,
@@ -33,8 +33,8 @@ pub(crate) struct Members {
     pub count: usize,
     /// Body of each sphere; centre and radius in body frame and world.
     pub owner: Vec<u32>,
-    pub local: Vec<Record>,
-    spheres: Vec<Record>,
+    pub local: Vec<Vec4>,
+    spheres: Vec<Vec4>,
 }
 
 pub(crate) fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T> {
@@ -42,7 +42,7 @@ pub(crate) fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> O
     all.all(|x| x == first).then_some(first)
 }
 
-impl Members {
+impl BlockBodies {
     pub fn in_clumps(&self) -> usize {
         let counts = self.first.windows(2).map(|w| (w[1] - w[0]) as usize);
         counts.filter(|count| *count > 1).sum()
@@ -50,10 +50,10 @@ impl Members {
 
     /// Rebuilds constants in block order and positions spheres.
     pub fn arrange(&mut self, table: &Bodies, shapes: &[Shape], block: &Block) {
-        *self = Members::default();
+        *self = BlockBodies::default();
         let bodies = &block.bodies;
-        self.rigid = bodies.iter().any(|&b| table.kind(b as usize) != Kind::Sphere);
-        self.round = bodies.iter().all(|&b| table.kind(b as usize) != Kind::Solid);
+        self.rigid = bodies.iter().any(|&b| table.kind(b as usize) != BodyKind::Sphere);
+        self.round = bodies.iter().all(|&b| table.kind(b as usize) != BodyKind::Solid);
         self.fixed.reserve_exact(bodies.len());
         self.material = common(bodies.iter().map(|&b| table.get(b as usize).material));
         for (k, &body) in bodies.iter().enumerate() {
@@ -64,14 +64,14 @@ impl Members {
                 self.first.push(self.owner.len() as u32);
                 self.kind.push(b.kind);
                 self.inertia.push(b.inertia);
-                self.reach.push(if b.kind == Kind::Sphere { 0.0 } else { b.radius });
+                self.reach.push(if b.kind == BodyKind::Sphere { 0.0 } else { b.radius });
                 if !self.round {
                     self.solids.push((b.shape as u32, b.scale));
                     self.half.push(shapes[b.shape].bounding_half(b.scale));
                 }
                 for_members(&shapes[b.shape], b.scale, |c, r| {
                     self.owner.push(k as u32);
-                    self.local.push(Record([c.x, c.y, c.z, r]));
+                    self.local.push(Vec4([c.x, c.y, c.z, r]));
                 });
             }
         }
@@ -81,7 +81,7 @@ impl Members {
         }
         if self.rigid {
             self.first.push(self.owner.len() as u32);
-            self.spheres.resize(self.local.len(), Record::default());
+            self.spheres.resize(self.local.len(), Vec4::default());
             for k in 0..bodies.len() {
                 self.place_spheres(k, &block.centre[k], &block.rotation[k].orientation);
             }
@@ -89,7 +89,7 @@ impl Members {
     }
 
     pub fn solid(&self) -> bool {
-        self.kind.first() == Some(&Kind::Solid)
+        self.kind.first() == Some(&BodyKind::Solid)
     }
 
     /// Whether all bodies are free and consist of spheres.
@@ -119,34 +119,41 @@ impl Members {
 
     /// Includes clump members.
     #[inline(always)]
-    pub fn spheres<'a>(&'a self, block: &'a Block) -> &'a [Record] {
+    pub fn spheres<'a>(&'a self, block: &'a Block) -> &'a [Vec4] {
         if self.rigid { &self.spheres } else { &block.centre }
     }
 
-    pub fn spheres_of(&self, k: usize) -> &[Record] {
+    pub fn spheres_of(&self, k: usize) -> &[Vec4] {
         &self.spheres[self.first[k] as usize..self.first[k + 1] as usize]
     }
 
     #[inline(always)]
-    pub fn local_and_world(&mut self) -> (&[Record], &mut [Record]) {
+    pub fn local_and_world(&mut self) -> (&[Vec4], &mut [Vec4]) {
         (&self.local, &mut self.spheres)
     }
 
     #[inline(always)]
-    pub fn place_spheres(&mut self, k: usize, centre: &Record, orientation: &UnitQuaternion<f64>) {
-        let (x, columns) = (V3::from_vec(&xyz(centre)), Turn::of(orientation).columns());
+    pub fn place_spheres(&mut self, k: usize, centre: &Vec4, orientation: &UnitQuaternion<f64>) {
+        let (x, columns) = (V3::from_vec(&xyz(centre)), QuaternionLanes::of(orientation).columns());
         for s in self.first[k] as usize..self.first[k + 1] as usize {
             let local = &self.local[s];
             let p = placed(columns, x, V3::from_vec(&xyz(local)));
-            self.spheres[s] = Record([p.x, p.y, p.z, local[3]]);
+            self.spheres[s] = Vec4([p.x, p.y, p.z, local[3]]);
         }
     }
 }
 
-impl Members {
+impl BlockBodies {
     pub fn bytes(&self) -> usize {
-        let spheres = held(&self.owner) + held(&self.local) + held(&self.spheres) + held(&self.first);
-        let bodies = held(&self.inertia) + held(&self.reach) + held(&self.kind);
-        spheres + bodies + held(&self.fixed) + held(&self.solids) + held(&self.half)
+        let spheres = capacity_bytes(&self.owner)
+            + capacity_bytes(&self.local)
+            + capacity_bytes(&self.spheres)
+            + capacity_bytes(&self.first);
+        let bodies = capacity_bytes(&self.inertia) + capacity_bytes(&self.reach) + capacity_bytes(&self.kind);
+        spheres
+            + bodies
+            + capacity_bytes(&self.fixed)
+            + capacity_bytes(&self.solids)
+            + capacity_bytes(&self.half)
     }
 }

@@ -1,12 +1,12 @@
 //! Bounding spheres of bodies: clumps are searched body by body first, as most pairs of bodies are apart.
 
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::record::{Vec4, xyz};
 use crate::spatial::cells::Cells;
 use std::ops::Range;
 
-pub(super) struct Hulls {
-    pub around: Vec<Record>,
+pub(super) struct ClumpBounds {
+    pub around: Vec<Vec4>,
     pub cells: Cells,
     /// First sphere of each body, plus end.
     first: Vec<u32>,
@@ -14,16 +14,16 @@ pub(super) struct Hulls {
     blocks: Vec<u32>,
 }
 
-impl Hulls {
+impl ClumpBounds {
     /// `points`: spheres in body order; `owners`: block and slot of each sphere's body; `skin`: search skin
     /// [m].
     pub fn new(
-        points: &[Record],
+        points: &[Vec4],
         owners: impl Iterator<Item = (u32, u32)>,
         blocks: usize,
         skin: f64,
-    ) -> Hulls {
-        let mut hulls = Hulls {
+    ) -> ClumpBounds {
+        let mut clump_bounds = ClumpBounds {
             around: Vec::new(),
             cells: Cells::default(),
             first: Vec::new(),
@@ -32,20 +32,20 @@ impl Hulls {
         let mut last = None;
         for (k, (block, place)) in owners.enumerate() {
             if last != Some((block, place)) {
-                let body = hulls.first.len() as u32;
-                hulls.blocks.resize(block as usize + 1, body);
-                hulls.first.push(k as u32);
+                let body = clump_bounds.first.len() as u32;
+                clump_bounds.blocks.resize(block as usize + 1, body);
+                clump_bounds.first.push(k as u32);
                 last = Some((block, place));
             }
         }
-        hulls.blocks.resize(blocks + 1, hulls.first.len() as u32);
-        hulls.first.push(points.len() as u32);
-        let spheres = hulls.first.windows(2).map(|w| w[0] as usize..w[1] as usize);
-        hulls.around = spheres.map(|spheres| around(&points[spheres])).collect();
-        let radii = hulls.around.iter().map(|s| s[3]);
+        clump_bounds.blocks.resize(blocks + 1, clump_bounds.first.len() as u32);
+        clump_bounds.first.push(points.len() as u32);
+        let spheres = clump_bounds.first.windows(2).map(|w| w[0] as usize..w[1] as usize);
+        clump_bounds.around = spheres.map(|spheres| around(&points[spheres])).collect();
+        let radii = clump_bounds.around.iter().map(|s| s[3]);
         let radii = radii.fold((f64::INFINITY, 0.0_f64), |(lo, hi), r| (lo.min(r), hi.max(r)));
-        hulls.cells.build(&hulls.around, radii, skin);
-        hulls
+        clump_bounds.cells.build(&clump_bounds.around, radii, skin);
+        clump_bounds
     }
 
     pub fn of_block(&self, block: usize) -> Range<u32> {
@@ -58,7 +58,7 @@ impl Hulls {
 }
 
 /// Bounding sphere about the box centre, with margin for rounding.
-fn around(spheres: &[Record]) -> Record {
+fn around(spheres: &[Vec4]) -> Vec4 {
     if let [one] = spheres {
         return *one;
     }
@@ -69,5 +69,5 @@ fn around(spheres: &[Record]) -> Record {
     }
     let middle = 0.5 * (low + high);
     let radius = spheres.iter().map(|p| (xyz(p) - middle).norm() + p[3]).fold(0.0, f64::max);
-    Record([middle.x, middle.y, middle.z, radius * (1.0 + 1e-12) + 1e-12 * middle.norm()])
+    Vec4([middle.x, middle.y, middle.z, radius * (1.0 + 1e-12) + 1e-12 * middle.norm()])
 }
