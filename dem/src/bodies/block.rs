@@ -3,8 +3,8 @@
 use crate::base::Vec3;
 use crate::base::capacity::capacity_bytes;
 use crate::lanes::V3;
-use crate::lanes::record::{Vec4, xyz};
-use crate::lanes::turn::{self, QuaternionLanes};
+use crate::lanes::quaternion::{self, QuaternionLanes};
+use crate::lanes::vec4::{Vec4, xyz};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub(crate) struct Rotation {
 #[inline(always)]
 pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
     let (q, momentum) = (QuaternionLanes::of(&rotation.orientation), V3::from_vec(&rotation.momentum));
-    turn::spin(q, momentum, V3::from_vec(inertia)).to_vec()
+    quaternion::spin(q, momentum, V3::from_vec(inertia)).to_vec()
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -43,7 +43,7 @@ impl ForceTorque {
 pub(crate) struct BlockTotals {
     /// Empty between steps unless retained.
     pub sums: Vec<ForceTorque>,
-    pub ledger: BalanceTerms,
+    pub balance: BalanceTerms,
     pub fastest: f64,
     pub failure: Option<Failure>,
 }

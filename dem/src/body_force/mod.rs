@@ -20,7 +20,7 @@ use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::shape::Shape;
 pub(crate) use skin::Skin;
 pub(crate) use work::{BodyForceModel, ForceInput, ForceWork};
@@ -97,7 +97,7 @@ pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Ve
 
 impl ForceWork {
     /// Computes forces and records their impulse; [`ForceWork::add_to`] adds them.
-    pub fn act(&mut self, forces: &[BodyForce], seen: ForceInput<'_>, ledger: &mut BalanceTerms) {
+    pub fn act(&mut self, forces: &[BodyForce], seen: ForceInput<'_>, balance: &mut BalanceTerms) {
         let (block, sums, kick) = (seen.block, seen.sums, seen.kick);
         self.acting.clear();
         self.acting.resize(block.bodies.len(), ForceTorque::default());
@@ -115,8 +115,8 @@ impl ForceWork {
         }
         for (own, centre) in self.acting.iter().zip(&block.centre) {
             let (force, torque) = (xyz(own.force()), xyz(own.torque()));
-            ledger.body_forces.add(&xyz(centre), &(force * kick));
-            ledger.body_forces.angular += torque * kick;
+            balance.body_forces.add(&xyz(centre), &(force * kick));
+            balance.body_forces.angular += torque * kick;
         }
         self.power = self.power_on(block);
     }

@@ -2,7 +2,7 @@
 
 use super::work::{ForceInput, ForceWork};
 use crate::base::Vec3;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 
 /// Adds the drag, implicit in the speed so that it cannot reverse the motion: −R |u| u/(1 + R |u| dt/m).
 pub(super) fn act(seen: &ForceInput<'_>, work: &mut ForceWork) {

@@ -9,7 +9,7 @@ use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
 use crate::lanes::Simd;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::law::scarring::Scar;
 
 pub(crate) struct ForceInput<'a> {
@@ -71,8 +71,8 @@ impl ForceWork {
     }
 
     /// Records work, after the motion.
-    pub fn book(&self, block: &Block, ledger: &mut BalanceTerms, kick: f64) {
-        ledger.work_body_forces += 0.5 * (self.power + self.power_on(block)) * kick;
+    pub fn book(&self, block: &Block, balance: &mut BalanceTerms, kick: f64) {
+        balance.work_body_forces += 0.5 * (self.power + self.power_on(block)) * kick;
     }
 
     /// Present power [W].

@@ -12,8 +12,8 @@ use super::slot::BondSlot;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
-use crate::contact::single;
-use crate::lanes::record::Vec4;
+use crate::contact::scalar;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Real, V3};
 use crate::law::{ContactGeometry, ContactLaw, History, HistoryLanes, LawInput, Laws, with_law};
 use serde::{Deserialize, Serialize};
@@ -158,7 +158,7 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
     let (p, q) = (sphere(a, i), sphere(b, j));
     let m = meet(&p, &q);
     if m.overlap - r.reference <= 0.0 {
-        let friction = single::end(laws, materials, &mut r.history);
+        let friction = scalar::end(laws, materials, &mut r.history);
         return PairForces { slot: BondSlot::default(), dashpot: 0.0, friction, failure: None };
     }
     let mut memory = r.history.memory();

@@ -5,7 +5,7 @@ use super::slot::BondSlot;
 use super::store::Group;
 use crate::bodies::block::Block;
 use crate::bodies::sums::ForceTorque;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Kernel, Real, Simd4, SimdPack, V3};
 
 pub(super) struct Outcome<P: SimdPack> {

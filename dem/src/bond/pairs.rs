@@ -1,7 +1,7 @@
 //! Selection of sphere pairs to bond.
 
 use crate::base::Vec3;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::spatial::cells::Cells;
 
 /// Pairs (a, b), a < b, with surface gap below `gap` [m] that `accept` selects, ascending. `spheres`:

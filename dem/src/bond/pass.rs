@@ -10,7 +10,7 @@ use crate::base::capacity::capacity_bytes;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
 use crate::bodies::sums::ForceTorque;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{self, Simd, V3};
 use crate::law::Laws;
 use rayon::prelude::*;

@@ -70,7 +70,7 @@ fn scalar_and_simd_match_bitwise() {
         let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
         let mut bits: Vec<_> =
             (0..1331).flat_map(at).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits).collect();
-        bits.push(state.ledger.dissipated_bonds.to_bits());
+        bits.push(state.balance.dissipated_bonds.to_bits());
         bits
     };
     assert!(run(Simd::Portable) == run(Simd::best()));

@@ -2,7 +2,7 @@
 
 use crate::base::Vec3;
 use crate::bodies::sums::ForceTorque;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Portable, Simd4};
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,7 +6,7 @@ use super::kernel::{BondHistory, COUNT};
 use super::{Break, Constants};
 use crate::base::capacity::capacity_bytes;
 use crate::lanes::V3;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use serde::{Deserialize, Serialize, Serializer};
 
 /// Index of an unused lane.

@@ -1,12 +1,12 @@
 //! Selects a block's contact loops. Independent of the surface type, hence compiled once, with this crate.
 
-use super::between::Between;
 use super::gather::Gathering;
-use super::interior::Interior;
+use super::inter_block::Between;
+use super::intra_block::Interior;
 use super::patch_forces::{PatchForce, PatchLaw};
 use super::planes::{PlanePose, Planes};
 use super::prefetch::Prefetch;
-use super::single::StepContext;
+use super::scalar::StepContext;
 use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::block_slice::BlockSlice;

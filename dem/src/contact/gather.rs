@@ -1,6 +1,6 @@
 //! Adds forces from other blocks' slots to a block's bodies.
 
-use super::group_memory::FAR;
+use super::group_history::FAR;
 use crate::bodies::sums::ForceTorque;
 use crate::lanes::{self, Kernel, Real, Simd4, SimdPack};
 use crate::pairs::cross::{Shares, Slots};

@@ -1,12 +1,12 @@
 //! Contacts across periodic borders.
 
-use super::single;
+use super::scalar;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::block_slice::BlockSlice;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::law::Laws;
 use crate::pairs::cross::{Cross, CrossForces, ImagePair};
 use crate::spatial::detect;
@@ -34,12 +34,12 @@ pub(crate) fn images(
         let materials = [mine.material(a), other.material(c)];
         let slot = &mut out.slots[first + k * width..][..width];
         let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + way), q[3]) else {
-            out.friction += single::end(laws, materials, history);
+            out.friction += scalar::end(laws, materials, history);
             slot.fill(Vec4::default());
             continue;
         };
         let (ma, mb) = (mine.motion(a, &g.point), other.motion(c, &(g.point - way)));
-        let f = single::between(laws, materials, None, &g, (&ma, &mb), 1.0, history, dt);
+        let f = scalar::between(laws, materials, None, &g, (&ma, &mb), 1.0, history, dt);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;

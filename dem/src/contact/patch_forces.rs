@@ -1,9 +1,9 @@
 //! Contact law of patches in lanes.
 
-use super::group_memory::{LawLanes, four};
+use super::group_history::{LawLanes, four};
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::lanes::{Kernel, Real, SimdPack, V3};
 use crate::law::{ContactLaw, History, HistoryLanes, LawInput, LawOutput, PairTable};
 

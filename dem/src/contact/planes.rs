@@ -1,7 +1,7 @@
 //! Contacts with planes: spheres in lanes, box corners individually.
 
-use super::ends::{BodyLanes, LocalBodies, within};
-use super::group_memory::{Dissipation, LawLanes, recall, records, remember, side_by_side};
+use super::body_lanes::{BodyLanes, LocalBodies, within};
+use super::group_history::{Dissipation, LawLanes, load_history, records, side_by_side, store_history};
 use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
 use crate::base::error::Partner;
@@ -9,7 +9,7 @@ use crate::base::failure::Failure;
 use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::sums::BlockTotals;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Kernel, Real, Simd4, SimdPack, V3};
 use crate::law::{ContactLaw, HistoryLanes, LawInput, LawOutput, NO_CONTACT, PairTable};
 use crate::pairs::groups::{Group, Groups};
@@ -55,7 +55,7 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
         let mut failure = None;
         let mix = LawLanes::<L, R>::new(laws, members.material, material);
         let len = pairs.len();
-        let mut spent = Dissipation::<R::Quad>::new();
+        let mut dissipated = Dissipation::<R::Quad>::new();
         let mut done = Done::<R::Quad>::new();
         let (mut spare, mut spare_turn, mut no_turn) =
             (Group::EMPTY, [Vec4::default(); 4], [Vec4::default(); 4]);
@@ -76,15 +76,15 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
             let (position, normal) = (V3::new(x, y, z), V3::new(nx, ny, nz));
             let height = position.dot(normal) - from;
             let on = height.lt(r) & there;
-            let mut memory = recall::<R, ROLLING>(&springs, &turns);
+            let mut memory = load_history::<R, ROLLING>(&springs, &turns);
             let ended = !on & memory.rate.lt(R::splat(NO_CONTACT));
             let [vx, vy, vz, material] = R::columns(R::rows(|l| &planes[plane(l)].motion));
             let [wx, wy, wz, material_a] = R::columns(R::rows(|l| body.spin(l)));
             let law = mix.of(material_a, material);
             if R::any(ended) {
-                let left = L::stored_in_springs::<R, ROLLING>(&law, &memory).only(ended);
-                spent.friction = left.add_to(spent.friction);
-                remember::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
+                let left = L::tangential_energy::<R, ROLLING>(&law, &memory).only(ended);
+                dissipated.friction = left.add_to(dissipated.friction);
+                store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
             }
             if !R::any(on) {
                 continue;
@@ -105,9 +105,9 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
                 wall,
             };
             let f = forces::<L, R, CLUMPS, ROLLING>(&law, &touch, &mut memory, on, R::splat(dt));
-            remember::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
-            spent.dashpot = f.dashpot.add_to(spent.dashpot);
-            spent.friction = f.friction.add_to(spent.friction);
+            store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
+            dissipated.dashpot = f.dashpot.add_to(dissipated.dashpot);
+            dissipated.friction = f.friction.add_to(dissipated.friction);
             done.add(&f);
             let records = records::<R>(f.force, f.torque);
             for l in 0..R::LANES {
@@ -123,9 +123,9 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
         if let (Some((k, overlap, bound)), None) = (failure, totals.failure) {
             totals.failure = Some(too_deep(block, members, pairs.name(k), overlap, bound));
         }
-        totals.ledger.dissipated_dashpot += spent.dashpot.sum();
-        totals.ledger.dissipated_friction += spent.friction.sum();
-        done.book(&mut totals.ledger, dt);
+        totals.balance.dissipated_dashpot += dissipated.dashpot.sum();
+        totals.balance.dissipated_friction += dissipated.friction.sum();
+        done.book(&mut totals.balance, dt);
     }
 }
 
@@ -240,11 +240,11 @@ impl<Q: Simd4> Done<Q> {
     }
 
     #[inline(always)]
-    fn book(&self, ledger: &mut BalanceTerms, dt: f64) {
+    fn book(&self, balance: &mut BalanceTerms, dt: f64) {
         let (linear, angular) = (&self.linear, &self.angular);
-        ledger.work_walls += self.work.sum() * dt;
-        ledger.walls.linear += Vec3::new(linear.x.sum(), linear.y.sum(), linear.z.sum()) * dt;
-        ledger.walls.angular += Vec3::new(angular.x.sum(), angular.y.sum(), angular.z.sum()) * dt;
+        balance.work_walls += self.work.sum() * dt;
+        balance.walls.linear += Vec3::new(linear.x.sum(), linear.y.sum(), linear.z.sum()) * dt;
+        balance.walls.angular += Vec3::new(angular.x.sum(), angular.y.sum(), angular.z.sum()) * dt;
     }
 }
 

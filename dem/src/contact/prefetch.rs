@@ -4,7 +4,7 @@
 use crate::bodies::block::Block;
 use crate::bodies::block_slice::BlockSlice;
 use crate::lanes;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::pairs::groups::Group;
 
 /// Following blocks, contacts, slots of `width` records.

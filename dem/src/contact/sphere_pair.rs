@@ -3,9 +3,9 @@
 //!
 //! Theory manual: eq. (1.1), `docs/theory/contacts.md`.
 
-use super::ends::BodyLanes;
-use super::group_memory::{Dissipation, LawLanes, recall, remember};
-use crate::lanes::record::Vec4;
+use super::body_lanes::BodyLanes;
+use super::group_history::{Dissipation, LawLanes, load_history, store_history};
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Real, SimdPack, V3};
 use crate::law::{ContactLaw, HistoryLanes, LawInput, LawOutput, NO_CONTACT};
 use crate::pairs::groups::Springs;
@@ -179,7 +179,7 @@ pub(crate) fn contacts<L: ContactLaw, R: SimdPack, const CLUMPS: bool, const ROL
     mut springs: (&mut Springs, &mut Springs),
     mut turns: (&mut [Vec4; 4], &mut [Vec4; 4]),
     present: R::Mask,
-    spent: &mut Dissipation<R::Quad>,
+    dissipated: &mut Dissipation<R::Quad>,
     dt: f64,
 ) -> Option<Outcome<R>> {
     // One transposition serves both partners.
@@ -188,13 +188,13 @@ pub(crate) fn contacts<L: ContactLaw, R: SimdPack, const CLUMPS: bool, const ROL
     let between = V3::new(dx, dy, dz);
     let distance2 = between.norm2();
     let on = distance2.lt(reach * reach) & present;
-    let mut memory = recall::<R, ROLLING>(&springs, &turns);
+    let mut memory = load_history::<R, ROLLING>(&springs, &turns);
     let ended = !on & memory.rate.lt(R::splat(NO_CONTACT));
     if R::any(ended) {
         let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
-        let left = L::stored_in_springs::<R, ROLLING>(&law.of(ma, mb), &memory).only(ended);
-        spent.friction = left.add_to(spent.friction);
-        remember::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
+        let left = L::tangential_energy::<R, ROLLING>(&law.of(ma, mb), &memory).only(ended);
+        dissipated.friction = left.add_to(dissipated.friction);
+        store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
     }
     if !R::any(on) {
         return None;
@@ -202,9 +202,9 @@ pub(crate) fn contacts<L: ContactLaw, R: SimdPack, const CLUMPS: bool, const ROL
     let (m, materials) = pair::<R, CLUMPS>(a, b, (xa, xb), (between, distance2, reach));
     let law = law.of(materials.0, materials.1);
     let forces = forces::<L, R, CLUMPS, ROLLING>(&law, &m, &mut memory, on, R::splat(dt));
-    remember::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
-    spent.dashpot = forces.dashpot.add_to(spent.dashpot);
-    spent.friction = forces.friction.add_to(spent.friction);
+    store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
+    dissipated.dashpot = forces.dashpot.add_to(dissipated.dashpot);
+    dissipated.friction = forces.friction.add_to(dissipated.friction);
     let deep = R::mask_bits(forces.deep);
     Some(Outcome { forces, on, deep })
 }

@@ -4,7 +4,7 @@
 //! Entries of a body follow the engine's order of summation.
 
 use super::bodies::Spheres;
-use super::handed::Source;
+use super::cpu_forces::Source;
 use super::layout::{EntryKind, LISTS, List, entry, parts_of};
 use super::walls::{Pairs, PatchHistory};
 use crate::Vec3;

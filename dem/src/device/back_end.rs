@@ -1,12 +1,12 @@
 //! Device back end: transfers of state, and the sequence of kernels of a step.
 
 use super::arrays::{DeviceHistory, Lists};
+use super::block_totals;
 use super::bodies::{Constants, Motion, Spheres};
-use super::books;
-use super::handed::CpuForces;
+use super::cpu_forces::CpuForces;
 use super::layout::{Count, Features, HELD_WIDTH, List, Number, Slot};
 use super::machine::{Call, Machine};
-use super::scope::{self, Unsupported};
+use super::supported::{self, Unsupported};
 use super::text;
 use super::walls::{Triangles, placed};
 use crate::base::error::StepError;
@@ -26,7 +26,7 @@ use crate::spatial::surface::{Surface, SurfaceContact};
 /// # Errors
 /// [`Unsupported`] for the first unsupported feature.
 pub fn source(model: &Model) -> Result<String, Unsupported> {
-    scope::check(model)?;
+    supported::check(model)?;
     Ok(text::text(&model.laws, &text::features(model)))
 }
 
@@ -53,7 +53,7 @@ pub struct Device<M> {
     bonds: usize,
     pub(super) held_since: Option<u64>,
     /// Whether the engine must make the next step.
-    pub(super) orphans: bool,
+    pub(super) overflowed: bool,
     pub(super) handed: CpuForces,
 }
 
@@ -104,7 +104,7 @@ impl<M: Machine> Device<M> {
             held_since: None,
             pairs: 0,
             bonds: 0,
-            orphans: false,
+            overflowed: false,
             // Bond breakage and too many triangle contacts repeat a step on the CPU.
             handed: CpuForces::new(features.bonds || features.walls > 0),
         };
@@ -224,7 +224,7 @@ impl<M: Machine> Device<M> {
         let memory = DeviceHistory::of(model, state);
         let last = state.blocks.len();
         let bonds = lists.bond_ends.len();
-        (self.bonds, self.orphans) = (bonds, lists.pairs.orphans);
+        (self.bonds, self.overflowed) = (bonds, lists.pairs.overflowed);
         let planes = lists.from(List::Planes, 0);
         self.call.count(Count::FirstPlane, planes as usize);
         self.note_rest(&lists);
@@ -267,7 +267,7 @@ impl<M: Machine> Device<M> {
         ];
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))?;
         self.room_for_pairs(pairs)?;
-        self.hand_over_from(lists)
+        self.assign_cpu_forces(lists)
     }
 
     pub(super) fn note_rest(&mut self, lists: &Lists) {
@@ -289,7 +289,7 @@ impl<M: Machine> Device<M> {
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
 
-    pub(super) fn hand_over_from(&mut self, lists: Lists) -> Result<(), String> {
+    pub(super) fn assign_cpu_forces(&mut self, lists: Lists) -> Result<(), String> {
         if self.features.beside {
             let width = self.features.picked_width();
             let there = (&mut self.machine, &mut self.call);
@@ -367,10 +367,10 @@ impl<M: Machine> Device<M> {
         if beside || !surface.is_empty() {
             step::prepare(model, state, &mut self.work, surface, applied)?;
         }
-        if neighbour_list::due(state) {
-            self.orphans |= self.list(model, state, surface).map_err(|e| failed(state, e))?;
+        if neighbour_list::needs_rebuild(state) {
+            self.overflowed |= self.list(model, state, surface).map_err(|e| failed(state, e))?;
         }
-        if self.orphans {
+        if self.overflowed {
             return self.by_processor(model, state, surface, applied);
         }
         if beside {
@@ -382,7 +382,7 @@ impl<M: Machine> Device<M> {
         if failed_there {
             // The device still has the previous step: a repeat on the CPU identifies the failure.
             self.ahead = true;
-            let as_before = !beside || self.handed.put_back(state);
+            let as_before = !beside || self.handed.restore(state);
             self.by_processor(model, state, surface, applied)?;
             // CPU contacts have advanced twice: invalid state.
             let again = || failed(state, "a step failed on the GPU but not when repeated on the CPU".into());
@@ -395,11 +395,18 @@ impl<M: Machine> Device<M> {
             let picked = self.handed.pick((&mut self.machine, &self.call), (state, &mut self.work));
             picked.map_err(|e| failed(state, e))?;
         }
-        let all = books::add_up(&self.books, &self.features, &self.mass, model, state, &mut self.work);
-        if bonds::looks_at_separation(state) {
+        let all = block_totals::reduce_blocks(
+            &self.books,
+            &self.features,
+            &self.mass,
+            model,
+            state,
+            &mut self.work,
+        );
+        if bonds::checks_separation(state) {
             self.fetch(model, state)?;
         }
-        step::conclude(model, state, &mut self.work, all, surface.max_speed())
+        step::finish_step(model, state, &mut self.work, all, surface.max_speed())
     }
 
     fn by_processor<S: Surface>(
@@ -431,7 +438,7 @@ impl<M: Machine> Device<M> {
                 self.put(Slot::WallNow, &walls)?;
                 self.walls = walls;
             }
-            self.call.number(Number::Gone, state.drift + state.wall_drift);
+            self.call.number(Number::Gone, state.max_travel + state.wall_travel);
         }
         let step_size = state.step_size;
         self.call.number(Number::Step, step_size.kick());

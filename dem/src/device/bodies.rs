@@ -9,7 +9,7 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::V3;
-use crate::lanes::turn::QuaternionLanes;
+use crate::lanes::quaternion::QuaternionLanes;
 use nalgebra::UnitQuaternion;
 
 /// Position, radius; velocity, inverse mass; angular velocity, material; with clumps orientation, angular

@@ -91,7 +91,7 @@ table! {
         /// Block totals, then the failure flag.
         Books = "BOOKS": "real",
         Flags = "FLAGS": "unsigned",
-        /// CPU forces (`handed.rs`): offsets by entry, force and torque; bodies that the CPU needs, and their
+        /// CPU forces (`cpu_forces.rs`): offsets by entry, force and torque; bodies that the CPU needs, and their
         /// motion.
         HandedStart = "HANDED_START": "const unsigned",
         Handed = "HANDED": "const four",

@@ -9,7 +9,7 @@ use super::bodies::{Motion, put_places};
 use super::layout::{Count, LISTS, List, Number, STRETCH, Slot};
 use super::machine::Machine;
 use super::sizes::largest;
-use super::walls::orphans;
+use super::walls::overflowed;
 use crate::base::Vec3;
 use crate::engine::broad_phase::Listed;
 use crate::engine::model::Model;
@@ -30,14 +30,14 @@ impl<M: Machine> Device<M> {
             neighbour_list::adapt(model, state);
             self.search(model, state)?;
             self.work.searched.searches += 1;
-            neighbour_list::made(state, &mut self.work);
+            neighbour_list::finish_rebuild(state, &mut self.work);
             return Ok(false);
         }
         if self.ahead {
             self.fetch_rest(model, state)?;
         }
         neighbour_list::update(model, state, &mut self.work, surface, Listed::Rest);
-        if self.features.walls > 0 && state.lists.iter().any(orphans) {
+        if self.features.walls > 0 && state.lists.iter().any(overflowed) {
             // The engine records their energy; the state still has the previous sphere contacts.
             self.bring_back(model, state, Listed::Rest)?;
             (self.ahead, self.found, state.stale) = (false, true, true);
@@ -125,7 +125,7 @@ impl<M: Machine> Device<M> {
         self.reserve(Slot::Walls, 8 * (contacts - of_spheres))?;
         if let Some(lists) = rest {
             self.put_memory(model, state, contacts)?;
-            self.hand_over_from(lists)?;
+            self.assign_cpu_forces(lists)?;
         }
         (self.found, self.ahead) = (true, true);
         Ok(())

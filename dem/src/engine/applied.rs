@@ -5,7 +5,7 @@ use super::model::Model;
 use super::state::State;
 use crate::base::error::StepError;
 use crate::integrate::leapfrog::Applied;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 
 pub(crate) fn place(
     model: &Model,

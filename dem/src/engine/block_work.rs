@@ -5,7 +5,7 @@ use crate::base::capacity::capacity_bytes;
 use crate::bodies::sums::BlockTotals;
 use crate::body_force::ForceWork;
 use crate::bond::pass::ListWork;
-use crate::contact::patches::PatchWork;
+use crate::contact::surface_contacts::PatchWork;
 use crate::pairs::cross::{ImageName, Shares};
 use crate::pairs::list::PairName;
 use crate::pairs::patch_search::Candidate;

@@ -9,7 +9,7 @@ use crate::bond::kernel::BondHistory;
 use crate::bond::pass::{self, Broken, Parts};
 use crate::bond::store::Entry;
 use crate::bond::{BondList, BondedPairs, Break, BreakMode};
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::law::History;
 
 /// `dt`: last step [s].
@@ -149,8 +149,8 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
         for across in [false, true] {
             let w = if across { &mut work.bonds.cross[b] } else { &mut work.blocks[b].bonds };
             power += w.power;
-            state.ledger.dissipated_dashpot += w.dashpot;
-            state.ledger.dissipated_friction += w.friction;
+            state.balance.dissipated_dashpot += w.dashpot;
+            state.balance.dissipated_friction += w.friction;
             failure = failure.or(w.failure);
             if w.broken.is_empty() {
                 continue;
@@ -173,10 +173,10 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
     // Forces use velocities half a step old, work their mean with the next: c v² + ½ c v·Δv. The second term
     // sums to a quarter of the change of power.
     let last = if state.bonds.fresh { power } else { state.bonds.power };
-    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.step_size.kick();
+    state.balance.dissipated_bonds += (power + 0.25 * (power - last)) * state.step_size.kick();
     state.bonds.power = power;
     state.bonds.fresh = false;
-    changed |= hand_over(state);
+    changed |= discard_separated(state);
     if changed {
         pass::link(&state.bonds.cross, &mut work.bonds);
     }
@@ -209,12 +209,12 @@ fn part(
         let overlap = debonded::overlap_for(stored, radius, broken.pressure, broken.pressed);
         let reference = if overlap > 0.0 { then - overlap } else { then.max(0.0) };
         energy -= stored((half - reference).max(0.0));
-        let rate = model.laws.begun(one, two, broken.approach);
+        let rate = model.laws.initial_state(one, two, broken.approach);
         let history = if overlap > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
         pair = Some(DebondedPair { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
     }
     state.bonds.broken[usize::from(broken.mode == BreakMode::Shear)] += 1;
-    state.ledger.released_by_breaks += energy;
+    state.balance.released_by_breaks += energy;
     state.bonds.breaks.push(Break {
         time: state.time,
         bond: e.number,
@@ -242,11 +242,11 @@ pub(crate) fn parted(state: &State) -> ((u64, u64), usize) {
 }
 
 /// Separation checks need current positions and history.
-pub(crate) fn looks_at_separation(state: &State) -> bool {
+pub(crate) fn checks_separation(state: &State) -> bool {
     state.steps.is_multiple_of(CHECK_INTERVAL) && any_debonded(state)
 }
 
-pub(crate) fn hand_over(state: &mut State) -> bool {
+pub(crate) fn discard_separated(state: &mut State) -> bool {
     if !state.steps.is_multiple_of(debonded::EVERY) {
         return false;
     }
@@ -258,7 +258,7 @@ pub(crate) fn hand_over(state: &mut State) -> bool {
         let keep = |r: &DebondedPair, other: usize| {
             let (_, overlap) =
                 debonded::geometry(&blocks[b], r.i as usize, &blocks[other], r.j as usize, 0.0);
-            !r.history.is_fresh() || overlap > 0.0
+            !r.history.is_new() || overlap > 0.0
         };
         list.retain(|r| keep(r, b));
         if let Some(cross) = cross.get_mut(b) {

@@ -10,8 +10,8 @@ use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::block_slice::BlockSlice;
 use crate::bond::BondedPairs;
-use crate::contact::kind::{Configuration, KINDS, Search};
-use crate::lanes::record::{Vec4, xyz};
+use crate::contact::narrow_phase::{Configuration, KINDS, Search};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::law::scarring::Scar;
 use crate::pairs::cross::ImageName;
 use crate::pairs::patch_search as patches;
@@ -81,7 +81,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     searched.planes.extend(state.planes.iter().map(|m| m.offset));
     searched.walls.clear();
     searched.walls.extend(state.walls.iter().map(|w| (w.offset, w.orientation)));
-    searched.surface_drift = 0.0;
+    searched.surface_travel = 0.0;
     searched.listed = Some(listed);
     searched.searches += 1;
 }

@@ -1,7 +1,7 @@
 //! Bounding spheres of bodies: clumps are searched body by body first, as most pairs of bodies are apart.
 
 use crate::base::Vec3;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::spatial::cells::Cells;
 use std::ops::Range;
 

@@ -10,8 +10,8 @@ use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::block_slice::BlockSlice;
 use crate::bodies::sums::ForceTorque;
 use crate::contact::dispatch;
-use crate::contact::kind;
-use crate::contact::single::StepContext;
+use crate::contact::narrow_phase;
+use crate::contact::scalar::StepContext;
 use crate::integrate::leapfrog;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::pairs::list::PairList;
@@ -30,7 +30,7 @@ pub(crate) fn walls(model: &Model) -> bool {
 /// Resets block totals. The neighbour list must be valid.
 pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     let setting = StepContext { laws: &model.laws, simd: work.simd, dt: state.step_size.kick() };
-    let gone = state.drift + state.wall_drift;
+    let travel_since_search = state.max_travel + state.wall_travel;
     let State { blocks, lists, cross, planes, scars, walls: moved, .. } = &mut *state;
     let (blocks, planes) = (&blocks[..], &planes[..]);
     let Work { members, blocks: works, cross: slots, walls: standing, sheet, parallel, .. } = work;
@@ -39,11 +39,11 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     let now = broad_phase::now_of(model, bodies, planes, (standing, sheet), scars);
     let placed = walls(model).then(|| model.walls.placed(moved));
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossForces))| {
-        out.clear_books();
-        kind::forces(&setting, &now, b, pairs, out);
+        out.clear_totals();
+        narrow_phase::forces(&setting, &now, b, pairs, out);
     };
     let own = |(b, (list, w)): (usize, (&mut BlockLists, &mut BlockWork))| {
-        w.totals.ledger = BalanceTerms::default();
+        w.totals.balance = BalanceTerms::default();
         w.totals.failure = None;
         w.patches.contacts.clear();
         let bodies = (&blocks[b], &members[b]);
@@ -55,12 +55,12 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
             w.patches.wall_sums.clear();
             w.patches.aside.clear();
             if !list.walls.is_empty() {
-                step::on_walls(model, &setting, (walls, gone), &mut list.walls, bodies, w);
+                step::on_walls(model, &setting, (walls, travel_since_search), &mut list.walls, bodies, w);
                 w.patches.set_aside(&mut w.totals);
             }
         }
         if !list.surface.is_empty() {
-            step::on_surface(model, &setting, (surface, gone), &mut list.surface, bodies, w);
+            step::on_surface(model, &setting, (surface, travel_since_search), &mut list.surface, bodies, w);
         }
     };
     if *parallel {
@@ -96,7 +96,7 @@ impl SavedHistory {
         }
     }
 
-    pub fn put_back(&self, state: &mut State) {
+    pub fn restore(&self, state: &mut State) {
         for (kept, (cross, lists)) in self.blocks.iter().zip(state.cross.iter_mut().zip(&mut state.lists)) {
             copy_kinds(&mut cross.kinds, &kept.kinds);
             let [walls, surface] = &kept.patches;

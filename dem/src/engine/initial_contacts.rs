@@ -29,8 +29,8 @@ pub fn find_contacts<S: Surface>(
         (wall.force, wall.moment) = (seen.force, seen.moment);
         (wall.feet, wall.meets) = (seen.feet, seen.meets);
     }
-    (state.near, state.drift, state.wall_drift) = (probe.near, probe.drift, probe.wall_drift);
-    (state.lasted, state.stale) = (probe.lasted, probe.stale);
+    (state.near, state.max_travel, state.wall_travel) = (probe.near, probe.max_travel, probe.wall_travel);
+    (state.steps_since_search, state.stale) = (probe.steps_since_search, probe.stale);
     // The probe may have broken bonds and moved clump spheres; its forces stay.
     for (members, block) in work.members.iter_mut().zip(&state.blocks) {
         members.arrange(&model.bodies, &model.shapes, block);

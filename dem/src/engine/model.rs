@@ -9,7 +9,7 @@ use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, BodyKind, for_members, volume};
 use crate::body_force::{self, BodyForce, Skin};
-use crate::contact::kind::SheetView;
+use crate::contact::narrow_phase::SheetView;
 use crate::law::{History, Laws, Linearised};
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
@@ -355,7 +355,7 @@ impl Model {
         // The stored rate is a radius, or a speed, which springs do not depend on.
         let history = History { rate: radius, ..History::NONE };
         let law = self.laws.linearised(materials, mass, radius, overlap, &history);
-        let (limit, _) = self.laws.held_by_friction(materials, None, overlap, radius, &history);
+        let (limit, _) = self.laws.friction_limit(materials, None, overlap, radius, &history);
         match limit > 0.0 {
             true => law,
             false => {

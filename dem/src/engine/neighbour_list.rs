@@ -11,9 +11,9 @@ use super::walls;
 use super::work::Work;
 use super::workspace_layout::link;
 use crate::bodies::block_slice::BlockSlice;
-use crate::contact::kind::KINDS;
+use crate::contact::narrow_phase::KINDS;
 use crate::lanes::V3;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::pairs::cross::{self, Cross, ImageName};
 use crate::pairs::patch_search as patches;
 use crate::pairs::reach;
@@ -28,43 +28,43 @@ pub(crate) fn update<S: Surface>(
     surface: &S,
     listed: Listed,
 ) {
-    if !due(state) {
+    if !needs_rebuild(state) {
         return;
     }
     if state.stale {
         work.place_spheres(state);
     }
     adapt(model, state);
-    work.searched.surface_drift += state.wall_drift;
+    work.searched.surface_travel += state.wall_travel;
     let mut approach = if state.stale || work.searched.listed != Some(listed) {
         f64::INFINITY
     } else {
         approach(model, state, work, moved2(state, work))
     };
-    if too_far(model, state, approach) {
+    if exceeds_skin(model, state, approach) {
         broad_phase::search(model, state, work, surface, listed);
         approach = 0.0;
     }
-    renew(model, state, work, surface, approach);
+    rebuild(model, state, work, surface, approach);
 }
 
-pub(crate) fn too_far(model: &Model, state: &State, approach: f64) -> bool {
+pub(crate) fn exceeds_skin(model: &Model, state: &State, approach: f64) -> bool {
     approach + state.near > model.skin
 }
 
 pub(crate) fn adapt(model: &Model, state: &mut State) {
-    if used_up(state) {
+    if exceeds_cutoff(state) {
         // A list that lasts about ten steps costs least.
-        if state.lasted < 6 {
+        if state.steps_since_search < 6 {
             state.near = (1.5 * state.near).min(0.5 * model.skin);
-        } else if state.lasted > 40 {
+        } else if state.steps_since_search > 40 {
             state.near = (state.near / 1.2).max(0.02 * model.skin);
         }
     }
 }
 
 /// `approach`: bound on relative displacement since the search [m].
-pub(crate) fn renew<S: Surface>(
+pub(crate) fn rebuild<S: Surface>(
     model: &Model,
     state: &mut State,
     work: &mut Work,
@@ -72,23 +72,23 @@ pub(crate) fn renew<S: Surface>(
     approach: f64,
 ) {
     make(model, state, work, surface, approach);
-    made(state, work);
+    finish_rebuild(state, work);
 }
 
-pub(crate) fn made(state: &mut State, work: &mut Work) {
-    state.drift = 0.0;
-    state.wall_drift = 0.0;
-    state.lasted = 0;
+pub(crate) fn finish_rebuild(state: &mut State, work: &mut Work) {
+    state.max_travel = 0.0;
+    state.wall_travel = 0.0;
+    state.steps_since_search = 0;
     state.stale = false;
     work.searched.refreshes += 1;
 }
 
-fn used_up(state: &State) -> bool {
-    (2.0 * state.drift).max(state.drift + state.wall_drift) > state.near
+fn exceeds_cutoff(state: &State) -> bool {
+    (2.0 * state.max_travel).max(state.max_travel + state.wall_travel) > state.near
 }
 
-pub(crate) fn due(state: &State) -> bool {
-    state.stale || used_up(state)
+pub(crate) fn needs_rebuild(state: &State) -> bool {
+    state.stale || exceeds_cutoff(state)
 }
 
 /// Bound on squared displacement since the search [m²].
@@ -116,7 +116,7 @@ pub(crate) fn moved2(state: &State, work: &Work) -> f64 {
 pub(crate) fn approach(model: &Model, state: &State, work: &Work, moved2: f64) -> f64 {
     let moved = moved2.sqrt();
     let planes = state.planes.iter().zip(&work.searched.planes);
-    let wall = planes.map(|(m, x)| (m.offset - x).norm()).fold(work.searched.surface_drift, f64::max);
+    let wall = planes.map(|(m, x)| (m.offset - x).norm()).fold(work.searched.surface_travel, f64::max);
     let wall = wall.max(walls::way(model, state, &work.searched.walls));
     (2.0 * moved).max(moved + wall)
 }

@@ -11,8 +11,8 @@ use super::work::Work;
 use crate::base::Vec3;
 use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
-use crate::contact::kind::{KINDS, OnGround};
-use crate::lanes::record::xyz;
+use crate::contact::narrow_phase::{KINDS, OnGround};
+use crate::lanes::vec4::xyz;
 use crate::law::scarring::{Scar, Scarring};
 use crate::spatial::facet::Facet;
 use crate::spatial::patchwork::Form;
@@ -29,7 +29,7 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
         ground.resize(state.blocks[b].bodies.len(), Ground::default());
         let now = broad_phase::now(model, state, &work.members, (&work.walls, &work.sheet));
         for (kind, list) in KINDS.iter().zip(&state.cross[b].kinds) {
-            kind.grounds(&now, b, list, &mut |on: &OnGround| {
+            kind.visit_scarred_ground(&now, b, list, &mut |on: &OnGround| {
                 let patch = &model.patches[on.patch as usize];
                 if let Form::Facet(facet) = &patch.form {
                     let centre = xyz(&state.blocks[b].centre[on.place]);

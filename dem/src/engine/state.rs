@@ -10,7 +10,7 @@ use crate::bodies::table::BodyKind;
 use crate::bond::{BondList, BondState};
 use crate::engine::model::Model;
 use crate::integrate::step_size::StepSize;
-use crate::lanes::record::{set_xyz, xyz};
+use crate::lanes::vec4::{set_xyz, xyz};
 use crate::law::scarring::Scar;
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
@@ -35,11 +35,11 @@ pub(crate) struct BlockLists {
 pub struct State {
     /// Time [s].
     pub time: f64,
-    /// Steps, including those before [`State::begin_anew`].
+    /// Steps, including those before [`State::reset_time`].
     pub steps: u64,
     pub(crate) before: u64,
     /// Work, dissipation and impulse.
-    pub ledger: BalanceTerms,
+    pub balance: BalanceTerms,
     pub(crate) places: Vec<[u32; 2]>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) lists: Vec<BlockLists>,
@@ -57,16 +57,16 @@ pub struct State {
     pub(crate) scars: Vec<Scar>,
     /// Cut-off beyond contact [m], displacement used, age in steps.
     pub(crate) near: f64,
-    pub(crate) drift: f64,
-    pub(crate) wall_drift: f64,
-    pub(crate) lasted: u32,
+    pub(crate) max_travel: f64,
+    pub(crate) wall_travel: f64,
+    pub(crate) steps_since_search: u32,
     pub(crate) stale: bool,
 }
 
 pub(crate) const ABSENT: [u32; 2] = [u32::MAX, 0];
 
 impl State {
-    /// Steps since the start or [`State::begin_anew`].
+    /// Steps since the start or [`State::reset_time`].
     pub fn steps_done(&self) -> u64 {
         self.steps - self.before
     }
@@ -164,7 +164,7 @@ impl State {
 
     /// Translates [m] and rotates a body about world axes; velocity, angular momentum and contact history are
     /// kept. Fixed motions are skipped (all rotations if one is fixed); single spheres do not rotate. Angular
-    /// momentum is balanced, energy is not. Call [`State::forget_neighbours`] afterwards.
+    /// momentum is balanced, energy is not. Call [`State::request_search`] afterwards.
     pub fn shift(&mut self, model: &Model, body: usize, shift: &Vec3, turn: &UnitQuaternion<f64>) {
         let [b, k] = self.places[body];
         let (block, k) = (&mut self.blocks[b as usize], k as usize);
@@ -182,7 +182,7 @@ impl State {
             set_xyz(&mut block.spin[k], &spin);
         }
         let momentum = xyz(&block.velocity[k]) * constants.mass;
-        self.ledger.jumps.angular += shift.cross(&momentum);
+        self.balance.jumps.angular += shift.cross(&momentum);
     }
 
     /// Spheres in the world: centre [m], radius [m]; empty for a box.
@@ -257,24 +257,24 @@ impl State {
     }
 
     /// Resets time, steps and balances; wall offsets are kept.
-    pub fn begin_anew(&mut self) {
+    pub fn reset_time(&mut self) {
         self.time = 0.0;
         // The total count fixes sorting steps, hence rounding.
         self.before = self.steps;
-        self.ledger = BalanceTerms::default();
+        self.balance = BalanceTerms::default();
         self.driven_speed = 0.0;
         self.bonds.breaks.clear();
     }
 
     /// Requests a neighbour search, if the external surface exceeded its
     /// [`max_speed`](crate::spatial::surface::Surface::max_speed).
-    pub fn forget_neighbours(&mut self) {
+    pub fn request_search(&mut self) {
         self.stale = true;
     }
 
     /// Adds surface displacement [m] beyond its [`max_speed`](crate::spatial::surface::Surface::max_speed),
     /// without a new search.
-    pub fn allow_for_jump(&mut self, way: f64) {
-        self.wall_drift += way;
+    pub fn add_surface_travel(&mut self, way: f64) {
+        self.wall_travel += way;
     }
 }

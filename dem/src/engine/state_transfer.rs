@@ -7,14 +7,14 @@ use super::reordering::{BodyChanges, PreviousLists, SphereMap, reorder, sort};
 use super::state::State;
 use crate::base::Vec3;
 use crate::bodies::block::Rotation;
-use crate::contact::kind::KINDS;
-use crate::lanes::record::{set_xyz, xyz};
+use crate::contact::narrow_phase::KINDS;
+use crate::lanes::vec4::{set_xyz, xyz};
 use std::collections::BTreeMap;
 
 impl State {
     /// Copies the first `count` bodies from the state `other` of a model with identical shapes, sizes and
     /// bonds, with motion and mutual history. Prescribed motions stay, other contacts are reset. Call it
-    /// before creating a [`Work`](crate::Work), and [`State::remember`] after contact detection.
+    /// before creating a [`Work`](crate::Work), and [`State::restore_history`] after contact detection.
     ///
     /// # Errors
     /// Index of the first missing or different body.
@@ -38,12 +38,12 @@ impl State {
         self.bonds.power = other.bonds.power;
         // Velocities are half of the last step old.
         self.step_size.last = other.step_size.last;
-        self.remember(model, other, count);
+        self.restore_history(model, other, count);
         Ok(())
     }
 
     /// Restores the mutual contact history of carried bodies; contact detection takes a step.
-    pub fn remember(&mut self, model: &Model, other: &State, count: usize) {
+    pub fn restore_history(&mut self, model: &Model, other: &State, count: usize) {
         for (b, block) in self.blocks.iter().enumerate() {
             let (fresh, cross) = block_layout::lists(model, block);
             self.lists[b].pairs = fresh.pairs;
@@ -133,7 +133,7 @@ mod tests {
         // Undo the probe's changes of contact history.
         let mut work = Work::new(&other, &carried);
         crate::find_contacts(&other, &mut carried, &mut work, &NoSurface).unwrap();
-        carried.remember(&other, &state, count);
+        carried.restore_history(&other, &state, count);
         let mut forgotten = carried.clone();
         reorder(
             &mut forgotten,

@@ -18,11 +18,11 @@ use crate::bodies::sums::{BlockTotals, ForceTorque, WallSum};
 use crate::body_force::ForceInput;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
-use crate::contact::kind;
-use crate::contact::patches::{self, ContactSurface};
+use crate::contact::narrow_phase;
 use crate::contact::planes::PlanePose;
 use crate::contact::prefetch::Prefetch;
-use crate::contact::single::StepContext;
+use crate::contact::scalar::StepContext;
+use crate::contact::surface_contacts::{self, ContactSurface};
 use crate::contact::{dispatch, images, planes};
 use crate::integrate::leapfrog::{self, MotionInput};
 use crate::integrate::step_size::StepSize;
@@ -59,7 +59,7 @@ pub fn step<S: Surface>(
     prepare(model, state, work, surface, applied)?;
     neighbour_list::update(model, state, work, surface, Listed::All);
     advance(model, state, work, surface);
-    collect(model, state, work, surface.max_speed())
+    reduce_blocks(model, state, work, surface.max_speed())
 }
 
 pub(crate) fn prepare<S: Surface>(
@@ -133,17 +133,18 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let dt = step_size.kick();
     let setting = StepContext { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
-    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, scars, .. } = state;
+    let State { blocks, lists, cross, planes, walls, bonds, max_travel, wall_travel, time, scars, .. } =
+        state;
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let standing = (&work.walls[..], &work.sheet[..]);
     // Reads own and later blocks, writes slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
-        out.clear_books();
+        out.clear_totals();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
         if !pairs.kinds.is_empty() {
             let now = broad_phase::now_of(model, (blocks, members), motions, standing, scars);
-            kind::forces(&setting, &now, b, pairs, out);
+            narrow_phase::forces(&setting, &now, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
             images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);
@@ -159,7 +160,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         drive: drive(model, step_size),
         time: *time,
         scars,
-        gone: *drift + *wall_drift,
+        travel_since_search: *max_travel + *wall_travel,
     };
     let (applied, keep) = (&**applied, work.keep_forces);
     let within = |b: usize, mut one: BlockTask<'_>, slots: Slots<'_>, next: Prefetch<'_>| {
@@ -168,14 +169,14 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         let BlockTask { block, members, work, .. } = one;
         let BlockWork { totals, body_forces, .. } = work;
         if model.acts_on_bodies() {
-            let BlockTotals { sums, ledger, .. } = &mut *totals;
-            body_forces.act(&model.body_forces, shared.seen(block, members, sums), ledger);
+            let BlockTotals { sums, balance, .. } = &mut *totals;
+            body_forces.act(&model.body_forces, shared.seen(block, members, sums), balance);
             body_forces.add_to(sums);
         }
         let applied = applied::of_block(applied, b);
         leapfrog::advance(setting.simd, &shared.drive, block, members, totals, applied);
         if model.acts_on_bodies() {
-            body_forces.book(block, &mut totals.ledger, dt);
+            body_forces.book(block, &mut totals.balance, dt);
         }
         if !keep {
             buffers.give_back(std::mem::take(&mut work.totals.sums));
@@ -199,7 +200,7 @@ struct Shared<'a, S> {
     time: f64,
     scars: &'a [Scar],
     /// Relative displacement bound since the last neighbour list [m].
-    gone: f64,
+    travel_since_search: f64,
 }
 
 impl<S: Surface> Shared<'_, S> {
@@ -220,7 +221,7 @@ impl<S: Surface> Shared<'_, S> {
         let BlockTask { block, members, lists, work } = one;
         let (block, members) = (&**block, &**members);
         let totals = &mut work.totals;
-        totals.ledger = BalanceTerms::default();
+        totals.balance = BalanceTerms::default();
         totals.failure = None;
         work.patches.contacts.clear();
         work.patches.wall_sums.clear();
@@ -239,21 +240,21 @@ impl<S: Surface> Shared<'_, S> {
             dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, totals);
         }
         if !lists.walls.is_empty() {
-            let walls = (&self.walls, self.gone);
+            let walls = (&self.walls, self.travel_since_search);
             on_walls(model, &setting, walls, &mut lists.walls, (block, members), work);
         }
         if !lists.surface.is_empty() {
-            let (surface, own) = ((self.surface, self.gone), (block, members));
+            let (surface, own) = ((self.surface, self.travel_since_search), (block, members));
             on_surface(model, &setting, surface, &mut lists.surface, own, work);
         }
     }
 }
 
-/// Sphere–wall contacts of a block; `gone`: as [`on_surface`].
+/// Sphere–wall contacts of a block; `travel_since_search`: as [`on_surface`].
 pub(crate) fn on_walls(
     model: &Model,
     setting: &StepContext<'_>,
-    (walls, gone): (&PlacedWalls<'_>, f64),
+    (walls, travel_since_search): (&PlacedWalls<'_>, f64),
     list: &mut PatchList,
     own: (&Block, &BlockBodies),
     work: &mut BlockWork,
@@ -264,16 +265,16 @@ pub(crate) fn on_walls(
         material: |patch| model.walls.material(patch),
         partner: |patch| model.walls.partner(patch),
         external: false,
-        gone,
+        travel_since_search,
     };
-    patches::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
+    surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
 }
 
-/// Sphere–surface contacts of a block; `gone`: relative displacement bound since the last neighbour list [m].
+/// Sphere–surface contacts of a block; `travel_since_search`: relative displacement bound since the last neighbour list [m].
 pub(crate) fn on_surface<S: Surface>(
     model: &Model,
     setting: &StepContext<'_>,
-    (surface, gone): (&S, f64),
+    (surface, travel_since_search): (&S, f64),
     list: &mut PatchList,
     own: (&Block, &BlockBodies),
     work: &mut BlockWork,
@@ -283,15 +284,15 @@ pub(crate) fn on_surface<S: Surface>(
         material: |patch| model.patch_material(patch) as u32,
         partner: Partner::Patch,
         external: true,
-        gone,
+        travel_since_search,
     };
-    let done = patches::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
-    work.totals.ledger.work_surface += done.work;
-    work.totals.ledger.surface += &done.impulse;
+    let done = surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
+    work.totals.balance.work_surface += done.work;
+    work.totals.balance.surface += &done.impulse;
 }
 
 /// Sums in block order.
-pub(crate) fn collect(
+pub(crate) fn reduce_blocks(
     model: &Model,
     state: &mut State,
     work: &mut Work,
@@ -302,7 +303,7 @@ pub(crate) fn collect(
     let StepTotals { sum, fastest, failure } = &mut all;
     for (w, cross) in work.blocks.iter().zip(&work.cross) {
         let totals = &w.totals;
-        *sum += &totals.ledger;
+        *sum += &totals.balance;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
         sum.work_walls += cross.work_walls;
@@ -315,7 +316,7 @@ pub(crate) fn collect(
         work.surface_contacts.extend_from_slice(&w.patches.contacts);
         work.surface_contacts.extend_from_slice(&cross.surface.contacts);
     }
-    conclude(model, state, work, all, surface_speed)
+    finish_step(model, state, work, all, surface_speed)
 }
 
 #[derive(Default)]
@@ -326,7 +327,7 @@ pub(crate) struct StepTotals {
     pub failure: Option<Failure>,
 }
 
-pub(crate) fn conclude(
+pub(crate) fn finish_step(
     model: &Model,
     state: &mut State,
     work: &mut Work,
@@ -338,7 +339,7 @@ pub(crate) fn conclude(
     let meeting = wall_contacts::forces(model, state, &mut work.wall_contacts, &mut sum);
     let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
     failure = failure.or(meeting).or(wall_failure);
-    state.ledger += &sum;
+    state.balance += &sum;
     if !model.bonds.is_empty() {
         failure = failure.or(bonds::settle(model, state, work));
     }
@@ -350,9 +351,9 @@ pub(crate) fn conclude(
         wall_speed = wall_speed.max(speed);
         state.driven_speed = state.driven_speed.max(speed);
     }
-    state.drift += fastest * dt;
-    state.wall_drift += wall_speed * dt;
-    state.lasted = state.lasted.saturating_add(1);
+    state.max_travel += fastest * dt;
+    state.wall_travel += wall_speed * dt;
+    state.steps_since_search = state.steps_since_search.saturating_add(1);
     state.steps += 1;
     state.time = time + dt;
     state.step_size.last = dt;

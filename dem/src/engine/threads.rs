@@ -10,7 +10,7 @@ use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::block_slice::BlockSlice;
 use crate::contact::dispatch;
-use crate::contact::group_memory::FAR;
+use crate::contact::group_history::FAR;
 use crate::contact::prefetch::Prefetch;
 use crate::lanes;
 use crate::pairs::cross::{Cross, CrossForces, Slots};

@@ -32,7 +32,7 @@ use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::bond;
-use crate::contact::kind::{DEEPEST, LENGTH};
+use crate::contact::narrow_phase::{DEEPEST, LENGTH};
 use crate::law::Laws;
 use crate::law::normal::Expected;
 use crate::shape::Shape;

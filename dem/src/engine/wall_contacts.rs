@@ -1,14 +1,14 @@
-//! Contacts between walls: bodies of triangles and other patch walls (`contact/kind/shell.rs`).
+//! Contacts between walls: bodies of triangles and other patch walls (`contact/narrow_phase/shell.rs`).
 
 use super::model::Model;
 use super::state::State;
 use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
 use crate::bodies::sums::WallSum;
-use crate::contact::kind::shell::{self, ShellPose, WallContactList};
-use crate::contact::kind::shell_pass::Two;
-use crate::contact::kind::{ContactView, Pose};
-use crate::pairs::meets::WallContactHistory;
+use crate::contact::narrow_phase::shell::{self, ShellPose, WallContactList};
+use crate::contact::narrow_phase::shell_pass::Two;
+use crate::contact::narrow_phase::{ContactView, Pose};
+use crate::pairs::wall_history::WallContactHistory;
 use crate::spatial::patchwork::WallView;
 use crate::wall::shells::Form;
 
@@ -49,7 +49,7 @@ pub(crate) fn forces(
     model: &Model,
     state: &mut State,
     work: &mut WallContacts,
-    ledger: &mut BalanceTerms,
+    balance: &mut BalanceTerms,
 ) -> Option<Failure> {
     let WallContacts { sums, now, met, old } = work;
     sums.clear();
@@ -72,7 +72,7 @@ pub(crate) fn forces(
             let two = Two { walls: [a, b].map(|k| &now[k as usize]), other: b };
             let new = &mut state.walls[holder].meets;
             let [first, second] = sums.get_disjoint_mut([a as usize, b as usize]).expect("two walls");
-            let deep = two.forces((&model.laws, dt), met, (old, new), [first, second], ledger);
+            let deep = two.forces((&model.laws, dt), met, (old, new), [first, second], balance);
             let speed = [a, b].map(|k| speed(model, state, k)).iter().sum::<f64>();
             let most = LARGEST_STEP * (model.shells.radius(a) + model.shells.radius(b)) / state.step_size.dt;
             let deep = deep.map(|[overlap, bound]| Failure::Walls { walls: [a, b], overlap, bound });

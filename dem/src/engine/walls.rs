@@ -31,7 +31,7 @@ pub(crate) fn advance(
     model: &Model,
     state: &mut State,
     work: &Work,
-    ledger: &mut BalanceTerms,
+    balance: &mut BalanceTerms,
 ) -> (f64, Option<Failure>) {
     let (kick, dt) = (state.step_size.kick(), state.step_size.dt);
     let bound = 0.5 * model.radii.0 / dt;
@@ -45,9 +45,9 @@ pub(crate) fn advance(
         let speed = match &wall.body {
             Some(b) => {
                 let ground = ground(model, &state.planes, kick);
-                let (force, torque) = body::stand(&ground, b, wall.material, own, ledger);
+                let (force, torque) = body::stand(&ground, b, wall.material, own, balance);
                 let (force, torque) = (force + own.force, torque + own.moment);
-                b.advance(own, &force, &torque, &model.gravity, &state.step_size, ledger);
+                b.advance(own, &force, &torque, &model.gravity, &state.step_size, balance);
                 b.speed(own)
             }
             None => {
@@ -80,15 +80,16 @@ pub(crate) fn advance(
                 let mean = (before + own.velocity) * 0.5;
                 let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * kick;
                 if wall.servo.is_some() {
-                    ledger.work_servo += done;
+                    balance.work_servo += done;
                     // A massless servo may jump within a step, which the dashpots miss.
-                    ledger.dissipated_dashpot += sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
+                    balance.dissipated_dashpot +=
+                        sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
                     own.change = own.velocity - before;
                 } else {
-                    ledger.work_walls += done;
+                    balance.work_walls += done;
                 }
-                ledger.walls.add(&centre, &(sum.force * kick));
-                ledger.walls.angular += sum.moment * kick;
+                balance.walls.add(&centre, &(sum.force * kick));
+                balance.walls.angular += sum.moment * kick;
                 let speed = own.velocity.norm() + spin.norm() * wall.reach;
                 state.driven_speed = state.driven_speed.max(speed);
                 speed

@@ -12,7 +12,7 @@ use crate::bond::pass::BondWork;
 use crate::contact::planes::PlanePose;
 use crate::integrate::leapfrog::Applied;
 use crate::lanes::Simd;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::CrossForces;
 use crate::pairs::merge::Merging;
@@ -27,7 +27,7 @@ pub(crate) struct Searched {
     pub listed: Option<Listed>,
     pub planes: Vec<Vec3>,
     pub walls: Vec<(Vec3, UnitQuaternion<f64>)>,
-    pub surface_drift: f64,
+    pub surface_travel: f64,
     /// Searches, neighbour list builds.
     pub searches: u64,
     pub refreshes: u64,

@@ -9,7 +9,7 @@ use super::{bonds, broad_phase};
 use crate::bodies::block_bodies::{BlockBodies, common};
 use crate::bond::BondedPairs;
 use crate::bond::pass::BondWork;
-use crate::contact::kind::KINDS;
+use crate::contact::narrow_phase::KINDS;
 use crate::lanes::Simd;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::{CrossForces, Gather, ImagePair};
@@ -97,7 +97,7 @@ pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
         counts[b] += cross.spheres.len();
         (0..cross.spheres.len()).for_each(|k| counts[cross.spheres.name(k)[1] as usize] += 1);
         for (kind, list) in KINDS.iter().zip(&cross.kinds) {
-            kind.shares(&now, b, list, &mut |_, [block, _], _| counts[block as usize] += 1);
+            kind.for_each_body(&now, b, list, &mut |_, [block, _], _| counts[block as usize] += 1);
         }
         counts[b] += cross.images.len();
         cross.images.iter().for_each(|p| counts[p.name.block as usize] += 1);
@@ -123,7 +123,7 @@ pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
         }
         let mut at = forces[b].kinds_at;
         for (kind, list) in KINDS.iter().zip(&cross.kinds) {
-            kind.shares(&now, b, list, &mut |k, [block, place], first| {
+            kind.for_each_body(&now, b, list, &mut |k, [block, place], first| {
                 share(place, block as usize, (at + 3 * k, 3), first);
             });
             at += 3 * list.len();

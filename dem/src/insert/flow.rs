@@ -98,9 +98,9 @@ pub fn exchange(
     if !leave.is_empty() {
         let energy = measure::energies_of(model, state, gone).total();
         let momentum = measure::momentum_of(model, state, gone);
-        state.ledger.work_flow -= energy;
-        state.ledger.flow.linear -= momentum.linear;
-        state.ledger.flow.angular -= momentum.angular;
+        state.balance.work_flow -= energy;
+        state.balance.flow.linear -= momentum.linear;
+        state.balance.flow.angular -= momentum.angular;
     }
     let positions = changes.positions(state);
     crate::engine::reordering::reorder(state, model, &positions, &changes);
@@ -112,9 +112,9 @@ pub fn exchange(
     if !arrive.is_empty() {
         // Without contacts, only their own energy enters.
         let come = |b: usize| by_number.contains_key(&b);
-        state.ledger.work_flow += measure::energies_of(model, state, come).total();
+        state.balance.work_flow += measure::energies_of(model, state, come).total();
         let momentum = measure::momentum_of(model, state, come);
-        state.ledger.flow += &momentum;
+        state.balance.flow += &momentum;
     }
     work.upload(model, state)?;
     Ok(())

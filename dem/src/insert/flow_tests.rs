@@ -3,7 +3,7 @@ use crate::base::error::Partner;
 use crate::bodies::input::BodyInput;
 use crate::engine::input::ModelInput;
 use crate::engine::work::Work;
-use crate::insert::room::{FreePositions, FreeSpace};
+use crate::insert::free_space::{FreePositions, FreeSpace};
 use crate::law::material::Material;
 use crate::measure::{BoxRegion, contacts};
 use crate::shape::Shape;
@@ -65,12 +65,12 @@ impl Run {
 
     /// Conserved energy sum [J].
     fn account(&self) -> f64 {
-        let ledger = &self.state.ledger;
-        measure::energies(&self.model, &self.state).total() + ledger.dissipated() - ledger.work()
+        let balance = &self.state.balance;
+        measure::energies(&self.model, &self.state).total() + balance.dissipated() - balance.work()
     }
 
     fn momentum_error(&self, start: &crate::base::balance_terms::Impulse) -> (f64, f64) {
-        let (now, sum) = (measure::momentum(&self.model, &self.state), self.state.ledger.impulse());
+        let (now, sum) = (measure::momentum(&self.model, &self.state), self.state.balance.impulse());
         ((now.linear - start.linear - sum.linear).norm(), (now.angular - start.angular - sum.angular).norm())
     }
 }
@@ -108,17 +108,17 @@ fn balances_close_during_insertion_and_removal() {
         let (mut jump, mut springs) = (0.0_f64, 0.0);
         for _ in 0..60 {
             run.steps(300);
-            let before = (run.account(), run.state.ledger.work_flow);
+            let before = (run.account(), run.state.balance.work_flow);
             let elastic = measure::energies(&run.model, &run.state).elastic();
             let (out, come) = turn_over(&mut run, &mut waiting, &mut places);
             moved = (moved.0 + out, moved.1 + come);
             springs += elastic - measure::energies(&run.model, &run.state).elastic();
             jump = jump.max((run.account() - before.0).abs());
-            changes += (run.state.ledger.work_flow - before.1).abs();
+            changes += (run.state.balance.work_flow - before.1).abs();
             worst = worst.max((run.account() - first).abs());
         }
         let error = run.momentum_error(&start);
-        let scale = run.state.ledger.gravity.linear.norm();
+        let scale = run.state.balance.gravity.linear.norm();
         println!(
             "{periodic}: {moved:?} {worst:e} of {changes:e}, jump {jump:e}, springs {springs:e}, {error:?} of {scale}"
         );
@@ -285,7 +285,7 @@ fn rejects_invalid_exchange() {
     ] {
         assert_eq!(run.exchange(&leave, &arrive).unwrap_err().to_string(), text);
     }
-    assert_eq!(run.state.ledger.work_flow, 0.0);
+    assert_eq!(run.state.balance.work_flow, 0.0);
     let force = crate::AppliedForce { body: 4, force: Vec3::x(), point: Vec3::zeros() };
     let error = step(&run.model, &mut run.state, &mut run.work, &NoSurface, &[force]).unwrap_err();
     assert!(error.to_string().contains("applied force 0 (body 4): no such body"), "{error}");

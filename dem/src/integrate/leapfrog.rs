@@ -11,9 +11,9 @@
 //! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 
 use super::kick::{Push, Single, kick_free, kick_single, resist, turn_of_sphere};
+use super::rigid_rotation::{self, GroupRotation, Rigid};
 use super::rotation;
 use super::step_size::StepSize;
-use super::turning::{self, Among, Rigid};
 use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
@@ -21,8 +21,8 @@ use crate::bodies::block::{Block, Rotation, spin_of};
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::sums::{BlockTotals, ForceTorque};
 use crate::bodies::table::{Bodies, BodyKind};
-use crate::lanes::record::{set_xyz, xyz};
-use crate::lanes::turn::QuaternionLanes;
+use crate::lanes::quaternion::QuaternionLanes;
+use crate::lanes::vec4::{set_xyz, xyz};
 use crate::lanes::{self, Kernel, Real, Simd, Simd4, SimdPack, V3};
 use nalgebra::UnitQuaternion;
 
@@ -145,7 +145,7 @@ impl<const CLUMPS: bool, const PLAIN: bool> Advance<'_, CLUMPS, PLAIN> {
             }
         }
         if drive.damping != 0.0 {
-            sums.book_damping(&mut totals.ledger, kick);
+            sums.book_damping(&mut totals.balance, kick);
         }
         moment += Vec3::new(sums.moment.x.sum(), sums.moment.y.sum(), sums.moment.z.sum());
         fastest2 = fastest2.max(sums.fastest2.largest());
@@ -157,8 +157,8 @@ impl<const CLUMPS: bool, const PLAIN: bool> Advance<'_, CLUMPS, PLAIN> {
         }
         totals.fastest = fastest2.sqrt();
         let impulse = drive.gravity * kick;
-        totals.ledger.gravity.linear += impulse * members.mass_sum;
-        totals.ledger.gravity.angular += moment.cross(&impulse);
+        totals.balance.gravity.linear += impulse * members.mass_sum;
+        totals.balance.gravity.angular += moment.cross(&impulse);
         totals.sums = forces;
     }
 }
@@ -192,13 +192,13 @@ impl<R: Simd4> Sums<R> {
     }
 
     #[inline(always)]
-    fn book_damping(&self, ledger: &mut BalanceTerms, kick: f64) {
-        ledger.dissipated_local_damping -= self.power.sum() * kick;
+    fn book_damping(&self, balance: &mut BalanceTerms, kick: f64) {
+        balance.dissipated_local_damping -= self.power.sum() * kick;
         let ([fx, fy, fz, _], [tx, ty, tz, _]) = (self.force.array(), self.torque.array());
         let about = &self.angular;
         let about = Vec3::new(about.x.sum() + tx, about.y.sum() + ty, about.z.sum() + tz);
-        ledger.local_damping.linear += Vec3::new(fx, fy, fz) * kick;
-        ledger.local_damping.angular += about * kick;
+        balance.local_damping.linear += Vec3::new(fx, fy, fz) * kick;
+        balance.local_damping.angular += about * kick;
     }
 }
 
@@ -316,15 +316,15 @@ fn turn_four<R: Simd4, const DAMPED: bool>(
     let (momentum, before) = (V3::new(mx, my, mz), V3::new(wx, wy, wz));
     let body = Rigid { orientation, momentum, spin: before, inertia };
     // Single spheres keep their orientation.
-    let momentum = turning::kicked(&body, torque, kick);
+    let momentum = rigid_rotation::kicked(&body, torque, kick);
     let new = rotation::free(orientation, momentum, inertia, R::splat(step_size.dt));
     let mut held = V3::zero();
     if DAMPED {
         let [sx, sy, sz, _] = R::transpose(stop);
         held = V3::new(sx, sy, sz);
     }
-    let Among { orientation: turn, spin: rate, power } =
-        turning::among::<R, DAMPED>(&body, sphere, (torque * kick, held), momentum, new);
+    let GroupRotation { orientation: turn, spin: rate, power } =
+        rigid_rotation::rotate_in_group::<R, DAMPED>(&body, sphere, (torque * kick, held), momentum, new);
     if DAMPED {
         sums.power = sums.power + power;
     }
@@ -337,7 +337,7 @@ fn turn_four<R: Simd4, const DAMPED: bool>(
         r.momentum = Vec3::new(mx[l], my[l], mz[l]);
         r.orientation = UnitQuaternion::new_unchecked(turns[l].array().into());
     }
-    turning::fastest2(speed2, rate, reach)
+    rigid_rotation::fastest2(speed2, rate, reach)
 }
 
 /// Updates the member spheres of four bodies.
@@ -408,41 +408,41 @@ fn general<const CLUMPS: bool>(
     let (damping, damping_torque) = (kicked.damping.to_vec(), kicked.damping_torque.to_vec());
 
     let mean = (v0 + v1) * 0.5;
-    let ledger = &mut totals.ledger;
+    let balance = &mut totals.balance;
     if fixed & 7 != 0 {
         let hold = (v1 - v0) * mass - force * kick;
-        ledger.constraints.add(&x, &hold);
-        ledger.work_constraints += hold.dot(&mean);
+        balance.constraints.add(&x, &hold);
+        balance.work_constraints += hold.dot(&mean);
     }
     set_xyz(&mut block.velocity[k], &v1);
     set_xyz(&mut block.centre[k], &(x + v1 * dt));
 
     let (mean_spin, reach) = if CLUMPS && members.kind[k] != BodyKind::Sphere {
-        let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
+        let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, balance);
         (spin, members.reach[k])
     } else {
         let w1 = kicked.spin.to_vec();
         let mean = (w0 + w1) * 0.5;
         if fixed >> 3 != 0 {
             let hold = (w1 - w0) * body.inertia.x - torque * kick;
-            ledger.constraints.angular += hold;
-            ledger.work_constraints += hold.dot(&mean);
+            balance.constraints.angular += hold;
+            balance.work_constraints += hold.dot(&mean);
         }
         set_xyz(&mut block.spin[k], &w1);
         (mean, 0.0)
     };
 
     if !loads.is_empty() {
-        ledger.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * kick;
-        ledger.applied.add(&x, &(load * kick));
-        ledger.applied.angular += load_torque * kick;
+        balance.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * kick;
+        balance.applied.add(&x, &(load * kick));
+        balance.applied.angular += load_torque * kick;
     }
     if drive.damping > 0.0 {
-        ledger.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * kick;
-        ledger.local_damping.add(&x, &(damping * kick));
-        ledger.local_damping.angular += damping_torque * kick;
+        balance.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * kick;
+        balance.local_damping.add(&x, &(damping * kick));
+        balance.local_damping.angular += damping_torque * kick;
     }
-    turning::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
+    rigid_rotation::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
 }
 
 /// Kicks and rotates a clump or box; returns the mean angular velocity.
@@ -454,7 +454,7 @@ fn rotate(
     inertia: &Vec3,
     torque: &Vec3,
     fixed: u8,
-    ledger: &mut BalanceTerms,
+    balance: &mut BalanceTerms,
 ) -> Vec3 {
     let (kick, dt) = (drive.step_size.kick(), drive.step_size.dt);
     let w0 = xyz(&block.spin[k]);
@@ -466,18 +466,18 @@ fn rotate(
         spin: of(&w0),
         inertia: of(inertia),
     };
-    let momentum = turning::kicked(&body, of(torque), kick);
+    let momentum = rigid_rotation::kicked(&body, of(torque), kick);
     let turned = if fixed == 0 {
         let new = rotation::free(body.orientation, momentum, body.inertia, dt);
-        turning::alone(&body, momentum, new)
+        rigid_rotation::rotate_single(&body, momentum, new)
     } else {
         let pushed = Rotation { orientation: r.orientation, momentum: momentum.to_vec() };
         let kicked = spin_of(&pushed, inertia);
         let target = drive.bodies.spin(block.bodies[k] as usize);
         let kicked = hold(&pushed, inertia, &kicked, &target, fixed);
-        let (turned, impulse, work) = turning::held(&body, of(torque), of(&kicked), kick, dt);
-        ledger.constraints.angular += impulse.to_vec();
-        ledger.work_constraints += work;
+        let (turned, impulse, work) = rigid_rotation::held(&body, of(torque), of(&kicked), kick, dt);
+        balance.constraints.angular += impulse.to_vec();
+        balance.work_constraints += work;
         turned
     };
     *r = Rotation { orientation: turned.orientation.quaternion(), momentum: turned.momentum.to_vec() };

@@ -12,7 +12,7 @@
 //! Theory manual: equation (3.4) of `docs/theory/motion.md`.
 
 use crate::base::Vec3;
-use crate::lanes::turn::QuaternionLanes;
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 

@@ -10,9 +10,9 @@
 mod plain;
 mod portable;
 mod prefetch;
+pub(crate) mod quaternion;
 mod real;
-pub(crate) mod record;
-pub(crate) mod turn;
+pub(crate) mod vec4;
 mod vector;
 mod wide;
 #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]

@@ -3,7 +3,7 @@
 //! Sums over lanes are made group by group: the bits are the same.
 
 use super::real::{Real, Simd4};
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 
 pub(crate) trait SimdPack: Real {
     type Quad: Simd4;

@@ -97,7 +97,8 @@ fn overlaps_of_the_start_have_crushed() {
 #[test]
 fn nothing_is_held_without_pressure() {
     let law = ConicalLaw::mix(&Pair { a: &GRANITE, b: &GRANITE, exception: None });
-    let (mut history, still, dt) = (History { rate: law.begun(0.0), ..History::NONE }, Vec3::zeros(), 1e-5);
+    let (mut history, still, dt) =
+        (History { rate: law.initial_state(0.0), ..History::NONE }, Vec3::zeros(), 1e-5);
     let mut go = |overlap: f64, velocity: Vec3| {
         let touch = ContactGeometry { point: still, normal: Vec3::z(), overlap, radius: 0.1 };
         let f = law.evaluate_one(1.0, &touch, &velocity, &still, &mut history, dt);

@@ -39,21 +39,21 @@ impl History {
 
     /// Whether the contact is new.
     #[inline(always)]
-    pub fn is_fresh(&self) -> bool {
+    pub fn is_new(&self) -> bool {
         self.rate == NO_CONTACT
     }
 
     /// Displaces the tangential spring by `way` [m], outside a step.
     #[inline(always)]
     pub(crate) fn displace(&mut self, way: &Vec3, normal: &Vec3) {
-        if !self.is_fresh() {
+        if !self.is_new() {
             self.spring -= way - normal * normal.dot(way);
         }
     }
 
     /// History for the other partner; twist keeps its sense.
     pub(crate) fn turned(&self) -> History {
-        if self.is_fresh() {
+        if self.is_new() {
             // Zeros keep their sign, as in steps without contact.
             return *self;
         }

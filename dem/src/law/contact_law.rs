@@ -48,10 +48,10 @@ pub trait ContactLaw: Constants {
     fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
     /// Returns friction limit [N] and stiffness [N/m] of the tangential spring.
-    fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
+    fn friction_limit(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
     /// Returns the energy left in other than normal springs of ending contacts [J].
-    fn stored_in_springs<R: Real, const ROLLING: bool>(law: &Self::Lanes<R>, memory: &HistoryLanes<R>) -> R;
+    fn tangential_energy<R: Real, const ROLLING: bool>(law: &Self::Lanes<R>, memory: &HistoryLanes<R>) -> R;
 
     /// Returns force [N] and tangent stiffness [N/m] of first loading.
     fn loading(&self, overlap: f64, radius: f64) -> (f64, f64);
@@ -75,7 +75,7 @@ pub trait ContactLaw: Constants {
     fn expected_overlap(&self, expected: &Expected) -> f64;
 
     /// Returns the normal law's number for an existing contact closing at `approach` [m/s].
-    fn begun(&self, approach: f64) -> f64;
+    fn initial_state(&self, approach: f64) -> f64;
 
     /// Whether it resists rolling or twisting, or adheres.
     fn rolls(&self) -> bool;
@@ -128,7 +128,7 @@ pub trait ContactLaw: Constants {
     fn release(&self, history: &mut History) -> f64 {
         let memory = history.memory();
         *history = History::NONE;
-        Self::stored_in_springs::<f64, true>(&self.splat(), &memory)
+        Self::tangential_energy::<f64, true>(&self.splat(), &memory)
     }
 }
 

@@ -17,7 +17,7 @@
 //! Theory manual: eqs (1.2), (1.7), (3.7), `docs/theory/contacts.md`, `docs/theory/motion.md`.
 
 use super::constants::constants;
-use super::lag;
+use super::half_step_damping;
 use super::material::{Material, Pair};
 use super::normal::{Expected, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
@@ -40,7 +40,7 @@ constants!(Hertz { modulus, damping_ratio });
 #[inline(always)]
 pub(super) fn dashpot<R: Real>(zeta: R, tangent: R, touch: &NormalInput<R>) -> R {
     let rate = R::splat(DASHPOT) * zeta * (tangent * touch.inverse_mass).sqrt();
-    let (numerator, denominator) = lag::share(R::splat(0.5) * touch.step * rate);
+    let (numerator, denominator) = half_step_damping::share(R::splat(0.5) * touch.step * rate);
     rate * numerator / (touch.inverse_mass * denominator)
 }
 

@@ -9,7 +9,7 @@
 //! Theory manual: eq. (1.3), `docs/theory/contacts.md`.
 
 use super::constants::constants;
-use super::lag;
+use super::half_step_damping;
 use super::material::Pair;
 use super::normal::{ConstantStiffness, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
@@ -44,7 +44,8 @@ impl NormalLaw for Linear {
     #[inline(always)]
     fn respond<R: Real>(law: &Linear<R>, touch: &NormalInput<R>) -> Response<R> {
         let root = touch.inverse_mass.sqrt();
-        let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * touch.step * root);
+        let (numerator, denominator) =
+            half_step_damping::share(R::splat(0.5) * law.damping * touch.step * root);
         let circle = (touch.radius * touch.overlap).sqrt();
         Response {
             elastic: law.stiffness * touch.overlap,

@@ -1,7 +1,7 @@
 //! Tangential law: Mindlin's stiffness of the contact circle.
 //!
 //! With a = √(R d) and 1/G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂, G = E/(2(1 + ν)): spring stiffness 8 G* a (Mindlin
-//! 1949), slider as in `slide.rs`.
+//! 1949), slider as in `slider.rs`.
 //!
 //! Loading keeps the force: the spring shortens by a₀/a. Unloading keeps the length: the force falls with a
 //! (Elata & Berryman, Mech. Mater. 24, 1996: constant force would create energy). Lost spring energy counts

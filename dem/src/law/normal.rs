@@ -10,7 +10,7 @@ use crate::lanes::Real;
 pub struct Response<R> {
     /// Spring force [N].
     pub elastic: R,
-    /// Corrected dashpot coefficient [N s/m] (`lag.rs`), C for zero step.
+    /// Corrected dashpot coefficient [N s/m] (`half_step_damping.rs`), C for zero step.
     pub damping: R,
     /// Contact circle radius [m], by default √(R d).
     pub circle: R,

@@ -1,5 +1,6 @@
-//! Table of laws: combinations of normal and tangential law, all usable in one model (`mixed.rs`).
+//! Table of laws: combinations of normal and tangential law, all usable in one model (`any_law.rs`).
 
+use super::any_law::combinations;
 use super::composed::Composed;
 use super::conical_damage::ConicalDamage;
 use super::contact_law::ContactLaw;
@@ -7,7 +8,6 @@ use super::hertz::Hertz;
 use super::linear::Linear;
 use super::material::{LawName, Material, Pair};
 use super::mindlin::Mindlin;
-use super::mixed::combinations;
 use super::normal::NormalLaw;
 use super::rough::{self, Rough};
 use super::rough_mindlin::RoughMindlin;
@@ -122,7 +122,7 @@ pub enum LawSelectionError {
 ///
 /// # Errors
 /// [`LawSelectionError`] if ambiguous or incompatible.
-pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, LawSelectionError> {
+pub(super) fn select_law(pair: &Pair<'_>) -> Result<Option<usize>, LawSelectionError> {
     let own = |m: &Material| {
         let implied = if m.corner_strength.is_finite() {
             Some(ConicalDamage::NAME)
@@ -161,5 +161,5 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, LawSelectionEr
 /// # Errors
 /// [`LawSelectionError`] if ambiguous or incompatible.
 pub fn combination(pair: &Pair<'_>) -> Result<Option<&'static LawInfo>, LawSelectionError> {
-    Ok(number_of(pair)?.map(|k| &COMBINATIONS[k]))
+    Ok(select_law(pair)?.map(|k| &COMBINATIONS[k]))
 }

@@ -1,4 +1,4 @@
-//! Interface of tangential laws: stiffness of the friction-limited spring (`slide.rs`) and transfer to
+//! Interface of tangential laws: stiffness of the friction-limited spring (`slider.rs`) and transfer to
 //! another overlap.
 
 use super::constants::Constants;

@@ -8,7 +8,7 @@ use crate::bond::store::Entry;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::V3;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 
 /// Bond, with the forces of the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,11 +3,13 @@
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::Block;
-use crate::contact::kind::{BodyAccess, ContactView, KINDS, PlaneView, PosedBody, SheetView, Visited};
-use crate::contact::single;
+use crate::contact::narrow_phase::{
+    BodyAccess, ContactView, KINDS, PlaneView, PosedBody, SheetView, Visited,
+};
+use crate::contact::scalar;
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::law::scarring::Scar;
 use crate::law::{ContactForce, ContactGeometry, History};
 use crate::pairs::cross::{Cross, ImagePair};
@@ -286,7 +288,7 @@ fn patch(
     partner: &Partnership,
     f: &mut impl FnMut(&Visited<'_>),
 ) {
-    if pair.history.is_fresh() {
+    if pair.history.is_new() {
         return;
     }
     let block = &now.blocks[b];
@@ -316,7 +318,7 @@ fn patch(
 /// Force of the next step, total and normal [N].
 pub(super) fn force_of(model: &Model, state: &State, c: &ContactView<'_>) -> (Vec3, f64) {
     let mut history = *c.history;
-    let ContactForce { force, normal, .. } = single::evaluate(
+    let ContactForce { force, normal, .. } = scalar::evaluate(
         &model.laws,
         c.materials,
         c.friction,

@@ -4,10 +4,10 @@ use super::contacts::visit;
 use crate::base::balance_terms::Impulse;
 use crate::base::error::Partner;
 use crate::bodies::table::BodyKind;
-use crate::contact::kind::{ContactView, Visited};
+use crate::contact::narrow_phase::{ContactView, Visited};
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::wall;
 
 /// Energies of all bodies and contacts [J].
@@ -112,14 +112,14 @@ fn springs(model: &Model, c: &ContactView<'_>, back: f64, e: &mut Energies) {
     let n = &c.geometry.normal;
     let slip = c.velocity - n * c.velocity.dot(n);
     let mut history = *c.history;
-    if !history.is_fresh() {
+    if !history.is_new() {
         let before = history.spring.norm();
         history.spring += slip * back;
         let length = history.spring.norm();
         if length > before {
             let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
             let (force, stiffness) =
-                model.laws.held_by_friction(c.materials, c.friction, overlap, radius, &history);
+                model.laws.friction_limit(c.materials, c.friction, overlap, radius, &history);
             let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
             if length > most {
                 history.spring *= most / length;

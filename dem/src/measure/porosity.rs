@@ -1,6 +1,6 @@
 //! Solid volume and porosity in a box.
 //!
-//! Exact for spheres (`clip.rs`) and bodies inside. Other bodies on the border: midpoint rule over
+//! Exact for spheres (`sphere_box_volume.rs`) and bodies inside. Other bodies on the border: midpoint rule over
 //! [`COLUMNS`] × [`COLUMNS`] columns with exact intervals, error about 1e-3. Limit: contact overlaps count
 //! for both bodies.
 
@@ -11,8 +11,8 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
+use crate::shape::dilated::edge_contact::{Segment, Target};
 use crate::shape::dilated::part::{Bounds, Part, View};
-use crate::shape::dilated::press::{Segment, Target};
 
 /// Columns per side of a body on the border.
 pub const COLUMNS: usize = 40;

@@ -8,7 +8,7 @@ use crate::base::capacity::capacity_bytes;
 use crate::base::failure::Failure;
 use crate::bodies::block_slice::BlockSlice;
 use crate::bodies::sums::WallSum;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::law::History;
 use crate::spatial::surface::SurfaceContact;
 use serde::{Deserialize, Serialize};
@@ -92,7 +92,7 @@ pub(crate) struct SurfaceTotals {
 }
 
 impl CrossForces {
-    pub fn clear_books(&mut self) {
+    pub fn clear_totals(&mut self) {
         (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
         self.wall_sums.clear();
         self.surface.contacts.clear();

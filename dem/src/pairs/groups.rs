@@ -4,7 +4,7 @@
 
 use crate::base::Vec3;
 use crate::base::capacity::capacity_bytes;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::law::{History, NO_CONTACT};
 use serde::{Deserialize, Serialize};
 

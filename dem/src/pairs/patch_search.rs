@@ -2,7 +2,7 @@
 
 use super::patches::PatchPair;
 use crate::base::Vec3;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::spatial::surface::Surface;
 
 #[derive(Clone, Copy, Debug)]

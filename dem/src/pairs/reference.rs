@@ -1,7 +1,7 @@
 //! Sphere positions at the last search.
 
 use crate::base::Vec3;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 
 /// Single precision, relative to one sphere.
 #[derive(Clone, Debug, Default)]

@@ -1,11 +1,11 @@
 //! Command loop of all ranks but the first.
 
-use super::code::{put, put_numbers, take, take_numbers};
+use super::codec::{put, read_numbers, take, write_numbers};
+use super::commands::{self, Command, StepCommand};
 use super::link::{Link, Lost};
-use super::orders::{self, Command, StepCommand};
+use super::message_counters::MessageKind;
 use super::rank::Rank;
-use super::traffic::MessageKind;
-use super::{books, parcel};
+use super::{block_totals, state_message};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
@@ -59,7 +59,7 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
         Some(Command::End) => return Ok(()),
         _ => return Err(Lost::garbled(FIRST)),
     }
-    let (mut state, partition) = parcel::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+    let (mut state, partition) = state_message::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
     drop(message);
     let mut rank = Rank::new(link, Work::new(model, &state));
     rank.take_over(model, &state, partition)?;
@@ -68,19 +68,20 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
         let rest = &mut &rank.message[..];
         match take(rest) {
             Some(Command::Step(now)) => {
-                let read = orders::read_step(&mut state, &now, &mut rank.work.applied, rest);
+                let read = commands::read_step(&mut state, &now, &mut rank.work.applied, rest);
                 read.ok_or(Lost::garbled(FIRST))?;
                 step(&mut rank, model, &mut state, &now)?;
             }
             Some(Command::Give) => {
                 rank.out.clear();
                 put(&mut rank.out, &rank.traffic);
-                parcel::write_back(&state, rank.work.own.clone(), &mut rank.out);
+                state_message::write_back(&state, rank.work.own.clone(), &mut rank.out);
                 rank.send(MessageKind::State, FIRST)?;
                 rank.out = Vec::new();
             }
             Some(Command::Take) => {
-                let (fresh, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+                let (fresh, partition) =
+                    state_message::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
                 state = fresh;
                 rank.message = Vec::new();
                 rank.take_over(model, &state, partition)?;
@@ -97,24 +98,24 @@ fn step<L: Link>(
     state: &mut State,
     now: &StepCommand,
 ) -> Result<(), Lost> {
-    if now.renew {
+    if now.rebuild {
         let moved2 = rank.moved2(state);
         rank.boxes = rank.bounds(state).collect();
         rank.out.clear();
-        put_numbers(&mut rank.out, [moved2]);
+        write_numbers(&mut rank.out, [moved2]);
         put(&mut rank.out, &rank.boxes);
         rank.send(MessageKind::NearList, FIRST)?;
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
-        let [approach] = take_numbers(rest).ok_or(Lost::garbled(FIRST))?;
+        let [approach] = read_numbers(rest).ok_or(Lost::garbled(FIRST))?;
         if !rest.is_empty() {
             rank.boxes = take(rest).ok_or(Lost::garbled(FIRST))?;
         }
-        rank.renew(model, state, approach)?;
+        rank.rebuild(model, state, approach)?;
     }
     rank.advance(model, state)?;
     rank.out.clear();
-    books::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
+    block_totals::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
     rank.send(MessageKind::Books, FIRST)?;
     rank.await_ghosts(state)
 }

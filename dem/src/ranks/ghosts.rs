@@ -1,11 +1,11 @@
 //! Ghost bodies and their motion.
 
-use super::code::{put_numbers, take_numbers};
+use super::codec::{read_numbers, write_numbers};
 use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use nalgebra::{Quaternion, Unit};
 use std::ops::Range;
 
@@ -75,20 +75,20 @@ fn sorted(mut places: Vec<BodyLocation>) -> Vec<BodyLocation> {
 }
 
 /// Nine values per sphere, plus orientation in blocks with other bodies.
-pub(super) fn put_motion(blocks: &[Block], places: &[BodyLocation], out: &mut Vec<u8>) {
+pub(super) fn write_motion(blocks: &[Block], places: &[BodyLocation], out: &mut Vec<u8>) {
     for &[b, k] in places {
         let (block, k) = (&blocks[b as usize], k as usize);
         for record in [&block.centre[k], &block.velocity[k], &block.spin[k]] {
-            put_numbers(out, record.0[..3].iter().copied());
+            write_numbers(out, record.0[..3].iter().copied());
         }
         if let Some(rotation) = block.rotation.get(k) {
-            put_numbers(out, rotation.orientation.coords.iter().copied());
+            write_numbers(out, rotation.orientation.coords.iter().copied());
         }
     }
 }
 
 /// `None` if the message is malformed.
-pub(super) fn take_motion(
+pub(super) fn read_motion(
     blocks: &mut [Block],
     members: &mut [BlockBodies],
     places: &[BodyLocation],
@@ -97,11 +97,11 @@ pub(super) fn take_motion(
     for &[b, k] in places {
         let (block, k) = (&mut blocks[b as usize], k as usize);
         for record in [&mut block.centre[k], &mut block.velocity[k], &mut block.spin[k]] {
-            let [x, y, z] = take_numbers(rest)?;
+            let [x, y, z] = read_numbers(rest)?;
             *record = Vec4([x, y, z, record.0[3]]);
         }
         if let Some(rotation) = block.rotation.get_mut(k) {
-            let [i, j, k_, w] = take_numbers(rest)?;
+            let [i, j, k_, w] = read_numbers(rest)?;
             rotation.orientation = Unit::new_unchecked(Quaternion::new(w, i, j, k_));
             members[b as usize].place_spheres(k, &block.centre[k], &rotation.orientation);
         }

@@ -3,7 +3,7 @@
 use super::ghosts::BodyLocation;
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use std::ops::Range;
 
 /// Bounding box: lower and upper corner [m]; inverted if empty.

@@ -1,13 +1,13 @@
 //! First rank: back end of a distributed run.
 
-use super::code::{put, put_numbers, take, take_numbers};
+use super::codec::{put, read_numbers, take, write_numbers};
+use super::commands::{self, Command};
 use super::halo::Bounds;
 use super::link::{Link, Lost};
-use super::orders::{self, Command};
+use super::message_counters::{MessageCounters, MessageKind};
 use super::partition::Partition;
 use super::rank::Rank;
-use super::traffic::{MessageCounters, MessageKind};
-use super::{books, parcel};
+use super::{block_totals, state_message};
 use crate::base::error::StepError;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
@@ -81,7 +81,7 @@ impl<L: Link> Ranks<L> {
         for other in rank.others() {
             rank.out.clear();
             put(&mut rank.out, &Command::Take);
-            parcel::write(state, &partition, other, &mut rank.out);
+            state_message::write(state, &partition, other, &mut rank.out);
             rank.send(MessageKind::State, other)?;
         }
         rank.take_over(model, state, partition)?;
@@ -107,7 +107,7 @@ impl<L: Link> Ranks<L> {
             let rest = &mut &rank.message[..];
             let part = rank.partition.of_rank(other);
             let sent: MessageCounters = take(rest).ok_or(Lost::garbled(other))?;
-            parcel::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
+            state_message::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
             self.traffic.add(&sent);
         }
         self.traffic.add(&rank.traffic);
@@ -134,23 +134,23 @@ impl<L: Link> Ranks<L> {
         }
         applied::place(model, state, applied, &mut self.rank.work.applied)?;
         if std::mem::take(&mut self.whole) {
-            parcel::restrict(state, &self.rank.work.own);
+            state_message::restrict(state, &self.rank.work.own);
             bonds::arrange(model, state, &mut self.rank.work);
         }
         let bonded = !model.bonds.is_empty();
-        let renew = neighbour_list::due(state);
-        if renew {
+        let rebuild = neighbour_list::needs_rebuild(state);
+        if rebuild {
             neighbour_list::adapt(model, state);
         }
         let mut make = || {
             let rank = &mut self.rank;
             for other in rank.others() {
                 rank.out.clear();
-                orders::write_step(state, renew, &rank.work.applied, &mut rank.out);
+                commands::write_step(state, rebuild, &rank.work.applied, &mut rank.out);
                 rank.send(MessageKind::Order, other)?;
             }
             self.ahead = true;
-            if renew {
+            if rebuild {
                 renew_near_list(rank, model, state)?;
             }
             rank.advance(model, state)?;
@@ -158,7 +158,7 @@ impl<L: Link> Ranks<L> {
             for other in rank.others() {
                 rank.link.receive(other, &mut rank.message)?;
                 let part = rank.partition.of_rank(other);
-                let read = books::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
+                let read = block_totals::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
                 read.ok_or(Lost::garbled(other))?;
             }
             Ok(())
@@ -166,11 +166,11 @@ impl<L: Link> Ranks<L> {
         make().map_err(&lost)?;
         // Breakage is processed on the complete state, which is then distributed again.
         let look = self.debonded && state.steps.is_multiple_of(bonds::CHECK_INTERVAL);
-        if bonded && (look || books::any_broken(&self.rank.work)) {
+        if bonded && (look || block_totals::any_broken(&self.rank.work)) {
             self.fetch(state).map_err(&lost)?;
             bonds::arrange(model, state, &mut self.rank.work);
             let before = bonds::parted(state);
-            step::collect(model, state, &mut self.rank.work, 0.0)?;
+            step::reduce_blocks(model, state, &mut self.rank.work, 0.0)?;
             return match bonds::parted(state) == before {
                 true => Ok(()),
                 false => self.deal_out(model, state).map_err(&lost),
@@ -179,7 +179,7 @@ impl<L: Link> Ranks<L> {
         if !applied.is_empty() {
             self.fetch(state).map_err(&lost)?;
         }
-        step::collect(model, state, &mut self.rank.work, 0.0)
+        step::reduce_blocks(model, state, &mut self.rank.work, 0.0)
     }
 }
 
@@ -190,25 +190,25 @@ fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State
     for other in rank.others() {
         rank.receive(other)?;
         let rest = &mut &rank.message[..];
-        let [theirs] = take_numbers(rest).ok_or(Lost::garbled(other))?;
+        let [theirs] = read_numbers(rest).ok_or(Lost::garbled(other))?;
         moved2 = moved2.max(theirs);
         let boxes: Vec<Bounds> = take(rest).ok_or(Lost::garbled(other))?;
         rank.boxes.extend(boxes);
     }
-    rank.work.searched.surface_drift += state.wall_drift;
+    rank.work.searched.surface_travel += state.wall_travel;
     let approach = match moved2 {
         far if far.is_infinite() => far,
         near => neighbour_list::approach(model, state, &rank.work, near),
     };
     for other in rank.others() {
         rank.out.clear();
-        put_numbers(&mut rank.out, [approach]);
-        if neighbour_list::too_far(model, state, approach) {
+        write_numbers(&mut rank.out, [approach]);
+        if neighbour_list::exceeds_skin(model, state, approach) {
             put(&mut rank.out, &rank.boxes);
         }
         rank.send(MessageKind::NearList, other)?;
     }
-    rank.renew(model, state, approach)
+    rank.rebuild(model, state, approach)
 }
 
 fn at(time: f64) -> impl Fn(Lost) -> StepError {

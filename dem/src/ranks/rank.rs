@@ -1,11 +1,11 @@
 //! Work of every rank.
 
-use super::code::{put, take};
+use super::codec::{put, take};
 use super::ghosts::{self, BodyLocation, Ghosts};
 use super::halo::{self, Bounds};
 use super::link::{Link, Lost};
+use super::message_counters::{MessageCounters, MessageKind};
 use super::partition::Partition;
-use super::traffic::{MessageCounters, MessageKind};
 use crate::engine::broad_phase::{self, Listed};
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -92,7 +92,7 @@ impl<L: Link> Rank<L> {
             }
             self.link.receive(rank, &mut self.message)?;
             let (places, rest) = (&self.ghosts.from[rank], &mut &self.message[..]);
-            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, places, rest);
+            let read = ghosts::read_motion(&mut state.blocks, &mut self.work.members, places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
         }
         Ok(())
@@ -104,7 +104,7 @@ impl<L: Link> Rank<L> {
         for rank in self.others() {
             if !self.ghosts.to[rank].is_empty() {
                 self.out.clear();
-                ghosts::put_motion(&state.blocks, &self.ghosts.to[rank], &mut self.out);
+                ghosts::write_motion(&state.blocks, &self.ghosts.to[rank], &mut self.out);
                 self.send(MessageKind::Ghosts, rank)?;
             }
         }
@@ -125,13 +125,13 @@ impl<L: Link> Rank<L> {
     }
 
     /// Rebuilds neighbour lists, after a search if pairs approached too far. Requires all boxes.
-    pub fn renew(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
+    pub fn rebuild(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
         let mut approach = approach;
-        if neighbour_list::too_far(model, state, approach) {
+        if neighbour_list::exceeds_skin(model, state, approach) {
             self.search(model, state)?;
             approach = 0.0;
         }
-        neighbour_list::renew(model, state, &mut self.work, &NoSurface, approach);
+        neighbour_list::rebuild(model, state, &mut self.work, &NoSurface, approach);
         Ok(())
     }
 
@@ -144,7 +144,7 @@ impl<L: Link> Rank<L> {
             halo::near(&state.blocks, &self.boxes, ranges, reach, &mut near);
             self.out.clear();
             put(&mut self.out, &near);
-            ghosts::put_motion(&state.blocks, &near, &mut self.out);
+            ghosts::write_motion(&state.blocks, &near, &mut self.out);
             self.send(MessageKind::Search, rank)?;
         }
         self.work.halo.clear();
@@ -152,7 +152,7 @@ impl<L: Link> Rank<L> {
             self.link.receive(rank, &mut self.message)?;
             let rest = &mut &self.message[..];
             let places: Vec<BodyLocation> = take(rest).ok_or(Lost::garbled(rank))?;
-            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, &places, rest);
+            let read = ghosts::read_motion(&mut state.blocks, &mut self.work.members, &places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
             self.work.halo.extend(places);
         }

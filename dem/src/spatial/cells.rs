@@ -4,7 +4,7 @@
 //! not crowd large cells. Coordinates outside are clamped: far bodies do not inflate the grid, and neighbours
 //! stay in neighbouring cells.
 
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 
 /// All smaller spheres share the last class.
 const CLASSES: usize = 8;

@@ -10,7 +10,7 @@
 
 use super::cells::Cells;
 use crate::base::Vec3;
-use crate::lanes::record::{Vec4, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 
 pub(crate) type Turns = [i32; 3];
 

@@ -4,11 +4,11 @@ use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::table::BodyKind;
 use crate::bond::kernel;
-use crate::contact::kind::ContactView;
+use crate::contact::narrow_phase::ContactView;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::wall_contacts;
-use crate::law::lag;
+use crate::law::half_step_damping;
 use crate::measure;
 use nalgebra::{Matrix3, UnitQuaternion};
 
@@ -169,7 +169,7 @@ impl Operator {
     pub fn at(&mut self, dt: f64) -> &mut Operator {
         self.square = dt * dt;
         for link in &mut self.links {
-            let (numerator, denominator) = lag::share(link.lag * dt);
+            let (numerator, denominator) = half_step_damping::share(link.lag * dt);
             let share = numerator / denominator;
             link.now = std::array::from_fn(|m| {
                 let (k, c) = (&link.stiffness[m], &link.damping[m]);

@@ -26,7 +26,7 @@ pub(super) fn kick(
     force: &Vec3,
     (x, offset): (&Vec3, &Vec3),
     kick: f64,
-    ledger: &mut BalanceTerms,
+    balance: &mut BalanceTerms,
 ) -> Vec3 {
     let spring = -mount.stiffness.component_mul(offset);
     let next = Vec3::from_fn(|d, _| {
@@ -35,8 +35,8 @@ pub(super) fn kick(
     });
     let mean = (velocity + next) * 0.5;
     let dashpot = -mount.damping.component_mul(&mean);
-    ledger.mounts.add(x, &((spring + dashpot) * kick));
-    ledger.dissipated_mounts -= dashpot.dot(&mean) * kick;
+    balance.mounts.add(x, &((spring + dashpot) * kick));
+    balance.dissipated_mounts -= dashpot.dot(&mean) * kick;
     next
 }
 

@@ -1,10 +1,10 @@
 //! Pose and motion of walls.
 
 use crate::base::Vec3;
-use crate::lanes::turn::QuaternionLanes;
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use crate::law::History;
-use crate::pairs::meets::WallContactHistory;
+use crate::pairs::wall_history::WallContactHistory;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 

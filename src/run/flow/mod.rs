@@ -265,7 +265,7 @@ impl<'a> Flow<'a> {
             at_end: self.present(view),
             came_in: come,
             went_out: gone,
-            energy_in: view.state.ledger.work_flow,
+            energy_in: view.state.balance.work_flow,
             mean_rate_in: over(come.mass, time),
             mean_rate_out: over(gone.mass, time),
             later_rate_in: over(come.mass - half_in, time - half),

@@ -45,8 +45,8 @@ impl Carried {
     }
 
     /// Restores contact history after contact detection.
-    pub fn remember(&self, model: &dem::Model, state: &mut dem::State) {
-        state.remember(model, &self.state, self.count);
+    pub fn restore_history(&self, model: &dem::Model, state: &mut dem::State) {
+        state.restore_history(model, &self.state, self.count);
     }
 
     /// Sets the bed in the initial state of a model.

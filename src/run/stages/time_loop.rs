@@ -86,7 +86,7 @@ pub fn with_grains<S: System>(
     let settled = (grains.done == Packed::Finished).then_some(&grains.bed);
     advance(run, system, Some((&grains.part, start)), resumed, settled, summary)?;
     let after = momentum(system);
-    let ledger = &system.grains().expect("a system with grains").state.ledger;
+    let ledger = &system.grains().expect("a system with grains").state.balance;
     let impulse = ledger.impulse();
     let (mut linear, mut angular) = (0.0, 0.0);
     let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.body_forces];

@@ -18,7 +18,7 @@ use super::skin::Wet;
 use super::work::{BodyForceModel, ForceInput, ForceWork};
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, BodyKind};
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use std::f64::consts::PI;
 
 pub(super) const SOURCE: &str =

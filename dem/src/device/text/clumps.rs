@@ -7,9 +7,9 @@ use crate::contact::{planes, sphere_pair};
 use crate::device::layout::{EntryKind, Features};
 use crate::device::tape::{self, Recorded, RecordedMask, Results, input, vector};
 use crate::integrate::kick;
+use crate::integrate::rigid_rotation::{self, Rigid, RotatedBody};
 use crate::integrate::rotation::{self, Midpoint};
-use crate::integrate::turning::{self, Rigid, Turned};
-use crate::lanes::turn::{QuaternionLanes, placed};
+use crate::lanes::quaternion::{QuaternionLanes, placed};
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 
@@ -26,7 +26,7 @@ pub(super) fn contacts<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L:
 
 pub(super) fn motion(f: &Features) -> Part {
     let (midpoint, iterate) = half_turn();
-    let [kick, after] = if f.damped { among::<true>() } else { among::<false>() };
+    let [kick, after] = if f.damped { rotate_in_group::<true>() } else { rotate_in_group::<false>() };
     Part {
         frame: include_str!("clumps.c"),
         formulas: vec![
@@ -100,7 +100,7 @@ fn new() -> QuaternionLanes<Recorded> {
     rotation::turned(orientation("q"), vector("c"))
 }
 
-fn among<const DAMPED: bool>() -> [String; 2] {
+fn rotate_in_group<const DAMPED: bool>() -> [String; 2] {
     let torques = || {
         let (torque, spin, damping) = (vector("s.torque"), vector("w"), input("damping"));
         let stop = |torque, spin| kick::resist(torque, spin, damping);
@@ -109,20 +109,26 @@ fn among<const DAMPED: bool>() -> [String; 2] {
     };
     tape::begin();
     let mut begin = Results::default();
-    begin.vector("(*nl)", turning::kicked(&rigid(), torques().0, input("kick")));
+    begin.vector("(*nl)", rigid_rotation::kicked(&rigid(), torques().0, input("kick")));
     let begin = begin.text();
     tape::begin();
     let (body, (torque, stop)) = (rigid(), torques());
     let sphere = !Recorded::zero().lt(input("moments.w"));
     let impulse = torque * input("kick");
-    let turned = turning::among::<Recorded, DAMPED>(&body, sphere, (impulse, stop), vector("(*nl)"), new());
+    let turned = rigid_rotation::rotate_in_group::<Recorded, DAMPED>(
+        &body,
+        sphere,
+        (impulse, stop),
+        vector("(*nl)"),
+        new(),
+    );
     let (velocity, held) = pushed::<DAMPED>();
     let mut out = Results::default();
     out.vector("(*nv)", velocity);
     out.vector("(*nx)", moved(velocity));
     out.vector("(*nw)", turned.spin);
     put(&mut out, turned.orientation);
-    out.number("*speed2", turning::fastest2(velocity.norm2(), turned.spin, input("moments.w")));
+    out.number("*speed2", rigid_rotation::fastest2(velocity.norm2(), turned.spin, input("moments.w")));
     if DAMPED {
         let of_turn = V3::new(turned.power, Recorded::zero(), Recorded::zero());
         let power = power(held, vector("v"), velocity);
@@ -135,14 +141,14 @@ fn alone_kick() -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
     let mut out = Results::default();
-    out.vector("(*nl)", turning::kicked(&rigid(), k.torque, input("kick")));
+    out.vector("(*nl)", rigid_rotation::kicked(&rigid(), k.torque, input("kick")));
     out.text()
 }
 
 /// Results of a body integrated singly, from its rotation and the work of fixed rotations.
 fn alone_results(
     k: &kick::Kicked<Recorded>,
-    turned: &Turned<Recorded>,
+    turned: &RotatedBody<Recorded>,
     fixed: Option<(V3<Recorded>, Recorded)>,
     held: bool,
 ) -> String {
@@ -152,7 +158,7 @@ fn alone_results(
     out.vector("(*nw)", turned.spin);
     out.vector("(*nl)", turned.momentum);
     put(&mut out, turned.orientation);
-    out.number("*speed2", turning::fastest2(k.velocity.norm2(), turned.spin, input("moments.w")));
+    out.number("*speed2", rigid_rotation::fastest2(k.velocity.norm2(), turned.spin, input("moments.w")));
     if held {
         let (impulse, work) = fixed.unwrap_or((V3::zero(), Recorded::zero()));
         single_held(&mut out, &single(), k, (turned.mean, impulse, work));
@@ -163,7 +169,7 @@ fn alone_results(
 fn alone(held: bool) -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
-    let turned = turning::alone(&rigid(), vector("(*nl)"), new());
+    let turned = rigid_rotation::rotate_single(&rigid(), vector("(*nl)"), new());
     alone_results(&k, &turned, None, held)
 }
 
@@ -171,7 +177,7 @@ fn alone_held(held: bool) -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
     let (turned, impulse, work) =
-        turning::held(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
+        rigid_rotation::held(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
     alone_results(&k, &turned, Some((impulse, work)), held)
 }
 

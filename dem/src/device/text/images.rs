@@ -1,7 +1,7 @@
 //! Contacts across periodic borders.
 
 use super::record::{Part, keep, memory};
-use crate::contact::single::Moving;
+use crate::contact::scalar::Moving;
 use crate::device::layout::{EntryKind, Features};
 use crate::device::tape::{self, Recorded, RecordedMask, Results, input, vector};
 use crate::lanes::Real;

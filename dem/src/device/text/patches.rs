@@ -1,11 +1,11 @@
-//! Wall triangle contacts: C selects triangles as in `contact/patches.rs`, weights are recorded formulas.
+//! Wall triangle contacts: C selects triangles as in `contact/surface_contacts.rs`, weights are recorded formulas.
 
 use super::record::{Part, keep, memory};
 use crate::contact::patch_forces::{self, PatchContactInput};
-use crate::contact::patches::{self, Gap};
+use crate::contact::surface_contacts::{self, Gap};
 use crate::device::layout::EntryKind;
 use crate::device::tape::{self, Recorded, RecordedMask, Results, input, truth, vector};
-use crate::lanes::turn::QuaternionLanes;
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 use crate::shape::triangle;
@@ -123,7 +123,7 @@ fn meets() -> String {
 
 fn rests() -> String {
     tape::begin();
-    let rest = patches::rest(vector("x") - vector("point"), vector("outward"), input("x.w"));
+    let rest = surface_contacts::rest(vector("x") - vector("point"), vector("outward"), input("x.w"));
     let mut out = Results::default();
     out.truth("stays", rest.stays);
     out.vector("(*normal)", rest.normal);
@@ -135,28 +135,29 @@ fn rests() -> String {
 fn one_point() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("same", patches::one_point(vector("a"), vector("b"), input("radius")));
+    out.truth("same", surface_contacts::one_point(vector("a"), vector("b"), input("radius")));
     out.text()
 }
 
 fn within() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("near", input("clear").le(patches::tolerance(input("radius"))));
+    out.truth("near", input("clear").le(surface_contacts::tolerance(input("radius"))));
     out.text()
 }
 
 fn alike() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("same", patches::alike(vector("a"), vector("b")));
+    out.truth("same", surface_contacts::alike(vector("a"), vector("b")));
     out.text()
 }
 
 fn may_follow() -> String {
     tape::begin();
     let from = (vector("old_normal"), vector("old_point"));
-    let (may, away) = patches::may_follow((vector("normal"), vector("point")), from, input("radius"));
+    let (may, away) =
+        surface_contacts::may_follow((vector("normal"), vector("point")), from, input("radius"));
     let mut out = Results::default();
     out.truth("may", may);
     out.number("*away", away);
@@ -167,7 +168,8 @@ fn side() -> String {
     tape::begin();
     let (normal, outward) = (vector("t.normal"), vector("t.outward"));
     let side = normal.dot(outward);
-    let passed = patches::passed(normal, side, (vector("old_normal"), input("old_side"))) & !truth("fresh");
+    let passed =
+        surface_contacts::passed(normal, side, (vector("old_normal"), input("old_side"))) & !truth("fresh");
     let (radius, overlap) = (input("radius"), input("t.point.w"));
     let mut out = Results::default();
     out.number("side", side);

@@ -44,6 +44,6 @@ pub(super) fn left<L: ContactLaw, const ROLLING: bool>(table: &PairTable<L>) -> 
     tape::begin();
     let law = law(table);
     let mut out = Results::default();
-    out.number("left", L::stored_in_springs::<Recorded, ROLLING>(&law, &memory()));
+    out.number("left", L::tangential_energy::<Recorded, ROLLING>(&law, &memory()));
     out.text()
 }

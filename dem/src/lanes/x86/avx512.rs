@@ -2,7 +2,7 @@
 
 use super::avx2::Avx2;
 use crate::lanes::real::{Real, Simd4};
-use crate::lanes::record::Vec4;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::wide::SimdPack;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

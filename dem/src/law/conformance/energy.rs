@@ -39,7 +39,7 @@ struct Led<L> {
 
 impl<L: ContactLaw> Led<L> {
     fn new(law: L) -> Led<L> {
-        let history = History { rate: law.begun(0.0), ..History::NONE };
+        let history = History { rate: law.initial_state(0.0), ..History::NONE };
         Led { law, history, at: (0.0, 0.0), last: ContactForce::default(), work: 0.0, booked: 0.0 }
     }
 

@@ -47,7 +47,7 @@ impl<L: ContactLaw, const ROLLING: bool> Kernel for InLanes<'_, L, ROLLING> {
             twist: of(|c| c.history.turn[3]),
         };
         let f = L::evaluate::<R, ROLLING>(&law, &touch, &mut memory, R::below(8), R::splat(cases[0].dt));
-        let left = L::stored_in_springs::<R, ROLLING>(&law, &memory);
+        let left = L::tangential_energy::<R, ROLLING>(&law, &memory);
         let numbers = [
             [f.force.x, f.force.y, f.force.z, f.normal, f.moment.x, f.moment.y, f.moment.z, f.dashpot],
             [

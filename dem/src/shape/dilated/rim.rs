@@ -1,8 +1,8 @@
-//! Contact of a disk rim, integrated (`press.rs`) over fixed arcs, which provide friction points for rolling.
+//! Contact of a disk rim, integrated (`edge_contact.rs`) over fixed arcs, which provide friction points for rolling.
 
 use super::circle::{Circle, Turns};
 use super::disk::ARCS;
-use super::press::{CURVED, Indentation, Target};
+use super::edge_contact::{CURVED, Indentation, Target};
 use crate::base::Vec3;
 use std::f64::consts::TAU;
 
