@@ -8,7 +8,7 @@ use trackbed_dem::{BodyInput, Material, Model, ModelInput, Plane, Shape, State, 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let restitution = 0.8;
     let ball = Material { density: 2500.0, stiffness: 1e6, restitution, ..Material::default() };
-    let floor = Material { restitution: 1.0, ..Material::CLUMPS };
+    let floor = Material { restitution: 1.0, ..Material::RIGID };
     let (radius, drop) = (0.01, 0.5);
     let position = Vec3::new(0.0, 0.0, radius + drop);
     let model = Model::new(ModelInput {

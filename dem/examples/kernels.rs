@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("the name of a folder is missing")?;
     std::fs::create_dir_all(&folder)?;
     let spring =
-        Material { density: 2600.0, stiffness: 1e5, friction: 0.5, restitution: 0.5, ..Material::CLUMPS };
+        Material { density: 2600.0, stiffness: 1e5, friction: 0.5, restitution: 0.5, ..Material::RIGID };
     let rough = Material { asperity_friction: 0.5, asperity_pressure: 1e6, ..spring };
     let elastic = Material { stiffness: f64::INFINITY, young: Some(5e7), poisson: 0.25, ..spring };
     let yielding = Material { normal: table::normal_named("walton_braun"), ..spring };

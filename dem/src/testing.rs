@@ -15,7 +15,7 @@ pub(crate) const SOFT: Material = Material {
     tangential_damping_ratio: 0.0,
     friction: 0.5,
     restitution: 0.5,
-    ..Material::CLUMPS
+    ..Material::RIGID
 };
 
 /// Dumbbells (shape 0), spheres (1) and a box (2), no bodies, at half the critical time step.

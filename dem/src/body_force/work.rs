@@ -71,7 +71,7 @@ impl ForceWork {
     }
 
     /// Records work, after the motion.
-    pub fn book(&self, block: &Block, balance: &mut BalanceTerms, kick: f64) {
+    pub fn add_work(&self, block: &Block, balance: &mut BalanceTerms, kick: f64) {
         balance.work_body_forces += 0.5 * (self.power + self.power_on(block)) * kick;
     }
 

@@ -70,7 +70,7 @@ pub(crate) struct Response<R> {
 }
 
 #[inline(always)]
-pub(crate) fn carry<R: Real>(
+pub(crate) fn update_frame<R: Real>(
     offset: R,
     a: &Motion<R>,
     b: &Motion<R>,
@@ -197,7 +197,7 @@ pub(crate) fn half_step_energy(
 ) -> f64 {
     let back = |m: &Motion<f64>| Motion { x: m.x - m.v * (0.5 * dt), ..*m };
     let mut memory = *memory;
-    let frame = carry(k[OFFSET], &back(a), &back(b), &mut memory, since);
+    let frame = update_frame(k[OFFSET], &back(a), &back(b), &mut memory, since);
     energy(k, &frame, &memory)
 }
 

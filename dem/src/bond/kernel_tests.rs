@@ -27,7 +27,7 @@ fn rigid_rotation_stores_no_energy() {
                 v: v3((now * x - last * x) / dt),
                 w: v3(axis.into_inner() * (step / dt)),
             };
-            carry(0.002, &of(xa), &of(xb), &mut memory, dt);
+            update_frame(0.002, &of(xa), &of(xb), &mut memory, dt);
             last = now;
         }
         let turn = Rotation3::from_axis_angle(&axis, step * f64::from(steps));
@@ -58,7 +58,7 @@ fn forces_follow_from_the_energy() {
             let q = h * f64::from(s);
             let a = Motion { x: v3(xa + va * q), v: v3(va), w: v3(wa) };
             let b = Motion { x: v3(xb + vb * q), v: v3(vb), w: v3(wb) };
-            let frame = carry(k[OFFSET], &a, &b, &mut memory, h);
+            let frame = update_frame(k[OFFSET], &a, &b, &mut memory, h);
             let r = respond(&k, &a, &b, &frame, &memory);
             let power = r.force.to_vec().dot(&(va - vb))
                 + r.torque_a.to_vec().dot(&wa)
@@ -78,7 +78,7 @@ fn pure_motions() {
     let still = |x: Vec3| Motion { x: v3(x), v: V3::zero(), w: V3::zero() };
     let run = |a: Motion<f64>, b: Motion<f64>| {
         let mut memory = BondHistory { shear: V3::zero(), turn: V3::zero() };
-        let frame = carry(0.0, &a, &b, &mut memory, 1e-6);
+        let frame = update_frame(0.0, &a, &b, &mut memory, 1e-6);
         respond(&k, &a, &b, &frame, &memory)
     };
     let near = |x: Vec3, y: Vec3| assert!((x - y).norm() < 1e-6 * y.norm(), "{x} {y}");

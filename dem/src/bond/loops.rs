@@ -1,6 +1,6 @@
 //! SIMD loop over the bonds of a list, one or two groups at a time.
 
-use super::kernel::{self, BondHistory, COUNT, Motion, carry, respond};
+use super::kernel::{self, BondHistory, COUNT, Motion, respond, update_frame};
 use super::slot::BondSlot;
 use super::store::Group;
 use crate::bodies::block::Block;
@@ -30,7 +30,7 @@ fn bonds<P: SimdPack>(
         *k = P::join(p, q);
     }
     let mut memory = BondHistory { shear: load::<P>(&g.shear, &h.shear), turn: load(&g.turn, &h.turn) };
-    let frame = carry(k[kernel::OFFSET], a, b, &mut memory, dt);
+    let frame = update_frame(k[kernel::OFFSET], a, b, &mut memory, dt);
     store(memory.shear, &mut g.shear, &mut h.shear);
     store(memory.turn, &mut g.turn, &mut h.turn);
     let r = respond(&k, a, b, &frame, &memory);
@@ -103,8 +103,8 @@ impl Ends for IntraBlock<'_> {
         let (on_a, on_b) = P::opposed(out.force.array(), out.torque_a.array(), out.torque_b.array());
         let (i, j) = ([&g.i, &h.i], [&g.j, &h.j]);
         for l in 0..count {
-            P::give(on_a[l], &mut self.sums[i[l / 4][l % 4] as usize].0);
-            P::give(on_b[l], &mut self.sums[j[l / 4][l % 4] as usize].0);
+            P::add_record(on_a[l], &mut self.sums[i[l / 4][l % 4] as usize].0);
+            P::add_record(on_b[l], &mut self.sums[j[l / 4][l % 4] as usize].0);
         }
     }
 }
@@ -130,8 +130,8 @@ impl Ends for InterBlock<'_> {
         let on_b = P::records([b.x, b.y, b.z, zero], [zero; 4]);
         for (l, slot) in self.slots[first..][..count].iter_mut().enumerate() {
             let (mut a, mut b) = ([Vec4::default(); 2], [Vec4::default(); 2]);
-            P::put(on_a[l], &mut a);
-            P::put(on_b[l], &mut b);
+            P::store_record(on_a[l], &mut a);
+            P::store_record(on_b[l], &mut b);
             *slot = BondSlot { force: a[0], torque_a: a[1], torque_b: b[0] };
         }
     }

@@ -21,7 +21,7 @@ pub fn within_gap(
     cells.build(&points, radii, gap.max(0.0));
     for (a, p) in points.iter().enumerate() {
         let first = out.len();
-        cells.near(p, gap.max(0.0), |b| {
+        cells.neighbours(p, gap.max(0.0), |b| {
             let (b, q) = (b as usize, &points[b as usize]);
             let reach = p[3] + q[3] + gap;
             let distance = (spheres[a].0 - spheres[b].0).norm();

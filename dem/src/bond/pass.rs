@@ -1,6 +1,6 @@
 //! Bond passes of a step: between blocks (slots), within blocks, then breakage in a fixed order.
 
-use super::kernel::{self, COUNT, Motion, carry, respond};
+use super::kernel::{self, COUNT, Motion, respond, update_frame};
 use super::loops::{Bonds, InterBlock, IntraBlock};
 use super::slot::BondSlot;
 use super::store::{BondList, BondState, Entry};
@@ -116,7 +116,7 @@ fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -
     let (a, b) = (motion(own, e.i as usize), motion(other, e.j as usize));
     // Zero time increment gives the current frame.
     let mut memory = e.memory;
-    let frame = carry(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
+    let frame = update_frame(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
     let r = respond(k, &a, &b, &frame, &memory);
     let stretch = frame.length - k[kernel::LENGTH];
     let stiffness = k[kernel::STIFFNESS];
@@ -184,7 +184,7 @@ pub(crate) fn cross(
         for (k, r) in list.debonded.iter_mut().enumerate() {
             let f = debonded::contact(parts.laws, &blocks[b], &blocks[r.block as usize], r, parts.dt);
             w.slots[list.count as usize + k] = f.slot;
-            w.book(&f);
+            w.add_work(&f);
         }
     };
     if parallel {
@@ -195,7 +195,7 @@ pub(crate) fn cross(
 }
 
 impl ListWork {
-    fn book(&mut self, f: &debonded::PairForces) {
+    fn add_work(&mut self, f: &debonded::PairForces) {
         self.dashpot += f.dashpot;
         self.friction += f.friction;
         self.failure = self.failure.or(f.failure);
@@ -235,7 +235,7 @@ pub(crate) fn within(
         let f = debonded::contact(parts.laws, block, block, r, parts.dt);
         f.slot.share(&mut sums[r.i as usize], true);
         f.slot.share(&mut sums[r.j as usize], false);
-        w.book(&f);
+        w.add_work(&f);
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn images(
         let (other, theirs) = (&blocks[block], &members[block]);
         let (a, c) = (own.body(name.i) as usize, theirs.body(name.j) as usize);
         let (p, q) = (&own.spheres(mine)[name.i as usize], &theirs.spheres(other)[name.j as usize]);
-        let way = periodic.way(&name.shift);
+        let way = periodic.image_offset(&name.shift);
         let materials = [mine.material(a), other.material(c)];
         let slot = &mut out.slots[first + k * width..][..width];
         let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + way), q[3]) else {

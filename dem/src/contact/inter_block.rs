@@ -87,16 +87,16 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Between<
                         let mut last = [Vec4::default(); 2];
                         for (l, slot) in slots.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                             let [force, torque_a, torque_b] = slot;
-                            R::put(on_a[l], &mut last);
+                            R::store_record(on_a[l], &mut last);
                             [*force, *torque_a] = last;
-                            R::put(on_b[l], &mut last);
+                            R::store_record(on_b[l], &mut last);
                             *torque_b = last[0];
                         }
                     } else {
                         let (la, lb) = (o.levers.0.only(found.on), o.levers.1.only(found.on));
                         let rows = R::records(four(o.force, la), four(o.moment, lb));
                         for (l, slot) in slots.as_chunks_mut::<2>().0.iter_mut().enumerate() {
-                            R::put(rows[l], slot);
+                            R::store_record(rows[l], slot);
                         }
                     }
                     if found.deep != 0 && deepest.is_none() {

@@ -22,10 +22,14 @@ const PORTION: usize = 4;
 /// # Safety
 /// If `CLUMPS = false`, `body` is below the number of sums.
 #[inline(always)]
-unsafe fn give<R: SimdPack, const CLUMPS: bool>(record: R::Vec4Pair, sums: &mut [ForceTorque], body: usize) {
+unsafe fn add_record<R: SimdPack, const CLUMPS: bool>(
+    record: R::Vec4Pair,
+    sums: &mut [ForceTorque],
+    body: usize,
+) {
     // SAFETY: promised by the caller.
     let sum = if CLUMPS { &mut sums[body] } else { unsafe { sums.get_unchecked_mut(body) } };
-    R::give(record, &mut sum.0);
+    R::add_record(record, &mut sum.0);
 }
 
 pub(crate) struct Interior<'a, L, const CLUMPS: bool, const ROLLING: bool> {
@@ -90,8 +94,8 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Interior
                 for l in 0..R::LANES {
                     // SAFETY: compared above.
                     unsafe {
-                        give::<R, CLUMPS>(on_a[l], &mut sums, a.body(l));
-                        give::<R, CLUMPS>(on_b[l], &mut sums, b.body(l));
+                        add_record::<R, CLUMPS>(on_a[l], &mut sums, a.body(l));
+                        add_record::<R, CLUMPS>(on_b[l], &mut sums, b.body(l));
                     }
                 }
                 if out.deep != 0 && deepest.is_none() {

@@ -186,11 +186,11 @@ impl<L: ContactLaw, const ROLLING: bool> Kernel for PatchLaw<'_, L, ROLLING> {
             for l in 0..count {
                 let of = &mut forces[at + l];
                 let mut two = [Vec4::default(); 2];
-                R::put(results[l], &mut two);
+                R::store_record(results[l], &mut two);
                 [of.velocity, of.spin] = two;
-                R::put(springs[l], &mut two);
+                R::store_record(springs[l], &mut two);
                 [of.memory, of.turn] = two;
-                R::put(moments[l], &mut two);
+                R::store_record(moments[l], &mut two);
                 of.normal = two[0];
             }
             at += count;

@@ -22,7 +22,7 @@ pub(crate) struct PlanePose {
     pub motion: Vec4,
 }
 
-pub(crate) fn now(planes: &[Plane], motions: &[PlaneMotion], out: &mut Vec<PlanePose>) {
+pub(crate) fn update_poses(planes: &[Plane], motions: &[PlaneMotion], out: &mut Vec<PlanePose>) {
     out.clear();
     out.extend(planes.iter().zip(motions).map(|(p, m)| {
         let (n, v) = (&p.normal, &m.velocity);
@@ -111,7 +111,7 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
             done.add(&f);
             let records = records::<R>(f.force, f.torque);
             for l in 0..R::LANES {
-                R::give(records[l], &mut sums[body.body(l)].0);
+                R::add_record(records[l], &mut sums[body.body(l)].0);
             }
             let deep = R::mask_bits(f.deep);
             if deep != 0 && failure.is_none() {
@@ -125,7 +125,7 @@ impl<L: ContactLaw, const CLUMPS: bool, const ROLLING: bool> Kernel for Planes<'
         }
         totals.balance.dissipated_dashpot += dissipated.dashpot.sum();
         totals.balance.dissipated_friction += dissipated.friction.sum();
-        done.book(&mut totals.balance, dt);
+        done.add_to_balance(&mut totals.balance, dt);
     }
 }
 
@@ -240,7 +240,7 @@ impl<Q: Simd4> Done<Q> {
     }
 
     #[inline(always)]
-    fn book(&self, balance: &mut BalanceTerms, dt: f64) {
+    fn add_to_balance(&self, balance: &mut BalanceTerms, dt: f64) {
         let (linear, angular) = (&self.linear, &self.angular);
         balance.work_walls += self.work.sum() * dt;
         balance.walls.linear += Vec3::new(linear.x.sum(), linear.y.sum(), linear.z.sum()) * dt;

@@ -133,7 +133,7 @@ impl<R: Real> Gap<R> {
 
 /// Appends the valid contacts of a sphere at `x`. `travel_since_search`: motion bound since the neighbour list was built.
 #[inline]
-fn touches<S: Surface>(
+fn overlapping<S: Surface>(
     surface: &S,
     x: &Vec3,
     r: f64,
@@ -327,7 +327,7 @@ pub(crate) fn contacts<S: Surface>(
     totals: &mut BlockTotals,
     work: &mut PatchWork,
 ) -> SurfaceExchange {
-    find(setting, against, list, (block, members), totals, work);
+    detect(setting, against, list, (block, members), totals, work);
     dispatch::patch_forces(setting, work.turning, block, &mut work.forces);
     let exchange = apply(setting, against, (block, members), totals, work);
     std::mem::swap(&mut list.live, &mut work.live);
@@ -336,7 +336,7 @@ pub(crate) fn contacts<S: Surface>(
 
 /// Detects contacts and transfers history; results in `work`.
 #[inline(always)]
-fn find<S: Surface>(
+fn detect<S: Surface>(
     setting: &StepContext<'_>,
     against: &ContactSurface<'_, S, impl Fn(u32) -> u32, impl Fn(u32) -> Partner>,
     list: &mut PatchList,
@@ -383,13 +383,13 @@ fn find<S: Surface>(
             continue;
         }
         found.clear();
-        touches(surface, &x, r, travel_since_search, pairs, found);
+        overlapping(surface, &x, r, travel_since_search, pairs, found);
         if found.is_empty() && before.is_empty() {
             continue;
         }
         let first = live.len();
         for t in found.iter().filter(|t| t.counts) {
-            live.push(begin(t, sphere, before));
+            live.push(new_contact(t, sphere, before));
         }
         let now = &mut live[first..];
         if before.iter().any(|c| !c.history.is_new()) {
@@ -397,7 +397,7 @@ fn find<S: Surface>(
             before.iter_mut().for_each(|c| friction += end(c));
         }
         for (t, contact) in found.iter().filter(|t| t.counts).zip(now) {
-            if let Some((overlap, bound)) = go_on(surface, contact, t, r)
+            if let Some((overlap, bound)) = update_contact(surface, contact, t, r)
                 && totals.failure.is_none()
             {
                 let partner = (against.partner)(t.patch);
@@ -416,7 +416,12 @@ fn find<S: Surface>(
 
 /// Updates a contact; returns overlap and limit if too deep [m].
 #[inline(always)]
-fn go_on<S: Surface>(surface: &S, contact: &mut PatchContact, t: &PatchTouch, r: f64) -> Option<(f64, f64)> {
+fn update_contact<S: Surface>(
+    surface: &S,
+    contact: &mut PatchContact,
+    t: &PatchTouch,
+    r: f64,
+) -> Option<(f64, f64)> {
     let g = &t.geometry;
     let side = g.normal.dot(&Vec3::from(t.closest.normal));
     let old = (V3::from_vec(&contact.normal), contact.side);
@@ -503,7 +508,7 @@ fn apply<S: Surface>(
 }
 
 /// New contact with the sphere's history of the patch.
-fn begin(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
+fn new_contact(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
     let mut contact = PatchContact {
         i: sphere,
         patch: t.patch,

@@ -277,7 +277,7 @@ impl Lists {
             self.ranges[b][List::Images as usize] = self.next();
             for ImageName { i, block, j, shift } in cross.images.iter().map(|image| image.name) {
                 self.ends.push([spheres.at(b, i), spheres.at(block as usize, j)]);
-                let way = model.periodic.map_or(Vec3::zeros(), |p| p.way(&shift));
+                let way = model.periodic.map_or(Vec3::zeros(), |p| p.image_offset(&shift));
                 self.ways.push([way.x, way.y, way.z, 0.0]);
             }
         }

@@ -426,7 +426,7 @@ impl<M: Machine> Device<M> {
 
     /// Returns whether the step failed.
     fn launch(&mut self, model: &Model, state: &State) -> Result<bool, String> {
-        planes::now(&model.planes, &state.planes, &mut self.work.planes);
+        planes::update_poses(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
         if planes != self.planes {
             self.put(Slot::Planes, planes.as_flattened())?;

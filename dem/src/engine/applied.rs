@@ -7,7 +7,7 @@ use crate::base::error::StepError;
 use crate::integrate::leapfrog::Applied;
 use crate::lanes::vec4::xyz;
 
-pub(crate) fn place(
+pub(crate) fn add_forces(
     model: &Model,
     state: &State,
     applied: &[AppliedForce],

@@ -22,7 +22,7 @@ pub(crate) fn arrange(model: &Model, state: &State, work: &mut Work) {
     work.bonds.arrange(&model.bonds, lists, &state.bonds);
 }
 
-pub(crate) fn hold(model: &Model, state: &State, held: &mut BondedPairs) {
+pub(crate) fn list_bonded_pairs(model: &Model, state: &State, held: &mut BondedPairs) {
     let mut pairs = Vec::new();
     if !model.bonds.is_empty() {
         state.each_bond(|number, _| {
@@ -44,10 +44,10 @@ enum BondEntry {
 pub(crate) fn start(model: &Model, state: &mut State) {
     state.bonds.fresh = true;
     let all = (0..model.bonds.len() as u32).map(|k| BondEntry::Bond(k, BondHistory::NONE)).collect();
-    file(model, state, all);
+    distribute(model, state, all);
 }
 
-pub(crate) fn take(state: &mut State) -> PendingBonds {
+pub(crate) fn extract_bonds(state: &mut State) -> PendingBonds {
     let mut all = Vec::new();
     let inner: Vec<BondList> = state.lists.iter_mut().map(|l| std::mem::take(&mut l.bonds)).collect();
     for list in inner.into_iter().chain(std::mem::take(&mut state.bonds.cross)) {
@@ -59,24 +59,24 @@ pub(crate) fn take(state: &mut State) -> PendingBonds {
 
 pub(crate) struct PendingBonds(Vec<BondEntry>);
 
-pub(crate) fn put(model: &Model, state: &mut State, unfiled: PendingBonds) {
-    file(model, state, unfiled.0);
+pub(crate) fn insert_bonds(model: &Model, state: &mut State, pending: PendingBonds) {
+    distribute(model, state, pending.0);
 }
 
-fn file(model: &Model, state: &mut State, all: Vec<BondEntry>) {
+fn distribute(model: &Model, state: &mut State, all: Vec<BondEntry>) {
     let blocks = state.blocks.len();
     state.bonds.cross.clear();
     state.bonds.cross.resize_with(blocks, BondList::default);
     let mut entries: [Vec<Vec<Entry>>; 2] = [vec![Vec::new(); blocks], vec![Vec::new(); blocks]];
-    for filed in all {
-        let number = match &filed {
+    for entry in all {
+        let number = match &entry {
             BondEntry::Bond(number, _) => *number,
             BondEntry::Debonded(r) => r.number,
         };
         // First body by model index, independent of block order: signs never flip.
         let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
         let across = usize::from(b != block);
-        match filed {
+        match entry {
             BondEntry::Bond(number, memory) => {
                 entries[across][b as usize].push(Entry { number, i, block, j, memory });
             }

@@ -34,11 +34,12 @@ pub(crate) enum Listed {
 }
 
 pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, surface: &S, listed: Listed) {
-    super::bonds::hold(model, state, &mut work.held);
+    super::bonds::list_bonded_pairs(model, state, &mut work.held);
     let Work { members, blocks: works, parallel, held, walls: standing, sheet, own, halo, .. } = &mut *work;
     let all = All::new(model, state, members, held, (&*own, halo), listed);
-    let kinds =
-        model.solids.then(|| Search::new(now(model, state, members, (standing, sheet)), &model.patch_trees));
+    let kinds = model
+        .solids
+        .then(|| Search::new(configuration(model, state, members, (standing, sheet)), &model.patch_trees));
     let walls = model.walls.placed(&state.walls);
     let one = |(b, w): (usize, &mut BlockWork)| {
         let c = &mut w.candidates;
@@ -66,7 +67,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     } else {
         works.iter_mut().enumerate().for_each(one);
     }
-    hand_back(works, own);
+    return_earlier_pairs(works, own);
 
     // Corners of bounding boxes are tracked as points.
     for b in own.clone() {
@@ -86,7 +87,7 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
     searched.searches += 1;
 }
 
-fn hand_back(works: &mut [BlockWork], own: &Range<usize>) {
+fn return_earlier_pairs(works: &mut [BlockWork], own: &Range<usize>) {
     let (earlier, here) = works.split_at_mut(own.start);
     for (b, w) in own.clone().zip(here) {
         for &[block, i, j] in &w.candidates.earlier {
@@ -192,9 +193,9 @@ impl<'a> All<'a> {
                 let mut near = Vec::new();
                 for body in clump_bounds.of_block(b) {
                     let me = self.body(clump_bounds.spheres(body).start);
-                    self.near_hulls(clump_bounds, body, me, &mut near);
+                    self.nearby_clumps(clump_bounds, body, me, &mut near);
                     for global in clump_bounds.spheres(body) {
-                        self.within_hulls(clump_bounds, &near, global, &mut c.row);
+                        self.nearby_members(clump_bounds, &near, global, &mut c.row);
                         self.list(b, global, me, c);
                     }
                 }
@@ -202,7 +203,7 @@ impl<'a> All<'a> {
             None => {
                 for global in (self.first[b]..).take(self.members[b].count) {
                     let me = self.body(global);
-                    self.round(global, global - self.first[b], me, c);
+                    self.list_candidates(global, global - self.first[b], me, c);
                     self.list(b, global, me, c);
                 }
             }
@@ -242,12 +243,12 @@ impl<'a> All<'a> {
         !both_still && !self.held.has(self.number(me), self.number(other))
     }
 
-    fn near_hulls(&self, clump_bounds: &ClumpBounds, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
+    fn nearby_clumps(&self, clump_bounds: &ClumpBounds, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &clump_bounds.around[body as usize]);
         // Blocks before the first local one have no later partners.
         let before = clump_bounds.of_block(self.own.start).start;
         near.clear();
-        clump_bounds.cells.near(p, skin, |other| {
+        clump_bounds.cells.neighbours(p, skin, |other| {
             let q = &clump_bounds.around[other as usize];
             let reach = p[3] + q[3] + skin;
             if (other > body || other < before)
@@ -261,7 +262,7 @@ impl<'a> All<'a> {
     }
 
     #[inline(always)]
-    fn within_hulls(&self, clump_bounds: &ClumpBounds, near: &[u32], global: u32, row: &mut Vec<u32>) {
+    fn nearby_members(&self, clump_bounds: &ClumpBounds, near: &[u32], global: u32, row: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &self.points[global as usize]);
         let close = |q: &Vec4| {
             let reach = p[3] + q[3] + skin;
@@ -277,13 +278,13 @@ impl<'a> All<'a> {
 
     /// Image pairs go to a separate list.
     #[inline(always)]
-    fn round(&self, global: u32, i: u32, me: (u32, u32), c: &mut Candidates) {
+    fn list_candidates(&self, global: u32, i: u32, me: (u32, u32), c: &mut Candidates) {
         let skin = self.model.skin;
         let fixed = self.still(me);
         let Candidates { row, images, .. } = c;
         row.clear();
         if let Some(space) = &self.space {
-            space.near(&self.cells, global, skin, |j, shift| {
+            space.neighbours(&self.cells, global, skin, |j, shift| {
                 let (other, [block, j_there]) = (self.body(j), self.names[j as usize]);
                 if other == me || fixed && self.still(other) {
                 } else if shift == [0; 3] {
@@ -295,7 +296,7 @@ impl<'a> All<'a> {
         } else {
             let p = &self.points[global as usize];
             let before = self.first.get(self.own.start).copied().unwrap_or(0);
-            self.cells.near(p, skin, |j| {
+            self.cells.neighbours(p, skin, |j| {
                 let q = &self.points[j as usize];
                 let reach = p[3] + q[3] + skin;
                 if (j > global || j < before) && (xyz(p) - xyz(q)).norm_squared() < reach * reach {
@@ -310,17 +311,17 @@ impl<'a> All<'a> {
     }
 }
 
-pub(crate) fn now<'a>(
+pub(crate) fn configuration<'a>(
     model: &'a Model,
     state: &'a State,
     members: &'a [BlockBodies],
     standing: (&'a [WallView], &'a [SheetFacet]),
 ) -> Configuration<'a> {
     let bodies = (BlockSlice { first: 0, list: &state.blocks[..] }, BlockSlice { first: 0, list: members });
-    now_of(model, bodies, &state.planes, standing, &state.scars)
+    block_configuration(model, bodies, &state.planes, standing, &state.scars)
 }
 
-pub(crate) fn now_of<'a>(
+pub(crate) fn block_configuration<'a>(
     model: &'a Model,
     (blocks, members): (BlockSlice<'a, Block>, BlockSlice<'a, BlockBodies>),
     planes: &'a [PlaneMotion],

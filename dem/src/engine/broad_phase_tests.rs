@@ -20,7 +20,7 @@ fn thrown(seed: u64) -> ModelInput {
     };
     let shapes = vec![clump(2), clump(6), Shape::Sphere { radius: 0.008 }, clump(4)];
     let mut input = ModelInput {
-        materials: vec![Material { density: 2600.0, stiffness: 1e5, ..Material::CLUMPS }],
+        materials: vec![Material { density: 2600.0, stiffness: 1e5, ..Material::RIGID }],
         shapes,
         ..ModelInput::default()
     };

@@ -36,7 +36,7 @@ pub(crate) fn forces<S: Surface>(model: &Model, state: &mut State, work: &mut Wo
     let Work { members, blocks: works, cross: slots, walls: standing, sheet, parallel, .. } = work;
     let members = &members[..];
     let bodies = (BlockSlice { first: 0, list: blocks }, BlockSlice { first: 0, list: members });
-    let now = broad_phase::now_of(model, bodies, planes, (standing, sheet), scars);
+    let now = broad_phase::block_configuration(model, bodies, planes, (standing, sheet), scars);
     let placed = walls(model).then(|| model.walls.placed(moved));
     let between = |(b, (pairs, out)): (usize, (&mut Cross, &mut CrossForces))| {
         out.clear_totals();

@@ -117,7 +117,7 @@ pub(crate) fn approach(model: &Model, state: &State, work: &Work, moved2: f64) -
     let moved = moved2.sqrt();
     let planes = state.planes.iter().zip(&work.searched.planes);
     let wall = planes.map(|(m, x)| (m.offset - x).norm()).fold(work.searched.surface_travel, f64::max);
-    let wall = wall.max(walls::way(model, state, &work.searched.walls));
+    let wall = wall.max(walls::max_displacement(model, state, &work.searched.walls));
     (2.0 * moved).max(moved + wall)
 }
 
@@ -129,7 +129,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
     let (members, pool) = (&*members, &*pool);
     let spheres = |b: u32| members[b as usize].spheres(&blocks[b as usize]);
     let bodies = (BlockSlice { first: 0, list: blocks }, BlockSlice { first: 0, list: members });
-    let now = broad_phase::now_of(model, bodies, planes, (standing, sheet), scars);
+    let now = broad_phase::block_configuration(model, bodies, planes, (standing, sheet), scars);
 
     let between = |(b, (cross, c)): (usize, (&mut Cross, &Candidates))| {
         let mut merging = pool.take();
@@ -146,7 +146,7 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         if let Some(periodic) = &model.periodic {
             let close = |c: &&ImageName| {
                 let (p, q) = (&own[c.i as usize], &spheres(c.block)[c.j as usize]);
-                let between = xyz(p) - xyz(q) - periodic.way(&c.shift);
+                let between = xyz(p) - xyz(q) - periodic.image_offset(&c.shift);
                 reach::spheres(V3::from_vec(&between), (p[3], q[3]), near)
             };
             cross::merge(&mut cross.images, c.images.iter().filter(close).copied());

@@ -19,7 +19,7 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
                 continue;
             }
             moved = true;
-            let (way, mass) = (periodic.way(&t), model.mass(body as usize));
+            let (way, mass) = (periodic.image_offset(&t), model.mass(body as usize));
             let back = xyz(&block.centre[k]) - way;
             set_xyz(&mut block.centre[k], &back);
             state.balance.periodic.angular -= way.cross(&(xyz(&block.velocity[k]) * mass));

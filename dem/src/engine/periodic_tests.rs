@@ -31,7 +31,7 @@ fn drifting() -> ModelInput {
         restitution: 0.5,
         rolling_friction: 0.1,
         twisting_friction: 0.1,
-        ..Material::CLUMPS
+        ..Material::RIGID
     };
     const L: f64 = 0.3;
     let mut input = ModelInput {

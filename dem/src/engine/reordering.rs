@@ -47,7 +47,7 @@ impl BodyChanges {
 pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], changes: &BodyChanges) {
     let BodyChanges { stays, come } = changes;
     let present = |b: usize| stays[b] || come.contains_key(&(b as u32));
-    let bonds = bonds::take(state);
+    let bonds = bonds::extract_bonds(state);
     let old_places = state.places.clone();
     let old = PreviousLists {
         blocks: std::mem::take(&mut state.blocks),
@@ -68,7 +68,7 @@ pub(crate) fn reorder(state: &mut State, model: &Model, positions: &[Vec3], chan
         state.cross.push(cross);
     }
     state.number(model);
-    bonds::put(model, state, bonds);
+    bonds::insert_bonds(model, state, bonds);
 
     let names = SphereMap::new(state, model, &old, |b| model.member_count(b as usize), stays);
     old.pairs(&names, state);
@@ -213,7 +213,7 @@ impl PreviousLists {
         for (b, cross) in self.cross.iter().enumerate() {
             let kinds = KINDS.iter().zip(&cross.kinds).enumerate();
             for (k, (kind, list)) in kinds.filter(|(_, (kind, _))| !bodies || kind.of_bodies()) {
-                kind.carry(&names, b, list, &mut |block, name, points| {
+                kind.renumber(&names, b, list, &mut |block, name, points| {
                     state.cross[block].kinds[k].push(name, points);
                 });
             }

@@ -27,7 +27,7 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
         let mut ground = std::mem::take(&mut work.ground);
         ground.clear();
         ground.resize(state.blocks[b].bodies.len(), Ground::default());
-        let now = broad_phase::now(model, state, &work.members, (&work.walls, &work.sheet));
+        let now = broad_phase::configuration(model, state, &work.members, (&work.walls, &work.sheet));
         for (kind, list) in KINDS.iter().zip(&state.cross[b].kinds) {
             kind.visit_scarred_ground(&now, b, list, &mut |on: &OnGround| {
                 let patch = &model.patches[on.patch as usize];
@@ -91,7 +91,7 @@ impl Body<'_> {
         else {
             // Out of the soil, the friction increase decays.
             let law = self.model.walls.walls.iter().find_map(|w| w.scarring);
-            let way = law.map_or(0.0, |law| law.way(scar.way, false, 0.0, dt));
+            let way = law.map_or(0.0, |law| law.update_path(scar.way, false, 0.0, dt));
             let way = if way > FORGOTTEN { way } else { 0.0 };
             let friction = law.map_or(0.0, |law| law.friction(way));
             *scar = Scar { way, friction, ..Scar::default() };
@@ -104,7 +104,7 @@ impl Body<'_> {
             scar.inside = true;
             scar.sunk = self.down * law.depth(mass, velocity.dot(self.down));
         }
-        scar.way = law.way(scar.way, ground.touches, speed, dt);
+        scar.way = law.update_path(scar.way, ground.touches, speed, dt);
         scar.friction = law.friction(scar.way);
         scar.resistance = if speed > 0.0 {
             self.resistance(&law, (&normal, height), &(velocity / speed), heights)

@@ -119,32 +119,32 @@ impl State {
         absent.for_each(|(scar, _)| *scar = Scar::default());
     }
 
-    fn place(&self, body: usize) -> (&Block, usize) {
+    fn locate(&self, body: usize) -> (&Block, usize) {
         let [b, k] = self.places[body];
         (&self.blocks[b as usize], k as usize)
     }
 
     /// Centre of mass [m], not wrapped ([`Model::wrap`]).
     pub fn position(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.centre[k])
     }
 
     /// Velocity half a step before `time` [m/s].
     pub fn velocity(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.velocity[k])
     }
 
     /// Angular velocity in world axes half a step before `time` [rad/s].
     pub fn spin(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.spin[k])
     }
 
     /// Orientation (body frame to world); initial value for single spheres.
     pub fn orientation(&self, model: &Model, body: usize) -> UnitQuaternion<f64> {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         block.rotation.get(k).map_or_else(|| model.bodies.orientation(body), |r| r.orientation)
     }
 

@@ -18,7 +18,7 @@ impl State {
     ///
     /// # Errors
     /// Index of the first missing or different body.
-    pub fn carry(&mut self, model: &Model, other: &State, count: usize) -> Result<(), usize> {
+    pub fn transfer_bodies(&mut self, model: &Model, other: &State, count: usize) -> Result<(), usize> {
         let known = count.min(self.places.len()).min(other.places.len());
         let same = |k: &usize| *k < known && (!other.present(*k) || other.size(*k) == model.body(*k).radius);
         if let Some(k) = (0..count).find(|k| !same(k)) {
@@ -31,9 +31,9 @@ impl State {
         let stays = (0..self.places.len()).map(|k| k >= count && self.present(k)).collect();
         let changes = BodyChanges { stays, come };
         let positions = changes.positions(self);
-        bonds::take(self);
+        bonds::extract_bonds(self);
         reorder(self, model, &positions, &changes);
-        bonds::put(model, self, bonds::take(&mut other.clone()));
+        bonds::insert_bonds(model, self, bonds::extract_bonds(&mut other.clone()));
         (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
         self.bonds.power = other.bonds.power;
         // Velocities are half of the last step old.
@@ -129,7 +129,7 @@ mod tests {
         let mut state = State::new(&model);
         advance(&model, &mut state, 12_000);
         let mut carried = State::new(&other);
-        carried.carry(&other, &state, count).unwrap();
+        carried.transfer_bodies(&other, &state, count).unwrap();
         // Undo the probe's changes of contact history.
         let mut work = Work::new(&other, &carried);
         crate::find_contacts(&other, &mut carried, &mut work, &NoSurface).unwrap();
@@ -153,6 +153,6 @@ mod tests {
         println!("carried: apart by {same:.1e} m after 400 steps; without memory by {not:.1e} m");
         assert!(same < 1e-9 && not > 1e-7, "{same:.1e} {not:.1e}");
         let mut wrong = State::new(&other);
-        assert_eq!(wrong.carry(&other, &State::new(&other), count + 2), Err(count + 1));
+        assert_eq!(wrong.transfer_bodies(&other, &State::new(&other), count + 2), Err(count + 1));
     }
 }

@@ -72,9 +72,9 @@ pub(crate) fn prepare<S: Surface>(
     if !surface.is_empty() && model.surface_material.is_none() {
         return Err(StepError::SurfaceMaterial);
     }
-    applied::place(model, state, applied, &mut work.applied)?;
+    applied::add_forces(model, state, applied, &mut work.applied)?;
     if !model.patches.is_empty() {
-        model.walls.now(&state.walls, 0.0, &mut work.walls);
+        model.walls.update_poses(&state.walls, 0.0, &mut work.walls);
     }
     if !model.sheet.is_empty() {
         sheet(model, state, work, surface)?;
@@ -107,7 +107,7 @@ fn sheet<S: Surface>(
     for (k, corner) in state.sheet.iter_mut().enumerate() {
         *corner = surface.vertex(k as u32).ok_or(StepError::SurfaceMesh)?;
     }
-    model.sheet.now(&state.sheet, 0.0, &mut work.sheet);
+    model.sheet.update_poses(&state.sheet, 0.0, &mut work.sheet);
     if surface.vertex_correction(0).is_some() {
         model.sheet.correct(|v| surface.vertex_correction(v).map(crate::base::Vec3::from), &mut work.sheet);
     }
@@ -124,7 +124,7 @@ pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut W
     if model.scarred {
         scarring::update(model, state, work);
     }
-    planes::now(&model.planes, &state.planes, &mut work.planes);
+    planes::update_poses(&model.planes, &state.planes, &mut work.planes);
     contacts_and_motion(model, state, work, surface);
 }
 
@@ -143,7 +143,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         out.clear_totals();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
         if !pairs.kinds.is_empty() {
-            let now = broad_phase::now_of(model, (blocks, members), motions, standing, scars);
+            let now = broad_phase::block_configuration(model, (blocks, members), motions, standing, scars);
             narrow_phase::forces(&setting, &now, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
@@ -176,7 +176,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         let applied = applied::of_block(applied, b);
         leapfrog::advance(setting.simd, &shared.drive, block, members, totals, applied);
         if model.acts_on_bodies() {
-            body_forces.book(block, &mut totals.balance, dt);
+            body_forces.add_work(block, &mut totals.balance, dt);
         }
         if !keep {
             buffers.give_back(std::mem::take(&mut work.totals.sums));
@@ -184,7 +184,7 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     };
     let threads = if parallel { rayon::current_num_threads() } else { 1 };
     let lists = BlockArrays { blocks, members, lists, works, cross, slots };
-    threads::through(threads, &work.own, lists, beyond, between, within);
+    threads::run_blocks(threads, &work.own, lists, beyond, between, within);
 }
 
 struct Shared<'a, S> {

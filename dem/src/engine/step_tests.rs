@@ -20,7 +20,7 @@ fn heap_input(hertz: bool, clumps: bool) -> ModelInput {
         tangential_damping_ratio: 0.1,
         friction: 0.5,
         restitution: 0.5,
-        ..Material::CLUMPS
+        ..Material::RIGID
     };
     let material = if hertz {
         Material { young: Some(5e7), poisson: 0.25, rolling_friction: 0.1, twisting_friction: 0.1, ..soft }

@@ -56,7 +56,7 @@ pub(crate) struct BlockTask<'a> {
 pub(crate) type Bodies<'a> = (BlockSlice<'a, Block>, BlockSlice<'a, BlockBodies>);
 
 /// `between`: contacts with later blocks; `within`: the rest; `beyond`: scratch. Earlier blocks do not move.
-pub(crate) fn through(
+pub(crate) fn run_blocks(
     threads: usize,
     own: &Range<usize>,
     all: BlockArrays<'_>,
@@ -90,7 +90,7 @@ pub(crate) fn through(
         slots: &mut *all.slots,
     };
     rest.split_off(own.start);
-    let parts = runs(own, threads).map(move |run| (run.start, rest.split_off(run.len())));
+    let parts = partition(own, threads).map(move |run| (run.start, rest.split_off(run.len())));
     share(threads, parts, |(first, lists)| run(first, own.len(), lists, there, &between, &within));
     exchange(threads, own, all.cross, all.slots, beyond);
 }
@@ -143,7 +143,7 @@ fn run(
     }
 }
 
-fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+fn partition(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
     let (mut at, end) = (own.start, own.end);
     std::iter::from_fn(move || {
         let left = end.saturating_sub(at);
@@ -155,7 +155,7 @@ fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>
 
 /// End of each block's range; zero before `own`.
 fn ends(own: &Range<usize>, threads: usize) -> impl Iterator<Item = usize> + use<> {
-    let runs = runs(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
+    let runs = partition(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
     std::iter::repeat_n(0, own.start).chain(runs)
 }
 

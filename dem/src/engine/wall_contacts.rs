@@ -57,7 +57,7 @@ pub(crate) fn forces(
         return None;
     }
     sums.resize(state.walls.len(), WallSum::default());
-    model.walls.now(&state.walls, 0.0, now);
+    model.walls.update_poses(&state.walls, 0.0, now);
     let (dt, mut failure) = (state.step_size.kick(), None);
     for pairs in model.shells.pairs.chunk_by(|p, q| p[0] == q[0]) {
         let holder = pairs[0][0] as usize;
@@ -101,7 +101,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut([
         return;
     }
     let (mut now, mut met) = (Vec::new(), WallContactList::default());
-    model.walls.now(&state.walls, back, &mut now);
+    model.walls.update_poses(&state.walls, back, &mut now);
     for &[a, b] in &model.shells.pairs {
         find(model, [a, b], &now, &mut met);
         let two = Two { walls: [a, b].map(|k| &now[k as usize]), other: b };

@@ -45,7 +45,7 @@ pub(crate) fn advance(
         let speed = match &wall.body {
             Some(b) => {
                 let ground = ground(model, &state.planes, kick);
-                let (force, torque) = body::stand(&ground, b, wall.material, own, balance);
+                let (force, torque) = body::ground_reaction(&ground, b, wall.material, own, balance);
                 let (force, torque) = (force + own.force, torque + own.moment);
                 b.advance(own, &force, &torque, &model.gravity, &state.step_size, balance);
                 b.speed(own)
@@ -106,7 +106,7 @@ pub(crate) fn advance(
 
 /// Finds two non-interacting bodies with overlapping bounds.
 fn meeting(model: &Model, state: &State) -> Option<Failure> {
-    let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.stands());
+    let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.rests_on_ground());
     let bodies = || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(k, _)| round(*k));
     for (i, (a, sa)) in bodies() {
         for (j, (b, sb)) in bodies().skip_while(|(j, _)| *j <= i) {
@@ -138,7 +138,7 @@ fn meeting(model: &Model, state: &State) -> Option<Failure> {
 }
 
 /// Bound on the displacement of wall points since `before` [m].
-pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
+pub(crate) fn max_displacement(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
     model
         .walls
         .walls

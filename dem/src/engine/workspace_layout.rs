@@ -92,7 +92,7 @@ impl Work {
 pub(crate) fn link(model: &Model, state: &State, work: &mut Work) {
     let mut counts = vec![0; state.blocks.len()];
     let Work { members, blocks: works, cross: forces, walls, sheet, .. } = work;
-    let now = broad_phase::now(model, state, members, (walls, sheet));
+    let now = broad_phase::configuration(model, state, members, (walls, sheet));
     for (b, cross) in state.cross.iter().enumerate() {
         counts[b] += cross.spheres.len();
         (0..cross.spheres.len()).for_each(|k| counts[cross.spheres.name(k)[1] as usize] += 1);

@@ -84,7 +84,7 @@ fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut FreePositions
     let mut room = FreeSpace::new(&run.model, &run.state, &NoSurface, region, 0.02, |b| low.contains(&b));
     let mut arrive = Vec::new();
     while let (Some(&body), true) = (waiting.first(), arrive.len() < 4) {
-        let Some((position, orientation)) = room.place(run.model.radius(body), places) else { break };
+        let Some((position, orientation)) = room.find_position(run.model.radius(body), places) else { break };
         waiting.remove(0);
         let (velocity, spin) = (Vec3::new(0.1, -0.2, -0.8), Vec3::new(3.0, 4.0, -5.0));
         arrive.push(Arrival { body, position, orientation, velocity, spin });

@@ -87,7 +87,11 @@ impl<'a> FreeSpace<'a> {
 
     /// Finds and occupies a random position and orientation for a grain of bounding `radius` [m]; `None` if
     /// the box is full.
-    pub fn place(&mut self, radius: f64, random: &mut FreePositions) -> Option<(Vec3, UnitQuaternion<f64>)> {
+    pub fn find_position(
+        &mut self,
+        radius: f64,
+        random: &mut FreePositions,
+    ) -> Option<(Vec3, UnitQuaternion<f64>)> {
         let r = radius * (1.0 + GAP);
         let (low, high) = (self.region.low.add_scalar(r), self.region.high.add_scalar(-r));
         let mut stream = random.next();

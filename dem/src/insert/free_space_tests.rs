@@ -53,7 +53,7 @@ fn grains_touch_nothing() {
                 FreePositions::new(11),
             );
             let mut found = Vec::new();
-            while let Some((x, _)) = room.place(RADIUS, &mut places) {
+            while let Some((x, _)) = room.find_position(RADIUS, &mut places) {
                 found.push(x);
                 assert!(found.len() < 10_000, "places without end");
             }
@@ -107,12 +107,12 @@ fn room_for_one() {
     let region = BoxRegion { low, high: low.add_scalar(0.2) };
     let mut places = FreePositions::new(1);
     let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |_| false);
-    assert_eq!(room.place(0.06, &mut places), None);
+    assert_eq!(room.find_position(0.06, &mut places), None);
     let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
-    assert_eq!(room.place(0.11, &mut places), None);
-    let first = room.place(0.06, &mut places).unwrap();
+    assert_eq!(room.find_position(0.11, &mut places), None);
+    let first = room.find_position(0.06, &mut places).unwrap();
     // A later request sees the same space, but draws another position.
     let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
-    let second = room.place(0.06, &mut places).unwrap();
+    let second = room.find_position(0.06, &mut places).unwrap();
     assert!(first.0 != second.0 && first.1 != second.1);
 }

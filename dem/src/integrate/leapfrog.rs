@@ -475,7 +475,8 @@ fn rotate(
         let kicked = spin_of(&pushed, inertia);
         let target = drive.bodies.spin(block.bodies[k] as usize);
         let kicked = hold(&pushed, inertia, &kicked, &target, fixed);
-        let (turned, impulse, work) = rigid_rotation::held(&body, of(torque), of(&kicked), kick, dt);
+        let (turned, impulse, work) =
+            rigid_rotation::rotate_prescribed(&body, of(torque), of(&kicked), kick, dt);
         balance.constraints.angular += impulse.to_vec();
         balance.work_constraints += work;
         turned

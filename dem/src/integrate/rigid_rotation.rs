@@ -78,7 +78,7 @@ pub(crate) fn rotate_single<R: Real>(
 
 /// Constrained rotation; angular impulse and work of the constraint.
 #[inline(always)]
-pub(crate) fn held<R: Real>(
+pub(crate) fn rotate_prescribed<R: Real>(
     body: &Rigid<R>,
     torque: V3<R>,
     spin: V3<R>,

@@ -50,8 +50,8 @@ pub(crate) trait SimdPack: Real {
         let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
         (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
     }
-    fn give(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
-    fn put(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
+    fn add_record(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
+    fn store_record(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
 
     /// Exact product: signs are 1, 0, −1.
     #[inline(always)]
@@ -133,12 +133,12 @@ impl<F: Simd4> SimdPack for F {
         [(a, p), (b, q), (c, r), (d, s), (a, p), (b, q), (c, r), (d, s)]
     }
     #[inline(always)]
-    fn give(record: (F, F), to: &mut [Vec4; 2]) {
+    fn add_record(record: (F, F), to: &mut [Vec4; 2]) {
         (F::load(&to[0]) + record.0).store(&mut to[0]);
         (F::load(&to[1]) + record.1).store(&mut to[1]);
     }
     #[inline(always)]
-    fn put(record: (F, F), to: &mut [Vec4; 2]) {
+    fn store_record(record: (F, F), to: &mut [Vec4; 2]) {
         record.0.store(&mut to[0]);
         record.1.store(&mut to[1]);
     }

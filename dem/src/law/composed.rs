@@ -184,7 +184,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         }
         memory.rate = if N::REMEMBERS { own.remembered } else { approach };
 
-        let carried = T::carry(&law.tangential, own.circle, own.circle_before);
+        let carried = T::transfer_spring(&law.tangential, own.circle, own.circle_before);
         let mut lost = R::zero();
         if let Some(c) = &carried {
             lost = (c.loss * memory.spring.norm2()).only(!fresh);

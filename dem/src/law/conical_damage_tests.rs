@@ -13,7 +13,7 @@ const GRANITE: Material = Material {
     corner_strength: 6e7,
     corner_angle: 85.0 * PI / 180.0,
     restitution: 1.0,
-    ..Material::CLUMPS
+    ..Material::RIGID
 };
 
 fn law(a: &Material, b: &Material) -> ConicalDamage {

@@ -46,7 +46,7 @@ pub struct Material {
 
 impl Material {
     /// Rigid frictionless wall.
-    pub const CLUMPS: Material = Material {
+    pub const RIGID: Material = Material {
         density: 1.0,
         stiffness: f64::INFINITY,
         tangential_ratio: 0.5,
@@ -74,9 +74,9 @@ impl Material {
 }
 
 impl Default for Material {
-    /// [`Material::CLUMPS`].
+    /// [`Material::RIGID`].
     fn default() -> Material {
-        Material::CLUMPS
+        Material::RIGID
     }
 }
 

@@ -52,7 +52,7 @@ impl TangentialLaw<Hertz> for Mindlin {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
+    fn transfer_spring<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
         let kept = (before / circle).min(R::splat(1.0));
         let loss = R::splat(4.0) * law.shear * (before - circle * kept * kept);
         Some(SpringTransfer { kept, loss })

@@ -193,11 +193,11 @@ mod tests {
         for p in &MATERIAL {
             let Typical { low, high, or_zero } = p.typical;
             assert!(low <= high && (p.range.contains(low) || or_zero), "{}", p.key);
-            let default = p.value(&Material::CLUMPS);
+            let default = p.value(&Material::RIGID);
             assert!(default.is_none_or(|v| p.range.contains(v)), "{}: {default:?}", p.key);
         }
-        assert!(first_invalid(&MATERIAL, &Material::CLUMPS).is_none());
-        let (p, value) = first_invalid(&MATERIAL, &Material { friction: -0.1, ..Material::CLUMPS }).unwrap();
+        assert!(first_invalid(&MATERIAL, &Material::RIGID).is_none());
+        let (p, value) = first_invalid(&MATERIAL, &Material { friction: -0.1, ..Material::RIGID }).unwrap();
         assert_eq!((p.key, value), ("friction", -0.1));
     }
 }

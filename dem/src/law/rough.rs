@@ -68,7 +68,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Rough<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
+    fn transfer_spring<R: Real>(_: &Rough<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
         None
     }
 

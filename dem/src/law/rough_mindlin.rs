@@ -55,10 +55,10 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(law: &RoughMindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
+    fn transfer_spring<R: Real>(law: &RoughMindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
         let mindlin = Mindlin { shear: law.shear };
         let SpringTransfer { kept, loss } =
-            <Mindlin as TangentialLaw<super::hertz::Hertz>>::carry(&mindlin, circle, before)?;
+            <Mindlin as TangentialLaw<super::hertz::Hertz>>::transfer_spring(&mindlin, circle, before)?;
         let touches = R::zero().lt(circle);
         let all = R::splat(4.0) * law.shear * before;
         Some(SpringTransfer { kept: kept.only(touches), loss: R::select(touches, loss, all) })

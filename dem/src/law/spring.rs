@@ -43,7 +43,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Spring {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
+    fn transfer_spring<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
         None
     }
 

@@ -46,7 +46,7 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
     }
 
     /// Transfers springs from circle radius `before` to `circle` [m]; `None`: unchanged.
-    fn carry<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<SpringTransfer<R>>;
+    fn transfer_spring<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<SpringTransfer<R>>;
 
     /// Returns the stiffness at contact end, unless zero.
     fn at_end<R: Real>(law: &Self::Lanes<R>) -> Option<R>;

@@ -3,7 +3,7 @@
 use crate::base::Vec3;
 use crate::bodies::block::Block;
 use crate::bond::debonded;
-use crate::bond::kernel::{self, Motion, carry, half_step_energy, respond};
+use crate::bond::kernel::{self, Motion, half_step_energy, respond, update_frame};
 use crate::bond::store::Entry;
 use crate::engine::model::Model;
 use crate::engine::state::State;
@@ -67,7 +67,7 @@ pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
         let bond = &model.bonds[number as usize];
         let k = &bond.values;
         let (p, q) = ends(state, b, &e);
-        let frame = carry(k[kernel::OFFSET], &p, &q, &mut e.memory, dt);
+        let frame = update_frame(k[kernel::OFFSET], &p, &q, &mut e.memory, dt);
         let r = respond(k, &p, &q, &frame, &e.memory);
         let n = frame.normal;
         let twist = e.memory.turn.dot(n);

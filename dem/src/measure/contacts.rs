@@ -69,11 +69,11 @@ impl<'a> Snapshot<'a> {
         let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
         let mut walls = Vec::new();
         if !model.patches.is_empty() {
-            model.walls.now(&state.walls, back, &mut walls);
+            model.walls.update_poses(&state.walls, back, &mut walls);
         }
         let mut sheet = Vec::new();
         if !model.sheet.is_empty() {
-            model.sheet.now(&state.sheet, back, &mut sheet);
+            model.sheet.update_poses(&state.sheet, back, &mut sheet);
         }
         let (planes, last) = (&state.planes[..], state.step_size.last);
         Snapshot { model, planes, walls, sheet, blocks, spheres, owners, back, last, scars: &state.scars }
@@ -192,7 +192,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         let Cross { spheres, kinds, images } = &state.cross[b];
         spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, &history, here));
         for ImagePair { name, history } in images {
-            let shift = model.periodic.map_or(here, |p| p.way(&name.shift));
+            let shift = model.periodic.map_or(here, |p| p.image_offset(&name.shift));
             pair(name.i, name.block, name.j, history, shift);
         }
         KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&model.laws, &now, b, list, &mut f));

@@ -109,7 +109,7 @@ mod tests {
         let body =
             |orientation| BodyInput { orientation, position: Vec3::new(0.0, 0.0, 3.0), ..Default::default() };
         let model = Model::new(ModelInput {
-            materials: vec![Material { density: 1.0, stiffness: 1.0, ..Material::CLUMPS }],
+            materials: vec![Material { density: 1.0, stiffness: 1.0, ..Material::RIGID }],
             shapes: vec![cube],
             bodies: vec![body(UnitQuaternion::identity()), body(turned)],
             ..ModelInput::default()

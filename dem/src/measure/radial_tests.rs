@@ -7,7 +7,7 @@ use rand_core::Rng;
 
 fn scene(points: impl Iterator<Item = Vec3>, sides: Option<f64>) -> (Model, State) {
     let input = ModelInput {
-        materials: vec![Material { density: 1000.0, stiffness: 1e3, ..Material::CLUMPS }],
+        materials: vec![Material { density: 1000.0, stiffness: 1e3, ..Material::RIGID }],
         shapes: vec![Shape::Sphere { radius: 1e-4 }],
         bodies: points.map(|position| BodyInput { position, ..BodyInput::default() }).collect(),
         periodic: [sides.map(|l| [0.0, l]); 3],

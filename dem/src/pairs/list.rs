@@ -1,4 +1,4 @@
-//! Pairs with several contact points and their history, for pair types without SIMD (`contact/kind`).
+//! Pairs with several contact points and their history, for pair types without SIMD (`contact/narrow_phase`).
 
 use crate::base::capacity::capacity_bytes;
 use crate::law::History;

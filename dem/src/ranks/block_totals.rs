@@ -1,6 +1,6 @@
 //! Messages of block totals to the first rank.
 
-use super::codec::{put, take};
+use super::codec::{decode, encode};
 use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
 use crate::bodies::sums::WallSum;
@@ -52,7 +52,7 @@ fn read_balance(rest: &mut &[u8]) -> Option<BalanceTerms> {
             }
         }
     }
-    take(&mut &room[..])
+    decode(&mut &room[..])
 }
 
 /// Totals of a bond list; broken bonds follow.
@@ -67,16 +67,16 @@ struct BondBook {
 
 fn write_bonds(w: &ListWork, out: &mut Vec<u8>) {
     let &ListWork { power, dashpot, friction, failure, .. } = w;
-    put(out, &BondBook { power, dashpot, friction, failure, broken: w.broken.len() as u32 });
-    w.broken.iter().for_each(|broken| put(out, broken));
+    encode(out, &BondBook { power, dashpot, friction, failure, broken: w.broken.len() as u32 });
+    w.broken.iter().for_each(|broken| encode(out, broken));
 }
 
 fn read_bonds(w: &mut ListWork, rest: &mut &[u8]) -> Option<()> {
-    let book: BondBook = take(rest)?;
+    let book: BondBook = decode(rest)?;
     w.reset();
     (w.power, w.dashpot, w.friction, w.failure) = (book.power, book.dashpot, book.friction, book.failure);
     for _ in 0..book.broken {
-        w.broken.push(take::<Broken>(rest)?);
+        w.broken.push(decode::<Broken>(rest)?);
     }
     Some(())
 }
@@ -101,9 +101,9 @@ pub(super) fn write(work: &Work, own: Range<usize>, bonds: bool, out: &mut Vec<u
             failure_across: cross.failure,
             wall_sums: walls.len() as u32,
         };
-        put(out, &book);
+        encode(out, &book);
         write_balance(out, &totals.balance);
-        walls.iter().for_each(|sum| put(out, sum));
+        walls.iter().for_each(|sum| encode(out, sum));
     }
 }
 
@@ -114,14 +114,14 @@ pub(super) fn read(work: &mut Work, own: Range<usize>, bonds: bool, rest: &mut &
         read_bonds(&mut work.bonds.cross[b], rest)?;
     }
     for (w, cross) in work.blocks[own.clone()].iter_mut().zip(&mut work.cross[own]) {
-        let book: Book = take(rest)?;
+        let book: Book = decode(rest)?;
         cross.clear_totals();
         (cross.dashpot, cross.friction, cross.failure) = (book.dashpot, book.friction, book.failure_across);
         let totals = &mut w.totals;
         (totals.balance, totals.fastest, totals.failure) = (read_balance(rest)?, book.fastest, book.failure);
         w.patches.wall_sums.clear();
         for _ in 0..book.wall_sums {
-            w.patches.wall_sums.push(take::<WallSum>(rest)?);
+            w.patches.wall_sums.push(decode::<WallSum>(rest)?);
         }
     }
     rest.is_empty().then_some(())

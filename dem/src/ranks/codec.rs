@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-pub(super) fn put<T: Serialize + ?Sized>(out: &mut Vec<u8>, value: &T) {
+pub(super) fn encode<T: Serialize + ?Sized>(out: &mut Vec<u8>, value: &T) {
     let room = std::mem::take(out);
     // Cannot fail for the types used here.
     *out = postcard::to_extend(value, room).expect("a value that can be written");
@@ -13,7 +13,7 @@ pub(super) fn write_numbers(out: &mut Vec<u8>, numbers: impl IntoIterator<Item =
 }
 
 /// `None` at the end of the message.
-pub(super) fn take<'a, T: Deserialize<'a>>(rest: &mut &'a [u8]) -> Option<T> {
+pub(super) fn decode<'a, T: Deserialize<'a>>(rest: &mut &'a [u8]) -> Option<T> {
     let (value, left) = postcard::take_from_bytes(rest).ok()?;
     *rest = left;
     Some(value)

@@ -1,6 +1,6 @@
 //! Commands of the first rank.
 
-use super::codec::{put, take};
+use super::codec::{decode, encode};
 use crate::base::Vec3;
 use crate::engine::state::State;
 use crate::integrate::leapfrog::Applied;
@@ -47,12 +47,15 @@ struct Force {
 pub(super) fn write_step(state: &State, rebuild: bool, applied: &[Applied], out: &mut Vec<u8>) {
     let &State { time, step_size, near, max_travel, wall_travel, .. } = state;
     let fresh = state.bonds.fresh;
-    put(out, &Command::Step(StepCommand { time, step_size, near, max_travel, wall_travel, fresh, rebuild }));
-    state.planes.iter().for_each(|plane| put(out, plane));
-    put(out, &state.walls);
-    put(out, &(applied.len() as u32));
+    encode(
+        out,
+        &Command::Step(StepCommand { time, step_size, near, max_travel, wall_travel, fresh, rebuild }),
+    );
+    state.planes.iter().for_each(|plane| encode(out, plane));
+    encode(out, &state.walls);
+    encode(out, &(applied.len() as u32));
     for &Applied { block, place, force, torque } in applied {
-        put(out, &Force { block, place, force, torque });
+        encode(out, &Force { block, place, force, torque });
     }
 }
 
@@ -66,12 +69,12 @@ pub(super) fn read_step(
     (state.time, state.step_size, state.near) = (now.time, now.step_size, now.near);
     (state.max_travel, state.wall_travel, state.bonds.fresh) = (now.max_travel, now.wall_travel, now.fresh);
     for plane in &mut state.planes {
-        *plane = take::<PlaneMotion>(rest)?;
+        *plane = decode::<PlaneMotion>(rest)?;
     }
-    state.walls = take(rest)?;
+    state.walls = decode(rest)?;
     applied.clear();
-    for _ in 0..take::<u32>(rest)? {
-        let Force { block, place, force, torque } = take(rest)?;
+    for _ in 0..decode::<u32>(rest)? {
+        let Force { block, place, force, torque } = decode(rest)?;
         applied.push(Applied { block, place, force, torque });
     }
     Some(())

@@ -1,6 +1,6 @@
 //! Command loop of all ranks but the first.
 
-use super::codec::{put, read_numbers, take, write_numbers};
+use super::codec::{decode, encode, read_numbers, write_numbers};
 use super::commands::{self, Command, StepCommand};
 use super::link::{Link, Lost};
 use super::message_counters::MessageKind;
@@ -21,11 +21,11 @@ pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, 
         let mut message = Vec::new();
         link.receive(FIRST, &mut message)?;
         let rest = &mut &message[..];
-        match take(rest) {
+        match decode(rest) {
             Some(Command::Model { bodies, dt }) => {
                 let made = make(rest).and_then(|model| same(model, bodies, dt));
                 let mut out = Vec::new();
-                put(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
+                encode(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
                 link.send(FIRST, &out)?;
                 if let Ok(model) = made {
                     return follow(link, &model);
@@ -54,7 +54,7 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     let mut message = Vec::new();
     link.receive(FIRST, &mut message)?;
     let rest = &mut &message[..];
-    match take(rest) {
+    match decode(rest) {
         Some(Command::Take) => {}
         Some(Command::End) => return Ok(()),
         _ => return Err(Lost::garbled(FIRST)),
@@ -66,7 +66,7 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     loop {
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
-        match take(rest) {
+        match decode(rest) {
             Some(Command::Step(now)) => {
                 let read = commands::read_step(&mut state, &now, &mut rank.work.applied, rest);
                 read.ok_or(Lost::garbled(FIRST))?;
@@ -74,7 +74,7 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
             }
             Some(Command::Give) => {
                 rank.out.clear();
-                put(&mut rank.out, &rank.traffic);
+                encode(&mut rank.out, &rank.traffic);
                 state_message::write_back(&state, rank.work.own.clone(), &mut rank.out);
                 rank.send(MessageKind::State, FIRST)?;
                 rank.out = Vec::new();
@@ -103,13 +103,13 @@ fn step<L: Link>(
         rank.boxes = rank.bounds(state).collect();
         rank.out.clear();
         write_numbers(&mut rank.out, [moved2]);
-        put(&mut rank.out, &rank.boxes);
+        encode(&mut rank.out, &rank.boxes);
         rank.send(MessageKind::NearList, FIRST)?;
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
         let [approach] = read_numbers(rest).ok_or(Lost::garbled(FIRST))?;
         if !rest.is_empty() {
-            rank.boxes = take(rest).ok_or(Lost::garbled(FIRST))?;
+            rank.boxes = decode(rest).ok_or(Lost::garbled(FIRST))?;
         }
         rank.rebuild(model, state, approach)?;
     }

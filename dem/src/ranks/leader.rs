@@ -1,6 +1,6 @@
 //! First rank: back end of a distributed run.
 
-use super::codec::{put, read_numbers, take, write_numbers};
+use super::codec::{decode, encode, read_numbers, write_numbers};
 use super::commands::{self, Command};
 use super::halo::Bounds;
 use super::link::{Link, Lost};
@@ -43,7 +43,10 @@ impl<L: Link> Ranks<L> {
             debonded: false,
             traffic: MessageCounters::default(),
         };
-        ranks.introduce(model, description).and_then(|()| ranks.deal_out(model, state)).map_err(at(time))?;
+        ranks
+            .introduce(model, description)
+            .and_then(|()| ranks.distribute(model, state))
+            .map_err(at(time))?;
         Ok(ranks)
     }
 
@@ -51,13 +54,13 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Command::Model { bodies: model.body_count() as u64, dt: model.dt() });
+            encode(&mut rank.out, &Command::Model { bodies: model.body_count() as u64, dt: model.dt() });
             rank.out.extend_from_slice(description);
             rank.send(MessageKind::State, other)?;
         }
         for other in rank.others() {
             rank.receive(other)?;
-            let problem: String = take(&mut &rank.message[..]).ok_or(Lost::garbled(other))?;
+            let problem: String = decode(&mut &rank.message[..]).ok_or(Lost::garbled(other))?;
             if !problem.is_empty() {
                 return Err(Lost { rank: other, problem });
             }
@@ -75,12 +78,12 @@ impl<L: Link> Ranks<L> {
         self.rank.work.rebuilds()
     }
 
-    fn deal_out(&mut self, model: &Model, state: &State) -> Result<(), Lost> {
+    fn distribute(&mut self, model: &Model, state: &State) -> Result<(), Lost> {
         let rank = &mut self.rank;
         let partition = Partition::of(state, rank.link.size());
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Command::Take);
+            encode(&mut rank.out, &Command::Take);
             state_message::write(state, &partition, other, &mut rank.out);
             rank.send(MessageKind::State, other)?;
         }
@@ -98,7 +101,7 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Command::Give);
+            encode(&mut rank.out, &Command::Give);
             rank.send(MessageKind::Order, other)?;
         }
         self.traffic = MessageCounters::default();
@@ -106,7 +109,7 @@ impl<L: Link> Ranks<L> {
             rank.link.receive(other, &mut rank.message)?;
             let rest = &mut &rank.message[..];
             let part = rank.partition.of_rank(other);
-            let sent: MessageCounters = take(rest).ok_or(Lost::garbled(other))?;
+            let sent: MessageCounters = decode(rest).ok_or(Lost::garbled(other))?;
             state_message::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
             self.traffic.add(&sent);
         }
@@ -126,13 +129,13 @@ impl<L: Link> Ranks<L> {
         if state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY) {
             self.fetch(state).map_err(&lost)?;
             state.reorder(model);
-            self.deal_out(model, state).map_err(&lost)?;
+            self.distribute(model, state).map_err(&lost)?;
         }
         if !applied.is_empty() {
             // Lever arms need present positions.
             self.fetch(state).map_err(&lost)?;
         }
-        applied::place(model, state, applied, &mut self.rank.work.applied)?;
+        applied::add_forces(model, state, applied, &mut self.rank.work.applied)?;
         if std::mem::take(&mut self.whole) {
             state_message::restrict(state, &self.rank.work.own);
             bonds::arrange(model, state, &mut self.rank.work);
@@ -173,7 +176,7 @@ impl<L: Link> Ranks<L> {
             step::reduce_blocks(model, state, &mut self.rank.work, 0.0)?;
             return match bonds::parted(state) == before {
                 true => Ok(()),
-                false => self.deal_out(model, state).map_err(&lost),
+                false => self.distribute(model, state).map_err(&lost),
             };
         }
         if !applied.is_empty() {
@@ -192,7 +195,7 @@ fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State
         let rest = &mut &rank.message[..];
         let [theirs] = read_numbers(rest).ok_or(Lost::garbled(other))?;
         moved2 = moved2.max(theirs);
-        let boxes: Vec<Bounds> = take(rest).ok_or(Lost::garbled(other))?;
+        let boxes: Vec<Bounds> = decode(rest).ok_or(Lost::garbled(other))?;
         rank.boxes.extend(boxes);
     }
     rank.work.searched.surface_travel += state.wall_travel;
@@ -204,7 +207,7 @@ fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State
         rank.out.clear();
         write_numbers(&mut rank.out, [approach]);
         if neighbour_list::exceeds_skin(model, state, approach) {
-            put(&mut rank.out, &rank.boxes);
+            encode(&mut rank.out, &rank.boxes);
         }
         rank.send(MessageKind::NearList, other)?;
     }
@@ -217,7 +220,7 @@ fn at(time: f64) -> impl Fn(Lost) -> StepError {
 
 impl<L: Link> BackEnd for Ranks<L> {
     fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
-        self.deal_out(model, state).map_err(at(state.time))
+        self.distribute(model, state).map_err(at(state.time))
     }
 
     fn step<S: Surface>(
@@ -250,7 +253,7 @@ impl<L: Link> Drop for Ranks<L> {
 /// Ends [`serve`](super::serve) on all other ranks, if no [`Ranks`] does.
 pub fn dismiss(link: &mut impl Link) {
     let mut end = Vec::new();
-    put(&mut end, &Command::End);
+    encode(&mut end, &Command::End);
     let own = link.rank();
     for other in (0..link.size()).filter(|&other| other != own) {
         // Lost ranks are ignored.

@@ -1,6 +1,6 @@
 //! Work of every rank.
 
-use super::codec::{put, take};
+use super::codec::{decode, encode};
 use super::ghosts::{self, BodyLocation, Ghosts};
 use super::halo::{self, Bounds};
 use super::link::{Link, Lost};
@@ -75,12 +75,12 @@ impl<L: Link> Rank<L> {
         self.traffic.ghosts = need.len() as u64;
         for rank in self.others() {
             self.out.clear();
-            put(&mut self.out, &self.ghosts.from[rank]);
+            encode(&mut self.out, &self.ghosts.from[rank]);
             self.send(MessageKind::Search, rank)?;
         }
         for rank in self.others() {
             self.receive(rank)?;
-            self.ghosts.to[rank] = take(&mut &self.message[..]).ok_or(Lost::garbled(rank))?;
+            self.ghosts.to[rank] = decode(&mut &self.message[..]).ok_or(Lost::garbled(rank))?;
         }
         Ok(())
     }
@@ -143,7 +143,7 @@ impl<L: Link> Rank<L> {
             let ranges = (self.work.own.clone(), self.partition.of_rank(rank));
             halo::near(&state.blocks, &self.boxes, ranges, reach, &mut near);
             self.out.clear();
-            put(&mut self.out, &near);
+            encode(&mut self.out, &near);
             ghosts::write_motion(&state.blocks, &near, &mut self.out);
             self.send(MessageKind::Search, rank)?;
         }
@@ -151,7 +151,7 @@ impl<L: Link> Rank<L> {
         for rank in self.others() {
             self.link.receive(rank, &mut self.message)?;
             let rest = &mut &self.message[..];
-            let places: Vec<BodyLocation> = take(rest).ok_or(Lost::garbled(rank))?;
+            let places: Vec<BodyLocation> = decode(rest).ok_or(Lost::garbled(rank))?;
             let read = ghosts::read_motion(&mut state.blocks, &mut self.work.members, &places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
             self.work.halo.extend(places);

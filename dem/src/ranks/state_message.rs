@@ -1,6 +1,6 @@
 //! Messages of partial states.
 
-use super::codec::{put, take};
+use super::codec::{decode, encode};
 use super::partition::Partition;
 use crate::bodies::block::Block;
 use crate::bond::{BondList, BondState};
@@ -12,11 +12,11 @@ use std::ops::Range;
 /// Motion of all bodies, contacts of the rank's blocks and of earlier ones with them.
 pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut Vec<u8>) {
     let own = partition.of_rank(rank);
-    put(out, &partition.bounds);
-    put(out, &rest_of(state));
-    put(out, &state.blocks);
-    put(out, &state.lists[own.clone()]);
-    put(out, &state.cross[own.clone()]);
+    encode(out, &partition.bounds);
+    encode(out, &rest_of(state));
+    encode(out, &state.blocks);
+    encode(out, &state.lists[own.clone()]);
+    encode(out, &state.cross[own.clone()]);
     let reach = |list: &Groups<3>| (0..list.len()).any(|k| own.contains(&(list.name(k)[1] as usize)));
     let earlier = state.cross[..own.start].iter().enumerate().filter(|(_, cross)| reach(&cross.spheres));
     let earlier: Vec<(u32, Groups<3>)> = earlier
@@ -28,13 +28,13 @@ pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut
             (b as u32, part)
         })
         .collect();
-    put(out, &earlier);
+    encode(out, &earlier);
     // Empty lists need the type of their contact history.
     let turning: Vec<bool> = state.cross[..own.start].iter().map(|cross| cross.spheres.turning).collect();
-    put(out, &turning);
+    encode(out, &turning);
     let bonds = state.bonds.cross.iter().enumerate();
     let bonds: Vec<BondList> = bonds.map(|(b, list)| bonds_with(list, b, &own)).collect();
-    put(out, &bonds);
+    encode(out, &bonds);
 }
 
 /// With an end in the blocks `own`.
@@ -67,25 +67,25 @@ pub(super) fn restrict(state: &mut State, own: &Range<usize>) {
 /// `None` if the message is malformed.
 pub(super) fn read(rank: usize, mut rest: &[u8]) -> Option<(State, Partition)> {
     let rest = &mut rest;
-    let partition = Partition { bounds: take(rest)? };
+    let partition = Partition { bounds: decode(rest)? };
     let own = partition.of_rank(rank);
-    let mut state: State = take(rest)?;
-    state.blocks = take(rest)?;
+    let mut state: State = decode(rest)?;
+    state.blocks = decode(rest)?;
     state.lists.resize_with(own.start, BlockLists::default);
-    state.lists.append(&mut take(rest)?);
+    state.lists.append(&mut decode(rest)?);
     state.lists.resize_with(state.blocks.len(), BlockLists::default);
     state.cross.resize_with(own.start, Cross::default);
-    state.cross.append(&mut take(rest)?);
+    state.cross.append(&mut decode(rest)?);
     state.cross.resize_with(state.blocks.len(), Cross::default);
-    let earlier: Vec<(u32, Groups<3>)> = take(rest)?;
-    let turning: Vec<bool> = take(rest)?;
+    let earlier: Vec<(u32, Groups<3>)> = decode(rest)?;
+    let turning: Vec<bool> = decode(rest)?;
     for (cross, turning) in state.cross.iter_mut().zip(turning) {
         cross.spheres.turning = turning;
     }
     for (b, part) in earlier {
         state.cross[b as usize].spheres = part;
     }
-    state.bonds.cross = take(rest)?;
+    state.bonds.cross = decode(rest)?;
     rest.is_empty().then_some((state, partition))
 }
 
@@ -106,18 +106,18 @@ fn rest_of(state: &State) -> State {
 }
 
 pub(super) fn write_back(state: &State, own: Range<usize>, out: &mut Vec<u8>) {
-    put(out, &state.blocks[own.clone()]);
-    put(out, &state.lists[own.clone()]);
-    put(out, &state.cross[own.clone()]);
+    encode(out, &state.blocks[own.clone()]);
+    encode(out, &state.lists[own.clone()]);
+    encode(out, &state.cross[own.clone()]);
     // Models without bonds have no lists.
-    put(out, state.bonds.cross.get(own).unwrap_or_default());
+    encode(out, state.bonds.cross.get(own).unwrap_or_default());
 }
 
 /// `None` if the message is malformed.
 pub(super) fn read_back(state: &mut State, own: Range<usize>, rest: &mut &[u8]) -> Option<()> {
-    let blocks: Vec<Block> = take(rest)?;
-    let (lists, cross): (Vec<BlockLists>, Vec<Cross>) = (take(rest)?, take(rest)?);
-    let bonds: Vec<BondList> = take(rest)?;
+    let blocks: Vec<Block> = decode(rest)?;
+    let (lists, cross): (Vec<BlockLists>, Vec<Cross>) = (decode(rest)?, decode(rest)?);
+    let bonds: Vec<BondList> = decode(rest)?;
     let expected = if state.bonds.cross.is_empty() { 0 } else { own.len() };
     if [blocks.len(), lists.len(), cross.len()] != [own.len(); 3] || bonds.len() != expected {
         return None;

@@ -84,7 +84,7 @@ impl Cells {
 
     /// Calls `f` with all points within `skin` of contact, and others in their cells.
     #[inline]
-    pub fn near(&self, p: &Vec4, skin: f64, mut f: impl FnMut(u32)) {
+    pub fn neighbours(&self, p: &Vec4, skin: f64, mut f: impl FnMut(u32)) {
         for grid in &self.grids {
             if grid.items.is_empty() {
                 continue;
@@ -161,7 +161,7 @@ mod tests {
             let mut pairs = 0;
             for p in &points {
                 let mut found = vec![false; points.len()];
-                cells.near(p, 0.01, |k| found[k as usize] = true);
+                cells.neighbours(p, 0.01, |k| found[k as usize] = true);
                 for (k, q) in points.iter().enumerate() {
                     let d2: f64 = (0..3).map(|d| (p[d] - q[d]).powi(2)).sum();
                     let touches = d2 < (p[3] + q[3] + 0.01_f64).powi(2);

@@ -59,7 +59,7 @@ impl Sheet {
     }
 
     /// Triangles `back` seconds ago.
-    pub fn now(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
+    pub fn update_poses(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
         out.clear();
         out.extend(self.facets.iter().zip(&self.triangles).map(|(rest, t)| {
             let now = t.map(|v| corners[v as usize]);

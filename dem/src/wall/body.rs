@@ -187,7 +187,7 @@ impl Body {
         state.turned = true;
     }
 
-    pub fn stands(&self) -> bool {
+    pub fn rests_on_ground(&self) -> bool {
         self.stands
     }
 
@@ -306,7 +306,7 @@ impl Ground<'_> {
 }
 
 /// Vertex–plane contacts: returns force and torque about the centre, adds the planes' totals.
-pub(crate) fn stand(
+pub(crate) fn ground_reaction(
     ground: &Ground<'_>,
     body: &Body,
     material: u32,

@@ -248,7 +248,7 @@ impl Walls {
     }
 
     /// Wall poses `back` seconds ago.
-    pub(crate) fn now(&self, states: &[WallState], back: f64, out: &mut Vec<WallView>) {
+    pub(crate) fn update_poses(&self, states: &[WallState], back: f64, out: &mut Vec<WallView>) {
         out.clear();
         out.extend(self.walls.iter().zip(states).map(|(wall, state)| {
             let mut state = state.clone();

@@ -97,7 +97,7 @@ impl<R: Real> WallPose<R> {
 impl WallState {
     /// `centre`: initial centre.
     #[inline(always)]
-    fn place(&self, centre: &Vec3) -> WallPose<f64> {
+    fn pose(&self, centre: &Vec3) -> WallPose<f64> {
         let of = V3::from_vec;
         WallPose {
             centre: of(centre),
@@ -112,23 +112,23 @@ impl WallState {
     /// World to wall frame; initial `centre`.
     #[inline(always)]
     pub fn to_local(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).to_local(V3::from_vec(x)).to_vec()
+        self.pose(centre).to_local(V3::from_vec(x)).to_vec()
     }
 
     /// Wall frame to world.
     #[inline(always)]
     pub fn to_world(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).to_world(V3::from_vec(x)).to_vec()
+        self.pose(centre).to_world(V3::from_vec(x)).to_vec()
     }
 
     /// Direction to world.
     #[inline(always)]
     pub fn turn(&self, v: &Vec3) -> Vec3 {
-        self.place(&Vec3::zeros()).turn(V3::from_vec(v)).to_vec()
+        self.pose(&Vec3::zeros()).turn(V3::from_vec(v)).to_vec()
     }
 
     #[inline(always)]
     pub fn velocity_at(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).velocity_at(V3::from_vec(x)).to_vec()
+        self.pose(centre).velocity_at(V3::from_vec(x)).to_vec()
     }
 }

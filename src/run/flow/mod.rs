@@ -222,7 +222,7 @@ impl<'a> Flow<'a> {
                     arrive.iter().for_each(|a| room.fill(&a.position, model.radius(a.body)));
                     room
                 });
-                let Some((position, orientation)) = room.place(model.radius(body), &mut inlet.places) else {
+                let Some((position, orientation)) = room.find_position(model.radius(body), &mut inlet.places) else {
                     inlet.full += 1;
                     // While no position is free, at most one grain is accumulated.
                     inlet.allowed = inlet.allowed.min(inlet.given + amount);

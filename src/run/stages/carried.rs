@@ -54,7 +54,7 @@ impl Carried {
     /// # Errors
     /// Different grains.
     pub fn put(&self, model: &dem::Model, state: &mut dem::State) -> Result<(), Failure> {
-        state.carry(model, &self.state, self.count).map_err(|body| {
+        state.transfer_bodies(model, &self.state, self.count).map_err(|body| {
             Failure::Input(format!(
                 "--from: found grain {body} different from the imported bed, expected the same [[grains]]"
             ))

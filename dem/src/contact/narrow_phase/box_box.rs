@@ -85,11 +85,11 @@ impl ShapePair for BoxBox {
     type First = Solids;
     type Second = Solids;
 
-    fn near(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
+    fn may_touch(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
         Two::new(first, second).is_some_and(|two| two.separation().1 < reach)
     }
 
-    fn touches(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, found: &mut Manifold) {
+    fn contact_points(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, found: &mut Manifold) {
         let Some(two) = Two::new(first, second) else { return };
         let (axis, apart) = two.separation();
         if apart >= 0.0 {
@@ -246,8 +246,8 @@ mod tests {
                 radius: 0.0,
             });
             let (mut one, mut two) = (Manifold::new(), Manifold::new());
-            BoxBox.touches(&a, &b, &mut one);
-            BoxBox.touches(&b, &a, &mut two);
+            BoxBox.contact_points(&a, &b, &mut one);
+            BoxBox.contact_points(&b, &a, &mut two);
             assert_eq!(one.is_empty(), two.is_empty());
             let separation = Two::new(&a, &b).unwrap().separation().1;
             assert_eq!(one.is_empty(), separation >= 0.0);
@@ -277,7 +277,7 @@ mod tests {
             }
             b.centre -= touch.geometry.normal * (1.0 + 1e-9) * -separation.min(-touch.geometry.overlap);
             let mut apart = Manifold::new();
-            BoxBox.touches(&a, &b, &mut apart);
+            BoxBox.contact_points(&a, &b, &mut apart);
             assert!(apart.is_empty(), "{separation}");
         }
         assert!(overlapping > 500 && several > 100, "{overlapping} {several}");
@@ -299,7 +299,7 @@ mod tests {
             };
             let mut found = Manifold::new();
             let above = Vec3::new(aside, 0.1 * aside, 0.2999);
-            BoxBox.touches(&placed(0, Vec3::zeros(), 0.0), &placed(1, above, turn), &mut found);
+            BoxBox.contact_points(&placed(0, Vec3::zeros(), 0.0), &placed(1, above, turn), &mut found);
             let sum: f64 = found.iter().map(|t| t.weight).sum();
             assert!((sum - 4.0).abs() < 1e-12, "{turn} {aside}: {sum}");
             assert!((least..=8).contains(&found.len()), "{turn} {aside}: {}", found.len());

@@ -12,11 +12,11 @@ impl ShapePair for CornerPlane {
     type First = Corners;
     type Second = Planes;
 
-    fn near(&self, corner: &Corner, plane: &PlaneView, reach: f64) -> bool {
+    fn may_touch(&self, corner: &Corner, plane: &PlaneView, reach: f64) -> bool {
         !plane.open && (corner.point - plane.origin).dot(&plane.normal) < reach
     }
 
-    fn touches(&self, corner: &Corner, plane: &PlaneView, found: &mut Manifold) {
+    fn contact_points(&self, corner: &Corner, plane: &PlaneView, found: &mut Manifold) {
         let touch = detect::sphere_plane(&corner.point, 0.0, &plane.origin, &plane.normal);
         // Laws use the body size as radius.
         let touch = touch.map(|g| ContactGeometry { radius: corner.size, ..g });

@@ -284,7 +284,7 @@ impl ShapePair for DilatedDilated {
     type Second = Solids;
     const SHARED: bool = true;
 
-    fn near(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
+    fn may_touch(&self, first: &PosedBody<'_>, second: &PosedBody<'_>, reach: f64) -> bool {
         if !(first.dilated() || second.dilated()) || !around(first, second, reach) {
             return false;
         }
@@ -293,7 +293,7 @@ impl ShapePair for DilatedDilated {
         two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
     }
 
-    fn touches(&self, a: &PosedBody<'_>, b: &PosedBody<'_>, found: &mut Manifold) {
+    fn contact_points(&self, a: &PosedBody<'_>, b: &PosedBody<'_>, found: &mut Manifold) {
         self.contact_points_from_hint(a, b, &mut None, found);
     }
 
@@ -348,13 +348,13 @@ impl ShapePair for DilatedPlane {
     type Second = Planes;
     const SHARED: bool = true;
 
-    fn near(&self, body: &PosedBody<'_>, plane: &PlaneView, reach: f64) -> bool {
+    fn may_touch(&self, body: &PosedBody<'_>, plane: &PlaneView, reach: f64) -> bool {
         body.dilated()
             && !plane.open
             && (body.centre - plane.origin).dot(&plane.normal) < body.reach() + reach
     }
 
-    fn touches(&self, body: &PosedBody<'_>, plane: &PlaneView, found: &mut Manifold) {
+    fn contact_points(&self, body: &PosedBody<'_>, plane: &PlaneView, found: &mut Manifold) {
         let height = (body.centre - plane.origin).dot(&plane.normal);
         if height >= body.reach() {
             return;
@@ -375,7 +375,7 @@ impl ShapePair for DilatedPlane {
 /// Lower bound of the distance outside a core.
 fn outside(core: &Core, p: &Vec3) -> f64 {
     match core.rim {
-        Some(radius) => disk::way(radius, p).norm(),
+        Some(radius) => disk::offset_from_disk(radius, p).norm(),
         None => core.faces.iter().map(|f| f.normal.dot(p) - f.offset).fold(f64::NEG_INFINITY, f64::max),
     }
 }
@@ -384,7 +384,7 @@ impl ShapePair for SphereDilated {
     type First = Spheres;
     type Second = Solids;
 
-    fn near(&self, sphere: &&Vec4, body: &PosedBody<'_>, reach: f64) -> bool {
+    fn may_touch(&self, sphere: &&Vec4, body: &PosedBody<'_>, reach: f64) -> bool {
         if !body.dilated() {
             return false;
         }
@@ -393,7 +393,7 @@ impl ShapePair for SphereDilated {
         outside(body.core, &local) * body.scale < most
     }
 
-    fn touches(&self, sphere: &&Vec4, body: &PosedBody<'_>, found: &mut Manifold) {
+    fn contact_points(&self, sphere: &&Vec4, body: &PosedBody<'_>, found: &mut Manifold) {
         if !body.dilated() {
             return;
         }

@@ -172,8 +172,8 @@ fn energies(count: usize) {
             }
             let a = at(high);
             let (mut one, mut two) = (Manifold::new(), Manifold::new());
-            DilatedDilated.touches(&a, &b, &mut one);
-            DilatedDilated.touches(&b, &a, &mut two);
+            DilatedDilated.contact_points(&a, &b, &mut one);
+            DilatedDilated.contact_points(&b, &a, &mut two);
             let into = |one: &PosedBody<'_>, other: &PosedBody<'_>| {
                 let other = solid(other);
                 pressing(&skeleton_of(one), &|p| distance(&other, p), reach)
@@ -286,13 +286,13 @@ impl Other {
         match self {
             Other::Sphere(size) => {
                 let sphere = Vec4::of(&Vec3::zeros(), *size);
-                SphereDilated.touches(&&sphere, body, &mut found);
+                SphereDilated.contact_points(&&sphere, body, &mut found);
                 let reach = size + own;
                 let overlap = (reach - distance(&solid(body), &Vec3::zeros()).0).max(0.0);
                 (found, 0.5 * overlap * overlap, reach)
             }
             Other::Plane(plane) => {
-                DilatedPlane.touches(body, plane, &mut found);
+                DilatedPlane.contact_points(body, plane, &mut found);
                 let exact = pressing(&skeleton_of(body), &|p| (plane.normal.dot(p), [0; 2]), own);
                 (found, exact, own)
             }

@@ -71,12 +71,12 @@ fn forces_have_a_potential() {
                 1.1,
             )
         };
-        let touches = |shift: Vec3, spin: Vec3| {
+        let contact_points = |shift: Vec3, spin: Vec3| {
             let mut found = Manifold::new();
-            DilatedDilated.touches(&at(shift, spin), &b, &mut found);
+            DilatedDilated.contact_points(&at(shift, spin), &b, &mut found);
             found
         };
-        let found = touches(Vec3::zeros(), Vec3::zeros());
+        let found = contact_points(Vec3::zeros(), Vec3::zeros());
         let deepest = found.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
         if found.is_empty() || deepest > 0.3 {
             continue;
@@ -88,8 +88,8 @@ fn forces_have_a_potential() {
         let slope = |f: &dyn Fn(f64) -> Manifold| (energy(&f(h)) - energy(&f(-h))) / (2.0 * h);
         for d in 0..3 {
             let e = Vec3::ith(d, 1.0);
-            let by_shift = slope(&|x| touches(e * x, Vec3::zeros()));
-            let by_spin = slope(&|x| touches(Vec3::zeros(), e * x));
+            let by_shift = slope(&|x| contact_points(e * x, Vec3::zeros()));
+            let by_spin = slope(&|x| contact_points(Vec3::zeros(), e * x));
             // The error bound, second differences, is a few hundred springs at most.
             let unit = force.norm() + 1e-4;
             worst[0] = worst[0].max((force[d] + by_shift).abs() / unit);
@@ -114,8 +114,8 @@ fn pairs_match_from_both_sides() {
         let way = random.orientation() * Vec3::z() * (0.5 + 0.6 * random.uniform());
         let b = placed(&shapes[1], &cores[1], way, random.orientation(), 0.7);
         let (mut one, mut two) = (Manifold::new(), Manifold::new());
-        DilatedDilated.touches(&a, &b, &mut one);
-        DilatedDilated.touches(&b, &a, &mut two);
+        DilatedDilated.contact_points(&a, &b, &mut one);
+        DilatedDilated.contact_points(&b, &a, &mut two);
         assert_eq!(one.len(), two.len());
         if one.is_empty() || one[0].feature == 0 {
             continue;
@@ -163,7 +163,7 @@ fn overlaps_are_those_of_the_table() {
         let (a, b) = (placed(&a.0, &cores[0], a.1, a.2, 1.0), placed(&b.0, &cores[1], b.1, b.2, 1.0));
         let (gap, normal) = (number(21), Vec3::new(number(23), number(24), number(25)));
         let mut found = Manifold::new();
-        DilatedDilated.touches(&a, &b, &mut found);
+        DilatedDilated.contact_points(&a, &b, &mut found);
         if gap >= 0.0 {
             assert!(found.is_empty(), "{line}");
             continue;
@@ -202,12 +202,16 @@ fn a_cube_on_a_plane() {
         material: 0,
         open: false,
     };
-    let touches = |height: f64, turn: UnitQuaternion<f64>| {
+    let contact_points = |height: f64, turn: UnitQuaternion<f64>| {
         let mut found = Manifold::new();
-        DilatedPlane.touches(&placed(&shape, &core, Vec3::z() * height, turn, 1.0), &plane, &mut found);
+        DilatedPlane.contact_points(
+            &placed(&shape, &core, Vec3::z() * height, turn, 1.0),
+            &plane,
+            &mut found,
+        );
         found
     };
-    let mut flat = touches(0.499, UnitQuaternion::identity());
+    let mut flat = contact_points(0.499, UnitQuaternion::identity());
     // Ends of upright edges press slightly.
     assert_eq!(flat.len(), 12);
     assert!(flat.iter().filter(|t| t.weight < 0.004).count() == 4, "{flat:?}");
@@ -219,10 +223,10 @@ fn a_cube_on_a_plane() {
             .all(|t| (t.geometry.overlap - 1e-3).abs() < 1e-12 && (t.geometry.point.z + 5e-4).abs() < 1e-12)
     );
     let turn = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
-    let edge = touches(0.4 * 2.0_f64.sqrt() + 0.099, turn);
+    let edge = contact_points(0.4 * 2.0_f64.sqrt() + 0.099, turn);
     let large = edge.iter().filter(|t| t.weight > 0.5).count();
     assert_eq!(large, 3, "{edge:?}");
-    assert!(touches(0.501, UnitQuaternion::identity()).is_empty());
+    assert!(contact_points(0.501, UnitQuaternion::identity()).is_empty());
 }
 
 type Pose = (Vec3, UnitQuaternion<f64>);
@@ -273,7 +277,7 @@ fn forces_are_continuous() {
         let force = |x: f64| {
             let [a, b] = sweep(x).map(|(at, q)| placed(&shape, &core, at, given(q), 1.0));
             let mut found = Manifold::new();
-            DilatedDilated.touches(&a, &b, &mut found);
+            DilatedDilated.contact_points(&a, &b, &mut found);
             wrench(&found, &b.centre)
         };
         let largest = |steps: i32| {
@@ -315,7 +319,7 @@ fn hints_change_nothing() {
             let a = placed(&shapes[i], &cores[i], centre, turn, 1.0);
             let b = placed(&shapes[j], &cores[j], Vec3::zeros(), UnitQuaternion::identity(), 1.1);
             let (mut cold, mut warm) = (Manifold::new(), Manifold::new());
-            DilatedDilated.touches(&a, &b, &mut cold);
+            DilatedDilated.contact_points(&a, &b, &mut cold);
             DilatedDilated.contact_points_from_hint(&a, &b, &mut hint, &mut warm);
             if cold.first().is_some_and(|t| t.geometry.overlap > t.bound) {
                 hint = None;

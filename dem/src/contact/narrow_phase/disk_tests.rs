@@ -103,14 +103,14 @@ fn disks_of_the_table() {
         let way = match words[1] {
             "plane" => {
                 let plane = floor();
-                DilatedPlane.touches(&body, &plane, &mut found);
+                DilatedPlane.contact_points(&body, &plane, &mut found);
                 Vec3::z() * shortest([0.0, TAU], &|t| Vec3::z() * rim_point(&body, t).z).z
             }
             "disk" => {
                 let other = disk(given(0), number(3));
                 let own = other.core();
                 let other = placed(&other, &own, Vec3::zeros(), turn([1, 2, 3, 4].map(given)), 1.0);
-                DilatedDilated.touches(&body, &other, &mut found);
+                DilatedDilated.contact_points(&body, &other, &mut found);
                 let one = shortest([0.0, TAU], &|t| from_disk(&other, &rim_point(&body, t)));
                 let two = -shortest([0.0, TAU], &|t| from_disk(&body, &rim_point(&other, t)));
                 if one.norm() < two.norm() { one } else { two }
@@ -122,7 +122,7 @@ fn disks_of_the_table() {
                 let own = stone.core();
                 let given = turn([1, 2, 3, 4].map(given));
                 let other = placed(&stone, &own, given * centre, given * q, 1.0);
-                DilatedDilated.touches(&body, &other, &mut found);
+                DilatedDilated.contact_points(&body, &other, &mut found);
                 let mut part = Part::none(&own, View::everywhere(Vec3::z(), 10.0));
                 let part = part.all();
                 let to = |p: Vec3| {
@@ -229,7 +229,7 @@ fn energies(count: usize) {
             let low = rim_lowest(&body);
             let body = PosedBody { centre: body.centre - Vec3::z() * (low - share * reach), ..body };
             let plane = floor();
-            DilatedPlane.touches(&body, &plane, &mut found);
+            DilatedPlane.contact_points(&body, &plane, &mut found);
             exact = pressing(&body, reach, &|p| (p.z, [0; 2]));
         } else {
             let apart = |s: f64| {
@@ -239,7 +239,7 @@ fn energies(count: usize) {
             reach = at(0.0).radius + other.radius;
             let s = close(&apart, reach * share);
             let body = at(s);
-            DilatedDilated.touches(&body, &other, &mut found);
+            DilatedDilated.contact_points(&body, &other, &mut found);
             if kind == 0 {
                 exact = pressing(&body, reach, &|p| off_disk(&other, p));
                 exact += pressing(&other, reach, &|p| off_disk(&body, p));
@@ -247,7 +247,7 @@ fn energies(count: usize) {
                 exact = with_stone(&body, &other, reach);
             }
             let mut back = Manifold::new();
-            DilatedDilated.touches(&other, &body, &mut back);
+            DilatedDilated.contact_points(&other, &body, &mut back);
             assert!((energy(&back) - energy(&found)).abs() < 1e-13 * reach * reach, "{back:?} {found:?}");
         }
         if exact == 0.0 {
@@ -307,12 +307,12 @@ fn forces_of_disks_have_a_potential() {
             let q = UnitQuaternion::from_scaled_axis(spin) * qa;
             placed(&shapes[i], &cores[i], b.centre + way + shift, q, 1.1)
         };
-        let touches = |shift: Vec3, spin: Vec3| {
+        let contact_points = |shift: Vec3, spin: Vec3| {
             let mut found = Manifold::new();
-            DilatedDilated.touches(&at(shift, spin), &b, &mut found);
+            DilatedDilated.contact_points(&at(shift, spin), &b, &mut found);
             found
         };
-        let found = touches(Vec3::zeros(), Vec3::zeros());
+        let found = contact_points(Vec3::zeros(), Vec3::zeros());
         let deepest = found.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
         if found.is_empty() || deepest > 0.3 || energy(&found) < 1e-9 {
             continue;
@@ -325,8 +325,10 @@ fn forces_of_disks_have_a_potential() {
         for d in 0..3 {
             let e = Vec3::ith(d, 1.0);
             let unit = force.norm() + 1e-4;
-            worst[0] = worst[0].max((force[d] + slope(&|x| touches(e * x, Vec3::zeros()))).abs() / unit);
-            worst[1] = worst[1].max((torque[d] + slope(&|x| touches(Vec3::zeros(), e * x))).abs() / unit);
+            worst[0] =
+                worst[0].max((force[d] + slope(&|x| contact_points(e * x, Vec3::zeros()))).abs() / unit);
+            worst[1] =
+                worst[1].max((torque[d] + slope(&|x| contact_points(Vec3::zeros(), e * x))).abs() / unit);
         }
     }
     println!("force and torque of disks against differences of the energy, shallow and deep: {worst:?}");
@@ -350,9 +352,9 @@ fn disks_match_from_both_sides() {
             let a = placed(&shapes[i], &cores[i], from + way * (0.3 * t), UnitQuaternion::new(spin * t), 1.0);
             let b = placed(&shapes[j], &cores[j], Vec3::zeros(), UnitQuaternion::identity(), 0.9);
             let [mut cold, mut warm, mut back] = [Manifold::new(), Manifold::new(), Manifold::new()];
-            DilatedDilated.touches(&a, &b, &mut cold);
+            DilatedDilated.contact_points(&a, &b, &mut cold);
             DilatedDilated.contact_points_from_hint(&a, &b, &mut hint, &mut warm);
-            DilatedDilated.touches(&b, &a, &mut back);
+            DilatedDilated.contact_points(&b, &a, &mut back);
             if cold.iter().any(|t| t.geometry.overlap > t.bound) {
                 hint = None;
                 continue;
@@ -384,18 +386,18 @@ fn a_disk_flat_on_a_plane() {
     let shape = disk(0.5, 0.1);
     let core = shape.core();
     let plane = floor();
-    let touches = |tilt: f64| {
+    let contact_points = |tilt: f64| {
         let mut found = Manifold::new();
         let turn = UnitQuaternion::from_axis_angle(&Vec3::x_axis(), tilt);
-        DilatedPlane.touches(&placed(&shape, &core, Vec3::z() * 0.099, turn, 1.0), &plane, &mut found);
+        DilatedPlane.contact_points(&placed(&shape, &core, Vec3::z() * 0.099, turn, 1.0), &plane, &mut found);
         found
     };
-    let flat = touches(0.0);
+    let flat = contact_points(0.0);
     assert_eq!(flat.len(), 8);
     let weight: f64 = flat.iter().map(|t| t.weight).sum();
     assert!((weight - TAU * 0.5 / (LENGTH * 0.1)).abs() < 1e-12, "{weight}");
     assert!(flat.iter().all(|t| (t.geometry.overlap - 1e-3).abs() < 1e-12));
-    let torque = wrench(&touches(1e-3), &(Vec3::z() * 0.099))[1].x;
+    let torque = wrench(&contact_points(1e-3), &(Vec3::z() * 0.099))[1].x;
     // ∫ y² over a ring: half its length times R².
     let ring = weight * 0.5 * 0.25 * 1e-3;
     assert!((torque / ring + 1.0).abs() < 2e-3, "{torque} {ring}");

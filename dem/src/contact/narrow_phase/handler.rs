@@ -94,7 +94,7 @@ pub(crate) trait PairHandler: Sync {
     fn of_bodies(&self) -> bool;
 
     /// Visits each pair after re-sorting: block, name, points.
-    fn carry(
+    fn renumber(
         &self,
         names: &dyn Renumbering,
         b: usize,
@@ -151,15 +151,15 @@ impl<K: ShapePair> Handler<K> {
     }
 
     /// Within `reach` [m], ground lowered or not.
-    fn near(&self, scene: &Configuration<'_>, b: usize, name: PairName, reach: f64) -> bool {
+    fn may_touch(&self, scene: &Configuration<'_>, b: usize, name: PairName, reach: f64) -> bool {
         let (first, second, _) = Self::partners(scene, b, name);
-        self.0.near(&first, &second, reach)
+        self.0.may_touch(&first, &second, reach)
             || Self::scar(scene, b, name).is_some_and(|s| s.inside) && self.cuts(scene, b, name, reach)
     }
 
     /// Within `reach` [m], ground not lowered.
     fn cuts(&self, scene: &Configuration<'_>, b: usize, name: PairName, reach: f64) -> bool {
-        self.0.near(&K::First::view(scene, b, name[0]), &K::Second::view(scene, b, name[2]), reach)
+        self.0.may_touch(&K::First::view(scene, b, name[0]), &K::Second::view(scene, b, name[2]), reach)
     }
 
     fn joined(scene: &(impl BodyAccess + ?Sized), one: PairName, other: PairName) -> bool {
@@ -196,7 +196,7 @@ impl<K: ShapePair> PairHandler for Handler<K> {
                 if turned || still && K::Second::still(now, other as usize, j) {
                     return;
                 }
-                if self.near(now, b, [i, other, j], reach) {
+                if self.may_touch(now, b, [i, other, j], reach) {
                     out.push([i, other, j]);
                 }
             });
@@ -211,7 +211,7 @@ impl<K: ShapePair> PairHandler for Handler<K> {
         candidates: &[PairName],
         list: &mut PairList,
     ) {
-        let near = candidates.iter().copied().filter(|name| self.near(now, b, *name, reach));
+        let near = candidates.iter().copied().filter(|name| self.may_touch(now, b, *name, reach));
         list.replace(near);
     }
 
@@ -267,8 +267,9 @@ impl<K: ShapePair> PairHandler for Handler<K> {
                 found.clear();
                 parts.clear();
                 for m in k..end {
-                    let touches = |a: &_, b: &_, found: &mut Manifold| self.0.touches(a, b, found);
-                    parts.push(Self::detect(laws, scene, (b, list.name(m)), &mut found, touches));
+                    let contact_points =
+                        |a: &_, b: &_, found: &mut Manifold| self.0.contact_points(a, b, found);
+                    parts.push(Self::detect(laws, scene, (b, list.name(m)), &mut found, contact_points));
                 }
                 if K::SHARED {
                     share(laws, &mut found);
@@ -342,7 +343,7 @@ impl<K: ShapePair> PairHandler for Handler<K> {
         K::Second::BODY
     }
 
-    fn carry(
+    fn renumber(
         &self,
         names: &dyn Renumbering,
         b: usize,
@@ -382,11 +383,11 @@ impl<K: ShapePair> Handler<K> {
         scene: &'a (impl BodyAccess + ?Sized),
         (b, name): (usize, PairName),
         found: &mut Manifold,
-        touches: impl FnOnce(&View<'a, K::First>, &View<'a, K::Second>, &mut Manifold),
+        contact_points: impl FnOnce(&View<'a, K::First>, &View<'a, K::Second>, &mut Manifold),
     ) -> (Range<usize>, Vec3) {
         let (first, second, way) = Self::partners(scene, b, name);
         let from = found.len();
-        touches(&first, &second, found);
+        contact_points(&first, &second, found);
         let materials = Self::materials(scene, b, name);
         found[from..].iter_mut().for_each(|t| t.under(laws, materials));
         (from..found.len(), way)
@@ -448,7 +449,7 @@ impl<K: ShapePair> Handler<K> {
         let other = other as usize;
         let (own, its) =
             (K::First::motion(now, b, i, &g.point), K::Second::motion(now, other, j, &(g.point - way)));
-        *books.friction += weigh(setting.laws, materials, g, memory, weight);
+        *books.friction += combine(setting.laws, materials, g, memory, weight);
         if let Some(displacement) = K::Second::correction(now, j, &g.point) {
             memory.history.displace(&displacement, &g.normal);
         }
@@ -469,7 +470,12 @@ impl<K: ShapePair> Handler<K> {
         if K::Second::EXTERNAL {
             let body = now.block(b).bodies[K::First::body(now, b, i).unwrap_or_default()];
             let (facet, history) = (&now.sheet.facets[j as usize], &memory.history);
-            sheet::book(setting, &SurfaceContactRef { body, patch: j, facet, touch, history }, &f, books);
+            sheet::add_force(
+                setting,
+                &SurfaceContactRef { body, patch: j, facet, touch, history },
+                &f,
+                books,
+            );
         } else if let Some(wall) = K::Second::wall(now, j) {
             let sum = &mut books.wall_sums[wall];
             sum.force += force;
@@ -502,7 +508,7 @@ impl<K: ShapePair> Handler<K> {
 
 /// Changes a weight at constant spring force: gains carry no tension, losses take their share. Returns the
 /// energy lost [J].
-pub(super) fn weigh(
+pub(super) fn combine(
     laws: &Laws,
     [a, b]: [u32; 2],
     g: &ContactGeometry,

@@ -1,4 +1,4 @@
-//! Shape pairs in contact: each pair type is a geometry file and an entry of [`KINDS`]; `pass.rs` does
+//! Shape pairs in contact: each pair type is a geometry file and an entry of [`KINDS`]; `handler.rs` does
 //! everything else.
 //!
 //! Separate kernels: spheres (`sphere_pair.rs`, `images.rs`), planes (`planes.rs`), patches merged over seams

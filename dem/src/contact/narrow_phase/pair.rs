@@ -19,12 +19,17 @@ pub(crate) trait ShapePair: Sync {
     const JOINED: bool = false;
 
     /// Conservative test for distances below `reach` [m]; false for unsupported shapes.
-    fn near(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
+    fn may_touch(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, reach: f64) -> bool;
 
     /// Finds contact points.
-    fn touches(&self, first: &View<'_, Self::First>, second: &View<'_, Self::Second>, found: &mut Manifold);
+    fn contact_points(
+        &self,
+        first: &View<'_, Self::First>,
+        second: &View<'_, Self::Second>,
+        found: &mut Manifold,
+    );
 
-    /// [`ShapePair::touches`] with the previous hint, bitwise identical.
+    /// [`ShapePair::contact_points`] with the previous hint, bitwise identical.
     fn contact_points_from_hint(
         &self,
         first: &View<'_, Self::First>,
@@ -32,7 +37,7 @@ pub(crate) trait ShapePair: Sync {
         _hint: &mut Hint,
         found: &mut Manifold,
     ) {
-        self.touches(first, second, found);
+        self.contact_points(first, second, found);
     }
 }
 

@@ -39,7 +39,7 @@ impl ShapePair for DilatedPatch {
     const SHARED: bool = true;
     const JOINED: bool = true;
 
-    fn near(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, reach: f64) -> bool {
+    fn may_touch(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, reach: f64) -> bool {
         if !body.dilated() || patch.wall.open {
             return false;
         }
@@ -49,11 +49,11 @@ impl ShapePair for DilatedPatch {
                 let most = body.radius + reach;
                 two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
             }
-            Form::Round(form) => round::near(body, patch, form, reach),
+            Form::Round(form) => round::may_touch(body, patch, form, reach),
         }
     }
 
-    fn touches(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, found: &mut Manifold) {
+    fn contact_points(&self, body: &PosedBody<'_>, patch: &PatchView<'_>, found: &mut Manifold) {
         self.contact_points_from_hint(body, patch, &mut None, found);
     }
 
@@ -69,7 +69,7 @@ impl ShapePair for DilatedPatch {
         }
         match &patch.patch.form {
             Form::Facet(facet) => on_facet(body, &patch.pose(), facet, hint, found),
-            Form::Round(form) => round::touches(body, patch, form, found),
+            Form::Round(form) => round::contact_points(body, patch, form, found),
         }
     }
 }

@@ -40,12 +40,12 @@ impl Wall {
         Wall::of(forms.collect(), at, orientation)
     }
 
-    fn touches(&self, body: &PosedBody<'_>) -> Manifold {
+    fn contact_points(&self, body: &PosedBody<'_>) -> Manifold {
         let mut found = Manifold::new();
         for patch in &self.patches {
             let view = PatchView { patch, wall: &self.now, shift: Vec3::zeros() };
-            if DilatedPatch.near(body, &view, 0.0) {
-                DilatedPatch.touches(body, &view, &mut found);
+            if DilatedPatch.may_touch(body, &view, 0.0) {
+                DilatedPatch.contact_points(body, &view, &mut found);
             }
         }
         found
@@ -173,8 +173,8 @@ fn boxes_of_triangles(shapes: Vec<Shape>, cuts: &[u32], bound: f64) {
             // Some lie flat.
             let q = if tried % 3 == 0 { turn } else { random.orientation() };
             let body = placed(&shapes[k], &cores[k], at + way, q, 1.1);
-            let (mut as_body, on_wall) = (Manifold::new(), wall.touches(&body));
-            DilatedDilated.touches(&body, &itself, &mut as_body);
+            let (mut as_body, on_wall) = (Manifold::new(), wall.contact_points(&body));
+            DilatedDilated.contact_points(&body, &itself, &mut as_body);
             let deepest = as_body.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
             if as_body.is_empty() || deepest > 0.5 {
                 continue;
@@ -217,8 +217,8 @@ fn triangulated_floor_matches_plane() {
         );
         let q = if tried % 3 == 0 { UnitQuaternion::identity() } else { random.orientation() };
         let body = placed(&shapes[k], &cores[k], at, q, 1.0);
-        let (mut on_plane, on_wall) = (Manifold::new(), wall.touches(&body));
-        DilatedPlane.touches(&body, &plane, &mut on_plane);
+        let (mut on_plane, on_wall) = (Manifold::new(), wall.contact_points(&body));
+        DilatedPlane.contact_points(&body, &plane, &mut on_plane);
         let deepest = on_plane.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
         if on_plane.is_empty() || deepest > 0.5 {
             continue;
@@ -273,7 +273,7 @@ fn potentials_of_walls(shapes: Vec<Shape>, count: usize, loose: f64) {
             let k = (random.uniform() * shapes.len() as f64) as usize;
             let x = (random.orientation() * Vec3::z()) * (0.3 + 1.6 * random.uniform());
             let q = if tried % 4 == 0 { still } else { random.orientation() };
-            let found = wall.touches(&at(k, x, q));
+            let found = wall.contact_points(&at(k, x, q));
             let deepest = found.iter().map(|t| t.geometry.overlap / t.bound).fold(0.0, f64::max);
             missed += 1;
             assert!(missed < 2_000_000, "{name}: {tried}");
@@ -284,7 +284,7 @@ fn potentials_of_walls(shapes: Vec<Shape>, count: usize, loose: f64) {
             let [force, torque] = wrench(&found, &x);
             let h = 1e-6;
             let of = |shift: Vec3, spin: Vec3| {
-                energy(&wall.touches(&at(k, x + shift, UnitQuaternion::from_scaled_axis(spin) * q)))
+                energy(&wall.contact_points(&at(k, x + shift, UnitQuaternion::from_scaled_axis(spin) * q)))
             };
             for d in 0..3 {
                 let e = Vec3::ith(d, h);
@@ -333,7 +333,7 @@ fn disks_of_the_table_on_walls() {
         let q = nalgebra::Quaternion::new(number(6), number(7), number(8), number(9));
         let at = Vec3::new(number(10), number(11), number(12));
         let body = placed(&shape, &core, at, UnitQuaternion::from_quaternion(q), 1.0);
-        let found = wall.touches(&body);
+        let found = wall.contact_points(&body);
         let (gap, normal) = (number(14), Vec3::new(number(16), number(17), number(18)));
         if gap >= 0.0 {
             assert!(energy(&found) < 1e-20, "{line}");

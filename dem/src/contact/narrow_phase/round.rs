@@ -29,7 +29,7 @@ const PRESSING: u32 = 8;
 /// Iterations for nearest points and range ends.
 const ROUNDS: usize = 48;
 
-pub(super) fn near(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
+pub(super) fn may_touch(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, reach: f64) -> bool {
     let pose = patch.pose();
     let at = pose.orientation.inverse() * (body.centre - pose.centre);
     match form {
@@ -42,7 +42,7 @@ pub(super) fn near(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, re
 /// Body in a round patch's frame.
 pub(super) trait Indenter {
     /// Interior point.
-    fn amid(&self) -> Vec3;
+    fn inner_point(&self) -> Vec3;
 
     /// Rounding radius [m].
     fn reach(&self) -> f64;
@@ -59,8 +59,13 @@ pub(super) trait Indenter {
     fn lose(&mut self, normal: &Vec3);
 }
 
-pub(super) fn touches(body: &PosedBody<'_>, patch: &PatchView<'_>, form: &Round, found: &mut Manifold) {
-    if !near(body, patch, form, 0.0) {
+pub(super) fn contact_points(
+    body: &PosedBody<'_>,
+    patch: &PatchView<'_>,
+    form: &Round,
+    found: &mut Manifold,
+) {
+    if !may_touch(body, patch, form, 0.0) {
         return;
     }
     let pose = patch.pose();
@@ -76,7 +81,7 @@ struct OnRound<'a> {
 }
 
 impl Indenter for OnRound<'_> {
-    fn amid(&self) -> Vec3 {
+    fn inner_point(&self) -> Vec3 {
         self.whole.frame.way
     }
 
@@ -138,7 +143,7 @@ pub(super) fn on(form: &Round, presser: &mut impl Indenter) {
             });
             presser.bear(points, (0.0, reach, weight));
         }
-        Round::Sphere { centre, radius } if (presser.amid() - centre).norm() > *radius => {
+        Round::Sphere { centre, radius } if (presser.inner_point() - centre).norm() > *radius => {
             presser.bear(std::iter::once((PRESSING, *centre)), (*radius, radius + reach, 1.0));
         }
         Round::Sphere { centre, radius } => {

@@ -37,7 +37,7 @@ impl ShapePair for DilatedSheet {
     const SHARED: bool = true;
     const JOINED: bool = true;
 
-    fn near(&self, body: &PosedBody<'_>, it: &&SheetFacet, reach: f64) -> bool {
+    fn may_touch(&self, body: &PosedBody<'_>, it: &&SheetFacet, reach: f64) -> bool {
         if !body.dilated() {
             return false;
         }
@@ -46,7 +46,7 @@ impl ShapePair for DilatedSheet {
         two.separation(two.line(), most).is_none_or(|(_, apart)| apart < most)
     }
 
-    fn touches(&self, body: &PosedBody<'_>, it: &&SheetFacet, found: &mut Manifold) {
+    fn contact_points(&self, body: &PosedBody<'_>, it: &&SheetFacet, found: &mut Manifold) {
         self.contact_points_from_hint(body, it, &mut None, found);
     }
 
@@ -135,7 +135,7 @@ pub(super) struct SurfaceContactRef<'a> {
 }
 
 /// Records for the surface owner, and in the grains' totals.
-pub(super) fn book(
+pub(super) fn add_force(
     setting: &StepContext<'_>,
     met: &SurfaceContactRef<'_>,
     f: &PairForce,

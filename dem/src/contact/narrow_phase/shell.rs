@@ -79,7 +79,7 @@ pub(crate) fn shells(a: &ShellPose<'_>, b: &ShellPose<'_>, found: &mut WallConta
 /// Adds contacts with round patches in frame `pose`.
 pub(crate) fn rounds(
     a: &ShellPose<'_>,
-    amid: &Vec3,
+    inner_point: &Vec3,
     forms: &[Round],
     pose: Pose,
     found: &mut WallContactList,
@@ -90,8 +90,8 @@ pub(crate) fn rounds(
         if apart(&pressing.bounds(), &grown(&bounds, a.shell.radius)) {
             continue;
         }
-        let amid = pressing.frame.point(amid);
-        round::on(form, &mut OnRound { pressing: &pressing, amid, bounds, first, found: &mut *found });
+        let inner_point = pressing.frame.point(inner_point);
+        round::on(form, &mut OnRound { pressing: &pressing, inner_point, bounds, first, found: &mut *found });
     }
     // Found patch by patch.
     found.sort();
@@ -265,15 +265,15 @@ fn pierced(facet: &Facet, segment: &Segment) -> Option<Vec3> {
 /// Shell on a round patch: bounds, first part number.
 struct OnRound<'a, 'b> {
     pressing: &'b ShellIndenter<'a>,
-    amid: Vec3,
+    inner_point: Vec3,
     bounds: Aabb,
     first: u32,
     found: &'b mut WallContactList,
 }
 
 impl Indenter for OnRound<'_, '_> {
-    fn amid(&self) -> Vec3 {
-        self.amid
+    fn inner_point(&self) -> Vec3 {
+        self.inner_point
     }
 
     fn reach(&self) -> f64 {
@@ -325,7 +325,7 @@ impl Indenter for OnRound<'_, '_> {
     }
 
     fn lose(&mut self, normal: &Vec3) {
-        let lost = self.pressing.lost(&self.amid, normal);
+        let lost = self.pressing.lost(&self.inner_point, normal);
         self.found.push([u32::MAX, self.first], lost);
     }
 }

@@ -1,7 +1,7 @@
 //! Forces of wall–wall contacts (`shell.rs`).
 
 use super::dilated::DEEPEST;
-use super::handler::weigh;
+use super::handler::combine;
 use super::pair::{ContactView, share};
 use super::shell::WallContactList;
 use crate::base::Vec3;
@@ -59,7 +59,7 @@ impl Two<'_> {
             let g = &touch.geometry;
             let mut memory = known(old, name).copied().unwrap_or(ContactHistory::FRESH);
             memory.edge = touch.edge > 0.0;
-            balance.dissipated_friction += weigh(laws, touch.materials, g, &mut memory, touch.weight);
+            balance.dissipated_friction += combine(laws, touch.materials, g, &mut memory, touch.weight);
             let [own, its] = self.motions(&g.point);
             let ends = (&own, &its);
             let before = memory.history;

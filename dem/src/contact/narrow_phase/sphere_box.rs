@@ -13,14 +13,14 @@ impl ShapePair for SphereBox {
     type First = Spheres;
     type Second = Solids;
 
-    fn near(&self, sphere: &&Vec4, solid: &PosedBody<'_>, reach: f64) -> bool {
+    fn may_touch(&self, sphere: &&Vec4, solid: &PosedBody<'_>, reach: f64) -> bool {
         solid.half().is_some_and(|half| {
             let local = solid.orientation.inverse_transform_vector(&(xyz(sphere) - solid.centre));
             cuboid::closest_point(&half, &local).2 < sphere[3] + reach
         })
     }
 
-    fn touches(&self, sphere: &&Vec4, solid: &PosedBody<'_>, found: &mut Manifold) {
+    fn contact_points(&self, sphere: &&Vec4, solid: &PosedBody<'_>, found: &mut Manifold) {
         let Some(half) = solid.half() else { return };
         let touch = detect::sphere_box(&xyz(sphere), sphere[3], &solid.centre, &solid.orientation, &half);
         // Valid for a centre inside the box, by up to one radius.

@@ -29,7 +29,7 @@ fn bond() -> String {
     };
     let (a, b) = (motion("a"), motion("b"));
     let mut memory = kernel::BondHistory { shear: vector("shear"), turn: vector("turn") };
-    let frame = kernel::carry(constants[kernel::OFFSET], &a, &b, &mut memory, input("dt"));
+    let frame = kernel::update_frame(constants[kernel::OFFSET], &a, &b, &mut memory, input("dt"));
     let r = kernel::respond(&constants, &a, &b, &frame, &memory);
     let holds = kernel::holds(&r);
     let mut out = Results::default();

@@ -177,7 +177,7 @@ fn alone_held(held: bool) -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
     let (turned, impulse, work) =
-        rigid_rotation::held(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
+        rigid_rotation::rotate_prescribed(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
     alone_results(&k, &turned, Some((impulse, work)), held)
 }
 

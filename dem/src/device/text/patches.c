@@ -1,4 +1,4 @@
-// Contacts with walls of triangles: which of the triangles near a sphere count, as `contact/surface_contacts.rs` decides it, and their forces.
+// Contacts with walls of triangles: which of the triangles near a sphere count, as `contact/patches.rs` decides it, and their forces.
 // What a contact remembers lies with its pair of sphere and triangle.
 
 /// Touches of a sphere in one step; where there are more, the processor makes the step.

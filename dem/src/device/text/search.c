@@ -1,4 +1,4 @@
-// Search for neighbours: the near lists of spheres with each other and with planes, as the engine makes them (`engine/neighbour_list.rs`), and
+// Search for neighbours: the near lists of spheres with each other and with planes, as the engine makes them (`engine/neighbours.rs`), and
 // what each body gathers, from these and from what the processor lists.
 // Spheres lie in buckets by a hash of their cell, in each in any order: rows of partners are sorted, so that nothing hangs on it. Each
 // class of size has cells of its own, so that small spheres between large ones do not crowd.

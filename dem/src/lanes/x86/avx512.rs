@@ -271,12 +271,12 @@ impl SimdPack for Avx512 {
         (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
     }
     #[inline(always)]
-    fn give(record: Avx512, to: &mut [Vec4; 2]) {
+    fn add_record(record: Avx512, to: &mut [Vec4; 2]) {
         let to = to.as_mut_ptr().cast::<f64>();
         intrinsics!(_mm512_storeu_pd(to, _mm512_add_pd(_mm512_loadu_pd(to), record.0)))
     }
     #[inline(always)]
-    fn put(record: Avx512, to: &mut [Vec4; 2]) {
+    fn store_record(record: Avx512, to: &mut [Vec4; 2]) {
         intrinsics!(_mm512_storeu_pd(to.as_mut_ptr().cast::<f64>(), record.0))
     }
 }
