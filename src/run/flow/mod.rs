@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::io;
 use trackbed_dem as dem;
 use trackbed_dem::flow::Arrival;
-use trackbed_dem::insert::room::{FreePositions, FreeSpace};
+use trackbed_dem::insert::free_space::{FreePositions, FreeSpace};
 use trackbed_dem::measure::BoxRegion;
 
 /// Insertion rate over requested rate during a backlog.
@@ -222,7 +222,8 @@ impl<'a> Flow<'a> {
                     arrive.iter().for_each(|a| room.fill(&a.position, model.radius(a.body)));
                     room
                 });
-                let Some((position, orientation)) = room.find_position(model.radius(body), &mut inlet.places) else {
+                let Some((position, orientation)) = room.find_position(model.radius(body), &mut inlet.places)
+                else {
                     inlet.full += 1;
                     // While no position is free, at most one grain is accumulated.
                     inlet.allowed = inlet.allowed.min(inlet.given + amount);
