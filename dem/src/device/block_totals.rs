@@ -34,12 +34,11 @@ pub(super) fn reduce_blocks(
             continue;
         }
         let of = |part: TotalsPart| &booked[f.booked(part)];
-        let (spheres, planes, motion) =
-            (of(TotalsPart::Spheres), of(TotalsPart::Planes), of(TotalsPart::Motion));
-        let mut dissipated = [spheres[2] + planes[0], spheres[3] + planes[1]];
+        let [spheres, planes, motion] = [TotalsPart::Spheres, TotalsPart::Planes, TotalsPart::Motion].map(of);
+        let mut loss = [spheres[2] + planes[0], spheres[3] + planes[1]];
         if f.walls > 0 {
             let q = of(TotalsPart::Patches);
-            dissipated = [dissipated[0] + q[0], dissipated[1] + q[1]];
+            loss = [loss[0] + q[0], loss[1] + q[1]];
             let sum = |q: &[f64]| WallSum { force: vector(q, 0), moment: vector(q, 3), ..WallSum::default() };
             if !f.beside {
                 work.cross[b].clear_totals();
@@ -52,15 +51,14 @@ pub(super) fn reduce_blocks(
         if f.beside {
             let BlockTotals { balance, failure: wrong, .. } = &work.blocks[b].totals;
             let aside = &work.blocks[b].patches.aside;
-            dissipated = [dissipated[0] + aside.dashpot, dissipated[1] + aside.friction];
-            dissipated =
-                [dissipated[0] + balance.dissipated_dashpot, dissipated[1] + balance.dissipated_friction];
+            loss = [loss[0] + aside.dashpot, loss[1] + aside.friction];
+            loss = [loss[0] + balance.dissipated_dashpot, loss[1] + balance.dissipated_friction];
             sum.work_surface += balance.work_surface;
             sum.surface += &balance.surface;
             *failure = failure.or(work.cross[b].failure).or(*wrong);
         }
-        sum.dissipated_dashpot += dissipated[0];
-        sum.dissipated_friction += dissipated[1];
+        sum.dissipated_dashpot += loss[0];
+        sum.dissipated_friction += loss[1];
         sum.work_walls += planes[2] * dt;
         sum.walls.linear += vector(planes, 3) * dt;
         sum.walls.angular += vector(planes, 6) * dt;
