@@ -102,7 +102,7 @@ fn same(model: &Model, a: &State, b: &State) -> bool {
         [s.position(k), s.velocity(k), s.spin(k)].map(|v| [v.x, v.y, v.z].map(f64::to_bits))
     };
     (0..model.body_count()).all(|k| motion(a, k) == motion(b, k))
-        && a.ledger == b.ledger
+        && a.balance == b.balance
         && format!("{:?}", measure::energies(model, a)) == format!("{:?}", measure::energies(model, b))
 }
 

@@ -40,10 +40,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         step(&model, &mut state, &mut work, &NoSurface, &[])?;
     }
     let now = measure::energies(&model, &state);
-    let error = now.total() - start + state.ledger.dissipated() - state.ledger.work();
-    println!("{:.3} J dissipated, {:.2e} J kinetic", state.ledger.dissipated(), now.kinetic());
+    let error = now.total() - start + state.balance.dissipated() - state.balance.work();
+    println!("{:.3} J dissipated, {:.2e} J kinetic", state.balance.dissipated(), now.kinetic());
     println!("coordination number {:.2}", measure::coordination(&model, &state));
-    println!("energy balance closes to {:.1e} of what was dissipated", error / state.ledger.dissipated());
-    assert!(error.abs() < 0.01 * state.ledger.dissipated());
+    println!("energy balance closes to {:.1e} of what was dissipated", error / state.balance.dissipated());
+    assert!(error.abs() < 0.01 * state.balance.dissipated());
     Ok(())
 }

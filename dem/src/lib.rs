@@ -29,7 +29,7 @@ pub mod stability;
 mod testing;
 pub mod wall;
 
-pub use base::{Vec3, error, ledger, random};
+pub use base::{Vec3, balance_terms, error, random};
 pub use bodies::input::BodyInput;
 pub use engine::back_end::BackEnd;
 pub use engine::{input, model, state, step, timestep, work};

@@ -79,7 +79,7 @@ pub fn summary(view: GrainsView<'_>) -> BondSummary {
         made: view.model.bond_count(),
         broken_by_tension: tension,
         broken_by_shear: shear,
-        energy_of_breaks: view.state.ledger.released_by_breaks,
+        energy_of_breaks: view.state.balance.released_by_breaks,
         fragments: fragments.sizes.len(),
         largest_fragment: fragments.sizes.iter().copied().max().unwrap_or(0),
         events: None,

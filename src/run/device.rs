@@ -5,7 +5,7 @@ use crate::message;
 use crate::model::Job;
 use trackbed_dem as dem;
 use trackbed_dem::device::{self, Cuda, Device};
-use trackbed_dem::ranks::{Link, Ranks, Traffic};
+use trackbed_dem::ranks::{Link, MessageCounters, Ranks};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
 
@@ -88,7 +88,7 @@ impl Steps {
     }
 
     /// Returns message counters between ranks.
-    pub fn traffic(&self) -> Option<&Traffic> {
+    pub fn traffic(&self) -> Option<&MessageCounters> {
         if let Steps::Ranks(ranks) = self { Some(ranks.traffic()) } else { None }
     }
 }

@@ -67,7 +67,7 @@ pub fn spent(state: &State) -> Spent {
 
 /// Returns the grains' part of [`spent`].
 pub fn spent_by_grains(grains: &dem::State) -> Spent {
-    let ledger = &grains.ledger;
+    let ledger = &grains.balance;
     Spent {
         applied_work: ledger.work_applied + ledger.work_body_forces,
         // Includes gravity potential of wrapped and inserted grains.
@@ -95,7 +95,7 @@ mod tests {
     fn the_ledger_of_grains_goes_into_the_account_whole() {
         let model = dem::Model::new(dem::ModelInput::default()).expect("no grains at all");
         let mut grains = dem::State::new(&model);
-        let ledger = &mut grains.ledger;
+        let ledger = &mut grains.balance;
         let all = [
             &mut ledger.work_applied,
             &mut ledger.work_body_forces,
@@ -115,8 +115,8 @@ mod tests {
         // Powers of two: exact and distinct.
         all.into_iter().zip(0..).for_each(|(part, k)| *part = f64::from(1 << k));
         let spent = spent_by_grains(&grains);
-        assert_eq!(spent.work() + spent.surface_on_grains, grains.ledger.work());
-        assert_eq!(spent.dissipated(), grains.ledger.dissipated());
-        assert_eq!(spent.surface_on_grains, grains.ledger.work_surface);
+        assert_eq!(spent.work() + spent.surface_on_grains, grains.balance.work());
+        assert_eq!(spent.dissipated(), grains.balance.dissipated());
+        assert_eq!(spent.surface_on_grains, grains.balance.work_surface);
     }
 }

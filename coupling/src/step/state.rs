@@ -85,8 +85,8 @@ impl State {
     }
 
     /// Resets time, step counts and balances.
-    pub fn begin_anew(&mut self) {
-        self.grains.begin_anew();
+    pub fn reset_time(&mut self) {
+        self.grains.reset_time();
         self.solid.time = 0.0;
         self.audit = TransferAudit::default();
         self.spent = Spent::default();

@@ -56,7 +56,7 @@ pub fn step<B: BackEnd>(
     state.correction.extend(motion.map(|((u, before), rate)| u - before - rate * window));
     let jump = work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
     let jump = jump.fold(0.0_f64, |m, i| m.max(state.correction[i].abs()));
-    state.grains.allow_for_jump(work.surface.reach_of(2.0 * jump));
+    state.grains.add_surface_travel(work.surface.reach_of(2.0 * jump));
     Ok(())
 }
 

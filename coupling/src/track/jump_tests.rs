@@ -24,7 +24,7 @@ impl TrackSystem for Grains {
 
     fn relocate(&mut self, moves: &[(usize, Vec3, UnitQuaternion<f64>)]) {
         moves.iter().for_each(|(body, shift, turn)| self.state.shift(&self.model, *body, shift, turn));
-        self.state.forget_neighbours();
+        self.state.request_search();
     }
 }
 

@@ -74,7 +74,7 @@ fn separate_sides_match_uncoupled_runs_bitwise() {
             dem::step(&grains, &mut bed, &mut scratch, &NoSurface, &[]).unwrap();
         }
     }
-    assert!(bed.ledger.dissipated() > 0.1 && alone.u.iter().any(|u| u.abs() > 1e-5));
+    assert!(bed.balance.dissipated() > 0.1 && alone.u.iter().any(|u| u.abs() > 1e-5));
     let places = |state: &dem::State| -> Vec<[u64; 9]> {
         let three = |v: Vec3| [v.x, v.y, v.z];
         (0..48)
@@ -140,7 +140,7 @@ fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
         coupled.push((c.state.solid.u.clone(), c.state.solid.v.clone()));
     }
     assert_eq!(c.state.audit.exchanges, 0);
-    assert!(c.state.grains.ledger.dissipated() > 0.1);
+    assert!(c.state.grains.balance.dissipated() > 0.1);
     // Energy balance of the solid.
     let (stored, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
     let kept = stored.solid_kinetic + stored.solid_strain + spent.rayleigh;

@@ -154,7 +154,7 @@ pub enum ModelError {
     },
     /// Invalid setting of the run.
     #[error("{quantity} is {value}; it must {requirement}")]
-    Setting {
+    StepContext {
         /// Setting.
         quantity: &'static str,
         /// Value found.

@@ -1,9 +1,9 @@
 //! Vectors, errors, energy totals, random numbers.
 
+pub mod balance_terms;
+pub(crate) mod capacity;
 pub mod error;
 pub(crate) mod failure;
-pub(crate) mod held;
-pub mod ledger;
 pub mod random;
 mod vector;
 

@@ -1,10 +1,10 @@
 //! State of the bodies of a block.
 
 use crate::base::Vec3;
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::lanes::V3;
-use crate::lanes::record::{Record, xyz};
-use crate::lanes::turn::{self, Turn};
+use crate::lanes::quaternion::{self, QuaternionLanes};
+use crate::lanes::vec4::{Vec4, xyz};
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +18,8 @@ pub(crate) struct Rotation {
 
 #[inline(always)]
 pub(crate) fn spin_of(rotation: &Rotation, inertia: &Vec3) -> Vec3 {
-    let (q, momentum) = (Turn::of(&rotation.orientation), V3::from_vec(&rotation.momentum));
-    turn::spin(q, momentum, V3::from_vec(inertia)).to_vec()
+    let (q, momentum) = (QuaternionLanes::of(&rotation.orientation), V3::from_vec(&rotation.momentum));
+    quaternion::spin(q, momentum, V3::from_vec(inertia)).to_vec()
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -27,10 +27,10 @@ pub(crate) struct Block {
     /// Input indices.
     pub bodies: Vec<u32>,
     /// Centre, (bounding) radius.
-    pub centre: Vec<Record>,
-    pub velocity: Vec<Record>,
+    pub centre: Vec<Vec4>,
+    pub velocity: Vec<Vec4>,
     /// Angular velocity, material index.
-    pub spin: Vec<Record>,
+    pub spin: Vec<Vec4>,
     /// Empty for single spheres.
     pub rotation: Vec<Rotation>,
 }
@@ -57,21 +57,21 @@ impl Block {
 }
 
 pub(crate) struct PointMotion {
-    pub velocity: Record,
-    spin: Record,
+    pub velocity: Vec4,
+    spin: Vec4,
     pub arm: Vec3,
 }
 
 impl PointMotion {
     #[inline(always)]
     pub fn of_plane(velocity: &Vec3) -> PointMotion {
-        PointMotion { velocity: Record::of(velocity, 0.0), spin: Record::default(), arm: Vec3::zeros() }
+        PointMotion { velocity: Vec4::of(velocity, 0.0), spin: Vec4::default(), arm: Vec3::zeros() }
     }
 
     /// Motion of a rigid body at `arm` from its reference point.
     #[inline(always)]
     pub fn of_whole(velocity: &Vec3, spin: &Vec3, arm: Vec3, inverse_mass: f64) -> PointMotion {
-        PointMotion { velocity: Record::of(velocity, inverse_mass), spin: Record::of(spin, 0.0), arm }
+        PointMotion { velocity: Vec4::of(velocity, inverse_mass), spin: Vec4::of(spin, 0.0), arm }
     }
 
     #[inline(always)]
@@ -92,7 +92,8 @@ impl PointMotion {
 
 impl Block {
     pub fn bytes(&self) -> usize {
-        let arrays = held(&self.centre) + held(&self.velocity) + held(&self.spin);
-        held(&self.bodies) + arrays + held(&self.rotation)
+        let arrays =
+            capacity_bytes(&self.centre) + capacity_bytes(&self.velocity) + capacity_bytes(&self.spin);
+        capacity_bytes(&self.bodies) + arrays + capacity_bytes(&self.rotation)
     }
 }

@@ -1,30 +1,30 @@
 //! Forces and totals of a block in one step.
 
 use crate::base::Vec3;
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
 /// Force and torque about the centre; fourth numbers zero.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
-pub(crate) struct Sums(pub [Record; 2]);
+pub(crate) struct ForceTorque(pub [Vec4; 2]);
 
-impl Sums {
+impl ForceTorque {
     #[inline(always)]
-    pub fn force(&self) -> &Record {
+    pub fn force(&self) -> &Vec4 {
         &self.0[0]
     }
 
     #[inline(always)]
-    pub fn torque(&self) -> &Record {
+    pub fn torque(&self) -> &Vec4 {
         &self.0[1]
     }
 
     #[inline(always)]
-    pub fn both(&mut self) -> (&mut Record, &mut Record) {
+    pub fn both(&mut self) -> (&mut Vec4, &mut Vec4) {
         let [force, torque] = &mut self.0;
         (force, torque)
     }
@@ -40,10 +40,10 @@ impl Sums {
 }
 
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Tally {
+pub(crate) struct BlockTotals {
     /// Empty between steps unless retained.
-    pub sums: Vec<Sums>,
-    pub ledger: Ledger,
+    pub sums: Vec<ForceTorque>,
+    pub balance: BalanceTerms,
     pub fastest: f64,
     pub failure: Option<Failure>,
 }

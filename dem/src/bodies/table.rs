@@ -9,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use std::collections::HashMap;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum BodyKind {
     Sphere,
     Clump,
     Solid,
@@ -17,7 +17,7 @@ pub(crate) enum Kind {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body {
-    pub kind: Kind,
+    pub kind: BodyKind,
     pub shape: usize,
     pub scale: f64,
     pub material: u32,
@@ -34,7 +34,7 @@ pub(crate) struct Body {
 
 #[derive(Clone, Copy, Debug)]
 struct Class {
-    kind: Kind,
+    kind: BodyKind,
     shape: u32,
     material: u32,
     part: u32,
@@ -114,7 +114,7 @@ impl Bodies {
         &self.classes[self.class.get(k).map_or(0, |&c| c as usize)]
     }
 
-    pub fn kind(&self, k: usize) -> Kind {
+    pub fn kind(&self, k: usize) -> BodyKind {
         self.class(k).kind
     }
 
@@ -170,16 +170,16 @@ fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
     let mut radius = 0.0_f64;
     for_members(shape, 1.0, |c, r| radius = radius.max(c.norm() + r));
     let (kind, gyration2) = match shape {
-        Shape::Sphere { .. } => (Kind::Sphere, Vec3::repeat(0.4 * radius * radius)),
-        Shape::Clump(clump) => (Kind::Clump, Vec3::from(clump.inertia) / clump.volume),
+        Shape::Sphere { .. } => (BodyKind::Sphere, Vec3::repeat(0.4 * radius * radius)),
+        Shape::Clump(clump) => (BodyKind::Clump, Vec3::from(clump.inertia) / clump.volume),
         Shape::Box { half } => {
             let half = Vec3::from(*half);
             radius = half.norm();
-            (Kind::Solid, cuboid::inertia(&half))
+            (BodyKind::Solid, cuboid::inertia(&half))
         }
         Shape::Polyhedron(it) => {
             radius = it.bounding_radius();
-            (Kind::Solid, Vec3::from(it.inertia) / it.volume)
+            (BodyKind::Solid, Vec3::from(it.inertia) / it.volume)
         }
     };
     Class {

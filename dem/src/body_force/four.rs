@@ -1,8 +1,8 @@
 //! Body forces computed for four bodies at a time.
 
-use super::work::{ForceWork, Seen};
+use super::work::{ForceInput, ForceWork};
 use crate::bodies::block::Block;
-use crate::lanes::{self, Four, Kernel, Pack, Real, V3};
+use crate::lanes::{self, Kernel, Real, Simd4, SimdPack, V3};
 
 /// Input of such a force for four bodies.
 pub(super) struct Bodies4<R> {
@@ -17,7 +17,7 @@ pub(super) trait ActOnFour {
     fn act_on_four<R: Real>(&self, on: &Bodies4<R>) -> (V3<R>, V3<R>);
 }
 
-pub(super) fn act(force: &impl ActOnFour, seen: &Seen<'_>, work: &mut ForceWork) {
+pub(super) fn act(force: &impl ActOnFour, seen: &ForceInput<'_>, work: &mut ForceWork) {
     lanes::run(seen.simd, Acting { force, block: seen.block, work });
 }
 
@@ -31,14 +31,14 @@ impl<F: ActOnFour> Kernel for Acting<'_, F> {
     type Output = ();
 
     #[inline(always)]
-    fn run<P: Pack>(self) {
+    fn run<P: SimdPack>(self) {
         self.by_four::<P::Quad>();
     }
 }
 
 impl<F: ActOnFour> Acting<'_, F> {
     #[inline(always)]
-    fn by_four<R: Four>(self) {
+    fn by_four<R: Simd4>(self) {
         let Acting { force, block, work: ForceWork { radius, acting, .. } } = self;
         let n = block.bodies.len();
         for k in (0..n).step_by(4) {

@@ -1,6 +1,6 @@
 //! Body forces: forces without a contact partner, other than gravity and local damping.
 //!
-//! A body force is one file with an `Act` and one line in `body_forces!`.
+//! A body force is one file with an `BodyForceModel` and one line in `body_forces!`.
 //!
 //! Added mass mₐ reacts to all other forces F with −mₐ F/(m + mₐ), stable for any mₐ. Velocities are half a
 //! step old: drag is first order in its relative change of velocity per step.
@@ -17,13 +17,13 @@ pub use water::{DragArea, Measured, Orbit, Water, Wave, WaveError};
 pub use wind::Wind;
 
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
-use crate::bodies::sums::Sums;
+use crate::base::balance_terms::BalanceTerms;
+use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::shape::Shape;
 pub(crate) use skin::Skin;
-pub(crate) use work::{Act, ForceWork, Seen};
+pub(crate) use work::{BodyForceModel, ForceInput, ForceWork};
 
 impl BodyForce {
     pub(crate) fn wave(&self) -> Option<&Wave> {
@@ -46,7 +46,7 @@ macro_rules! body_forces {
         }
 
         impl BodyForce {
-            fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+            fn act(&self, seen: &ForceInput<'_>, work: &mut ForceWork) {
                 match self { $(BodyForce::$name(force) => force.act(seen, work)),+ }
             }
 
@@ -97,10 +97,10 @@ pub(crate) fn skins(forces: &[BodyForce], scarred: bool, shapes: &[Shape]) -> Ve
 
 impl ForceWork {
     /// Computes forces and records their impulse; [`ForceWork::add_to`] adds them.
-    pub fn act(&mut self, forces: &[BodyForce], seen: Seen<'_>, ledger: &mut Ledger) {
+    pub fn act(&mut self, forces: &[BodyForce], seen: ForceInput<'_>, balance: &mut BalanceTerms) {
         let (block, sums, kick) = (seen.block, seen.sums, seen.kick);
         self.acting.clear();
-        self.acting.resize(block.bodies.len(), Sums::default());
+        self.acting.resize(block.bodies.len(), ForceTorque::default());
         self.added.clear();
         for force in forces {
             force.act(&seen, self);
@@ -115,8 +115,8 @@ impl ForceWork {
         }
         for (own, centre) in self.acting.iter().zip(&block.centre) {
             let (force, torque) = (xyz(own.force()), xyz(own.torque()));
-            ledger.body_forces.add(&xyz(centre), &(force * kick));
-            ledger.body_forces.angular += torque * kick;
+            balance.body_forces.add(&xyz(centre), &(force * kick));
+            balance.body_forces.angular += torque * kick;
         }
         self.power = self.power_on(block);
     }

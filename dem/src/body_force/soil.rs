@@ -1,11 +1,11 @@
 //! Soil drag on a scarring rock (`law/scarring.rs`): at its centre, quadratic in speed.
 
-use super::work::{ForceWork, Seen};
+use super::work::{ForceInput, ForceWork};
 use crate::base::Vec3;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 
 /// Adds the drag, implicit in the speed so that it cannot reverse the motion: −R |u| u/(1 + R |u| dt/m).
-pub(super) fn act(seen: &Seen<'_>, work: &mut ForceWork) {
+pub(super) fn act(seen: &ForceInput<'_>, work: &mut ForceWork) {
     for (k, &body) in seen.block.bodies.iter().enumerate() {
         let resistance = seen.scars[body as usize].resistance;
         if resistance > 0.0 {

@@ -7,7 +7,7 @@
 //! Theory manual: equation (6.34) of `docs/theory/track.md`.
 
 use super::four::{self, ActOnFour, Bodies4};
-use super::work::{Act, ForceWork, Seen};
+use super::work::{BodyForceModel, ForceInput, ForceWork};
 use crate::base::Vec3;
 use crate::bodies::table::{Bodies, Body};
 use crate::lanes::{Real, V3};
@@ -53,8 +53,8 @@ impl Wind {
     }
 }
 
-impl Act for Wind {
-    fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+impl BodyForceModel for Wind {
+    fn act(&self, seen: &ForceInput<'_>, work: &mut ForceWork) {
         four::act(self, seen, work);
     }
 }

@@ -2,26 +2,26 @@
 
 use super::skin::Skin;
 use crate::base::Vec3;
-use crate::base::held::held;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
+use crate::base::capacity::capacity_bytes;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::sums::Sums;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
 use crate::lanes::Simd;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::law::scarring::Scar;
 
-pub(crate) struct Seen<'a> {
+pub(crate) struct ForceInput<'a> {
     pub simd: Simd,
     pub block: &'a Block,
-    pub members: &'a Members,
+    pub members: &'a BlockBodies,
     pub bodies: &'a Bodies,
     /// Surfaces of the shapes, if needed.
     pub skins: &'a [Skin],
     /// Gravity [m/s²].
     pub gravity: Vec3,
-    pub sums: &'a [Sums],
+    pub sums: &'a [ForceTorque],
     /// Time of the positions [s].
     pub time: f64,
     /// Length of the kick [s].
@@ -31,8 +31,8 @@ pub(crate) struct Seen<'a> {
 }
 
 /// Adds forces [N] and torques about the centres [N m].
-pub(crate) trait Act {
-    fn act(&self, seen: &Seen<'_>, work: &mut ForceWork);
+pub(crate) trait BodyForceModel {
+    fn act(&self, seen: &ForceInput<'_>, work: &mut ForceWork);
 }
 
 /// Scratch of a block; empty without body forces.
@@ -41,7 +41,7 @@ pub(crate) struct ForceWork {
     /// Volume-equivalent radii [m], in block order.
     pub(super) radius: Vec<f64>,
     /// In this step.
-    pub(super) acting: Vec<Sums>,
+    pub(super) acting: Vec<ForceTorque>,
     /// Added mass of each body [kg]; may be empty.
     pub(super) added: Vec<f64>,
     pub(super) heights: Vec<f64>,
@@ -57,7 +57,7 @@ impl ForceWork {
         self.radius.extend(block.bodies.iter().map(|&b| radius(volume(b as usize))));
     }
 
-    pub fn add_to(&self, sums: &mut [Sums]) {
+    pub fn add_to(&self, sums: &mut [ForceTorque]) {
         for (sum, own) in sums.iter_mut().zip(&self.acting) {
             sum.push(&xyz(own.force()), &xyz(own.torque()));
         }
@@ -71,13 +71,13 @@ impl ForceWork {
     }
 
     /// Records work, after the motion.
-    pub fn book(&self, block: &Block, ledger: &mut Ledger, kick: f64) {
-        ledger.work_body_forces += 0.5 * (self.power + self.power_on(block)) * kick;
+    pub fn add_work(&self, block: &Block, balance: &mut BalanceTerms, kick: f64) {
+        balance.work_body_forces += 0.5 * (self.power + self.power_on(block)) * kick;
     }
 
     /// Present power [W].
     pub(super) fn power_on(&self, block: &Block) -> f64 {
-        let of = |(k, own): (usize, &Sums)| {
+        let of = |(k, own): (usize, &ForceTorque)| {
             let (v, w): (Vec3, Vec3) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
             xyz(own.force()).dot(&v) + xyz(own.torque()).dot(&w)
         };
@@ -85,6 +85,6 @@ impl ForceWork {
     }
 
     pub fn bytes(&self) -> usize {
-        held(&self.radius) + held(&self.acting) + held(&self.added)
+        capacity_bytes(&self.radius) + capacity_bytes(&self.acting) + capacity_bytes(&self.added)
     }
 }

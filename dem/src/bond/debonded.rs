@@ -12,10 +12,10 @@ use super::slot::BondSlot;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
-use crate::contact::single;
-use crate::lanes::record::Record;
+use crate::contact::scalar;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{Real, V3};
-use crate::law::{ContactGeometry, ContactLaw, History, LawInput, Laws, Memory, with_law};
+use crate::law::{ContactGeometry, ContactLaw, History, HistoryLanes, LawInput, Laws, with_law};
 use serde::{Deserialize, Serialize};
 
 pub(crate) const EVERY: u64 = 100;
@@ -66,7 +66,7 @@ pub(crate) struct Sphere<R> {
 
 /// Normal from b to a, contact point, overlap, effective radius.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Meeting<R> {
+pub(crate) struct DebondedContact<R> {
     pub normal: V3<R>,
     pub point: V3<R>,
     pub overlap: R,
@@ -74,7 +74,7 @@ pub(crate) struct Meeting<R> {
 }
 
 #[inline(always)]
-pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> Meeting<R> {
+pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> DebondedContact<R> {
     let between = a.x - b.x;
     let distance = between.norm2().sqrt();
     let unit = V3::new(between.x / distance, between.y / distance, between.z / distance);
@@ -82,7 +82,7 @@ pub(crate) fn meet<R: Real>(a: &Sphere<R>, b: &Sphere<R>) -> Meeting<R> {
     let normal = V3::select(R::zero().lt(distance), unit, upward);
     let overlap = a.radius + b.radius - distance;
     let point = a.x - normal * (a.radius - R::splat(0.5) * overlap);
-    Meeting { normal, point, overlap, radius: a.radius * b.radius / (a.radius + b.radius) }
+    DebondedContact { normal, point, overlap, radius: a.radius * b.radius / (a.radius + b.radius) }
 }
 
 /// Force on a, torques on both, dissipation [J].
@@ -96,12 +96,12 @@ pub(crate) struct Forces<R> {
 
 /// Force beyond the reference over a step [s]; updates contact history.
 #[inline(always)]
-pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
+pub(crate) fn forces<L: ContactLaw, R: Real, const ROLLING: bool>(
     law: &L::Lanes<R>,
     (a, b): (&Sphere<R>, &Sphere<R>),
-    m: &Meeting<R>,
+    m: &DebondedContact<R>,
     reference: R,
-    memory: &mut Memory<R>,
+    memory: &mut HistoryLanes<R>,
     on: R::Mask,
     step: R,
 ) -> Forces<R> {
@@ -116,7 +116,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
         velocity,
         spin: a.w - b.w,
     };
-    let f = L::acting::<R, ROLL>(law, &input, memory, on, step);
+    let f = L::acting::<R, ROLLING>(law, &input, memory, on, step);
     Forces {
         force: f.force,
         torque_a: arm_a.cross(f.force) + f.moment,
@@ -128,7 +128,7 @@ pub(crate) fn forces<L: ContactLaw, R: Real, const ROLL: bool>(
 
 fn sphere(block: &Block, k: usize) -> Sphere<f64> {
     let (x, v, w) = (&block.centre[k], &block.velocity[k], &block.spin[k]);
-    let vector = |r: &Record| V3::new(r[0], r[1], r[2]);
+    let vector = |r: &Vec4| V3::new(r[0], r[1], r[2]);
     Sphere { x: vector(x), radius: x[3], v: vector(v), inverse_mass: v[3], w: vector(w) }
 }
 
@@ -158,7 +158,7 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
     let (p, q) = (sphere(a, i), sphere(b, j));
     let m = meet(&p, &q);
     if m.overlap - r.reference <= 0.0 {
-        let friction = single::end(laws, materials, &mut r.history);
+        let friction = scalar::end(laws, materials, &mut r.history);
         return PairForces { slot: BondSlot::default(), dashpot: 0.0, friction, failure: None };
     }
     let mut memory = r.history.memory();
@@ -181,9 +181,9 @@ pub(crate) fn contact(laws: &Laws, a: &Block, b: &Block, r: &mut DebondedPair, d
 fn of_one<L: ContactLaw>(
     law: &L,
     spheres: (&Sphere<f64>, &Sphere<f64>),
-    m: &Meeting<f64>,
+    m: &DebondedContact<f64>,
     reference: f64,
-    memory: &mut Memory<f64>,
+    memory: &mut HistoryLanes<f64>,
     dt: f64,
 ) -> Forces<f64> {
     let lanes = law.splat::<f64>();

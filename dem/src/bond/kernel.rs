@@ -38,7 +38,7 @@ pub(crate) struct Motion<R> {
 
 /// Shear displacement [m] and relative rotation [rad] of a against b.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Memory<R> {
+pub(crate) struct BondHistory<R> {
     pub shear: V3<R>,
     pub turn: V3<R>,
 }
@@ -70,11 +70,11 @@ pub(crate) struct Response<R> {
 }
 
 #[inline(always)]
-pub(crate) fn carry<R: Real>(
+pub(crate) fn update_frame<R: Real>(
     offset: R,
     a: &Motion<R>,
     b: &Motion<R>,
-    memory: &mut Memory<R>,
+    memory: &mut BondHistory<R>,
     dt: R,
 ) -> Frame<R> {
     let half = R::splat(0.5);
@@ -134,7 +134,7 @@ pub(crate) fn respond<R: Real>(
     a: &Motion<R>,
     b: &Motion<R>,
     frame: &Frame<R>,
-    memory: &Memory<R>,
+    memory: &BondHistory<R>,
 ) -> Response<R> {
     let n = frame.normal;
     let tension = k[STIFFNESS] * (frame.length - k[LENGTH]);
@@ -176,7 +176,7 @@ pub(crate) fn holds<R: Real>(r: &Response<R>) -> R::Mask {
 
 /// Elastic energy: tension, shear, bending, twisting [J].
 #[inline(always)]
-pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &Memory<f64>) -> f64 {
+pub(crate) fn energy(k: &[f64; COUNT], frame: &Frame<f64>, memory: &BondHistory<f64>) -> f64 {
     let stretch = frame.length - k[LENGTH];
     let (twist, bend) = split(memory.turn, frame.normal);
     0.5 * (k[STIFFNESS] * stretch * stretch
@@ -191,13 +191,13 @@ pub(crate) fn half_step_energy(
     k: &[f64; COUNT],
     a: &Motion<f64>,
     b: &Motion<f64>,
-    memory: &Memory<f64>,
+    memory: &BondHistory<f64>,
     dt: f64,
     since: f64,
 ) -> f64 {
     let back = |m: &Motion<f64>| Motion { x: m.x - m.v * (0.5 * dt), ..*m };
     let mut memory = *memory;
-    let frame = carry(k[OFFSET], &back(a), &back(b), &mut memory, since);
+    let frame = update_frame(k[OFFSET], &back(a), &back(b), &mut memory, since);
     energy(k, &frame, &memory)
 }
 

@@ -17,7 +17,7 @@ fn rigid_rotation_stores_no_energy() {
     for (u0, t0) in
         [(Vec3::zeros(), Vec3::zeros()), (helper * 1e-5, n * 2e-4 + helper.cross(&n) * 1e-4 + helper * 3e-4)]
     {
-        let mut memory = Memory { shear: v3(u0), turn: v3(t0) };
+        let mut memory = BondHistory { shear: v3(u0), turn: v3(t0) };
         let (steps, step, dt) = (6283, 0.01, 1e-5);
         let mut last = UnitQuaternion::identity();
         for k in 1..=steps {
@@ -27,7 +27,7 @@ fn rigid_rotation_stores_no_energy() {
                 v: v3((now * x - last * x) / dt),
                 w: v3(axis.into_inner() * (step / dt)),
             };
-            carry(0.002, &of(xa), &of(xb), &mut memory, dt);
+            update_frame(0.002, &of(xa), &of(xb), &mut memory, dt);
             last = now;
         }
         let turn = Rotation3::from_axis_angle(&axis, step * f64::from(steps));
@@ -51,14 +51,14 @@ fn forces_follow_from_the_energy() {
         unit[direction / 3][direction % 3] = if direction < 6 { 1e-2 } else { 1.0 };
         let [va, vb, wa, wb] = unit;
         let h = 1e-6;
-        let mut memory = Memory { shear: V3::zero(), turn: V3::zero() };
+        let mut memory = BondHistory { shear: V3::zero(), turn: V3::zero() };
         let mut work = 0.0;
         let mut last = 0.0;
         for s in 1..=4 {
             let q = h * f64::from(s);
             let a = Motion { x: v3(xa + va * q), v: v3(va), w: v3(wa) };
             let b = Motion { x: v3(xb + vb * q), v: v3(vb), w: v3(wb) };
-            let frame = carry(k[OFFSET], &a, &b, &mut memory, h);
+            let frame = update_frame(k[OFFSET], &a, &b, &mut memory, h);
             let r = respond(&k, &a, &b, &frame, &memory);
             let power = r.force.to_vec().dot(&(va - vb))
                 + r.torque_a.to_vec().dot(&wa)
@@ -77,8 +77,8 @@ fn pure_motions() {
     k[..6].copy_from_slice(&[0.02, 0.0, 2e7, 1e7, 500.0, 300.0]);
     let still = |x: Vec3| Motion { x: v3(x), v: V3::zero(), w: V3::zero() };
     let run = |a: Motion<f64>, b: Motion<f64>| {
-        let mut memory = Memory { shear: V3::zero(), turn: V3::zero() };
-        let frame = carry(0.0, &a, &b, &mut memory, 1e-6);
+        let mut memory = BondHistory { shear: V3::zero(), turn: V3::zero() };
+        let frame = update_frame(0.0, &a, &b, &mut memory, 1e-6);
         respond(&k, &a, &b, &frame, &memory)
     };
     let near = |x: Vec3, y: Vec3| assert!((x - y).norm() < 1e-6 * y.norm(), "{x} {y}");

@@ -40,12 +40,12 @@ pub use springs::{BondDamping, Criterion};
 pub use strength::{Spread, factors};
 
 pub(crate) use limit::stiffest;
-pub(crate) use store::{BondList, BondState, Held};
+pub(crate) use store::{BondList, BondState, BondedPairs};
 
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::input::BodyInput;
-use crate::bodies::table::{Bodies, Body, Kind};
+use crate::bodies::table::{Bodies, Body, BodyKind};
 use serde::{Deserialize, Serialize};
 use springs::Joint;
 
@@ -133,7 +133,7 @@ pub(crate) fn resolve(
                 if body >= bodies.len() {
                     return Err(error(format!("there is no body {body}")));
                 }
-                if bodies.kind(body) != Kind::Sphere && !by_face {
+                if bodies.kind(body) != BodyKind::Sphere && !by_face {
                     return Err(error(format!("body {body} is not a single sphere")));
                 }
             }

@@ -1,7 +1,7 @@
 //! Selection of sphere pairs to bond.
 
 use crate::base::Vec3;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 use crate::spatial::cells::Cells;
 
 /// Pairs (a, b), a < b, with surface gap below `gap` [m] that `accept` selects, ascending. `spheres`:
@@ -11,7 +11,7 @@ pub fn within_gap(
     gap: f64,
     accept: impl Fn(usize, usize) -> bool,
 ) -> Vec<[usize; 2]> {
-    let points: Vec<_> = spheres.iter().map(|(c, r)| Record([c.x, c.y, c.z, *r])).collect();
+    let points: Vec<_> = spheres.iter().map(|(c, r)| Vec4([c.x, c.y, c.z, *r])).collect();
     let radii = points.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), p| (lo.min(p[3]), hi.max(p[3])));
     let mut out = Vec::new();
     if points.is_empty() {
@@ -21,7 +21,7 @@ pub fn within_gap(
     cells.build(&points, radii, gap.max(0.0));
     for (a, p) in points.iter().enumerate() {
         let first = out.len();
-        cells.near(p, gap.max(0.0), |b| {
+        cells.neighbours(p, gap.max(0.0), |b| {
             let (b, q) = (b as usize, &points[b as usize]);
             let reach = p[3] + q[3] + gap;
             let distance = (spheres[a].0 - spheres[b].0).norm();

@@ -1,16 +1,16 @@
 //! Bond passes of a step: between blocks (slots), within blocks, then breakage in a fixed order.
 
-use super::kernel::{self, COUNT, Motion, carry, respond};
-use super::loops::{Across, Bonds, Within};
+use super::kernel::{self, COUNT, Motion, respond, update_frame};
+use super::loops::{Bonds, InterBlock, IntraBlock};
 use super::slot::BondSlot;
 use super::store::{BondList, BondState, Entry};
 use super::{BreakMode, Constants, debonded};
 use crate::base::Vec3;
+use crate::base::capacity::capacity_bytes;
 use crate::base::failure::Failure;
-use crate::base::held::held;
 use crate::bodies::block::Block;
-use crate::bodies::sums::Sums;
-use crate::lanes::record::Record;
+use crate::bodies::sums::ForceTorque;
+use crate::lanes::vec4::Vec4;
 use crate::lanes::{self, Simd, V3};
 use crate::law::Laws;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// Debonded pairs follow bonds.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Share {
+pub(crate) struct BondForces {
     pub place: u32,
     pub block: u32,
     pub slot: u32,
@@ -41,7 +41,7 @@ pub(crate) struct Broken {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ListWork {
-    pub constants: Vec<[Record; COUNT]>,
+    pub constants: Vec<[Vec4; COUNT]>,
     pub slots: Vec<BondSlot>,
     pub found: Vec<u32>,
     pub broken: Vec<Broken>,
@@ -55,7 +55,7 @@ pub(crate) struct ListWork {
 pub(crate) struct BondWork {
     simd: Simd,
     pub cross: Vec<ListWork>,
-    shares: Vec<Vec<Share>>,
+    shares: Vec<Vec<BondForces>>,
 }
 
 impl Default for BondWork {
@@ -66,7 +66,7 @@ impl Default for BondWork {
 
 impl BondWork {
     /// Contributions of bonds between blocks, in summation order.
-    pub fn shares(&self, block: usize) -> &[Share] {
+    pub fn shares(&self, block: usize) -> &[BondForces] {
         self.shares.get(block).map_or(&[], |s| s)
     }
 
@@ -99,15 +99,15 @@ pub(crate) fn link(cross: &[BondList], work: &mut BondWork) {
         let debonded = list.debonded.iter().map(|r| (r.i, r.block, r.j));
         for (slot, (i, block, j)) in list.iter().map(|e| (e.i, e.block, e.j)).chain(debonded).enumerate() {
             w.slots.push(BondSlot::default());
-            let share = Share { place: i, block: b as u32, slot: slot as u32, first: true };
+            let share = BondForces { place: i, block: b as u32, slot: slot as u32, first: true };
             work.shares[b].push(share);
-            work.shares[block as usize].push(Share { place: j, first: false, ..share });
+            work.shares[block as usize].push(BondForces { place: j, first: false, ..share });
         }
     }
 }
 
 fn motion(block: &Block, k: usize) -> Motion<f64> {
-    let vector = |v: &Record| V3::new(v[0], v[1], v[2]);
+    let vector = |v: &Vec4| V3::new(v[0], v[1], v[2]);
     Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
 }
 
@@ -116,7 +116,7 @@ fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -
     let (a, b) = (motion(own, e.i as usize), motion(other, e.j as usize));
     // Zero time increment gives the current frame.
     let mut memory = e.memory;
-    let frame = carry(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
+    let frame = update_frame(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
     let r = respond(k, &a, &b, &frame, &memory);
     let stretch = frame.length - k[kernel::LENGTH];
     let stiffness = k[kernel::STIFFNESS];
@@ -171,7 +171,7 @@ pub(crate) fn cross(
                 groups: &mut list.groups,
                 constants: &w.constants,
                 count: list.count as usize,
-                bodies: Across { own: &blocks[b], blocks, slots: &mut w.slots },
+                bodies: InterBlock { own: &blocks[b], blocks, slots: &mut w.slots },
                 found: &mut w.found,
                 dt: parts.since(),
             };
@@ -184,7 +184,7 @@ pub(crate) fn cross(
         for (k, r) in list.debonded.iter_mut().enumerate() {
             let f = debonded::contact(parts.laws, &blocks[b], &blocks[r.block as usize], r, parts.dt);
             w.slots[list.count as usize + k] = f.slot;
-            w.book(&f);
+            w.add_work(&f);
         }
     };
     if parallel {
@@ -195,7 +195,7 @@ pub(crate) fn cross(
 }
 
 impl ListWork {
-    fn book(&mut self, f: &debonded::PairForces) {
+    fn add_work(&mut self, f: &debonded::PairForces) {
         self.dashpot += f.dashpot;
         self.friction += f.friction;
         self.failure = self.failure.or(f.failure);
@@ -207,7 +207,7 @@ pub(crate) fn within(
     b: usize,
     block: &Block,
     list: &mut BondList,
-    sums: &mut [Sums],
+    sums: &mut [ForceTorque],
     w: &mut ListWork,
     shared: &BondWork,
 ) {
@@ -221,7 +221,7 @@ pub(crate) fn within(
             groups: &mut list.groups,
             constants: &w.constants,
             count: list.count as usize,
-            bodies: Within { block, sums },
+            bodies: IntraBlock { block, sums },
             found: &mut w.found,
             dt: parts.since(),
         };
@@ -235,19 +235,23 @@ pub(crate) fn within(
         let f = debonded::contact(parts.laws, block, block, r, parts.dt);
         f.slot.share(&mut sums[r.i as usize], true);
         f.slot.share(&mut sums[r.j as usize], false);
-        w.book(&f);
+        w.add_work(&f);
     }
 }
 
 impl ListWork {
     pub fn bytes(&self) -> usize {
-        held(&self.constants) + held(&self.slots) + held(&self.found) + held(&self.broken)
+        capacity_bytes(&self.constants)
+            + capacity_bytes(&self.slots)
+            + capacity_bytes(&self.found)
+            + capacity_bytes(&self.broken)
     }
 }
 
 impl BondWork {
     pub fn bytes(&self) -> usize {
-        self.cross.iter().map(ListWork::bytes).sum::<usize>() + self.shares.iter().map(held).sum::<usize>()
+        self.cross.iter().map(ListWork::bytes).sum::<usize>()
+            + self.shares.iter().map(capacity_bytes).sum::<usize>()
     }
 }
 

@@ -70,7 +70,7 @@ fn scalar_and_simd_match_bitwise() {
         let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
         let mut bits: Vec<_> =
             (0..1331).flat_map(at).flat_map(|v| [v.x, v.y, v.z]).map(f64::to_bits).collect();
-        bits.push(state.ledger.dissipated_bonds.to_bits());
+        bits.push(state.balance.dissipated_bonds.to_bits());
         bits
     };
     assert!(run(Simd::Portable) == run(Simd::best()));
@@ -96,8 +96,8 @@ fn bonds_survive_a_new_order() {
     let places = state.places.clone();
     // A resting cube stays sorted: permute the axes.
     let positions: Vec<Vec3> = (0..1331).map(|b| state.position(1330 - b).yzx()).collect();
-    let all = crate::engine::order::Turnover::none(&state);
-    crate::engine::order::reorder(&mut state, &model, &positions, &all);
+    let all = crate::engine::reordering::BodyChanges::none(&state);
+    crate::engine::reordering::reorder(&mut state, &model, &positions, &all);
     assert!(places != state.places);
     let moved = places.iter().zip(&state.places).filter(|(a, b)| a[0] != b[0]).count();
     assert!(moved > 100, "{moved}");

@@ -2,11 +2,11 @@
 //! only.
 
 use super::debonded::DebondedPair;
-use super::kernel::{COUNT, Memory};
+use super::kernel::{BondHistory, COUNT};
 use super::{Break, Constants};
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::lanes::V3;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 use serde::{Deserialize, Serialize, Serializer};
 
 /// Index of an unused lane.
@@ -20,8 +20,8 @@ pub(crate) struct Group {
     pub i: [u32; 4],
     pub block: [u32; 4],
     pub j: [u32; 4],
-    pub shear: [Record; 3],
-    pub turn: [Record; 3],
+    pub shear: [Vec4; 3],
+    pub turn: [Vec4; 3],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ pub(crate) struct Entry {
     pub i: u32,
     pub block: u32,
     pub j: u32,
-    pub memory: Memory<f64>,
+    pub memory: BondHistory<f64>,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -66,16 +66,16 @@ pub(crate) struct BondState {
     pub breaks: Vec<Break>,
 }
 
-impl Memory<f64> {
-    pub const NONE: Memory<f64> =
-        Memory { shear: V3 { x: 0.0, y: 0.0, z: 0.0 }, turn: V3 { x: 0.0, y: 0.0, z: 0.0 } };
+impl BondHistory<f64> {
+    pub const NONE: BondHistory<f64> =
+        BondHistory { shear: V3 { x: 0.0, y: 0.0, z: 0.0 }, turn: V3 { x: 0.0, y: 0.0, z: 0.0 } };
 }
 
 impl BondList {
     pub fn get(&self, at: usize) -> Entry {
         let (g, l) = (&self.groups[at / 4], at % 4);
-        let vector = |v: &[Record; 3]| V3::new(v[0][l], v[1][l], v[2][l]);
-        let memory = Memory { shear: vector(&g.shear), turn: vector(&g.turn) };
+        let vector = |v: &[Vec4; 3]| V3::new(v[0][l], v[1][l], v[2][l]);
+        let memory = BondHistory { shear: vector(&g.shear), turn: vector(&g.turn) };
         Entry { number: g.number[l], i: g.i[l], block: g.block[l], j: g.j[l], memory }
     }
 
@@ -98,7 +98,7 @@ impl BondList {
             let at = self.count as usize;
             if at.is_multiple_of(4) {
                 // Unused lanes repeat a real pair with zero constants, for harmless arithmetic.
-                let zero = [Record::default(); 3];
+                let zero = [Vec4::default(); 3];
                 self.groups.push(Group {
                     number: [NONE; 4],
                     i: [e.i; 4],
@@ -116,7 +116,7 @@ impl BondList {
     /// Removes the bonds at ascending positions and their constants.
     pub fn remove(
         &mut self,
-        constants: &mut Vec<[Record; COUNT]>,
+        constants: &mut Vec<[Vec4; COUNT]>,
         positions: impl Iterator<Item = u32> + Clone,
     ) {
         let mut gone = positions.peekable();
@@ -136,17 +136,17 @@ impl BondList {
         self.groups.truncate(to.div_ceil(4));
         constants.truncate(to.div_ceil(4));
         while !to.is_multiple_of(4) {
-            let e = Entry { number: NONE, memory: Memory::NONE, ..self.get(to / 4 * 4) };
+            let e = Entry { number: NONE, memory: BondHistory::NONE, ..self.get(to / 4 * 4) };
             self.set(to, &e);
             set_constants(constants, to, [0.0; COUNT]);
             to += 1;
         }
     }
 
-    pub fn constants(&self, bonds: &[Constants], out: &mut Vec<[Record; COUNT]>) {
+    pub fn constants(&self, bonds: &[Constants], out: &mut Vec<[Vec4; COUNT]>) {
         out.clear();
         out.extend(self.groups.iter().map(|g| {
-            let mut k = [Record::default(); COUNT];
+            let mut k = [Vec4::default(); COUNT];
             for (l, &number) in g.number.iter().enumerate().filter(|(_, n)| **n != NONE) {
                 for (to, value) in k.iter_mut().zip(&bonds[number as usize].values) {
                     to[l] = *value;
@@ -157,19 +157,19 @@ impl BondList {
     }
 }
 
-fn set_constants(constants: &mut [[Record; COUNT]], at: usize, own: [f64; COUNT]) {
+fn set_constants(constants: &mut [[Vec4; COUNT]], at: usize, own: [f64; COUNT]) {
     for (to, x) in constants[at / 4].iter_mut().zip(own) {
         to[at % 4] = x;
     }
 }
 
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Held {
+pub(crate) struct BondedPairs {
     start: Vec<u32>,
     partner: Vec<u32>,
 }
 
-impl Held {
+impl BondedPairs {
     /// `bodies`: body count.
     pub fn set(&mut self, bodies: usize, mut pairs: Vec<[u32; 2]>) {
         self.start.clear();
@@ -207,7 +207,7 @@ impl Held {
 
 impl BondList {
     pub fn bytes(&self) -> usize {
-        held(&self.groups) + held(&self.debonded)
+        capacity_bytes(&self.groups) + capacity_bytes(&self.debonded)
     }
 }
 
@@ -217,14 +217,14 @@ mod tests {
 
     #[test]
     fn removal_shifts_later_bonds() {
-        let memory = |k: f64| Memory { shear: V3::new(k, 2.0 * k, -k), turn: V3::new(-k, k, 0.5 * k) };
+        let memory = |k: f64| BondHistory { shear: V3::new(k, 2.0 * k, -k), turn: V3::new(-k, k, 0.5 * k) };
         let entry = |k: u32| Entry { number: k, i: k + 1, block: 7, j: k + 2, memory: memory(f64::from(k)) };
         for gone in
             [&[0][..], &[12], &[3, 4, 5], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], &[1, 7, 8, 11], &[]]
         {
             let mut list = BondList::default();
             list.fill((0..13).map(entry));
-            let mut constants = vec![[Record::default(); COUNT]; list.groups.len()];
+            let mut constants = vec![[Vec4::default(); COUNT]; list.groups.len()];
             (0..13).for_each(|k| set_constants(&mut constants, k, [k as f64 + 0.5; COUNT]));
             list.remove(&mut constants, gone.iter().copied());
             let left: Vec<u32> = (0..13).filter(|k| !gone.contains(k)).collect();

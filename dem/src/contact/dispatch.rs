@@ -1,16 +1,16 @@
 //! Selects a block's contact loops. Independent of the surface type, hence compiled once, with this crate.
 
-use super::between::Between;
 use super::gather::Gathering;
-use super::interior::Interior;
+use super::inter_block::Between;
+use super::intra_block::Interior;
 use super::patch_forces::{PatchForce, PatchLaw};
-use super::planes::{PlaneNow, Planes};
+use super::planes::{PlanePose, Planes};
 use super::prefetch::Prefetch;
-use super::single::Setting;
+use super::scalar::StepContext;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::bodies::sums::{Sums, Tally};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::bodies::sums::{BlockTotals, ForceTorque};
 use crate::lanes::{self, Simd};
 use crate::law::with_law;
 use crate::pairs::cross::{Cross, CrossForces, Shares, Slots};
@@ -35,9 +35,9 @@ macro_rules! select {
 
 /// `clumps`: the model may contain clumps.
 pub(crate) fn between(
-    Setting { laws, simd, dt }: Setting<'_>,
+    StepContext { laws, simd, dt }: StepContext<'_>,
     clumps: bool,
-    (blocks, members): (Part<'_, Block>, Part<'_, Members>),
+    (blocks, members): (BlockSlice<'_, Block>, BlockSlice<'_, BlockBodies>),
     material: Option<u32>,
     b: usize,
     lists: &mut Cross,
@@ -56,7 +56,7 @@ pub(crate) fn fetch(block: &Block) {
     lanes::prefetch(&block.spin);
 }
 
-pub(crate) fn gather(simd: Simd, shares: &Shares, sums: &mut [Sums], slots: Slots<'_>) {
+pub(crate) fn gather(simd: Simd, shares: &Shares, sums: &mut [ForceTorque], slots: Slots<'_>) {
     if shares.wide {
         lanes::run(simd, Gathering::<true> { shares, sums, slots });
     } else {
@@ -65,36 +65,41 @@ pub(crate) fn gather(simd: Simd, shares: &Shares, sums: &mut [Sums], slots: Slot
 }
 
 pub(crate) fn interior(
-    Setting { laws, simd, dt }: Setting<'_>,
-    (block, members): (&Block, &Members),
+    StepContext { laws, simd, dt }: StepContext<'_>,
+    (block, members): (&Block, &BlockBodies),
     pairs: &mut Groups<2>,
-    tally: &mut Tally,
+    totals: &mut BlockTotals,
     next: Prefetch<'_>,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
     with_law!(laws, laws => {
-        select!(rigid, turning, Interior, simd, { laws, block, pairs, members, tally, next, dt })
+        select!(rigid, turning, Interior, simd, { laws, block, pairs, members, totals, next, dt })
     });
 }
 
 /// `material`: common material of the planes.
 pub(crate) fn planes(
-    Setting { laws, simd, dt }: Setting<'_>,
-    planes: &[PlaneNow],
+    StepContext { laws, simd, dt }: StepContext<'_>,
+    planes: &[PlanePose],
     material: Option<u32>,
-    (block, members): (&Block, &Members),
+    (block, members): (&Block, &BlockBodies),
     pairs: &mut Groups<2>,
-    tally: &mut Tally,
+    totals: &mut BlockTotals,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
     with_law!(laws, laws => {
-        select!(rigid, turning, Planes, simd, { laws, planes, material, block, pairs, members, tally, dt })
+        select!(rigid, turning, Planes, simd, { laws, planes, material, block, pairs, members, totals, dt })
     });
 }
 
 /// `turning`: resistance against rolling or twisting, or adhesion possible.
-pub(crate) fn patch_forces(setting: &Setting<'_>, turning: bool, block: &Block, forces: &mut [PatchForce]) {
-    let &Setting { laws, simd, dt } = setting;
+pub(crate) fn patch_forces(
+    setting: &StepContext<'_>,
+    turning: bool,
+    block: &Block,
+    forces: &mut [PatchForce],
+) {
+    let &StepContext { laws, simd, dt } = setting;
     with_law!(laws, laws => if turning {
         lanes::run(simd, PatchLaw::<_, true> { laws, block, forces, dt });
     } else {

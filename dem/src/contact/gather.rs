@@ -1,14 +1,14 @@
 //! Adds forces from other blocks' slots to a block's bodies.
 
-use super::group_memory::FAR;
-use crate::bodies::sums::Sums;
-use crate::lanes::{self, Four, Kernel, Pack, Real};
+use super::group_history::FAR;
+use crate::bodies::sums::ForceTorque;
+use crate::lanes::{self, Kernel, Real, Simd4, SimdPack};
 use crate::pairs::cross::{Shares, Slots};
 
 /// Adds slots in fixed order. `WIDE`: some contain both torques.
 pub(crate) struct Gathering<'a, const WIDE: bool> {
     pub shares: &'a Shares,
-    pub sums: &'a mut [Sums],
+    pub sums: &'a mut [ForceTorque],
     pub slots: Slots<'a>,
 }
 
@@ -16,7 +16,7 @@ impl<const WIDE: bool> Kernel for Gathering<'_, WIDE> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Pack>(self) {
+    fn run<R: SimdPack>(self) {
         let Gathering { shares, sums, slots } = self;
         let three = R::Quad::load(&[1.0, 1.0, 1.0, 0.0]);
         for (k, entry) in shares.list.iter().enumerate() {

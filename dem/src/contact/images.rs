@@ -1,12 +1,12 @@
 //! Contacts across periodic borders.
 
-use super::single;
+use super::scalar;
 use crate::base::error::Partner;
 use crate::base::failure::Failure;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
-use crate::lanes::record::{Record, xyz};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::law::Laws;
 use crate::pairs::cross::{Cross, CrossForces, ImagePair};
 use crate::spatial::detect;
@@ -16,8 +16,8 @@ use crate::spatial::periodic::Periodic;
 pub(crate) fn images(
     periodic: &Periodic,
     laws: &Laws,
-    blocks: Part<'_, Block>,
-    members: Part<'_, Members>,
+    blocks: BlockSlice<'_, Block>,
+    members: BlockSlice<'_, BlockBodies>,
     b: usize,
     lists: &mut Cross,
     out: &mut CrossForces,
@@ -30,26 +30,26 @@ pub(crate) fn images(
         let (other, theirs) = (&blocks[block], &members[block]);
         let (a, c) = (own.body(name.i) as usize, theirs.body(name.j) as usize);
         let (p, q) = (&own.spheres(mine)[name.i as usize], &theirs.spheres(other)[name.j as usize]);
-        let way = periodic.way(&name.shift);
+        let way = periodic.image_offset(&name.shift);
         let materials = [mine.material(a), other.material(c)];
         let slot = &mut out.slots[first + k * width..][..width];
         let Some(g) = detect::sphere_sphere(&xyz(p), p[3], &(xyz(q) + way), q[3]) else {
-            out.friction += single::end(laws, materials, history);
-            slot.fill(Record::default());
+            out.friction += scalar::end(laws, materials, history);
+            slot.fill(Vec4::default());
             continue;
         };
         let (ma, mb) = (mine.motion(a, &g.point), other.motion(c, &(g.point - way)));
-        let f = single::between(laws, materials, None, &g, (&ma, &mb), 1.0, history, dt);
+        let f = scalar::between(laws, materials, None, &g, (&ma, &mb), 1.0, history, dt);
         out.dashpot += f.dashpot;
         out.friction += f.friction;
         out.couple += way.cross(&f.force) * dt;
         if width == 3 {
-            slot[0] = Record::of(&f.force, 0.0);
-            slot[1] = Record::of(&f.torque_a, 0.0);
-            slot[2] = Record::of(&f.torque_b, 0.0);
+            slot[0] = Vec4::of(&f.force, 0.0);
+            slot[1] = Vec4::of(&f.torque_a, 0.0);
+            slot[2] = Vec4::of(&f.torque_b, 0.0);
         } else {
-            slot[0] = Record::of(&f.force, -ma.arm.dot(&g.normal));
-            slot[1] = Record::of(&f.force.cross(&g.normal), mb.arm.dot(&g.normal));
+            slot[0] = Vec4::of(&f.force, -ma.arm.dot(&g.normal));
+            slot[1] = Vec4::of(&f.force.cross(&g.normal), mb.arm.dot(&g.normal));
         }
         let bound = p[3].min(q[3]);
         if g.overlap > bound && out.failure.is_none() {

@@ -1,16 +1,16 @@
 //! Contact loops: detection, law, force sums.
 
-pub(crate) mod between;
+pub(crate) mod body_lanes;
 pub(crate) mod dispatch;
-pub(crate) mod ends;
 pub(crate) mod gather;
-pub(crate) mod group_memory;
+pub(crate) mod group_history;
 pub(crate) mod images;
-pub(crate) mod interior;
-pub(crate) mod kind;
+pub(crate) mod inter_block;
+pub(crate) mod intra_block;
+pub(crate) mod narrow_phase;
 pub(crate) mod patch_forces;
-pub(crate) mod patches;
 pub(crate) mod planes;
 pub(crate) mod prefetch;
-pub(crate) mod single;
+pub(crate) mod scalar;
 pub(crate) mod sphere_pair;
+pub(crate) mod surface_contacts;

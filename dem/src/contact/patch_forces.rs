@@ -1,11 +1,11 @@
 //! Contact law of patches in lanes.
 
-use super::group_memory::{Mix, four};
+use super::group_history::{LawLanes, four};
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::lanes::record::{Record, xyz};
-use crate::lanes::{Kernel, Pack, Real, V3};
-use crate::law::{ContactLaw, History, LawInput, LawOutput, Memory, PairTable};
+use crate::lanes::vec4::{Vec4, xyz};
+use crate::lanes::{Kernel, Real, SimdPack, V3};
+use crate::law::{ContactLaw, History, HistoryLanes, LawInput, LawOutput, PairTable};
 
 /// Sphere–patch contact; outputs replace inputs.
 #[derive(Clone, Copy, Debug)]
@@ -14,17 +14,17 @@ pub(crate) struct PatchForce {
     /// Local coordinates on the patch.
     pub local: [f64; 2],
     /// Contact point, overlap.
-    point: Record,
+    point: Vec4,
     /// In: normal, radius. Out: moment of the torque.
-    normal: Record,
+    normal: Vec4,
     /// In: patch velocity, inverse wall mass. Out: force, dashpot loss.
-    velocity: Record,
+    velocity: Vec4,
     /// In: wall angular velocity, material. Out: torque, friction loss.
-    spin: Record,
+    spin: Vec4,
     /// Tangential spring, previous approach speed.
-    memory: Record,
+    memory: Vec4,
     /// Rolling and twisting springs.
-    turn: Record,
+    turn: Vec4,
 }
 
 impl PatchForce {
@@ -41,12 +41,12 @@ impl PatchForce {
         PatchForce {
             body,
             local,
-            point: Record::of(point, overlap),
-            normal: Record::of(normal, radius),
-            velocity: Record::of(velocity, inverse_mass),
-            spin: Record::of(spin, f64::from(material)),
-            memory: Record::of(&history.spring, history.rate),
-            turn: Record(history.turn),
+            point: Vec4::of(point, overlap),
+            normal: Vec4::of(normal, radius),
+            velocity: Vec4::of(velocity, inverse_mass),
+            spin: Vec4::of(spin, f64::from(material)),
+            memory: Vec4::of(&history.spring, history.rate),
+            turn: Vec4(history.turn),
         }
     }
 
@@ -84,7 +84,7 @@ impl PatchForce {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch<R> {
+pub(crate) struct PatchContactInput<R> {
     /// Body centre to contact point.
     pub arm: V3<R>,
     pub overlap: R,
@@ -108,10 +108,10 @@ pub(crate) struct Forces<R> {
 
 /// Forces in lanes `on` over a step [s]; advances history.
 #[inline(always)]
-pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
+pub(crate) fn acting<L: ContactLaw, R: Real, const ROLLING: bool>(
     law: &L::Lanes<R>,
-    t: &Touch<R>,
-    memory: &mut Memory<R>,
+    t: &PatchContactInput<R>,
+    memory: &mut HistoryLanes<R>,
     on: R::Mask,
     step: R,
 ) -> Forces<R> {
@@ -125,28 +125,28 @@ pub(crate) fn acting<L: ContactLaw, R: Real, const ROLL: bool>(
         spin: spin - wall_spin,
     };
     let LawOutput { force, moment, dashpot, friction, .. } =
-        L::acting::<R, ROLL>(law, &input, memory, on, step);
+        L::acting::<R, ROLLING>(law, &input, memory, on, step);
     let mut torque = t.arm.cross(force);
-    if ROLL {
+    if ROLLING {
         torque = torque + moment;
     }
     Forces { force, torque, moment, dashpot, friction }
 }
 
-pub(crate) struct PatchLaw<'a, L, const ROLL: bool> {
+pub(crate) struct PatchLaw<'a, L, const ROLLING: bool> {
     pub laws: &'a PairTable<L>,
     pub block: &'a Block,
     pub forces: &'a mut [PatchForce],
     pub dt: f64,
 }
 
-impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
+impl<L: ContactLaw, const ROLLING: bool> Kernel for PatchLaw<'_, L, ROLLING> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Pack>(self) {
+    fn run<R: SimdPack>(self) {
         let PatchLaw { laws, block, forces, dt } = self;
-        let mix = Mix::<L, R>::new(laws, None, None);
+        let mix = LawLanes::<L, R>::new(laws, None, None);
         let mut at = 0;
         while at < forces.len() {
             let count = (forces.len() - at).min(R::LANES);
@@ -161,7 +161,7 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
             let [wx, wy, wz, own] = R::columns(R::rows(|l| &block.spin[body(l)]));
             let [ux, uy, uz, wall_inverse_mass] = R::columns(R::rows(|l| &of(l).velocity));
             let [ox, oy, oz, other] = R::columns(R::rows(|l| &of(l).spin));
-            let touch = Touch {
+            let touch = PatchContactInput {
                 arm,
                 overlap,
                 radius,
@@ -171,25 +171,26 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for PatchLaw<'_, L, ROLL> {
                 inverse_mass: inverse_mass + wall_inverse_mass,
             };
             let [sx, sy, sz, rate] = R::columns(R::rows(|l| &of(l).memory));
-            let mut memory = Memory { spring: V3::new(sx, sy, sz), rate, roll: V3::zero(), twist: R::zero() };
-            if ROLL {
+            let mut memory =
+                HistoryLanes { spring: V3::new(sx, sy, sz), rate, roll: V3::zero(), twist: R::zero() };
+            if ROLLING {
                 let [rx, ry, rz, twist] = R::columns(R::rows(|l| &of(l).turn));
                 (memory.roll, memory.twist) = (V3::new(rx, ry, rz), twist);
             }
             let law = mix.of(own, other);
             let Forces { force, torque, moment, dashpot, friction } =
-                acting::<L, R, ROLL>(&law, &touch, &mut memory, on, R::splat(dt));
+                acting::<L, R, ROLLING>(&law, &touch, &mut memory, on, R::splat(dt));
             let results = R::records(four(force, dashpot), four(torque, friction));
             let springs = R::records(four(memory.spring, memory.rate), four(memory.roll, memory.twist));
             let moments = R::records(four(moment, radius), four(V3::zero(), R::zero()));
             for l in 0..count {
                 let of = &mut forces[at + l];
-                let mut two = [Record::default(); 2];
-                R::put(results[l], &mut two);
+                let mut two = [Vec4::default(); 2];
+                R::store_record(results[l], &mut two);
                 [of.velocity, of.spin] = two;
-                R::put(springs[l], &mut two);
+                R::store_record(springs[l], &mut two);
                 [of.memory, of.turn] = two;
-                R::put(moments[l], &mut two);
+                R::store_record(moments[l], &mut two);
                 of.normal = two[0];
             }
             at += count;

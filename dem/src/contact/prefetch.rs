@@ -2,17 +2,17 @@
 //! block's computation.
 
 use crate::bodies::block::Block;
-use crate::bodies::part::Part;
+use crate::bodies::block_slice::BlockSlice;
 use crate::lanes;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 use crate::pairs::groups::Group;
 
 /// Following blocks, contacts, slots of `width` records.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Prefetch<'a> {
-    pub blocks: Part<'a, Block>,
+    pub blocks: BlockSlice<'a, Block>,
     pub groups: &'a [Group<3>],
-    pub slots: &'a [Record],
+    pub slots: &'a [Vec4],
     pub width: usize,
 }
 
@@ -46,9 +46,9 @@ impl<'a> Prefetch<'a> {
 }
 
 impl Portions<'_> {
-    /// `RIGID`: skips partners, whose bodies would have to be read first.
+    /// `CLUMPS`: skips partners, whose bodies would have to be read first.
     #[inline(always)]
-    pub fn fetch<const RIGID: bool>(&mut self) {
+    pub fn fetch<const CLUMPS: bool>(&mut self) {
         let Prefetch { blocks, groups, slots, width } = self.of;
         let Some(own) = blocks.list.first() else { return };
         for list in [&own.centre, &own.velocity, &own.spin] {
@@ -60,7 +60,7 @@ impl Portions<'_> {
             self.due -= 1 << 16;
             lanes::far_ahead(groups, self.group + NAMES, 1);
             lanes::far_ahead(slots, 4 * self.group * width, 4 * width);
-            if let (false, Some(group)) = (RIGID, groups.get(self.group)) {
+            if let (false, Some(group)) = (CLUMPS, groups.get(self.group)) {
                 partners(blocks, group);
             }
             self.group += 1;
@@ -69,7 +69,7 @@ impl Portions<'_> {
 }
 
 #[inline(always)]
-pub(crate) fn partners(blocks: Part<'_, Block>, group: &Group<3>) {
+pub(crate) fn partners(blocks: BlockSlice<'_, Block>, group: &Group<3>) {
     let [_, block, sphere] = group.names();
     for l in 0..4 {
         let Some(other) = blocks.get(block[l] as usize) else { continue };

@@ -1,18 +1,18 @@
-//! Sphere–sphere contacts in lanes. Separated pairs add zeros, which leave sums bitwise unchanged. `RIGID`:
-//! clumps; `ROLL`: rolling resistance.
+//! Sphere–sphere contacts in lanes. Separated pairs add zeros, which leave sums bitwise unchanged. `CLUMPS`:
+//! clumps; `ROLLING`: rolling resistance.
 //!
 //! Theory manual: eq. (1.1), `docs/theory/contacts.md`.
 
-use super::ends::End;
-use super::group_memory::{Mix, Spent, recall, remember};
-use crate::lanes::record::Record;
-use crate::lanes::{Pack, Real, V3};
-use crate::law::{ContactLaw, FRESH, LawInput, LawOutput, Memory};
+use super::body_lanes::BodyLanes;
+use super::group_history::{Dissipation, LawLanes, load_history, store_history};
+use crate::lanes::vec4::Vec4;
+use crate::lanes::{Real, SimdPack, V3};
+use crate::law::{ContactLaw, HistoryLanes, LawInput, LawOutput, NO_CONTACT};
 use crate::pairs::groups::Springs;
 
 /// `last` (1, 0 or −1) scales the fourth number.
 #[inline(always)]
-fn difference<R: Pack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
+fn difference<R: SimdPack>(p: [R; 4], q: [R; 4], last: f64) -> [R; 4] {
     let sign = R::record(&[1.0, 1.0, 1.0, last]);
     R::columns([p[0].less(q[0], sign), p[1].less(q[1], sign), p[2].less(q[2], sign), p[3].less(q[3], sign)])
 }
@@ -61,7 +61,7 @@ struct Approach<R: Real> {
 
 impl<R: Real> Approach<R> {
     #[inline(always)]
-    fn new<const RIGID: bool>(pair: &Pair<R>) -> Approach<R> {
+    fn new<const CLUMPS: bool>(pair: &Pair<R>) -> Approach<R> {
         let &Pair { between, distance2, reach, velocity: translation, inverse_mass, spins: (wa, wb), .. } =
             pair;
         let distance = distance2.sqrt();
@@ -78,7 +78,7 @@ impl<R: Real> Approach<R> {
         let la = ra - R::splat(0.5) * overlap;
         let lb = distance - la;
         let (mut arm_a, mut arm_b) = (V3::zero(), V3::zero());
-        let velocity = if RIGID {
+        let velocity = if CLUMPS {
             arm_a = pair.offsets.0 - normal * la;
             arm_b = pair.offsets.1 + normal * lb;
             translation + wa.cross(arm_a) - wb.cross(arm_b)
@@ -93,23 +93,23 @@ impl<R: Real> Approach<R> {
 
 /// Forces in lanes `on` over a step [s]; advances history.
 #[inline(always)]
-pub(crate) fn forces<L: ContactLaw, R: Real, const RIGID: bool, const ROLL: bool>(
+pub(crate) fn forces<L: ContactLaw, R: Real, const CLUMPS: bool, const ROLLING: bool>(
     law: &L::Lanes<R>,
     pair: &Pair<R>,
-    memory: &mut Memory<R>,
+    memory: &mut HistoryLanes<R>,
     on: R::Mask,
     step: R,
 ) -> Forces<R> {
-    let m = Approach::<R>::new::<RIGID>(pair);
+    let m = Approach::<R>::new::<CLUMPS>(pair);
     let overlap = m.input.overlap;
     let LawOutput { force, moment, dashpot, friction, .. } =
-        L::acting::<R, ROLL>(law, &m.input, memory, on, step);
+        L::acting::<R, ROLLING>(law, &m.input, memory, on, step);
     let force = force.only(on);
     let lever = force.cross(m.input.normal).only(on);
     let (la, lb) = m.levers;
     let (mut torque_a, mut torque_b) =
-        if RIGID { (m.arms.0.cross(force), -m.arms.1.cross(force)) } else { (lever * la, lever * lb) };
-    if RIGID || ROLL {
+        if CLUMPS { (m.arms.0.cross(force), -m.arms.1.cross(force)) } else { (lever * la, lever * lb) };
+    if CLUMPS || ROLLING {
         let moment = moment.only(on);
         torque_a = (torque_a + moment).only(on);
         torque_b = (torque_b - moment).only(on);
@@ -136,7 +136,7 @@ pub(crate) struct Outcome<R: Real> {
     pub deep: u32,
 }
 
-impl<R: Pack> Outcome<R> {
+impl<R: SimdPack> Outcome<R> {
     /// First excessive overlap: list index (lanes start at group `g`), overlap, limit.
     #[cold]
     pub fn too_deep(&self, g: usize) -> (usize, f64, f64) {
@@ -147,9 +147,9 @@ impl<R: Pack> Outcome<R> {
 
 /// `between` from b to a, `distance2` its square, `reach` the sum of radii.
 #[inline(always)]
-fn pair<R: Pack, const RIGID: bool>(
-    a: &impl End,
-    b: &impl End,
+fn pair<R: SimdPack, const CLUMPS: bool>(
+    a: &impl BodyLanes,
+    b: &impl BodyLanes,
     (xa, xb): ([R; 4], [R; 4]),
     (between, distance2, reach): (V3<R>, R, R),
 ) -> (Pair<R>, (R, R)) {
@@ -161,7 +161,7 @@ fn pair<R: Pack, const RIGID: bool>(
     let [wbx, wby, wbz, mb] = R::columns(wb);
     let spins = (V3::new(wax, way, waz), V3::new(wbx, wby, wbz));
     let mut offsets = (V3::zero(), V3::zero());
-    if RIGID {
+    if CLUMPS {
         let [ax, ay, az, _] = difference(xa, R::rows(|l| a.centre(l)), 0.0);
         let [bx, by, bz, _] = difference(xb, R::rows(|l| b.centre(l)), 0.0);
         offsets = (V3::new(ax, ay, az), V3::new(bx, by, bz));
@@ -172,14 +172,14 @@ fn pair<R: Pack, const RIGID: bool>(
 
 /// `None` without contact. `law` mixes constants in lanes.
 #[inline(always)]
-pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bool>(
-    law: &Mix<'_, L, R>,
-    a: &impl End,
-    b: &impl End,
+pub(crate) fn contacts<L: ContactLaw, R: SimdPack, const CLUMPS: bool, const ROLLING: bool>(
+    law: &LawLanes<'_, L, R>,
+    a: &impl BodyLanes,
+    b: &impl BodyLanes,
     mut springs: (&mut Springs, &mut Springs),
-    mut turns: (&mut [Record; 4], &mut [Record; 4]),
+    mut turns: (&mut [Vec4; 4], &mut [Vec4; 4]),
     present: R::Mask,
-    spent: &mut Spent<R::Quad>,
+    dissipated: &mut Dissipation<R::Quad>,
     dt: f64,
 ) -> Option<Outcome<R>> {
     // One transposition serves both partners.
@@ -188,23 +188,23 @@ pub(crate) fn contacts<L: ContactLaw, R: Pack, const RIGID: bool, const ROLL: bo
     let between = V3::new(dx, dy, dz);
     let distance2 = between.norm2();
     let on = distance2.lt(reach * reach) & present;
-    let mut memory = recall::<R, ROLL>(&springs, &turns);
-    let ended = !on & memory.rate.lt(R::splat(FRESH));
+    let mut memory = load_history::<R, ROLLING>(&springs, &turns);
+    let ended = !on & memory.rate.lt(R::splat(NO_CONTACT));
     if R::any(ended) {
         let (ma, mb) = (R::columns(R::rows(|l| a.spin(l)))[3], R::columns(R::rows(|l| b.spin(l)))[3]);
-        let left = L::stored_in_springs::<R, ROLL>(&law.of(ma, mb), &memory).only(ended);
-        spent.friction = left.add_to(spent.friction);
-        remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
+        let left = L::tangential_energy::<R, ROLLING>(&law.of(ma, mb), &memory).only(ended);
+        dissipated.friction = left.add_to(dissipated.friction);
+        store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
     }
     if !R::any(on) {
         return None;
     }
-    let (m, materials) = pair::<R, RIGID>(a, b, (xa, xb), (between, distance2, reach));
+    let (m, materials) = pair::<R, CLUMPS>(a, b, (xa, xb), (between, distance2, reach));
     let law = law.of(materials.0, materials.1);
-    let forces = forces::<L, R, RIGID, ROLL>(&law, &m, &mut memory, on, R::splat(dt));
-    remember::<R, ROLL>(&mut springs, &mut turns, &memory, on);
-    spent.dashpot = forces.dashpot.add_to(spent.dashpot);
-    spent.friction = forces.friction.add_to(spent.friction);
+    let forces = forces::<L, R, CLUMPS, ROLLING>(&law, &m, &mut memory, on, R::splat(dt));
+    store_history::<R, ROLLING>(&mut springs, &mut turns, &memory, on);
+    dissipated.dashpot = forces.dashpot.add_to(dissipated.dashpot);
+    dissipated.friction = forces.friction.add_to(dissipated.friction);
     let deep = R::mask_bits(forces.deep);
     Some(Outcome { forces, on, deep })
 }

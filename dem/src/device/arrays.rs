@@ -4,15 +4,15 @@
 //! Entries of a body follow the engine's order of summation.
 
 use super::bodies::Spheres;
-use super::handed::Source;
-use super::layout::{LISTS, List, What, entry, parts_of};
-use super::walls::{Kept, Pairs};
+use super::cpu_forces::Source;
+use super::layout::{EntryKind, LISTS, List, entry, parts_of};
+use super::walls::{Pairs, PatchHistory};
 use crate::Vec3;
 use crate::bond::BondList;
 use crate::bond::debonded::DebondedPair;
 use crate::bond::kernel;
 use crate::bond::store::Entry;
-use crate::engine::beside;
+use crate::engine::cpu_part;
 use crate::engine::model::Model;
 use crate::engine::state::{BlockLists, State};
 use crate::engine::work::Work;
@@ -37,36 +37,36 @@ fn add_to(spring: &mut Vec<[f64; 4]>, turn: &mut Vec<[f64; 4]>, h: History) {
 
 /// History of all contacts (springs, normal-law value) and bonds (shear, rotation).
 #[derive(Clone, Debug, Default)]
-pub(super) struct Memory {
+pub(super) struct DeviceHistory {
     pub spring: Vec<[f64; 4]>,
     pub turn: Vec<[f64; 4]>,
     pub bonds: Vec<[f64; 4]>,
-    pub kept: Kept,
+    pub kept: PatchHistory,
     /// Whether the device computes triangle contacts.
     triangles: bool,
 }
 
-impl Memory {
-    pub fn zeros(model: &Model, contacts: usize, pairs: usize, bonds: usize) -> Memory {
+impl DeviceHistory {
+    pub fn zeros(model: &Model, contacts: usize, pairs: usize, bonds: usize) -> DeviceHistory {
         let zero = [0.0; 4];
-        Memory {
-            triangles: !beside::walls(model),
+        DeviceHistory {
+            triangles: !cpu_part::walls(model),
             spring: vec![zero; contacts],
             turn: vec![zero; contacts],
             bonds: vec![zero; 2 * bonds],
-            kept: Kept::zeros(pairs),
+            kept: PatchHistory::zeros(pairs),
         }
     }
 
-    pub fn of(model: &Model, state: &State) -> Memory {
-        let mut out = Memory::zeros(model, 0, 0, 0);
-        let Memory { spring, turn, bonds, .. } = &mut out;
+    pub fn of(model: &Model, state: &State) -> DeviceHistory {
+        let mut out = DeviceHistory::zeros(model, 0, 0, 0);
+        let DeviceHistory { spring, turn, bonds, .. } = &mut out;
         let mut add = |h: History| add_to(spring, turn, h);
         state.cross.iter().for_each(|c| c.spheres.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.pairs.iter().for_each(|(_, h)| add(h)));
         state.lists.iter().for_each(|l| l.planes.iter().for_each(|(_, h)| add(h)));
         for list in bond_lists(state).iter().flatten() {
-            for kernel::Memory { shear, turn } in list.iter().map(|e| e.memory) {
+            for kernel::BondHistory { shear, turn } in list.iter().map(|e| e.memory) {
                 bonds.extend([shear, turn].map(|v| [v.x, v.y, v.z, 0.0]));
             }
         }
@@ -75,14 +75,14 @@ impl Memory {
     }
 
     /// Contacts other than sphere–sphere and sphere–plane; no bonds.
-    pub fn of_rest(model: &Model, state: &State) -> Memory {
-        let mut out = Memory::zeros(model, 0, 0, 0);
+    pub fn of_rest(model: &Model, state: &State) -> DeviceHistory {
+        let mut out = DeviceHistory::zeros(model, 0, 0, 0);
         out.add_rest(state);
         out
     }
 
     fn add_rest(&mut self, state: &State) {
-        let Memory { spring, turn, kept, .. } = self;
+        let DeviceHistory { spring, turn, kept, .. } = self;
         let mut add = |h: History| add_to(spring, turn, h);
         bond_lists(state).iter().flatten().for_each(|l| l.debonded.iter().for_each(|pair| add(pair.history)));
         state.cross.iter().for_each(|c| c.images.iter().for_each(|image| add(image.history)));
@@ -105,8 +105,10 @@ impl Memory {
         for list in bond_lists_mut(state) {
             for k in 0..list.count as usize {
                 let vector = |[x, y, z, _]: [f64; 4]| V3::new(x, y, z);
-                let memory =
-                    kernel::Memory { shear: vector(self.bonds[bond]), turn: vector(self.bonds[bond + 1]) };
+                let memory = kernel::BondHistory {
+                    shear: vector(self.bonds[bond]),
+                    turn: vector(self.bonds[bond + 1]),
+                };
                 list.set(k, &Entry { memory, ..list.get(k) });
                 bond += 2;
             }
@@ -179,7 +181,7 @@ struct Entered {
 }
 
 impl Entered {
-    fn put(&mut self, body: u32, what: What, of: u32, second: bool) {
+    fn put(&mut self, body: u32, what: EntryKind, of: u32, second: bool) {
         self.all.push([body, entry(what, of, second), self.after]);
     }
 }
@@ -204,7 +206,7 @@ impl Lists {
         out.images(model, state, spheres);
         for (b, lists) in state.lists.iter().enumerate() {
             out.ranges[b][List::Patches as usize] = out.next() + out.pairs.ends.len() as u32;
-            if !beside::walls(model) {
+            if !cpu_part::walls(model) {
                 out.pairs.add(b, lists, spheres);
             }
         }
@@ -275,7 +277,7 @@ impl Lists {
             self.ranges[b][List::Images as usize] = self.next();
             for ImageName { i, block, j, shift } in cross.images.iter().map(|image| image.name) {
                 self.ends.push([spheres.at(b, i), spheres.at(block as usize, j)]);
-                let way = model.periodic.map_or(Vec3::zeros(), |p| p.way(&shift));
+                let way = model.periodic.map_or(Vec3::zeros(), |p| p.image_offset(&shift));
                 self.ways.push([way.x, way.y, way.z, 0.0]);
             }
         }
@@ -305,9 +307,10 @@ impl Lists {
         let mut entered = Entered { all: Vec::with_capacity(room), after: 0 };
         self.enter_across(state, work, spheres, &mut entered);
         entered.after = self.blocks as u32;
-        for (what, list) in [(What::Bond, List::OwnBonds), (What::Debonded, List::OwnDebonded)] {
+        for (what, list) in [(EntryKind::Bond, List::OwnBonds), (EntryKind::Debonded, List::OwnDebonded)] {
             for of in self.from(list, 0)..self.from(list, self.blocks) {
-                let [i, j] = if what == What::Bond { self.bond_ends[of as usize] } else { self.ends_of(of) };
+                let [i, j] =
+                    if what == EntryKind::Bond { self.bond_ends[of as usize] } else { self.ends_of(of) };
                 entered.put(i, what, of, false);
                 entered.put(j, what, of, true);
             }
@@ -316,7 +319,7 @@ impl Lists {
         entered.after = u32::MAX;
         for (group, &first) in self.pairs.groups.iter().enumerate() {
             let sphere = self.pairs.ends[first as usize][0];
-            entered.put(spheres.owner(sphere), What::Walls, group as u32, false);
+            entered.put(spheres.owner(sphere), EntryKind::Walls, group as u32, false);
         }
         self.pairs.groups.push(self.pairs.ends.len() as u32);
         self.enter_patches(model, state, work, &mut entered);
@@ -328,7 +331,7 @@ impl Lists {
     /// Includes CPU forces of body pairs.
     fn enter_across(&mut self, state: &State, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         // As the engine with any clump.
-        let across = if spheres.clumps { What::Members } else { What::Spheres };
+        let across = if spheres.clumps { EntryKind::Members } else { EntryKind::Spheres };
         // The CPU sums forces on solid bodies.
         let here = |b: &usize| !work.members[*b].solid();
         for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
@@ -338,10 +341,13 @@ impl Lists {
                 let (forces, record) = (&work.cross[from], share.record());
                 let (what, of) = if record >= forces.images_at {
                     let of = (record - forces.images_at) / forces.width;
-                    (What::Images, self.from(List::Images, from) + of as u32)
+                    (EntryKind::Images, self.from(List::Images, from) + of as u32)
                 } else if record >= forces.kinds_at {
                     debug_assert!(share.first());
-                    (What::Handed, self.hand_over(Source::Pair { from, record }, [b as u32, share.place]))
+                    (
+                        EntryKind::Handed,
+                        self.hand_over(Source::Pair { from, record }, [b as u32, share.place]),
+                    )
                 } else {
                     (across, self.from(List::Cross, from) + (record / forces.width) as u32)
                 };
@@ -352,8 +358,8 @@ impl Lists {
                 let from = share.block as usize;
                 let count = state.bonds.cross[from].count;
                 let (what, of) = match share.slot.checked_sub(count) {
-                    Some(slot) => (What::Debonded, self.from(List::CrossDebonded, from) + slot),
-                    None => (What::Bond, self.from(List::CrossBonds, from) + share.slot),
+                    Some(slot) => (EntryKind::Debonded, self.from(List::CrossDebonded, from) + slot),
+                    None => (EntryKind::Bond, self.from(List::CrossBonds, from) + share.slot),
                 };
                 entered.put(self.body(b, share.place), what, of, !share.first);
             }
@@ -361,8 +367,10 @@ impl Lists {
     }
 
     fn enter_within(&self, work: &Work, spheres: &Spheres, entered: &mut Entered) {
-        let within =
-            [(List::Own, What::Spheres, What::Members), (List::Planes, What::Plane, What::MemberPlane)];
+        let within = [
+            (List::Own, EntryKind::Spheres, EntryKind::Members),
+            (List::Planes, EntryKind::Plane, EntryKind::MemberPlane),
+        ];
         for (list, single, member) in within {
             for (b, members) in work.members.iter().enumerate() {
                 let what = if members.rigid { member } else { single };
@@ -382,12 +390,12 @@ impl Lists {
         type Of = (fn(&BlockLists) -> &[PatchPair], fn(usize, u32) -> Source);
         let on_walls: Of = (|l| &l.walls.pairs, |block, place| Source::Walls { block, place });
         let on_surface: Of = (|l| &l.surface.pairs, |block, place| Source::Surface { block, place });
-        for (pairs, source) in beside::walls(model).then_some(on_walls).into_iter().chain([on_surface]) {
+        for (pairs, source) in cpu_part::walls(model).then_some(on_walls).into_iter().chain([on_surface]) {
             for (b, (lists, members)) in state.lists.iter().zip(&work.members).enumerate() {
                 for pairs in pairs(lists).chunk_by(|p, q| members.body(p.i) == members.body(q.i)) {
                     let place = members.body(pairs[0].i);
                     let of = self.hand_over(source(b, place), [b as u32, place]);
-                    entered.put(self.body(b, place), What::Handed, of, false);
+                    entered.put(self.body(b, place), EntryKind::Handed, of, false);
                 }
             }
         }
@@ -403,9 +411,9 @@ impl Lists {
     fn there(&self, entry: u32) -> u32 {
         let (of, what, second) = parts_of(entry);
         let side = usize::from(!second);
-        if what == What::Walls as u32 || what == What::Handed as u32 {
+        if what == EntryKind::Walls as u32 || what == EntryKind::Handed as u32 {
             0
-        } else if what == What::Bond as u32 {
+        } else if what == EntryKind::Bond as u32 {
             self.bond_ends[of][side]
         } else {
             self.ends_of(of as u32)[side]

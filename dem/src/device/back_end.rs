@@ -1,24 +1,24 @@
 //! Device back end: transfers of state, and the sequence of kernels of a step.
 
-use super::arrays::{Lists, Memory};
+use super::arrays::{DeviceHistory, Lists};
+use super::block_totals;
 use super::bodies::{Constants, Motion, Spheres};
-use super::books;
-use super::handed::Handed;
+use super::cpu_forces::CpuForces;
 use super::layout::{Count, Features, HELD_WIDTH, List, Number, Slot};
 use super::machine::{Call, Machine};
-use super::scope::{self, Unsupported};
+use super::supported::{self, Unsupported};
 use super::text;
 use super::walls::{Triangles, placed};
 use crate::base::error::StepError;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::contact::planes;
 use crate::engine::back_end::BackEnd;
-use crate::engine::candidates::Listed;
+use crate::engine::broad_phase::Listed;
 use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{beside, bonds, neighbours, order, step};
+use crate::engine::{bonds, cpu_part, neighbour_list, reordering, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// Returns the source of the kernels for a model, valid as C and CUDA.
@@ -26,7 +26,7 @@ use crate::spatial::surface::{Surface, SurfaceContact};
 /// # Errors
 /// [`Unsupported`] for the first unsupported feature.
 pub fn source(model: &Model) -> Result<String, Unsupported> {
-    scope::check(model)?;
+    supported::check(model)?;
     Ok(text::text(&model.laws, &text::features(model)))
 }
 
@@ -53,8 +53,8 @@ pub struct Device<M> {
     bonds: usize,
     pub(super) held_since: Option<u64>,
     /// Whether the engine must make the next step.
-    pub(super) orphans: bool,
-    pub(super) handed: Handed,
+    pub(super) overflowed: bool,
+    pub(super) handed: CpuForces,
 }
 
 const PAIRS: [(Slot, Slot); 11] = [
@@ -104,9 +104,9 @@ impl<M: Machine> Device<M> {
             held_since: None,
             pairs: 0,
             bonds: 0,
-            orphans: false,
+            overflowed: false,
             // Bond breakage and too many triangle contacts repeat a step on the CPU.
-            handed: Handed::new(features.bonds || features.walls > 0),
+            handed: CpuForces::new(features.bonds || features.walls > 0),
         };
         let law = text::law_constants(&model.laws, materials);
         let Triangles { shapes, names } =
@@ -146,7 +146,7 @@ impl<M: Machine> Device<M> {
         self.machine.get(self.call.buffers[slot as usize], from, numbers)
     }
 
-    pub(super) fn get_kept(&mut self, memory: &mut Memory) -> Result<(), String> {
+    pub(super) fn get_kept(&mut self, memory: &mut DeviceHistory) -> Result<(), String> {
         let kept = &mut memory.kept;
         self.get(Slot::OldSpare, 0, &mut kept.spare)?;
         self.get(Slot::OldTouch, 0, kept.touch.as_flattened_mut().as_flattened_mut())
@@ -221,10 +221,10 @@ impl<M: Machine> Device<M> {
 
     fn take_lists(&mut self, model: &Model, state: &State) -> Result<(), String> {
         let lists = Lists::of(model, state, &self.work, &self.spheres, 0);
-        let memory = Memory::of(model, state);
+        let memory = DeviceHistory::of(model, state);
         let last = state.blocks.len();
         let bonds = lists.bond_ends.len();
-        (self.bonds, self.orphans) = (bonds, lists.pairs.orphans);
+        (self.bonds, self.overflowed) = (bonds, lists.pairs.overflowed);
         let planes = lists.from(List::Planes, 0);
         self.call.count(Count::FirstPlane, planes as usize);
         self.note_rest(&lists);
@@ -267,7 +267,7 @@ impl<M: Machine> Device<M> {
         ];
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))?;
         self.room_for_pairs(pairs)?;
-        self.hand_over_from(lists)
+        self.assign_cpu_forces(lists)
     }
 
     pub(super) fn note_rest(&mut self, lists: &Lists) {
@@ -289,7 +289,7 @@ impl<M: Machine> Device<M> {
         room.into_iter().try_for_each(|(slot, numbers)| self.reserve(slot, numbers))
     }
 
-    pub(super) fn hand_over_from(&mut self, lists: Lists) -> Result<(), String> {
+    pub(super) fn assign_cpu_forces(&mut self, lists: Lists) -> Result<(), String> {
         if self.features.beside {
             let width = self.features.picked_width();
             let there = (&mut self.machine, &mut self.call);
@@ -318,7 +318,7 @@ impl<M: Machine> Device<M> {
         }
         let n = state.blocks.iter().map(|b| b.bodies.len()).sum();
         let mut motion = Motion::zeros(n, self.features.clumps);
-        let mut memory = Memory::zeros(model, self.contacts, self.pairs, self.bonds);
+        let mut memory = DeviceHistory::zeros(model, self.contacts, self.pairs, self.bonds);
         let lists = [
             (Slot::OldX, &mut motion.x),
             (Slot::OldV, &mut motion.v),
@@ -357,9 +357,9 @@ impl<M: Machine> Device<M> {
         surface: &S,
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
-        let new_order = state.steps > 0 && state.steps.is_multiple_of(order::EVERY);
+        let new_order = state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY);
         // Forces on bodies that the CPU moves do not affect the device.
-        let solid = |k: usize| k < model.body_count() && model.body(k).kind == Kind::Solid;
+        let solid = |k: usize| k < model.body_count() && model.body(k).kind == BodyKind::Solid;
         if new_order || !applied.iter().all(|a| solid(a.body)) {
             return self.by_processor(model, state, surface, applied);
         }
@@ -367,10 +367,10 @@ impl<M: Machine> Device<M> {
         if beside || !surface.is_empty() {
             step::prepare(model, state, &mut self.work, surface, applied)?;
         }
-        if neighbours::due(state) {
-            self.orphans |= self.list(model, state, surface).map_err(|e| failed(state, e))?;
+        if neighbour_list::needs_rebuild(state) {
+            self.overflowed |= self.list(model, state, surface).map_err(|e| failed(state, e))?;
         }
-        if self.orphans {
+        if self.overflowed {
             return self.by_processor(model, state, surface, applied);
         }
         if beside {
@@ -382,7 +382,7 @@ impl<M: Machine> Device<M> {
         if failed_there {
             // The device still has the previous step: a repeat on the CPU identifies the failure.
             self.ahead = true;
-            let as_before = !beside || self.handed.put_back(state);
+            let as_before = !beside || self.handed.restore(state);
             self.by_processor(model, state, surface, applied)?;
             // CPU contacts have advanced twice: invalid state.
             let again = || failed(state, "a step failed on the GPU but not when repeated on the CPU".into());
@@ -391,15 +391,22 @@ impl<M: Machine> Device<M> {
         self.exchange();
         self.ahead = true;
         if beside {
-            beside::motion(model, state, &mut self.work);
+            cpu_part::motion(model, state, &mut self.work);
             let picked = self.handed.pick((&mut self.machine, &self.call), (state, &mut self.work));
             picked.map_err(|e| failed(state, e))?;
         }
-        let all = books::add_up(&self.books, &self.features, &self.mass, model, state, &mut self.work);
-        if bonds::looks_at_separation(state) {
+        let all = block_totals::reduce_blocks(
+            &self.books,
+            &self.features,
+            &self.mass,
+            model,
+            state,
+            &mut self.work,
+        );
+        if bonds::checks_separation(state) {
             self.fetch(model, state)?;
         }
-        step::conclude(model, state, &mut self.work, all, surface.max_speed())
+        step::finish_step(model, state, &mut self.work, all, surface.max_speed())
     }
 
     fn by_processor<S: Surface>(
@@ -419,7 +426,7 @@ impl<M: Machine> Device<M> {
 
     /// Returns whether the step failed.
     fn launch(&mut self, model: &Model, state: &State) -> Result<bool, String> {
-        planes::now(&model.planes, &state.planes, &mut self.work.planes);
+        planes::update_poses(&model.planes, &state.planes, &mut self.work.planes);
         let planes: Vec<[f64; 4]> = self.work.planes.iter().flat_map(|p| [p.face.0, p.motion.0]).collect();
         if planes != self.planes {
             self.put(Slot::Planes, planes.as_flattened())?;
@@ -431,15 +438,15 @@ impl<M: Machine> Device<M> {
                 self.put(Slot::WallNow, &walls)?;
                 self.walls = walls;
             }
-            self.call.number(Number::Gone, state.drift + state.wall_drift);
+            self.call.number(Number::Gone, state.max_travel + state.wall_travel);
         }
-        let pace = state.pace;
-        self.call.number(Number::Step, pace.kick());
-        self.call.number(Number::Way, pace.dt);
-        let bonds = bonds::parts(model, pace.last, state.bonds.fresh);
+        let step_size = state.step_size;
+        self.call.number(Number::Step, step_size.kick());
+        self.call.number(Number::Way, step_size.dt);
+        let bonds = bonds::parts(model, step_size.last, state.bonds.fresh);
         self.call.number(Number::Last, bonds.dt);
         self.call.number(Number::Since, bonds.since());
-        self.call.number(Number::Bound, 0.5 * model.radii.0 / pace.dt);
+        self.call.number(Number::Bound, 0.5 * model.radii.0 / step_size.dt);
         self.machine.launch("bodies", state.present_count(), &self.call)?;
         self.machine.launch("books", 4 * (self.books.len() - 1) + 1, &self.call)?;
         let books = self.buffer(Slot::Books);

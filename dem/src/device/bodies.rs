@@ -1,15 +1,15 @@
 //! Flat device arrays of bodies, block by block.
 
-use super::layout::How;
+use super::layout::MotionFlags;
 use crate::Vec3;
 use crate::bodies::block::Rotation;
-use crate::bodies::members::Members;
-use crate::bodies::table::Kind;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::V3;
-use crate::lanes::turn::Turn;
+use crate::lanes::quaternion::QuaternionLanes;
 use nalgebra::UnitQuaternion;
 
 /// Position, radius; velocity, inverse mass; angular velocity, material; with clumps orientation, angular
@@ -103,12 +103,12 @@ pub(super) fn put_places(x: &[[f64; 4]], orientation: &[[f64; 4]], state: &mut S
 }
 
 pub(super) fn quaternion([i, j, k, s]: &[f64; 4]) -> UnitQuaternion<f64> {
-    Turn { v: V3::new(*i, *j, *k), s: *s }.quaternion()
+    QuaternionLanes { v: V3::new(*i, *j, *k), s: *s }.quaternion()
 }
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Constants {
-    /// Integration flags ([`How`]).
+    /// Integration flags ([`MotionFlags`]).
     pub how: Vec<u32>,
     /// First body integrated singly, by block.
     pub first_single: Vec<u32>,
@@ -133,22 +133,27 @@ impl Constants {
                 let body = model.body(number);
                 let by_four = by_four(members, k, n);
                 let group = if by_four { k - k % 4..k - k % 4 + 4 } else { k..k + 1 };
-                let turns = members.rigid && members.kind[group].contains(&Kind::Clump);
-                let single = if by_four { 0 } else { How::SINGLE | How::fixed(fixed) };
+                let turns = members.rigid && members.kind[group].contains(&BodyKind::Clump);
+                let single = if by_four { 0 } else { MotionFlags::SINGLE | MotionFlags::fixed(fixed) };
                 let bit = |on: bool, of: u32| if on { of } else { 0 };
-                let elsewhere = bit(members.solid(), How::ELSEWHERE);
-                out.how.push(single | bit(turns, How::TURNS) | bit(members.rigid, How::ORIENTED) | elsewhere);
+                let elsewhere = bit(members.solid(), MotionFlags::ON_HOST);
+                out.how.push(
+                    single
+                        | bit(turns, MotionFlags::TURNS)
+                        | bit(members.rigid, MotionFlags::ORIENTED)
+                        | elsewhere,
+                );
                 out.inertia.push([body.mass, body.inertia.x]);
                 out.mass.push(if by_four { 1.0 / block.velocity[k].0[3] } else { body.mass });
                 if model.clumps {
                     let (i, reach) =
-                        (body.inertia, if body.kind == Kind::Sphere { 0.0 } else { body.radius });
+                        (body.inertia, if body.kind == BodyKind::Sphere { 0.0 } else { body.radius });
                     let spin = model.bodies.spin(number);
                     out.moments.push([i.x, i.y, i.z, reach]);
                     out.target.push([spin.x, spin.y, spin.z, 0.0]);
                 }
             }
-            let single = out.how[first..].iter().position(|how| how & How::SINGLE != 0);
+            let single = out.how[first..].iter().position(|how| how & MotionFlags::SINGLE != 0);
             out.first_single.push((first + single.unwrap_or(n)) as u32);
         }
         out
@@ -156,7 +161,7 @@ impl Constants {
 }
 
 /// Integrated in a group of four (`integrate/leapfrog.rs`).
-fn by_four(members: &Members, k: usize, n: usize) -> bool {
+fn by_four(members: &BlockBodies, k: usize, n: usize) -> bool {
     let group = k - k % 4;
     group + 4 <= n && (members.plain() || members.all_free(group))
 }

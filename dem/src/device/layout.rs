@@ -91,7 +91,7 @@ table! {
         /// Block totals, then the failure flag.
         Books = "BOOKS": "real",
         Flags = "FLAGS": "unsigned",
-        /// CPU forces (`handed.rs`): offsets by entry, force and torque; bodies that the CPU needs, and their
+        /// CPU forces (`cpu_forces.rs`): offsets by entry, force and torque; bodies that the CPU needs, and their
         /// motion.
         HandedStart = "HANDED_START": "const unsigned",
         Handed = "HANDED": "const four",
@@ -166,7 +166,7 @@ table! {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum What {
+pub(super) enum EntryKind {
     Spheres,
     Plane,
     Bond,
@@ -183,7 +183,7 @@ pub(super) enum What {
 const ENTRY_SHIFT: u32 = 5;
 
 /// Packs an entry: index of the contact or bond, its type, and whether the body is its second.
-pub(super) fn entry(what: What, of: u32, second: bool) -> u32 {
+pub(super) fn entry(what: EntryKind, of: u32, second: bool) -> u32 {
     of << ENTRY_SHIFT | (what as u32) << 1 | u32::from(second)
 }
 
@@ -195,13 +195,13 @@ pub(super) fn parts_of(entry: u32) -> (usize, u32, bool) {
 /// Integration flags: singly (with fixed motions), rotating (clumps, or groups with one), in a block with
 /// orientations, not on the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct How;
+pub(super) struct MotionFlags;
 
-impl How {
+impl MotionFlags {
     pub const SINGLE: u32 = 1;
     pub const TURNS: u32 = 1 << 7;
     pub const ORIENTED: u32 = 1 << 8;
-    pub const ELSEWHERE: u32 = 1 << 9;
+    pub const ON_HOST: u32 = 1 << 9;
 
     pub fn fixed(bits: u8) -> u32 {
         u32::from(bits) << 1
@@ -226,7 +226,7 @@ pub(super) const LISTS: usize = 10;
 
 /// Parts of a block's totals, with their numbers of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Booked {
+pub(super) enum TotalsPart {
     /// Loss by dashpots and friction, across, then within the block.
     Spheres,
     Planes,
@@ -240,19 +240,19 @@ pub(super) enum Booked {
     Images,
 }
 
-impl Booked {
-    const ALL: [(Booked, &str, usize); 7] = [
-        (Booked::Spheres, "SPHERES", 4),
-        (Booked::Planes, "PLANES", 9),
-        (Booked::Motion, "MOTION", 4),
-        (Booked::Bonds, "BONDS", 6),
-        (Booked::Held, "HELD", 21),
-        (Booked::Patches, "PATCHES", 2),
-        (Booked::Images, "IMAGES", 3),
+impl TotalsPart {
+    const ALL: [(TotalsPart, &str, usize); 7] = [
+        (TotalsPart::Spheres, "SPHERES", 4),
+        (TotalsPart::Planes, "PLANES", 9),
+        (TotalsPart::Motion, "MOTION", 4),
+        (TotalsPart::Bonds, "BONDS", 6),
+        (TotalsPart::Held, "HELD", 21),
+        (TotalsPart::Patches, "PATCHES", 2),
+        (TotalsPart::Images, "IMAGES", 3),
     ];
 }
 
-pub(super) const WALL_BOOKED: usize = 6;
+pub(super) const WALL_TOTALS: usize = 6;
 /// Values per triangle and wall, indices per triangle.
 pub(super) const SHAPE_WIDTH: usize = 25;
 pub(super) const WALL_WIDTH: usize = 19;
@@ -302,39 +302,39 @@ impl Features {
     }
 
     pub fn quantities(&self) -> usize {
-        Booked::ALL.iter().map(|(part, ..)| self.booked(*part).len()).sum()
+        TotalsPart::ALL.iter().map(|(part, ..)| self.booked(*part).len()).sum()
     }
 
     /// Range of a part; empty if the model lacks it.
-    pub fn booked(&self, of: Booked) -> Range<usize> {
+    pub fn booked(&self, of: TotalsPart) -> Range<usize> {
         let mut from = 0;
-        for (part, _, count) in Booked::ALL {
+        for (part, _, count) in TotalsPart::ALL {
             let there = match part {
-                Booked::Spheres | Booked::Planes | Booked::Motion => count,
-                Booked::Bonds => {
+                TotalsPart::Spheres | TotalsPart::Planes | TotalsPart::Motion => count,
+                TotalsPart::Bonds => {
                     if self.bonds {
                         count
                     } else {
                         0
                     }
                 }
-                Booked::Held => {
+                TotalsPart::Held => {
                     if self.held {
                         count
                     } else {
                         0
                     }
                 }
-                Booked::Images => {
+                TotalsPart::Images => {
                     if self.periodic {
                         count
                     } else {
                         0
                     }
                 }
-                Booked::Patches => {
+                TotalsPart::Patches => {
                     if self.walls > 0 {
-                        count + WALL_BOOKED * self.walls
+                        count + WALL_TOTALS * self.walls
                     } else {
                         0
                     }
@@ -352,7 +352,7 @@ impl Features {
     /// C code that sums value `number` of all blocks.
     pub fn books(&self) -> String {
         let mut out = String::new();
-        for (part, name, _) in Booked::ALL {
+        for (part, name, _) in TotalsPart::ALL {
             let Range { start, end } = self.booked(part);
             let count = end - start;
             if count > 0 {
@@ -405,12 +405,12 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         ("BLOCKS_AT_ONCE", if f.clumps || f.bonds || f.walls > 0 || f.periodic || f.beside { 3 } else { 4 }),
         ("ENTRY_SHIFT", ENTRY_SHIFT as usize),
         ("PICKED_WIDTH", f.picked_width()),
-        ("ELSEWHERE", How::ELSEWHERE as usize),
-        ("ACROSS", if f.clumps { What::Members } else { What::Spheres } as usize),
-        ("WITHIN", What::Spheres as usize),
-        ("WITHIN_TURNED", What::Members as usize),
-        ("PLANE", What::Plane as usize),
-        ("PLANE_TURNED", What::MemberPlane as usize),
+        ("ELSEWHERE", MotionFlags::ON_HOST as usize),
+        ("ACROSS", if f.clumps { EntryKind::Members } else { EntryKind::Spheres } as usize),
+        ("WITHIN", EntryKind::Spheres as usize),
+        ("WITHIN_TURNED", EntryKind::Members as usize),
+        ("PLANE", EntryKind::Plane as usize),
+        ("PLANE_TURNED", EntryKind::MemberPlane as usize),
     ];
     for (name, value) in sizes {
         _ = writeln!(out, "#define {name} {value}u");
@@ -432,8 +432,8 @@ pub(super) fn declarations(f: &Features, fresh: &str) -> String {
         [
             "((SINGLE[i] & 1u) == 0)".into(),
             "(SINGLE[i] >> 1 & 63u)".into(),
-            bit(How::TURNS),
-            bit(How::ORIENTED),
+            bit(MotionFlags::TURNS),
+            bit(MotionFlags::ORIENTED),
         ]
     } else {
         ["(SINGLE[i] == 0)".into(), "(SINGLE[i] >> 1)".into(), "0".to_string(), "0".to_string()]

@@ -1,7 +1,7 @@
 //! Interface of a device that runs the kernels.
 
 use super::layout::{Arguments, Count, Number, Slot};
-use crate::engine::beside;
+use crate::engine::cpu_part;
 use crate::engine::model::Model;
 
 /// Launch: buffers by array, numbers and counts.
@@ -114,5 +114,5 @@ const ALL: [&str; 13] = [
 
 /// Kernels of a model.
 pub fn kernels(model: &Model) -> &'static [&'static str] {
-    if beside::any(model) { &ALL } else { &ALL[..ALL.len() - 1] }
+    if cpu_part::any(model) { &ALL } else { &ALL[..ALL.len() - 1] }
 }

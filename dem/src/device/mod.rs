@@ -2,21 +2,21 @@
 //!
 //! The engine's own formulas are recorded (`tape.rs`) and written as C and CUDA source (`text`). The CPU
 //! searches contacts other than sphere–sphere and sphere–plane, re-sorts bodies, repeats failed steps, and
-//! computes its part of a step (`handed.rs`): external surfaces and solid bodies. Unsupported features are
+//! computes its part of a step (`cpu_forces.rs`): external surfaces and solid bodies. Unsupported features are
 //! rejected ([`check`]).
 
 mod arrays;
 mod back_end;
+mod block_totals;
 mod bodies;
-mod books;
+mod cpu_forces;
 #[cfg(feature = "cuda")]
 mod cuda;
-mod handed;
 mod layout;
 mod machine;
-mod scope;
 mod search;
 mod sizes;
+mod supported;
 mod tape;
 mod text;
 mod walls;
@@ -27,4 +27,4 @@ pub use cuda::Cuda;
 pub use back_end::{Device, source};
 pub use layout::Arguments;
 pub use machine::{Call, Machine, kernels};
-pub use scope::{Unsupported, check};
+pub use supported::{Unsupported, check};

@@ -3,17 +3,17 @@
 //! The neighbour list depends only on positions, so any search gives the engine's bits; here cells without
 //! candidate lists. The CPU lists contacts other than sphere–sphere and sphere–plane.
 
-use super::arrays::{Lists, Memory};
+use super::arrays::{DeviceHistory, Lists};
 use super::back_end::Device;
 use super::bodies::{Motion, put_places};
 use super::layout::{Count, LISTS, List, Number, STRETCH, Slot};
 use super::machine::Machine;
 use super::sizes::largest;
-use super::walls::orphans;
+use super::walls::overflowed;
 use crate::base::Vec3;
-use crate::engine::candidates::Listed;
+use crate::engine::broad_phase::Listed;
 use crate::engine::model::Model;
-use crate::engine::neighbours;
+use crate::engine::neighbour_list;
 use crate::engine::state::State;
 use crate::law::History;
 use crate::spatial::surface::Surface;
@@ -27,17 +27,17 @@ impl<M: Machine> Device<M> {
         surface: &S,
     ) -> Result<bool, String> {
         if !self.features.rest() {
-            neighbours::adapt(model, state);
+            neighbour_list::adapt(model, state);
             self.search(model, state)?;
             self.work.searched.searches += 1;
-            neighbours::made(state, &mut self.work);
+            neighbour_list::finish_rebuild(state, &mut self.work);
             return Ok(false);
         }
         if self.ahead {
             self.fetch_rest(model, state)?;
         }
-        neighbours::update(model, state, &mut self.work, surface, Listed::Rest);
-        if self.features.walls > 0 && state.lists.iter().any(orphans) {
+        neighbour_list::update(model, state, &mut self.work, surface, Listed::Rest);
+        if self.features.walls > 0 && state.lists.iter().any(overflowed) {
             // The engine records their energy; the state still has the previous sphere contacts.
             self.bring_back(model, state, Listed::Rest)?;
             (self.ahead, self.found, state.stale) = (false, true, true);
@@ -56,7 +56,7 @@ impl<M: Machine> Device<M> {
         self.get(Slot::OldOrientation, 0, orientation.as_flattened_mut())?;
         put_places(&x, &orientation, state, &mut self.work);
         let from = self.among_spheres;
-        let mut memory = Memory::zeros(model, self.contacts - from, self.pairs, 0);
+        let mut memory = DeviceHistory::zeros(model, self.contacts - from, self.pairs, 0);
         self.get(Slot::OldMemory, 4 * from, memory.spring.as_flattened_mut())?;
         if self.features.roll {
             self.get(Slot::OldTurn, 4 * from, memory.turn.as_flattened_mut())?;
@@ -125,7 +125,7 @@ impl<M: Machine> Device<M> {
         self.reserve(Slot::Walls, 8 * (contacts - of_spheres))?;
         if let Some(lists) = rest {
             self.put_memory(model, state, contacts)?;
-            self.hand_over_from(lists)?;
+            self.assign_cpu_forces(lists)?;
         }
         (self.found, self.ahead) = (true, true);
         Ok(())
@@ -160,7 +160,7 @@ impl<M: Machine> Device<M> {
     }
 
     fn put_memory(&mut self, model: &Model, state: &State, from: usize) -> Result<(), String> {
-        let memory = Memory::of_rest(model, state);
+        let memory = DeviceHistory::of_rest(model, state);
         let of_springs = self.buffer(Slot::OldMemory);
         self.machine.fill(of_springs, 4 * from, memory.spring.as_flattened())?;
         if self.features.roll {

@@ -15,11 +15,11 @@ enum Op {
     Constant(u64),
     Input(u32),
     Negate(u32),
-    Root(u32),
-    Magnitude(u32),
+    Sqrt(u32),
+    Abs(u32),
     Infix(&'static str, u32, u32),
-    Smaller(u32, u32),
-    Larger(u32, u32),
+    Min(u32, u32),
+    Max(u32, u32),
     Not(u32),
     Select(u32, u32, u32),
 }
@@ -28,8 +28,8 @@ impl Op {
     fn operands(&self) -> [Option<u32>; 3] {
         match *self {
             Op::Constant(_) | Op::Input(_) => [None; 3],
-            Op::Negate(a) | Op::Root(a) | Op::Magnitude(a) | Op::Not(a) => [Some(a), None, None],
-            Op::Infix(_, a, b) | Op::Smaller(a, b) | Op::Larger(a, b) => [Some(a), Some(b), None],
+            Op::Negate(a) | Op::Sqrt(a) | Op::Abs(a) | Op::Not(a) => [Some(a), None, None],
+            Op::Infix(_, a, b) | Op::Min(a, b) | Op::Max(a, b) => [Some(a), Some(b), None],
             Op::Select(m, a, b) => [Some(m), Some(a), Some(b)],
         }
     }
@@ -87,7 +87,7 @@ pub(super) struct Recorded(u32);
 
 /// Truth value known while recording, or on the tape.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Truth {
+pub(super) enum RecordedMask {
     Known(bool),
     Open(u32),
 }
@@ -118,8 +118,8 @@ pub(super) fn vector(record: &str) -> V3<Recorded> {
 }
 
 /// Records a C expression as a truth value.
-pub(super) fn truth(expression: &str) -> Truth {
-    Truth::Open(named(expression.into()))
+pub(super) fn truth(expression: &str) -> RecordedMask {
+    RecordedMask::Open(named(expression.into()))
 }
 
 /// Returns the next of the constants `k[0]`, `k[1]`, … in order of calls.
@@ -164,85 +164,85 @@ impl Neg for Recorded {
     }
 }
 
-impl BitAnd for Truth {
-    type Output = Truth;
+impl BitAnd for RecordedMask {
+    type Output = RecordedMask;
     #[inline(never)]
-    fn bitand(self, o: Truth) -> Truth {
+    fn bitand(self, o: RecordedMask) -> RecordedMask {
         match (self, o) {
-            (Truth::Known(true), x) | (x, Truth::Known(true)) => x,
-            (Truth::Known(false), _) | (_, Truth::Known(false)) => Truth::Known(false),
-            (Truth::Open(a), Truth::Open(b)) => Truth::Open(infix("&", a, b)),
+            (RecordedMask::Known(true), x) | (x, RecordedMask::Known(true)) => x,
+            (RecordedMask::Known(false), _) | (_, RecordedMask::Known(false)) => RecordedMask::Known(false),
+            (RecordedMask::Open(a), RecordedMask::Open(b)) => RecordedMask::Open(infix("&", a, b)),
         }
     }
 }
 
-impl BitOr for Truth {
-    type Output = Truth;
+impl BitOr for RecordedMask {
+    type Output = RecordedMask;
     #[inline(never)]
-    fn bitor(self, o: Truth) -> Truth {
+    fn bitor(self, o: RecordedMask) -> RecordedMask {
         match (self, o) {
-            (Truth::Known(false), x) | (x, Truth::Known(false)) => x,
-            (Truth::Known(true), _) | (_, Truth::Known(true)) => Truth::Known(true),
-            (Truth::Open(a), Truth::Open(b)) => Truth::Open(infix("|", a, b)),
+            (RecordedMask::Known(false), x) | (x, RecordedMask::Known(false)) => x,
+            (RecordedMask::Known(true), _) | (_, RecordedMask::Known(true)) => RecordedMask::Known(true),
+            (RecordedMask::Open(a), RecordedMask::Open(b)) => RecordedMask::Open(infix("|", a, b)),
         }
     }
 }
 
-impl Not for Truth {
-    type Output = Truth;
+impl Not for RecordedMask {
+    type Output = RecordedMask;
     #[inline(never)]
-    fn not(self) -> Truth {
+    fn not(self) -> RecordedMask {
         match self {
-            Truth::Known(x) => Truth::Known(!x),
-            Truth::Open(a) => Truth::Open(put(Op::Not(a))),
+            RecordedMask::Known(x) => RecordedMask::Known(!x),
+            RecordedMask::Open(a) => RecordedMask::Open(put(Op::Not(a))),
         }
     }
 }
 
 impl Real for Recorded {
-    type Mask = Truth;
+    type Mask = RecordedMask;
     const RECORDS: bool = true;
 
     fn splat(x: f64) -> Recorded {
         constant(x)
     }
     fn sqrt(self) -> Recorded {
-        Recorded(prefix(Op::Root, self.0))
+        Recorded(prefix(Op::Sqrt, self.0))
     }
     fn abs(self) -> Recorded {
-        Recorded(prefix(Op::Magnitude, self.0))
+        Recorded(prefix(Op::Abs, self.0))
     }
     #[inline(never)]
     fn min(self, o: Recorded) -> Recorded {
-        Recorded(put(Op::Smaller(self.0, o.0)))
+        Recorded(put(Op::Min(self.0, o.0)))
     }
     #[inline(never)]
     fn max(self, o: Recorded) -> Recorded {
-        Recorded(put(Op::Larger(self.0, o.0)))
+        Recorded(put(Op::Max(self.0, o.0)))
     }
-    fn lt(self, o: Recorded) -> Truth {
-        Truth::Open(infix("<", self.0, o.0))
+    fn lt(self, o: Recorded) -> RecordedMask {
+        RecordedMask::Open(infix("<", self.0, o.0))
     }
-    fn le(self, o: Recorded) -> Truth {
-        Truth::Open(infix("<=", self.0, o.0))
+    fn le(self, o: Recorded) -> RecordedMask {
+        RecordedMask::Open(infix("<=", self.0, o.0))
     }
-    fn equals(self, o: Recorded) -> Truth {
-        Truth::Open(infix("==", self.0, o.0))
+    fn equals(self, o: Recorded) -> RecordedMask {
+        RecordedMask::Open(infix("==", self.0, o.0))
     }
     #[inline(never)]
-    fn select(mask: Truth, yes: Recorded, no: Recorded) -> Recorded {
+    fn select(mask: RecordedMask, yes: Recorded, no: Recorded) -> Recorded {
         match mask {
-            Truth::Known(true) => yes,
-            Truth::Known(false) => no,
-            Truth::Open(_) if yes.0 == no.0 => yes,
-            Truth::Open(m) => Recorded(put(Op::Select(m, yes.0, no.0))),
+            RecordedMask::Known(true) => yes,
+            RecordedMask::Known(false) => no,
+            RecordedMask::Open(_) if yes.0 == no.0 => yes,
+            RecordedMask::Open(m) => Recorded(put(Op::Select(m, yes.0, no.0))),
         }
     }
-    fn any(mask: Truth) -> bool {
-        !matches!(mask, Truth::Known(false))
+    fn any(mask: RecordedMask) -> bool {
+        !matches!(mask, RecordedMask::Known(false))
     }
-    fn all(mask: Truth) -> bool {
-        matches!(mask, Truth::Known(true))
+    fn all(mask: RecordedMask) -> bool {
+        matches!(mask, RecordedMask::Known(true))
     }
 }
 
@@ -267,10 +267,10 @@ impl Results {
         numbers.enumerate().for_each(|(k, x)| self.number(format!("{to}[{k}]"), x));
     }
 
-    pub fn truth(&mut self, to: &str, t: Truth) {
+    pub fn truth(&mut self, to: &str, t: RecordedMask) {
         match t {
-            Truth::Open(k) => self.0.push((to.into(), k)),
-            Truth::Known(x) => self.0.push((to.into(), Recorded::splat(f64::from(x)).0)),
+            RecordedMask::Open(k) => self.0.push((to.into(), k)),
+            RecordedMask::Known(x) => self.0.push((to.into(), Recorded::splat(f64::from(x)).0)),
         }
     }
 
@@ -306,11 +306,11 @@ impl Tape {
         Some(match *op {
             Op::Constant(_) | Op::Input(_) => return None,
             Op::Negate(a) => format!("-{}", of(a)),
-            Op::Root(a) => format!("sqrt({})", of(a)),
-            Op::Magnitude(a) => format!("fabs({})", of(a)),
+            Op::Sqrt(a) => format!("sqrt({})", of(a)),
+            Op::Abs(a) => format!("fabs({})", of(a)),
             Op::Infix(sign, a, b) => format!("{} {sign} {}", of(a), of(b)),
-            Op::Smaller(a, b) => format!("{0} < {1} ? {0} : {1}", of(a), of(b)),
-            Op::Larger(a, b) => format!("{0} > {1} ? {0} : {1}", of(a), of(b)),
+            Op::Min(a, b) => format!("{0} < {1} ? {0} : {1}", of(a), of(b)),
+            Op::Max(a, b) => format!("{0} > {1} ? {0} : {1}", of(a), of(b)),
             Op::Not(a) => format!("!{}", of(a)),
             Op::Select(m, a, b) => format!("{} ? {} : {}", of(m), of(a), of(b)),
         })

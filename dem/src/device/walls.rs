@@ -56,7 +56,7 @@ pub(super) struct Pairs {
     /// First pair of each sphere that has any, with end.
     pub groups: Vec<u32>,
     /// Whether a contact of the last step lost its pair: the engine must record its energy.
-    pub orphans: bool,
+    pub overflowed: bool,
 }
 
 impl Pairs {
@@ -65,11 +65,11 @@ impl Pairs {
             self.groups.push(self.ends.len() as u32);
             self.ends.extend(pairs.iter().map(|pair| [spheres.at(block, pair.i), pair.patch]));
         }
-        self.orphans |= orphans(lists);
+        self.overflowed |= overflowed(lists);
     }
 }
 
-pub(super) fn orphans(lists: &BlockLists) -> bool {
+pub(super) fn overflowed(lists: &BlockLists) -> bool {
     let alive = joined(&lists.walls).filter(Option::is_some).count();
     alive < lists.walls.live.len()
 }
@@ -86,14 +86,14 @@ fn joined(list: &PatchList) -> impl Iterator<Item = Option<&PatchContact>> {
 /// Pair data besides the law's history: remaining distance; in contact also point and overlap, normal and
 /// side, wall velocity and a flag of 1.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct PatchHistory {
     pub spare: Vec<f64>,
     pub touch: Vec<[[f64; 4]; 3]>,
 }
 
-impl Kept {
-    pub fn zeros(pairs: usize) -> Kept {
-        Kept { spare: vec![0.0; pairs], touch: vec![[[0.0; 4]; 3]; pairs] }
+impl PatchHistory {
+    pub fn zeros(pairs: usize) -> PatchHistory {
+        PatchHistory { spare: vec![0.0; pairs], touch: vec![[[0.0; 4]; 3]; pairs] }
     }
 
     /// Appends pairs of a block; `f` gets their histories.

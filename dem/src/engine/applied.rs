@@ -5,9 +5,9 @@ use super::model::Model;
 use super::state::State;
 use crate::base::error::StepError;
 use crate::integrate::leapfrog::Applied;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 
-pub(crate) fn place(
+pub(crate) fn add_forces(
     model: &Model,
     state: &State,
     applied: &[AppliedForce],

@@ -1,11 +1,11 @@
 //! Scratch data of one block.
 
 use crate::base::Vec3;
-use crate::base::held::held;
-use crate::bodies::sums::Tally;
+use crate::base::capacity::capacity_bytes;
+use crate::bodies::sums::BlockTotals;
 use crate::body_force::ForceWork;
 use crate::bond::pass::ListWork;
-use crate::contact::patches::PatchWork;
+use crate::contact::surface_contacts::PatchWork;
 use crate::pairs::cross::{ImageName, Shares};
 use crate::pairs::list::PairName;
 use crate::pairs::patch_search::Candidate;
@@ -33,7 +33,7 @@ pub(crate) struct Candidates {
 pub(crate) struct BlockWork {
     pub candidates: Candidates,
     pub shares: Shares,
-    pub tally: Tally,
+    pub totals: BlockTotals,
     pub patches: PatchWork,
     pub bonds: ListWork,
     pub body_forces: ForceWork,
@@ -53,15 +53,15 @@ pub(crate) struct Ground {
 impl BlockWork {
     pub fn bytes(&self) -> usize {
         let c = &self.candidates;
-        let spheres = held(&c.pairs)
-            + held(&c.cross)
-            + held(&c.earlier)
-            + c.kinds.iter().map(held).sum::<usize>()
-            + held(&c.images)
-            + held(&c.planes);
+        let spheres = capacity_bytes(&c.pairs)
+            + capacity_bytes(&c.cross)
+            + capacity_bytes(&c.earlier)
+            + c.kinds.iter().map(capacity_bytes).sum::<usize>()
+            + capacity_bytes(&c.images)
+            + capacity_bytes(&c.planes);
         let reference = c.reference.len() * size_of::<[f32; 3]>();
-        let patches = held(&c.walls) + held(&c.surface);
-        let forces = held(&self.tally.sums) + self.body_forces.bytes();
-        spheres + patches + reference + held(&self.shares.list) + forces + self.bonds.bytes()
+        let patches = capacity_bytes(&c.walls) + capacity_bytes(&c.surface);
+        let forces = capacity_bytes(&self.totals.sums) + self.body_forces.bytes();
+        spheres + patches + reference + capacity_bytes(&self.shares.list) + forces + self.bonds.bytes()
     }
 }

@@ -5,11 +5,11 @@ use super::state::State;
 use super::work::Work;
 use crate::base::failure::Failure;
 use crate::bond::debonded::{self, DebondedPair};
-use crate::bond::kernel::Memory;
+use crate::bond::kernel::BondHistory;
 use crate::bond::pass::{self, Broken, Parts};
 use crate::bond::store::Entry;
-use crate::bond::{BondList, Break, BreakMode, Held};
-use crate::lanes::record::xyz;
+use crate::bond::{BondList, BondedPairs, Break, BreakMode};
+use crate::lanes::vec4::xyz;
 use crate::law::History;
 
 /// `dt`: last step [s].
@@ -22,7 +22,7 @@ pub(crate) fn arrange(model: &Model, state: &State, work: &mut Work) {
     work.bonds.arrange(&model.bonds, lists, &state.bonds);
 }
 
-pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
+pub(crate) fn list_bonded_pairs(model: &Model, state: &State, held: &mut BondedPairs) {
     let mut pairs = Vec::new();
     if !model.bonds.is_empty() {
         state.each_bond(|number, _| {
@@ -36,51 +36,51 @@ pub(crate) fn hold(model: &Model, state: &State, held: &mut Held) {
     held.set(model.body_count(), pairs);
 }
 
-enum Filed {
-    Bond(u32, Memory<f64>),
+enum BondEntry {
+    Bond(u32, BondHistory<f64>),
     Debonded(DebondedPair),
 }
 
 pub(crate) fn start(model: &Model, state: &mut State) {
     state.bonds.fresh = true;
-    let all = (0..model.bonds.len() as u32).map(|k| Filed::Bond(k, Memory::NONE)).collect();
-    file(model, state, all);
+    let all = (0..model.bonds.len() as u32).map(|k| BondEntry::Bond(k, BondHistory::NONE)).collect();
+    distribute(model, state, all);
 }
 
-pub(crate) fn take(state: &mut State) -> Unfiled {
+pub(crate) fn extract_bonds(state: &mut State) -> PendingBonds {
     let mut all = Vec::new();
     let inner: Vec<BondList> = state.lists.iter_mut().map(|l| std::mem::take(&mut l.bonds)).collect();
     for list in inner.into_iter().chain(std::mem::take(&mut state.bonds.cross)) {
-        all.extend(list.iter().map(|e| Filed::Bond(e.number, e.memory)));
-        all.extend(list.debonded.iter().map(|r| Filed::Debonded(*r)));
+        all.extend(list.iter().map(|e| BondEntry::Bond(e.number, e.memory)));
+        all.extend(list.debonded.iter().map(|r| BondEntry::Debonded(*r)));
     }
-    Unfiled(all)
+    PendingBonds(all)
 }
 
-pub(crate) struct Unfiled(Vec<Filed>);
+pub(crate) struct PendingBonds(Vec<BondEntry>);
 
-pub(crate) fn put(model: &Model, state: &mut State, unfiled: Unfiled) {
-    file(model, state, unfiled.0);
+pub(crate) fn insert_bonds(model: &Model, state: &mut State, pending: PendingBonds) {
+    distribute(model, state, pending.0);
 }
 
-fn file(model: &Model, state: &mut State, all: Vec<Filed>) {
+fn distribute(model: &Model, state: &mut State, all: Vec<BondEntry>) {
     let blocks = state.blocks.len();
     state.bonds.cross.clear();
     state.bonds.cross.resize_with(blocks, BondList::default);
     let mut entries: [Vec<Vec<Entry>>; 2] = [vec![Vec::new(); blocks], vec![Vec::new(); blocks]];
-    for filed in all {
-        let number = match &filed {
-            Filed::Bond(number, _) => *number,
-            Filed::Debonded(r) => r.number,
+    for entry in all {
+        let number = match &entry {
+            BondEntry::Bond(number, _) => *number,
+            BondEntry::Debonded(r) => r.number,
         };
         // First body by model index, independent of block order: signs never flip.
         let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
         let across = usize::from(b != block);
-        match filed {
-            Filed::Bond(number, memory) => {
+        match entry {
+            BondEntry::Bond(number, memory) => {
                 entries[across][b as usize].push(Entry { number, i, block, j, memory });
             }
-            Filed::Debonded(r) => {
+            BondEntry::Debonded(r) => {
                 let list = if across == 1 {
                     &mut state.bonds.cross[b as usize]
                 } else {
@@ -149,8 +149,8 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
         for across in [false, true] {
             let w = if across { &mut work.bonds.cross[b] } else { &mut work.blocks[b].bonds };
             power += w.power;
-            state.ledger.dissipated_dashpot += w.dashpot;
-            state.ledger.dissipated_friction += w.friction;
+            state.balance.dissipated_dashpot += w.dashpot;
+            state.balance.dissipated_friction += w.friction;
             failure = failure.or(w.failure);
             if w.broken.is_empty() {
                 continue;
@@ -173,10 +173,10 @@ pub(crate) fn settle(model: &Model, state: &mut State, work: &mut Work) -> Optio
     // Forces use velocities half a step old, work their mean with the next: c v² + ½ c v·Δv. The second term
     // sums to a quarter of the change of power.
     let last = if state.bonds.fresh { power } else { state.bonds.power };
-    state.ledger.dissipated_bonds += (power + 0.25 * (power - last)) * state.pace.kick();
+    state.balance.dissipated_bonds += (power + 0.25 * (power - last)) * state.step_size.kick();
     state.bonds.power = power;
     state.bonds.fresh = false;
-    changed |= hand_over(state);
+    changed |= discard_separated(state);
     if changed {
         pass::link(&state.bonds.cross, &mut work.bonds);
     }
@@ -199,7 +199,7 @@ fn part(
     if !bond.contact && mobile {
         let (one, two) = (p.material(i), q.material(j));
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
-        let dt = state.pace.dt;
+        let dt = state.step_size.dt;
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
         // One step and half a step ago, the latter at the new velocity.
         let half = ra + rb - (x - v * (0.5 * dt)).norm();
@@ -209,12 +209,12 @@ fn part(
         let overlap = debonded::overlap_for(stored, radius, broken.pressure, broken.pressed);
         let reference = if overlap > 0.0 { then - overlap } else { then.max(0.0) };
         energy -= stored((half - reference).max(0.0));
-        let rate = model.laws.begun(one, two, broken.approach);
+        let rate = model.laws.initial_state(one, two, broken.approach);
         let history = if overlap > 0.0 { History { rate, ..History::NONE } } else { History::NONE };
         pair = Some(DebondedPair { number: e.number, i: e.i, block: e.block, j: e.j, reference, history });
     }
     state.bonds.broken[usize::from(broken.mode == BreakMode::Shear)] += 1;
-    state.ledger.released_by_breaks += energy;
+    state.balance.released_by_breaks += energy;
     state.bonds.breaks.push(Break {
         time: state.time,
         bond: e.number,
@@ -226,7 +226,7 @@ fn part(
     pair
 }
 
-pub(crate) const LOOKS: u64 = debonded::EVERY;
+pub(crate) const CHECK_INTERVAL: u64 = debonded::EVERY;
 
 pub(crate) fn any_debonded(state: &State) -> bool {
     let mut any = false;
@@ -242,11 +242,11 @@ pub(crate) fn parted(state: &State) -> ((u64, u64), usize) {
 }
 
 /// Separation checks need current positions and history.
-pub(crate) fn looks_at_separation(state: &State) -> bool {
-    state.steps.is_multiple_of(LOOKS) && any_debonded(state)
+pub(crate) fn checks_separation(state: &State) -> bool {
+    state.steps.is_multiple_of(CHECK_INTERVAL) && any_debonded(state)
 }
 
-pub(crate) fn hand_over(state: &mut State) -> bool {
+pub(crate) fn discard_separated(state: &mut State) -> bool {
     if !state.steps.is_multiple_of(debonded::EVERY) {
         return false;
     }
@@ -258,7 +258,7 @@ pub(crate) fn hand_over(state: &mut State) -> bool {
         let keep = |r: &DebondedPair, other: usize| {
             let (_, overlap) =
                 debonded::geometry(&blocks[b], r.i as usize, &blocks[other], r.j as usize, 0.0);
-            !r.history.is_fresh() || overlap > 0.0
+            !r.history.is_new() || overlap > 0.0
         };
         list.retain(|r| keep(r, b));
         if let Some(cross) = cross.get_mut(b) {

@@ -3,7 +3,7 @@
 use super::input::{ModelInput, SearchSkin, TimeStep};
 use super::timestep;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, Body, Kind};
+use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::law::material::Material;
 use crate::law::parameter::{self, first_invalid};
 use crate::law::{self, Laws, conical_damage};
@@ -168,7 +168,7 @@ pub(crate) fn surfaces(input: &ModelInput) -> impl Iterator<Item = usize> {
 }
 
 fn settings(input: &ModelInput) -> Result<(), ModelError> {
-    let error = |quantity, value, requirement| Err(ModelError::Setting { quantity, value, requirement });
+    let error = |quantity, value, requirement| Err(ModelError::StepContext { quantity, value, requirement });
     if let Some(&g) = input.gravity.iter().find(|x| !x.is_finite()) {
         return error("gravity", g, "be finite");
     }
@@ -221,7 +221,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
             return error(format!("plane {p}"));
         }
         // Boxes interact with neither.
-        if a.kind != Kind::Solid || input.shapes[a.shape].dilated() {
+        if a.kind != BodyKind::Solid || input.shapes[a.shape].dilated() {
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
             }

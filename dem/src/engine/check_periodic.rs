@@ -3,7 +3,7 @@
 use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, Kind};
+use crate::bodies::table::{Bodies, BodyKind};
 use crate::body_force::BodyForce;
 use crate::spatial::patchwork::Patch;
 
@@ -19,7 +19,7 @@ pub(crate) fn check(
         return Ok(());
     }
     let walls = !(input.triangles.is_empty() && input.walls.is_empty());
-    let spheres = walls && bodies.iter().any(|b| b.kind != Kind::Solid);
+    let spheres = walls && bodies.iter().any(|b| b.kind != BodyKind::Solid);
     for (what, there) in [
         ("spheres with walls other than planes", spheres),
         ("an external surface", input.surface_material.is_some()),

@@ -7,9 +7,9 @@ use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, Body, Kind, for_members, volume};
+use crate::bodies::table::{Bodies, Body, BodyKind, for_members, volume};
 use crate::body_force::{self, BodyForce, Skin};
-use crate::contact::kind::SheetView;
+use crate::contact::narrow_phase::SheetView;
 use crate::law::{History, Laws, Linearised};
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
@@ -114,7 +114,7 @@ impl Model {
         let patches = if faces { walls.patchwork(&given) } else { Vec::new() };
         check::rigid_pairs(&bodies, &input, &laws)?;
         let Sizes { radii, spheres, largest, mean } = Sizes::new(&bodies, &input.shapes);
-        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != Kind::Solid).count();
+        let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != BodyKind::Solid).count();
         let skin = match input.skin {
             SearchSkin::Share(share) => share * mean,
             SearchSkin::Distance(distance) => distance,
@@ -139,7 +139,7 @@ impl Model {
         let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);
         let steps = Steps::new(&input.time_step.damped(input.damping), &limit, longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
-        let clumps = bodies.iter().any(|b| b.kind == Kind::Clump);
+        let clumps = bodies.iter().any(|b| b.kind == BodyKind::Clump);
         let solids = round < bodies.len();
         let body_materials = sorted(bodies.iter().map(|b| b.material));
         let patch_materials = sorted(walls_and_surface.chain(check::surfaces(&input).map(|m| m as u32)));
@@ -355,7 +355,7 @@ impl Model {
         // The stored rate is a radius, or a speed, which springs do not depend on.
         let history = History { rate: radius, ..History::NONE };
         let law = self.laws.linearised(materials, mass, radius, overlap, &history);
-        let (limit, _) = self.laws.held_by_friction(materials, None, overlap, radius, &history);
+        let (limit, _) = self.laws.friction_limit(materials, None, overlap, radius, &history);
         match limit > 0.0 {
             true => law,
             false => {

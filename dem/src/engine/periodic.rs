@@ -3,7 +3,7 @@
 use super::model::Model;
 use super::state::State;
 use crate::base::Vec3;
-use crate::lanes::record::{set_xyz, xyz};
+use crate::lanes::vec4::{set_xyz, xyz};
 use crate::pairs::cross::{ImageName, ImagePair};
 use crate::spatial::periodic::{NONE, Periodic, Turns};
 
@@ -19,11 +19,11 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
                 continue;
             }
             moved = true;
-            let (way, mass) = (periodic.way(&t), model.mass(body as usize));
+            let (way, mass) = (periodic.image_offset(&t), model.mass(body as usize));
             let back = xyz(&block.centre[k]) - way;
             set_xyz(&mut block.centre[k], &back);
-            state.ledger.periodic.angular -= way.cross(&(xyz(&block.velocity[k]) * mass));
-            state.ledger.work_periodic += mass * model.gravity.dot(&way);
+            state.balance.periodic.angular -= way.cross(&(xyz(&block.velocity[k]) * mass));
+            state.balance.work_periodic += mass * model.gravity.dot(&way);
         }
         turns.push(own);
     }

@@ -4,15 +4,15 @@
 //! triangle.
 
 use super::block_work::Ground;
-use super::candidates;
+use super::broad_phase;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::contact::kind::{KINDS, OnGround};
-use crate::lanes::record::xyz;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::contact::narrow_phase::{KINDS, OnGround};
+use crate::lanes::vec4::xyz;
 use crate::law::scarring::{Scar, Scarring};
 use crate::spatial::facet::Facet;
 use crate::spatial::patchwork::Form;
@@ -27,9 +27,9 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
         let mut ground = std::mem::take(&mut work.ground);
         ground.clear();
         ground.resize(state.blocks[b].bodies.len(), Ground::default());
-        let now = candidates::now(model, state, &work.members, (&work.walls, &work.sheet));
+        let now = broad_phase::configuration(model, state, &work.members, (&work.walls, &work.sheet));
         for (kind, list) in KINDS.iter().zip(&state.cross[b].kinds) {
-            kind.grounds(&now, b, list, &mut |on: &OnGround| {
+            kind.visit_scarred_ground(&now, b, list, &mut |on: &OnGround| {
                 let patch = &model.patches[on.patch as usize];
                 if let Form::Facet(facet) = &patch.form {
                     let centre = xyz(&state.blocks[b].centre[on.place]);
@@ -37,12 +37,12 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
                 }
             });
         }
-        let State { blocks, scars, stale, pace, .. } = &mut *state;
+        let State { blocks, scars, stale, step_size, .. } = &mut *state;
         for (k, own) in ground.iter().enumerate() {
             let scar = &mut scars[blocks[b].bodies[k] as usize];
             let body = Body { model, block: &blocks[b], members: &work.members[b], k, down: &down };
             let before = scar.inside;
-            body.follow(scar, own, pace.kick(), &mut heights);
+            body.follow(scar, own, step_size.kick(), &mut heights);
             // Sinking brings further ground within the cut-off.
             *stale |= scar.inside != before;
         }
@@ -78,7 +78,7 @@ fn beneath(facet: &Facet, x: &Vec3, down: &Vec3) -> bool {
 struct Body<'a> {
     model: &'a Model,
     block: &'a Block,
-    members: &'a Members,
+    members: &'a BlockBodies,
     k: usize,
     down: &'a Vec3,
 }
@@ -91,7 +91,7 @@ impl Body<'_> {
         else {
             // Out of the soil, the friction increase decays.
             let law = self.model.walls.walls.iter().find_map(|w| w.scarring);
-            let way = law.map_or(0.0, |law| law.way(scar.way, false, 0.0, dt));
+            let way = law.map_or(0.0, |law| law.update_path(scar.way, false, 0.0, dt));
             let way = if way > FORGOTTEN { way } else { 0.0 };
             let friction = law.map_or(0.0, |law| law.friction(way));
             *scar = Scar { way, friction, ..Scar::default() };
@@ -104,7 +104,7 @@ impl Body<'_> {
             scar.inside = true;
             scar.sunk = self.down * law.depth(mass, velocity.dot(self.down));
         }
-        scar.way = law.way(scar.way, ground.touches, speed, dt);
+        scar.way = law.update_path(scar.way, ground.touches, speed, dt);
         scar.friction = law.friction(scar.way);
         scar.resistance = if speed > 0.0 {
             self.resistance(&law, (&normal, height), &(velocity / speed), heights)

@@ -1,14 +1,14 @@
 //! Initial state of a run.
 
+use super::block_layout::{self, BodyState};
 use super::bonds;
 use super::model::Model;
-use super::place::{self, Row};
 use super::state::State;
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::block::Rotation;
 use crate::bond::BondState;
-use crate::integrate::pace::Pace;
+use crate::integrate::step_size::StepSize;
 use crate::law::scarring::Scar;
 use crate::shape::plane::PlaneMotion;
 
@@ -29,10 +29,10 @@ impl State {
             |p: &crate::Plane| PlaneMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false };
         let mut state = State {
             time: 0.0,
-            pace: Pace::new(model.dt()),
+            step_size: StepSize::new(model.dt()),
             steps: 0,
             before: 0,
-            ledger: Ledger::default(),
+            balance: BalanceTerms::default(),
             places: Vec::new(),
             blocks: Vec::new(),
             lists: Vec::new(),
@@ -43,21 +43,21 @@ impl State {
             sheet: model.sheet.rest.clone(),
             scars: vec![Scar::default(); if model.scarred { model.bodies.len() } else { 0 }],
             near: 0.1 * model.skin,
-            drift: 0.0,
-            wall_drift: 0.0,
-            lasted: 0,
+            max_travel: 0.0,
+            wall_travel: 0.0,
+            steps_since_search: 0,
             driven_speed: 0.0,
             stale: true,
         };
         let positions = model.bodies.positions().expect("a model that has not given its start up");
-        for bodies in place::blocks(model, positions, |b| !model.bodies.absent(b)) {
-            let block = place::block(model, bodies, |body| {
+        for bodies in block_layout::blocks(model, positions, |b| !model.bodies.absent(b)) {
+            let block = block_layout::block(model, bodies, |body| {
                 let body = body as usize;
                 let rotation =
                     Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
-                Row::at_rest(model, body, &positions[body], rotation)
+                BodyState::at_rest(model, body, &positions[body], rotation)
             });
-            let (lists, cross) = place::lists(model, &block);
+            let (lists, cross) = block_layout::lists(model, &block);
             state.blocks.push(block);
             state.lists.push(lists);
             state.cross.push(cross);

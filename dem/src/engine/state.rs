@@ -1,16 +1,16 @@
 //! State of a run; checkpoints resume bitwise identically.
 //!
-//! Bodies are stored in spatial blocks (`order.rs`); public methods use input indices. Positions are at
+//! Bodies are stored in spatial blocks (`reordering.rs`); public methods use input indices. Positions are at
 //! `time`, velocities half a step earlier (leapfrog). Contact history is stored with the neighbour list.
 
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
 use crate::bodies::block::{Block, spin_of};
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::bond::{BondList, BondState};
 use crate::engine::model::Model;
-use crate::integrate::pace::Pace;
-use crate::lanes::record::{set_xyz, xyz};
+use crate::integrate::step_size::StepSize;
+use crate::lanes::vec4::{set_xyz, xyz};
 use crate::law::scarring::Scar;
 use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
@@ -35,17 +35,17 @@ pub(crate) struct BlockLists {
 pub struct State {
     /// Time [s].
     pub time: f64,
-    /// Steps, including those before [`State::begin_anew`].
+    /// Steps, including those before [`State::reset_time`].
     pub steps: u64,
     pub(crate) before: u64,
     /// Work, dissipation and impulse.
-    pub ledger: Ledger,
+    pub balance: BalanceTerms,
     pub(crate) places: Vec<[u32; 2]>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) lists: Vec<BlockLists>,
     /// By block of the first sphere.
     pub(crate) cross: Vec<Cross>,
-    pub(crate) pace: Pace,
+    pub(crate) step_size: StepSize,
     pub(crate) bonds: BondState,
     pub(crate) planes: Vec<PlaneMotion>,
     pub(crate) walls: Vec<WallState>,
@@ -57,48 +57,48 @@ pub struct State {
     pub(crate) scars: Vec<Scar>,
     /// Cut-off beyond contact [m], displacement used, age in steps.
     pub(crate) near: f64,
-    pub(crate) drift: f64,
-    pub(crate) wall_drift: f64,
-    pub(crate) lasted: u32,
+    pub(crate) max_travel: f64,
+    pub(crate) wall_travel: f64,
+    pub(crate) steps_since_search: u32,
     pub(crate) stale: bool,
 }
 
-pub(crate) const NOWHERE: [u32; 2] = [u32::MAX, 0];
+pub(crate) const ABSENT: [u32; 2] = [u32::MAX, 0];
 
 impl State {
-    /// Steps since the start or [`State::begin_anew`].
+    /// Steps since the start or [`State::reset_time`].
     pub fn steps_done(&self) -> u64 {
         self.steps - self.before
     }
 
     /// Next time step [s]; initially [`Model::dt`].
     pub fn dt(&self) -> f64 {
-        self.pace.dt
+        self.step_size.dt
     }
 
     /// Last time step [s].
     pub fn last_dt(&self) -> f64 {
-        self.pace.last
+        self.step_size.last
     }
 
     /// Velocity increment time [s]: mean of next and last step.
     pub fn kick(&self) -> f64 {
-        self.pace.kick()
+        self.step_size.kick()
     }
 
     /// Last critical time step [s] ([`crate::stability`]).
     pub fn measured_limit(&self) -> Option<f64> {
-        (self.pace.limit > 0.0).then_some(self.pace.limit)
+        (self.step_size.limit > 0.0).then_some(self.step_size.limit)
     }
 
     /// Sets the time step [s].
     pub fn set_dt(&mut self, dt: f64) {
-        self.pace.dt = dt;
+        self.step_size.dt = dt;
     }
 
     /// Returns true if the body is present; absent bodies have no position.
     pub fn present(&self, body: usize) -> bool {
-        self.places[body] != NOWHERE
+        self.places[body] != ABSENT
     }
 
     /// Number of bodies present.
@@ -108,43 +108,43 @@ impl State {
 
     pub(crate) fn number(&mut self, model: &Model) {
         self.places.clear();
-        self.places.resize(model.bodies.len(), NOWHERE);
+        self.places.resize(model.bodies.len(), ABSENT);
         for (b, block) in self.blocks.iter().enumerate() {
             for (k, &body) in block.bodies.iter().enumerate() {
                 self.places[body as usize] = [b as u32, k as u32];
             }
         }
         // Re-inserted bodies start without a scar.
-        let absent = self.scars.iter_mut().zip(&self.places).filter(|(_, place)| **place == NOWHERE);
+        let absent = self.scars.iter_mut().zip(&self.places).filter(|(_, place)| **place == ABSENT);
         absent.for_each(|(scar, _)| *scar = Scar::default());
     }
 
-    fn place(&self, body: usize) -> (&Block, usize) {
+    fn locate(&self, body: usize) -> (&Block, usize) {
         let [b, k] = self.places[body];
         (&self.blocks[b as usize], k as usize)
     }
 
     /// Centre of mass [m], not wrapped ([`Model::wrap`]).
     pub fn position(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.centre[k])
     }
 
     /// Velocity half a step before `time` [m/s].
     pub fn velocity(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.velocity[k])
     }
 
     /// Angular velocity in world axes half a step before `time` [rad/s].
     pub fn spin(&self, body: usize) -> Vec3 {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         xyz(&block.spin[k])
     }
 
     /// Orientation (body frame to world); initial value for single spheres.
     pub fn orientation(&self, model: &Model, body: usize) -> UnitQuaternion<f64> {
-        let (block, k) = self.place(body);
+        let (block, k) = self.locate(body);
         block.rotation.get(k).map_or_else(|| model.bodies.orientation(body), |r| r.orientation)
     }
 
@@ -164,7 +164,7 @@ impl State {
 
     /// Translates [m] and rotates a body about world axes; velocity, angular momentum and contact history are
     /// kept. Fixed motions are skipped (all rotations if one is fixed); single spheres do not rotate. Angular
-    /// momentum is balanced, energy is not. Call [`State::forget_neighbours`] afterwards.
+    /// momentum is balanced, energy is not. Call [`State::request_search`] afterwards.
     pub fn shift(&mut self, model: &Model, body: usize, shift: &Vec3, turn: &UnitQuaternion<f64>) {
         let [b, k] = self.places[body];
         let (block, k) = (&mut self.blocks[b as usize], k as usize);
@@ -174,7 +174,7 @@ impl State {
         let place = xyz(&block.centre[k]) + shift;
         set_xyz(&mut block.centre[k], &place);
         if let Some(r) = block.rotation.get_mut(k)
-            && constants.kind != Kind::Sphere
+            && constants.kind != BodyKind::Sphere
             && !(3..6).any(fixed)
         {
             r.orientation = turn * r.orientation;
@@ -182,7 +182,7 @@ impl State {
             set_xyz(&mut block.spin[k], &spin);
         }
         let momentum = xyz(&block.velocity[k]) * constants.mass;
-        self.ledger.jumps.angular += shift.cross(&momentum);
+        self.balance.jumps.angular += shift.cross(&momentum);
     }
 
     /// Spheres in the world: centre [m], radius [m]; empty for a box.
@@ -257,24 +257,24 @@ impl State {
     }
 
     /// Resets time, steps and balances; wall offsets are kept.
-    pub fn begin_anew(&mut self) {
+    pub fn reset_time(&mut self) {
         self.time = 0.0;
         // The total count fixes sorting steps, hence rounding.
         self.before = self.steps;
-        self.ledger = Ledger::default();
+        self.balance = BalanceTerms::default();
         self.driven_speed = 0.0;
         self.bonds.breaks.clear();
     }
 
     /// Requests a neighbour search, if the external surface exceeded its
     /// [`max_speed`](crate::spatial::surface::Surface::max_speed).
-    pub fn forget_neighbours(&mut self) {
+    pub fn request_search(&mut self) {
         self.stale = true;
     }
 
     /// Adds surface displacement [m] beyond its [`max_speed`](crate::spatial::surface::Surface::max_speed),
     /// without a new search.
-    pub fn allow_for_jump(&mut self, way: f64) {
-        self.wall_drift += way;
+    pub fn add_surface_travel(&mut self, way: f64) {
+        self.wall_travel += way;
     }
 }

@@ -2,37 +2,37 @@
 
 use super::block_work::BlockWork;
 use super::bonds;
-use super::candidates::{self, Listed};
+use super::broad_phase::{self, Listed};
 use super::input::AppliedForce;
 use super::model::Model;
 use super::state::State;
-use super::threads::{self, Bodies, Lists, One};
+use super::threads::{self, BlockArrays, BlockTask, Bodies};
 use super::work::Work;
-use super::{applied, neighbours, order, scarring, wall_contacts, walls};
+use super::{applied, neighbour_list, reordering, scarring, wall_contacts, walls};
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::error::{Partner, StepError};
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::sums::{Sums, Tally, WallSum};
-use crate::body_force::Seen;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::sums::{BlockTotals, ForceTorque, WallSum};
+use crate::body_force::ForceInput;
 use crate::bond;
 use crate::bond::pass::{BondWork, Parts};
-use crate::contact::kind;
-use crate::contact::patches::{self, Against};
-use crate::contact::planes::PlaneNow;
+use crate::contact::narrow_phase;
+use crate::contact::planes::PlanePose;
 use crate::contact::prefetch::Prefetch;
-use crate::contact::single::Setting;
+use crate::contact::scalar::StepContext;
+use crate::contact::surface_contacts::{self, ContactSurface};
 use crate::contact::{dispatch, images, planes};
-use crate::integrate::leapfrog::{self, Drive};
-use crate::integrate::pace::Pace;
+use crate::integrate::leapfrog::{self, MotionInput};
+use crate::integrate::step_size::StepSize;
 use crate::law::scarring::Scar;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
 use crate::pairs::patches::PatchList;
 use crate::spatial::surface::Surface;
 use crate::wall::set::PlacedWalls;
 
-pub use super::probe::find_contacts;
+pub use super::initial_contacts::find_contacts;
 
 /// Advances `state` by one step of [`State::dt`].
 ///
@@ -52,14 +52,14 @@ pub fn step<S: Surface>(
     if state.places.len() != model.bodies.len() || work.blocks.len() != state.blocks.len() {
         return Err(StepError::Mismatch { expected: model.bodies.len(), found: state.places.len() });
     }
-    if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
+    if state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY) {
         state.reorder(model);
         work.arrange(model, state);
     }
     prepare(model, state, work, surface, applied)?;
-    neighbours::update(model, state, work, surface, Listed::All);
+    neighbour_list::update(model, state, work, surface, Listed::All);
     advance(model, state, work, surface);
-    collect(model, state, work, surface.max_speed())
+    reduce_blocks(model, state, work, surface.max_speed())
 }
 
 pub(crate) fn prepare<S: Surface>(
@@ -72,9 +72,9 @@ pub(crate) fn prepare<S: Surface>(
     if !surface.is_empty() && model.surface_material.is_none() {
         return Err(StepError::SurfaceMaterial);
     }
-    applied::place(model, state, applied, &mut work.applied)?;
+    applied::add_forces(model, state, applied, &mut work.applied)?;
     if !model.patches.is_empty() {
-        model.walls.now(&state.walls, 0.0, &mut work.walls);
+        model.walls.update_poses(&state.walls, 0.0, &mut work.walls);
     }
     if !model.sheet.is_empty() {
         sheet(model, state, work, surface)?;
@@ -82,13 +82,13 @@ pub(crate) fn prepare<S: Surface>(
     Ok(())
 }
 
-pub(crate) fn drive(model: &Model, pace: Pace) -> Drive<'_> {
-    Drive {
+pub(crate) fn drive(model: &Model, step_size: StepSize) -> MotionInput<'_> {
+    MotionInput {
         gravity: model.gravity,
         damping: model.damping,
-        bound: 0.5 * model.radii.0 / pace.dt,
+        bound: 0.5 * model.radii.0 / step_size.dt,
         bodies: &model.bodies,
-        pace,
+        step_size,
     }
 }
 
@@ -107,7 +107,7 @@ fn sheet<S: Surface>(
     for (k, corner) in state.sheet.iter_mut().enumerate() {
         *corner = surface.vertex(k as u32).ok_or(StepError::SurfaceMesh)?;
     }
-    model.sheet.now(&state.sheet, 0.0, &mut work.sheet);
+    model.sheet.update_poses(&state.sheet, 0.0, &mut work.sheet);
     if surface.vertex_correction(0).is_some() {
         model.sheet.correct(|v| surface.vertex_correction(v).map(crate::base::Vec3::from), &mut work.sheet);
     }
@@ -117,33 +117,34 @@ fn sheet<S: Surface>(
 /// The neighbour list must be valid.
 pub(crate) fn advance<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
     if !model.bonds.is_empty() {
-        let parts = bonds::parts(model, state.pace.last, state.bonds.fresh);
+        let parts = bonds::parts(model, state.step_size.last, state.bonds.fresh);
         let State { blocks, bonds, .. } = &mut *state;
         bond::pass::cross(&parts, blocks, &mut bonds.cross, &mut work.bonds, work.parallel);
     }
     if model.scarred {
         scarring::update(model, state, work);
     }
-    planes::now(&model.planes, &state.planes, &mut work.planes);
+    planes::update_poses(&model.planes, &state.planes, &mut work.planes);
     contacts_and_motion(model, state, work, surface);
 }
 
 fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: &S) {
-    let (pace, parallel) = (state.pace, work.parallel);
-    let dt = pace.kick();
-    let setting = Setting { laws: &model.laws, simd: work.simd, dt };
+    let (step_size, parallel) = (state.step_size, work.parallel);
+    let dt = step_size.kick();
+    let setting = StepContext { laws: &model.laws, simd: work.simd, dt };
     let material = work.material;
-    let State { blocks, lists, cross, planes, walls, bonds, drift, wall_drift, time, scars, .. } = state;
+    let State { blocks, lists, cross, planes, walls, bonds, max_travel, wall_travel, time, scars, .. } =
+        state;
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let standing = (&work.walls[..], &work.sheet[..]);
     // Reads own and later blocks, writes slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
-        out.clear_books();
+        out.clear_totals();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);
         if !pairs.kinds.is_empty() {
-            let now = candidates::now_of(model, (blocks, members), motions, standing, scars);
-            kind::forces(&setting, &now, b, pairs, out);
+            let now = broad_phase::block_configuration(model, (blocks, members), motions, standing, scars);
+            narrow_phase::forces(&setting, &now, b, pairs, out);
         }
         if let Some(periodic) = &model.periodic {
             images::images(periodic, setting.laws, blocks, members, b, pairs, out, dt);
@@ -155,149 +156,154 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
         surface,
         planes: (&work.planes, work.plane_material),
         walls: model.walls.placed(walls),
-        bonds: (bonded, bonds::parts(model, pace.last, bonds.fresh)),
-        drive: drive(model, pace),
+        bonds: (bonded, bonds::parts(model, step_size.last, bonds.fresh)),
+        drive: drive(model, step_size),
         time: *time,
         scars,
-        gone: *drift + *wall_drift,
+        travel_since_search: *max_travel + *wall_travel,
     };
     let (applied, keep) = (&**applied, work.keep_forces);
-    let within = |b: usize, mut one: One<'_>, slots: Slots<'_>, next: Prefetch<'_>| {
-        one.work.tally.sums = buffers.take();
+    let within = |b: usize, mut one: BlockTask<'_>, slots: Slots<'_>, next: Prefetch<'_>| {
+        one.work.totals.sums = buffers.take();
         shared.forces(b, &mut one, slots, next);
-        let One { block, members, work, .. } = one;
-        let BlockWork { tally, body_forces, .. } = work;
+        let BlockTask { block, members, work, .. } = one;
+        let BlockWork { totals, body_forces, .. } = work;
         if model.acts_on_bodies() {
-            let Tally { sums, ledger, .. } = &mut *tally;
-            body_forces.act(&model.body_forces, shared.seen(block, members, sums), ledger);
+            let BlockTotals { sums, balance, .. } = &mut *totals;
+            body_forces.act(&model.body_forces, shared.seen(block, members, sums), balance);
             body_forces.add_to(sums);
         }
         let applied = applied::of_block(applied, b);
-        leapfrog::advance(setting.simd, &shared.drive, block, members, tally, applied);
+        leapfrog::advance(setting.simd, &shared.drive, block, members, totals, applied);
         if model.acts_on_bodies() {
-            body_forces.book(block, &mut tally.ledger, dt);
+            body_forces.add_work(block, &mut totals.balance, dt);
         }
         if !keep {
-            buffers.give_back(std::mem::take(&mut work.tally.sums));
+            buffers.give_back(std::mem::take(&mut work.totals.sums));
         }
     };
     let threads = if parallel { rayon::current_num_threads() } else { 1 };
-    let lists = Lists { blocks, members, lists, works, cross, slots };
-    threads::through(threads, &work.own, lists, beyond, between, within);
+    let lists = BlockArrays { blocks, members, lists, works, cross, slots };
+    threads::run_blocks(threads, &work.own, lists, beyond, between, within);
 }
 
 struct Shared<'a, S> {
     model: &'a Model,
-    setting: Setting<'a>,
+    setting: StepContext<'a>,
     surface: &'a S,
     /// Placed planes and their common material.
-    planes: (&'a [PlaneNow], Option<u32>),
+    planes: (&'a [PlanePose], Option<u32>),
     walls: PlacedWalls<'a>,
     bonds: (&'a BondWork, Parts<'a>),
-    drive: Drive<'a>,
+    drive: MotionInput<'a>,
     /// Time of the positions [s].
     time: f64,
     scars: &'a [Scar],
     /// Relative displacement bound since the last neighbour list [m].
-    gone: f64,
+    travel_since_search: f64,
 }
 
 impl<S: Surface> Shared<'_, S> {
-    fn seen<'b>(&'b self, block: &'b Block, members: &'b Members, sums: &'b [Sums]) -> Seen<'b> {
+    fn seen<'b>(
+        &'b self,
+        block: &'b Block,
+        members: &'b BlockBodies,
+        sums: &'b [ForceTorque],
+    ) -> ForceInput<'b> {
         let Model { bodies, skins, gravity, .. } = self.model;
-        let Setting { simd, dt: kick, .. } = self.setting;
+        let StepContext { simd, dt: kick, .. } = self.setting;
         let (time, scars) = (self.time, self.scars);
-        Seen { simd, block, members, bodies, skins, gravity: *gravity, sums, time, kick, scars }
+        ForceInput { simd, block, members, bodies, skins, gravity: *gravity, sums, time, kick, scars }
     }
 
-    fn forces(&self, b: usize, one: &mut One<'_>, slots: Slots<'_>, next: Prefetch<'_>) {
+    fn forces(&self, b: usize, one: &mut BlockTask<'_>, slots: Slots<'_>, next: Prefetch<'_>) {
         let (model, setting) = (self.model, self.setting);
-        let One { block, members, lists, work } = one;
+        let BlockTask { block, members, lists, work } = one;
         let (block, members) = (&**block, &**members);
-        let tally = &mut work.tally;
-        tally.ledger = Ledger::default();
-        tally.failure = None;
+        let totals = &mut work.totals;
+        totals.balance = BalanceTerms::default();
+        totals.failure = None;
         work.patches.contacts.clear();
         work.patches.wall_sums.clear();
-        tally.sums.clear();
-        tally.sums.resize(block.bodies.len(), Sums::default());
-        dispatch::gather(setting.simd, &work.shares, &mut tally.sums, slots);
+        totals.sums.clear();
+        totals.sums.resize(block.bodies.len(), ForceTorque::default());
+        dispatch::gather(setting.simd, &work.shares, &mut totals.sums, slots);
         if !model.bonds.is_empty() {
             let (shared, parts) = &self.bonds;
-            bond::pass::within(parts, b, block, &mut lists.bonds, &mut tally.sums, &mut work.bonds, shared);
+            bond::pass::within(parts, b, block, &mut lists.bonds, &mut totals.sums, &mut work.bonds, shared);
         }
         if !lists.pairs.is_empty() {
-            dispatch::interior(setting, (block, members), &mut lists.pairs, tally, next);
+            dispatch::interior(setting, (block, members), &mut lists.pairs, totals, next);
         }
         let (planes, material) = self.planes;
         if !lists.planes.is_empty() {
-            dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, tally);
+            dispatch::planes(setting, planes, material, (block, members), &mut lists.planes, totals);
         }
         if !lists.walls.is_empty() {
-            let walls = (&self.walls, self.gone);
+            let walls = (&self.walls, self.travel_since_search);
             on_walls(model, &setting, walls, &mut lists.walls, (block, members), work);
         }
         if !lists.surface.is_empty() {
-            let (surface, own) = ((self.surface, self.gone), (block, members));
+            let (surface, own) = ((self.surface, self.travel_since_search), (block, members));
             on_surface(model, &setting, surface, &mut lists.surface, own, work);
         }
     }
 }
 
-/// Sphere–wall contacts of a block; `gone`: as [`on_surface`].
+/// Sphere–wall contacts of a block; `travel_since_search`: as [`on_surface`].
 pub(crate) fn on_walls(
     model: &Model,
-    setting: &Setting<'_>,
-    (walls, gone): (&PlacedWalls<'_>, f64),
+    setting: &StepContext<'_>,
+    (walls, travel_since_search): (&PlacedWalls<'_>, f64),
     list: &mut PatchList,
-    own: (&Block, &Members),
+    own: (&Block, &BlockBodies),
     work: &mut BlockWork,
 ) {
     work.patches.wall_sums.resize(walls.groups(), WallSum::default());
-    let against = Against {
+    let against = ContactSurface {
         surface: walls,
         material: |patch| model.walls.material(patch),
         partner: |patch| model.walls.partner(patch),
         external: false,
-        gone,
+        travel_since_search,
     };
-    patches::contacts(setting, &against, list, own, &mut work.tally, &mut work.patches);
+    surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
 }
 
-/// Sphere–surface contacts of a block; `gone`: relative displacement bound since the last neighbour list [m].
+/// Sphere–surface contacts of a block; `travel_since_search`: relative displacement bound since the last neighbour list [m].
 pub(crate) fn on_surface<S: Surface>(
     model: &Model,
-    setting: &Setting<'_>,
-    (surface, gone): (&S, f64),
+    setting: &StepContext<'_>,
+    (surface, travel_since_search): (&S, f64),
     list: &mut PatchList,
-    own: (&Block, &Members),
+    own: (&Block, &BlockBodies),
     work: &mut BlockWork,
 ) {
-    let against = Against {
+    let against = ContactSurface {
         surface,
         material: |patch| model.patch_material(patch) as u32,
         partner: Partner::Patch,
         external: true,
-        gone,
+        travel_since_search,
     };
-    let done = patches::contacts(setting, &against, list, own, &mut work.tally, &mut work.patches);
-    work.tally.ledger.work_surface += done.work;
-    work.tally.ledger.surface += &done.impulse;
+    let done = surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
+    work.totals.balance.work_surface += done.work;
+    work.totals.balance.surface += &done.impulse;
 }
 
 /// Sums in block order.
-pub(crate) fn collect(
+pub(crate) fn reduce_blocks(
     model: &Model,
     state: &mut State,
     work: &mut Work,
     surface_speed: f64,
 ) -> Result<(), StepError> {
     work.surface_contacts.clear();
-    let mut all = Collected::default();
-    let Collected { sum, fastest, failure } = &mut all;
+    let mut all = StepTotals::default();
+    let StepTotals { sum, fastest, failure } = &mut all;
     for (w, cross) in work.blocks.iter().zip(&work.cross) {
-        let tally = &w.tally;
-        *sum += &tally.ledger;
+        let totals = &w.totals;
+        *sum += &totals.balance;
         sum.dissipated_dashpot += cross.dashpot;
         sum.dissipated_friction += cross.friction;
         sum.work_walls += cross.work_walls;
@@ -305,35 +311,35 @@ pub(crate) fn collect(
         sum.periodic.angular += cross.couple;
         sum.work_surface += cross.surface.work;
         sum.surface += &cross.surface.impulse;
-        *fastest = fastest.max(tally.fastest);
-        *failure = failure.or(cross.failure).or(tally.failure);
+        *fastest = fastest.max(totals.fastest);
+        *failure = failure.or(cross.failure).or(totals.failure);
         work.surface_contacts.extend_from_slice(&w.patches.contacts);
         work.surface_contacts.extend_from_slice(&cross.surface.contacts);
     }
-    conclude(model, state, work, all, surface_speed)
+    finish_step(model, state, work, all, surface_speed)
 }
 
 #[derive(Default)]
-pub(crate) struct Collected {
-    pub sum: Ledger,
+pub(crate) struct StepTotals {
+    pub sum: BalanceTerms,
     /// Largest speed [m/s].
     pub fastest: f64,
     pub failure: Option<Failure>,
 }
 
-pub(crate) fn conclude(
+pub(crate) fn finish_step(
     model: &Model,
     state: &mut State,
     work: &mut Work,
-    all: Collected,
+    all: StepTotals,
     surface_speed: f64,
 ) -> Result<(), StepError> {
-    let dt = state.pace.dt;
-    let Collected { mut sum, fastest, mut failure } = all;
+    let dt = state.step_size.dt;
+    let StepTotals { mut sum, fastest, mut failure } = all;
     let meeting = wall_contacts::forces(model, state, &mut work.wall_contacts, &mut sum);
     let (wall_speed, wall_failure) = walls::advance(model, state, work, &mut sum);
     failure = failure.or(meeting).or(wall_failure);
-    state.ledger += &sum;
+    state.balance += &sum;
     if !model.bonds.is_empty() {
         failure = failure.or(bonds::settle(model, state, work));
     }
@@ -345,12 +351,12 @@ pub(crate) fn conclude(
         wall_speed = wall_speed.max(speed);
         state.driven_speed = state.driven_speed.max(speed);
     }
-    state.drift += fastest * dt;
-    state.wall_drift += wall_speed * dt;
-    state.lasted = state.lasted.saturating_add(1);
+    state.max_travel += fastest * dt;
+    state.wall_travel += wall_speed * dt;
+    state.steps_since_search = state.steps_since_search.saturating_add(1);
     state.steps += 1;
     state.time = time + dt;
-    state.pace.last = dt;
+    state.step_size.last = dt;
     match failure {
         None => Ok(()),
         Some(Failure::Overlap { body, partner, overlap, bound }) => {

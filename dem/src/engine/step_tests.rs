@@ -74,9 +74,9 @@ fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
     for _ in 0..steps {
         step(model, &mut state, &mut work, &NoSurface, &[]).unwrap();
     }
-    assert!(state.ledger.dissipated() > 0.1);
+    assert!(state.balance.dissipated() > 0.1);
     let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
-    let l = &state.ledger;
+    let l = &state.balance;
     let damped = l.local_damping.angular.y + l.dissipated_local_damping;
     let booked = [l.dissipated_dashpot, l.dissipated_friction, l.walls.angular.x, damped];
     let motion = (0..model.body_count()).flat_map(at).flat_map(|v| [v.x, v.y, v.z]);
@@ -121,7 +121,7 @@ fn four_move_as_one() {
                 step(&model, &mut state, &mut work, &NoSurface, applied).unwrap();
             }
             let far = (0..model.body_count()).flat_map(|b| [state.velocity(b), state.spin(b)]).collect();
-            (far, state.ledger)
+            (far, state.balance)
         };
         let force = |body: usize, force: Vec3| AppliedForce { body, force, point: Vec3::zeros() };
         let some: Vec<_> = (0..5001).step_by(44).map(|b| force(b, Vec3::new(0.1, 0.3, -0.2))).collect();

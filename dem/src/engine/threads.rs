@@ -7,10 +7,10 @@
 use super::block_work::BlockWork;
 use super::state::BlockLists;
 use crate::bodies::block::Block;
-use crate::bodies::members::Members;
-use crate::bodies::part::Part;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::block_slice::BlockSlice;
 use crate::contact::dispatch;
-use crate::contact::group_memory::FAR;
+use crate::contact::group_history::FAR;
 use crate::contact::prefetch::Prefetch;
 use crate::lanes;
 use crate::pairs::cross::{Cross, CrossForces, Slots};
@@ -23,18 +23,18 @@ const SHARE: usize = if cfg!(test) { 1 } else { 2 };
 /// Blocks that exceed the caches: prefetch pays.
 const LARGE: usize = if cfg!(test) { 2 } else { 24 };
 
-pub(crate) struct Lists<'a> {
+pub(crate) struct BlockArrays<'a> {
     pub blocks: &'a mut [Block],
-    pub members: &'a mut [Members],
+    pub members: &'a mut [BlockBodies],
     pub lists: &'a mut [BlockLists],
     pub works: &'a mut [BlockWork],
     pub cross: &'a mut [Cross],
     pub slots: &'a mut [CrossForces],
 }
 
-impl<'a> Lists<'a> {
-    fn split_off(&mut self, size: usize) -> Lists<'a> {
-        Lists {
+impl<'a> BlockArrays<'a> {
+    fn split_off(&mut self, size: usize) -> BlockArrays<'a> {
+        BlockArrays {
             blocks: self.blocks.split_off_mut(..size).unwrap_or_default(),
             members: self.members.split_off_mut(..size).unwrap_or_default(),
             lists: self.lists.split_off_mut(..size).unwrap_or_default(),
@@ -46,23 +46,23 @@ impl<'a> Lists<'a> {
 }
 
 /// View of one block.
-pub(crate) struct One<'a> {
+pub(crate) struct BlockTask<'a> {
     pub block: &'a mut Block,
-    pub members: &'a mut Members,
+    pub members: &'a mut BlockBodies,
     pub lists: &'a mut BlockLists,
     pub work: &'a mut BlockWork,
 }
 
-pub(crate) type Bodies<'a> = (Part<'a, Block>, Part<'a, Members>);
+pub(crate) type Bodies<'a> = (BlockSlice<'a, Block>, BlockSlice<'a, BlockBodies>);
 
 /// `between`: contacts with later blocks; `within`: the rest; `beyond`: scratch. Earlier blocks do not move.
-pub(crate) fn through(
+pub(crate) fn run_blocks(
     threads: usize,
     own: &Range<usize>,
-    all: Lists<'_>,
+    all: BlockArrays<'_>,
     beyond: &mut Vec<CrossForces>,
     between: impl Fn(usize, Bodies<'_>, &mut Cross, &mut CrossForces) + Sync,
-    within: impl Fn(usize, One<'_>, Slots<'_>, Prefetch<'_>) + Sync,
+    within: impl Fn(usize, BlockTask<'_>, Slots<'_>, Prefetch<'_>) + Sync,
 ) {
     let count = all.blocks.len();
     if threads == 1 && own.len() == count {
@@ -70,7 +70,7 @@ pub(crate) fn through(
         return;
     }
 
-    let bodies = (Part { first: 0, list: &*all.blocks }, Part { first: 0, list: &*all.members });
+    let bodies = (BlockSlice { first: 0, list: &*all.blocks }, BlockSlice { first: 0, list: &*all.members });
     let lists = ends(own, threads).zip(all.cross.iter_mut().zip(&mut *all.slots)).enumerate();
     let first = lists.filter(|(_, (end, (cross, _)))| reaches(cross, *end));
     share(threads, first, |(b, (_, (pairs, out)))| {
@@ -81,7 +81,7 @@ pub(crate) fn through(
     beyond.resize_with(count, CrossForces::default);
     exchange(threads, own, all.cross, all.slots, beyond);
     let there = &beyond[..];
-    let mut rest = Lists {
+    let mut rest = BlockArrays {
         blocks: &mut *all.blocks,
         members: &mut *all.members,
         lists: &mut *all.lists,
@@ -90,7 +90,7 @@ pub(crate) fn through(
         slots: &mut *all.slots,
     };
     rest.split_off(own.start);
-    let parts = runs(own, threads).map(move |run| (run.start, rest.split_off(run.len())));
+    let parts = partition(own, threads).map(move |run| (run.start, rest.split_off(run.len())));
     share(threads, parts, |(first, lists)| run(first, own.len(), lists, there, &between, &within));
     exchange(threads, own, all.cross, all.slots, beyond);
 }
@@ -98,14 +98,14 @@ pub(crate) fn through(
 fn run(
     first: usize,
     count: usize,
-    run: Lists<'_>,
+    run: BlockArrays<'_>,
     beyond: &[CrossForces],
     between: &(impl Fn(usize, Bodies<'_>, &mut Cross, &mut CrossForces) + Sync),
-    within: &(impl Fn(usize, One<'_>, Slots<'_>, Prefetch<'_>) + Sync),
+    within: &(impl Fn(usize, BlockTask<'_>, Slots<'_>, Prefetch<'_>) + Sync),
 ) {
     let large = count > LARGE;
     let end = if beyond.is_empty() { usize::MAX } else { first + run.blocks.len() };
-    let Lists { blocks, members, lists, works, cross, slots } = run;
+    let BlockArrays { blocks, members, lists, works, cross, slots } = run;
     for k in 0..blocks.len() {
         let b = first + k;
         if k == 0 || !large {
@@ -114,14 +114,14 @@ fn run(
         lanes::prefetch_first(&lists[k].pairs.groups, FAR);
         lanes::prefetch_first(&works[k].shares.list, 8 * FAR);
         if cross[k].last_block() < end {
-            let bodies = (Part { first, list: &*blocks }, Part { first, list: &*members });
+            let bodies = (BlockSlice { first, list: &*blocks }, BlockSlice { first, list: &*members });
             between(b, bodies, &mut cross[k], &mut slots[k]);
         }
         let (done, later) = blocks.split_at_mut(k + 1);
         let mut following = Prefetch::default();
         if let Some(next) = later.first() {
             if large {
-                following.blocks = Part { first: b + 1, list: later };
+                following.blocks = BlockSlice { first: b + 1, list: later };
                 if cross[k + 1].last_block() < end {
                     following.groups = &cross[k + 1].spheres.groups;
                     (following.slots, following.width) = (&slots[k + 1].slots, slots[k + 1].width);
@@ -132,14 +132,18 @@ fn run(
             lanes::prefetch_first(&cross[k + 1].spheres.groups, FAR);
             lanes::prefetch_first(&slots[k + 1].slots, 2 * FAR);
         }
-        let slots = Slots { own: Part { first, list: slots }, beyond };
-        let one =
-            One { block: &mut done[k], members: &mut members[k], lists: &mut lists[k], work: &mut works[k] };
+        let slots = Slots { own: BlockSlice { first, list: slots }, beyond };
+        let one = BlockTask {
+            block: &mut done[k],
+            members: &mut members[k],
+            lists: &mut lists[k],
+            work: &mut works[k],
+        };
         within(b, one, slots, following);
     }
 }
 
-fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+fn partition(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>> + use<> {
     let (mut at, end) = (own.start, own.end);
     std::iter::from_fn(move || {
         let left = end.saturating_sub(at);
@@ -151,7 +155,7 @@ fn runs(own: &Range<usize>, threads: usize) -> impl Iterator<Item = Range<usize>
 
 /// End of each block's range; zero before `own`.
 fn ends(own: &Range<usize>, threads: usize) -> impl Iterator<Item = usize> + use<> {
-    let runs = runs(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
+    let runs = partition(own, threads).flat_map(|run| std::iter::repeat_n(run.end, run.len()));
     std::iter::repeat_n(0, own.start).chain(runs)
 }
 

@@ -30,9 +30,9 @@
 
 use super::input::ModelInput;
 use crate::base::Vec3;
-use crate::bodies::table::{Bodies, Body, Kind};
+use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::bond;
-use crate::contact::kind::{DEEPEST, LENGTH};
+use crate::contact::narrow_phase::{DEEPEST, LENGTH};
 use crate::law::Laws;
 use crate::law::normal::Expected;
 use crate::shape::Shape;
@@ -116,10 +116,10 @@ pub(crate) fn limit(
     let bonded = bond::stiffest(bonds, bodies, &input.bodies);
     let levers = if laws.rolls() { 2.0 } else { 1.0 };
     let partners = partners(bodies, input);
-    let several = bodies.iter().filter(|b| b.kind == Kind::Solid).count() > 1;
+    let several = bodies.iter().filter(|b| b.kind == BodyKind::Solid).count() > 1;
     let r_min = bodies
         .iter()
-        .filter(|b| b.kind != Kind::Solid)
+        .filter(|b| b.kind != BodyKind::Solid)
         .map(|b| b.radius)
         .fold(f64::INFINITY, f64::min)
         .clamp(r_min, f64::MAX);
@@ -142,7 +142,7 @@ pub(crate) fn limit(
             }
             let sides = sides(shape, &body, (r_min, several), (laws, b, stiffness));
             // Tangential spring with rotation: 1/m + r²/I = 3.5/m.
-            let own = if body.kind == Kind::Sphere {
+            let own = if body.kind == BodyKind::Sphere {
                 stiffness.max((1.0 + 2.5 * levers) * tangential) / body.mass
             } else {
                 stiffness.max(tangential) * flexibility

@@ -7,8 +7,8 @@ use super::model::Model;
 use super::state::State;
 use super::work::Work;
 use crate::base::Vec3;
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
 use crate::bodies::sums::WallSum;
 use crate::integrate::rotation;
 use crate::shape::plane::PlaneMotion;
@@ -31,9 +31,9 @@ pub(crate) fn advance(
     model: &Model,
     state: &mut State,
     work: &Work,
-    ledger: &mut Ledger,
+    balance: &mut BalanceTerms,
 ) -> (f64, Option<Failure>) {
-    let (kick, dt) = (state.pace.kick(), state.pace.dt);
+    let (kick, dt) = (state.step_size.kick(), state.step_size.dt);
     let bound = 0.5 * model.radii.0 / dt;
     let mut fastest = 0.0_f64;
     let mut failure = None;
@@ -45,9 +45,9 @@ pub(crate) fn advance(
         let speed = match &wall.body {
             Some(b) => {
                 let ground = ground(model, &state.planes, kick);
-                let (force, torque) = body::stand(&ground, b, wall.material, own, ledger);
+                let (force, torque) = body::ground_reaction(&ground, b, wall.material, own, balance);
                 let (force, torque) = (force + own.force, torque + own.moment);
-                b.advance(own, &force, &torque, &model.gravity, &state.pace, ledger);
+                b.advance(own, &force, &torque, &model.gravity, &state.step_size, balance);
                 b.speed(own)
             }
             None => {
@@ -80,15 +80,16 @@ pub(crate) fn advance(
                 let mean = (before + own.velocity) * 0.5;
                 let done = (sum.force.dot(&mean) + sum.moment.dot(&spin)) * kick;
                 if wall.servo.is_some() {
-                    ledger.work_servo += done;
+                    balance.work_servo += done;
                     // A massless servo may jump within a step, which the dashpots miss.
-                    ledger.dissipated_dashpot += sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
+                    balance.dissipated_dashpot +=
+                        sum.dashpots.lag(&before, &own.change, &own.velocity) * kick;
                     own.change = own.velocity - before;
                 } else {
-                    ledger.work_walls += done;
+                    balance.work_walls += done;
                 }
-                ledger.walls.add(&centre, &(sum.force * kick));
-                ledger.walls.angular += sum.moment * kick;
+                balance.walls.add(&centre, &(sum.force * kick));
+                balance.walls.angular += sum.moment * kick;
                 let speed = own.velocity.norm() + spin.norm() * wall.reach;
                 state.driven_speed = state.driven_speed.max(speed);
                 speed
@@ -105,7 +106,7 @@ pub(crate) fn advance(
 
 /// Finds two non-interacting bodies with overlapping bounds.
 fn meeting(model: &Model, state: &State) -> Option<Failure> {
-    let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.stands());
+    let round = |k: usize| model.walls.walls[k].body.as_ref().is_some_and(|b| !b.rests_on_ground());
     let bodies = || model.walls.walls.iter().zip(&state.walls).enumerate().filter(|(k, _)| round(*k));
     for (i, (a, sa)) in bodies() {
         for (j, (b, sb)) in bodies().skip_while(|(j, _)| *j <= i) {
@@ -137,7 +138,7 @@ fn meeting(model: &Model, state: &State) -> Option<Failure> {
 }
 
 /// Bound on the displacement of wall points since `before` [m].
-pub(crate) fn way(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
+pub(crate) fn max_displacement(model: &Model, state: &State, before: &[(Vec3, UnitQuaternion<f64>)]) -> f64 {
     model
         .walls
         .walls

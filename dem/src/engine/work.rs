@@ -1,22 +1,22 @@
 //! Scratch data of the step: never saved, rebuilt from a state with bitwise identical results.
 
 use super::block_work::{BlockWork, Ground};
-use super::candidates::Listed;
+use super::broad_phase::Listed;
 use super::state::State;
 use super::wall_contacts::WallContacts;
 use crate::base::Vec3;
-use crate::bodies::members::Members;
-use crate::bodies::sums::Sums;
-use crate::bond::Held;
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::sums::ForceTorque;
+use crate::bond::BondedPairs;
 use crate::bond::pass::BondWork;
-use crate::contact::planes::PlaneNow;
+use crate::contact::planes::PlanePose;
 use crate::integrate::leapfrog::Applied;
 use crate::lanes::Simd;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::pairs::buffers::Buffers;
 use crate::pairs::cross::CrossForces;
 use crate::pairs::merge::Merging;
-use crate::spatial::patchwork::WallNow;
+use crate::spatial::patchwork::WallView;
 use crate::spatial::sheet::SheetFacet;
 use crate::spatial::surface::SurfaceContact;
 use nalgebra::UnitQuaternion;
@@ -27,7 +27,7 @@ pub(crate) struct Searched {
     pub listed: Option<Listed>,
     pub planes: Vec<Vec3>,
     pub walls: Vec<(Vec3, UnitQuaternion<f64>)>,
-    pub surface_drift: f64,
+    pub surface_travel: f64,
     /// Searches, neighbour list builds.
     pub searches: u64,
     pub refreshes: u64,
@@ -36,21 +36,21 @@ pub(crate) struct Searched {
 /// Scratch data of one state ([`Work::new`]).
 #[derive(Clone, Debug)]
 pub struct Work {
-    pub(crate) members: Vec<Members>,
+    pub(crate) members: Vec<BlockBodies>,
     pub(crate) blocks: Vec<BlockWork>,
     pub(crate) cross: Vec<CrossForces>,
     pub(crate) beyond: Vec<CrossForces>,
     pub(crate) bonds: BondWork,
-    pub(crate) held: Held,
+    pub(crate) held: BondedPairs,
     pub(crate) applied: Vec<Applied>,
     pub(crate) surface_contacts: Vec<SurfaceContact>,
-    pub(crate) buffers: Buffers<Vec<Sums>>,
+    pub(crate) buffers: Buffers<Vec<ForceTorque>>,
     pub(crate) merging: Buffers<Merging>,
     pub(crate) keep_forces: bool,
     pub(crate) searched: Searched,
     pub(crate) simd: Simd,
-    pub(crate) planes: Vec<PlaneNow>,
-    pub(crate) walls: Vec<WallNow>,
+    pub(crate) planes: Vec<PlanePose>,
+    pub(crate) walls: Vec<WallView>,
     pub(crate) wall_contacts: WallContacts,
     /// Surface below each body.
     pub(crate) ground: Vec<Ground>,
@@ -77,9 +77,9 @@ impl Work {
         self.keep_forces = keep;
     }
 
-    fn sums(&self, state: &State, body: usize) -> Option<&Sums> {
+    fn sums(&self, state: &State, body: usize) -> Option<&ForceTorque> {
         let [b, k] = state.places[body];
-        self.blocks[b as usize].tally.sums.get(k as usize)
+        self.blocks[b as usize].totals.sums.get(k as usize)
     }
 
     /// Contact force on a body [N]; zero if not kept.

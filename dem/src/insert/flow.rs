@@ -7,11 +7,11 @@
 use crate::base::Vec3;
 use crate::base::error::StepError;
 use crate::bodies::block::Rotation;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::engine::back_end::BackEnd;
+use crate::engine::block_layout::BodyState;
 use crate::engine::model::Model;
-use crate::engine::order::Turnover;
-use crate::engine::place::Row;
+use crate::engine::reordering::BodyChanges;
 use crate::engine::start::half_a_step_ago;
 use crate::engine::state::State;
 use crate::measure;
@@ -70,59 +70,59 @@ pub fn exchange(
             None => "there is no such body",
             Some(false) if what == "taken out" => "it is not there",
             Some(true) if what == "put in" => "it is there already",
-            _ if model.bodies.kind(body) == Kind::Solid && !model.shape(body).dilated() => "it is a box",
+            _ if model.bodies.kind(body) == BodyKind::Solid && !model.shape(body).dilated() => "it is a box",
             _ if bonded.get(body).is_some_and(|b| *b) => "a bond holds it",
             _ => return Ok(()),
         };
         Err(FlowError::Body { body, what, problem })
     };
-    let mut turnover = Turnover::none(state);
+    let mut changes = BodyChanges::none(state);
     for &body in leave {
-        check(body, "taken out", turnover.stays.get(body).copied())?;
-        turnover.stays[body] = false;
+        check(body, "taken out", changes.stays.get(body).copied())?;
+        changes.stays[body] = false;
     }
     for a in arrive {
-        let here = turnover.stays.get(a.body).map(|s| *s || turnover.come.contains_key(&(a.body as u32)));
+        let here = changes.stays.get(a.body).map(|s| *s || changes.come.contains_key(&(a.body as u32)));
         check(a.body, "put in", here)?;
         let finite = [&a.position, &a.velocity, &a.spin].iter().all(|v| v.iter().all(|x| x.is_finite()));
         if !finite {
             let problem = "its position or motion is not finite";
             return Err(FlowError::Body { body: a.body, what: "put in", problem });
         }
-        turnover.come.insert(a.body as u32, row(model, a));
+        changes.come.insert(a.body as u32, row(model, a));
     }
     if let Some(periodic) = &model.periodic {
         crate::engine::periodic::wrap(periodic, model, state);
     }
-    let gone = |b: usize| state.present(b) && !turnover.stays[b];
+    let gone = |b: usize| state.present(b) && !changes.stays[b];
     if !leave.is_empty() {
         let energy = measure::energies_of(model, state, gone).total();
         let momentum = measure::momentum_of(model, state, gone);
-        state.ledger.work_flow -= energy;
-        state.ledger.flow.linear -= momentum.linear;
-        state.ledger.flow.angular -= momentum.angular;
+        state.balance.work_flow -= energy;
+        state.balance.flow.linear -= momentum.linear;
+        state.balance.flow.angular -= momentum.angular;
     }
-    let positions = turnover.positions(state);
-    crate::engine::order::reorder(state, model, &positions, &turnover);
+    let positions = changes.positions(state);
+    crate::engine::reordering::reorder(state, model, &positions, &changes);
     let by_number: BTreeMap<usize, &Arrival> = arrive.iter().map(|a| (a.body, a)).collect();
     for (&body, a) in &by_number {
-        let velocity = half_a_step_ago(model, body, &a.velocity, state.pace.last);
+        let velocity = half_a_step_ago(model, body, &a.velocity, state.step_size.last);
         state.set_velocity(model, body, velocity, a.spin);
     }
     if !arrive.is_empty() {
         // Without contacts, only their own energy enters.
         let come = |b: usize| by_number.contains_key(&b);
-        state.ledger.work_flow += measure::energies_of(model, state, come).total();
+        state.balance.work_flow += measure::energies_of(model, state, come).total();
         let momentum = measure::momentum_of(model, state, come);
-        state.ledger.flow += &momentum;
+        state.balance.flow += &momentum;
     }
     work.upload(model, state)?;
     Ok(())
 }
 
-fn row(model: &Model, a: &Arrival) -> Row {
+fn row(model: &Model, a: &Arrival) -> BodyState {
     let rotation = Rotation { orientation: a.orientation, momentum: Vec3::zeros() };
-    Row::at_rest(model, a.body, &a.position, rotation)
+    BodyState::at_rest(model, a.body, &a.position, rotation)
 }
 
 fn bonded(model: &Model) -> Vec<bool> {

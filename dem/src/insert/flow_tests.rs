@@ -3,7 +3,7 @@ use crate::base::error::Partner;
 use crate::bodies::input::BodyInput;
 use crate::engine::input::ModelInput;
 use crate::engine::work::Work;
-use crate::insert::room::{Places, Room};
+use crate::insert::free_space::{FreePositions, FreeSpace};
 use crate::law::material::Material;
 use crate::measure::{BoxRegion, contacts};
 use crate::shape::Shape;
@@ -65,26 +65,26 @@ impl Run {
 
     /// Conserved energy sum [J].
     fn account(&self) -> f64 {
-        let ledger = &self.state.ledger;
-        measure::energies(&self.model, &self.state).total() + ledger.dissipated() - ledger.work()
+        let balance = &self.state.balance;
+        measure::energies(&self.model, &self.state).total() + balance.dissipated() - balance.work()
     }
 
-    fn momentum_error(&self, start: &crate::base::ledger::Impulse) -> (f64, f64) {
-        let (now, sum) = (measure::momentum(&self.model, &self.state), self.state.ledger.impulse());
+    fn momentum_error(&self, start: &crate::base::balance_terms::Impulse) -> (f64, f64) {
+        let (now, sum) = (measure::momentum(&self.model, &self.state), self.state.balance.impulse());
         ((now.linear - start.linear - sum.linear).norm(), (now.angular - start.angular - sum.angular).norm())
     }
 }
 
-fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut Places) -> (usize, usize) {
+fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut FreePositions) -> (usize, usize) {
     let low: Vec<usize> = (0..run.model.body_count())
         .filter(|&b| run.state.present(b) && run.state.position(b).z < 0.03)
         .take(4)
         .collect();
     let region = BoxRegion { low: Vec3::new(0.0, 0.0, 0.3), high: Vec3::new(SIDE, SIDE, 0.45) };
-    let mut room = Room::new(&run.model, &run.state, &NoSurface, region, 0.02, |b| low.contains(&b));
+    let mut room = FreeSpace::new(&run.model, &run.state, &NoSurface, region, 0.02, |b| low.contains(&b));
     let mut arrive = Vec::new();
     while let (Some(&body), true) = (waiting.first(), arrive.len() < 4) {
-        let Some((position, orientation)) = room.place(run.model.radius(body), places) else { break };
+        let Some((position, orientation)) = room.find_position(run.model.radius(body), places) else { break };
         waiting.remove(0);
         let (velocity, spin) = (Vec3::new(0.1, -0.2, -0.8), Vec3::new(3.0, 4.0, -5.0));
         arrive.push(Arrival { body, position, orientation, velocity, spin });
@@ -102,30 +102,30 @@ fn balances_close_during_insertion_and_removal() {
         let mut waiting: Vec<usize> =
             (0..run.model.body_count()).filter(|&b| !run.state.present(b)).collect();
         assert_eq!((waiting.len(), run.state.present_count()), (32, 128));
-        let mut places = Places::new(5);
+        let mut places = FreePositions::new(5);
         let (first, start) = (run.account(), measure::momentum(&run.model, &run.state));
-        let (mut turnover, mut worst, mut moved) = (0.0, 0.0_f64, (0, 0));
+        let (mut changes, mut worst, mut moved) = (0.0, 0.0_f64, (0, 0));
         let (mut jump, mut springs) = (0.0_f64, 0.0);
         for _ in 0..60 {
             run.steps(300);
-            let before = (run.account(), run.state.ledger.work_flow);
+            let before = (run.account(), run.state.balance.work_flow);
             let elastic = measure::energies(&run.model, &run.state).elastic();
             let (out, come) = turn_over(&mut run, &mut waiting, &mut places);
             moved = (moved.0 + out, moved.1 + come);
             springs += elastic - measure::energies(&run.model, &run.state).elastic();
             jump = jump.max((run.account() - before.0).abs());
-            turnover += (run.state.ledger.work_flow - before.1).abs();
+            changes += (run.state.balance.work_flow - before.1).abs();
             worst = worst.max((run.account() - first).abs());
         }
         let error = run.momentum_error(&start);
-        let scale = run.state.ledger.gravity.linear.norm();
+        let scale = run.state.balance.gravity.linear.norm();
         println!(
-            "{periodic}: {moved:?} {worst:e} of {turnover:e}, jump {jump:e}, springs {springs:e}, {error:?} of {scale}"
+            "{periodic}: {moved:?} {worst:e} of {changes:e}, jump {jump:e}, springs {springs:e}, {error:?} of {scale}"
         );
         assert!(moved.0 > 150 && moved.1 > 150, "{moved:?}");
-        assert!(jump < 1e-13 * turnover, "{jump:e} of {turnover}");
+        assert!(jump < 1e-13 * changes, "{jump:e} of {changes}");
         assert!(springs > 1e-6, "{springs:e}");
-        assert!(worst < 4e-3 * turnover, "{worst:e} of {turnover:e}");
+        assert!(worst < 4e-3 * changes, "{worst:e} of {changes:e}");
         assert!(error.0 < 1e-12 * scale && error.1 < 1e-12 * scale, "{error:?} of {scale}");
     }
 }
@@ -249,7 +249,7 @@ fn new_scratch_continues_bitwise() {
     let mut run = Run::new(input(false));
     let mut waiting: Vec<usize> = (0..160).filter(|&b| !run.state.present(b)).collect();
     run.steps(700);
-    turn_over(&mut run, &mut waiting, &mut Places::new(3));
+    turn_over(&mut run, &mut waiting, &mut FreePositions::new(3));
     let state = run.state.clone();
     let mut copy = Run { model: run.model.clone(), work: Work::new(&run.model, &state), state };
     run.steps(300);
@@ -285,7 +285,7 @@ fn rejects_invalid_exchange() {
     ] {
         assert_eq!(run.exchange(&leave, &arrive).unwrap_err().to_string(), text);
     }
-    assert_eq!(run.state.ledger.work_flow, 0.0);
+    assert_eq!(run.state.balance.work_flow, 0.0);
     let force = crate::AppliedForce { body: 4, force: Vec3::x(), point: Vec3::zeros() };
     let error = step(&run.model, &mut run.state, &mut run.work, &NoSurface, &[force]).unwrap_err();
     assert!(error.to_string().contains("applied force 0 (body 4): no such body"), "{error}");

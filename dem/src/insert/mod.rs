@@ -4,11 +4,11 @@
 pub mod closed;
 pub mod container;
 pub mod flow;
+pub mod free_space;
 pub mod gradation;
-pub mod grow;
 pub mod lattice;
 pub mod library;
 pub mod place;
-pub mod room;
-pub mod scatter;
+pub mod radius_expansion;
+pub mod random_placement;
 pub mod sizes;

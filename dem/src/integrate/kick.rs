@@ -75,7 +75,7 @@ fn sign<R: Real>(x: R) -> R {
 }
 
 #[inline(always)]
-fn held<R: Real>(load: V3<R>, motion: V3<R>, damping: R) -> V3<R> {
+fn damped<R: Real>(load: V3<R>, motion: V3<R>, damping: R) -> V3<R> {
     let of = -damping;
     V3::new(
         of * load.x.abs() * sign(motion.x),
@@ -98,8 +98,8 @@ fn advanced<R: Real>(old: V3<R>, load: V3<R>, share: R, fixed: &[R::Mask; 3]) ->
 pub(crate) fn kick_single<R: Real>(s: &Single<R>, kick: R) -> Kicked<R> {
     let mut force = s.force.0 + s.force.1 + s.gravity * s.mass;
     let mut torque = s.torque.0 + s.torque.1;
-    let damping = held(force, s.velocity, s.damping);
-    let damping_torque = held(torque, s.spin, s.damping);
+    let damping = damped(force, s.velocity, s.damping);
+    let damping_torque = damped(torque, s.spin, s.damping);
     force = force + damping;
     torque = torque + damping_torque;
     Kicked {

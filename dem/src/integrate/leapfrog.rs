@@ -11,19 +11,19 @@
 //! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 
 use super::kick::{Push, Single, kick_free, kick_single, resist, turn_of_sphere};
-use super::pace::Pace;
+use super::rigid_rotation::{self, GroupRotation, Rigid};
 use super::rotation;
-use super::turning::{self, Among, Rigid};
+use super::step_size::StepSize;
 use crate::base::Vec3;
+use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
-use crate::base::ledger::Ledger;
 use crate::bodies::block::{Block, Rotation, spin_of};
-use crate::bodies::members::Members;
-use crate::bodies::sums::{Sums as BodySums, Tally};
-use crate::bodies::table::{Bodies, Kind};
-use crate::lanes::record::{set_xyz, xyz};
-use crate::lanes::turn::Turn;
-use crate::lanes::{self, Four, Kernel, Pack, Real, Simd, V3};
+use crate::bodies::block_bodies::BlockBodies;
+use crate::bodies::sums::{BlockTotals, ForceTorque};
+use crate::bodies::table::{Bodies, BodyKind};
+use crate::lanes::quaternion::QuaternionLanes;
+use crate::lanes::vec4::{set_xyz, xyz};
+use crate::lanes::{self, Kernel, Real, Simd, Simd4, SimdPack, V3};
 use nalgebra::UnitQuaternion;
 
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ pub(crate) struct Applied {
 
 /// Loads common to all bodies.
 #[derive(Clone, Copy)]
-pub(crate) struct Drive<'a> {
+pub(crate) struct MotionInput<'a> {
     /// Acceleration [m/s²].
     pub gravity: Vec3,
     /// Local damping coefficient α [-].
@@ -44,53 +44,53 @@ pub(crate) struct Drive<'a> {
     /// Speed limit [m/s].
     pub bound: f64,
     pub bodies: &'a Bodies,
-    pub pace: Pace,
+    pub step_size: StepSize,
 }
 
 /// Moves a block; applied forces are sorted by body index in it.
 pub(crate) fn advance(
     simd: Simd,
-    drive: &Drive<'_>,
+    drive: &MotionInput<'_>,
     block: &mut Block,
-    members: &mut Members,
-    tally: &mut Tally,
+    members: &mut BlockBodies,
+    totals: &mut BlockTotals,
     applied: &[Applied],
 ) {
     match (members.rigid, members.plain() && applied.is_empty()) {
         (false, false) => {
-            lanes::run(simd, Advance::<false, false> { drive, block, members, tally, applied });
+            lanes::run(simd, Advance::<false, false> { drive, block, members, totals, applied });
         }
-        (false, true) => lanes::run(simd, Advance::<false, true> { drive, block, members, tally, applied }),
-        (true, false) => lanes::run(simd, Advance::<true, false> { drive, block, members, tally, applied }),
-        (true, true) => lanes::run(simd, Advance::<true, true> { drive, block, members, tally, applied }),
+        (false, true) => lanes::run(simd, Advance::<false, true> { drive, block, members, totals, applied }),
+        (true, false) => lanes::run(simd, Advance::<true, false> { drive, block, members, totals, applied }),
+        (true, true) => lanes::run(simd, Advance::<true, true> { drive, block, members, totals, applied }),
     }
 }
 
 /// Groups of four free bodies, others singly. `PLAIN`: all are free.
-struct Advance<'a, const RIGID: bool, const PLAIN: bool> {
-    drive: &'a Drive<'a>,
+struct Advance<'a, const CLUMPS: bool, const PLAIN: bool> {
+    drive: &'a MotionInput<'a>,
     block: &'a mut Block,
-    members: &'a mut Members,
-    tally: &'a mut Tally,
+    members: &'a mut BlockBodies,
+    totals: &'a mut BlockTotals,
     /// Sorted by body index.
     applied: &'a [Applied],
 }
 
-impl<const RIGID: bool, const PLAIN: bool> Kernel for Advance<'_, RIGID, PLAIN> {
+impl<const CLUMPS: bool, const PLAIN: bool> Kernel for Advance<'_, CLUMPS, PLAIN> {
     type Output = ();
 
     #[inline(always)]
-    fn run<P: Pack>(self) {
+    fn run<P: SimdPack>(self) {
         self.by_four::<P>();
     }
 }
 
-impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
+impl<const CLUMPS: bool, const PLAIN: bool> Advance<'_, CLUMPS, PLAIN> {
     #[inline(always)]
-    fn by_four<P: Pack>(self) {
-        let Advance { drive, block, members, tally, mut applied } = self;
-        let (kick, bound) = (drive.pace.kick(), drive.bound);
-        let forces = std::mem::take(&mut tally.sums);
+    fn by_four<P: SimdPack>(self) {
+        let Advance { drive, block, members, totals, mut applied } = self;
+        let (kick, bound) = (drive.step_size.kick(), drive.bound);
+        let forces = std::mem::take(&mut totals.sums);
         let n = block.bodies.len();
         let mut sums = Sums::<P::Quad>::new();
         let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
@@ -100,14 +100,14 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
         let quick = if PLAIN { n - n % 4 } else { 0 };
         if drive.damping == 0.0 {
             for k in (0..quick).step_by(4) {
-                four::<P::Quad, RIGID, false>(drive, block, members, &forces, k, &mut sums);
+                four::<P::Quad, CLUMPS, false>(drive, block, members, &forces, k, &mut sums);
             }
         } else {
             for k in (0..quick).step_by(4) {
-                four::<P::Quad, RIGID, true>(drive, block, members, &forces, k, &mut sums);
+                four::<P::Quad, CLUMPS, true>(drive, block, members, &forces, k, &mut sums);
             }
         }
-        if RIGID {
+        if CLUMPS {
             // Separate loop: rotations overlap in the pipeline.
             for k in (0..quick).step_by(4) {
                 place_four::<P>(block, members, k);
@@ -120,11 +120,11 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
                 && applied.first().is_none_or(|a| a.place as usize >= k + 4)
             {
                 if drive.damping == 0.0 {
-                    four::<P::Quad, RIGID, false>(drive, block, members, &forces, k, &mut sums);
+                    four::<P::Quad, CLUMPS, false>(drive, block, members, &forces, k, &mut sums);
                 } else {
-                    four::<P::Quad, RIGID, true>(drive, block, members, &forces, k, &mut sums);
+                    four::<P::Quad, CLUMPS, true>(drive, block, members, &forces, k, &mut sums);
                 }
-                if RIGID {
+                if CLUMPS {
                     place_four::<P>(block, members, k);
                 }
                 continue;
@@ -134,8 +134,8 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
                 let own = applied.iter().take_while(|a| a.place as usize == k).count();
                 let (loads, rest) = applied.split_at(own);
                 applied = rest;
-                let v2 = general::<RIGID>(drive, block, members, &forces[k], tally, k, loads);
-                if RIGID {
+                let v2 = general::<CLUMPS>(drive, block, members, &forces[k], totals, k, loads);
+                if CLUMPS {
                     let q = block.rotation[k].orientation;
                     let centre = block.centre[k];
                     members.place_spheres(k, &centre, &q);
@@ -145,21 +145,21 @@ impl<const RIGID: bool, const PLAIN: bool> Advance<'_, RIGID, PLAIN> {
             }
         }
         if drive.damping != 0.0 {
-            sums.book_damping(&mut tally.ledger, kick);
+            sums.book_damping(&mut totals.balance, kick);
         }
         moment += Vec3::new(sums.moment.x.sum(), sums.moment.y.sum(), sums.moment.z.sum());
         fastest2 = fastest2.max(sums.fastest2.largest());
-        if (too_fast || !sums.sound || wild(fastest2)) && tally.failure.is_none() {
-            let mut speeds = (0..n).map(|k| (k, speed2::<RIGID>(block, members, k)));
+        if (too_fast || !sums.sound || wild(fastest2)) && totals.failure.is_none() {
+            let mut speeds = (0..n).map(|k| (k, speed2::<CLUMPS>(block, members, k)));
             if let Some((k, v2)) = speeds.find(|(_, v2)| wild(*v2)) {
-                tally.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
+                totals.failure = Some(Failure::Speed { body: block.bodies[k], speed: v2.sqrt(), bound });
             }
         }
-        tally.fastest = fastest2.sqrt();
+        totals.fastest = fastest2.sqrt();
         let impulse = drive.gravity * kick;
-        tally.ledger.gravity.linear += impulse * members.mass_sum;
-        tally.ledger.gravity.angular += moment.cross(&impulse);
-        tally.sums = forces;
+        totals.balance.gravity.linear += impulse * members.mass_sum;
+        totals.balance.gravity.angular += moment.cross(&impulse);
+        totals.sums = forces;
     }
 }
 
@@ -176,7 +176,7 @@ struct Sums<R> {
     angular: V3<R>,
 }
 
-impl<R: Four> Sums<R> {
+impl<R: Simd4> Sums<R> {
     #[inline(always)]
     fn new() -> Sums<R> {
         let (zero, none) = (R::zero(), V3::zero());
@@ -192,34 +192,34 @@ impl<R: Four> Sums<R> {
     }
 
     #[inline(always)]
-    fn book_damping(&self, ledger: &mut Ledger, kick: f64) {
-        ledger.dissipated_local_damping -= self.power.sum() * kick;
+    fn book_damping(&self, balance: &mut BalanceTerms, kick: f64) {
+        balance.dissipated_local_damping -= self.power.sum() * kick;
         let ([fx, fy, fz, _], [tx, ty, tz, _]) = (self.force.array(), self.torque.array());
         let about = &self.angular;
         let about = Vec3::new(about.x.sum() + tx, about.y.sum() + ty, about.z.sum() + tz);
-        ledger.local_damping.linear += Vec3::new(fx, fy, fz) * kick;
-        ledger.local_damping.angular += about * kick;
+        balance.local_damping.linear += Vec3::new(fx, fy, fz) * kick;
+        balance.local_damping.angular += about * kick;
     }
 }
 
 /// Of a body's points.
-fn speed2<const RIGID: bool>(block: &Block, members: &Members, k: usize) -> f64 {
+fn speed2<const CLUMPS: bool>(block: &Block, members: &BlockBodies, k: usize) -> f64 {
     let v = xyz(&block.velocity[k]).norm();
-    let turn = if RIGID { xyz(&block.spin[k]).norm() * members.reach[k] } else { 0.0 };
+    let turn = if CLUMPS { xyz(&block.spin[k]).norm() * members.reach[k] } else { 0.0 };
     (v + turn) * (v + turn)
 }
 
 /// Moves free bodies k to k + 3, without member spheres.
 #[inline(always)]
-fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
-    drive: &Drive<'_>,
+fn four<R: Simd4, const CLUMPS: bool, const DAMPED: bool>(
+    drive: &MotionInput<'_>,
     block: &mut Block,
-    members: &Members,
-    forces: &[BodySums],
+    members: &BlockBodies,
+    forces: &[ForceTorque],
     k: usize,
     sums: &mut Sums<R>,
 ) {
-    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
+    let (kick, dt) = (drive.step_size.kick(), drive.step_size.dt);
     let step = R::load(&[kick, kick, kick, 0.0]);
     let way = R::load(&[dt, dt, dt, 0.0]);
     let damping = R::splat(drive.damping);
@@ -257,9 +257,9 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
     }
     let mut speed2 = V3::new(vx, vy, vz).norm2();
 
-    let clumps = if RIGID { members.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
+    let clumps = if CLUMPS { members.reach[k..k + 4].iter().any(|&reach| reach > 0.0) } else { false };
     if clumps {
-        speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), &drive.pace, speed2, sums);
+        speed2 = turn_four::<R, DAMPED>(block, members, k, (torque, stop), &drive.step_size, speed2, sums);
     } else {
         let kick = turn_of_sphere(R::splat(kick), inverse_mass, r).array();
         for l in 0..4 {
@@ -278,12 +278,12 @@ fn four<R: Four, const RIGID: bool, const DAMPED: bool>(
 /// Kicks and rotates free bodies k to k + 3. Returns the largest squared speeds of their points, from the
 /// centres'.
 #[inline(always)]
-fn turn_four<R: Four, const DAMPED: bool>(
+fn turn_four<R: Simd4, const DAMPED: bool>(
     block: &mut Block,
-    members: &Members,
+    members: &BlockBodies,
     k: usize,
     (torque, stop): ([R; 4], [R; 4]),
-    pace: &Pace,
+    step_size: &StepSize,
     speed2: R,
     sums: &mut Sums<R>,
 ) -> R {
@@ -303,7 +303,7 @@ fn turn_four<R: Four, const DAMPED: bool>(
     let [tx, ty, tz, _] = R::transpose(torque);
     let [wx, wy, wz, material] =
         R::transpose([R::load(&spin[0]), R::load(&spin[1]), R::load(&spin[2]), R::load(&spin[3])]);
-    let kick = R::splat(pace.kick());
+    let kick = R::splat(step_size.kick());
     let torque = V3::new(tx, ty, tz);
     let sphere = !R::zero().lt(reach);
     let [qi, qj, qk, qw] = R::transpose([
@@ -312,19 +312,19 @@ fn turn_four<R: Four, const DAMPED: bool>(
         R::load(&rotation[2].orientation.coords.data.0[0]),
         R::load(&rotation[3].orientation.coords.data.0[0]),
     ]);
-    let orientation = Turn { v: V3::new(qi, qj, qk), s: qw };
+    let orientation = QuaternionLanes { v: V3::new(qi, qj, qk), s: qw };
     let (momentum, before) = (V3::new(mx, my, mz), V3::new(wx, wy, wz));
     let body = Rigid { orientation, momentum, spin: before, inertia };
     // Single spheres keep their orientation.
-    let momentum = turning::kicked(&body, torque, kick);
-    let new = rotation::free(orientation, momentum, inertia, R::splat(pace.dt));
+    let momentum = rigid_rotation::kicked(&body, torque, kick);
+    let new = rotation::free(orientation, momentum, inertia, R::splat(step_size.dt));
     let mut held = V3::zero();
     if DAMPED {
         let [sx, sy, sz, _] = R::transpose(stop);
         held = V3::new(sx, sy, sz);
     }
-    let Among { orientation: turn, spin: rate, power } =
-        turning::among::<R, DAMPED>(&body, sphere, (torque * kick, held), momentum, new);
+    let GroupRotation { orientation: turn, spin: rate, power } =
+        rigid_rotation::rotate_in_group::<R, DAMPED>(&body, sphere, (torque * kick, held), momentum, new);
     if DAMPED {
         sums.power = sums.power + power;
     }
@@ -337,12 +337,12 @@ fn turn_four<R: Four, const DAMPED: bool>(
         r.momentum = Vec3::new(mx[l], my[l], mz[l]);
         r.orientation = UnitQuaternion::new_unchecked(turns[l].array().into());
     }
-    turning::fastest2(speed2, rate, reach)
+    rigid_rotation::fastest2(speed2, rate, reach)
 }
 
 /// Updates the member spheres of four bodies.
 #[inline(always)]
-fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
+fn place_four<P: SimdPack>(block: &Block, members: &mut BlockBodies, body: usize) {
     let (centre, rotation) = (&block.centre[body..body + 4], &block.rotation[body..body + 4]);
     let quaternion = |l: usize| &rotation[l].orientation.coords.data.0[0];
     let [i, j, k, s] = P::Quad::transpose([
@@ -352,7 +352,7 @@ fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
         P::Quad::load(quaternion(3)),
     ]);
     let zero = P::Quad::zero();
-    let [x, y, z] = Turn { v: V3::new(i, j, k), s }.columns();
+    let [x, y, z] = QuaternionLanes { v: V3::new(i, j, k), s }.columns();
     let x = P::Quad::transpose([x.x, x.y, x.z, zero]);
     let y = P::Quad::transpose([y.x, y.y, y.z, zero]);
     let z = P::Quad::transpose([z.x, z.y, z.z, zero]);
@@ -376,16 +376,16 @@ fn place_four<P: Pack>(block: &Block, members: &mut Members, body: usize) {
 }
 
 /// Any body. Returns the largest squared speed of its points.
-fn general<const RIGID: bool>(
-    drive: &Drive<'_>,
+fn general<const CLUMPS: bool>(
+    drive: &MotionInput<'_>,
     block: &mut Block,
-    members: &Members,
-    sums: &BodySums,
-    tally: &mut Tally,
+    members: &BlockBodies,
+    sums: &ForceTorque,
+    totals: &mut BlockTotals,
     k: usize,
     loads: &[Applied],
 ) -> f64 {
-    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
+    let (kick, dt) = (drive.step_size.kick(), drive.step_size.dt);
     let (x, v0, w0) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
     let body = drive.bodies.get(block.bodies[k] as usize);
     let (mass, fixed) = (body.mass, body.fixed);
@@ -408,76 +408,77 @@ fn general<const RIGID: bool>(
     let (damping, damping_torque) = (kicked.damping.to_vec(), kicked.damping_torque.to_vec());
 
     let mean = (v0 + v1) * 0.5;
-    let ledger = &mut tally.ledger;
+    let balance = &mut totals.balance;
     if fixed & 7 != 0 {
         let hold = (v1 - v0) * mass - force * kick;
-        ledger.constraints.add(&x, &hold);
-        ledger.work_constraints += hold.dot(&mean);
+        balance.constraints.add(&x, &hold);
+        balance.work_constraints += hold.dot(&mean);
     }
     set_xyz(&mut block.velocity[k], &v1);
     set_xyz(&mut block.centre[k], &(x + v1 * dt));
 
-    let (mean_spin, reach) = if RIGID && members.kind[k] != Kind::Sphere {
-        let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, ledger);
+    let (mean_spin, reach) = if CLUMPS && members.kind[k] != BodyKind::Sphere {
+        let spin = rotate(drive, block, k, &members.inertia[k], &torque, fixed >> 3, balance);
         (spin, members.reach[k])
     } else {
         let w1 = kicked.spin.to_vec();
         let mean = (w0 + w1) * 0.5;
         if fixed >> 3 != 0 {
             let hold = (w1 - w0) * body.inertia.x - torque * kick;
-            ledger.constraints.angular += hold;
-            ledger.work_constraints += hold.dot(&mean);
+            balance.constraints.angular += hold;
+            balance.work_constraints += hold.dot(&mean);
         }
         set_xyz(&mut block.spin[k], &w1);
         (mean, 0.0)
     };
 
     if !loads.is_empty() {
-        ledger.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * kick;
-        ledger.applied.add(&x, &(load * kick));
-        ledger.applied.angular += load_torque * kick;
+        balance.work_applied += (load.dot(&mean) + load_torque.dot(&mean_spin)) * kick;
+        balance.applied.add(&x, &(load * kick));
+        balance.applied.angular += load_torque * kick;
     }
     if drive.damping > 0.0 {
-        ledger.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * kick;
-        ledger.local_damping.add(&x, &(damping * kick));
-        ledger.local_damping.angular += damping_torque * kick;
+        balance.dissipated_local_damping -= (damping.dot(&mean) + damping_torque.dot(&mean_spin)) * kick;
+        balance.local_damping.add(&x, &(damping * kick));
+        balance.local_damping.angular += damping_torque * kick;
     }
-    turning::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
+    rigid_rotation::fastest2(V3::from_vec(&v1).norm2(), V3::from_vec(&xyz(&block.spin[k])), reach)
 }
 
 /// Kicks and rotates a clump or box; returns the mean angular velocity.
 #[inline]
 fn rotate(
-    drive: &Drive<'_>,
+    drive: &MotionInput<'_>,
     block: &mut Block,
     k: usize,
     inertia: &Vec3,
     torque: &Vec3,
     fixed: u8,
-    ledger: &mut Ledger,
+    balance: &mut BalanceTerms,
 ) -> Vec3 {
-    let (kick, dt) = (drive.pace.kick(), drive.pace.dt);
+    let (kick, dt) = (drive.step_size.kick(), drive.step_size.dt);
     let w0 = xyz(&block.spin[k]);
     let r = &mut block.rotation[k];
     let of = V3::from_vec;
     let body = Rigid {
-        orientation: Turn::of(&r.orientation),
+        orientation: QuaternionLanes::of(&r.orientation),
         momentum: of(&r.momentum),
         spin: of(&w0),
         inertia: of(inertia),
     };
-    let momentum = turning::kicked(&body, of(torque), kick);
+    let momentum = rigid_rotation::kicked(&body, of(torque), kick);
     let turned = if fixed == 0 {
         let new = rotation::free(body.orientation, momentum, body.inertia, dt);
-        turning::alone(&body, momentum, new)
+        rigid_rotation::rotate_single(&body, momentum, new)
     } else {
         let pushed = Rotation { orientation: r.orientation, momentum: momentum.to_vec() };
         let kicked = spin_of(&pushed, inertia);
         let target = drive.bodies.spin(block.bodies[k] as usize);
         let kicked = hold(&pushed, inertia, &kicked, &target, fixed);
-        let (turned, impulse, work) = turning::held(&body, of(torque), of(&kicked), kick, dt);
-        ledger.constraints.angular += impulse.to_vec();
-        ledger.work_constraints += work;
+        let (turned, impulse, work) =
+            rigid_rotation::rotate_prescribed(&body, of(torque), of(&kicked), kick, dt);
+        balance.constraints.angular += impulse.to_vec();
+        balance.work_constraints += work;
         turned
     };
     *r = Rotation { orientation: turned.orientation.quaternion(), momentum: turned.momentum.to_vec() };

@@ -2,6 +2,6 @@
 
 pub(crate) mod kick;
 pub(crate) mod leapfrog;
-pub(crate) mod pace;
+pub(crate) mod rigid_rotation;
 pub mod rotation;
-pub(crate) mod turning;
+pub(crate) mod step_size;

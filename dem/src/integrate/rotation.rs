@@ -12,7 +12,7 @@
 //! Theory manual: equation (3.4) of `docs/theory/motion.md`.
 
 use crate::base::Vec3;
-use crate::lanes::turn::Turn;
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
@@ -30,7 +30,7 @@ pub(crate) struct Midpoint<R> {
 
 impl<R: Real> Midpoint<R> {
     #[inline(always)]
-    pub fn new(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Midpoint<R> {
+    pub fn new(orientation: QuaternionLanes<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Midpoint<R> {
         let h = R::splat(0.5) * dt;
         let half = V3::new(h / inertia.x, h / inertia.y, h / inertia.z);
         Midpoint { start: orientation.back(momentum), half }
@@ -74,16 +74,21 @@ impl<R: Real> Midpoint<R> {
 
 /// q ∘ (1, c), normalised.
 #[inline(always)]
-pub(crate) fn turned<R: Real>(orientation: Turn<R>, c: V3<R>) -> Turn<R> {
-    let Turn { v, s } = orientation;
+pub(crate) fn turned<R: Real>(orientation: QuaternionLanes<R>, c: V3<R>) -> QuaternionLanes<R> {
+    let QuaternionLanes { v, s } = orientation;
     let (vector, scalar) = (v + c * s + v.cross(c), s - v.dot(c));
     let scale = R::splat(1.0) / (vector.norm2() + scalar * scalar).sqrt();
-    Turn { v: vector * scale, s: scalar * scale }
+    QuaternionLanes { v: vector * scale, s: scalar * scale }
 }
 
 /// Orientation after free rotation; `momentum` global.
 #[inline(always)]
-pub(crate) fn free<R: Real>(orientation: Turn<R>, momentum: V3<R>, inertia: V3<R>, dt: R) -> Turn<R> {
+pub(crate) fn free<R: Real>(
+    orientation: QuaternionLanes<R>,
+    momentum: V3<R>,
+    inertia: V3<R>,
+    dt: R,
+) -> QuaternionLanes<R> {
     turned(orientation, Midpoint::new(orientation, momentum, inertia, dt).solve())
 }
 
@@ -94,26 +99,26 @@ pub fn free_one(
     inertia: &Vec3,
     dt: f64,
 ) -> UnitQuaternion<f64> {
-    free(Turn::of(orientation), V3::from_vec(momentum), V3::from_vec(inertia), dt).quaternion()
+    free(QuaternionLanes::of(orientation), V3::from_vec(momentum), V3::from_vec(inertia), dt).quaternion()
 }
 
 /// Orientation after rotation at constant global angular velocity.
 #[inline(always)]
-pub(crate) fn steadily<R: Real>(q: Turn<R>, spin: V3<R>, dt: R) -> Turn<R> {
+pub(crate) fn steadily<R: Real>(q: QuaternionLanes<R>, spin: V3<R>, dt: R) -> QuaternionLanes<R> {
     let (one, V3 { x: i, y: j, z: k }) = (R::splat(1.0), spin * (R::splat(0.5) * dt));
-    let Turn { v, s } = q;
+    let QuaternionLanes { v, s } = q;
     let scalar = one * s - i * v.x - j * v.y - k * v.z;
     let x = one * v.x + i * s + j * v.z - k * v.y;
     let y = one * v.y - i * v.z + j * s + k * v.x;
     let z = one * v.z + i * v.y - j * v.x + k * s;
     let norm = ((x * x + z * z) + (y * y + scalar * scalar)).sqrt();
-    Turn { v: V3::new(x / norm, y / norm, z / norm), s: scalar / norm }
+    QuaternionLanes { v: V3::new(x / norm, y / norm, z / norm), s: scalar / norm }
 }
 
 /// As `steadily`, for one body.
 #[inline]
 pub fn steady(orientation: &UnitQuaternion<f64>, spin: &Vec3, dt: f64) -> UnitQuaternion<f64> {
-    steadily(Turn::of(orientation), V3::from_vec(spin), dt).quaternion()
+    steadily(QuaternionLanes::of(orientation), V3::from_vec(spin), dt).quaternion()
 }
 
 /// Rotation by the angle |v| [rad] about v.

@@ -1,18 +1,18 @@
 //! SIMD lanes: one source for single numbers and four lanes.
 //!
 //! `Real` is implemented for `f64`, `Portable` and `Avx2`, with IEEE 754 rounding and no fused multiply-add:
-//! all give the same bits. `Pack` is one group of four lanes, or two (`Avx512`).
+//! all give the same bits. `SimdPack` is one group of four lanes, or two (`Avx512`).
 //!
-//! A `Kernel` is a loop over `R: Pack`, compiled by `run` with CPU features. Its functions must be
+//! A `Kernel` is a loop over `R: SimdPack`, compiled by `run` with CPU features. Its functions must be
 //! `#[inline(always)]`, as calls on `Avx2` are ten times slower; this excludes closures, `map` and `from_fn`.
 
 #[cfg(not(all(target_arch = "x86_64", not(feature = "portable"))))]
 mod plain;
 mod portable;
 mod prefetch;
+pub(crate) mod quaternion;
 mod real;
-pub(crate) mod record;
-pub(crate) mod turn;
+pub(crate) mod vec4;
 mod vector;
 mod wide;
 #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
@@ -23,10 +23,10 @@ pub(crate) use machine::{Simd, run};
 use plain as machine;
 pub(crate) use portable::Portable;
 pub(crate) use prefetch::{ahead, far_ahead, prefetch, prefetch_first};
-pub(crate) use real::Four;
 pub use real::Real;
+pub(crate) use real::Simd4;
 pub use vector::V3;
-pub(crate) use wide::{Kernel, Pack};
+pub(crate) use wide::{Kernel, SimdPack};
 #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
 use x86 as machine;
 
@@ -51,14 +51,14 @@ mod tests {
     impl Kernel for Formula<'_> {
         type Output = Vec<[f64; 4]>;
         #[inline(always)]
-        fn run<P: Pack>(self) -> Vec<[f64; 4]> {
+        fn run<P: SimdPack>(self) -> Vec<[f64; 4]> {
             self.four::<P::Quad>()
         }
     }
 
     impl Formula<'_> {
         #[inline(always)]
-        fn four<R: Four>(self) -> Vec<[f64; 4]> {
+        fn four<R: Simd4>(self) -> Vec<[f64; 4]> {
             let mut out = Vec::new();
             for at in [[0, 1, 2, 3], [7, 2, 2, 5], [6, 4, 0, 1]] {
                 let r = formula(R::gather(self.0, &at));

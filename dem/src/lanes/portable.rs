@@ -1,6 +1,6 @@
 //! Four lanes in an array, for any CPU.
 
-use super::real::{Four, Real};
+use super::real::{Real, Simd4};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +119,7 @@ impl Real for Portable {
     }
 }
 
-impl Four for Portable {
+impl Simd4 for Portable {
     #[inline(always)]
     fn load(x: &[f64; 4]) -> Portable {
         Portable(*x)

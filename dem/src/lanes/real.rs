@@ -103,7 +103,7 @@ impl Real for f64 {
     }
 }
 
-pub(crate) trait Four: Real {
+pub(crate) trait Simd4: Real {
     fn load(x: &[f64; 4]) -> Self;
     fn store(self, to: &mut [f64; 4]);
     /// Lane l of result k is element k of row l.

@@ -2,13 +2,13 @@
 //!
 //! Sums over lanes are made group by group: the bits are the same.
 
-use super::real::{Four, Real};
-use crate::lanes::record::Record;
+use super::real::{Real, Simd4};
+use crate::lanes::vec4::Vec4;
 
-pub(crate) trait Pack: Real {
-    type Quad: Four;
+pub(crate) trait SimdPack: Real {
+    type Quad: Simd4;
     /// Eight numbers per lane.
-    type Record: Copy;
+    type Vec4Pair: Copy;
     const GROUPS: usize;
     const LANES: usize = 4 * Self::GROUPS;
 
@@ -29,29 +29,29 @@ pub(crate) trait Pack: Real {
     fn numbers(self) -> [f64; 8];
     /// Bit l: lane l of a mask.
     fn mask_bits(mask: Self::Mask) -> u32;
-    /// A record per lane, in the order of [`Pack::columns`].
-    fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; 4];
+    /// A record per lane, in the order of [`SimdPack::columns`].
+    fn rows<'a>(record: impl Fn(usize) -> &'a Vec4) -> [Self; 4];
     /// Two records per lane.
-    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([Self; 4], [Self; 4]);
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Vec4, &'a Vec4)) -> ([Self; 4], [Self; 4]);
     /// Lanes below `count`.
     fn below(count: usize) -> Self::Mask;
     /// Transposes: number k of each lane's record.
     fn columns(rows: [Self; 4]) -> [Self; 4];
     /// Eight numbers per lane.
-    fn records(first: [Self; 4], second: [Self; 4]) -> [Self::Record; 8];
+    fn records(first: [Self; 4], second: [Self; 4]) -> [Self::Vec4Pair; 8];
     /// `force` and `torque_a`; −`force` and `torque_b`; fourth numbers zero.
     #[inline(always)]
     fn opposed(
         force: [Self; 3],
         torque_a: [Self; 3],
         torque_b: [Self; 3],
-    ) -> ([Self::Record; 8], [Self::Record; 8]) {
+    ) -> ([Self::Vec4Pair; 8], [Self::Vec4Pair; 8]) {
         let zero = Self::zero();
         let ([x, y, z], [a, b, c], [d, e, f]) = (force, torque_a, torque_b);
         (Self::records([x, y, z, zero], [a, b, c, zero]), Self::records([-x, -y, -z, zero], [d, e, f, zero]))
     }
-    fn give(record: Self::Record, to: &mut [Record; 2]);
-    fn put(record: Self::Record, to: &mut [Record; 2]);
+    fn add_record(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
+    fn store_record(record: Self::Vec4Pair, to: &mut [Vec4; 2]);
 
     /// Exact product: signs are 1, 0, −1.
     #[inline(always)]
@@ -65,9 +65,9 @@ pub(crate) trait Pack: Real {
     }
 }
 
-impl<F: Four> Pack for F {
+impl<F: Simd4> SimdPack for F {
     type Quad = F;
-    type Record = (F, F);
+    type Vec4Pair = (F, F);
     const GROUPS: usize = 1;
 
     #[inline(always)]
@@ -108,11 +108,11 @@ impl<F: Four> Pack for F {
         F::bits(mask)
     }
     #[inline(always)]
-    fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [F; 4] {
+    fn rows<'a>(record: impl Fn(usize) -> &'a Vec4) -> [F; 4] {
         [F::load(record(0)), F::load(record(1)), F::load(record(2)), F::load(record(3))]
     }
     #[inline(always)]
-    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([F; 4], [F; 4]) {
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Vec4, &'a Vec4)) -> ([F; 4], [F; 4]) {
         let (p, q, r, s) = (records(0), records(1), records(2), records(3));
         (
             [F::load(p.0), F::load(q.0), F::load(r.0), F::load(s.0)],
@@ -133,12 +133,12 @@ impl<F: Four> Pack for F {
         [(a, p), (b, q), (c, r), (d, s), (a, p), (b, q), (c, r), (d, s)]
     }
     #[inline(always)]
-    fn give(record: (F, F), to: &mut [Record; 2]) {
+    fn add_record(record: (F, F), to: &mut [Vec4; 2]) {
         (F::load(&to[0]) + record.0).store(&mut to[0]);
         (F::load(&to[1]) + record.1).store(&mut to[1]);
     }
     #[inline(always)]
-    fn put(record: (F, F), to: &mut [Record; 2]) {
+    fn store_record(record: (F, F), to: &mut [Vec4; 2]) {
         record.0.store(&mut to[0]);
         record.1.store(&mut to[1]);
     }
@@ -148,5 +148,5 @@ impl<F: Four> Pack for F {
 pub(crate) trait Kernel {
     type Output;
     /// Must be `#[inline(always)]`.
-    fn run<R: Pack>(self) -> Self::Output;
+    fn run<R: SimdPack>(self) -> Self::Output;
 }

@@ -2,13 +2,13 @@
 
 use super::damping::Damping;
 use super::material::{Material, Pair, PairOverride};
-use super::table::{Combination, combination};
+use super::table::{LawInfo, combination};
 use crate::base::error::ModelError;
 
 /// Rejects constants that no contact uses.
 pub(crate) fn laws(materials: &[Material], exceptions: &[PairOverride]) -> Result<(), ModelError> {
     let count = materials.len();
-    let law = |i: usize, j: usize| -> Result<Option<&'static Combination>, ModelError> {
+    let law = |i: usize, j: usize| -> Result<Option<&'static LawInfo>, ModelError> {
         combination(&Pair::of(materials, exceptions, i, j)).map_err(|problem| ModelError::Law {
             a: i,
             b: j,

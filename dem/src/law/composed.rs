@@ -2,7 +2,7 @@
 //! and twisting resistance, adhesion. A pair uses the smaller friction, rolling and twisting coefficients.
 //!
 //! Dissipation is second order in spite of half-step velocities (phase of a damped oscillation: first). The
-//! dashpot uses the last half-step approach speed with a corrected coefficient (`lag.rs`), its loss the
+//! dashpot uses the last half-step approach speed with a corrected coefficient (`half_step_damping.rs`), its loss the
 //! extrapolated speed. Alternatives: `docs/developer/engine.md`.
 //!
 //! The first force that jumps at contact (linear dashpot, adhesion) is weighted by θ + ½, θ = d/(ḋ dt) the
@@ -12,14 +12,14 @@
 
 use super::adhesion;
 use super::constants::{Constants, constants};
-use super::contact::{FRESH, History, LawInput, LawOutput, Linearised, Memory};
+use super::contact::{History, HistoryLanes, LawInput, LawOutput, Linearised, NO_CONTACT};
 use super::contact_law::ContactLaw;
 use super::damping::Damping;
 use super::material::{LawName, Pair, harmonic};
-use super::normal::{Expected, NormalLaw, Touch};
-use super::slide;
+use super::normal::{Expected, NormalInput, NormalLaw};
+use super::rolling_twisting::{self, RollingTwisting, turning};
+use super::slider;
 use super::tangential::TangentialLaw;
-use super::turning::{self, Turning, turning};
 use crate::lanes::{Real, V3};
 
 /// Pair constants with normal law `N` and tangential law `T`.
@@ -112,8 +112,8 @@ fn onset<R: Real>(
         now = R::select(fresh, approach, now);
         time = R::select(fresh, step * share, step);
         if weighted {
-            let begun = R::select(since.lt(R::splat(1.5)), share + R::splat(0.5), one);
-            weight = R::select(fresh, begun, one);
+            let initial_state = R::select(since.lt(R::splat(1.5)), share + R::splat(0.5), one);
+            weight = R::select(fresh, initial_state, one);
         }
     }
     Onset { now, time, weight }
@@ -145,23 +145,23 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     #[inline(always)]
-    fn evaluate<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLLING: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
-        memory: &mut Memory<R>,
+        memory: &mut HistoryLanes<R>,
         on: R::Mask,
         step: R,
     ) -> LawOutput<R> {
         let (n, overlap, common) = (touch.normal, touch.overlap, &law.common);
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
-        let fresh = memory.rate.equals(R::splat(FRESH));
+        let fresh = memory.rate.equals(R::splat(NO_CONTACT));
         // Other history: the last half-step speed serves; its errors cancel over an oscillation.
         let remembered_approach = if N::REMEMBERS { approach } else { memory.rate };
         let Onset { now, time, weight } =
-            onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLL);
+            onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLLING);
 
-        let pressed = Touch {
+        let pressed = NormalInput {
             inverse_mass: touch.inverse_mass,
             radius: touch.radius,
             overlap,
@@ -184,7 +184,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         }
         memory.rate = if N::REMEMBERS { own.remembered } else { approach };
 
-        let carried = T::carry(&law.tangential, own.circle, own.circle_before);
+        let carried = T::transfer_spring(&law.tangential, own.circle, own.circle_before);
         let mut lost = R::zero();
         if let Some(c) = &carried {
             lost = (c.loss * memory.spring.norm2()).only(!fresh);
@@ -192,12 +192,12 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         }
         let grip = T::grip(&law.tangential, own.circle);
         let limit = T::limit(&law.tangential, common.friction, normal, touch.radius, own.circle);
-        let slid = slide::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, step, on);
+        let slid = slider::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, step, on);
         dashpot = dashpot + slid.dashpot;
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
 
         let (mut moment, mut net) = (V3::zero(), normal);
-        if ROLL {
+        if ROLLING {
             net = normal - common.pull * touch.radius * weight;
             if let Some(c) = &carried {
                 let length2 = memory.roll.norm2() + memory.twist * memory.twist;
@@ -205,7 +205,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
                 memory.roll = memory.roll * c.kept;
                 memory.twist = memory.twist * c.kept;
             }
-            let part = Turning {
+            let part = RollingTwisting {
                 stiffness: grip.stiffness,
                 damping: cs,
                 rolling: common.rolling,
@@ -237,7 +237,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         (force - self.common.pull * radius, stiffness)
     }
 
-    fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
+    fn friction_limit(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let (force, stiffness) = self.springs(overlap, radius, history);
         let normal = force + self.common.pull * radius;
         let circle = self.normal.circle(overlap, radius, history.rate);
@@ -245,10 +245,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     #[inline(always)]
-    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R {
+    fn tangential_energy<R: Real, const ROLLING: bool>(law: &Self::Lanes<R>, memory: &HistoryLanes<R>) -> R {
         let Some(stiffness) = T::at_end::<R>(&law.tangential) else { return R::zero() };
         let mut length2 = memory.spring.norm2();
-        if ROLL {
+        if ROLLING {
             length2 = length2 + memory.roll.norm2() + memory.twist * memory.twist;
         }
         R::splat(0.5) * stiffness * length2
@@ -264,9 +264,10 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
 
     fn linearised(&self, mass: f64, radius: f64, overlap: f64, history: &History) -> Linearised {
         let law = self.normal.splat::<f64>();
-        let (remembered, fresh) = (history.rate, history.is_fresh());
+        let (remembered, fresh) = (history.rate, history.is_new());
         let inverse_mass = 1.0 / mass;
-        let touch = Touch { inverse_mass, radius, overlap, approach: 0.0, remembered, fresh, step: 0.0 };
+        let touch =
+            NormalInput { inverse_mass, radius, overlap, approach: 0.0, remembered, fresh, step: 0.0 };
         let damping = if N::DASHPOT { N::respond(&law, &touch).damping } else { 0.0 };
         let tangential = self.tangential.stiffness(self.normal.circle(overlap, radius, remembered));
         let (c, turn) = (&self.common, tangential * radius * radius);
@@ -298,7 +299,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         self.normal.expected_overlap(expected)
     }
 
-    fn begun(&self, approach: f64) -> f64 {
+    fn initial_state(&self, approach: f64) -> f64 {
         if N::REMEMBERS { 0.0 } else { approach }
     }
 
@@ -318,7 +319,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
             sources.push(T::SOURCE);
         }
         sources.extend(if N::DASHPOT { self.damping.source() } else { None });
-        sources.extend((c.rolling > 0.0 || c.twisting > 0.0).then_some(turning::SOURCE));
+        sources.extend((c.rolling > 0.0 || c.twisting > 0.0).then_some(rolling_twisting::SOURCE));
         sources.extend((c.pull > 0.0).then_some(adhesion::SOURCE));
         sources
     }

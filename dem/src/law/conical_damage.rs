@@ -21,10 +21,10 @@
 //! Theory manual: eqs (1.10), (1.11), (1.12), `docs/theory/contacts.md`.
 
 use super::constants::constants;
-use super::contact::FRESH;
+use super::contact::NO_CONTACT;
 use super::hertz::{self, dashpot, modulus};
 use super::material::Pair;
-use super::normal::{Expected, NormalLaw, Response, Touch};
+use super::normal::{Expected, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ impl ConicalDamage {
     #[inline(always)]
     fn state(&self, overlap: f64, radius: f64, remembered: f64) -> (f64, f64) {
         let before =
-            if remembered == FRESH { radius + overlap * self.given_way } else { radius.max(remembered) };
+            if remembered == NO_CONTACT { radius + overlap * self.given_way } else { radius.max(remembered) };
         let grown = before.max((overlap + radius * self.slope) * self.growth);
         (grown, (overlap - (grown - radius) * self.slope).max(0.0))
     }
@@ -101,8 +101,8 @@ impl NormalLaw for ConicalDamage {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(law: &ConicalDamage<R>, touch: &Touch<R>) -> Response<R> {
-        let Touch { radius, overlap, .. } = *touch;
+    fn respond<R: Real>(law: &ConicalDamage<R>, touch: &NormalInput<R>) -> Response<R> {
+        let NormalInput { radius, overlap, .. } = *touch;
         let overlap_before = touch.overlap_before();
         // Initial overlaps count as crushed.
         let there = (overlap * R::splat(0.5)).lt(overlap_before);

@@ -71,18 +71,22 @@ fn what_has_crushed_stays() {
 fn overlaps_of_the_start_have_crushed() {
     let law = law(&GRANITE, &GRANITE);
     let (radius, deep) = (0.1, 2e-4);
-    assert!(law.force(deep, radius, FRESH).abs() < 1e-9 && law.stored(deep, radius, FRESH).abs() < 1e-15);
+    assert!(
+        law.force(deep, radius, NO_CONTACT).abs() < 1e-9
+            && law.stored(deep, radius, NO_CONTACT).abs() < 1e-15
+    );
     let touch = |overlap, approach, remembered| {
-        let fresh = remembered == FRESH;
-        let touch = Touch { inverse_mass: 1.0, radius, overlap, approach, remembered, fresh, step: 1e-6 };
+        let fresh = remembered == NO_CONTACT;
+        let touch =
+            NormalInput { inverse_mass: 1.0, radius, overlap, approach, remembered, fresh, step: 1e-6 };
         <ConicalDamage as NormalLaw>::respond(&law.splat::<f64>(), &touch)
     };
-    let there = touch(deep, 0.1, FRESH);
+    let there = touch(deep, 0.1, NO_CONTACT);
     assert!(
         (there.remembered / (radius + (deep - 1e-7) / law.slope) - 1.0).abs() < 1e-12 && there.elastic < 2.0,
         "{there:?}"
     );
-    let now = touch(1e-7, 0.1, FRESH);
+    let now = touch(1e-7, 0.1, NO_CONTACT);
     assert!(
         now.remembered == radius && now.lost == 0.0 && now.elastic == law.force(1e-7, radius, radius),
         "{now:?}"
@@ -93,7 +97,8 @@ fn overlaps_of_the_start_have_crushed() {
 #[test]
 fn nothing_is_held_without_pressure() {
     let law = ConicalLaw::mix(&Pair { a: &GRANITE, b: &GRANITE, exception: None });
-    let (mut history, still, dt) = (History { rate: law.begun(0.0), ..History::NONE }, Vec3::zeros(), 1e-5);
+    let (mut history, still, dt) =
+        (History { rate: law.initial_state(0.0), ..History::NONE }, Vec3::zeros(), 1e-5);
     let mut go = |overlap: f64, velocity: Vec3| {
         let touch = ContactGeometry { point: still, normal: Vec3::z(), overlap, radius: 0.1 };
         let f = law.evaluate_one(1.0, &touch, &velocity, &still, &mut history, dt);
@@ -118,7 +123,7 @@ fn partners_without_corners() {
     let rubber = Material { young: Some(5e7), ..plate };
     let soft = law(&rubber, &GRANITE);
     assert_eq!(soft.state(1e-3, 0.1, 0.1), (0.1, 1e-3));
-    assert_eq!(soft.state(1e-3, 0.1, FRESH), (0.1, 1e-3), "and what overlaps at the start is elastic");
+    assert_eq!(soft.state(1e-3, 0.1, NO_CONTACT), (0.1, 1e-3), "and what overlaps at the start is elastic");
     assert!(greatest_strength(soft.modulus, GRANITE.corner_angle) < GRANITE.corner_strength);
 }
 

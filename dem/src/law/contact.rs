@@ -22,7 +22,7 @@ pub struct ContactGeometry {
 pub struct History {
     /// Tangential displacement of a against b [m].
     pub spring: Vec3,
-    /// Normal law's number, [`FRESH`] before the first force: with dashpot the approach speed half a step
+    /// Normal law's number, [`NO_CONTACT`] before the first force: with dashpot the approach speed half a step
     /// before the last force [m/s].
     pub rate: f64,
     /// Rolling (three components) and twisting spring: angle of a against b × effective radius [m]; zero
@@ -31,29 +31,29 @@ pub struct History {
 }
 
 /// Marker of a new contact, finite for all file formats.
-pub const FRESH: f64 = f64::MAX;
+pub const NO_CONTACT: f64 = f64::MAX;
 
 impl History {
     /// New contact.
-    pub const NONE: History = History { spring: Vec3::new(0.0, 0.0, 0.0), rate: FRESH, turn: [0.0; 4] };
+    pub const NONE: History = History { spring: Vec3::new(0.0, 0.0, 0.0), rate: NO_CONTACT, turn: [0.0; 4] };
 
     /// Whether the contact is new.
     #[inline(always)]
-    pub fn is_fresh(&self) -> bool {
-        self.rate == FRESH
+    pub fn is_new(&self) -> bool {
+        self.rate == NO_CONTACT
     }
 
     /// Displaces the tangential spring by `way` [m], outside a step.
     #[inline(always)]
     pub(crate) fn displace(&mut self, way: &Vec3, normal: &Vec3) {
-        if !self.is_fresh() {
+        if !self.is_new() {
             self.spring -= way - normal * normal.dot(way);
         }
     }
 
     /// History for the other partner; twist keeps its sense.
     pub(crate) fn turned(&self) -> History {
-        if self.is_fresh() {
+        if self.is_new() {
             // Zeros keep their sign, as in steps without contact.
             return *self;
         }
@@ -64,15 +64,15 @@ impl History {
     }
 
     #[inline(always)]
-    pub(crate) fn of(memory: &Memory<f64>) -> History {
-        let &Memory { spring, rate, roll, twist } = memory;
+    pub(crate) fn of(memory: &HistoryLanes<f64>) -> History {
+        let &HistoryLanes { spring, rate, roll, twist } = memory;
         History { spring: spring.to_vec(), rate, turn: [roll.x, roll.y, roll.z, twist] }
     }
 
     #[inline(always)]
-    pub(crate) fn memory(&self) -> Memory<f64> {
+    pub(crate) fn memory(&self) -> HistoryLanes<f64> {
         let [x, y, z, twist] = self.turn;
-        Memory { spring: V3::from_vec(&self.spring), rate: self.rate, roll: V3::new(x, y, z), twist }
+        HistoryLanes { spring: V3::from_vec(&self.spring), rate: self.rate, roll: V3::new(x, y, z), twist }
     }
 }
 
@@ -127,10 +127,10 @@ pub struct LawInput<R> {
 
 /// [`History`] in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Memory<R> {
+pub struct HistoryLanes<R> {
     /// Tangential spring [m].
     pub spring: V3<R>,
-    /// Normal law's number, or [`FRESH`].
+    /// Normal law's number, or [`NO_CONTACT`].
     pub rate: R,
     /// Rolling spring [m].
     pub roll: V3<R>,
@@ -138,10 +138,10 @@ pub struct Memory<R> {
     pub twist: R,
 }
 
-impl<R: Real> Memory<R> {
+impl<R: Real> HistoryLanes<R> {
     #[inline(always)]
-    pub(crate) fn select(mask: R::Mask, yes: &Memory<R>, no: &Memory<R>) -> Memory<R> {
-        Memory {
+    pub(crate) fn select(mask: R::Mask, yes: &HistoryLanes<R>, no: &HistoryLanes<R>) -> HistoryLanes<R> {
+        HistoryLanes {
             spring: V3::select(mask, yes.spring, no.spring),
             rate: R::select(mask, yes.rate, no.rate),
             roll: V3::select(mask, yes.roll, no.roll),

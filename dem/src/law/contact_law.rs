@@ -1,7 +1,7 @@
 //! Interface of contact laws.
 
 use super::constants::Constants;
-use super::contact::{ContactForce, ContactGeometry, History, LawInput, LawOutput, Linearised, Memory};
+use super::contact::{ContactForce, ContactGeometry, History, HistoryLanes, LawInput, LawOutput, Linearised};
 use super::material::Pair;
 use super::normal::Expected;
 use crate::base::Vec3;
@@ -15,29 +15,29 @@ pub trait ContactLaw: Constants {
     /// Returns the law with another friction.
     fn with_friction(&self, friction: f64) -> Self;
 
-    /// Returns forces in lanes `on` over a step [s] and advances history (undefined in other lanes). `ROLL`:
+    /// Returns forces in lanes `on` over a step [s] and advances history (undefined in other lanes). `ROLLING`:
     /// rolling and twisting resistance, adhesion.
-    fn evaluate<R: Real, const ROLL: bool>(
+    fn evaluate<R: Real, const ROLLING: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
-        memory: &mut Memory<R>,
+        memory: &mut HistoryLanes<R>,
         on: R::Mask,
         step: R,
     ) -> LawOutput<R>;
 
     /// [`ContactLaw::evaluate`], not inlined in recording loops.
     #[inline(always)]
-    fn acting<R: Real, const ROLL: bool>(
+    fn acting<R: Real, const ROLLING: bool>(
         law: &Self::Lanes<R>,
         touch: &LawInput<R>,
-        memory: &mut Memory<R>,
+        memory: &mut HistoryLanes<R>,
         on: R::Mask,
         step: R,
     ) -> LawOutput<R> {
         if R::RECORDS {
-            apart(|| Self::evaluate::<R, ROLL>(law, touch, memory, on, step))
+            apart(|| Self::evaluate::<R, ROLLING>(law, touch, memory, on, step))
         } else {
-            Self::evaluate::<R, ROLL>(law, touch, memory, on, step)
+            Self::evaluate::<R, ROLLING>(law, touch, memory, on, step)
         }
     }
 
@@ -48,10 +48,10 @@ pub trait ContactLaw: Constants {
     fn springs(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
     /// Returns friction limit [N] and stiffness [N/m] of the tangential spring.
-    fn held_by_friction(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
+    fn friction_limit(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64);
 
     /// Returns the energy left in other than normal springs of ending contacts [J].
-    fn stored_in_springs<R: Real, const ROLL: bool>(law: &Self::Lanes<R>, memory: &Memory<R>) -> R;
+    fn tangential_energy<R: Real, const ROLLING: bool>(law: &Self::Lanes<R>, memory: &HistoryLanes<R>) -> R;
 
     /// Returns force [N] and tangent stiffness [N/m] of first loading.
     fn loading(&self, overlap: f64, radius: f64) -> (f64, f64);
@@ -75,7 +75,7 @@ pub trait ContactLaw: Constants {
     fn expected_overlap(&self, expected: &Expected) -> f64;
 
     /// Returns the normal law's number for an existing contact closing at `approach` [m/s].
-    fn begun(&self, approach: f64) -> f64;
+    fn initial_state(&self, approach: f64) -> f64;
 
     /// Whether it resists rolling or twisting, or adheres.
     fn rolls(&self) -> bool;
@@ -128,7 +128,7 @@ pub trait ContactLaw: Constants {
     fn release(&self, history: &mut History) -> f64 {
         let memory = history.memory();
         *history = History::NONE;
-        Self::stored_in_springs::<f64, true>(&self.splat(), &memory)
+        Self::tangential_energy::<f64, true>(&self.splat(), &memory)
     }
 }
 

@@ -17,9 +17,9 @@
 //! Theory manual: eqs (1.2), (1.7), (3.7), `docs/theory/contacts.md`, `docs/theory/motion.md`.
 
 use super::constants::constants;
-use super::lag;
+use super::half_step_damping;
 use super::material::{Material, Pair};
-use super::normal::{Expected, NormalLaw, Response, Touch};
+use super::normal::{Expected, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
 
 /// With tangent stiffness S = 2 E* a the dashpot is 2 √(5/6) ζ √(S m*).
@@ -38,9 +38,9 @@ constants!(Hertz { modulus, damping_ratio });
 
 /// Corrected dashpot coefficient [N s/m]; `tangent` [N/m].
 #[inline(always)]
-pub(super) fn dashpot<R: Real>(zeta: R, tangent: R, touch: &Touch<R>) -> R {
+pub(super) fn dashpot<R: Real>(zeta: R, tangent: R, touch: &NormalInput<R>) -> R {
     let rate = R::splat(DASHPOT) * zeta * (tangent * touch.inverse_mass).sqrt();
-    let (numerator, denominator) = lag::share(R::splat(0.5) * touch.step * rate);
+    let (numerator, denominator) = half_step_damping::share(R::splat(0.5) * touch.step * rate);
     rate * numerator / (touch.inverse_mass * denominator)
 }
 
@@ -71,7 +71,7 @@ impl NormalLaw for Hertz {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(law: &Hertz<R>, touch: &Touch<R>) -> Response<R> {
+    fn respond<R: Real>(law: &Hertz<R>, touch: &NormalInput<R>) -> Response<R> {
         let circle = (touch.radius * touch.overlap).sqrt();
         let tangent = R::splat(2.0) * law.modulus * circle;
         Response {

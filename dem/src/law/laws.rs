@@ -2,11 +2,11 @@
 
 use super::contact::{History, Linearised};
 use super::contact_law::ContactLaw;
-use super::edges;
+use super::line_contact;
 use super::material::{Material, Pair, PairOverride};
 use super::normal::Expected;
-use super::table::{ConicalLaw, HertzLaw, LinearLaw, Mixed, RoughLaw, Row, number_of, once, title};
-use crate::lanes::Pack;
+use super::table::{AnyLaw, ConicalLaw, HertzLaw, LinearLaw, RoughLaw, Row, once, select_law, title};
+use crate::lanes::SimdPack;
 
 /// Mixed constants of all pairs.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl<L: ContactLaw> PairTable<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn lanes<R: Pack>(&self, a: R, b: R) -> L::Lanes<R> {
+    pub(crate) fn lanes<R: SimdPack>(&self, a: R, b: R) -> L::Lanes<R> {
         let (a, b) = (a.numbers(), b.numbers());
         let mut laws = [&self.pairs[0]; 8];
         for l in 0..R::LANES {
@@ -87,7 +87,7 @@ pub(crate) enum Laws {
     Rough(PairTable<RoughLaw>),
     Hertz(PairTable<HertzLaw>),
     Conical(PairTable<ConicalLaw>),
-    Mixed(PairTable<Mixed>),
+    AnyLaw(PairTable<AnyLaw>),
 }
 
 /// Evaluates with the table in use.
@@ -98,7 +98,7 @@ macro_rules! with_law {
             $crate::law::Laws::Rough($table) => $body,
             $crate::law::Laws::Hertz($table) => $body,
             $crate::law::Laws::Conical($table) => $body,
-            $crate::law::Laws::Mixed($table) => $body,
+            $crate::law::Laws::AnyLaw($table) => $body,
         }
     };
 }
@@ -109,7 +109,7 @@ impl Laws {
     pub fn new(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (i..count).map(move |j| (i, j)));
-        let rows = all.filter_map(|(i, j)| number_of(&Pair::of(materials, exceptions, i, j)).ok().flatten());
+        let rows = all.filter_map(|(i, j)| select_law(&Pair::of(materials, exceptions, i, j)).ok().flatten());
         let rows: std::collections::BTreeSet<usize> = rows.collect();
         let only = |own: &[Row]| rows.iter().all(|&r| own.iter().any(|&row| r == row as usize));
         if only(&[Row::Linear]) {
@@ -123,20 +123,20 @@ impl Laws {
             // Bitwise Hertz for pairs without crushing corners.
             Laws::Conical(PairTable::new(materials, exceptions))
         } else {
-            Laws::Mixed(PairTable::new(materials, exceptions))
+            Laws::AnyLaw(PairTable::new(materials, exceptions))
         }
     }
 
-    /// With separate edge laws for Hertz pairs (`edges.rs`).
+    /// With separate edge laws for Hertz pairs (`line_contact.rs`).
     pub fn with_edges(materials: &[Material], exceptions: &[PairOverride]) -> Laws {
         let count = materials.len();
         let all = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
         let edged: Vec<bool> =
-            all.map(|(i, j)| edges::spread(&Pair::of(materials, exceptions, i, j))).collect();
+            all.map(|(i, j)| line_contact::spread(&Pair::of(materials, exceptions, i, j))).collect();
         if !edged.contains(&true) {
             return Laws::new(materials, exceptions);
         }
-        let (materials, exceptions) = edges::beside(materials, exceptions);
+        let (materials, exceptions) = line_contact::beside(materials, exceptions);
         let mut laws = Laws::new(&materials, &exceptions);
         with_law!(&mut laws, t => t.edged = edged);
         laws
@@ -187,8 +187,8 @@ impl Laws {
         with_law!(self, t => t.expected_overlap(expected))
     }
 
-    pub fn begun(&self, a: u32, b: u32, approach: f64) -> f64 {
-        with_law!(self, t => t.get(a, b).begun(approach))
+    pub fn initial_state(&self, a: u32, b: u32, approach: f64) -> f64 {
+        with_law!(self, t => t.get(a, b).initial_state(approach))
     }
 
     pub fn stored(&self, a: u32, b: u32, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
@@ -196,7 +196,7 @@ impl Laws {
     }
 
     /// `friction` replaces the law's coefficient.
-    pub fn held_by_friction(
+    pub fn friction_limit(
         &self,
         [a, b]: [u32; 2],
         friction: Option<f64>,
@@ -207,7 +207,7 @@ impl Laws {
         with_law!(self, t => {
             let law = t.get(a, b);
             let law = friction.map_or(*law, |it| law.with_friction(it));
-            law.held_by_friction(overlap, radius, history)
+            law.friction_limit(overlap, radius, history)
         })
     }
 

@@ -9,9 +9,9 @@
 //! Theory manual: eq. (1.3), `docs/theory/contacts.md`.
 
 use super::constants::constants;
-use super::lag;
+use super::half_step_damping;
 use super::material::Pair;
-use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
+use super::normal::{ConstantStiffness, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -42,9 +42,10 @@ impl NormalLaw for Linear {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(law: &Linear<R>, touch: &Touch<R>) -> Response<R> {
+    fn respond<R: Real>(law: &Linear<R>, touch: &NormalInput<R>) -> Response<R> {
         let root = touch.inverse_mass.sqrt();
-        let (numerator, denominator) = lag::share(R::splat(0.5) * law.damping * touch.step * root);
+        let (numerator, denominator) =
+            half_step_damping::share(R::splat(0.5) * law.damping * touch.step * root);
         let circle = (touch.radius * touch.overlap).sqrt();
         Response {
             elastic: law.stiffness * touch.overlap,

@@ -30,7 +30,7 @@ pub struct Material {
     pub young: Option<f64>,
     /// Poisson's ratio [-].
     pub poisson: f64,
-    /// Stiffness factor of dilated edges [-] (`edges.rs`).
+    /// Stiffness factor of dilated edges [-] (`line_contact.rs`).
     pub edge_factor: f64,
     /// Corner strength [Pa] (`conical_damage.rs`); infinite: no crushing.
     pub corner_strength: f64,

@@ -1,7 +1,7 @@
 //! Tangential law: Mindlin's stiffness of the contact circle.
 //!
 //! With a = √(R d) and 1/G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂, G = E/(2(1 + ν)): spring stiffness 8 G* a (Mindlin
-//! 1949), slider as in `slide.rs`.
+//! 1949), slider as in `slider.rs`.
 //!
 //! Loading keeps the force: the spring shortens by a₀/a. Unloading keeps the length: the force falls with a
 //! (Elata & Berryman, Mech. Mater. 24, 1996: constant force would create energy). Lost spring energy counts
@@ -15,7 +15,7 @@
 use super::constants::constants;
 use super::hertz::Hertz;
 use super::material::{LawName, Material, Pair};
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -47,15 +47,15 @@ impl TangentialLaw<Hertz> for Mindlin {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &Mindlin<R>, circle: R) -> Grip<R> {
-        Grip { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
+    fn grip<R: Real>(law: &Mindlin<R>, circle: R) -> SpringInput<R> {
+        SpringInput { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
     }
 
     #[inline(always)]
-    fn carry<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<Carried<R>> {
+    fn transfer_spring<R: Real>(law: &Mindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
         let kept = (before / circle).min(R::splat(1.0));
         let loss = R::splat(4.0) * law.shear * (before - circle * kept * kept);
-        Some(Carried { kept, loss })
+        Some(SpringTransfer { kept, loss })
     }
 
     /// Stiffness and energy vanish with the overlap; only the last step's loss is neglected.

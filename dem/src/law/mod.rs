@@ -5,6 +5,7 @@
 //! [`ContactLaw::evaluate_one`] for single contacts, bitwise identical.
 
 pub mod adhesion;
+mod any_law;
 pub(crate) mod check;
 pub mod composed;
 pub mod conical_damage;
@@ -12,32 +13,33 @@ mod constants;
 mod contact;
 mod contact_law;
 pub mod damping;
-mod edges;
+pub(crate) mod half_step_damping;
 pub mod hertz;
-pub(crate) mod lag;
 mod laws;
+mod line_contact;
 pub mod linear;
 pub mod material;
 pub mod mindlin;
-mod mixed;
 pub mod normal;
 pub mod parameter;
 pub mod restitution;
+pub(crate) mod rolling_twisting;
 pub mod rough;
 pub mod rough_mindlin;
 pub mod scarring;
-pub(crate) mod slide;
+pub(crate) mod slider;
 pub mod spring;
 pub mod table;
 pub mod tangential;
-pub(crate) mod turning;
 pub mod walton_braun;
 
 #[cfg(test)]
 mod conformance;
 
 pub use constants::Constants;
-pub use contact::{ContactForce, ContactGeometry, FRESH, History, LawInput, LawOutput, Linearised, Memory};
+pub use contact::{
+    ContactForce, ContactGeometry, History, HistoryLanes, LawInput, LawOutput, Linearised, NO_CONTACT,
+};
 pub use contact_law::ContactLaw;
 pub(crate) use laws::{Laws, with_law};
 pub use laws::{PairTable, sources};

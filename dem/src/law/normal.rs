@@ -10,7 +10,7 @@ use crate::lanes::Real;
 pub struct Response<R> {
     /// Spring force [N].
     pub elastic: R,
-    /// Corrected dashpot coefficient [N s/m] (`lag.rs`), C for zero step.
+    /// Corrected dashpot coefficient [N s/m] (`half_step_damping.rs`), C for zero step.
     pub damping: R,
     /// Contact circle radius [m], by default √(R d).
     pub circle: R,
@@ -24,7 +24,7 @@ pub struct Response<R> {
 
 /// Input in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Touch<R: Real> {
+pub struct NormalInput<R: Real> {
     /// Inverse effective mass [1/kg].
     pub inverse_mass: R,
     /// Effective radius [m].
@@ -41,7 +41,7 @@ pub struct Touch<R: Real> {
     pub step: R,
 }
 
-impl<R: Real> Touch<R> {
+impl<R: Real> NormalInput<R> {
     /// Returns the previous overlap [m].
     #[inline(always)]
     pub fn overlap_before(&self) -> R {
@@ -83,7 +83,7 @@ pub trait NormalLaw: Constants {
     fn mix(pair: &Pair<'_>, zeta: f64) -> Self;
 
     /// Returns force and dashpot.
-    fn respond<R: Real>(law: &Self::Lanes<R>, touch: &Touch<R>) -> Response<R>;
+    fn respond<R: Real>(law: &Self::Lanes<R>, touch: &NormalInput<R>) -> Response<R>;
 
     /// Returns spring force [N].
     fn force(&self, overlap: f64, radius: f64, remembered: f64) -> f64;

@@ -18,7 +18,7 @@ use super::constants::constants;
 use super::material::{LawName, Pair};
 use super::normal::ConstantStiffness;
 use super::spring::Spring;
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -57,8 +57,8 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &Rough<R>, _: R) -> Grip<R> {
-        Grip { stiffness: law.stiffness, compliance: Some(law.compliance) }
+    fn grip<R: Real>(law: &Rough<R>, _: R) -> SpringInput<R> {
+        SpringInput { stiffness: law.stiffness, compliance: Some(law.compliance) }
     }
 
     #[inline(always)]
@@ -68,7 +68,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Rough<R>, _: R, _: R) -> Option<Carried<R>> {
+    fn transfer_spring<R: Real>(_: &Rough<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
         None
     }
 

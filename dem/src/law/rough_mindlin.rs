@@ -14,7 +14,7 @@ use super::constants::constants;
 use super::material::{LawName, Pair};
 use super::mindlin::{Mindlin, shear};
 use super::rough::asperities;
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -43,8 +43,8 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &RoughMindlin<R>, circle: R) -> Grip<R> {
-        Grip { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
+    fn grip<R: Real>(law: &RoughMindlin<R>, circle: R) -> SpringInput<R> {
+        SpringInput { stiffness: R::splat(8.0) * law.shear * circle, compliance: None }
     }
 
     #[inline(always)]
@@ -55,13 +55,13 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
     }
 
     #[inline(always)]
-    fn carry<R: Real>(law: &RoughMindlin<R>, circle: R, before: R) -> Option<Carried<R>> {
+    fn transfer_spring<R: Real>(law: &RoughMindlin<R>, circle: R, before: R) -> Option<SpringTransfer<R>> {
         let mindlin = Mindlin { shear: law.shear };
-        let Carried { kept, loss } =
-            <Mindlin as TangentialLaw<super::hertz::Hertz>>::carry(&mindlin, circle, before)?;
+        let SpringTransfer { kept, loss } =
+            <Mindlin as TangentialLaw<super::hertz::Hertz>>::transfer_spring(&mindlin, circle, before)?;
         let touches = R::zero().lt(circle);
         let all = R::splat(4.0) * law.shear * before;
-        Some(Carried { kept: kept.only(touches), loss: R::select(touches, loss, all) })
+        Some(SpringTransfer { kept: kept.only(touches), loss: R::select(touches, loss, all) })
     }
 
     /// Stiffness and energy vanish with the elastic overlap; only the last step's loss is neglected.

@@ -64,7 +64,7 @@ impl Scarring {
     }
 
     /// Returns the path [m] after a step `dt` [s] at a speed [m/s].
-    pub fn way(&self, way: f64, touches: bool, speed: f64, dt: f64) -> f64 {
+    pub fn update_path(&self, way: f64, touches: bool, speed: f64, dt: f64) -> f64 {
         if touches { way + speed * dt } else { way * libm::exp(-self.decay * dt) }
     }
 
@@ -127,11 +127,11 @@ mod tests {
         assert!((own.friction(1e9) - 2.0).abs() < 1e-6);
         let mut way = 0.0;
         for _ in 0..1000 {
-            way = own.way(way, true, 5.0, 1e-4);
+            way = own.update_path(way, true, 5.0, 1e-4);
         }
         assert!((way - 0.5).abs() < 1e-12);
         for _ in 0..1000 {
-            way = own.way(way, false, 5.0, 1e-4);
+            way = own.update_path(way, false, 5.0, 1e-4);
         }
         assert!((way / (0.5 * libm::exp(-18.5)) - 1.0).abs() < 1e-9);
     }

@@ -1,6 +1,6 @@
 //! Tangential law: spring of constant stiffness.
 //!
-//! Ks = α K, K the first-loading normal stiffness; Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slide.rs`).
+//! Ks = α K, K the first-loading normal stiffness; Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slider.rs`).
 //! Mixing: 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
 //!
 //! Theory manual: eq. (1.6), `docs/theory/contacts.md`.
@@ -8,7 +8,7 @@
 use super::constants::constants;
 use super::material::{LawName, Pair, harmonic};
 use super::normal::ConstantStiffness;
-use super::tangential::{Carried, Grip, TangentialLaw};
+use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
 pub(super) const SOURCE: &str =
@@ -38,12 +38,12 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Spring {
     }
 
     #[inline(always)]
-    fn grip<R: Real>(law: &Spring<R>, _: R) -> Grip<R> {
-        Grip { stiffness: law.stiffness, compliance: Some(law.compliance) }
+    fn grip<R: Real>(law: &Spring<R>, _: R) -> SpringInput<R> {
+        SpringInput { stiffness: law.stiffness, compliance: Some(law.compliance) }
     }
 
     #[inline(always)]
-    fn carry<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<Carried<R>> {
+    fn transfer_spring<R: Real>(_: &Spring<R>, _: R, _: R) -> Option<SpringTransfer<R>> {
         None
     }
 

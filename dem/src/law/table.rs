@@ -1,5 +1,6 @@
-//! Table of laws: combinations of normal and tangential law, all usable in one model (`mixed.rs`).
+//! Table of laws: combinations of normal and tangential law, all usable in one model (`any_law.rs`).
 
+use super::any_law::combinations;
 use super::composed::Composed;
 use super::conical_damage::ConicalDamage;
 use super::contact_law::ContactLaw;
@@ -7,7 +8,6 @@ use super::hertz::Hertz;
 use super::linear::Linear;
 use super::material::{LawName, Material, Pair};
 use super::mindlin::Mindlin;
-use super::mixed::combinations;
 use super::normal::NormalLaw;
 use super::rough::{self, Rough};
 use super::rough_mindlin::RoughMindlin;
@@ -34,7 +34,7 @@ pub type ConicalLaw = Composed<ConicalDamage, RoughMindlin>;
 
 /// Compatible normal and tangential law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Combination {
+pub struct LawInfo {
     /// Normal law's scene name.
     pub normal: &'static str,
     /// Tangential law's scene name.
@@ -51,9 +51,9 @@ pub struct Combination {
     pub stiffens: bool,
 }
 
-impl Combination {
-    const fn of<N: NormalLaw, T: TangentialLaw<N>>(title: &'static str) -> Combination {
-        Combination {
+impl LawInfo {
+    const fn of<N: NormalLaw, T: TangentialLaw<N>>(title: &'static str) -> LawInfo {
+        LawInfo {
             normal: N::NAME,
             tangential: T::NAME,
             title,
@@ -109,7 +109,7 @@ pub(super) fn once(texts: impl Iterator<Item = &'static str>) -> Vec<&'static st
 
 /// Material pair without law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum NoLaw {
+pub enum LawSelectionError {
     /// Different normal laws.
     #[error("different normal laws, \"{0}\" and \"{1}\", and none for the pair")]
     Unlike(&'static str, &'static str),
@@ -121,8 +121,8 @@ pub enum NoLaw {
 /// Row of a pair, `None` if both are rigid.
 ///
 /// # Errors
-/// [`NoLaw`] if ambiguous or incompatible.
-pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
+/// [`LawSelectionError`] if ambiguous or incompatible.
+pub(super) fn select_law(pair: &Pair<'_>) -> Result<Option<usize>, LawSelectionError> {
     let own = |m: &Material| {
         let implied = if m.corner_strength.is_finite() {
             Some(ConicalDamage::NAME)
@@ -141,7 +141,7 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
         // Corners also crush against partners without corners.
         (None, Some(Hertz::NAME), Some(ConicalDamage::NAME)) => ConicalDamage::NAME,
         (None, Some(ConicalDamage::NAME), Some(Hertz::NAME)) => ConicalDamage::NAME,
-        (None, Some(a), Some(b)) if a != b => return Err(NoLaw::Unlike(a, b)),
+        (None, Some(a), Some(b)) if a != b => return Err(LawSelectionError::Unlike(a, b)),
         (None, a, b) => match a.or(b).or(spring) {
             Some(name) => name,
             None => return Ok(None),
@@ -149,17 +149,17 @@ pub(super) fn number_of(pair: &Pair<'_>) -> Result<Option<usize>, NoLaw> {
     };
     let rough = rough::asperities(pair, rough::NAME).filter(|_| normal == Linear::NAME).map(|_| rough::NAME);
     let tangential = pair.given(|e| e.tangential).filter(|t| *t != LawName::NONE).or(rough);
-    let fits = |c: &Combination| c.normal == normal && tangential.is_none_or(|LawName(t)| c.tangential == t);
+    let fits = |c: &LawInfo| c.normal == normal && tangential.is_none_or(|LawName(t)| c.tangential == t);
     match COMBINATIONS.iter().position(fits) {
         Some(k) => Ok(Some(k)),
-        None => Err(NoLaw::NoSuch(normal, tangential.map_or("none", |t| t.0))),
+        None => Err(LawSelectionError::NoSuch(normal, tangential.map_or("none", |t| t.0))),
     }
 }
 
 /// Returns the laws of a pair, `None` if both are rigid.
 ///
 /// # Errors
-/// [`NoLaw`] if ambiguous or incompatible.
-pub fn combination(pair: &Pair<'_>) -> Result<Option<&'static Combination>, NoLaw> {
-    Ok(number_of(pair)?.map(|k| &COMBINATIONS[k]))
+/// [`LawSelectionError`] if ambiguous or incompatible.
+pub fn combination(pair: &Pair<'_>) -> Result<Option<&'static LawInfo>, LawSelectionError> {
+    Ok(select_law(pair)?.map(|k| &COMBINATIONS[k]))
 }

@@ -1,4 +1,4 @@
-//! Interface of tangential laws: stiffness of the friction-limited spring (`slide.rs`) and transfer to
+//! Interface of tangential laws: stiffness of the friction-limited spring (`slider.rs`) and transfer to
 //! another overlap.
 
 use super::constants::Constants;
@@ -8,7 +8,7 @@ use crate::lanes::Real;
 
 /// Tangential spring, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Grip<R> {
+pub struct SpringInput<R> {
     /// Stiffness Ks [N/m].
     pub stiffness: R,
     /// 1/Ks [m/N], if constant.
@@ -17,7 +17,7 @@ pub struct Grip<R> {
 
 /// Effect of an overlap change, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct Carried<R> {
+pub struct SpringTransfer<R> {
     /// Length fraction kept [-].
     pub kept: R,
     /// Energy loss over previous length squared [N/m].
@@ -37,7 +37,7 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
     fn mix(pair: &Pair<'_>, normal: &N) -> Self;
 
     /// Returns the spring for circle radius `circle` [m].
-    fn grip<R: Real>(law: &Self::Lanes<R>, circle: R) -> Grip<R>;
+    fn grip<R: Real>(law: &Self::Lanes<R>, circle: R) -> SpringInput<R>;
 
     /// Returns the friction limit [N], by default Coulomb's.
     #[inline(always)]
@@ -46,7 +46,7 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
     }
 
     /// Transfers springs from circle radius `before` to `circle` [m]; `None`: unchanged.
-    fn carry<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<Carried<R>>;
+    fn transfer_spring<R: Real>(law: &Self::Lanes<R>, circle: R, before: R) -> Option<SpringTransfer<R>>;
 
     /// Returns the stiffness at contact end, unless zero.
     fn at_end<R: Real>(law: &Self::Lanes<R>) -> Option<R>;

@@ -14,9 +14,9 @@
 //! Theory manual: eq. (1.9), `docs/theory/contacts.md`.
 
 use super::constants::constants;
-use super::contact::FRESH;
+use super::contact::NO_CONTACT;
 use super::material::Pair;
-use super::normal::{ConstantStiffness, NormalLaw, Response, Touch};
+use super::normal::{ConstantStiffness, NormalInput, NormalLaw, Response};
 use crate::lanes::Real;
 
 /// Pair constants.
@@ -47,7 +47,7 @@ impl NormalLaw for WaltonBraun {
     }
 
     #[inline(always)]
-    fn respond<R: Real>(law: &WaltonBraun<R>, touch: &Touch<R>) -> Response<R> {
+    fn respond<R: Real>(law: &WaltonBraun<R>, touch: &NormalInput<R>) -> Response<R> {
         let overlap = touch.overlap;
         let before = R::select(touch.fresh, R::zero(), touch.remembered);
         let most = before.max(overlap);
@@ -65,7 +65,7 @@ impl NormalLaw for WaltonBraun {
 
     #[inline(always)]
     fn force(&self, overlap: f64, _: f64, remembered: f64) -> f64 {
-        let before = if remembered == FRESH { 0.0 } else { remembered };
+        let before = if remembered == NO_CONTACT { 0.0 } else { remembered };
         let most = before.max(overlap);
         (self.loading * most - self.unloading * (most - overlap)).max(0.0)
     }

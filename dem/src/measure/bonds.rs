@@ -3,12 +3,12 @@
 use crate::base::Vec3;
 use crate::bodies::block::Block;
 use crate::bond::debonded;
-use crate::bond::kernel::{self, Motion, carry, half_step_energy, respond};
+use crate::bond::kernel::{self, Motion, half_step_energy, respond, update_frame};
 use crate::bond::store::Entry;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::V3;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 
 /// Bond, with the forces of the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct BondRecord {
 }
 
 fn motion(block: &Block, k: usize) -> Motion<f64> {
-    let vector = |v: &Record| V3::new(v[0], v[1], v[2]);
+    let vector = |v: &Vec4| V3::new(v[0], v[1], v[2]);
     Motion { x: vector(&block.centre[k]), v: vector(&block.velocity[k]), w: vector(&block.spin[k]) }
 }
 
@@ -48,7 +48,7 @@ fn ends(state: &State, b: u32, e: &Entry) -> (Motion<f64>, Motion<f64>) {
 
 /// At the last half step [J].
 pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
-    let dt = state.pace.last;
+    let dt = state.step_size.last;
     // Initially, the history belongs to the start.
     let since = if state.bonds.fresh { -0.5 * dt } else { 0.5 * dt };
     let mut sum = 0.0;
@@ -61,13 +61,13 @@ pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
 
 /// Returns all unbroken bonds, block by block.
 pub fn records(model: &Model, state: &State) -> Vec<BondRecord> {
-    let dt = if state.bonds.fresh { 0.0 } else { state.pace.last };
+    let dt = if state.bonds.fresh { 0.0 } else { state.step_size.last };
     let mut out = Vec::with_capacity(state.bond_count());
     state.each_bond(|number, (b, mut e)| {
         let bond = &model.bonds[number as usize];
         let k = &bond.values;
         let (p, q) = ends(state, b, &e);
-        let frame = carry(k[kernel::OFFSET], &p, &q, &mut e.memory, dt);
+        let frame = update_frame(k[kernel::OFFSET], &p, &q, &mut e.memory, dt);
         let r = respond(k, &p, &q, &frame, &e.memory);
         let n = frame.normal;
         let twist = e.memory.turn.dot(n);

@@ -3,18 +3,20 @@
 use crate::base::Vec3;
 use crate::base::error::Partner;
 use crate::bodies::block::Block;
-use crate::contact::kind::{ContactNow, KINDS, Placed, PlaneView, Scene, SheetView, Visited};
-use crate::contact::single;
+use crate::contact::narrow_phase::{
+    BodyAccess, ContactView, KINDS, PlaneView, PosedBody, SheetView, Visited,
+};
+use crate::contact::scalar;
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::law::scarring::Scar;
 use crate::law::{ContactForce, ContactGeometry, History};
 use crate::pairs::cross::{Cross, ImagePair};
 use crate::pairs::patches::PatchContact;
 use crate::shape::plane::PlaneMotion;
 use crate::spatial::detect;
-use crate::spatial::patchwork::{WallNow, Walls};
+use crate::spatial::patchwork::{WallView, Walls};
 use crate::spatial::periodic::Periodic;
 use crate::spatial::sheet::SheetFacet;
 use std::borrow::Cow;
@@ -46,11 +48,11 @@ pub struct ContactRecord {
 struct Snapshot<'a> {
     model: &'a Model,
     planes: &'a [PlaneMotion],
-    walls: Vec<WallNow>,
+    walls: Vec<WallView>,
     sheet: Vec<SheetFacet>,
     blocks: Cow<'a, [Block]>,
     /// Member spheres and their bodies; empty for single spheres.
-    spheres: Vec<Vec<Record>>,
+    spheres: Vec<Vec<Vec4>>,
     owners: Vec<Vec<u32>>,
     back: f64,
     /// Last time step [s].
@@ -67,23 +69,23 @@ impl<'a> Snapshot<'a> {
         let (spheres, owners) = blocks.iter().map(|block| members(model, block)).unzip();
         let mut walls = Vec::new();
         if !model.patches.is_empty() {
-            model.walls.now(&state.walls, back, &mut walls);
+            model.walls.update_poses(&state.walls, back, &mut walls);
         }
         let mut sheet = Vec::new();
         if !model.sheet.is_empty() {
-            model.sheet.now(&state.sheet, back, &mut sheet);
+            model.sheet.update_poses(&state.sheet, back, &mut sheet);
         }
-        let (planes, last) = (&state.planes[..], state.pace.last);
+        let (planes, last) = (&state.planes[..], state.step_size.last);
         Snapshot { model, planes, walls, sheet, blocks, spheres, owners, back, last, scars: &state.scars }
     }
 }
 
-impl Scene for Snapshot<'_> {
+impl BodyAccess for Snapshot<'_> {
     fn block(&self, b: usize) -> &Block {
         &self.blocks[b]
     }
 
-    fn sphere(&self, b: usize, i: u32) -> &Record {
+    fn sphere(&self, b: usize, i: u32) -> &Vec4 {
         self.spheres[b].get(i as usize).unwrap_or_else(|| &self.blocks[b].centre[i as usize])
     }
 
@@ -91,10 +93,10 @@ impl Scene for Snapshot<'_> {
         self.owners[b].get(i as usize).map_or(i as usize, |k| *k as usize)
     }
 
-    fn placed(&self, b: usize, k: usize) -> Placed<'_> {
+    fn placed(&self, b: usize, k: usize) -> PosedBody<'_> {
         let block = &self.blocks[b];
         let body = self.model.body(block.bodies[k] as usize);
-        Placed {
+        PosedBody {
             centre: xyz(&block.centre[k]),
             orientation: block.rotation[k].orientation,
             shape: &self.model.shapes[body.shape],
@@ -135,7 +137,7 @@ impl Scene for Snapshot<'_> {
 fn move_back(block: &mut Block, back: f64) {
     for k in 0..block.bodies.len() {
         let x = xyz(&block.centre[k]) - xyz(&block.velocity[k]) * back;
-        block.centre[k] = Record::of(&x, block.centre[k][3]);
+        block.centre[k] = Vec4::of(&x, block.centre[k][3]);
         if let Some(r) = block.rotation.get_mut(k) {
             let spin = xyz(&block.spin[k]);
             r.orientation = crate::integrate::rotation::steady(&r.orientation, &spin, -back);
@@ -144,11 +146,11 @@ fn move_back(block: &mut Block, back: f64) {
 }
 
 /// Member spheres and their bodies; empty for single spheres.
-fn members(model: &Model, block: &Block) -> (Vec<Record>, Vec<u32>) {
+fn members(model: &Model, block: &Block) -> (Vec<Vec4>, Vec<u32>) {
     let (mut own, mut owner) = (Vec::new(), Vec::new());
     for (k, (&body, r)) in block.bodies.iter().zip(&block.rotation).enumerate() {
         for (c, radius) in model.members(body as usize) {
-            own.push(Record::of(&(xyz(&block.centre[k]) + r.orientation * c), radius));
+            own.push(Vec4::of(&(xyz(&block.centre[k]) + r.orientation * c), radius));
             owner.push(k as u32);
         }
     }
@@ -172,7 +174,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
                     body: block.bodies[a],
                     partner: Partner::Body(second.bodies[c] as usize),
                     shift,
-                    contact: ContactNow {
+                    contact: ContactView {
                         geometry,
                         weight: 1.0,
                         velocity: ma.at_point() - mb.at_point(),
@@ -190,7 +192,7 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         let Cross { spheres, kinds, images } = &state.cross[b];
         spheres.iter().for_each(|([i, other, j], history)| pair(i, other, j, &history, here));
         for ImagePair { name, history } in images {
-            let shift = model.periodic.map_or(here, |p| p.way(&name.shift));
+            let shift = model.periodic.map_or(here, |p| p.image_offset(&name.shift));
             pair(name.i, name.block, name.j, history, shift);
         }
         KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&model.laws, &now, b, list, &mut f));
@@ -239,7 +241,7 @@ fn debonded(state: &State, now: &Snapshot<'_>, f: &mut impl FnMut(&Visited<'_>))
             body: p.bodies[i],
             partner: Partner::Body(q.bodies[j] as usize),
             shift: Vec3::zeros(),
-            contact: ContactNow {
+            contact: ContactView {
                 geometry: *geometry,
                 weight: 1.0,
                 velocity: ma.at_point() - mb.at_point(),
@@ -263,7 +265,7 @@ fn planes(state: &State, now: &Snapshot<'_>, b: usize, f: &mut impl FnMut(&Visit
                 body: block.bodies[a],
                 partner: Partner::Plane(k as usize),
                 shift: Vec3::zeros(),
-                contact: ContactNow {
+                contact: ContactView {
                     geometry,
                     weight: 1.0,
                     velocity: block.motion(a, &geometry.point).at_point() - plane.velocity,
@@ -286,7 +288,7 @@ fn patch(
     partner: &Partnership,
     f: &mut impl FnMut(&Visited<'_>),
 ) {
-    if pair.history.is_fresh() {
+    if pair.history.is_new() {
         return;
     }
     let block = &now.blocks[b];
@@ -299,7 +301,7 @@ fn patch(
             body: block.bodies[a],
             partner: partner.partner,
             shift: Vec3::zeros(),
-            contact: ContactNow {
+            contact: ContactView {
                 geometry: ContactGeometry { point: pair.point, normal: pair.normal, overlap, radius },
                 weight: 1.0,
                 velocity,
@@ -314,9 +316,9 @@ fn patch(
 }
 
 /// Force of the next step, total and normal [N].
-pub(super) fn force_of(model: &Model, state: &State, c: &ContactNow<'_>) -> (Vec3, f64) {
+pub(super) fn force_of(model: &Model, state: &State, c: &ContactView<'_>) -> (Vec3, f64) {
     let mut history = *c.history;
-    let ContactForce { force, normal, .. } = single::evaluate(
+    let ContactForce { force, normal, .. } = scalar::evaluate(
         &model.laws,
         c.materials,
         c.friction,
@@ -325,7 +327,7 @@ pub(super) fn force_of(model: &Model, state: &State, c: &ContactNow<'_>) -> (Vec
         &c.velocity,
         &c.spin,
         &mut history,
-        state.pace.kick(),
+        state.step_size.kick(),
     );
     (force * c.weight, normal * c.weight)
 }

@@ -1,13 +1,13 @@
 //! Energies and momentum.
 
 use super::contacts::visit;
+use crate::base::balance_terms::Impulse;
 use crate::base::error::Partner;
-use crate::base::ledger::Impulse;
-use crate::bodies::table::Kind;
-use crate::contact::kind::{ContactNow, Visited};
+use crate::bodies::table::BodyKind;
+use crate::contact::narrow_phase::{ContactView, Visited};
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use crate::wall;
 
 /// Energies of all bodies and contacts [J].
@@ -40,8 +40,8 @@ impl Energies {
         self.elastic_normal + self.elastic_tangential + self.elastic_bonds + self.elastic_mounts
     }
 
-    /// Total energy [J]. Minus [`Ledger::work`](crate::base::ledger::Ledger::work) plus
-    /// [`Ledger::dissipated`](crate::base::ledger::Ledger::dissipated) it is constant to second order in dt.
+    /// Total energy [J]. Minus [`Ledger::work`](crate::base::balance_terms::Ledger::work) plus
+    /// [`Ledger::dissipated`](crate::base::balance_terms::Ledger::dissipated) it is constant to second order in dt.
     pub fn total(&self) -> f64 {
         self.kinetic() + self.elastic() + self.gravity
     }
@@ -51,11 +51,11 @@ impl Energies {
 pub fn energies(model: &Model, state: &State) -> Energies {
     let mut e = Energies::default();
     bodies(model, state, |_| true, &mut e);
-    let ground = crate::engine::walls::ground(model, &state.planes, state.pace.last);
+    let ground = crate::engine::walls::ground(model, &state.planes, state.step_size.last);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
         let Some(body) = &wall.body else { continue };
         let [translation, rotation, gravity, mount] =
-            body.energies(own, &model.gravity, 0.5 * state.pace.last);
+            body.energies(own, &model.gravity, 0.5 * state.step_size.last);
         let [normal, tangential] = wall::body::stored(&ground, body, wall.material, own);
         e.kinetic_translation += translation;
         e.kinetic_rotation += rotation;
@@ -65,7 +65,7 @@ pub fn energies(model: &Model, state: &State) -> Energies {
         e.elastic_tangential += tangential;
     }
     contacts(model, state, |_| true, &mut e);
-    let back = 0.5 * state.pace.last;
+    let back = 0.5 * state.step_size.last;
     crate::engine::wall_contacts::visit(model, state, back, |_, c| springs(model, c, back, &mut e));
     e.elastic_bonds = super::bonds::elastic(model, state);
     e
@@ -82,14 +82,14 @@ pub(crate) fn energies_of(model: &Model, state: &State, counted: impl Fn(usize) 
 }
 
 fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut Energies) {
-    let back = 0.5 * state.pace.last;
+    let back = 0.5 * state.step_size.last;
     for block in &state.blocks {
         for (k, &body) in block.bodies.iter().enumerate().filter(|(_, b)| counted(**b as usize)) {
             let b = model.body(body as usize);
             let (v, w) = (xyz(&block.velocity[k]), xyz(&block.spin[k]));
             e.kinetic_translation += 0.5 * b.mass * v.norm_squared();
             e.kinetic_rotation += match block.rotation.get(k) {
-                Some(r) if b.kind != Kind::Sphere => 0.5 * w.dot(&r.momentum),
+                Some(r) if b.kind != BodyKind::Sphere => 0.5 * w.dot(&r.momentum),
                 _ => 0.5 * b.inertia.x * w.norm_squared(),
             };
             e.gravity -= b.mass * model.gravity.dot(&(xyz(&block.centre[k]) - v * back));
@@ -98,7 +98,7 @@ fn bodies(model: &Model, state: &State, counted: impl Fn(usize) -> bool, e: &mut
 }
 
 fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool, e: &mut Energies) {
-    let back = 0.5 * state.pace.last;
+    let back = 0.5 * state.step_size.last;
     visit(model, state, back, |c| {
         if counted(c) {
             springs(model, &c.contact, back, e);
@@ -106,20 +106,20 @@ fn contacts(model: &Model, state: &State, counted: impl Fn(&Visited<'_>) -> bool
     });
 }
 
-fn springs(model: &Model, c: &ContactNow<'_>, back: f64, e: &mut Energies) {
+fn springs(model: &Model, c: &ContactView<'_>, back: f64, e: &mut Energies) {
     // Sliding advances the spring by half a step; beyond the friction limit it is dissipation, not yet
     // recorded.
     let n = &c.geometry.normal;
     let slip = c.velocity - n * c.velocity.dot(n);
     let mut history = *c.history;
-    if !history.is_fresh() {
+    if !history.is_new() {
         let before = history.spring.norm();
         history.spring += slip * back;
         let length = history.spring.norm();
         if length > before {
             let (overlap, radius) = (c.geometry.overlap, c.geometry.radius);
             let (force, stiffness) =
-                model.laws.held_by_friction(c.materials, c.friction, overlap, radius, &history);
+                model.laws.friction_limit(c.materials, c.friction, overlap, radius, &history);
             let most = if stiffness > 0.0 { before.max(force / stiffness) } else { 0.0 };
             if length > most {
                 history.spring *= most / length;
@@ -140,7 +140,7 @@ fn springs(model: &Model, c: &ContactNow<'_>, back: f64, e: &mut Energies) {
 }
 
 /// Momentum [kg m/s], and angular momentum about the origin [kg m²/s], at the last half step. Balanced by
-/// [`Ledger::impulse`](crate::base::ledger::Ledger::impulse) to rounding.
+/// [`Ledger::impulse`](crate::base::balance_terms::Ledger::impulse) to rounding.
 pub fn momentum(model: &Model, state: &State) -> Impulse {
     let mut sum = momentum_of(model, state, |_| true);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {
@@ -159,7 +159,7 @@ pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) 
             let b = model.body(body as usize);
             sum.add(&xyz(&block.centre[k]), &(xyz(&block.velocity[k]) * b.mass));
             sum.angular += match block.rotation.get(k) {
-                Some(r) if b.kind != Kind::Sphere => r.momentum,
+                Some(r) if b.kind != BodyKind::Sphere => r.momentum,
                 _ => xyz(&block.spin[k]) * b.inertia.x,
             };
         }
@@ -187,7 +187,7 @@ pub fn reference_energy(model: &Model, state: &State) -> f64 {
         mass += wall.body.as_ref().map_or(0.0, |b| b.mass);
     }
     far = model.planes.iter().fold(far, |far, plane| far.max(plane.point.amax()));
-    speed = speed.max(ROUNDING * f64::EPSILON * far / state.pace.dt);
+    speed = speed.max(ROUNDING * f64::EPSILON * far / state.step_size.dt);
     0.5 * mass * speed * speed
 }
 

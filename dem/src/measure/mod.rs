@@ -6,23 +6,22 @@
 
 mod bonds;
 mod breakage;
-mod clip;
 mod contacts;
 mod coordination;
 mod energy;
 mod extent;
-mod footprint;
 mod force_on;
 mod fragments;
+mod memory_size;
 mod porosity;
 mod radial;
 mod region;
 mod sieve;
+mod sphere_box_volume;
 mod stress;
 
 pub use bonds::{BondRecord, BondRotation, largest_rotation, records as bond_records};
 pub use breakage::{Breakage, breakage};
-pub use clip::sphere_box_volume;
 pub(crate) use contacts::visit;
 pub use contacts::{ContactRecord, contact_forces, contact_forces_of, contacts, coordination};
 pub use coordination::{
@@ -31,11 +30,12 @@ pub use coordination::{
 pub use energy::{Energies, energies, momentum, reference_energy};
 pub(crate) use energy::{energies_of, momentum_of};
 pub use extent::{highest_over, lowest};
-pub use footprint::{bytes, kernels};
 pub use force_on::{force_on, loads_on};
 pub use fragments::{Fragments, fragments};
+pub use memory_size::{bytes, kernels};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};
 pub use radial::radial_distribution;
 pub use region::BoxRegion;
 pub use sieve::{size_of, stones};
+pub use sphere_box_volume::sphere_box_volume;
 pub use stress::{mean_stress, mean_stress_of, region_stress};

@@ -1,18 +1,18 @@
 //! Solid volume and porosity in a box.
 //!
-//! Exact for spheres (`clip.rs`) and bodies inside. Other bodies on the border: midpoint rule over
+//! Exact for spheres (`sphere_box_volume.rs`) and bodies inside. Other bodies on the border: midpoint rule over
 //! [`COLUMNS`] × [`COLUMNS`] columns with exact intervals, error about 1e-3. Limit: contact overlaps count
 //! for both bodies.
 
 use super::{BoxRegion, sphere_box_volume};
 use crate::base::Vec3;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::shape::Shape;
 use crate::shape::dilated::Core;
+use crate::shape::dilated::edge_contact::{Segment, Target};
 use crate::shape::dilated::part::{Bounds, Part, View};
-use crate::shape::dilated::press::{Segment, Target};
 
 /// Columns per side of a body on the border.
 pub const COLUMNS: usize = 40;
@@ -68,7 +68,7 @@ fn volume_in(model: &Model, state: &State, body: usize, region: &BoxRegion) -> f
                 spans.push((c.z - rise2.sqrt(), c.z + rise2.sqrt()));
             }
         }
-        if model.body(body).kind == Kind::Solid {
+        if model.body(body).kind == BodyKind::Solid {
             spans.extend(column_of_solid(model, state, body, x, y));
         }
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -96,7 +96,7 @@ pub fn porosity(model: &Model, state: &State, region: &BoxRegion) -> f64 {
 }
 
 fn extent(model: &Model, state: &State, body: usize, spheres: &[(Vec3, f64)]) -> (Vec3, Vec3) {
-    if model.body(body).kind == Kind::Solid {
+    if model.body(body).kind == BodyKind::Solid {
         let turn = state.orientation(model, body).to_rotation_matrix();
         let reach = turn.matrix().abs() * model.shape(body).bounding_half(model.scale(body));
         let x = state.position(body);

@@ -3,12 +3,12 @@
 use super::groups::Groups;
 use super::list::PairList;
 use crate::base::Vec3;
+use crate::base::balance_terms::Impulse;
+use crate::base::capacity::capacity_bytes;
 use crate::base::failure::Failure;
-use crate::base::held::held;
-use crate::base::ledger::Impulse;
-use crate::bodies::part::Part;
+use crate::bodies::block_slice::BlockSlice;
 use crate::bodies::sums::WallSum;
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 use crate::law::History;
 use crate::spatial::surface::SurfaceContact;
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,7 @@ pub(crate) struct CrossForces {
     /// Contact records. Spheres and images, `width` each: three (force on the first, both torques), or two
     /// for single spheres (force and lever arm; moment per lever arm and second lever arm). Pair types:
     /// three.
-    pub slots: Vec<Record>,
+    pub slots: Vec<Vec4>,
     pub width: usize,
     /// First record of pair types, of images.
     pub kinds_at: usize,
@@ -79,20 +79,20 @@ pub(crate) struct CrossForces {
     /// Angular impulse about the origin from periodic contacts.
     pub couple: Vec3,
     /// Of those bodies.
-    pub surface: SurfaceBook,
+    pub surface: SurfaceTotals,
     pub failure: Option<Failure>,
 }
 
 /// Surface contacts, work [J], impulse.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SurfaceBook {
+pub(crate) struct SurfaceTotals {
     pub contacts: Vec<SurfaceContact>,
     pub work: f64,
     pub impulse: Impulse,
 }
 
 impl CrossForces {
-    pub fn clear_books(&mut self) {
+    pub fn clear_totals(&mut self) {
         (self.dashpot, self.friction, self.work_walls) = (0.0, 0.0, 0.0);
         self.wall_sums.clear();
         self.surface.contacts.clear();
@@ -108,13 +108,13 @@ impl CrossForces {
         let count = self.images_at + lists.images.len() * self.width;
         self.slots.clear();
         self.slots.reserve_exact(count);
-        self.slots.resize(count, Record::default());
+        self.slots.resize(count, Vec4::default());
     }
 }
 
 #[derive(Clone, Copy)]
 pub(crate) struct Slots<'a> {
-    pub own: Part<'a, CrossForces>,
+    pub own: BlockSlice<'a, CrossForces>,
     pub beyond: &'a [CrossForces],
 }
 
@@ -185,6 +185,6 @@ pub(crate) fn merge(list: &mut Vec<ImagePair>, names: impl Iterator<Item = Image
 impl Cross {
     pub fn bytes(&self) -> usize {
         let kinds: usize = self.kinds.iter().map(PairList::bytes).sum();
-        self.spheres.bytes() + kinds + held(&self.images)
+        self.spheres.bytes() + kinds + capacity_bytes(&self.images)
     }
 }

@@ -3,9 +3,9 @@
 //! Groups are paired for eight lanes. Unused lanes repeat the first contact's name, without history.
 
 use crate::base::Vec3;
-use crate::base::held::held;
-use crate::lanes::record::Record;
-use crate::law::{FRESH, History};
+use crate::base::capacity::capacity_bytes;
+use crate::lanes::vec4::Vec4;
+use crate::law::{History, NO_CONTACT};
 use serde::{Deserialize, Serialize};
 
 /// Four contacts: N indices each, and history.
@@ -17,8 +17,8 @@ pub(crate) struct Group<const N: usize> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Springs {
-    pub spring: [Record; 3],
-    pub rate: Record,
+    pub spring: [Vec4; 3],
+    pub rate: Vec4,
 }
 
 impl<const N: usize> Group<N> {
@@ -35,7 +35,7 @@ impl<const N: usize> Group<N> {
     /// Inactive self-contacts of body 0.
     pub const EMPTY: Group<N> = Group {
         names: [[0; 4]; N],
-        springs: Springs { spring: [Record([0.0; 4]); 3], rate: Record([FRESH; 4]) },
+        springs: Springs { spring: [Vec4([0.0; 4]); 3], rate: Vec4([NO_CONTACT; 4]) },
     };
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Groups<const N: usize> {
     most: [u32; N],
     pub groups: Vec<Group<N>>,
     /// Rolling and twisting springs; empty unless `turning`.
-    pub turns: Vec<[Record; 4]>,
+    pub turns: Vec<[Vec4; 4]>,
     pub turning: bool,
 }
 
@@ -88,7 +88,7 @@ impl<const N: usize> Groups<N> {
         if self.len.is_multiple_of(8) {
             self.groups.extend([Group { names: name.map(|n| [n; 4]), ..Group::EMPTY }; 2]);
             if self.turning {
-                self.turns.extend([[Record::default(); 4]; 2]);
+                self.turns.extend([[Vec4::default(); 4]; 2]);
             }
         }
         for ((names, most), n) in self.groups[g].names.iter_mut().zip(&mut self.most).zip(name) {
@@ -191,7 +191,7 @@ impl<const N: usize> TryFrom<Flat> for Groups<N> {
 
 impl<const N: usize> Groups<N> {
     pub fn bytes(&self) -> usize {
-        held(&self.groups) + held(&self.turns)
+        capacity_bytes(&self.groups) + capacity_bytes(&self.turns)
     }
 }
 

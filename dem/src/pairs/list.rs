@@ -1,25 +1,25 @@
-//! Pairs with several contact points and their history, for pair types without SIMD (`contact/kind`).
+//! Pairs with several contact points and their history, for pair types without SIMD (`contact/narrow_phase`).
 
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
 /// History of a contact point: features, law history, applied force fraction, edge law flag.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PointMemory {
+pub(crate) struct ContactHistory {
     pub feature: u32,
     pub history: History,
     pub weight: f64,
     pub edge: bool,
 }
 
-impl PointMemory {
-    pub const FRESH: PointMemory =
-        PointMemory { feature: 0, history: History::NONE, weight: 0.0, edge: false };
+impl ContactHistory {
+    pub const FRESH: ContactHistory =
+        ContactHistory { feature: 0, history: History::NONE, weight: 0.0, edge: false };
 
     /// Seen from the other partner: feature halves swap.
-    pub fn turned(&self) -> PointMemory {
-        PointMemory { feature: self.feature.rotate_left(16), history: self.history.turned(), ..*self }
+    pub fn turned(&self) -> ContactHistory {
+        ContactHistory { feature: self.feature.rotate_left(16), history: self.history.turned(), ..*self }
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct PairList {
     names: Vec<PairName>,
     spans: Vec<Span>,
     hints: Vec<Hint>,
-    memory: Vec<PointMemory>,
+    memory: Vec<ContactHistory>,
     /// Bound on the second partner's block.
     last_block: u32,
 }
@@ -56,7 +56,7 @@ pub(crate) struct PairList {
 struct Flat {
     names: Vec<PairName>,
     counts: Vec<u32>,
-    memory: Vec<PointMemory>,
+    memory: Vec<ContactHistory>,
 }
 
 impl From<PairList> for Flat {
@@ -114,12 +114,12 @@ impl PairList {
         self.names[k]
     }
 
-    pub fn points(&self, k: usize) -> &[PointMemory] {
+    pub fn points(&self, k: usize) -> &[ContactHistory] {
         let span = self.spans[k];
         &self.memory[span.first as usize..][..span.count as usize]
     }
 
-    pub fn set(&mut self, k: usize, points: &[PointMemory]) {
+    pub fn set(&mut self, k: usize, points: &[ContactHistory]) {
         let span = &mut self.spans[k];
         if points.len() > span.room as usize {
             // The old range stays unused until the list is rebuilt.
@@ -133,7 +133,7 @@ impl PairList {
         &mut self.hints[k]
     }
 
-    pub fn push(&mut self, name: PairName, points: &[PointMemory]) {
+    pub fn push(&mut self, name: PairName, points: &[ContactHistory]) {
         self.names.push(name);
         self.spans.push(room(&mut self.memory, points.len()));
         self.hints.push(None);
@@ -167,13 +167,16 @@ impl PairList {
     }
 
     pub fn bytes(&self) -> usize {
-        held(&self.names) + held(&self.spans) + held(&self.hints) + held(&self.memory)
+        capacity_bytes(&self.names)
+            + capacity_bytes(&self.spans)
+            + capacity_bytes(&self.hints)
+            + capacity_bytes(&self.memory)
     }
 }
 
-fn room(memory: &mut Vec<PointMemory>, count: usize) -> Span {
+fn room(memory: &mut Vec<ContactHistory>, count: usize) -> Span {
     let (first, room) = (memory.len(), count.next_multiple_of(ROOM));
-    memory.resize(first + room, PointMemory::FRESH);
+    memory.resize(first + room, ContactHistory::FRESH);
     Span { first: first as u32, count: 0, room: room as u32 }
 }
 
@@ -182,9 +185,9 @@ mod tests {
     use super::*;
     use crate::Vec3;
 
-    fn point(feature: u32) -> PointMemory {
+    fn point(feature: u32) -> ContactHistory {
         let history = History { spring: Vec3::x() * f64::from(feature), rate: 0.5, ..History::NONE };
-        PointMemory { feature, history, weight: 0.5, edge: true }
+        ContactHistory { feature, history, weight: 0.5, edge: true }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::patches::PatchPair;
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 use crate::spatial::surface::Surface;
 
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ impl Candidate {
 /// Patches near free spheres (all spheres, if the patch can move); one query covers blocks without any.
 pub(crate) fn candidates<S: Surface>(
     surface: &S,
-    spheres: &[Record],
+    spheres: &[Vec4],
     skin: f64,
     free: impl Fn(u32) -> bool,
     row: &mut Vec<u32>,
@@ -32,7 +32,7 @@ pub(crate) fn candidates<S: Surface>(
     if surface.is_empty() || spheres.is_empty() {
         return;
     }
-    let bounds = |p: &Record| {
+    let bounds = |p: &Vec4| {
         let reach = p[3] + skin;
         ([p[0] - reach, p[1] - reach, p[2] - reach], [p[0] + reach, p[1] + reach, p[2] + reach])
     };
@@ -61,7 +61,7 @@ pub(crate) fn candidates<S: Surface>(
 /// by sphere and patch; `list` keeps patch coordinates.
 pub(crate) fn refresh<S: Surface>(
     surface: &S,
-    spheres: &[Record],
+    spheres: &[Vec4],
     (near, approach): (f64, f64),
     candidates: &[Candidate],
     fresh: &mut Vec<PatchPair>,

@@ -1,7 +1,7 @@
 //! Sphere–patch contacts.
 
 use crate::base::Vec3;
-use crate::base::held::held;
+use crate::base::capacity::capacity_bytes;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,6 @@ impl PatchList {
 
 impl PatchList {
     pub fn bytes(&self) -> usize {
-        held(&self.pairs) + held(&self.live)
+        capacity_bytes(&self.pairs) + capacity_bytes(&self.live)
     }
 }

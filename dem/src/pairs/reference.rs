@@ -1,7 +1,7 @@
 //! Sphere positions at the last search.
 
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 
 /// Single precision, relative to one sphere.
 #[derive(Clone, Debug, Default)]
@@ -13,7 +13,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    pub fn start(&mut self, origin: Option<&Record>) {
+    pub fn start(&mut self, origin: Option<&Vec4>) {
         *self = Reference { origin: origin.map(xyz).unwrap_or_default(), ..Reference::default() };
     }
 

@@ -1,11 +1,11 @@
 //! Command loop of all ranks but the first.
 
-use super::code::{put, put_numbers, take, take_numbers};
+use super::codec::{decode, encode, read_numbers, write_numbers};
+use super::commands::{self, Command, StepCommand};
 use super::link::{Link, Lost};
-use super::orders::{self, Now, Order};
+use super::message_counters::MessageKind;
 use super::rank::Rank;
-use super::traffic::Kind;
-use super::{books, parcel};
+use super::{block_totals, state_message};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
@@ -21,17 +21,17 @@ pub fn serve<L: Link>(mut link: L, mut make: impl FnMut(&[u8]) -> Result<Model, 
         let mut message = Vec::new();
         link.receive(FIRST, &mut message)?;
         let rest = &mut &message[..];
-        match take(rest) {
-            Some(Order::Model { bodies, dt }) => {
+        match decode(rest) {
+            Some(Command::Model { bodies, dt }) => {
                 let made = make(rest).and_then(|model| same(model, bodies, dt));
                 let mut out = Vec::new();
-                put(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
+                encode(&mut out, made.as_ref().err().map_or("", |problem| problem.as_str()));
                 link.send(FIRST, &out)?;
                 if let Ok(model) = made {
                     return follow(link, &model);
                 }
             }
-            Some(Order::End) => return Ok(()),
+            Some(Command::End) => return Ok(()),
             _ => return Err(Lost::garbled(FIRST)),
         }
     }
@@ -54,62 +54,68 @@ fn follow<L: Link>(mut link: L, model: &Model) -> Result<(), Lost> {
     let mut message = Vec::new();
     link.receive(FIRST, &mut message)?;
     let rest = &mut &message[..];
-    match take(rest) {
-        Some(Order::Take) => {}
-        Some(Order::End) => return Ok(()),
+    match decode(rest) {
+        Some(Command::Take) => {}
+        Some(Command::End) => return Ok(()),
         _ => return Err(Lost::garbled(FIRST)),
     }
-    let (mut state, partition) = parcel::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+    let (mut state, partition) = state_message::read(link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
     drop(message);
     let mut rank = Rank::new(link, Work::new(model, &state));
     rank.take_over(model, &state, partition)?;
     loop {
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
-        match take(rest) {
-            Some(Order::Step(now)) => {
-                let read = orders::read_step(&mut state, &now, &mut rank.work.applied, rest);
+        match decode(rest) {
+            Some(Command::Step(now)) => {
+                let read = commands::read_step(&mut state, &now, &mut rank.work.applied, rest);
                 read.ok_or(Lost::garbled(FIRST))?;
                 step(&mut rank, model, &mut state, &now)?;
             }
-            Some(Order::Give) => {
+            Some(Command::Give) => {
                 rank.out.clear();
-                put(&mut rank.out, &rank.traffic);
-                parcel::write_back(&state, rank.work.own.clone(), &mut rank.out);
-                rank.send(Kind::State, FIRST)?;
+                encode(&mut rank.out, &rank.traffic);
+                state_message::write_back(&state, rank.work.own.clone(), &mut rank.out);
+                rank.send(MessageKind::State, FIRST)?;
                 rank.out = Vec::new();
             }
-            Some(Order::Take) => {
-                let (fresh, partition) = parcel::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
+            Some(Command::Take) => {
+                let (fresh, partition) =
+                    state_message::read(rank.link.rank(), rest).ok_or(Lost::garbled(FIRST))?;
                 state = fresh;
                 rank.message = Vec::new();
                 rank.take_over(model, &state, partition)?;
             }
-            Some(Order::End) => return Ok(()),
+            Some(Command::End) => return Ok(()),
             _ => return Err(Lost::garbled(FIRST)),
         }
     }
 }
 
-fn step<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State, now: &Now) -> Result<(), Lost> {
-    if now.renew {
+fn step<L: Link>(
+    rank: &mut Rank<L>,
+    model: &Model,
+    state: &mut State,
+    now: &StepCommand,
+) -> Result<(), Lost> {
+    if now.rebuild {
         let moved2 = rank.moved2(state);
         rank.boxes = rank.bounds(state).collect();
         rank.out.clear();
-        put_numbers(&mut rank.out, [moved2]);
-        put(&mut rank.out, &rank.boxes);
-        rank.send(Kind::NearList, FIRST)?;
+        write_numbers(&mut rank.out, [moved2]);
+        encode(&mut rank.out, &rank.boxes);
+        rank.send(MessageKind::NearList, FIRST)?;
         rank.receive(FIRST)?;
         let rest = &mut &rank.message[..];
-        let [approach] = take_numbers(rest).ok_or(Lost::garbled(FIRST))?;
+        let [approach] = read_numbers(rest).ok_or(Lost::garbled(FIRST))?;
         if !rest.is_empty() {
-            rank.boxes = take(rest).ok_or(Lost::garbled(FIRST))?;
+            rank.boxes = decode(rest).ok_or(Lost::garbled(FIRST))?;
         }
-        rank.renew(model, state, approach)?;
+        rank.rebuild(model, state, approach)?;
     }
     rank.advance(model, state)?;
     rank.out.clear();
-    books::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
-    rank.send(Kind::Books, FIRST)?;
+    block_totals::write(&rank.work, rank.work.own.clone(), !model.bonds.is_empty(), &mut rank.out);
+    rank.send(MessageKind::Books, FIRST)?;
     rank.await_ghosts(state)
 }

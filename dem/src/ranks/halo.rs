@@ -1,9 +1,9 @@
 //! Halo of a search: bodies near the blocks of other ranks.
 
-use super::ghosts::Place;
+use super::ghosts::BodyLocation;
 use crate::base::Vec3;
 use crate::bodies::block::Block;
-use crate::lanes::record::xyz;
+use crate::lanes::vec4::xyz;
 use std::ops::Range;
 
 /// Bounding box: lower and upper corner [m]; inverted if empty.
@@ -27,7 +27,7 @@ pub(super) fn near(
     boxes: &[Bounds],
     (own, other): (Range<usize>, Range<usize>),
     reach: f64,
-    out: &mut Vec<Place>,
+    out: &mut Vec<BodyLocation>,
 ) {
     out.clear();
     let mut close: Vec<&Bounds> = Vec::new();

@@ -1,20 +1,20 @@
 //! First rank: back end of a distributed run.
 
-use super::code::{put, put_numbers, take, take_numbers};
+use super::codec::{decode, encode, read_numbers, write_numbers};
+use super::commands::{self, Command};
 use super::halo::Bounds;
 use super::link::{Link, Lost};
-use super::orders::{self, Order};
+use super::message_counters::{MessageCounters, MessageKind};
 use super::partition::Partition;
 use super::rank::Rank;
-use super::traffic::{Kind, Traffic};
-use super::{books, parcel};
+use super::{block_totals, state_message};
 use crate::base::error::StepError;
 use crate::engine::back_end::BackEnd;
 use crate::engine::input::AppliedForce;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{applied, bonds, neighbours, order, step};
+use crate::engine::{applied, bonds, neighbour_list, reordering, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
 /// Steps on several ranks. The state is complete after [`BackEnd::download`].
@@ -26,7 +26,7 @@ pub struct Ranks<L: Link> {
     whole: bool,
     /// Whether debonded spheres are still in contact.
     debonded: bool,
-    traffic: Traffic,
+    traffic: MessageCounters,
 }
 
 impl<L: Link> Ranks<L> {
@@ -41,9 +41,12 @@ impl<L: Link> Ranks<L> {
             ahead: false,
             whole: true,
             debonded: false,
-            traffic: Traffic::default(),
+            traffic: MessageCounters::default(),
         };
-        ranks.introduce(model, description).and_then(|()| ranks.deal_out(model, state)).map_err(at(time))?;
+        ranks
+            .introduce(model, description)
+            .and_then(|()| ranks.distribute(model, state))
+            .map_err(at(time))?;
         Ok(ranks)
     }
 
@@ -51,13 +54,13 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Model { bodies: model.body_count() as u64, dt: model.dt() });
+            encode(&mut rank.out, &Command::Model { bodies: model.body_count() as u64, dt: model.dt() });
             rank.out.extend_from_slice(description);
-            rank.send(Kind::State, other)?;
+            rank.send(MessageKind::State, other)?;
         }
         for other in rank.others() {
             rank.receive(other)?;
-            let problem: String = take(&mut &rank.message[..]).ok_or(Lost::garbled(other))?;
+            let problem: String = decode(&mut &rank.message[..]).ok_or(Lost::garbled(other))?;
             if !problem.is_empty() {
                 return Err(Lost { rank: other, problem });
             }
@@ -66,7 +69,7 @@ impl<L: Link> Ranks<L> {
     }
 
     /// Messages of all ranks up to the last download.
-    pub fn traffic(&self) -> &Traffic {
+    pub fn traffic(&self) -> &MessageCounters {
         &self.traffic
     }
 
@@ -75,14 +78,14 @@ impl<L: Link> Ranks<L> {
         self.rank.work.rebuilds()
     }
 
-    fn deal_out(&mut self, model: &Model, state: &State) -> Result<(), Lost> {
+    fn distribute(&mut self, model: &Model, state: &State) -> Result<(), Lost> {
         let rank = &mut self.rank;
         let partition = Partition::of(state, rank.link.size());
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Take);
-            parcel::write(state, &partition, other, &mut rank.out);
-            rank.send(Kind::State, other)?;
+            encode(&mut rank.out, &Command::Take);
+            state_message::write(state, &partition, other, &mut rank.out);
+            rank.send(MessageKind::State, other)?;
         }
         rank.take_over(model, state, partition)?;
         // Such large messages are rare.
@@ -98,16 +101,16 @@ impl<L: Link> Ranks<L> {
         let rank = &mut self.rank;
         for other in rank.others() {
             rank.out.clear();
-            put(&mut rank.out, &Order::Give);
-            rank.send(Kind::Order, other)?;
+            encode(&mut rank.out, &Command::Give);
+            rank.send(MessageKind::Order, other)?;
         }
-        self.traffic = Traffic::default();
+        self.traffic = MessageCounters::default();
         for other in rank.others() {
             rank.link.receive(other, &mut rank.message)?;
             let rest = &mut &rank.message[..];
             let part = rank.partition.of_rank(other);
-            let sent: Traffic = take(rest).ok_or(Lost::garbled(other))?;
-            parcel::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
+            let sent: MessageCounters = decode(rest).ok_or(Lost::garbled(other))?;
+            state_message::read_back(state, part, rest).ok_or(Lost::garbled(other))?;
             self.traffic.add(&sent);
         }
         self.traffic.add(&rank.traffic);
@@ -123,34 +126,34 @@ impl<L: Link> Ranks<L> {
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         let lost = at(state.time);
-        if state.steps > 0 && state.steps.is_multiple_of(order::EVERY) {
+        if state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY) {
             self.fetch(state).map_err(&lost)?;
             state.reorder(model);
-            self.deal_out(model, state).map_err(&lost)?;
+            self.distribute(model, state).map_err(&lost)?;
         }
         if !applied.is_empty() {
             // Lever arms need present positions.
             self.fetch(state).map_err(&lost)?;
         }
-        applied::place(model, state, applied, &mut self.rank.work.applied)?;
+        applied::add_forces(model, state, applied, &mut self.rank.work.applied)?;
         if std::mem::take(&mut self.whole) {
-            parcel::restrict(state, &self.rank.work.own);
+            state_message::restrict(state, &self.rank.work.own);
             bonds::arrange(model, state, &mut self.rank.work);
         }
         let bonded = !model.bonds.is_empty();
-        let renew = neighbours::due(state);
-        if renew {
-            neighbours::adapt(model, state);
+        let rebuild = neighbour_list::needs_rebuild(state);
+        if rebuild {
+            neighbour_list::adapt(model, state);
         }
         let mut make = || {
             let rank = &mut self.rank;
             for other in rank.others() {
                 rank.out.clear();
-                orders::write_step(state, renew, &rank.work.applied, &mut rank.out);
-                rank.send(Kind::Order, other)?;
+                commands::write_step(state, rebuild, &rank.work.applied, &mut rank.out);
+                rank.send(MessageKind::Order, other)?;
             }
             self.ahead = true;
-            if renew {
+            if rebuild {
                 renew_near_list(rank, model, state)?;
             }
             rank.advance(model, state)?;
@@ -158,28 +161,28 @@ impl<L: Link> Ranks<L> {
             for other in rank.others() {
                 rank.link.receive(other, &mut rank.message)?;
                 let part = rank.partition.of_rank(other);
-                let read = books::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
+                let read = block_totals::read(&mut rank.work, part, bonded, &mut &rank.message[..]);
                 read.ok_or(Lost::garbled(other))?;
             }
             Ok(())
         };
         make().map_err(&lost)?;
         // Breakage is processed on the complete state, which is then distributed again.
-        let look = self.debonded && state.steps.is_multiple_of(bonds::LOOKS);
-        if bonded && (look || books::any_broken(&self.rank.work)) {
+        let look = self.debonded && state.steps.is_multiple_of(bonds::CHECK_INTERVAL);
+        if bonded && (look || block_totals::any_broken(&self.rank.work)) {
             self.fetch(state).map_err(&lost)?;
             bonds::arrange(model, state, &mut self.rank.work);
             let before = bonds::parted(state);
-            step::collect(model, state, &mut self.rank.work, 0.0)?;
+            step::reduce_blocks(model, state, &mut self.rank.work, 0.0)?;
             return match bonds::parted(state) == before {
                 true => Ok(()),
-                false => self.deal_out(model, state).map_err(&lost),
+                false => self.distribute(model, state).map_err(&lost),
             };
         }
         if !applied.is_empty() {
             self.fetch(state).map_err(&lost)?;
         }
-        step::collect(model, state, &mut self.rank.work, 0.0)
+        step::reduce_blocks(model, state, &mut self.rank.work, 0.0)
     }
 }
 
@@ -190,25 +193,25 @@ fn renew_near_list<L: Link>(rank: &mut Rank<L>, model: &Model, state: &mut State
     for other in rank.others() {
         rank.receive(other)?;
         let rest = &mut &rank.message[..];
-        let [theirs] = take_numbers(rest).ok_or(Lost::garbled(other))?;
+        let [theirs] = read_numbers(rest).ok_or(Lost::garbled(other))?;
         moved2 = moved2.max(theirs);
-        let boxes: Vec<Bounds> = take(rest).ok_or(Lost::garbled(other))?;
+        let boxes: Vec<Bounds> = decode(rest).ok_or(Lost::garbled(other))?;
         rank.boxes.extend(boxes);
     }
-    rank.work.searched.surface_drift += state.wall_drift;
+    rank.work.searched.surface_travel += state.wall_travel;
     let approach = match moved2 {
         far if far.is_infinite() => far,
-        near => neighbours::approach(model, state, &rank.work, near),
+        near => neighbour_list::approach(model, state, &rank.work, near),
     };
     for other in rank.others() {
         rank.out.clear();
-        put_numbers(&mut rank.out, [approach]);
-        if neighbours::too_far(model, state, approach) {
-            put(&mut rank.out, &rank.boxes);
+        write_numbers(&mut rank.out, [approach]);
+        if neighbour_list::exceeds_skin(model, state, approach) {
+            encode(&mut rank.out, &rank.boxes);
         }
-        rank.send(Kind::NearList, other)?;
+        rank.send(MessageKind::NearList, other)?;
     }
-    rank.renew(model, state, approach)
+    rank.rebuild(model, state, approach)
 }
 
 fn at(time: f64) -> impl Fn(Lost) -> StepError {
@@ -217,7 +220,7 @@ fn at(time: f64) -> impl Fn(Lost) -> StepError {
 
 impl<L: Link> BackEnd for Ranks<L> {
     fn upload(&mut self, model: &Model, state: &State) -> Result<(), StepError> {
-        self.deal_out(model, state).map_err(at(state.time))
+        self.distribute(model, state).map_err(at(state.time))
     }
 
     fn step<S: Surface>(
@@ -250,7 +253,7 @@ impl<L: Link> Drop for Ranks<L> {
 /// Ends [`serve`](super::serve) on all other ranks, if no [`Ranks`] does.
 pub fn dismiss(link: &mut impl Link) {
     let mut end = Vec::new();
-    put(&mut end, &Order::End);
+    encode(&mut end, &Command::End);
     let own = link.rank();
     for other in (0..link.size()).filter(|&other| other != own) {
         // Lost ranks are ignored.

@@ -7,24 +7,24 @@
 //!
 //! Not distributed: motion (100 B per sphere) and constants of all bodies.
 
-mod books;
-mod code;
+mod block_totals;
+mod codec;
+mod commands;
 mod follower;
 mod ghosts;
 mod halo;
 mod leader;
 mod link;
 mod local;
-mod orders;
-mod parcel;
+mod message_counters;
 mod partition;
 mod rank;
-mod scope;
-mod traffic;
+mod state_message;
+mod supported;
 
 pub use follower::serve;
 pub use leader::{Ranks, dismiss};
 pub use link::{Link, Lost};
 pub use local::{Local, local};
-pub use scope::{Unsupported, check};
-pub use traffic::{Kind, Traffic};
+pub use message_counters::{MessageCounters, MessageKind};
+pub use supported::{Unsupported, check};

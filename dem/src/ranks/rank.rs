@@ -1,16 +1,16 @@
 //! Work of every rank.
 
-use super::code::{put, take};
-use super::ghosts::{self, Ghosts, Place};
+use super::codec::{decode, encode};
+use super::ghosts::{self, BodyLocation, Ghosts};
 use super::halo::{self, Bounds};
 use super::link::{Link, Lost};
+use super::message_counters::{MessageCounters, MessageKind};
 use super::partition::Partition;
-use super::traffic::{Kind, Traffic};
-use crate::engine::candidates::{self, Listed};
+use crate::engine::broad_phase::{self, Listed};
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
-use crate::engine::{neighbours, step};
+use crate::engine::{neighbour_list, step};
 use crate::spatial::surface::NoSurface;
 
 pub(super) struct Rank<L> {
@@ -23,7 +23,7 @@ pub(super) struct Rank<L> {
     /// Outgoing and incoming message.
     pub out: Vec<u8>,
     pub message: Vec<u8>,
-    pub traffic: Traffic,
+    pub traffic: MessageCounters,
 }
 
 impl<L: Link> Rank<L> {
@@ -36,7 +36,7 @@ impl<L: Link> Rank<L> {
             boxes: Vec::new(),
             out: Vec::new(),
             message: Vec::new(),
-            traffic: Traffic::default(),
+            traffic: MessageCounters::default(),
         }
     }
 
@@ -45,7 +45,7 @@ impl<L: Link> Rank<L> {
         (0..self.link.size()).filter(move |&rank| rank != own)
     }
 
-    pub fn send(&mut self, kind: Kind, to: usize) -> Result<(), Lost> {
+    pub fn send(&mut self, kind: MessageKind, to: usize) -> Result<(), Lost> {
         self.traffic.count(kind, self.out.len());
         self.link.send(to, &self.out)
     }
@@ -64,7 +64,7 @@ impl<L: Link> Rank<L> {
     }
 
     /// Exchanges ghost lists.
-    fn agree(&mut self, need: &[Place]) -> Result<(), Lost> {
+    fn agree(&mut self, need: &[BodyLocation]) -> Result<(), Lost> {
         let size = self.link.size();
         self.ghosts.from.resize_with(size, Vec::new);
         self.ghosts.to.resize_with(size, Vec::new);
@@ -75,12 +75,12 @@ impl<L: Link> Rank<L> {
         self.traffic.ghosts = need.len() as u64;
         for rank in self.others() {
             self.out.clear();
-            put(&mut self.out, &self.ghosts.from[rank]);
-            self.send(Kind::Search, rank)?;
+            encode(&mut self.out, &self.ghosts.from[rank]);
+            self.send(MessageKind::Search, rank)?;
         }
         for rank in self.others() {
             self.receive(rank)?;
-            self.ghosts.to[rank] = take(&mut &self.message[..]).ok_or(Lost::garbled(rank))?;
+            self.ghosts.to[rank] = decode(&mut &self.message[..]).ok_or(Lost::garbled(rank))?;
         }
         Ok(())
     }
@@ -92,7 +92,7 @@ impl<L: Link> Rank<L> {
             }
             self.link.receive(rank, &mut self.message)?;
             let (places, rest) = (&self.ghosts.from[rank], &mut &self.message[..]);
-            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, places, rest);
+            let read = ghosts::read_motion(&mut state.blocks, &mut self.work.members, places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
         }
         Ok(())
@@ -104,8 +104,8 @@ impl<L: Link> Rank<L> {
         for rank in self.others() {
             if !self.ghosts.to[rank].is_empty() {
                 self.out.clear();
-                ghosts::put_motion(&state.blocks, &self.ghosts.to[rank], &mut self.out);
-                self.send(Kind::Ghosts, rank)?;
+                ghosts::write_motion(&state.blocks, &self.ghosts.to[rank], &mut self.out);
+                self.send(MessageKind::Ghosts, rank)?;
             }
         }
         Ok(())
@@ -114,7 +114,7 @@ impl<L: Link> Rank<L> {
     /// Largest squared displacement since the last search [m²].
     pub fn moved2(&self, state: &State) -> f64 {
         if self.work.searched.listed.is_some() {
-            neighbours::moved2(state, &self.work)
+            neighbour_list::moved2(state, &self.work)
         } else {
             f64::INFINITY
         }
@@ -125,13 +125,13 @@ impl<L: Link> Rank<L> {
     }
 
     /// Rebuilds neighbour lists, after a search if pairs approached too far. Requires all boxes.
-    pub fn renew(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
+    pub fn rebuild(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
         let mut approach = approach;
-        if neighbours::too_far(model, state, approach) {
+        if neighbour_list::exceeds_skin(model, state, approach) {
             self.search(model, state)?;
             approach = 0.0;
         }
-        neighbours::renew(model, state, &mut self.work, &NoSurface, approach);
+        neighbour_list::rebuild(model, state, &mut self.work, &NoSurface, approach);
         Ok(())
     }
 
@@ -143,20 +143,20 @@ impl<L: Link> Rank<L> {
             let ranges = (self.work.own.clone(), self.partition.of_rank(rank));
             halo::near(&state.blocks, &self.boxes, ranges, reach, &mut near);
             self.out.clear();
-            put(&mut self.out, &near);
-            ghosts::put_motion(&state.blocks, &near, &mut self.out);
-            self.send(Kind::Search, rank)?;
+            encode(&mut self.out, &near);
+            ghosts::write_motion(&state.blocks, &near, &mut self.out);
+            self.send(MessageKind::Search, rank)?;
         }
         self.work.halo.clear();
         for rank in self.others() {
             self.link.receive(rank, &mut self.message)?;
             let rest = &mut &self.message[..];
-            let places: Vec<Place> = take(rest).ok_or(Lost::garbled(rank))?;
-            let read = ghosts::take_motion(&mut state.blocks, &mut self.work.members, &places, rest);
+            let places: Vec<BodyLocation> = decode(rest).ok_or(Lost::garbled(rank))?;
+            let read = ghosts::read_motion(&mut state.blocks, &mut self.work.members, &places, rest);
             read.filter(|()| rest.is_empty()).ok_or(Lost::garbled(rank))?;
             self.work.halo.extend(places);
         }
-        candidates::search(model, state, &mut self.work, &NoSurface, Listed::All);
+        broad_phase::search(model, state, &mut self.work, &NoSurface, Listed::All);
         let need = ghosts::of_candidates(state, &self.work, &self.work.own);
         self.agree(&need)
     }

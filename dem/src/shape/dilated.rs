@@ -3,11 +3,11 @@
 
 pub(crate) mod circle;
 pub(crate) mod disk;
+pub(crate) mod edge_contact;
 mod flat;
 mod hull;
 mod moments;
 pub(crate) mod part;
-pub(crate) mod press;
 pub(crate) mod rim;
 pub(crate) mod scan;
 

@@ -4,7 +4,7 @@
 //! not crowd large cells. Coordinates outside are clamped: far bodies do not inflate the grid, and neighbours
 //! stay in neighbouring cells.
 
-use crate::lanes::record::Record;
+use crate::lanes::vec4::Vec4;
 
 /// All smaller spheres share the last class.
 const CLASSES: usize = 8;
@@ -35,7 +35,7 @@ impl Grid {
     }
 
     #[inline(always)]
-    fn cell(&self, p: &Record) -> usize {
+    fn cell(&self, p: &Vec4) -> usize {
         let [x, y, z] = [0, 1, 2].map(|d| self.coordinate(p[d], d));
         (z * self.dims[1] + y) * self.dims[0] + x
     }
@@ -43,7 +43,7 @@ impl Grid {
 
 impl Cells {
     /// Sorts `points` (centre, radius); `skin`: search skin [m].
-    pub fn build(&mut self, points: &[Record], radii: (f64, f64), skin: f64) {
+    pub fn build(&mut self, points: &[Vec4], radii: (f64, f64), skin: f64) {
         let wide = radii.1 > 3.0 * radii.0;
         let class_of = |r: f64| if wide { (libm::log2(radii.1 / r) as usize).min(CLASSES - 1) } else { 0 };
         self.class.clear();
@@ -84,7 +84,7 @@ impl Cells {
 
     /// Calls `f` with all points within `skin` of contact, and others in their cells.
     #[inline]
-    pub fn near(&self, p: &Record, skin: f64, mut f: impl FnMut(u32)) {
+    pub fn neighbours(&self, p: &Vec4, skin: f64, mut f: impl FnMut(u32)) {
         for grid in &self.grids {
             if grid.items.is_empty() {
                 continue;
@@ -105,7 +105,7 @@ impl Cells {
 
 impl Grid {
     /// Covers the points, or the middle 98 % per direction if outliers need too many cells.
-    fn lay_out<'a>(&mut self, points: impl Iterator<Item = &'a Record> + Clone, count: usize, cell: f64) {
+    fn lay_out<'a>(&mut self, points: impl Iterator<Item = &'a Vec4> + Clone, count: usize, cell: f64) {
         let most = 8 * count + 512;
         let bounds = |d: usize| {
             points.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[d]), h.max(p[d])))
@@ -148,12 +148,12 @@ mod tests {
         let mut rng = Pcg64Mcg::new(3);
         let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         for (small, spread) in [(0.05, 0.01), (0.004, 0.1)] {
-            let mut points: Vec<Record> =
-                (0..600).map(|_| Record([unit(), unit(), unit(), small + spread * unit().powi(4)])).collect();
+            let mut points: Vec<Vec4> =
+                (0..600).map(|_| Vec4([unit(), unit(), unit(), small + spread * unit().powi(4)])).collect();
             points.extend([
-                Record([1e6, 0.5, -3e5, small]),
-                Record([1e6 + small, 0.5, -3e5, small]),
-                Record([-1e9, 0.0, 0.0, small]),
+                Vec4([1e6, 0.5, -3e5, small]),
+                Vec4([1e6 + small, 0.5, -3e5, small]),
+                Vec4([-1e9, 0.0, 0.0, small]),
             ]);
             let r = points.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p[3]), h.max(p[3])));
             let mut cells = Cells::default();
@@ -161,7 +161,7 @@ mod tests {
             let mut pairs = 0;
             for p in &points {
                 let mut found = vec![false; points.len()];
-                cells.near(p, 0.01, |k| found[k as usize] = true);
+                cells.neighbours(p, 0.01, |k| found[k as usize] = true);
                 for (k, q) in points.iter().enumerate() {
                     let d2: f64 = (0..3).map(|d| (p[d] - q[d]).powi(2)).sum();
                     let touches = d2 < (p[3] + q[3] + 0.01_f64).powi(2);

@@ -19,7 +19,7 @@ pub(crate) struct Spheres<R> {
 }
 
 /// See [`ContactGeometry`].
-pub(crate) struct Touch<R> {
+pub(crate) struct Overlap<R> {
     pub point: V3<R>,
     pub normal: V3<R>,
     pub overlap: R,
@@ -40,7 +40,7 @@ impl<R: Real> Spheres<R> {
 
     /// The contact point halves the overlap. Coincident centres give a normal along z.
     #[inline(always)]
-    pub fn touch(&self) -> Touch<R> {
+    pub fn touch(&self) -> Overlap<R> {
         let &Spheres { xa, ra, rb, between, distance2, reach } = self;
         let (distance, zero, one) = (distance2.sqrt(), R::zero(), R::splat(1.0));
         // distance/distance² instead of 1/distance: the division need not wait for the root.
@@ -51,7 +51,7 @@ impl<R: Real> Spheres<R> {
         }
         let overlap = reach - distance;
         let point = xa - normal * (ra - R::splat(0.5) * overlap);
-        Touch { point, normal, overlap, radius: ra * rb / reach }
+        Overlap { point, normal, overlap, radius: ra * rb / reach }
     }
 }
 
@@ -60,7 +60,7 @@ impl<R: Real> Spheres<R> {
 pub fn sphere_sphere(xa: &Vec3, ra: f64, xb: &Vec3, rb: f64) -> Option<ContactGeometry> {
     let both = Spheres::new(V3::from_vec(xa), ra, V3::from_vec(xb), rb);
     both.on().then(|| {
-        let Touch { point, normal, overlap, radius } = both.touch();
+        let Overlap { point, normal, overlap, radius } = both.touch();
         ContactGeometry { point: point.to_vec(), normal: normal.to_vec(), overlap, radius }
     })
 }

@@ -24,7 +24,7 @@ const PEAK: f64 = 0.01;
 const LEVEL: f64 = 1e-9;
 
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Share {
+pub(crate) struct FeatureWeight {
     /// Multiplicity.
     pub count: f64,
     /// Indentation fraction.
@@ -38,7 +38,7 @@ pub(crate) struct FacetEdge {
     pub length: f64,
     /// Outward unit normal in the facet plane.
     pub side: Vec3,
-    pub share: Share,
+    pub share: FeatureWeight,
 }
 
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ pub(crate) struct Facet {
     pub corners: [Vec3; 3],
     pub normal: Vec3,
     pub edges: [FacetEdge; 3],
-    pub tips: [Share; 3],
+    pub tips: [FeatureWeight; 3],
 }
 
 impl Facet {
@@ -57,9 +57,9 @@ impl Facet {
             let way = corners[(k + 1) % 3] - corners[k];
             let length = way.norm();
             let direction = way / length;
-            FacetEdge { direction, length, side: direction.cross(&normal), share: Share::default() }
+            FacetEdge { direction, length, side: direction.cross(&normal), share: FeatureWeight::default() }
         });
-        Facet { corners, normal, edges, tips: [Share::default(); 3] }
+        Facet { corners, normal, edges, tips: [FeatureWeight::default(); 3] }
     }
 
     /// The same facet at other corners.
@@ -98,7 +98,7 @@ pub(crate) fn facets(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32]) ->
     for (ends, of) in &edges {
         let press = ridge(&facets, of, ends.map(|v| vertices[v as usize]));
         let (t, k) = of[0];
-        facets[t].edges[k].share = Share { count: 1.0 - of.len() as f64, press };
+        facets[t].edges[k].share = FeatureWeight { count: 1.0 - of.len() as f64, press };
         for (v, other) in [(ends[0], ends[1]), (ends[1], ends[0])] {
             let own = around.entry(v).or_default();
             own.seams += of.len() as f64 - 1.0;
@@ -112,7 +112,7 @@ pub(crate) fn facets(vertices: &[Vec3], triangles: &[[u32; 3]], same: &[u32]) ->
         let angle: f64 = of.iter().map(|(t, k)| facets[*t].angle(*k)).sum();
         let (t, k) = of[0];
         let count = 1.0 - of.len() as f64 + own.seams;
-        facets[t].tips[k] = Share { count, press: own.press(std::f64::consts::TAU - angle) };
+        facets[t].tips[k] = FeatureWeight { count, press: own.press(std::f64::consts::TAU - angle) };
     }
     facets
 }

@@ -42,7 +42,7 @@ impl Patch {
 
 /// Placed wall.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WallNow {
+pub(crate) struct WallView {
     /// Frame origin [m] and rotation.
     pub origin: Vec3,
     pub orientation: UnitQuaternion<f64>,
@@ -88,7 +88,7 @@ impl Trees {
     }
 
     /// Appends patches that may overlap world bounds; ascending.
-    pub fn query(&self, walls: &[WallNow], (low, high): Aabb, out: &mut Vec<u32>) {
+    pub fn query(&self, walls: &[WallView], (low, high): Aabb, out: &mut Vec<u32>) {
         let (low, high) = (Vec3::from(low), Vec3::from(high));
         let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
         for tree in &self.each {
@@ -105,7 +105,7 @@ impl Trees {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walls<'a> {
     pub patches: &'a [Patch],
-    pub walls: &'a [WallNow],
+    pub walls: &'a [WallView],
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ fn trees_find_patches_of_moved_walls() {
         let same: Vec<u32> = (0..vertices.len() as u32).collect();
         let forms = facets(&vertices, &triangles, &same).into_iter().map(|f| Form::Facet(Box::new(f)));
         patches.extend(forms.map(|form| Patch::new(wall, form, Partner::Wall(wall))));
-        walls.push(WallNow {
+        walls.push(WallView {
             origin: vector(3.0),
             orientation: UnitQuaternion::from_scaled_axis(vector(3.0)),
             centre: Vec3::zeros(),

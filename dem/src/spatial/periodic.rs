@@ -1,6 +1,6 @@
 //! Periodic boundaries.
 //!
-//! Positions are unwrapped between two sortings (`order.rs`). Contacts across a boundary are image pairs in a
+//! Positions are unwrapped between two sortings (`reordering.rs`). Contacts across a boundary are image pairs in a
 //! separate list.
 //!
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2 (minimum image convention).
@@ -10,7 +10,7 @@
 
 use super::cells::Cells;
 use crate::base::Vec3;
-use crate::lanes::record::{Record, xyz};
+use crate::lanes::vec4::{Vec4, xyz};
 
 pub(crate) type Turns = [i32; 3];
 
@@ -42,7 +42,7 @@ impl Periodic {
 
     /// Offset [m].
     #[inline(always)]
-    pub fn way(&self, turns: &Turns) -> Vec3 {
+    pub fn image_offset(&self, turns: &Turns) -> Vec3 {
         Vec3::from_fn(|d, _| f64::from(turns[d]) * self.length[d])
     }
 
@@ -61,11 +61,11 @@ impl Periodic {
     pub fn around(&self) -> Vec<Vec3> {
         let turns = |d: usize| if self.length[d] > 0.0 { -1..=1 } else { 0..=0 };
         let ways = turns(0).flat_map(|x| turns(1).flat_map(move |y| turns(2).map(move |z| [x, y, z])));
-        ways.map(|t| self.way(&t)).collect()
+        ways.map(|t| self.image_offset(&t)).collect()
     }
 
     pub fn wrap(&self, x: &Vec3) -> Vec3 {
-        let x = x - self.way(&self.turns(x));
+        let x = x - self.image_offset(&self.turns(x));
         // Just below the lower boundary, the sum rounds to the upper one.
         Vec3::from_fn(|d, _| {
             let past = self.length[d] > 0.0 && x[d] >= self.low[d] + self.length[d];
@@ -77,17 +77,17 @@ impl Periodic {
 /// Wrapped spheres.
 pub(crate) struct Space {
     periodic: Periodic,
-    pub points: Vec<Record>,
+    pub points: Vec<Vec4>,
     turns: Vec<Turns>,
     largest: f64,
 }
 
 impl Space {
-    pub fn new(periodic: Periodic, spheres: &[Record], largest: f64) -> Space {
+    pub fn new(periodic: Periodic, spheres: &[Vec4], largest: f64) -> Space {
         let turns: Vec<Turns> = spheres.iter().map(|p| periodic.turns(&xyz(p))).collect();
-        let back = |(p, t): (&Record, &Turns)| {
-            let x = xyz(p) - periodic.way(t);
-            Record([x.x, x.y, x.z, p[3]])
+        let back = |(p, t): (&Vec4, &Turns)| {
+            let x = xyz(p) - periodic.image_offset(t);
+            Vec4([x.x, x.y, x.z, p[3]])
         };
         let points = spheres.iter().zip(&turns).map(back).collect();
         Space { periodic, points, turns, largest }
@@ -95,7 +95,7 @@ impl Space {
 
     /// Calls `f` with later spheres with an image within `skin` of contact with `i`, and the image's box
     /// lengths.
-    pub fn near(&self, cells: &Cells, i: u32, skin: f64, mut f: impl FnMut(u32, Turns)) {
+    pub fn neighbours(&self, cells: &Cells, i: u32, skin: f64, mut f: impl FnMut(u32, Turns)) {
         let (p, own) = (&self.points[i as usize], &self.turns[i as usize]);
         let reach = p[3] + self.largest + skin;
         // Possible images along each axis.
@@ -107,8 +107,8 @@ impl Space {
         for a in x {
             for b in y.clone() {
                 for c in z.clone() {
-                    let at = xyz(p) - self.periodic.way(&[a, b, c]);
-                    cells.near(&Record([at.x, at.y, at.z, p[3]]), skin, |j| {
+                    let at = xyz(p) - self.periodic.image_offset(&[a, b, c]);
+                    cells.neighbours(&Vec4([at.x, at.y, at.z, p[3]]), skin, |j| {
                         let q = &self.points[j as usize];
                         let reach = p[3] + q[3] + skin;
                         if j > i && (at - xyz(q)).norm_squared() < reach * reach {

@@ -37,7 +37,7 @@ pub(crate) struct SheetFacet {
 }
 
 /// Foot of a force: natural coordinates, point [m], offset of the force [m].
-pub(crate) struct Foot {
+pub(crate) struct SurfacePoint {
     pub local: [f64; 2],
     pub point: Vec3,
     pub aside: Vec3,
@@ -59,7 +59,7 @@ impl Sheet {
     }
 
     /// Triangles `back` seconds ago.
-    pub fn now(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
+    pub fn update_poses(&self, corners: &[[Vec3; 2]], back: f64, out: &mut Vec<SheetFacet>) {
         out.clear();
         out.extend(self.facets.iter().zip(&self.triangles).map(|(rest, t)| {
             let now = t.map(|v| corners[v as usize]);
@@ -84,7 +84,7 @@ impl SheetFacet {
         self.facet.bounds()
     }
 
-    pub fn foot(&self, p: &Vec3) -> Foot {
+    pub fn foot(&self, p: &Vec3) -> SurfacePoint {
         let [a, b, c] = self.facet.corners;
         let (u, v, w) = (b - a, c - a, p - a);
         let (uu, uv, vv) = (u.norm_squared(), u.dot(&v), v.norm_squared());
@@ -92,21 +92,21 @@ impl SheetFacet {
         let inverse = 1.0 / (uu * vv - uv * uv);
         let local = [(vv * wu - uv * wv) * inverse, (uu * wv - uv * wu) * inverse];
         let point = a + u * local[0] + v * local[1];
-        Foot { local, point, aside: p - point }
+        SurfacePoint { local, point, aside: p - point }
     }
 
     /// Velocity [m/s] and angular velocity [rad/s].
-    pub fn motion(&self, foot: &Foot) -> (Vec3, Vec3) {
+    pub fn motion(&self, foot: &SurfacePoint) -> (Vec3, Vec3) {
         self.linear(&self.velocity, foot)
     }
 
     /// Displacement not contained in the velocity [m].
-    pub fn correction(&self, foot: &Foot) -> Option<Vec3> {
+    pub fn correction(&self, foot: &SurfacePoint) -> Option<Vec3> {
         self.correction.as_ref().map(|corners| self.linear(corners, foot).0)
     }
 
     /// Interpolates a nodal field and its rotation.
-    fn linear(&self, corners: &[Vec3; 3], foot: &Foot) -> (Vec3, Vec3) {
+    fn linear(&self, corners: &[Vec3; 3], foot: &SurfacePoint) -> (Vec3, Vec3) {
         let &[a, b, c] = corners;
         if a == Vec3::zeros() && b == a && c == a {
             return (a, a);

@@ -46,7 +46,7 @@ pub fn limit(model: &Model, state: &State) -> f64 {
 }
 
 fn largest_step(operator: &mut Operator, state: &State) -> f64 {
-    let guess = if state.pace.limit > 0.0 { state.pace.limit } else { state.pace.dt };
+    let guess = if state.step_size.limit > 0.0 { state.step_size.limit } else { state.step_size.dt };
     if operator.links() == 0 {
         return f64::INFINITY;
     }
@@ -74,28 +74,28 @@ const ROUNDS: usize = 6;
 /// Evaluates the limit if due and sets the step of `state`, unless fixed. Returns whether it was evaluated.
 pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
-    if state.steps < state.pace.look || state.steps == 0 {
+    if state.steps < state.step_size.look || state.steps == 0 {
         return false;
     }
     let mut operator = Operator::new(model, state);
-    let (found, before) = (largest_step(&mut operator, state), state.pace.limit);
+    let (found, before) = (largest_step(&mut operator, state), state.step_size.limit);
     let packed = operator.links() as f64 > LASTING * state.present_count() as f64;
     let longest = model.longest(packed);
     let change = if before > 0.0 && found.is_finite() { (found / before).max(before / found) } else { 2.0 };
-    let interval = state.pace.interval.max(LEAST);
-    let pace = &mut state.pace;
-    pace.interval = match change {
+    let interval = state.step_size.interval.max(LEAST);
+    let step_size = &mut state.step_size;
+    step_size.interval = match change {
         c if c < 1.03 => (2 * interval).min(MOST),
         c if c > 1.1 => (interval / 2).max(LEAST),
         _ => interval,
     };
-    pace.look = state.steps + pace.interval;
+    step_size.look = state.steps + step_size.interval;
     // Infinity cannot be saved.
-    pace.limit = if found.is_finite() { found } else { 0.0 };
+    step_size.limit = if found.is_finite() { found } else { 0.0 };
     let share = if change < 1.1 { share } else { UNSTEADY * share };
-    let wanted = (share * found).min(longest).min(GROWTH * pace.wanted);
-    pace.wanted = rung(model.dt(), wanted);
-    pace.dt = pace.wanted;
+    let wanted = (share * found).min(longest).min(GROWTH * step_size.wanted);
+    step_size.wanted = rung(model.dt(), wanted);
+    step_size.dt = step_size.wanted;
     true
 }
 
@@ -118,8 +118,8 @@ pub fn divide(model: &Model, state: &mut State, window: f64, most: u32) -> u32 {
     }
     follow(model, state);
     // Tolerates rounding of a whole number of steps.
-    let steps = (window / state.pace.wanted * (1.0 - 1e-12)).ceil().clamp(1.0, 1e6) as u32;
-    state.pace.dt = window / f64::from(steps);
+    let steps = (window / state.step_size.wanted * (1.0 - 1e-12)).ceil().clamp(1.0, 1e6) as u32;
+    state.step_size.dt = window / f64::from(steps);
     steps
 }
 

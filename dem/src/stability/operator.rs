@@ -2,13 +2,13 @@
 
 use crate::base::Vec3;
 use crate::base::error::Partner;
-use crate::bodies::table::Kind;
+use crate::bodies::table::BodyKind;
 use crate::bond::kernel;
-use crate::contact::kind::ContactNow;
+use crate::contact::narrow_phase::ContactView;
 use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::wall_contacts;
-use crate::law::lag;
+use crate::law::half_step_damping;
 use crate::measure;
 use nalgebra::{Matrix3, UnitQuaternion};
 
@@ -41,7 +41,7 @@ struct Link {
 const NOTHING: u32 = u32::MAX;
 
 impl Link {
-    fn of(model: &Model, c: &ContactNow<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
+    fn of(model: &Model, c: &ContactView<'_>, ends: [u32; 2], arms: [Vec3; 2]) -> Link {
         let g = &c.geometry;
         let law = model.laws.linearised(c.materials, 1.0 / c.inverse_mass, g.radius, g.overlap, c.history);
         let pair = |along: f64, across: f64| Pair { along: along * c.weight, across: across * c.weight };
@@ -169,7 +169,7 @@ impl Operator {
     pub fn at(&mut self, dt: f64) -> &mut Operator {
         self.square = dt * dt;
         for link in &mut self.links {
-            let (numerator, denominator) = lag::share(link.lag * dt);
+            let (numerator, denominator) = half_step_damping::share(link.lag * dt);
             let share = numerator / denominator;
             link.now = std::array::from_fn(|m| {
                 let (k, c) = (&link.stiffness[m], &link.damping[m]);
@@ -228,7 +228,7 @@ fn mobility(model: &Model, state: &State, body: usize) -> ([f64; 3], Matrix3<f64
     if !state.present(body) {
         return ([0.0; 3], Matrix3::zeros());
     }
-    let frame = (b.kind != Kind::Sphere).then(|| state.orientation(model, body));
+    let frame = (b.kind != BodyKind::Sphere).then(|| state.orientation(model, body));
     moved(b.fixed, b.mass, &b.inertia, frame)
 }
 

@@ -7,13 +7,13 @@
 use super::enclosed::{Enclosed, enclosed};
 use super::input::{Mount, RigidBody, WallShape};
 use super::mount;
-use super::state::{Foot, WallState};
+use super::state::{VertexContact, WallState};
 use crate::base::Vec3;
+use crate::base::balance_terms::{BalanceTerms, Impulse};
 use crate::base::error::ModelError;
-use crate::base::ledger::{Impulse, Ledger};
 use crate::bodies::block::Rotation;
-use crate::contact::single;
-use crate::integrate::pace::Pace;
+use crate::contact::scalar;
+use crate::integrate::step_size::StepSize;
 use crate::law::{ContactGeometry, History, Laws};
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
@@ -131,18 +131,18 @@ impl Body {
         force: &Vec3,
         torque: &Vec3,
         gravity: &Vec3,
-        pace: &Pace,
-        ledger: &mut Ledger,
+        step_size: &StepSize,
+        balance: &mut BalanceTerms,
     ) {
-        let (kick, dt) = (pace.kick(), pace.dt);
+        let (kick, dt) = (step_size.kick(), step_size.dt);
         let x = self.centre + state.offset;
         let (v0, w0) = (state.velocity, state.spin);
         let pull = gravity * self.mass;
-        ledger.gravity.add(&x, &(pull * kick));
+        balance.gravity.add(&x, &(pull * kick));
         let whole = force + pull;
         let mut v1 = match &self.mount {
             None => v0 + whole * (kick / self.mass),
-            Some(m) => mount::kick(m, self.mass, &v0, &whole, (&x, &state.offset), kick, ledger),
+            Some(m) => mount::kick(m, self.mass, &v0, &whole, (&x, &state.offset), kick, balance),
         };
         for d in 0..3 {
             if self.fixed >> d & 1 == 1 {
@@ -152,8 +152,8 @@ impl Body {
         if self.fixed & 7 != 0 {
             let held = |d: usize| self.fixed >> d & 1 == 1;
             let hold = Vec3::from_fn(|d, _| if held(d) { -whole[d] * kick } else { 0.0 });
-            ledger.constraints.add(&x, &hold);
-            ledger.work_constraints += hold.dot(&((v0 + v1) * 0.5));
+            balance.constraints.add(&x, &hold);
+            balance.work_constraints += hold.dot(&((v0 + v1) * 0.5));
         }
         state.velocity = v1;
         state.acceleration = (v1 - v0) / kick;
@@ -179,15 +179,15 @@ impl Body {
             let local = state.frame.inverse_transform_vector(&kicked);
             state.momentum = state.frame * local.component_mul(&self.inertia);
             state.spin = kicked;
-            ledger.constraints.angular += state.momentum - before - torque * kick;
-            ledger.work_constraints += 0.5 * (state.momentum.dot(&kicked) - before.dot(&w0))
+            balance.constraints.angular += state.momentum - before - torque * kick;
+            balance.work_constraints += 0.5 * (state.momentum.dot(&kicked) - before.dot(&w0))
                 - torque.dot(&((w0 + kicked) * 0.5)) * kick;
         }
         state.orientation = state.frame * self.axes.inverse();
         state.turned = true;
     }
 
-    pub fn stands(&self) -> bool {
+    pub fn rests_on_ground(&self) -> bool {
         self.stands
     }
 
@@ -306,12 +306,12 @@ impl Ground<'_> {
 }
 
 /// Vertex–plane contacts: returns force and torque about the centre, adds the planes' totals.
-pub(crate) fn stand(
+pub(crate) fn ground_reaction(
     ground: &Ground<'_>,
     body: &Body,
     material: u32,
     state: &mut WallState,
-    ledger: &mut Ledger,
+    balance: &mut BalanceTerms,
 ) -> (Vec3, Vec3) {
     let &Ground { laws, planes, motions, dt, .. } = ground;
     let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
@@ -330,12 +330,12 @@ pub(crate) fn stand(
         for (v, vertex) in body.vertices.iter().enumerate() {
             let at = state.to_world(&body.centre, vertex);
             let Some(g) = ground.tip(&at, &origin, &plane.normal) else { continue };
-            let mut foot = Foot { plane: p as u32, vertex: v as u32, history: History::NONE };
+            let mut foot = VertexContact { plane: p as u32, vertex: v as u32, history: History::NONE };
             if let Some(known) = old.iter_mut().find(|f| (f.plane, f.vertex) == (foot.plane, foot.vertex)) {
                 foot.history = std::mem::replace(&mut known.history, History::NONE);
             }
             let relative = state.velocity_at(&body.centre, &g.point) - wall.velocity;
-            let f = single::evaluate(
+            let f = scalar::evaluate(
                 laws,
                 materials,
                 None,
@@ -346,19 +346,19 @@ pub(crate) fn stand(
                 &mut foot.history,
                 dt,
             );
-            ledger.dissipated_dashpot += f.dashpot;
-            ledger.dissipated_friction += f.friction;
-            ledger.work_walls += f.force.dot(&wall.velocity) * dt;
-            ledger.walls.add(&g.point, &(f.force * dt));
+            balance.dissipated_dashpot += f.dashpot;
+            balance.dissipated_friction += f.friction;
+            balance.work_walls += f.force.dot(&wall.velocity) * dt;
+            balance.walls.add(&g.point, &(f.force * dt));
             force += f.force;
-            ledger.walls.angular += f.moment * dt;
+            balance.walls.angular += f.moment * dt;
             torque += (g.point - x).cross(&f.force) + f.moment;
             state.feet.push(foot);
         }
     }
-    for foot in old.iter_mut().filter(|f| !f.history.is_fresh()) {
+    for foot in old.iter_mut().filter(|f| !f.history.is_new()) {
         let materials = [material, planes[foot.plane as usize].material as u32];
-        ledger.dissipated_friction += single::end(laws, materials, &mut foot.history);
+        balance.dissipated_friction += scalar::end(laws, materials, &mut foot.history);
     }
     (force, torque)
 }

@@ -15,7 +15,7 @@
 
 use super::input::Mount;
 use crate::base::Vec3;
-use crate::base::ledger::Ledger;
+use crate::base::balance_terms::BalanceTerms;
 
 /// Kicks a velocity [m/s] by `kick` [s] under `force` [N] and mount, centre at `x`, displaced by `offset`
 /// [m]; adds the mount's totals.
@@ -26,7 +26,7 @@ pub(super) fn kick(
     force: &Vec3,
     (x, offset): (&Vec3, &Vec3),
     kick: f64,
-    ledger: &mut Ledger,
+    balance: &mut BalanceTerms,
 ) -> Vec3 {
     let spring = -mount.stiffness.component_mul(offset);
     let next = Vec3::from_fn(|d, _| {
@@ -35,8 +35,8 @@ pub(super) fn kick(
     });
     let mean = (velocity + next) * 0.5;
     let dashpot = -mount.damping.component_mul(&mean);
-    ledger.mounts.add(x, &((spring + dashpot) * kick));
-    ledger.dissipated_mounts -= dashpot.dot(&mean) * kick;
+    balance.mounts.add(x, &((spring + dashpot) * kick));
+    balance.dissipated_mounts -= dashpot.dot(&mean) * kick;
     next
 }
 

@@ -13,7 +13,7 @@ use crate::law::scarring::Scarring;
 use crate::shape::triangle::Region;
 use crate::spatial::bvh::Bvh;
 use crate::spatial::facet;
-use crate::spatial::patchwork::{Form, Patch, WallNow};
+use crate::spatial::patchwork::{Form, Patch, WallView};
 use crate::spatial::round::{Part, Round};
 use crate::spatial::surface::{Feature, PatchPoint, Surface};
 use nalgebra::UnitQuaternion;
@@ -248,7 +248,7 @@ impl Walls {
     }
 
     /// Wall poses `back` seconds ago.
-    pub(crate) fn now(&self, states: &[WallState], back: f64, out: &mut Vec<WallNow>) {
+    pub(crate) fn update_poses(&self, states: &[WallState], back: f64, out: &mut Vec<WallView>) {
         out.clear();
         out.extend(self.walls.iter().zip(states).map(|(wall, state)| {
             let mut state = state.clone();
@@ -256,7 +256,7 @@ impl Walls {
                 state.offset -= state.velocity * back;
                 state.orientation = rotation::by(&(state.spin * -back)) * state.orientation;
             }
-            WallNow {
+            WallView {
                 origin: state.to_world(&wall.centre, &Vec3::zeros()),
                 orientation: state.orientation,
                 centre: wall.centre + state.offset,

@@ -1,16 +1,16 @@
 //! Pose and motion of walls.
 
 use crate::base::Vec3;
-use crate::lanes::turn::Turn;
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use crate::law::History;
-use crate::pairs::meets::Meet;
+use crate::pairs::wall_history::WallContactHistory;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
 
 /// Vertex–plane contact of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Foot {
+pub(crate) struct VertexContact {
     pub plane: u32,
     pub vertex: u32,
     pub history: History,
@@ -40,23 +40,23 @@ pub(crate) struct WallState {
     pub acceleration: Vec3,
     /// Velocity change in the last step if servo-controlled [m/s].
     pub change: Vec3,
-    pub feet: Vec<Foot>,
+    pub feet: Vec<VertexContact>,
     /// Wall–wall contacts, sorted by wall and feature.
-    pub meets: Vec<Meet>,
+    pub meets: Vec<WallContactHistory>,
 }
 
 /// [`WallState`] for kernels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<R: Real> {
+pub(crate) struct WallPose<R: Real> {
     pub centre: V3<R>,
     pub offset: V3<R>,
-    pub orientation: Turn<R>,
+    pub orientation: QuaternionLanes<R>,
     pub turned: R::Mask,
     pub velocity: V3<R>,
     pub spin: V3<R>,
 }
 
-impl<R: Real> Place<R> {
+impl<R: Real> WallPose<R> {
     /// World to wall frame.
     #[inline(always)]
     pub fn to_local(self, x: V3<R>) -> V3<R> {
@@ -97,12 +97,12 @@ impl<R: Real> Place<R> {
 impl WallState {
     /// `centre`: initial centre.
     #[inline(always)]
-    fn place(&self, centre: &Vec3) -> Place<f64> {
+    fn pose(&self, centre: &Vec3) -> WallPose<f64> {
         let of = V3::from_vec;
-        Place {
+        WallPose {
             centre: of(centre),
             offset: of(&self.offset),
-            orientation: Turn::of(&self.orientation),
+            orientation: QuaternionLanes::of(&self.orientation),
             turned: self.turned,
             velocity: of(&self.velocity),
             spin: of(&self.spin),
@@ -112,23 +112,23 @@ impl WallState {
     /// World to wall frame; initial `centre`.
     #[inline(always)]
     pub fn to_local(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).to_local(V3::from_vec(x)).to_vec()
+        self.pose(centre).to_local(V3::from_vec(x)).to_vec()
     }
 
     /// Wall frame to world.
     #[inline(always)]
     pub fn to_world(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).to_world(V3::from_vec(x)).to_vec()
+        self.pose(centre).to_world(V3::from_vec(x)).to_vec()
     }
 
     /// Direction to world.
     #[inline(always)]
     pub fn turn(&self, v: &Vec3) -> Vec3 {
-        self.place(&Vec3::zeros()).turn(V3::from_vec(v)).to_vec()
+        self.pose(&Vec3::zeros()).turn(V3::from_vec(v)).to_vec()
     }
 
     #[inline(always)]
     pub fn velocity_at(&self, centre: &Vec3, x: &Vec3) -> Vec3 {
-        self.place(centre).velocity_at(V3::from_vec(x)).to_vec()
+        self.pose(centre).velocity_at(V3::from_vec(x)).to_vec()
     }
 }

@@ -148,8 +148,9 @@ fn slow_impacts_stick() {
                 input.bodies.push(sphere(Vec3::new(0.0, 0.0, 1.0002 * R), -Vec3::z() * v));
             }
             let mut run = Run::new(input);
-            let energy =
-                |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+            let energy = |run: &Run| {
+                measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+            };
             let before = energy(&run);
             let end = 2e-4 * R / v + 40.0 * (mass / stiffness).sqrt();
             while run.state.time < end {
@@ -198,8 +199,9 @@ fn sticking_cloud_closes_balances() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let mut run = Run::new(input());
-            let total =
-                |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+            let total = |run: &Run| {
+                measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+            };
             let (start, before) = (total(&run), measure::momentum(&run.model, &run.state).linear);
             run.steps(400);
             if threads == 2 {
@@ -208,7 +210,7 @@ fn sticking_cloud_closes_balances() {
                 run.work = Work::new(&run.model, &run.state);
             }
             run.steps(400);
-            let dissipated = run.state.ledger.dissipated();
+            let dissipated = run.state.balance.dissipated();
             let open = (total(&run) - start).abs();
             let contacts = measure::contacts(&run.model, &run.state);
             let pulled = contacts.iter().filter(|c| c.normal_force < 0.0).count();

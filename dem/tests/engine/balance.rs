@@ -1,19 +1,19 @@
 //! Energy and momentum balances of whole scenes.
 
 use crate::scene::{Random, Run, pile, plane, sphere, stone, weightless};
-use trackbed_dem::ledger::Impulse;
+use trackbed_dem::balance_terms::Impulse;
 use trackbed_dem::{AppliedForce, BodyInput, LocalDamping, Material, Shape, TimeStep, Vec3, measure};
 
 fn energy_left(run: &Run) -> f64 {
-    let ledger = &run.state.ledger;
-    measure::energies(&run.model, &run.state).total() + ledger.dissipated() - ledger.work()
+    let balance = &run.state.balance;
+    measure::energies(&run.model, &run.state).total() + balance.dissipated() - balance.work()
 }
 
 fn gap(run: &Run, before: &Impulse) -> (f64, f64) {
     let after = measure::momentum(&run.model, &run.state);
-    let given = run.state.ledger.impulse();
-    let scale = run.state.ledger.gravity.linear.norm().max(1e-12);
-    let angular = run.state.ledger.gravity.angular.norm().max(1e-12);
+    let given = run.state.balance.impulse();
+    let scale = run.state.balance.gravity.linear.norm().max(1e-12);
+    let angular = run.state.balance.gravity.angular.norm().max(1e-12);
     (
         (after.linear - before.linear - given.linear).norm() / scale,
         (after.angular - before.angular - given.angular).norm() / angular,
@@ -36,7 +36,7 @@ fn ledger_of_a_settling_pile_closes() {
                 worst = worst.max((energy_left(&run) - start).abs());
             }
         }
-        let lost = run.state.ledger.dissipated();
+        let lost = run.state.balance.dissipated();
         assert!(lost > 0.2, "the pile must have settled, {lost}");
         let (linear, angular) = gap(&run, &momentum);
         assert!(linear < 1e-11 && angular < 1e-11, "{linear:e} {angular:e}");
@@ -74,7 +74,7 @@ fn ledger_with_every_source_closes() {
         };
         run.step_under(&[push]);
     }
-    let l = run.state.ledger;
+    let l = run.state.balance;
     for entry in
         [l.work_applied, l.work_walls, l.work_constraints, l.dissipated_local_damping, l.dissipated_friction]
     {
@@ -149,7 +149,7 @@ fn pile_settles_just_below_the_limit() {
         run.step();
     }
     let e = measure::energies(&run.model, &run.state);
-    let lost = run.state.ledger.dissipated();
+    let lost = run.state.balance.dissipated();
     println!(
         "0.9 of the limit: kinetic {:.2e} J, lost {lost:.3} J, open {:.2e}",
         e.kinetic(),
@@ -179,7 +179,7 @@ fn unequal_spheres_conserve_angular_momentum() {
     };
     let scale = turning(&run);
     run.steps(1000);
-    assert!(run.state.ledger.dissipated_friction > 5e-5, "{:e}", run.state.ledger.dissipated_friction);
+    assert!(run.state.balance.dissipated_friction > 5e-5, "{:e}", run.state.balance.dissipated_friction);
     let gap = (measure::momentum(&run.model, &run.state).angular - before).norm() / scale;
     println!("angular momentum to {gap:.1e} of the sum of the spins'");
     assert!(gap < 1e-12, "{gap:e}");

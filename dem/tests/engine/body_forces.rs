@@ -73,21 +73,21 @@ fn accounts_close_with_drag() {
     input.time_step = TimeStep::Auto { fraction: 0.1 };
     let mut run = Run::new(input);
     let left = |run: &Run| {
-        let ledger = &run.state.ledger;
-        measure::energies(&run.model, &run.state).total() + ledger.dissipated() - ledger.work()
+        let balance = &run.state.balance;
+        measure::energies(&run.model, &run.state).total() + balance.dissipated() - balance.work()
     };
     let (start, momentum) = (left(&run), measure::momentum(&run.model, &run.state));
     while run.state.time < 0.1 {
         run.step();
     }
-    let work = run.state.ledger.work_body_forces;
+    let work = run.state.balance.work_body_forces;
     let (error, after) = (left(&run) - start, measure::momentum(&run.model, &run.state));
     println!("work {work:.4} J, error {error:.2e} J");
     assert!(work > 0.1 && error.abs() < 2e-4 * work, "{work} {error}");
-    let given = run.state.ledger.impulse();
+    let given = run.state.balance.impulse();
     let gap = after.linear - momentum.linear - given.linear;
     let turn = after.angular - momentum.angular - given.angular;
-    let scale = run.state.ledger.body_forces.linear.norm();
+    let scale = run.state.balance.body_forces.linear.norm();
     assert!(
         scale > 0.01 && gap.norm() < 1e-11 * scale && turn.norm() < 1e-11 * scale,
         "{gap} {turn} {scale}"

@@ -54,11 +54,11 @@ fn energy_balance_through_impact_and_breaking() {
         let mut run =
             Run::new(ModelInput { time_step: TimeStep::Auto { fraction }, ..falling(6, kind, 1.0) });
         let energy = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() - run.state.ledger.work()
-                + run.state.ledger.dissipated()
+            measure::energies(&run.model, &run.state).total() - run.state.balance.work()
+                + run.state.balance.dissipated()
         };
         let momentum = |run: &Run| {
-            let (m, i) = (measure::momentum(&run.model, &run.state), run.state.ledger.impulse());
+            let (m, i) = (measure::momentum(&run.model, &run.state), run.state.balance.impulse());
             (m.linear - i.linear, m.angular - i.angular)
         };
         let (e0, m0) = (energy(&run), momentum(&run));
@@ -73,7 +73,7 @@ fn energy_balance_through_impact_and_breaking() {
         let m1 = momentum(&run);
         assert!((m1.0 - m0.0).norm() < 1e-11, "{}", (m1.0 - m0.0).norm());
         assert!((m1.1 - m0.1).norm() < 1e-11, "{}", (m1.1 - m0.1).norm());
-        let l = &run.state.ledger;
+        let l = &run.state.balance;
         let (tension, shear) = run.state.broken_bonds();
         println!(
             "impact at {fraction} of the limit: error {worst:e} of the kinetic energy; bonds {:.4}, breaks {:.4}, contacts \
@@ -115,7 +115,7 @@ fn ringing_cube_energy_is_second_order() {
         input.time_step = TimeStep::Auto { fraction };
         let mut run = Run::new(input);
         let energy =
-            |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+            |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated();
         // The first step starts the leapfrog.
         run.step();
         let e0 = energy(&run);
@@ -125,7 +125,7 @@ fn ringing_cube_energy_is_second_order() {
             worst = worst.max((energy(&run) - e0).abs() / kinetic);
         }
         if damping != BondDamping::None {
-            assert!(run.state.ledger.dissipated_bonds > 0.2 * kinetic);
+            assert!(run.state.balance.dissipated_bonds > 0.2 * kinetic);
         }
         worst
     };
@@ -159,7 +159,7 @@ fn flying_cluster_keeps_its_momenta() {
     let angular = (after.angular - before.angular).norm() / before.angular.norm();
     println!("flying cluster: momentum changes by {linear:e}, angular momentum by {angular:e}");
     assert!(linear < 1e-12 && angular < 1e-12);
-    assert!(run.state.ledger.dissipated_bonds > 0.0 && run.state.bond_count() > 0);
+    assert!(run.state.balance.dissipated_bonds > 0.0 && run.state.bond_count() > 0);
 }
 
 /// All observable values, as bits.
@@ -169,7 +169,7 @@ fn bits(run: &mut Run) -> Vec<u64> {
         let v = [run.state.position(b), run.state.velocity(b), run.state.spin(b)];
         out.extend(v.iter().flat_map(|v| v.iter()).map(|x| x.to_bits()));
     }
-    let l = &run.state.ledger;
+    let l = &run.state.balance;
     out.extend([l.dissipated_dashpot, l.dissipated_bonds, l.released_by_breaks].map(f64::to_bits));
     for b in run.state.take_breaks() {
         out.extend([b.time.to_bits(), u64::from(b.bond), b.energy.to_bits()]);
@@ -191,7 +191,7 @@ fn breakage_is_independent_of_threads() {
             let mut run = Run::new(crash());
             assert!(run.model.sphere_count() > 2500);
             let momentum = |run: &Run| {
-                let (m, i) = (measure::momentum(&run.model, &run.state), run.state.ledger.impulse());
+                let (m, i) = (measure::momentum(&run.model, &run.state), run.state.balance.impulse());
                 (m.linear - i.linear, m.angular - i.angular)
             };
             let before = momentum(&run);
@@ -293,7 +293,7 @@ fn contact_takes_over_without_creating_energy() {
         // The bond's energy is released or passes to the contact.
         assert!(elastic <= 0.5 * pressure * pressure / k * 1.02);
         assert!((event.energy + elastic - stored).abs() < 0.01 * stored && event.energy > 0.0);
-        assert_eq!(event.energy, run.state.ledger.released_by_breaks);
+        assert_eq!(event.energy, run.state.balance.released_by_breaks);
     }
 }
 
@@ -310,7 +310,7 @@ fn broken_pair_separates_and_meets_again() {
         run.step();
     }
     let energy =
-        |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+        |run: &Run| measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated();
     let start = energy(&run);
     let gap = |run: &Run| (run.state.position(1) - run.state.position(0)).norm() - 0.02;
     while gap(&run) < 0.002 {
@@ -367,7 +367,7 @@ fn force_on_a_grip() {
     let top = force_on(&run.model, &run.state, |b| b == 3);
     assert!((top.z / -expected - 1.0).abs() < 0.01, "{top} {expected}");
     // Grip work: bond energy and dashpot loss.
-    let l = &run.state.ledger;
+    let l = &run.state.balance;
     let held = measure::energies(&run.model, &run.state).elastic_bonds;
     assert!(
         (l.work_constraints - held - l.dissipated_bonds).abs() < 0.01 * held,

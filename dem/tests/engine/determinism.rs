@@ -17,7 +17,7 @@ fn bits(run: &Run) -> Vec<u64> {
         let v = [run.state.position(b), run.state.velocity(b), run.state.spin(b)];
         out.extend(v.iter().flat_map(|v| v.iter()).chain(q.coords.iter()).map(|x| x.to_bits()));
     }
-    let l = &run.state.ledger;
+    let l = &run.state.balance;
     out.extend([l.dissipated_dashpot, l.dissipated_friction, l.work_walls].map(f64::to_bits));
     out.extend(l.walls.angular.iter().map(|x| x.to_bits()));
     out.push(l.work_servo.to_bits());
@@ -44,7 +44,7 @@ fn bits_are_independent_of_threads() {
             run.steps(4000);
             let (searches, lists) = run.work.rebuilds();
             assert!(searches > 2 && lists > 20, "{searches} {lists}");
-            assert!(run.state.ledger.dissipated() > 0.1);
+            assert!(run.state.balance.dissipated() > 0.1);
             bits(&run)
         })
     };
@@ -85,7 +85,7 @@ fn finding_contacts_has_no_effect() {
     let mut settled = Run::new(pile(4, true));
     settled.steps(3000);
     let Run { model, mut state, .. } = settled;
-    state.begin_anew();
+    state.reset_time();
     let mut work = Work::new(&model, &state);
     trackbed_dem::find_contacts(&model, &mut state, &mut work, &NoSurface).expect("contacts");
     let new = Work::new(&model, &state);
@@ -93,7 +93,7 @@ fn finding_contacts_has_no_effect() {
     let mut other = Run { model, state, work: new };
     one.steps(1);
     other.steps(1);
-    assert!(one.state.ledger.dissipated() > 0.0, "nothing touches");
+    assert!(one.state.balance.dissipated() > 0.0, "nothing touches");
     assert!(bits(&one) == bits(&other), "the look shows");
 }
 
@@ -230,9 +230,9 @@ fn skin_changes_nothing_at_walls() {
         let mut run = Run::new(input);
         run.steps(4000);
         // Sums follow the grouping of contacts: last bits may differ.
-        let l = run.state.ledger;
+        let l = run.state.balance;
         let sums = [l.dissipated_dashpot, l.dissipated_friction, l.work_walls, l.work_servo];
-        run.state.ledger = trackbed_dem::ledger::Ledger::default();
+        run.state.balance = trackbed_dem::balance_terms::BalanceTerms::default();
         (bits(&run), sums)
     };
     let mut seen = Vec::new();
@@ -258,7 +258,7 @@ fn shifted_clumps_update_member_spheres() {
         let shift = Vec3::new(0.0, 3e-4 * (body % 5) as f64, -2e-4 * (body % 3) as f64);
         state.shift(&model, body, &shift, &turn);
     }
-    state.forget_neighbours();
+    state.request_search();
     let mut other = state.clone();
     let mut fresh = Work::new(&model, &other);
     for k in 0..100 {

@@ -125,7 +125,7 @@ pub(crate) fn compare_events(
 fn explain(model: &Model, ours: &State, theirs: &State) {
     let motion = |s: &State, b: usize| [s.position(b), s.velocity(b), s.spin(b)];
     let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
-    let same = if ours.ledger == theirs.ledger { "the same" } else { "different" };
+    let same = if ours.balance == theirs.balance { "the same" } else { "different" };
     println!("{other} bodies move otherwise, the ledger is {same}");
     let bytes = [ours, theirs].map(|s| postcard::to_stdvec(s).unwrap());
     let at: Vec<usize> =
@@ -138,7 +138,7 @@ fn explain(model: &Model, ours: &State, theirs: &State) {
 
 fn same_bits(name: &str, input: ModelInput) -> State {
     let (differs, state, (searches, refreshes)) = compare(input, STEPS, |text| text);
-    let l = &state.ledger;
+    let l = &state.balance;
     println!(
         "{name}: {STEPS} steps, {searches} searches, {refreshes} near lists, dashpots {:.3e} J, friction {:.3e} J, planes {:.3e} J",
         l.dissipated_dashpot, l.dissipated_friction, l.work_walls
@@ -394,7 +394,7 @@ fn periodic_borders() {
         ];
         for (name, input) in pairs {
             let state = same_bits(name, with_borders(input));
-            let couple = state.ledger.periodic.angular.norm();
+            let couple = state.balance.periodic.angular.norm();
             println!("{name}: angular impulse of the borders {couple:.3e} N m s");
             assert!(couple > 0.0);
         }
@@ -455,9 +455,9 @@ fn round_and_driven_walls() {
             let of_walls: Vec<f64> = (1..4).filter(|_| round).map(|k| state.wall_force(k).0.norm()).collect();
             println!(
                 "{name}: {contacts} contacts, plate {force:.3} N, servo {:.3e} J, {of_walls:.3?} N",
-                state.ledger.work_servo
+                state.balance.work_servo
             );
-            assert!(contacts > 4 && force > 0.0 && state.ledger.work_servo != 0.0);
+            assert!(contacts > 4 && force > 0.0 && state.balance.work_servo != 0.0);
         }
     }
 }
@@ -504,7 +504,7 @@ fn bonds_that_break() {
         }
         let state =
             same_bits("bonds under a plate", pressed(bonded(Bond::Parallel(parallel), stone()), -Vec3::z()));
-        assert!(state.broken_bonds().0 > 0 && state.ledger.work_servo != 0.0);
+        assert!(state.broken_bonds().0 > 0 && state.balance.work_servo != 0.0);
         let mut input = bonded(Bond::Parallel(parallel), stone());
         input.bonds.retain(|b| b.a % 4 != 0 && b.b % 4 != 0);
         input.bodies.iter_mut().for_each(|b| b.velocity *= 8.0);

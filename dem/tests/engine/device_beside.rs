@@ -186,7 +186,7 @@ pub(crate) fn compare(input: ModelInput, change: impl Fn(String) -> String) -> C
         let contacts = work.surface_contacts();
         let of_blocks = contacts.iter().filter(|c| c.body as usize >= FIRST).count();
         met = [met[0] + contacts.len() - of_blocks, met[1] + of_blocks];
-        let mut same = contacts == BackEnd::surface_contacts(&device) && ours.ledger == theirs.ledger;
+        let mut same = contacts == BackEnd::surface_contacts(&device) && ours.balance == theirs.balance;
         if k % 7 == 0 || k == STEPS {
             device.download(&model, &mut ours).expect("a device that responds");
             same &= postcard::to_stdvec(&ours).unwrap() == postcard::to_stdvec(&theirs).unwrap();
@@ -221,7 +221,7 @@ fn spheres_and_blocks_on_moving_ground() {
             let (blocks, driven) =
                 (input.bodies.len() > FIRST, input.walls.iter().any(|w| w.servo.is_some()));
             let Compared { differs, state, met, read } = compare(input, |text| text);
-            let l = &state.ledger;
+            let l = &state.balance;
             println!(
                 "{name}: {met:?} contacts with the ground, work of the ground {:.3e} J, applied {:.3e} J, friction {:.3e} J, \
                  {read} numbers read a step",

@@ -58,7 +58,7 @@ fn events(k: usize, state: &mut State) -> bool {
 fn unlike_sizes_have_the_same_bits() {
     if device_is_there() {
         let (differs, state, (searches, _)) = compare_events(unlike(), STEPS, |text| text, events);
-        let l = &state.ledger;
+        let l = &state.balance;
         let (spent, walls) = (l.dissipated_friction, l.work_walls);
         println!("{searches} searches, friction {spent:.3e} J, planes {walls:.3e} J");
         assert_eq!(differs, None);
@@ -135,7 +135,7 @@ fn packed() -> ModelInput {
 fn periodic_lattice_matches_engine_bits() {
     if device_is_there() {
         let (differs, state, (searches, _)) = compare_events(packed(), 400, |text| text, |_, _| false);
-        let (friction, couple) = (state.ledger.dissipated_friction, state.ledger.periodic.angular.norm());
+        let (friction, couple) = (state.balance.dissipated_friction, state.balance.periodic.angular.norm());
         println!("{searches} searches, friction {friction:.3e} J, impulse of the borders {couple:.3e} N m s");
         assert_eq!(differs, None);
         assert!(searches > 1 && friction > 0.0 && couple > 0.0);
@@ -151,7 +151,7 @@ fn orphaned_contact_ends_on_cpu() {
         let input = between_triangles(gas([turning(stone()), smooth()], Vec::new()));
         let (differs, state, _) = compare_events(input, STEPS, |text| text, opens);
         assert_eq!(differs, None);
-        assert!(state.wall_contact_count() > 10 && state.ledger.dissipated_friction > 0.0);
+        assert!(state.wall_contact_count() > 10 && state.balance.dissipated_friction > 0.0);
     }
 }
 

@@ -171,7 +171,7 @@ fn collisions_keep_momentum_and_energy() {
             let after = measure::momentum(&run.model, &run.state);
             assert!((after.linear - momentum.linear).norm() < 1e-12 * run.model.mass(0));
             assert!((after.angular - momentum.angular).norm() < 1e-12 * run.model.mass(0));
-            let change = (total(&run) + run.state.ledger.dissipated()) / before - 1.0;
+            let change = (total(&run) + run.state.balance.dissipated()) / before - 1.0;
             touched += i32::from(contact);
             worst = worst.max(change.abs());
             sum += change;
@@ -307,11 +307,11 @@ fn a_heap_of_disks() {
             let mut run = Run::new(input.clone());
             let before = total(&run);
             run.until(0.4);
-            let ledger = run.state.ledger;
-            let error = (total(&run) - ledger.work() + ledger.dissipated() - before) / ledger.dissipated();
+            let balance = run.state.balance;
+            let error = (total(&run) - balance.work() + balance.dissipated() - before) / balance.dissipated();
             let places: Vec<[u64; 3]> =
                 (0..20).map(|b| run.state.position(b).map(f64::to_bits).into()).collect();
-            (places, error, ledger.dissipated() / before)
+            (places, error, balance.dissipated() / before)
         })
     };
     let (places, error, lost) = run_on(1);

@@ -302,8 +302,8 @@ fn drop_clump(spheres: &[([f64; 3], f64)], restitution: f64, tilt: f64, time: f6
     input.time_step = TimeStep::Auto { fraction: 0.3 };
     let mut run = Run::new(input);
     let total = |run: &Run| {
-        measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-            - run.state.ledger.work()
+        measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+            - run.state.balance.work()
     };
     let before = total(&run);
     let mut drift = 0.0_f64;

@@ -129,8 +129,8 @@ fn ledger_of_a_settling_pile_closes() {
         input.time_step = TimeStep::Auto { fraction };
         let mut run = Run::new(input);
         let energy = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-                - run.state.ledger.work()
+            measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+                - run.state.balance.work()
         };
         let start = energy(&run);
         let momentum = measure::momentum(&run.model, &run.state);
@@ -141,7 +141,7 @@ fn ledger_of_a_settling_pile_closes() {
                 worst = worst.max((energy(&run) - start).abs());
             }
         }
-        let (lost, given) = (run.state.ledger.dissipated(), run.state.ledger.impulse());
+        let (lost, given) = (run.state.balance.dissipated(), run.state.balance.impulse());
         assert!(lost > 0.2, "the pile must have settled, {lost}");
         let after = measure::momentum(&run.model, &run.state);
         let gap = (after.angular - momentum.angular - given.angular).norm() / given.angular.norm().max(1.0);

@@ -161,7 +161,7 @@ fn an_edge_slides_on_a_plane() {
             worst = worst.max(off(&run, after, Vec3::y() * row[8], velocity.norm()));
             let moving = 0.5 * 2.58369630788706 * velocity.norm_squared()
                 + 0.5 * 0.00427278112039847 * row[5] * row[5];
-            work = work.max((run.state.ledger.dissipated() / moving - row[10]).abs());
+            work = work.max((run.state.balance.dissipated() / moving - row[10]).abs());
         }
         println!("K = {stiffness:e}: {worst:.1e} of the speed, work of friction {work:.1e} of the energy");
         assert!(worst < bound && work < bound, "{stiffness:e}: {worst:e} {work:e}");

@@ -45,8 +45,8 @@ fn wall(shape: WallShape, body: RigidBody) -> WallInput {
 
 /// Energy balance: stored plus dissipated minus external work [J].
 fn account(run: &Run) -> f64 {
-    measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-        - run.state.ledger.work()
+    measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+        - run.state.balance.work()
 }
 
 /// Central differences to rounding; frequency, decay and energy converge to the closed form at second order.
@@ -90,7 +90,7 @@ fn free_vibration() {
             errors.push([off, frequency, decay, energy]);
             let momentum = measure::momentum(&run.model, &run.state).linear
                 - Vec3::y() * (mass * speed * (1.0 + a))
-                - run.state.ledger.impulse().linear;
+                - run.state.balance.impulse().linear;
             assert!(momentum.norm() < 1e-12 * mass * speed, "{momentum}");
         }
         for pair in errors.windows(2) {
@@ -152,7 +152,7 @@ fn collisions_keep_momentum_and_energy() {
                 let (before, start) = (account(&run), measure::momentum(&run.model, &run.state));
                 run.until(0.25);
                 let (after, end) = (account(&run), measure::momentum(&run.model, &run.state));
-                let impulse = run.state.ledger.impulse();
+                let impulse = run.state.balance.impulse();
                 let exchanged = mass * run.state.wall_velocity(0).0.norm();
                 touched += i32::from(exchanged > 1e-3);
                 worst = worst.max((after / before - 1.0).abs());
@@ -221,22 +221,22 @@ fn a_sprung_plate_sags() {
             }
             let whole = mass + run.model.mass(0);
             let sag = -run.state.wall_offset(0).z * stiffness / (whole * G) - 1.0;
-            let ledger = run.state.ledger;
+            let balance = run.state.balance;
             println!(
                 "{name} under {what}: sag off by {sag:.1e}, account by {:.1e}",
-                worst / ledger.dissipated()
+                worst / balance.dissipated()
             );
             assert!(sag.abs() < 1e-7, "{name} {what}: {sag:e}");
-            assert!(worst < 0.01 * ledger.dissipated(), "{name} {what}: {worst:e}");
+            assert!(worst < 0.01 * balance.dissipated(), "{name} {what}: {worst:e}");
             let end = measure::momentum(&run.model, &run.state);
             let (off, turn) = (
-                end.linear - start.linear - ledger.impulse().linear,
-                end.angular - start.angular - ledger.impulse().angular,
+                end.linear - start.linear - balance.impulse().linear,
+                end.angular - start.angular - balance.impulse().angular,
             );
-            let whole = ledger.impulse().linear.norm().max(ledger.gravity.linear.norm());
+            let whole = balance.impulse().linear.norm().max(balance.gravity.linear.norm());
             assert!(off.norm() < 1e-10 * whole && turn.norm() < 1e-10 * whole, "{off} {turn}");
             let held = run.state.wall_force(0).0.z / (run.model.mass(0) * G);
-            assert!((held + 1.0).abs() < 1e-7 && ledger.dissipated_mounts > 0.0, "{held}");
+            assert!((held + 1.0).abs() < 1e-7 && balance.dissipated_mounts > 0.0, "{held}");
         }
     }
 }
@@ -358,9 +358,9 @@ fn bits_are_independent_of_restart() {
                 (0..2).for_each(|w| most[w] = most[w].max(run.state.wall_force(w).0.norm()));
             }
             let end = measure::momentum(&run.model, &run.state);
-            let impulse = run.state.ledger.impulse();
+            let impulse = run.state.balance.impulse();
             let off = (end.linear - start.linear - impulse.linear).norm();
-            let error = (account(&run) - before).abs() / run.state.ledger.dissipated();
+            let error = (account(&run) - before).abs() / run.state.balance.dissipated();
             println!(
                 "{threads} threads, t = {:.3} s: forces {most:?}, energy {error:.1e}, momentum {off:.1e}",
                 run.state.time
@@ -446,5 +446,5 @@ fn a_round_body_with_inertia_turns() {
     assert!((end.linear - start.linear).norm() < 1e-12 && (end.angular - start.angular).norm() < 1e-12);
     assert!((account(&run) / before - 1.0).abs() < 3e-3);
     assert!(run.state.wall_velocity(0).1.y > 0.5, "{}", run.state.wall_velocity(0).1);
-    assert_eq!(run.state.ledger.impulse().angular, Vec3::zeros());
+    assert_eq!(run.state.balance.impulse().angular, Vec3::zeros());
 }

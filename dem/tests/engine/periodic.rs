@@ -119,7 +119,7 @@ fn collision_is_independent_of_borders() {
                 run.step();
                 touched = touched.max(across(&run));
             }
-            assert!(run.state.ledger.dissipated_friction > 0.0);
+            assert!(run.state.balance.dissipated_friction > 0.0);
             let order = if swapped { [1, 0] } else { [0, 1] };
             (order.map(|k| [run.state.velocity(k), run.state.spin(k) * 0.01]), touched)
         };
@@ -158,7 +158,7 @@ fn balances_close() {
         let mut run = Run::new(input);
         let before = measure::momentum(&run.model, &run.state);
         let total = |run: &Run| {
-            let l = &run.state.ledger;
+            let l = &run.state.balance;
             measure::energies(&run.model, &run.state).total() + l.dissipated() - l.work()
         };
         let start = total(&run);
@@ -177,7 +177,7 @@ fn balances_close() {
                 last = now;
             }
         }
-        let l = run.state.ledger;
+        let l = run.state.balance;
         let after = measure::momentum(&run.model, &run.state);
         let given = l.impulse();
         let scale = before.linear.norm() + l.gravity.linear.norm();
@@ -207,7 +207,7 @@ fn balances_close() {
 
 fn bits(run: &Run) -> Vec<u64> {
     let at = |b| [run.state.position(b), run.state.velocity(b), run.state.spin(b)];
-    let l = &run.state.ledger;
+    let l = &run.state.balance;
     let sums = [l.dissipated_friction, l.work_periodic, l.periodic.angular.y];
     let bodies = (0..run.model.body_count()).flat_map(at).flat_map(|v| [v.x, v.y, v.z]);
     bodies.chain(sums).map(f64::to_bits).collect()
@@ -234,7 +234,7 @@ fn threads_and_restarts_do_not_show() {
                 run.work = Work::new(&run.model, &run.state);
             }
             run.steps(300);
-            assert!(run.state.ledger.work_periodic != 0.0, "bodies must have been put back");
+            assert!(run.state.balance.work_periodic != 0.0, "bodies must have been put back");
             assert!(across(&run) > 20);
             bits(&run)
         })

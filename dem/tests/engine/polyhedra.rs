@@ -316,8 +316,8 @@ fn collisions_keep_their_account() {
             let mut run = Run::new(input);
             let before = total(&run);
             run.until(0.1);
-            let ledger = &run.state.ledger;
-            let error = (total(&run) + ledger.dissipated() - before) / before;
+            let balance = &run.state.balance;
+            let error = (total(&run) + balance.dissipated() - before) / before;
             worst = worst.max(error.abs());
             sum += error;
         }
@@ -359,11 +359,11 @@ fn a_heap_of_stones() {
             let mut run = Run::new(input.clone());
             let before = total(&run);
             run.until(0.5);
-            let ledger = run.state.ledger;
-            let error = (total(&run) - ledger.work() + ledger.dissipated() - before) / ledger.dissipated();
+            let balance = run.state.balance;
+            let error = (total(&run) - balance.work() + balance.dissipated() - before) / balance.dissipated();
             let places: Vec<[u64; 3]> =
                 (0..18).map(|b| run.state.position(b).map(f64::to_bits).into()).collect();
-            (places, error, ledger.dissipated() / before)
+            (places, error, balance.dissipated() / before)
         })
     };
     let (places, error, lost) = run_on(1);
@@ -507,8 +507,8 @@ fn stones_come_and_go() {
     flow::exchange(&run.model, &mut run.state, &mut run.work, &[0], &[]).unwrap();
     run.until(0.25);
     assert!(!run.state.present(0) && run.state.present(1));
-    let ledger = &run.state.ledger;
-    let error = total(&run) + ledger.dissipated() - start - ledger.work_flow;
+    let balance = &run.state.balance;
+    let error = total(&run) + balance.dissipated() - start - balance.work_flow;
     let brought = run.model.mass(1) * (0.5 + G * 0.16);
     println!("account off by {:.1e} of what came", error / brought);
     assert!(error.abs() < 1e-3 * brought, "{error:e}");
@@ -533,8 +533,8 @@ fn blocks_that_fall_flat() {
     while run.state.time < 0.6 {
         run.follow();
     }
-    let ledger = &run.state.ledger;
-    let error = (total(&run) + ledger.dissipated() - before) / before;
+    let balance = &run.state.balance;
+    let error = (total(&run) + balance.dissipated() - before) / before;
     let flat = (0..4).filter(|b| run.state.position(*b).z < 0.021).count();
     println!("{flat} blocks lie flat, account off by {error:.1e}");
     assert!(flat >= 2 && error.abs() < 0.01, "{flat} {error:e}");

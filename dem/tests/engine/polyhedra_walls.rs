@@ -131,10 +131,10 @@ fn bounces(throws: u32, least: i32) {
                     run.step();
                     contact |= run.state.wall_force(0).0.norm() > 0.0;
                 }
-                let ledger = run.state.ledger;
-                let spent = ledger.dissipated_dashpot + ledger.dissipated_friction;
+                let balance = run.state.balance;
+                let spent = balance.dissipated_dashpot + balance.dissipated_friction;
                 let change = (total(&run) + spent) / before - 1.0;
-                assert_eq!(ledger.work_walls, 0.0);
+                assert_eq!(balance.work_walls, 0.0);
                 touched += i32::from(contact);
                 worst = worst.max(change.abs());
                 sum += change;
@@ -239,11 +239,11 @@ fn stones_in_funnel(kind: &str) {
                 run.state.velocity(b)
             );
         }
-        let ledger = run.state.ledger;
-        let spent = ledger.dissipated_dashpot + ledger.dissipated_friction;
-        let off = total(&run) + spent - before - ledger.work_walls;
-        println!("{name}: account off by {off:.2e} J of {:.2e} J that the wall did", ledger.work_walls);
-        assert!(off.abs() < 1e-2 * ledger.work_walls, "{name}: {off} {}", ledger.work_walls);
+        let balance = run.state.balance;
+        let spent = balance.dissipated_dashpot + balance.dissipated_friction;
+        let off = total(&run) + spent - before - balance.work_walls;
+        println!("{name}: account off by {off:.2e} J of {:.2e} J that the wall did", balance.work_walls);
+        assert!(off.abs() < 1e-2 * balance.work_walls, "{name}: {off} {}", balance.work_walls);
     }
 }
 
@@ -308,9 +308,10 @@ fn a_border_does_not_show() {
     one.until(0.6);
     let contacts = measure::contacts(&one.model, &one.state);
     let across = contacts.iter().filter(|c| c.shift != Vec3::zeros() && c.normal_force > 0.0).count();
-    let ledger = one.state.ledger;
-    let off =
-        total(&one) + ledger.dissipated_dashpot + ledger.dissipated_friction - before - ledger.work_periodic;
+    let balance = one.state.balance;
+    let off = total(&one) + balance.dissipated_dashpot + balance.dissipated_friction
+        - before
+        - balance.work_periodic;
     println!("{across} contacts across the borders, account off by {off:.1e} J of {before:.1e} J");
     assert!(across > 5 && off.abs() < 2e-2 * before.abs(), "{across} {off}");
     let weight: f64 = (0..one.model.body_count()).map(|b| one.model.mass(b) * G).sum();

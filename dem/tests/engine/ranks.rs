@@ -3,7 +3,7 @@
 use crate::bonds_many::crash;
 use crate::determinism::mill;
 use crate::scene::{FOLLOWED, Random, pile, plane, sphere, stone};
-use trackbed_dem::ranks::{Kind, Link, Local, Lost, Ranks, Traffic, check, local, serve};
+use trackbed_dem::ranks::{Link, Local, Lost, MessageCounters, MessageKind, Ranks, check, local, serve};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{
     AppliedForce, BackEnd, BodyForce, Material, Model, ModelInput, Plane, Shape, State, StepError, Vec3,
@@ -132,7 +132,7 @@ fn same_bits(name: &str, input: ModelInput, how: How) -> State {
         let differs = seen.iter().zip(&expected).position(|(a, b)| a != b);
         assert_eq!(differs, None, "{name}: the first look at which {size} ranks differ");
         // Each rank but the first reports after a step.
-        let books = traffic.messages[Kind::Books as usize];
+        let books = traffic.messages[MessageKind::Books as usize];
         assert_eq!(books, (how.steps * (size - 1)) as u64, "{name}: reports of {size} ranks");
         assert!(size == 1 || traffic.ghosts > 60, "{name}: {} ghosts", traffic.ghosts);
         println!(
@@ -148,7 +148,7 @@ fn same_bits(name: &str, input: ModelInput, how: How) -> State {
 #[test]
 fn spheres() {
     let state = same_bits("spheres", gas(), How { steps: 1211, look: 173, ..How::default() });
-    let l = &state.ledger;
+    let l = &state.balance;
     assert!(l.dissipated_dashpot > 0.0 && l.dissipated_friction > 0.0 && l.work_walls != 0.0, "{l:?}");
 }
 
@@ -164,14 +164,14 @@ fn clumps_in_wind() {
         ..pile(11, false)
     };
     let state = same_bits("clumps", input, How { steps: 1800, look: 60, follows: true, ..How::default() });
-    assert!(state.ledger.dissipated_friction > 0.0 && state.ledger.work_body_forces != 0.0);
+    assert!(state.balance.dissipated_friction > 0.0 && state.balance.work_body_forces != 0.0);
     assert!(state.wall_contact_count() > 10, "{}", state.wall_contact_count());
 }
 
 #[test]
 fn walls_that_move() {
     let state = same_bits("walls", mill(15), How { steps: 1000, look: 100, ..How::default() });
-    assert!(state.ledger.work_walls != 0.0 && state.wall_contact_count() > 10, "{:?}", state.ledger);
+    assert!(state.balance.work_walls != 0.0 && state.wall_contact_count() > 10, "{:?}", state.balance);
     let lid = 2;
     assert!(state.wall_offset(lid).norm() > 0.0, "the lid is driven");
 }
@@ -188,7 +188,7 @@ fn bonds_that_break() {
 fn pushed_bodies() {
     let how = How { steps: 400, look: 100, pushed: Some(4321), ..How::default() };
     let state = same_bits("pushed", gas(), how);
-    assert!(state.ledger.work_applied != 0.0);
+    assert!(state.balance.work_applied != 0.0);
 }
 
 /// Fails after a number of messages.
@@ -267,6 +267,6 @@ fn other_models_and_features_are_refused() {
 
 #[test]
 fn traffic_is_counted_by_kind() {
-    let lines = Traffic { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);
-    assert_eq!(lines[Kind::Ghosts as usize], "ghosts: 0.500 messages per step, 10 bytes per step");
+    let lines = MessageCounters { messages: [4; 6], bytes: [80; 6], ghosts: 0 }.lines(8);
+    assert_eq!(lines[MessageKind::Ghosts as usize], "ghosts: 0.500 messages per step, 10 bytes per step");
 }

@@ -95,7 +95,7 @@ fn time_step_above_the_limit() {
     assert_eq!(Model::new(input).unwrap().dt(), 1.0);
     assert!(matches!(
         refused(|i| i.time_step = TimeStep::Auto { fraction: 0.0 }),
-        ModelError::Setting { .. }
+        ModelError::StepContext { .. }
     ));
 }
 

@@ -51,7 +51,7 @@ fn ball_rolls_to_rest() {
         let path = run.state.position(0).x;
         let expected = 0.5 * v0 * v0 / (5.0 / 7.0 * 0.1 * G);
         assert!((path / expected - 1.0).abs() < 5e-3, "{path} against {expected}");
-        let lost = run.state.ledger.dissipated_friction + run.state.ledger.dissipated_dashpot;
+        let lost = run.state.balance.dissipated_friction + run.state.balance.dissipated_dashpot;
         let kinetic = 0.7 * run.model.mass(0) * v0 * v0;
         assert!((lost / kinetic - 1.0).abs() < 1e-2, "{lost} against {kinetic}");
     }

@@ -124,11 +124,11 @@ fn turning_walls_drag_at_the_limit() {
             "{k}: {force} {surface}"
         );
         assert!((moment.dot(&axis) + limit * reach).abs() < 1e-6 * limit * reach, "{k}: {moment}");
-        let ledger = &run.state.ledger;
+        let balance = &run.state.balance;
         let work = limit * reach * omega * run.state.time;
-        assert!((ledger.work_walls / work - 1.0).abs() < 1e-3, "{k}: {} {work}", ledger.work_walls);
-        assert!((ledger.dissipated_friction / work - 1.0).abs() < 1e-3, "{k}");
-        let change = measure::momentum(&run.model, &run.state).linear - before - ledger.impulse().linear;
+        assert!((balance.work_walls / work - 1.0).abs() < 1e-3, "{k}: {} {work}", balance.work_walls);
+        assert!((balance.dissipated_friction / work - 1.0).abs() < 1e-3, "{k}");
+        let change = measure::momentum(&run.model, &run.state).linear - before - balance.impulse().linear;
         assert!(change.norm() < 1e-12);
     }
 }

@@ -55,8 +55,8 @@ fn depth(run: &Run) -> f64 {
 }
 
 fn account(run: &Run) -> f64 {
-    measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-        - run.state.ledger.work()
+    measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+        - run.state.balance.work()
 }
 
 #[test]
@@ -164,17 +164,17 @@ fn balances_close_and_bits_agree() {
                 }
                 run.follow();
             }
-            let (end, impulse) = (measure::momentum(&run.model, &run.state), run.state.ledger.impulse());
+            let (end, impulse) = (measure::momentum(&run.model, &run.state), run.state.balance.impulse());
             let off = (end.linear - start.linear - impulse.linear).norm() / impulse.linear.norm();
             let turn = (end.angular - start.angular - impulse.angular).norm() / impulse.angular.norm();
-            let turned = run.state.ledger.dissipated() + run.state.ledger.work().abs();
+            let turned = run.state.balance.dissipated() + run.state.balance.work().abs();
             let error = (account(&run) - before).abs() / turned;
             println!(
                 "{threads} threads, {:.2} s in {k} steps: energy {error:.1e}, momentum {off:.1e}, angular {turn:.1e}, soil {:.0} J",
-                run.state.time, run.state.ledger.work_body_forces
+                run.state.time, run.state.balance.work_body_forces
             );
             assert!(error < 3e-3 && off < 1e-10 && turn < 1e-10, "{error:e} {off:e} {turn:e}");
-            assert!(run.state.ledger.work_body_forces < -1e4);
+            assert!(run.state.balance.work_body_forces < -1e4);
             bits(&run.state)
         })
     };

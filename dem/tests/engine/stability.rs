@@ -296,7 +296,7 @@ fn steps_of_changing_length() {
         let mut state = State::new(&model);
         let mut work = Work::new(&model, &state);
         let total =
-            |s: &State| measure::energies(&model, s).total() + s.ledger.dissipated() - s.ledger.work();
+            |s: &State| measure::energies(&model, s).total() + s.balance.dissipated() - s.balance.work();
         let (start, before) = (total(&state), measure::momentum(&model, &state));
         while state.time < 0.15 {
             if changing && state.steps.is_multiple_of(50) {
@@ -305,12 +305,12 @@ fn steps_of_changing_length() {
             }
             trackbed_dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a good step");
         }
-        let (after, impulse) = (measure::momentum(&model, &state), state.ledger.impulse());
-        let gravity = state.ledger.gravity.linear.norm();
+        let (after, impulse) = (measure::momentum(&model, &state), state.balance.impulse());
+        let gravity = state.balance.gravity.linear.norm();
         let linear = (after.linear - before.linear - impulse.linear).norm() / gravity;
         let angular = (after.angular - before.angular - impulse.angular).norm() / gravity / WIDTH;
         assert!(linear < 1e-11 && angular < 1e-11, "{linear:e} {angular:e}");
-        errors.push((total(&state) - start).abs() / state.ledger.dissipated());
+        errors.push((total(&state) - start).abs() / state.balance.dissipated());
     }
     println!("energy error with equal steps {:.2e}, with changing ones {:.2e}", errors[0], errors[1]);
     assert!(errors[1] < 3.0 * errors[0] + 1e-4, "{errors:?}");

@@ -40,7 +40,7 @@ fn free_flight() {
     }
     let t = run.state.time;
     let end = measure::momentum(&run.model, &run.state);
-    let impulse = run.state.ledger.impulse();
+    let impulse = run.state.balance.impulse();
     eprintln!("rotation energy drift {worst:e} over {t} s");
     assert!(worst < 1e-12);
     assert!((end.linear - start.linear - impulse.linear).norm() < 1e-9 * 50.0);
@@ -96,8 +96,8 @@ fn box_stands_on_its_vertices() {
     input.walls.push(wall);
     let mut run = Run::new(input);
     let total = |run: &Run| {
-        measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-            - run.state.ledger.work()
+        measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+            - run.state.balance.work()
     };
     let (start, before) = (total(&run), measure::momentum(&run.model, &run.state));
     let mut worst = 0.0_f64;
@@ -105,11 +105,11 @@ fn box_stands_on_its_vertices() {
         run.step();
         worst = worst.max((total(&run) - start).abs());
     }
-    let lost = run.state.ledger.dissipated();
+    let lost = run.state.balance.dissipated();
     eprintln!("energy error {worst:e} of {lost:e} J");
     assert!(worst < 0.02 * lost, "{worst:e} {lost:e}");
     let after = measure::momentum(&run.model, &run.state);
-    let impulse = run.state.ledger.impulse();
+    let impulse = run.state.balance.impulse();
     assert!((after.linear - before.linear - impulse.linear).norm() < 1e-10);
     assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
     let rise = run.state.wall_offset(0).z + 0.06 - 0.04 + 1.5 * 9.81 / (4.0 * 1e5);
@@ -133,9 +133,9 @@ fn collision_conserves_momentum() {
     let end = measure::momentum(&run.model, &run.state);
     assert!((end.linear - start.linear).norm() < 1e-15 && (end.angular - start.angular).norm() < 1e-15);
     assert!(run.state.velocity(0).x < 0.8 && run.state.wall_velocity(0).0.x > 0.1, "they must have met");
-    let left = measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated();
+    let left = measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated();
     assert!((left / energy - 1.0).abs() < 1e-3, "{left} {energy}");
-    assert_eq!(run.state.ledger.work(), 0.0);
+    assert_eq!(run.state.balance.work(), 0.0);
 }
 
 /// The contact uses both masses.
@@ -173,7 +173,7 @@ fn held_body_stays() {
     let (v, w) = run.state.wall_velocity(0);
     assert!(v.xy().norm() == 0.0 && (w - Vec3::z()).norm() < 1e-12, "{v} {w}");
     let after = measure::momentum(&run.model, &run.state);
-    let impulse = run.state.ledger.impulse();
+    let impulse = run.state.balance.impulse();
     assert!((after.linear - before.linear - impulse.linear).norm() < 1e-10);
     assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
 }

@@ -202,7 +202,7 @@ fn hollow_bodies_collide() {
                 touched |= a.norm() > 0.0;
                 steps += 1;
                 if steps % 20 == 0 {
-                    let change = (total(&run) + run.state.ledger.dissipated()) / before - 1.0;
+                    let change = (total(&run) + run.state.balance.dissipated()) / before - 1.0;
                     worst = worst.max(change.abs());
                 }
             }
@@ -232,12 +232,12 @@ fn an_angle_hangs_in_another() {
     run.follow_until(1.5);
     let (force, weight) = (run.state.wall_force(1).0, 3.0 * G);
     let (v, w) = run.state.wall_velocity(1);
-    let left = total(&run) + run.state.ledger.dissipated() - run.state.ledger.work();
+    let left = total(&run) + run.state.balance.dissipated() - run.state.balance.work();
     println!("carries {:.6} of the weight, {:.1e} m/s, {:.1e} rad/s", force.z / weight, v.norm(), w.norm());
-    println!("energy {:.1e} of what was lost", (left - start) / run.state.ledger.dissipated());
+    println!("energy {:.1e} of what was lost", (left - start) / run.state.balance.dissipated());
     assert!((force.z / weight - 1.0).abs() < 1e-4 && v.norm() < 1e-4 && w.norm() < 1e-3);
     assert!((run.state.wall_force(0).0 + force).norm() < 1e-9);
-    assert!((left - start).abs() < 1e-2 * run.state.ledger.dissipated());
+    assert!((left - start).abs() < 1e-2 * run.state.balance.dissipated());
 }
 
 /// Different meshes, step size control; each bears the load above.
@@ -300,15 +300,15 @@ fn a_belt_drags_a_block() {
     run.until(1.0);
     let (v, _) = run.state.wall_velocity(1);
     let after = measure::momentum(&run.model, &run.state);
-    let impulse = run.state.ledger.impulse();
+    let impulse = run.state.balance.impulse();
     assert!((after.linear - before.linear - impulse.linear).norm() < 1e-10);
     assert!((after.angular - before.angular - impulse.angular).norm() < 1e-10);
-    let ledger = run.state.ledger;
-    let left = total(&run) + ledger.dissipated() - ledger.work();
-    println!("{:.6} m/s, work of the belt {:.4} J, account {:.1e} J", v.x, ledger.work_walls, left - start);
+    let balance = run.state.balance;
+    let left = total(&run) + balance.dissipated() - balance.work();
+    println!("{:.6} m/s, work of the belt {:.4} J, account {:.1e} J", v.x, balance.work_walls, left - start);
     // Belt work m v²: half kinetic energy, half sliding.
-    assert!((v.x - 0.5).abs() < 1e-4 && (ledger.work_walls / (4.0 * 0.25) - 1.0).abs() < 1e-3);
-    assert!((left - start).abs() < 2e-3 * ledger.work_walls);
+    assert!((v.x - 0.5).abs() < 1e-4 && (balance.work_walls / (4.0 * 0.25) - 1.0).abs() < 1e-3);
+    assert!((left - start).abs() < 2e-3 * balance.work_walls);
 }
 
 /// Eccentric berthing on a sprung dolphin: energy fraction K²/(K² + R²), K radius of gyration, R distance

@@ -68,8 +68,8 @@ fn stirred_heap_balances() {
         input.walls.push(WallInput { motion: turning, ..WallInput::fixed(paddle, 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-                - run.state.ledger.work()
+            measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+                - run.state.balance.work()
         };
         let (start, before) = (total(&run), measure::momentum(&run.model, &run.state));
         let mut worst = 0.0_f64;
@@ -86,12 +86,12 @@ fn stirred_heap_balances() {
         let exact = turn * Vec3::new(0.025, 0.0, 0.02) + Vec3::new(0.045, 0.045, 0.04) + turning.velocity * t;
         assert!((tip - exact).norm() < 1e-12, "{tip} {exact}");
         let change = measure::momentum(&run.model, &run.state);
-        let impulse = run.state.ledger.impulse();
+        let impulse = run.state.balance.impulse();
         assert!((change.linear - before.linear - impulse.linear).norm() < 1e-12);
         assert!((change.angular - before.angular - impulse.angular).norm() < 1e-12);
-        let work = run.state.ledger.work_walls;
+        let work = run.state.balance.work_walls;
         assert!(work > 1e-3, "the walls must do work: {work}");
-        (worst, work + run.state.ledger.dissipated())
+        (worst, work + run.state.balance.dissipated())
     };
     let ((coarse, turnover), (fine, _)) = (run(0.4), run(0.1));
     eprintln!("energy error {coarse:e} and {fine:e} J of {turnover:e} J");
@@ -117,8 +117,8 @@ fn servo_holds_its_pressure() {
         input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(shape, 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-                - run.state.ledger.work()
+            measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+                - run.state.balance.work()
         };
         let start = total(&run);
         let mut worst = 0.0_f64;
@@ -132,10 +132,10 @@ fn servo_holds_its_pressure() {
         }
         eprintln!("largest deviation of the pressure {:.4} %", 100.0 * worst);
         assert!(worst < 0.01, "{worst}");
-        let ledger = &run.state.ledger;
-        assert!(ledger.work_servo > 1e-3 && ledger.work_walls == 0.0, "{ledger:?}");
+        let balance = &run.state.balance;
+        assert!(balance.work_servo > 1e-3 && balance.work_walls == 0.0, "{balance:?}");
         let error = (total(&run) - start).abs();
-        assert!(error < 0.02 * ledger.work_servo, "{error:e} of {:e}", ledger.work_servo);
+        assert!(error < 0.02 * balance.work_servo, "{error:e} of {:e}", balance.work_servo);
     }
 }
 
@@ -153,8 +153,8 @@ fn ball_rides_a_swinging_table() {
         input.bodies.push(sphere(Vec3::new(0.0, 0.0, 0.01 - 1e-6), Vec3::zeros()));
         let mut run = Run::new(input);
         let total = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-                - run.state.ledger.work()
+            measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+                - run.state.balance.work()
         };
         while run.state.time < 0.1 {
             run.step();
@@ -182,8 +182,8 @@ fn sliding_gate_stores_no_spring_energy() {
         input.walls.push(WallInput { motion, ..WallInput::fixed(square(1.0, 0.0), 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {
-            measure::energies(&run.model, &run.state).total() + run.state.ledger.dissipated()
-                - run.state.ledger.work()
+            measure::energies(&run.model, &run.state).total() + run.state.balance.dissipated()
+                - run.state.balance.work()
         };
         let (start, mut most, mut worst) = (total(&run), 0.0_f64, 0.0_f64);
         while run.state.time < 0.05 {
@@ -191,7 +191,7 @@ fn sliding_gate_stores_no_spring_energy() {
             most = most.max(measure::energies(&run.model, &run.state).elastic_tangential);
             worst = worst.max((total(&run) - start).abs());
         }
-        let turned = run.state.ledger.dissipated();
+        let turned = run.state.balance.dissipated();
         println!("friction {friction}: {most:.3e} J in springs, error {worst:.3e} of {turned:.3e} J");
         assert!(turned > 0.0, "the grain has met nothing");
         assert!(friction > 0.0 || most == 0.0, "{most} J in springs without friction");

@@ -33,7 +33,7 @@ fn belt_drags_a_sphere() {
         }
         let found = run.state.velocity(0).x / 0.2;
         assert!((found - 2.0 / 7.0).abs() < 1e-3, "{found}");
-        assert!(run.state.ledger.work_walls > 0.0);
+        assert!(run.state.balance.work_walls > 0.0);
     }
 }
 
@@ -104,7 +104,7 @@ fn applied_force_and_its_torque() {
     assert!((v - 2e-3 * t / run.model.mass(1)).abs() < 1e-12 * v.abs());
     assert!(run.state.spin(1).norm() < 1e-15);
     let e = measure::energies(&run.model, &run.state).total();
-    assert!((run.state.ledger.work_applied / e - 1.0).abs() < 1e-12);
+    assert!((run.state.balance.work_applied / e - 1.0).abs() < 1e-12);
 }
 
 /// Flat surface at a height rising with time.
@@ -182,7 +182,7 @@ fn the_force_of_dashpots_is_distinguished() {
                     met = true;
                 }
             }
-            let lost = state.ledger.dissipated_dashpot;
+            let lost = state.balance.dissipated_dashpot;
             if restitution == 1.0 {
                 assert!(force < 1e-9 && lost == 0.0, "{friction} {adhesion:?}: {force} {lost}");
             } else {
@@ -204,7 +204,7 @@ fn external_surface_lifts_grain() {
     let mut work = Work::new(&model, &state);
     let before = measure::momentum(&model, &state);
     let total = |state: &State| {
-        measure::energies(&model, state).total() + state.ledger.dissipated() - state.ledger.work()
+        measure::energies(&model, state).total() + state.balance.dissipated() - state.balance.work()
     };
     let start = total(&state);
     while state.time < 0.4 {
@@ -219,11 +219,11 @@ fn external_surface_lifts_grain() {
     assert!((contacts[0].force[2] / weight + 1.0).abs() < 1e-3, "{contacts:?}");
     // Lifting from rest costs m v², half of it in the impact.
     let lifted = weight * 0.1 * (state.time - 0.2) + model.mass(0) * 0.01;
-    assert!((state.ledger.work_surface / lifted - 1.0).abs() < 5e-3, "{}", state.ledger.work_surface);
+    assert!((state.balance.work_surface / lifted - 1.0).abs() < 5e-3, "{}", state.balance.work_surface);
     assert!((total(&state) - start).abs() < 2e-3 * lifted, "{} {lifted}", total(&state) - start);
-    let change = measure::momentum(&model, &state).linear - before.linear - state.ledger.impulse().linear;
+    let change = measure::momentum(&model, &state).linear - before.linear - state.balance.impulse().linear;
     assert!(change.norm() < 1e-12);
-    assert!(state.ledger.surface.linear.z > 0.0);
+    assert!(state.balance.surface.linear.z > 0.0);
 
     input.surface_material = None;
     let model = Model::new(input).unwrap();

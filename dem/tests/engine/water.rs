@@ -262,15 +262,15 @@ fn accounts_close_in_water() {
     let mut errors = Vec::new();
     for dt in [4e-3, 2e-3] {
         let mut run = one(block([2.0, 1.5, 0.5]), 915.0, body.clone(), water, (dt, 9.81));
-        let left = |run: &Run| measure::energies(&run.model, &run.state).total() - run.state.ledger.work();
+        let left = |run: &Run| measure::energies(&run.model, &run.state).total() - run.state.balance.work();
         let (start, momentum) = (left(&run), measure::momentum(&run.model, &run.state));
         run.steps((10.0 / dt) as usize);
         let error = (left(&run) - start).abs();
-        let work = run.state.ledger.work_body_forces.abs();
+        let work = run.state.balance.work_body_forces.abs();
         println!("dt {dt}: {error:.2e} J of {work:.2e} J");
         errors.push(error / work);
         let after = measure::momentum(&run.model, &run.state);
-        let gap = after.linear - momentum.linear - run.state.ledger.impulse().linear;
+        let gap = after.linear - momentum.linear - run.state.balance.impulse().linear;
         assert!(gap.norm() < 1e-9 * after.linear.norm().max(1.0), "{gap}");
     }
     assert!(errors[1] < 1e-3 && work_is_resolved(&errors), "{errors:?}");

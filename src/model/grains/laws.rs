@@ -1,7 +1,7 @@
 //! Contact laws of material pairs, and unused constants.
 
 use crate::scene::{Scene, SceneError, Table};
-use trackbed_dem::law::table::{Combination, combination};
+use trackbed_dem::law::table::{LawInfo, combination};
 use trackbed_dem::material::Pair;
 use trackbed_dem::{Material, PairOverride};
 
@@ -15,7 +15,7 @@ pub(super) fn check_laws(
     let given =
         |i: usize, j: usize| contacts.iter().rposition(|c| (c.a, c.b) == (i, j) || (c.a, c.b) == (j, i));
     for i in 0..materials.len() {
-        let mut laws: Vec<&Combination> = Vec::new();
+        let mut laws: Vec<&LawInfo> = Vec::new();
         for j in 0..materials.len() {
             match law(i, j) {
                 Ok(law) => laws.extend(law),
@@ -56,7 +56,7 @@ pub(super) fn check_laws(
     Ok(())
 }
 
-fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Result<(), SceneError> {
+fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&LawInfo]) -> Result<(), SceneError> {
     let m = scene.row("material", &scene.material, i);
     let unused = |key: &str| !laws.is_empty() && !laws.iter().any(|law| law.uses(key));
     if m.stiffness.is_some() && unused("stiffness") {
@@ -76,7 +76,7 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&Combination]) -> Res
         return Err(m.no_effect("corner_strength", "a contact law with conical damage"));
     }
     // Asperities add a tangential law to the linear law.
-    let knows = |law: &&Combination| law.normal == "linear" || law.uses("asperity_friction");
+    let knows = |law: &&LawInfo| law.normal == "linear" || law.uses("asperity_friction");
     if m.asperity_friction > 0.0 && !laws.is_empty() && !laws.iter().any(knows) {
         return Err(m.no_effect("asperity_friction", "a contact law with asperities"));
     }

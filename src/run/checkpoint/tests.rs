@@ -286,7 +286,7 @@ fn grain_state_is_bitwise_after_restarts() {
                 work = dem::Work::new(&model, &state);
             }
         }
-        assert!(state.ledger.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 0.1);
+        assert!(state.balance.dissipated() > 0.0 && dem::measure::coordination(&model, &state) > 0.1);
         seen.push(postcard::to_stdvec(&state).unwrap());
         seen
     };

@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::io;
 use trackbed_dem as dem;
 use trackbed_dem::flow::Arrival;
-use trackbed_dem::insert::room::{Places, Room};
+use trackbed_dem::insert::free_space::{FreePositions, FreeSpace};
 use trackbed_dem::measure::BoxRegion;
 
 /// Insertion rate over requested rate during a backlog.
@@ -27,7 +27,7 @@ const SLACK: f64 = 1e-9;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Inlet {
     waiting: VecDeque<u32>,
-    places: Places,
+    places: FreePositions,
     /// Requested and inserted amounts.
     allowed: f64,
     given: f64,
@@ -79,7 +79,7 @@ impl<'a> Flow<'a> {
                 |b: &u32| !view.state.present(*b as usize) && view.model.part(*b as usize) == inlet.part;
             Inlet {
                 waiting: (0..view.model.body_count() as u32).filter(waits).collect(),
-                places: Places::new(inlet.seed),
+                places: FreePositions::new(inlet.seed),
                 allowed: 0.0,
                 given: 0.0,
                 amount: Amount::default(),
@@ -217,11 +217,12 @@ impl<'a> Flow<'a> {
                 }
                 let room = room.get_or_insert_with(|| {
                     let largest = inlet.waiting.iter().map(|&b| model.radius(b as usize)).fold(0.0, f64::max);
-                    let mut room = Room::new(model, state, surface, plan.region, largest, leaves);
+                    let mut room = FreeSpace::new(model, state, surface, plan.region, largest, leaves);
                     arrive.iter().for_each(|a| room.fill(&a.position, model.radius(a.body)));
                     room
                 });
-                let Some((position, orientation)) = room.place(model.radius(body), &mut inlet.places) else {
+                let Some((position, orientation)) = room.find_position(model.radius(body), &mut inlet.places)
+                else {
                     inlet.full += 1;
                     // Without a free position, at most one grain is due.
                     inlet.allowed = inlet.allowed.min(inlet.given + amount);
@@ -264,7 +265,7 @@ impl<'a> Flow<'a> {
             at_end: self.present(view),
             inserted: come,
             removed: gone,
-            energy_in: view.state.ledger.work_flow,
+            energy_in: view.state.balance.work_flow,
             mean_rate_in: over(come.mass, time),
             mean_rate_out: over(gone.mass, time),
             later_rate_in: over(come.mass - half_in, time - half),

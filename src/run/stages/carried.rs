@@ -43,8 +43,8 @@ impl Carried {
     }
 
     /// Restores contact history after contact detection.
-    pub fn remember(&self, model: &dem::Model, state: &mut dem::State) {
-        state.remember(model, &self.state, self.count);
+    pub fn restore_history(&self, model: &dem::Model, state: &mut dem::State) {
+        state.restore_history(model, &self.state, self.count);
     }
 
     /// Sets the bed in an initial state.
@@ -52,7 +52,7 @@ impl Carried {
     /// # Errors
     /// Different grains.
     pub fn put(&self, model: &dem::Model, state: &mut dem::State) -> Result<(), Failure> {
-        state.carry(model, &self.state, self.count).map_err(|body| {
+        state.transfer_bodies(model, &self.state, self.count).map_err(|body| {
             Failure::Input(format!(
                 "--from: found grain {body} different from the imported bed, expected the same [[grains]]"
             ))

@@ -108,7 +108,7 @@ fn couple<'b>(
             let (state, mut resting, contacts) =
                 equilibrium(body, (&grains, start), &mut surface, &dead_load)?;
             if let Some(carried) = carried {
-                carried.remember(&grains, &mut resting);
+                carried.restore_history(&grains, &mut resting);
             }
             let reference = state.u.clone();
             let start = coupling::step::State::new(state, resting);
@@ -196,7 +196,7 @@ fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
     if loaded.moment.stage != END {
         return Ok((reference, memory, state, seat_work));
     }
-    state.begin_anew();
+    state.reset_time();
     Ok((reference, None, state, 0.0))
 }
 

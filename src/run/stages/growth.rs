@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::run::context::Run;
 use crate::run::packing::GrowthRecord;
 use crate::run::summary::StageRecord;
-use trackbed_dem::insert::grow::{GrowError, grow};
+use trackbed_dem::insert::radius_expansion::{GrowError, grow};
 
 /// Growth stage.
 pub struct Growth;

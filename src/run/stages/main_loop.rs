@@ -77,13 +77,13 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
             let mut system = GrainsSystem::new(model, start, interval, run.device, sharing)?;
             if let Some(carried) = state.grains.as_ref().and_then(|grains| grains.carried.as_ref()) {
                 let (model, state) = system.state_mut();
-                carried.remember(model, state);
+                carried.restore_history(model, state);
             }
             system
         }
     };
     if resumed.take_if(|loaded| loaded.moment.stage == END).is_some() {
-        system.begin_anew();
+        system.reset_time();
     }
     run.prepare()?;
     let grains = state.grains.as_ref().expect("a run with grains");

@@ -76,7 +76,7 @@ pub fn with_grains<S: System>(
         None => {
             let view = system.grains().expect("a system with grains");
             let coordination = dem::measure::coordination(view.model, view.state);
-            let dem::ledger::Impulse { linear, angular } = momentum(system);
+            let dem::balance_terms::Impulse { linear, angular } = momentum(system);
             Start { coordination, linear, angular }
         }
     };
@@ -84,7 +84,7 @@ pub fn with_grains<S: System>(
     let settled = (grains.done == Packed::Finished).then_some(&grains.bed);
     advance(run, system, Some((&grains.part, start)), resumed, settled, summary)?;
     let after = momentum(system);
-    let ledger = &system.grains().expect("a system with grains").state.ledger;
+    let ledger = &system.grains().expect("a system with grains").state.balance;
     let impulse = ledger.impulse();
     let (mut linear, mut angular) = (0.0, 0.0);
     let outside = [&ledger.gravity, &ledger.walls, &ledger.surface, &ledger.applied, &ledger.body_forces];

@@ -119,7 +119,7 @@ impl TrackSystem for CoupledSystem<'_> {
     fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
         let grains = &mut self.state.grains;
         moves.iter().for_each(|(body, shift, turn)| grains.shift(&self.model.grains, *body, shift, turn));
-        grains.forget_neighbours();
+        grains.request_search();
         self.changed = true;
     }
 }
@@ -184,7 +184,7 @@ impl System for CoupledSystem<'_> {
     fn seat_work(&self) -> f64 {
         match &self.seats {
             Some(seats) => seats.work,
-            None => self.state.grains.ledger.work_applied,
+            None => self.state.grains.balance.work_applied,
         }
     }
 }

@@ -93,8 +93,8 @@ impl GrainsSystem {
     }
 
     /// Resets time and balances.
-    pub fn begin_anew(&mut self) {
-        self.state.begin_anew();
+    pub fn reset_time(&mut self) {
+        self.state.reset_time();
     }
 }
 
@@ -142,7 +142,7 @@ impl TrackSystem for GrainsSystem {
     fn relocate(&mut self, moves: &[(usize, dem::Vec3, nalgebra::UnitQuaternion<f64>)]) {
         let (model, state) = self.state_mut();
         moves.iter().for_each(|(body, shift, turn)| state.shift(model, *body, shift, turn));
-        state.forget_neighbours();
+        state.request_search();
     }
 }
 

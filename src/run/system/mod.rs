@@ -86,7 +86,7 @@ pub trait System: TrackSystem {
     }
     /// Returns the seat load work [J].
     fn seat_work(&self) -> f64 {
-        self.grains().map_or(0.0, |g| g.state.ledger.work_applied)
+        self.grains().map_or(0.0, |g| g.state.balance.work_applied)
     }
 }
 

@@ -15,10 +15,10 @@ mod wave;
 pub use wave::{Measured, Orbit, Wave, WaveError};
 
 use super::skin::Wet;
-use super::work::{Act, ForceWork, Seen};
+use super::work::{BodyForceModel, ForceInput, ForceWork};
 use crate::base::Vec3;
-use crate::bodies::table::{Bodies, Kind};
-use crate::lanes::record::xyz;
+use crate::bodies::table::{Bodies, BodyKind};
+use crate::lanes::vec4::xyz;
 use std::f64::consts::PI;
 
 pub(super) const SOURCE: &str =
@@ -87,7 +87,7 @@ impl Water {
         self.wave.map_or(Orbit::default(), |wave| wave.at(at.x, at.y, at.z - self.level, time))
     }
 
-    fn on_body(&self, seen: &Seen<'_>, k: usize, work: &mut ForceWork) {
+    fn on_body(&self, seen: &ForceInput<'_>, k: usize, work: &mut ForceWork) {
         let block = seen.block;
         let (centre, velocity, spin) = (xyz(&block.centre[k]), xyz(&block.velocity[k]), xyz(&block.spin[k]));
         let orbit = self.orbit(&centre, seen.time);
@@ -119,8 +119,8 @@ impl Water {
     }
 }
 
-impl Act for Water {
-    fn act(&self, seen: &Seen<'_>, work: &mut ForceWork) {
+impl BodyForceModel for Water {
+    fn act(&self, seen: &ForceInput<'_>, work: &mut ForceWork) {
         for k in 0..seen.block.bodies.len() {
             self.on_body(seen, k, work);
         }
@@ -128,21 +128,21 @@ impl Act for Water {
 }
 
 /// Part below `level` above the centre [m]; length of the drag moment [m].
-fn wet_part(seen: &Seen<'_>, k: usize, level: f64, past: &Vec3, work: &mut ForceWork) -> (Wet, f64) {
+fn wet_part(seen: &ForceInput<'_>, k: usize, level: f64, past: &Vec3, work: &mut ForceWork) -> (Wet, f64) {
     let members = seen.members;
     let radius = work.radius[k];
     let speed = past.norm();
     let along = if speed > 0.0 { past / speed } else { Vec3::x() };
-    let kind = if members.rigid { members.kind[k] } else { Kind::Sphere };
+    let kind = if members.rigid { members.kind[k] } else { BodyKind::Sphere };
     let wet = match kind {
-        Kind::Sphere => ball(radius, level, &along),
-        Kind::Clump => {
+        BodyKind::Sphere => ball(radius, level, &along),
+        BodyKind::Clump => {
             let whole = 4.0 / 3.0 * PI * radius.powi(3);
             let middle = xyz(&seen.block.centre[k]);
             let spheres = members.spheres_of(k).iter().map(|s| (xyz(s) - middle, s[3]));
             clump(spheres, whole, radius, level)
         }
-        Kind::Solid => {
+        BodyKind::Solid => {
             let (shape, scale) = members.solids[k];
             let turn = &seen.block.rotation[k].orientation;
             let [up, along] = [&Vec3::z(), &along].map(|x| turn.inverse_transform_vector(x));

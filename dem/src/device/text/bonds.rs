@@ -2,20 +2,20 @@
 
 use super::record::{Part, keep, memory};
 use crate::bond::{debonded as loose, kernel};
-use crate::device::layout::What;
+use crate::device::layout::EntryKind;
 use crate::device::tape::{self, Recorded, Results, input, vector};
 use crate::lanes::Real;
 use crate::law::ContactLaw;
 
-pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn part<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("bonds.c"),
         formulas: vec![
             ("BOND", bond()),
             ("DEBONDED_TOUCH", debonded_touch()),
-            ("DEBONDED", debonded::<L, ROLL>(law)),
+            ("DEBONDED", debonded::<L, ROLLING>(law)),
         ],
-        entries: &[(What::Bond, "bond"), (What::Debonded, "debonded_contact")],
+        entries: &[(EntryKind::Bond, "bond"), (EntryKind::Debonded, "debonded_contact")],
     }
 }
 
@@ -28,8 +28,8 @@ fn bond() -> String {
         w: vector(&format!("w{side}")),
     };
     let (a, b) = (motion("a"), motion("b"));
-    let mut memory = kernel::Memory { shear: vector("shear"), turn: vector("turn") };
-    let frame = kernel::carry(constants[kernel::OFFSET], &a, &b, &mut memory, input("dt"));
+    let mut memory = kernel::BondHistory { shear: vector("shear"), turn: vector("turn") };
+    let frame = kernel::update_frame(constants[kernel::OFFSET], &a, &b, &mut memory, input("dt"));
     let r = kernel::respond(&constants, &a, &b, &frame, &memory);
     let holds = kernel::holds(&r);
     let mut out = Results::default();
@@ -63,18 +63,18 @@ fn debonded_touch() -> String {
     out.text()
 }
 
-fn debonded<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn debonded<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
     let (law, mut m, [a, b], reference) = (law(), memory(), parted(), input("reference"));
     let meeting = loose::meet(&a, &b);
-    let on = tape::Truth::Known(true);
+    let on = tape::RecordedMask::Known(true);
     let f =
-        loose::forces::<L, Recorded, ROLL>(&law, (&a, &b), &meeting, reference, &mut m, on, input("step"));
+        loose::forces::<L, Recorded, ROLLING>(&law, (&a, &b), &meeting, reference, &mut m, on, input("step"));
     let mut out = Results::default();
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque_a);
     out.vector("o->torque_b", f.torque_b);
     let deep = meeting.overlap.gt(a.radius.min(b.radius));
-    keep::<ROLL>(&mut out, &m, f.dashpot, f.friction, deep);
+    keep::<ROLLING>(&mut out, &m, f.dashpot, f.friction, deep);
     out.text()
 }

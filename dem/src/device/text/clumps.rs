@@ -4,26 +4,29 @@ use super::motion::{alone as single, moved, power, pushed, single_held};
 use super::record::{Part, memory};
 use super::{planes as plane, spheres};
 use crate::contact::{planes, sphere_pair};
-use crate::device::layout::{Features, What};
-use crate::device::tape::{self, Recorded, Results, Truth, input, vector};
+use crate::device::layout::{EntryKind, Features};
+use crate::device::tape::{self, Recorded, RecordedMask, Results, input, vector};
 use crate::integrate::kick;
+use crate::integrate::rigid_rotation::{self, Rigid, RotatedBody};
 use crate::integrate::rotation::{self, Midpoint};
-use crate::integrate::turning::{self, Rigid, Turned};
-use crate::lanes::turn::{Turn, placed};
+use crate::lanes::quaternion::{QuaternionLanes, placed};
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 
-pub(super) fn contacts<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn contacts<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("clump_contacts.c"),
-        formulas: vec![("MEMBERS", members::<L, ROLL>(law)), ("MEMBER_PLANE", member_plane::<L, ROLL>(law))],
-        entries: &[(What::Members, "member_contact"), (What::MemberPlane, "member_plane_contact")],
+        formulas: vec![
+            ("MEMBERS", members::<L, ROLLING>(law)),
+            ("MEMBER_PLANE", member_plane::<L, ROLLING>(law)),
+        ],
+        entries: &[(EntryKind::Members, "member_contact"), (EntryKind::MemberPlane, "member_plane_contact")],
     }
 }
 
 pub(super) fn motion(f: &Features) -> Part {
     let (midpoint, iterate) = half_turn();
-    let [kick, after] = if f.damped { among::<true>() } else { among::<false>() };
+    let [kick, after] = if f.damped { rotate_in_group::<true>() } else { rotate_in_group::<false>() };
     Part {
         frame: include_str!("clumps.c"),
         formulas: vec![
@@ -40,28 +43,28 @@ pub(super) fn motion(f: &Features) -> Part {
     }
 }
 
-fn members<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn members<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
+    let (law, mut m, on) = (law(), memory(), RecordedMask::Known(true));
     let offsets = (vector("xa") - vector("ca"), vector("xb") - vector("cb"));
     let pair = sphere_pair::Pair { offsets, ..spheres::pair() };
-    let f = sphere_pair::forces::<L, Recorded, true, ROLL>(&law, &pair, &mut m, on, input("step"));
-    spheres::results::<ROLL>(&f, &m)
+    let f = sphere_pair::forces::<L, Recorded, true, ROLLING>(&law, &pair, &mut m, on, input("step"));
+    spheres::results::<ROLLING>(&f, &m)
 }
 
-fn member_plane<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn member_plane<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
-    let touch = planes::Touch { offset: vector("x") - vector("centre"), ..plane::touch() };
-    let f = planes::forces::<L, Recorded, true, ROLL>(&law, &touch, &mut m, on, input("step"));
-    plane::results::<ROLL>(&f, &m)
+    let (law, mut m, on) = (law(), memory(), RecordedMask::Known(true));
+    let touch = planes::PlaneContact { offset: vector("x") - vector("centre"), ..plane::touch() };
+    let f = planes::forces::<L, Recorded, true, ROLLING>(&law, &touch, &mut m, on, input("step"));
+    plane::results::<ROLLING>(&f, &m)
 }
 
-fn orientation(name: &str) -> Turn<Recorded> {
-    Turn { v: vector(name), s: input(format!("{name}.w")) }
+fn orientation(name: &str) -> QuaternionLanes<Recorded> {
+    QuaternionLanes { v: vector(name), s: input(format!("{name}.w")) }
 }
 
-fn put(out: &mut Results, orientation: Turn<Recorded>) {
+fn put(out: &mut Results, orientation: QuaternionLanes<Recorded>) {
     out.vector("(*nq)", orientation.v);
     out.number("(*nq).w", orientation.s);
 }
@@ -93,11 +96,11 @@ fn half_turn() -> (String, String) {
     (begin, one.text())
 }
 
-fn new() -> Turn<Recorded> {
+fn new() -> QuaternionLanes<Recorded> {
     rotation::turned(orientation("q"), vector("c"))
 }
 
-fn among<const DAMPED: bool>() -> [String; 2] {
+fn rotate_in_group<const DAMPED: bool>() -> [String; 2] {
     let torques = || {
         let (torque, spin, damping) = (vector("s.torque"), vector("w"), input("damping"));
         let stop = |torque, spin| kick::resist(torque, spin, damping);
@@ -106,20 +109,26 @@ fn among<const DAMPED: bool>() -> [String; 2] {
     };
     tape::begin();
     let mut begin = Results::default();
-    begin.vector("(*nl)", turning::kicked(&rigid(), torques().0, input("kick")));
+    begin.vector("(*nl)", rigid_rotation::kicked(&rigid(), torques().0, input("kick")));
     let begin = begin.text();
     tape::begin();
     let (body, (torque, stop)) = (rigid(), torques());
     let sphere = !Recorded::zero().lt(input("moments.w"));
     let impulse = torque * input("kick");
-    let turned = turning::among::<Recorded, DAMPED>(&body, sphere, (impulse, stop), vector("(*nl)"), new());
+    let turned = rigid_rotation::rotate_in_group::<Recorded, DAMPED>(
+        &body,
+        sphere,
+        (impulse, stop),
+        vector("(*nl)"),
+        new(),
+    );
     let (velocity, held) = pushed::<DAMPED>();
     let mut out = Results::default();
     out.vector("(*nv)", velocity);
     out.vector("(*nx)", moved(velocity));
     out.vector("(*nw)", turned.spin);
     put(&mut out, turned.orientation);
-    out.number("*speed2", turning::fastest2(velocity.norm2(), turned.spin, input("moments.w")));
+    out.number("*speed2", rigid_rotation::fastest2(velocity.norm2(), turned.spin, input("moments.w")));
     if DAMPED {
         let of_turn = V3::new(turned.power, Recorded::zero(), Recorded::zero());
         let power = power(held, vector("v"), velocity);
@@ -132,14 +141,14 @@ fn alone_kick() -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
     let mut out = Results::default();
-    out.vector("(*nl)", turning::kicked(&rigid(), k.torque, input("kick")));
+    out.vector("(*nl)", rigid_rotation::kicked(&rigid(), k.torque, input("kick")));
     out.text()
 }
 
 /// Results of a body integrated singly, from its rotation and the work of fixed rotations.
 fn alone_results(
     k: &kick::Kicked<Recorded>,
-    turned: &Turned<Recorded>,
+    turned: &RotatedBody<Recorded>,
     fixed: Option<(V3<Recorded>, Recorded)>,
     held: bool,
 ) -> String {
@@ -149,7 +158,7 @@ fn alone_results(
     out.vector("(*nw)", turned.spin);
     out.vector("(*nl)", turned.momentum);
     put(&mut out, turned.orientation);
-    out.number("*speed2", turning::fastest2(k.velocity.norm2(), turned.spin, input("moments.w")));
+    out.number("*speed2", rigid_rotation::fastest2(k.velocity.norm2(), turned.spin, input("moments.w")));
     if held {
         let (impulse, work) = fixed.unwrap_or((V3::zero(), Recorded::zero()));
         single_held(&mut out, &single(), k, (turned.mean, impulse, work));
@@ -160,7 +169,7 @@ fn alone_results(
 fn alone(held: bool) -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
-    let turned = turning::alone(&rigid(), vector("(*nl)"), new());
+    let turned = rigid_rotation::rotate_single(&rigid(), vector("(*nl)"), new());
     alone_results(&k, &turned, None, held)
 }
 
@@ -168,7 +177,7 @@ fn alone_held(held: bool) -> String {
     tape::begin();
     let k = kick::kick_single(&single(), input("kick"));
     let (turned, impulse, work) =
-        turning::held(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
+        rigid_rotation::rotate_prescribed(&rigid(), k.torque, vector("target"), input("kick"), input("dt"));
     alone_results(&k, &turned, Some((impulse, work)), held)
 }
 

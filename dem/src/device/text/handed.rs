@@ -1,8 +1,12 @@
 //! Contact forces uploaded by the CPU.
 
 use super::record::Part;
-use crate::device::layout::What;
+use crate::device::layout::EntryKind;
 
 pub(super) fn part() -> Part {
-    Part { frame: include_str!("handed.c"), formulas: Vec::new(), entries: &[(What::Handed, "handed_over")] }
+    Part {
+        frame: include_str!("handed.c"),
+        formulas: Vec::new(),
+        entries: &[(EntryKind::Handed, "handed_over")],
+    }
 }

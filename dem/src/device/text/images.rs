@@ -1,21 +1,21 @@
 //! Contacts across periodic borders.
 
 use super::record::{Part, keep, memory};
-use crate::contact::single::Moving;
-use crate::device::layout::{Features, What};
-use crate::device::tape::{self, Recorded, Results, Truth, input, vector};
+use crate::contact::scalar::Moving;
+use crate::device::layout::{EntryKind, Features};
+use crate::device::tape::{self, Recorded, RecordedMask, Results, input, vector};
 use crate::lanes::Real;
 use crate::law::{ContactLaw, LawInput};
 use crate::spatial::detect::Spheres;
 
-pub(super) fn part<L: ContactLaw, const ROLL: bool>(
+pub(super) fn part<L: ContactLaw, const ROLLING: bool>(
     law: &impl Fn() -> L::Lanes<Recorded>,
     f: &Features,
 ) -> Part {
     Part {
         frame: include_str!("images.c"),
-        formulas: vec![("IMAGES_TOUCH", touch()), ("IMAGES", forces::<L, ROLL>(law, f.clumps))],
-        entries: &[(What::Images, "image_contact")],
+        formulas: vec![("IMAGES_TOUCH", touch()), ("IMAGES", forces::<L, ROLLING>(law, f.clumps))],
+        entries: &[(EntryKind::Images, "image_contact")],
     }
 }
 
@@ -31,9 +31,9 @@ fn touch() -> String {
     out.text()
 }
 
-fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>, clumps: bool) -> String {
+fn forces<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>, clumps: bool) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), Truth::Known(true));
+    let (law, mut m, on) = (law(), memory(), RecordedMask::Known(true));
     let touch = spheres().touch();
     let body = |side: &str, point| Moving {
         velocity: vector(&format!("v{side}")),
@@ -51,10 +51,10 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
         velocity,
         spin,
     };
-    let f = L::acting::<Recorded, ROLL>(&law, &law_input, &mut m, on, input("step"));
+    let f = L::acting::<Recorded, ROLLING>(&law, &law_input, &mut m, on, input("step"));
     let mut out = Results::default();
     out.vector("o->force", f.force);
-    let (torque_a, torque_b) = if clumps || ROLL {
+    let (torque_a, torque_b) = if clumps || ROLLING {
         a.torques(&b, f.force, f.moment)
     } else {
         // Single spheres keep lever arms only.
@@ -64,7 +64,7 @@ fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>
     out.vector("o->torque_a", torque_a);
     out.vector("o->torque_b", torque_b);
     let deep = touch.overlap.gt(input("xa.w").min(input("xb.w")));
-    keep::<ROLL>(&mut out, &m, f.dashpot, f.friction, deep);
+    keep::<ROLLING>(&mut out, &m, f.dashpot, f.friction, deep);
     out.vector("(*couple)", vector("way").cross(f.force) * input("step"));
     out.text()
 }

@@ -14,9 +14,9 @@ mod spheres;
 use super::layout::{self, Features};
 use super::sizes::classes;
 use super::tape::{self, Recorded};
-use crate::engine::beside;
+use crate::engine::cpu_part;
 use crate::engine::model::Model;
-use crate::law::{ContactLaw, FRESH, Laws, PairTable, with_law};
+use crate::law::{ContactLaw, Laws, NO_CONTACT, PairTable, with_law};
 use record::Part;
 
 /// Template; lines starting with `//@` are replaced.
@@ -33,29 +33,29 @@ pub(super) fn features(model: &Model) -> Features {
         held: damped || fixed,
         bonds: !model.bonds.is_empty(),
         clumps: model.clumps,
-        walls: if beside::walls(model) { 0 } else { model.walls.walls.len() },
+        walls: if cpu_part::walls(model) { 0 } else { model.walls.walls.len() },
         periodic: model.periodic.is_some(),
-        beside: beside::any(model),
+        beside: cpu_part::any(model),
         classes: classes(model.radii),
     }
 }
 
 /// Parts that a model needs, in order of sums and calls.
-fn parts<L: ContactLaw, const ROLL: bool>(table: &PairTable<L>, f: &Features) -> Vec<Part> {
+fn parts<L: ContactLaw, const ROLLING: bool>(table: &PairTable<L>, f: &Features) -> Vec<Part> {
     let law = || record::law(table);
-    let mut all = vec![spheres::part::<L, ROLL>(&law), planes::part::<L, ROLL>(&law)];
+    let mut all = vec![spheres::part::<L, ROLLING>(&law), planes::part::<L, ROLLING>(&law)];
     if f.bonds {
-        all.push(bonds::part::<L, ROLL>(&law));
+        all.push(bonds::part::<L, ROLLING>(&law));
     }
     if f.clumps {
-        all.push(clumps::contacts::<L, ROLL>(&law));
+        all.push(clumps::contacts::<L, ROLLING>(&law));
         all.push(clumps::motion(f));
     }
     if f.periodic {
-        all.push(images::part::<L, ROLL>(&law, f));
+        all.push(images::part::<L, ROLLING>(&law, f));
     }
     if f.walls > 0 {
-        all.push(patches::part::<L, ROLL>(&law));
+        all.push(patches::part::<L, ROLLING>(&law));
     }
     if f.beside {
         all.push(handed::part());
@@ -76,7 +76,7 @@ pub(super) fn text(laws: &Laws, f: &Features) -> String {
     };
     let bodies: Vec<String> = parts.iter().map(|p| filled(p.frame, &p.formulas) + "\n").collect();
     let formulas = [
-        ("LAYOUT", layout::declarations(f, &tape::literal(FRESH))),
+        ("LAYOUT", layout::declarations(f, &tape::literal(NO_CONTACT))),
         (
             "LEFT",
             with_law!(laws, table => if f.roll { record::left::<_, true>(table) } else { record::left::<_, false>(table) }),

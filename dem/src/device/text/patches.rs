@@ -1,18 +1,18 @@
-//! Wall triangle contacts: C selects triangles as in `contact/patches.rs`, weights are recorded formulas.
+//! Wall triangle contacts: C selects triangles as in `contact/surface_contacts.rs`, weights are recorded formulas.
 
 use super::record::{Part, keep, memory};
-use crate::contact::patch_forces::{self, Touch};
-use crate::contact::patches::{self, Gap};
-use crate::device::layout::What;
-use crate::device::tape::{self, Recorded, Results, Truth, input, truth, vector};
-use crate::lanes::turn::Turn;
+use crate::contact::patch_forces::{self, PatchContactInput};
+use crate::contact::surface_contacts::{self, Gap};
+use crate::device::layout::EntryKind;
+use crate::device::tape::{self, Recorded, RecordedMask, Results, input, truth, vector};
+use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use crate::law::ContactLaw;
 use crate::shape::triangle;
-use crate::wall::state::Place;
+use crate::wall::state::WallPose;
 use crate::wall::triangulated::{self as triangles, Level};
 
-pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn part<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("patches.c"),
         formulas: vec![
@@ -29,9 +29,9 @@ pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<
             ("ALIKE", alike()),
             ("MAY_FOLLOW", may_follow()),
             ("SIDE", side()),
-            ("PATCH_FORCE", force::<L, ROLL>(law)),
+            ("PATCH_FORCE", force::<L, ROLLING>(law)),
         ],
-        entries: &[(What::Walls, "wall_contacts")],
+        entries: &[(EntryKind::Walls, "wall_contacts")],
     }
 }
 
@@ -41,11 +41,11 @@ fn three(array: &str, from: usize) -> V3<Recorded> {
 }
 
 /// Wall pose, in the layout of `device/walls.rs`.
-fn place() -> Place<Recorded> {
-    Place {
+fn place() -> WallPose<Recorded> {
+    WallPose {
         centre: three("u", 0),
         offset: three("u", 3),
-        orientation: Turn { v: three("u", 6), s: input("u[9]") },
+        orientation: QuaternionLanes { v: three("u", 6), s: input("u[9]") },
         velocity: three("u", 10),
         spin: three("u", 13),
         turned: truth("(u[16] != 0.0)"),
@@ -113,7 +113,7 @@ fn meets() -> String {
     tape::begin();
     let (radius, outward, straight) = (input("x.w"), vector("outward"), truth("straight"));
     let gap = Gap::new(vector("x") - vector("point"), outward, straight);
-    let (normal, overlap) = gap.contact(outward, radius, straight, Truth::Known(false));
+    let (normal, overlap) = gap.contact(outward, radius, straight, RecordedMask::Known(false));
     let mut out = Results::default();
     out.truth("near", gap.distance.lt(radius));
     out.vector("(*normal)", normal);
@@ -123,7 +123,7 @@ fn meets() -> String {
 
 fn rests() -> String {
     tape::begin();
-    let rest = patches::rest(vector("x") - vector("point"), vector("outward"), input("x.w"));
+    let rest = surface_contacts::rest(vector("x") - vector("point"), vector("outward"), input("x.w"));
     let mut out = Results::default();
     out.truth("stays", rest.stays);
     out.vector("(*normal)", rest.normal);
@@ -135,28 +135,29 @@ fn rests() -> String {
 fn one_point() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("same", patches::one_point(vector("a"), vector("b"), input("radius")));
+    out.truth("same", surface_contacts::one_point(vector("a"), vector("b"), input("radius")));
     out.text()
 }
 
 fn within() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("near", input("clear").le(patches::tolerance(input("radius"))));
+    out.truth("near", input("clear").le(surface_contacts::tolerance(input("radius"))));
     out.text()
 }
 
 fn alike() -> String {
     tape::begin();
     let mut out = Results::default();
-    out.truth("same", patches::alike(vector("a"), vector("b")));
+    out.truth("same", surface_contacts::alike(vector("a"), vector("b")));
     out.text()
 }
 
 fn may_follow() -> String {
     tape::begin();
     let from = (vector("old_normal"), vector("old_point"));
-    let (may, away) = patches::may_follow((vector("normal"), vector("point")), from, input("radius"));
+    let (may, away) =
+        surface_contacts::may_follow((vector("normal"), vector("point")), from, input("radius"));
     let mut out = Results::default();
     out.truth("may", may);
     out.number("*away", away);
@@ -167,7 +168,8 @@ fn side() -> String {
     tape::begin();
     let (normal, outward) = (vector("t.normal"), vector("t.outward"));
     let side = normal.dot(outward);
-    let passed = patches::passed(normal, side, (vector("old_normal"), input("old_side"))) & !truth("fresh");
+    let passed =
+        surface_contacts::passed(normal, side, (vector("old_normal"), input("old_side"))) & !truth("fresh");
     let (radius, overlap) = (input("radius"), input("t.point.w"));
     let mut out = Results::default();
     out.number("side", side);
@@ -175,10 +177,10 @@ fn side() -> String {
     out.text()
 }
 
-fn force<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn force<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
     let (law, mut m, point) = (law(), memory(), vector("point"));
-    let touch = Touch {
+    let touch = PatchContactInput {
         arm: point - vector("x"),
         overlap: input("point.w"),
         radius: input("radius"),
@@ -187,15 +189,15 @@ fn force<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>)
         wall: (vector("velocity"), three("u", 13)),
         inverse_mass: input("v.w") + input("u[18]"),
     };
-    let on = Truth::Known(true);
-    let f = patch_forces::acting::<L, Recorded, ROLL>(&law, &touch, &mut m, on, input("step"));
+    let on = RecordedMask::Known(true);
+    let f = patch_forces::acting::<L, Recorded, ROLLING>(&law, &touch, &mut m, on, input("step"));
     let mut out = Results::default();
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque);
-    keep::<ROLL>(&mut out, &m, f.dashpot, f.friction, Truth::Known(false));
+    keep::<ROLLING>(&mut out, &m, f.dashpot, f.friction, RecordedMask::Known(false));
     let centre = three("u", 0) + three("u", 3);
     let mut moment = (point - centre).cross(f.force);
-    if ROLL {
+    if ROLLING {
         moment = moment + f.moment;
     }
     out.vector("(*moment)", moment);

@@ -2,16 +2,16 @@
 
 use super::record::{Part, keep, memory};
 use crate::contact::planes;
-use crate::device::layout::What;
+use crate::device::layout::EntryKind;
 use crate::device::tape::{self, Recorded, Results, input, vector};
 use crate::lanes::{Real, V3};
-use crate::law::{ContactLaw, Memory};
+use crate::law::{ContactLaw, HistoryLanes};
 
-pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn part<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("planes.c"),
-        formulas: vec![("PLANE_TOUCHES", touches()), ("PLANE", forces::<L, ROLL>(law))],
-        entries: &[(What::Plane, "plane_contact")],
+        formulas: vec![("PLANE_TOUCHES", touches()), ("PLANE", forces::<L, ROLLING>(law))],
+        entries: &[(EntryKind::Plane, "plane_contact")],
     }
 }
 
@@ -20,8 +20,8 @@ pub(super) fn height() -> Recorded {
     vector("x").dot(vector("face")) - input("face.w")
 }
 
-pub(super) fn touch() -> planes::Touch<Recorded> {
-    planes::Touch {
+pub(super) fn touch() -> planes::PlaneContact<Recorded> {
+    planes::PlaneContact {
         position: vector("x"),
         offset: V3::zero(),
         radius: input("x.w"),
@@ -41,18 +41,21 @@ fn touches() -> String {
     out.text()
 }
 
-fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn forces<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), tape::Truth::Known(true));
-    let f = planes::forces::<L, Recorded, false, ROLL>(&law, &touch(), &mut m, on, input("step"));
-    results::<ROLL>(&f, &m)
+    let (law, mut m, on) = (law(), memory(), tape::RecordedMask::Known(true));
+    let f = planes::forces::<L, Recorded, false, ROLLING>(&law, &touch(), &mut m, on, input("step"));
+    results::<ROLLING>(&f, &m)
 }
 
-pub(super) fn results<const ROLL: bool>(f: &planes::Forces<Recorded>, m: &Memory<Recorded>) -> String {
+pub(super) fn results<const ROLLING: bool>(
+    f: &planes::Forces<Recorded>,
+    m: &HistoryLanes<Recorded>,
+) -> String {
     let mut out = Results::default();
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque);
-    keep::<ROLL>(&mut out, m, f.dashpot, f.friction, f.deep);
+    keep::<ROLLING>(&mut out, m, f.dashpot, f.friction, f.deep);
     // In the order of the totals: power and force, then moment about the origin.
     let [fx, fy, fz] = f.force.array();
     let [ax, ay, az] = f.about_origin.array();

@@ -2,16 +2,16 @@
 
 use super::record::{Part, keep, memory};
 use crate::contact::sphere_pair;
-use crate::device::layout::What;
+use crate::device::layout::EntryKind;
 use crate::device::tape::{self, Recorded, Results, input, vector};
 use crate::lanes::{Real, V3};
-use crate::law::{ContactLaw, Memory};
+use crate::law::{ContactLaw, HistoryLanes};
 
-pub(super) fn part<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
+pub(super) fn part<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> Part {
     Part {
         frame: include_str!("spheres.c"),
-        formulas: vec![("SPHERES_TOUCH", touch()), ("SPHERES", forces::<L, ROLL>(law))],
-        entries: &[(What::Spheres, "sphere_contact")],
+        formulas: vec![("SPHERES_TOUCH", touch()), ("SPHERES", forces::<L, ROLLING>(law))],
+        entries: &[(EntryKind::Spheres, "sphere_contact")],
     }
 }
 
@@ -39,18 +39,21 @@ fn touch() -> String {
     out.text()
 }
 
-fn forces<L: ContactLaw, const ROLL: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
+fn forces<L: ContactLaw, const ROLLING: bool>(law: &impl Fn() -> L::Lanes<Recorded>) -> String {
     tape::begin();
-    let (law, mut m, on) = (law(), memory(), tape::Truth::Known(true));
-    let f = sphere_pair::forces::<L, Recorded, false, ROLL>(&law, &pair(), &mut m, on, input("step"));
-    results::<ROLL>(&f, &m)
+    let (law, mut m, on) = (law(), memory(), tape::RecordedMask::Known(true));
+    let f = sphere_pair::forces::<L, Recorded, false, ROLLING>(&law, &pair(), &mut m, on, input("step"));
+    results::<ROLLING>(&f, &m)
 }
 
-pub(super) fn results<const ROLL: bool>(f: &sphere_pair::Forces<Recorded>, m: &Memory<Recorded>) -> String {
+pub(super) fn results<const ROLLING: bool>(
+    f: &sphere_pair::Forces<Recorded>,
+    m: &HistoryLanes<Recorded>,
+) -> String {
     let mut out = Results::default();
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque_a);
     out.vector("o->torque_b", f.torque_b);
-    keep::<ROLL>(&mut out, m, f.dashpot, f.friction, f.deep);
+    keep::<ROLLING>(&mut out, m, f.dashpot, f.friction, f.deep);
     out.text()
 }

@@ -1,6 +1,6 @@
 //! Four lanes in an AVX2 register.
 
-use crate::lanes::real::{Four, Real};
+use crate::lanes::real::{Real, Simd4};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -106,7 +106,7 @@ impl Real for Avx2 {
     }
 }
 
-impl Four for Avx2 {
+impl Simd4 for Avx2 {
     #[inline(always)]
     fn load(x: &[f64; 4]) -> Avx2 {
         Avx2(intrinsics!(_mm256_loadu_pd(x.as_ptr())))

@@ -1,9 +1,9 @@
 //! Eight lanes in an AVX-512 register: two groups of four.
 
 use super::avx2::Avx2;
-use crate::lanes::real::{Four, Real};
-use crate::lanes::record::Record;
-use crate::lanes::wide::Pack;
+use crate::lanes::real::{Real, Simd4};
+use crate::lanes::vec4::Vec4;
+use crate::lanes::wide::SimdPack;
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -153,9 +153,9 @@ fn join(p: [Avx512; 4], q: [Avx512; 4]) -> [Avx512; 8] {
     })
 }
 
-impl Pack for Avx512 {
+impl SimdPack for Avx512 {
     type Quad = Avx2;
-    type Record = Avx512;
+    type Vec4Pair = Avx512;
     const GROUPS: usize = 2;
 
     #[inline(always)]
@@ -214,7 +214,7 @@ impl Pack for Avx512 {
         u32::from(mask.0)
     }
     #[inline(always)]
-    fn rows<'a>(record: impl Fn(usize) -> &'a Record) -> [Avx512; 4] {
+    fn rows<'a>(record: impl Fn(usize) -> &'a Vec4) -> [Avx512; 4] {
         // Pairs that two rounds of shuffles bring into lane order.
         [
             both(record(0), record(2)),
@@ -224,7 +224,7 @@ impl Pack for Avx512 {
         ]
     }
     #[inline(always)]
-    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Record, &'a Record)) -> ([Avx512; 4], [Avx512; 4]) {
+    fn two_rows<'a>(records: impl Fn(usize) -> (&'a Vec4, &'a Vec4)) -> ([Avx512; 4], [Avx512; 4]) {
         let (a, c) = (records(0), records(2));
         let (p, x) = (both(a.0, c.0), both(a.1, c.1));
         let (b, d) = (records(1), records(3));
@@ -271,12 +271,12 @@ impl Pack for Avx512 {
         (join([p, q, r, s], halves([a, b, c, zero])), join(back, halves([d, e, f, zero])))
     }
     #[inline(always)]
-    fn give(record: Avx512, to: &mut [Record; 2]) {
+    fn add_record(record: Avx512, to: &mut [Vec4; 2]) {
         let to = to.as_mut_ptr().cast::<f64>();
         intrinsics!(_mm512_storeu_pd(to, _mm512_add_pd(_mm512_loadu_pd(to), record.0)))
     }
     #[inline(always)]
-    fn put(record: Avx512, to: &mut [Record; 2]) {
+    fn store_record(record: Avx512, to: &mut [Vec4; 2]) {
         intrinsics!(_mm512_storeu_pd(to.as_mut_ptr().cast::<f64>(), record.0))
     }
 }

@@ -8,8 +8,8 @@ use crate::law::{ContactForce, ContactGeometry, ContactLaw, History};
 /// Impact with slip, rolling and twisting: all work is dissipated, no step releases energy.
 pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
-    for pace in [1.0, 50.0] {
-        let path = Path { pace, ..Path::USUAL };
+    for step_size in [1.0, 50.0] {
+        let path = Path { step_size, ..Path::USUAL };
         let dt = path.dt();
         let (mut history, mut work, mut dashpot, mut friction) = (History::NONE, 0.0, 0.0, 0.0);
         for m in path.moments() {
@@ -24,7 +24,7 @@ pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
         friction += law.release(&mut history);
         let gap = work - dashpot - friction;
         assert!(dashpot > 0.0 && friction > 0.0, "{dashpot:e} {friction:e}");
-        assert!(gap.abs() < 2e-3 * work, "{gap:e} of {work:e}: {dashpot:e}, {friction:e}, pace {pace}");
+        assert!(gap.abs() < 2e-3 * work, "{gap:e} of {work:e}: {dashpot:e}, {friction:e}, pace {step_size}");
     }
 }
 
@@ -39,7 +39,7 @@ struct Led<L> {
 
 impl<L: ContactLaw> Led<L> {
     fn new(law: L) -> Led<L> {
-        let history = History { rate: law.begun(0.0), ..History::NONE };
+        let history = History { rate: law.initial_state(0.0), ..History::NONE };
         Led { law, history, at: (0.0, 0.0), last: ContactForce::default(), work: 0.0, booked: 0.0 }
     }
 

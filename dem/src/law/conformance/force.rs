@@ -3,7 +3,7 @@
 use super::{GLASS, MASS, Path, RADIUS, law, plain};
 use crate::base::Vec3;
 use crate::law::material::Material;
-use crate::law::{ContactGeometry, ContactLaw, FRESH, History};
+use crate::law::{ContactGeometry, ContactLaw, History, NO_CONTACT};
 use nalgebra::Rotation3;
 
 fn touch(overlap: f64) -> ContactGeometry {
@@ -13,7 +13,7 @@ fn touch(overlap: f64) -> ContactGeometry {
 pub fn no_force_at_zero_overlap<L: ContactLaw>(material: &Material) {
     let law = plain::<L>(material, 0.5);
     let still = Vec3::zeros();
-    for rate in [FRESH, law.begun(0.0)] {
+    for rate in [NO_CONTACT, law.initial_state(0.0)] {
         let mut history = History { rate, ..History::NONE };
         let f = law.evaluate_one(1.0 / MASS, &touch(0.0), &still, &still, &mut history, 1e-5);
         assert_eq!(f.force.norm(), 0.0, "{f:?}");
@@ -33,7 +33,8 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
             let (mut low, mut high) = (0.0, RADIUS);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
-                let stored = law.stored(middle, RADIUS, &History { rate: law.begun(0.0), ..History::NONE }).0;
+                let stored =
+                    law.stored(middle, RADIUS, &History { rate: law.initial_state(0.0), ..History::NONE }).0;
                 *if stored > 0.5 * MASS * speed * speed { &mut high } else { &mut low } = middle;
             }
             let dt = 0.005 * (MASS / law.stiffness(low, RADIUS)).sqrt();
@@ -131,8 +132,8 @@ fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
 pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
     let (mut sliding, mut sticking) = (0, 0);
-    for pace in [5.0, 50.0] {
-        let path = Path { pace, ..Path::USUAL };
+    for step_size in [5.0, 50.0] {
+        let path = Path { step_size, ..Path::USUAL };
         let mut history = History::NONE;
         for m in path.moments() {
             let f = m.evaluate(&law, &mut history, path.dt());
@@ -150,13 +151,13 @@ pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
     let still = Vec3::zeros();
     for d in [1e-6, 3e-5, 2e-4] {
         let evaluated = |d: f64| {
-            let mut history = History { rate: law.begun(0.0), ..History::NONE };
+            let mut history = History { rate: law.initial_state(0.0), ..History::NONE };
             law.evaluate_one(1.0 / MASS, &touch(d), &still, &still, &mut history, 1e-6).normal
         };
         let (force, stiffness) = law.loading(d, RADIUS);
         assert!((evaluated(d) / force - 1.0).abs() < 1e-12, "{} against {force}", evaluated(d));
-        let begun = History { rate: law.begun(0.0), ..History::NONE };
-        assert!((law.springs(d, RADIUS, &begun).0 / force - 1.0).abs() < 1e-12);
+        let initial_state = History { rate: law.initial_state(0.0), ..History::NONE };
+        assert!((law.springs(d, RADIUS, &initial_state).0 / force - 1.0).abs() < 1e-12);
         let slope = (evaluated(1.001 * d) - evaluated(0.999 * d)) / (0.002 * d);
         assert!((slope / stiffness - 1.0).abs() < 1e-6, "{slope} against {stiffness} at {d}");
         assert!(law.stiffness(d, RADIUS) >= stiffness);
@@ -164,7 +165,7 @@ pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
     assert!(law.tangential_ratio() > 0.0 && law.tangential_ratio() < 2.0);
     let own = ["walton_braun", "conical_damage"].contains(&law.names()[0]);
     assert_eq!(
-        law.begun(1.0),
+        law.initial_state(1.0),
         if own { 0.0 } else { 1.0 },
         "the approach speed is remembered but for a number of its own"
     );

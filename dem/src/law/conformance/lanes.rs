@@ -2,10 +2,10 @@
 
 use super::{MASS, Path, law, plain};
 use crate::base::Vec3;
-use crate::lanes::{Kernel, Pack, Simd, V3, run};
+use crate::lanes::{Kernel, Simd, SimdPack, V3, run};
 use crate::law::material::{Material, Pair, PairOverride};
-use crate::law::table::{COMBINATIONS, Mixed, normal_named, tangential_named};
-use crate::law::{ContactGeometry, ContactLaw, FRESH, History, LawInput, Memory};
+use crate::law::table::{AnyLaw, COMBINATIONS, normal_named, tangential_named};
+use crate::law::{ContactGeometry, ContactLaw, History, HistoryLanes, LawInput, NO_CONTACT};
 
 #[derive(Clone, Copy)]
 struct Case<L> {
@@ -18,13 +18,13 @@ struct Case<L> {
 }
 
 /// Evaluates in lanes: lane count; force, moment, energies, history.
-struct InLanes<'a, L, const ROLL: bool>(&'a [Case<L>; 8]);
+struct InLanes<'a, L, const ROLLING: bool>(&'a [Case<L>; 8]);
 
-impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
+impl<L: ContactLaw, const ROLLING: bool> Kernel for InLanes<'_, L, ROLLING> {
     type Output = (usize, Vec<[u64; 8]>);
 
     #[inline(always)]
-    fn run<R: Pack>(self) -> (usize, Vec<[u64; 8]>) {
+    fn run<R: SimdPack>(self) -> (usize, Vec<[u64; 8]>) {
         let cases = self.0;
         let of = |pick: fn(&Case<L>) -> f64| R::of(&cases.each_ref().map(pick));
         let vector = |pick: fn(&Case<L>) -> Vec3| {
@@ -40,14 +40,14 @@ impl<L: ContactLaw, const ROLL: bool> Kernel for InLanes<'_, L, ROLL> {
             velocity: vector(|c| c.velocity),
             spin: vector(|c| c.spin),
         };
-        let mut memory = Memory {
+        let mut memory = HistoryLanes {
             spring: vector(|c| c.history.spring),
             rate: of(|c| c.history.rate),
             roll: vector(|c| Vec3::new(c.history.turn[0], c.history.turn[1], c.history.turn[2])),
             twist: of(|c| c.history.turn[3]),
         };
-        let f = L::evaluate::<R, ROLL>(&law, &touch, &mut memory, R::below(8), R::splat(cases[0].dt));
-        let left = L::stored_in_springs::<R, ROLL>(&law, &memory);
+        let f = L::evaluate::<R, ROLLING>(&law, &touch, &mut memory, R::below(8), R::splat(cases[0].dt));
+        let left = L::tangential_energy::<R, ROLLING>(&law, &memory);
         let numbers = [
             [f.force.x, f.force.y, f.force.z, f.normal, f.moment.x, f.moment.y, f.moment.z, f.dashpot],
             [
@@ -86,7 +86,7 @@ fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
 fn cases<L: ContactLaw>(laws: impl Fn(usize) -> L, seed: usize) -> [Case<L>; 8] {
     std::array::from_fn(|l| {
         let law = laws(l);
-        let path = Path { steps: 400, pace: 5.0 + 30.0 * ((l + seed) % 3) as f64, ..Path::USUAL };
+        let path = Path { steps: 400, step_size: 5.0 + 30.0 * ((l + seed) % 3) as f64, ..Path::USUAL };
         let dt = 1e-5;
         let mut history = History::NONE;
         let stop = (37 * (l + 1) + 11 * seed) % 399;
@@ -95,18 +95,18 @@ fn cases<L: ContactLaw>(laws: impl Fn(usize) -> L, seed: usize) -> [Case<L>; 8] 
             m.evaluate(&law, &mut history, dt);
         }
         if (l + seed).is_multiple_of(5) {
-            history = History { rate: FRESH, ..History::NONE };
+            history = History { rate: NO_CONTACT, ..History::NONE };
         }
         let m = moments.next().unwrap_or_else(|| path.moments().next().unwrap());
         Case { law, geometry: m.geometry, velocity: m.velocity, spin: m.spin, history, dt }
     })
 }
 
-fn compare<L: ContactLaw, const ROLL: bool>(laws: impl Fn(usize) -> L) {
+fn compare<L: ContactLaw, const ROLLING: bool>(laws: impl Fn(usize) -> L) {
     for seed in 0..40 {
         let cases = cases(&laws, seed);
         for simd in Simd::all() {
-            let (lanes, found) = run(simd, InLanes::<L, ROLL>(&cases));
+            let (lanes, found) = run(simd, InLanes::<L, ROLLING>(&cases));
             assert_eq!(found, alone(&cases, lanes), "{simd:?}, seed {seed}");
         }
     }
@@ -121,16 +121,16 @@ pub fn lanes_give_the_bits_of_single_contacts<L: ContactLaw>(material: &Material
 #[test]
 fn mixed_laws_are_bitwise_identical() {
     let material = Material { stiffness: super::SOFT.stiffness, ..super::GLASS };
-    let mixed = |l: usize| -> Mixed {
+    let mixed = |l: usize| -> AnyLaw {
         let row = &COMBINATIONS[l % COMBINATIONS.len()];
         let exception = PairOverride {
             normal: normal_named(row.normal),
             tangential: tangential_named(row.tangential),
             ..PairOverride::default()
         };
-        Mixed::mix(&Pair { a: &material, b: &material, exception: Some(&exception) })
+        AnyLaw::mix(&Pair { a: &material, b: &material, exception: Some(&exception) })
     };
-    compare::<Mixed, false>(mixed);
+    compare::<AnyLaw, false>(mixed);
     for (l, row) in COMBINATIONS.iter().enumerate() {
         assert_eq!(mixed(l).names(), [row.normal, row.tangential]);
     }

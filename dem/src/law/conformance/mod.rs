@@ -122,7 +122,7 @@ struct Path {
     /// Largest overlap [m].
     depth: f64,
     /// Rate [1/s].
-    pace: f64,
+    step_size: f64,
 }
 
 struct Moment {
@@ -135,10 +135,10 @@ struct Moment {
 }
 
 impl Path {
-    const USUAL: Path = Path { steps: 4000, depth: 2e-4, pace: 50.0 };
+    const USUAL: Path = Path { steps: 4000, depth: 2e-4, step_size: 50.0 };
 
     fn dt(&self) -> f64 {
-        1.0 / (self.pace * self.steps as f64)
+        1.0 / (self.step_size * self.steps as f64)
     }
 
     fn overlap(&self, k: f64) -> f64 {
@@ -150,7 +150,7 @@ impl Path {
     fn motion(&self, k: f64) -> (Vec3, Vec3) {
         let part = std::f64::consts::TAU * k / self.steps as f64;
         let approach = (self.overlap(k + 0.5) - self.overlap(k - 0.5)) / self.dt();
-        let slip = self.depth * self.pace;
+        let slip = self.depth * self.step_size;
         let velocity = Vec3::new(2.0 * slip * part.sin(), slip * (2.0 * part).cos(), -approach);
         let spin = Vec3::new((3.0 * part).cos(), (2.0 * part).sin(), part.cos()) * (slip / RADIUS);
         (velocity, spin)

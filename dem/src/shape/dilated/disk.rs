@@ -62,7 +62,7 @@ pub(crate) fn farthest(radius: f64, n: &Vec3) -> Vec3 {
 }
 
 /// Vector from the closest disk point, in the disk frame.
-pub(crate) fn way(radius: f64, p: &Vec3) -> Vec3 {
+pub(crate) fn offset_from_disk(radius: f64, p: &Vec3) -> Vec3 {
     let square = p.x * p.x + p.y * p.y;
     if square <= radius * radius {
         return Vec3::new(0.0, 0.0, p.z);
@@ -73,7 +73,7 @@ pub(crate) fn way(radius: f64, p: &Vec3) -> Vec3 {
 
 /// Distance and direction from a flat disk; any direction inside.
 pub(super) fn distance(radius: f64, p: &Vec3) -> (f64, Vec3) {
-    let way = way(radius, p);
+    let way = offset_from_disk(radius, p);
     let d = way.norm();
     if d > 0.0 { (d, way / d) } else { (0.0, Vec3::z()) }
 }

@@ -31,7 +31,7 @@ fn sizes_and_pictures() {
     assert_eq!(own.sieve_size(), 1.0);
     assert_eq!(own.bounding_radius(), 0.5);
     let (points, polygons) = own.outline();
-    assert!(points.iter().all(|p| (way(0.4, p).norm() - 0.1).abs() < 1e-15));
+    assert!(points.iter().all(|p| (offset_from_disk(0.4, p).norm() - 0.1).abs() < 1e-15));
     let mut volume = 0.0;
     for polygon in &polygons {
         let at = |k: usize| points[polygon[k] as usize];

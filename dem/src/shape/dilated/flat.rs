@@ -2,7 +2,7 @@
 
 use super::circle::{self, Circle, Turns};
 use super::disk::distance;
-use super::press::{Nearest, Segment, Stretch};
+use super::edge_contact::{Nearest, Segment, Stretch};
 use super::scan::{self, Places};
 use crate::base::Vec3;
 

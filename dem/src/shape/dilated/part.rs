@@ -1,8 +1,8 @@
 //! Culling: features of a core near another body, with bounding boxes.
 
 use super::circle::{Circle, Turns};
+use super::edge_contact::{Nearest, Segment, Stretch, Target};
 use super::flat::Flat;
-use super::press::{Nearest, Segment, Stretch, Target};
 use super::{CORNERS, Core, Edge, Face};
 use crate::base::Vec3;
 use arrayvec::ArrayVec;

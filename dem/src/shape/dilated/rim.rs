@@ -1,8 +1,8 @@
-//! Contact of a disk rim, integrated (`press.rs`) over fixed arcs, which provide friction points for rolling.
+//! Contact of a disk rim, integrated (`edge_contact.rs`) over fixed arcs, which provide friction points for rolling.
 
 use super::circle::{Circle, Turns};
 use super::disk::ARCS;
-use super::press::{CURVED, Pressed, Target};
+use super::edge_contact::{CURVED, Indentation, Target};
 use crate::base::Vec3;
 use std::f64::consts::TAU;
 
@@ -35,14 +35,20 @@ impl Sum {
     }
 
     /// Equivalent force at the mean position; `radius` of the circle.
-    fn pressed(&self, radius: f64) -> Option<Pressed> {
+    fn pressed(&self, radius: f64) -> Option<Indentation> {
         let size = self.force.norm();
         if size <= 0.0 || self.whole <= 0.0 {
             return None;
         }
         let point = self.place / self.whole;
         let couple = (self.torque - point.cross(&self.force)) / size;
-        Some(Pressed { force: self.force * radius, overlap: self.squares / size, point, couple, edge: true })
+        Some(Indentation {
+            force: self.force * radius,
+            overlap: self.squares / size,
+            point,
+            couple,
+            edge: true,
+        })
     }
 }
 
@@ -52,7 +58,7 @@ pub(crate) fn rim(
     circle: &Circle,
     floor: [f64; 3],
     reach: f64,
-    mut put: impl FnMut(u32, &Pressed),
+    mut put: impl FnMut(u32, &Indentation),
 ) {
     let mut turns = Turns::whole();
     turns.cut(floor);

@@ -11,7 +11,7 @@ use crate::scene::flow::{Inlet, Outlet};
 use crate::scene::units::vector;
 use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::Vec3;
-use trackbed_dem::insert::room::GAP;
+use trackbed_dem::insert::free_space::GAP;
 
 /// Default check interval [s].
 const INTERVAL: f64 = 1e-3;

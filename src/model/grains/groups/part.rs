@@ -2,7 +2,7 @@
 
 use crate::model::tables::Grading;
 use trackbed_dem::insert::container::Container;
-use trackbed_dem::insert::grow::Growth;
+use trackbed_dem::insert::radius_expansion::Growth;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 

@@ -7,8 +7,8 @@ use super::sizes::SizeSource;
 use crate::failure::Failure;
 use crate::scene::grains::{Grains, GrowthSource, Region};
 use crate::scene::{SceneError, Table};
-use trackbed_dem::insert::grow::Growth;
-use trackbed_dem::insert::scatter;
+use trackbed_dem::insert::radius_expansion::Growth;
+use trackbed_dem::insert::random_placement;
 use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
@@ -47,9 +47,9 @@ pub(super) fn scattered(
         start = libm::cbrt(SEEDLINGS * volume / (4.0 / 3.0 * std::f64::consts::PI * bounding)).min(0.7);
     }
     let radii: Vec<f64> = sizes.iter().zip(&dealt).map(|(s, d)| start * s * reach[*d]).collect();
-    let places = scatter::scatter(&container, &radii, group.seed)
+    let places = random_placement::scatter(&container, &radii, group.seed)
         .map_err(|e| group.error("region", e.to_string(), "a container with room for the grains"))?;
-    let turns = scatter::orientations(places.len(), group.seed);
+    let turns = random_placement::orientations(places.len(), group.seed);
     let begin = part.bodies.len();
     let body = |(i, position): (usize, Vec3)| BodyInput {
         shape: first + dealt[i],

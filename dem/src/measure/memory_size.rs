@@ -1,0 +1,45 @@
+//! Contact kernels and memory use.
+
+use crate::base::capacity::capacity_bytes;
+use crate::engine::model::Model;
+use crate::engine::state::State;
+use crate::engine::work::Work;
+use crate::lanes::Simd;
+use crate::shape::Shape;
+
+/// Describes the contact kernels of a model.
+pub fn kernels(model: &Model) -> String {
+    let law = model.laws.title();
+    let has = |what: fn(&Shape) -> bool| (0..model.body_count()).any(|b| what(model.shape(b)));
+    let round = has(|s| matches!(s, Shape::Sphere { .. } | Shape::Clump(_)));
+    let names = [
+        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_none())), "polyhedra"),
+        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_some())), "disks"),
+        (has(|s| matches!(s, Shape::Box { .. })), "boxes"),
+        (round && model.clumps, "spheres of rigid bodies"),
+        (round && !model.clumps, "single spheres"),
+    ];
+    let names: Vec<&str> = names.into_iter().filter(|(there, _)| *there).map(|(_, name)| name).collect();
+    let shapes = names.join(", ");
+    let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
+    let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };
+    let drag = if model.body_forces.is_empty() { "" } else { ", body forces" };
+    let lanes = Simd::best().name();
+    format!("{law}, {shapes}{rolling}{bonds}{drag}, {lanes}")
+}
+
+/// Memory of bodies, contacts, bonds, neighbours and forces [B], without model constants.
+pub fn bytes(state: &State, work: &Work) -> usize {
+    let blocks: usize = state.blocks.iter().map(|b| b.bytes()).sum();
+    let lists = state
+        .lists
+        .iter()
+        .map(|l| l.pairs.bytes() + l.planes.bytes() + l.walls.bytes() + l.surface.bytes() + l.bonds.bytes());
+    let cross: usize = state.cross.iter().map(|c| c.bytes()).sum();
+    let bonds: usize = state.bonds.cross.iter().map(|l| l.bytes()).sum();
+    let members: usize = work.members.iter().map(|m| m.bytes()).sum();
+    let scratch: usize = work.blocks.iter().map(|w| w.bytes()).sum();
+    let slots: usize = work.cross.iter().map(|c| capacity_bytes(&c.slots)).sum();
+    let state_sum = capacity_bytes(&state.places) + blocks + lists.sum::<usize>() + cross + bonds;
+    state_sum + members + scratch + slots + work.bonds.bytes()
+}
