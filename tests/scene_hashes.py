@@ -130,7 +130,7 @@ def summary(content):
 def report(text):
     """Output of `check` and `explain` without machine data."""
     text = text.replace(str(ROOT), ".")
-    text = re.sub(r"memory: .* MB in all.*", "memory", text)
+    text = re.sub(r"memory: [0-9.]+ [kMG]?B.*", "memory", text)
     text = re.sub(r"packed bed: .*", "packed bed", text)
     return re.sub(r"(four|eight) at a time \(.*?\)", "at a time", text).encode()
 
