@@ -12,7 +12,7 @@ pub struct RenderArgs {
     /// Set one key of the scene, as key.path=value; repeatable.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Output: png, jpg, bmp, or avi for a video [default: picture.png in the directory; of a scene required].
+    /// Output: png, jpg, bmp, or avi for a video [default: picture.png in DIR].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Overwrite an existing file.

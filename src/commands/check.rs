@@ -1,10 +1,10 @@
 //! `trackbed check`: resolves and reports a scene without running it.
 
 use crate::failure::Failure;
+use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart, Windows};
 use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
-use crate::model::Job;
 use crate::plausible;
 use crate::preview::Source;
 use crate::run::estimate::Estimate;

@@ -102,8 +102,9 @@ impl Shape {
         let Some(along) = direction.try_normalize(0.0) else { return };
         let (tip, (u, v)) = (Vec3::from(tip), across(&along));
         let ring = |far: f64, wide: f64| {
-            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
-                .map(|(a, b)| <[f64; 3]>::from(tip - along * (far * length) + (u * a + v * b) * (wide * length)))
+            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(|(a, b)| {
+                <[f64; 3]>::from(tip - along * (far * length) + (u * a + v * b) * (wide * length))
+            })
         };
         let cone: [&[u32]; 5] = [&[0, 1, 2], &[0, 2, 3], &[0, 3, 4], &[0, 4, 1], &[4, 3, 2, 1]];
         let shaft: [&[u32]; 4] = [&[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
@@ -126,16 +127,17 @@ impl Shape {
 
     /// Returns the bounding box [m].
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        let balls = self.spheres.iter().flat_map(|[x, y, z, r]| [[x - r, y - r, z - r], [x + r, y + r, z + r]]);
+        let balls =
+            self.spheres.iter().flat_map(|[x, y, z, r]| [[x - r, y - r, z - r], [x + r, y + r, z + r]]);
         union(self.points.iter().copied().chain(balls).map(|x| [x, x]))
     }
 }
 
 /// Bounding box of boxes.
 pub(super) fn union(boxes: impl IntoIterator<Item = [[f64; 3]; 2]>) -> Option<[[f64; 3]; 2]> {
-    boxes.into_iter().reduce(|a, b| {
-        [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
-    })
+    boxes
+        .into_iter()
+        .reduce(|a, b| [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))])
 }
 
 /// Two unit vectors normal to a unit vector and to each other.

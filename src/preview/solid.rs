@@ -59,7 +59,8 @@ pub fn materials(c: &Context) -> Vec<Item> {
     let (mesh, elements) = (part.model.mesh(), ground(part));
     let item = |(k, m): (usize, &crate::scene::solid::SolidMaterial)| {
         let (count, faces) = skin(mesh, elements, m.id);
-        let item = Item::new(format!("solid.material.{k}"), &part.material_names[&m.id], surface(mesh, &faces));
+        let item =
+            Item::new(format!("solid.material.{k}"), &part.material_names[&m.id], surface(mesh, &faces));
         (count > 0).then(|| item.counted(count, "element").coloured(palette::ground(k)))
     };
     table.material.iter().enumerate().filter_map(item).collect()
@@ -115,7 +116,11 @@ pub fn supports(c: &Context) -> Vec<Item> {
                 count += 1;
             }
             if count > 0 {
-                let name = format!("{} {}", if moves { "displaced in" } else { "fixed in" }, ["x", "y", "z"][direction]);
+                let name = format!(
+                    "{} {}",
+                    if moves { "displaced in" } else { "fixed in" },
+                    ["x", "y", "z"][direction]
+                );
                 items.push(Item::new("solid.support", name, shape).counted(count, "node").coloured(colour));
             }
         }
@@ -153,13 +158,14 @@ pub fn sets(c: &Context) -> Vec<Item> {
     };
     let mesh = &file.mesh;
     let radius = NODE * mark_size(c, part.model.mesh());
-    let nodes = file.node_sets.iter().filter(|(name, _)| !file.face_sets.contains_key(*name)).map(|(name, nodes)| {
-        let at = |n: &u32| mesh.coordinates[*n as usize];
-        let spheres = nodes.iter().map(at).map(|[x, y, z]| [x, y, z, radius]).collect();
-        let ids = nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect();
-        let shape = Shape { spheres, ids, ..Shape::default() };
-        Item::new("solid.mesh", name, shape).counted(nodes.len(), "node")
-    });
+    let nodes =
+        file.node_sets.iter().filter(|(name, _)| !file.face_sets.contains_key(*name)).map(|(name, nodes)| {
+            let at = |n: &u32| mesh.coordinates[*n as usize];
+            let spheres = nodes.iter().map(at).map(|[x, y, z]| [x, y, z, radius]).collect();
+            let ids = nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect();
+            let shape = Shape { spheres, ids, ..Shape::default() };
+            Item::new("solid.mesh", name, shape).counted(nodes.len(), "node")
+        });
     let faces = file.face_sets.iter().map(|(name, set)| {
         let faces: Vec<Face> = set.iter().map(|[e, side]| mesh.face(*e as usize, *side as usize)).collect();
         Item::new("solid.mesh", name, surface(mesh, &faces)).counted(faces.len(), "face")

@@ -79,7 +79,9 @@ fn base(c: &Context) -> f64 {
 }
 
 pub fn sleepers(c: &Context) -> Vec<Item> {
-    let Some(plan) = c.job.grains.as_ref().and_then(|part| part.track.sleeper.as_ref()) else { return Vec::new() };
+    let Some(plan) = c.job.grains.as_ref().and_then(|part| part.track.sleeper.as_ref()) else {
+        return Vec::new();
+    };
     let (row, base, mut shape) = (&plan.row, base(c), Shape::default());
     for [x, y] in &row.centres {
         let [a, b, h] = row.half;
@@ -103,16 +105,22 @@ pub fn rails(c: &Context) -> Vec<Item> {
     let count = row.centres.len() * row.seats.len();
     let key = if table.load.is_some() { "track.load" } else { "track.sleeper" };
     let mut items = vec![Item::new(key, "rail seats", seats).counted(count, "seat").coloured("d55e00")];
-    if let (Some(_), Some(spacing), [first, .., last]) = (&table.rail, table.sleeper.spacing, &row.centres[..]) {
+    if let (Some(_), Some(spacing), [first, .., last]) =
+        (&table.rail, table.sleeper.spacing, &row.centres[..])
+    {
         let mut shape = Shape::default();
         for seat in &row.seats {
             let [mut low, mut high] = [first, last].map(|x| [x[0] + seat[0], x[1] + seat[1], top]);
-            (low[row.axis], high[row.axis]) = (low[row.axis] - 0.5 * spacing.si, high[row.axis] + 0.5 * spacing.si);
-            (low[1 - row.axis], high[1 - row.axis]) = (low[1 - row.axis] - RAIL[0], high[1 - row.axis] + RAIL[0]);
+            (low[row.axis], high[row.axis]) =
+                (low[row.axis] - 0.5 * spacing.si, high[row.axis] + 0.5 * spacing.si);
+            (low[1 - row.axis], high[1 - row.axis]) =
+                (low[1 - row.axis] - RAIL[0], high[1 - row.axis] + RAIL[0]);
             high[2] += RAIL[1];
             shape.block(low, high);
         }
-        items.push(Item::new("track.rail", "rails", shape).counted(row.seats.len(), "rail").coloured("5b4a3f"));
+        items.push(
+            Item::new("track.rail", "rails", shape).counted(row.seats.len(), "rail").coloured("5b4a3f"),
+        );
     }
     items
 }

@@ -148,9 +148,10 @@ fn about(preview: &Preview) -> Value {
         json!({ "kind": item.kind, "key": item.key, "name": item.name, "count": item.count,
             "colour": format!("#{}", item.colour), "bounds": item.shape.bounds() })
     });
-    let remarks = preview.remarks.iter().map(|remark| {
-        json!({ "text": remark.text, "serious": remark.serious, "item": remark.item })
-    });
+    let remarks = preview
+        .remarks
+        .iter()
+        .map(|remark| json!({ "text": remark.text, "serious": remark.serious, "item": remark.item }));
     json!({ "kinds": kinds.collect::<Vec<_>>(), "items": items.collect::<Vec<_>>(), "remarks": remarks.collect::<Vec<_>>() })
 }
 
@@ -162,7 +163,8 @@ fn model(preview: &Preview, coding: Coding) -> Vec<u8> {
         chunk.places(&format!("points/{k}"), &relative(shape.points.as_flattened(), origin), 3);
         chunk.indices(&format!("triangles/{k}"), shape.triangles.as_flattened(), 3);
         chunk.indices(&format!("edges/{k}"), shape.edges.as_flattened(), 2);
-        let spheres = shape.spheres.iter().flat_map(|[x, y, z, r]| [x - origin[0], y - origin[1], z - origin[2], *r]);
+        let spheres =
+            shape.spheres.iter().flat_map(|[x, y, z, r]| [x - origin[0], y - origin[1], z - origin[2], *r]);
         chunk.exact(&format!("spheres/{k}"), &spheres.collect::<Vec<_>>(), 4);
         chunk.indices(&format!("ids/{k}"), &shape.ids, 1);
     }
