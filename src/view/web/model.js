@@ -119,7 +119,7 @@ export class Model {
     if (!found) return null;
     const item = this.items[found.kind - FIRST];
     const { balls, points, triangles, ids } = item;
-    // Surfaces and spheres of one object are told apart by their numbers of parts.
+    // Triangles come before spheres of the same object.
     if (item.spheres && !(item.surface && 3 * found.index < triangles.length)) {
       return { item, place: [...balls.slice(4 * found.index, 4 * found.index + 3)], number: ids[found.index] };
     }
