@@ -1,6 +1,6 @@
 //! Grains of a preview: groups in their initial positions, regions that are filled, inlets, outlets.
 
-use super::Context;
+use super::context::Context;
 use super::item::{Item, Shape, union};
 use super::palette;
 use super::walls::{rectangle, round};

@@ -1,6 +1,6 @@
 //! Probes, boxes, water and periodic borders of a preview.
 
-use super::Context;
+use super::context::Context;
 use super::item::{Item, Shape};
 use super::walls::rectangle;
 use crate::model::Observed;

@@ -1,6 +1,6 @@
 //! Solid of a preview: materials, contact surface, supports, loads, sets.
 
-use super::Context;
+use super::context::Context;
 use super::item::{Item, Shape};
 use super::palette::{self, AXES};
 use crate::model::solid::{self, SolidPart};

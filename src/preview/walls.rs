@@ -1,6 +1,6 @@
 //! Walls, sleepers and rails of a preview.
 
-use super::Context;
+use super::context::Context;
 use super::item::{Item, Shape, across};
 use crate::model::grains::{GroupsPart, is_plain};
 use crate::run::outline;

@@ -18,7 +18,11 @@ fn shipped_scenes_have_all_objects() {
         let resolved = begun.elapsed();
         let preview = Preview::new(&document, &job).unwrap();
         let name = file.strip_prefix(repository()).unwrap().display();
-        println!("{name}: {:.2} s + {:.2} s", resolved.as_secs_f64(), (begun.elapsed() - resolved).as_secs_f64());
+        println!(
+            "{name}: {:.2} s + {:.2} s",
+            resolved.as_secs_f64(),
+            (begun.elapsed() - resolved).as_secs_f64()
+        );
         let scene: Scene = document.read().unwrap();
         let count = |word: &str| preview.of(word).count();
         assert_eq!(count("grains"), scene.grains.len(), "{name}");
@@ -144,12 +148,18 @@ fn page_follows_file_and_shows_errors() {
     let wrong = saved(&server, &folder, &broken);
     let said = trackbed(["check", folder.join("scene.toml").to_str().unwrap()]).stderr;
     let message = wrong["errors"][0].as_str().unwrap();
-    assert!(wrong["model"].is_null() && message.contains("scene.toml:10: solid.material.0.young: "), "{wrong}");
+    assert!(
+        wrong["model"].is_null() && message.contains("scene.toml:10: solid.material.0.young: "),
+        "{wrong}"
+    );
     assert!(said.contains(message), "{said}");
     assert_eq!(server.get("/data/model").0, 404);
     let syntax = saved(&server, &folder, "title = \n");
     assert!(syntax["errors"][0].as_str().unwrap().contains("scene.toml:1: syntax: "), "{syntax}");
-    let included = format!("include = [\"soft.toml\"]\n{}", SCENE.replace("\"clay\"", "\"sand\"").replace("title = \"cube\"", ""));
+    let included = format!(
+        "include = [\"soft.toml\"]\n{}",
+        SCENE.replace("\"clay\"", "\"sand\"").replace("title = \"cube\"", "")
+    );
     let good = saved(&server, &folder, &included);
     assert_eq!((&good["title"], names(&good)[0].as_str()), (&"other".into(), "sand"));
 
@@ -178,7 +188,8 @@ fn scenes_are_exported_with_overrides() {
     let folder = Folder::new("preview_export");
     let file = folder.write("scene.toml", SCENE);
     let html = folder.join("page.html");
-    let words = ["view", file.to_str().unwrap(), "--set", "title=changed", "--export", html.to_str().unwrap()];
+    let words =
+        ["view", file.to_str().unwrap(), "--set", "title=changed", "--export", html.to_str().unwrap()];
     let said = trackbed(words).good().stdout;
     assert!(said.contains("page.html: 5 objects, "), "{said}");
     let page = std::fs::read_to_string(&html).unwrap();
@@ -207,10 +218,19 @@ fn bad_input_ends_with_one_error() {
         (&["view", nowhere, "--no-open"], "nowhere.toml: file: found "),
         (&["view", good, "--set", "solid.x=1", "--export", html], "--set: solid.x: found "),
         (&["view", results, "--export", html], "results.pvd: found "),
-        (&["view", results, "--set", "title=a", "--export", html], "--set: found, but it has no effect without a scene"),
+        (
+            &["view", results, "--set", "title=a", "--export", html],
+            "--set: found, but it has no effect without a scene",
+        ),
         (&["render", broken, "--out", picture], "broken.toml:10: solid.material.0.young: found "),
-        (&["render", good, "--out", picture, "--field", "speed"], "--field: found, but it has no effect without a results"),
-        (&["render", good, "--out", "a.avi"], "--out: found a.avi, expected a picture: a scene has no frames"),
+        (
+            &["render", good, "--out", picture, "--field", "speed"],
+            "--field: found, but it has no effect without a results",
+        ),
+        (
+            &["render", good, "--out", "a.avi"],
+            "--out: found a.avi, expected a picture: a scene has no frames",
+        ),
         (&["render", results, "--set", "title=a"], "--set: found, but it has no effect without a scene"),
     ] {
         let outcome = trackbed(words);

@@ -34,6 +34,7 @@ export class App {
   /** Removes what is drawn. */
   clear() {
     this.stage.scene.clear();
+    this.model?.dispose();
     this.grains = new Grains();
     this.chains = new Chains();
     this.walls = new Walls();
@@ -80,7 +81,7 @@ export class App {
     document.title = `${state.title} – trackbed`;
     await this.changed();
     await this.first(again && this.seen);
-    this.seen = Boolean(model);
+    this.seen ||= Boolean(model);
   }
 
   /** Reads the scene again and looks at it from the same place. */
@@ -102,10 +103,10 @@ export class App {
 
   /** Rows about a picked object of a scene. */
   about({ item, place, number }) {
-    const kind = this.model.kinds[item.kind].label;
-    const data = [['kind', kind, ''], ['key', item.key, '']];
+    const { label, word } = this.model.kinds[item.kind];
+    const data = [['kind', label, ''], ['key', item.key, '']];
     if (item.count) data.push(['number', item.count, '']);
-    if (number !== undefined) data.push([['Grains', 'Filled regions'].includes(kind) ? 'grain' : 'node', `${number}`, '']);
+    if (number !== undefined) data.push([word === 'grains' ? 'grain' : 'node', `${number}`, '']);
     if (place) data.push(['place [m]', place.map((x, k) => x + this.meta.origin[k]), '']);
     return { kind: 'object', title: item.name, data };
   }

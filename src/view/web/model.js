@@ -17,6 +17,11 @@ export class Model {
     this.kinds = [];
   }
 
+  /** Frees what the graphics processor holds: a scene is read again whenever it is saved. */
+  dispose() {
+    this.group.traverse(({ geometry, material }) => { geometry?.dispose(); material?.dispose(); });
+  }
+
   /** Takes objects and their geometry. */
   take({ kinds, items }, { arrays }) {
     this.kinds = kinds;
