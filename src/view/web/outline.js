@@ -47,11 +47,11 @@ export class Outline {
       const id = `${word}/${item.name}`;
       const swatch = element('span', { className: 'swatch' });
       swatch.style.background = item.colour;
-      const name = element('button', { className: 'name', title: item.key, textContent: item.name });
+      const name = element('button', { className: 'name', textContent: item.name });
       name.onclick = () => this.app.fly(k);
       const show = this.box(`show-${k}`, (v) => { model.hidden[id] = !v; }, () => !model.hidden[id]);
       show.ariaLabel = item.name;
-      return element('div', { className: 'row item' }, show, swatch, name, element('span', { className: 'count', textContent: item.count }));
+      return element('div', { className: 'row item', title: `${item.name} (${item.key}): ${item.count}` }, show, swatch, name, element('span', { className: 'count', textContent: item.count }));
     });
     const summary = element('summary', {}, box, ` ${label} (${own.length})`);
     return element('details', { id: `part-${word}`, open: own.length <= 12 }, summary, element('div', { className: 'rows' }, ...rows));
