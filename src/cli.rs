@@ -102,9 +102,9 @@ pub enum Command {
     },
     /// Compute natural frequencies and modes of the solid of a scene.
     Modal(ModalArgs),
-    /// Show the results of a run in a browser, or export them as one HTML file.
+    /// Show the results of a run, or a scene before it runs, in a browser; export them as one HTML file.
     View(ViewArgs),
-    /// Render an image or a video of the results of a run to a file, without a display.
+    /// Render an image of a scene, or an image or video of results, to a file, without a display.
     Render(Box<RenderArgs>),
     /// Convert decks, packings, animations and force chains of older programs, and frames.
     Convert(ConvertArgs),
@@ -266,8 +266,11 @@ pub struct ModalArgs {
 /// Arguments of `view`.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
-    /// Results directory of a run, or a parent of results directories.
+    /// Results directory of a run, a parent of results directories, or a scene.
     pub dir: PathBuf,
+    /// Set one key of the scene, as key.path=value; repeatable.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// Port on 127.0.0.1 [default: any free port].
     #[arg(long, default_value_t = 0, hide_default_value = true)]
     pub port: u16,

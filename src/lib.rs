@@ -17,6 +17,7 @@ pub mod mesh_tools;
 pub mod message;
 pub mod model;
 pub mod plausible;
+pub mod preview;
 pub mod program;
 mod progress;
 pub mod read;

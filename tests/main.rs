@@ -37,6 +37,7 @@ mod suite {
     mod packings;
     mod plausible;
     mod polyhedra;
+    mod preview;
     mod rail;
     mod random_runs;
     mod ranks;

@@ -4,12 +4,15 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Arguments of `render`. Where `PART=` stands, it may be left out: all parts are meant then. Parts are grains, chains, solid, boundary,
-/// track.
+/// track; of a scene also marks (supports, loads, boxes, probes), sets.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Results directory of a run.
+    /// Results directory of a run, or a scene.
     pub dir: PathBuf,
-    /// Output: png, jpg, bmp, or avi for a video [default: picture.png in the directory].
+    /// Set one key of the scene, as key.path=value; repeatable.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Output: png, jpg, bmp, or avi for a video [default: picture.png in DIR].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Overwrite an existing file.

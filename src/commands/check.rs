@@ -1,11 +1,12 @@
 //! `trackbed check`: resolves and reports a scene.
 
 use crate::failure::Failure;
+use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart, Windows};
 use crate::model::grains::{GrainsPart, Preview};
 use crate::model::solid::SolidPart;
-use crate::model::{self, Job};
 use crate::plausible;
+use crate::preview::Source;
 use crate::run::estimate::Estimate;
 use crate::run::{self, stages};
 use crate::scene::Document;
@@ -62,13 +63,7 @@ pub fn check(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) ->
 /// # Errors
 /// Input errors.
 pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
-    let mut document = Document::open(scene)?;
-    for assignment in set {
-        document.set(assignment)?;
-    }
-    let parsed = model::read_scene(&document)?;
-    let job = model::resolve(&document, &parsed)?;
-    Ok((document, job))
+    Source { file: scene.to_path_buf(), set: set.to_vec() }.resolve()
 }
 
 /// Reports a scene.

@@ -1,23 +1,19 @@
 //! `trackbed render`: images and videos.
 
 use super::output::print;
+use super::view;
 use crate::cli::RenderArgs;
 use crate::failure::Failure;
+use crate::preview::Preview;
 use crate::render::options::{self, Options, Part, refuse};
 use crate::render::{self, Written};
 
-/// Writes an image or video.
+/// Writes an image of a scene, or an image or video of results.
 ///
 /// # Errors
 /// Input and I/O errors.
 pub fn render(args: &RenderArgs) -> Result<(), Failure> {
-    if !args.dir.is_dir() {
-        let found = if args.dir.exists() { "a file" } else { "no such directory" };
-        return Err(Failure::Input(format!(
-            "{}: found {found}, expected the results directory of a run",
-            args.dir.display()
-        )));
-    }
+    let source = view::scene(&args.dir, &args.set)?;
     let options = chosen(args)?;
     let threads = args.threads.unwrap_or(0);
     if args.threads == Some(0) {
@@ -25,8 +21,15 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(Failure::thread)?;
-    let Written { file, size, frames, times } = pool.install(|| render::render(&options))?;
+    let Written { file, size, frames, times } = pool.install(|| match &source {
+        Some(source) => {
+            let (document, job) = source.resolve()?;
+            render::render_scene(&options, &Preview::new(&document, &job)?)
+        }
+        None => render::render(&options),
+    })?;
     let what = match (&frames[..], &times[..]) {
+        ([], _) => "before the run".to_string(),
         ([frame], [time]) => format!("frame {frame}, t = {time} s"),
         _ => format!("{} frames, t = {} to {} s", frames.len(), times[0], times[times.len() - 1]),
     };

@@ -1,28 +1,28 @@
-//! `trackbed view`: results in a browser.
+//! `trackbed view`: results or a scene in a browser.
 
 use std::path::Path;
 
+use super::check;
 use super::output::print;
 use crate::cli::ViewArgs;
 use crate::failure::Failure;
 use crate::message;
+use crate::preview::{self, Preview, Source};
 use crate::results::series;
 use crate::run::size;
 use crate::system;
-use crate::view::{self, Coding, Results};
+use crate::view::{self, Coding, Live, Results, Still};
 
-/// Serves results, or exports one HTML file.
+/// Serves results or a scene, or writes them as one HTML file.
 ///
 /// # Errors
-/// No results; see [`Failure`].
+/// No results, no scene; see [`Failure`].
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
-    let dir = &args.dir;
-    if !dir.is_dir() {
-        let found = if dir.exists() { "a file" } else { "no such directory" };
-        return Err(Failure::Input(format!(
-            "{}: found {found}, expected the results directory of a run",
-            dir.display()
-        )));
+    if let Some(source) = scene(&args.dir, &args.set)? {
+        return match &args.export {
+            Some(file) => export_scene(args, file, &source),
+            None => serve_scene(args, source),
+        };
     }
     match &args.export {
         Some(file) => export(args, file),
@@ -30,13 +30,39 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     }
 }
 
-fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
-    if file.exists() && !args.force {
+/// Returns the scene of a path; `None` for a results directory.
+///
+/// # Errors
+/// Neither of them; overrides of results.
+pub(super) fn scene(path: &Path, set: &[String]) -> Result<Option<Source>, Failure> {
+    if let Some(file) = preview::scene_file(path) {
+        return Ok(Some(Source { file, set: set.to_vec() }));
+    }
+    if !path.is_dir() {
+        let found = if path.exists() { "a file" } else { "no such directory" };
         return Err(Failure::Input(format!(
-            "{}: found an existing file, expected a new file, or --force to overwrite it",
-            file.display()
+            "{}: found {found}, expected the results directory of a run, or a scene (.toml)",
+            path.display()
         )));
     }
+    if set.is_empty() {
+        return Ok(None);
+    }
+    Err(Failure::Input("--set: found, but it has no effect without a scene".to_string()))
+}
+
+fn refuse_existing(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
+    if !file.exists() || args.force {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{}: found an existing file, expected a new file, or --force to overwrite it",
+        file.display()
+    )))
+}
+
+fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
+    refuse_existing(args, file)?;
     let results = Results::open(&args.dir, Coding::Compact)?.every(args.every.get());
     let name = args.dir.canonicalize()?.file_name().map(|n| n.to_string_lossy().into_owned());
     view::export::export(file, &name.unwrap_or_default(), &results)?;
@@ -44,18 +70,42 @@ fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
     print(&format!("{}: {} frames, {}\n", file.display(), results.frames.len(), size(bytes)))
 }
 
+fn export_scene(args: &ViewArgs, file: &Path, source: &Source) -> Result<(), Failure> {
+    refuse_existing(args, file)?;
+    let (document, job) = source.resolve()?;
+    let still = Still(Preview::new(&document, &job)?);
+    view::export::export(file, &still.0.title, &still)?;
+    let bytes = std::fs::metadata(file)?.len();
+    print(&format!("{}: {} objects, {}\n", file.display(), still.0.items.len(), size(bytes)))
+}
+
 fn serve(args: &ViewArgs) -> Result<(), Failure> {
     // Study directories are shown run by run.
     if series::folders(&args.dir).is_empty() {
         Results::open(&args.dir, Coding::Exact)?;
     }
+    let (listener, port) = begin(args)?;
+    view::server::serve(listener, port, &args.dir)
+}
+
+/// Errors of the scene are shown in the page, where it recovers.
+fn serve_scene(args: &ViewArgs, source: Source) -> Result<(), Failure> {
+    if !source.file.is_file() {
+        source.document()?;
+    }
+    let live = Live::new(source, |source| Ok(check::check(&source.file, &source.set, None, false)?.text()));
+    let (listener, port) = begin(args)?;
+    view::server::serve_scene(listener, port, live)
+}
+
+fn begin(args: &ViewArgs) -> Result<(std::net::TcpListener, u16), Failure> {
     let (listener, port) = view::server::bind(args.port)?;
     let address = format!("http://127.0.0.1:{port}/");
     print(&format!("{address} shows {}; Ctrl-C stops the server\n", args.dir.display()))?;
     if !args.no_open {
         open(&address);
     }
-    view::server::serve(listener, port, &args.dir)
+    Ok((listener, port))
 }
 
 fn open(address: &str) {

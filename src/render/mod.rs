@@ -1,4 +1,4 @@
-//! Pictures of results, without a display, as PNG, JPEG, BMP or AVI files.
+//! Pictures of results and scenes, without a display, as PNG, JPEG, BMP or AVI files.
 
 mod colours;
 mod draw;
@@ -6,10 +6,11 @@ mod encode;
 mod labels;
 pub mod options;
 mod parts;
+mod preview;
 mod run;
 mod sheet;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::results::series;
@@ -19,7 +20,9 @@ use encode::Form;
 use options::{Frames, Options, Part, joined, refuse};
 use parts::{Limits, Parts};
 use run::{Moment, Run, Wanted};
-use sheet::{Ink, Picture, legend, marks};
+use sheet::{Ink, Legend, Picture, legend, marks};
+
+pub use preview::render as render_scene;
 
 const NAME: &str = "picture.png";
 /// Margin [sheet units].
@@ -48,7 +51,34 @@ pub struct Written {
 /// # Errors
 /// Missing results, frames or fields, existing file; I/O errors.
 pub fn render(options: &Options) -> Result<Written, Failure> {
-    let file = options.out.clone().unwrap_or_else(|| options.dir.join(NAME));
+    let (file, form) = target(options, &options.dir.join(NAME))?;
+    let run = Run::open(&options.dir)?;
+    run.check_fields(options)?;
+    if let Some(since) = options.since.filter(|k| *k >= run.frames.len()) {
+        return Err(refuse("since", &since.to_string(), &format!("0 to {}", run.frames.len() - 1)));
+    }
+    let usual = if form == Form::Avi { Frames::Range(0, usize::MAX, 1) } else { Frames::Last };
+    let frames = run.chosen(options.frames.as_ref().unwrap_or(&usual))?;
+    if form != Form::Avi && frames.len() > 1 {
+        let found = format!("{} frames for a picture", frames.len());
+        return Err(refuse("frame", &found, "one, or a file that ends in avi"));
+    }
+    let studio = Studio::new(&run, options, &frames)?;
+    match form {
+        Form::Avi => {
+            let frame = |k: usize| studio.picture(frames[k]).map_err(Refused::Results);
+            encode::write_video(&file, options.size, options.rate, frames.len(), frame)
+                .map_err(Failure::from)?;
+        }
+        _ => encode::write(&file, form, &studio.picture(frames[0])?).map_err(Refused::Disk)?,
+    }
+    let times = frames.iter().map(|k| run.frames[*k].time).collect();
+    Ok(Written { file, size: options.size, frames, times })
+}
+
+/// Returns the file to write, `usual` by default, and its format.
+fn target(options: &Options, usual: &Path) -> Result<(PathBuf, Form), Failure> {
+    let file = options.out.clone().unwrap_or_else(|| usual.to_path_buf());
     let form = Form::of(&file).ok_or_else(|| {
         let endings = joined(encode::ENDINGS.iter().map(|(e, _)| *e));
         refuse("out", &file.display().to_string(), &format!("a name that ends in one of {endings}"))
@@ -73,28 +103,7 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
             folder.display()
         )));
     }
-    let run = Run::open(&options.dir)?;
-    run.check_fields(options)?;
-    if let Some(since) = options.since.filter(|k| *k >= run.frames.len()) {
-        return Err(refuse("since", &since.to_string(), &format!("0 to {}", run.frames.len() - 1)));
-    }
-    let usual = if form == Form::Avi { Frames::Range(0, usize::MAX, 1) } else { Frames::Last };
-    let frames = run.chosen(options.frames.as_ref().unwrap_or(&usual))?;
-    if form != Form::Avi && frames.len() > 1 {
-        let found = format!("{} frames for a picture", frames.len());
-        return Err(refuse("frame", &found, "one, or a file that ends in avi"));
-    }
-    let studio = Studio::new(&run, options, &frames)?;
-    match form {
-        Form::Avi => {
-            let frame = |k: usize| studio.picture(frames[k]).map_err(Refused::Results);
-            encode::write_video(&file, options.size, options.rate, frames.len(), frame)
-                .map_err(Failure::from)?;
-        }
-        _ => encode::write(&file, form, &studio.picture(frames[0])?).map_err(Refused::Disk)?,
-    }
-    let times = frames.iter().map(|k| run.frames[*k].time).collect();
-    Ok(Written { file, size: options.size, frames, times })
+    Ok((file, form))
 }
 
 enum Refused {
@@ -161,22 +170,7 @@ impl<'a> Studio<'a> {
         if options.near_grains && !grains.is_empty() {
             shown = below(&grains);
         }
-        if shown.is_empty() {
-            shown = vec![V3::repeat(-1.0), V3::repeat(1.0)];
-        }
-        let perspective = options.perspective.unwrap_or(plane.is_none());
-        let towards = options.towards.or(plane).unwrap_or_else(options::oblique);
-        let u = sheet::unit(options.size[1]);
-        let legends = options.shows(Part::Legends, true) && wanted.coloured();
-        let caption = options.shows(Part::Caption, true);
-        let foot = options.shows(Part::Axes, true) || options.shows(Part::Scale, true);
-        let room = Room {
-            left: MARGIN * u,
-            right: if legends { legend::ROOM * u } else { MARGIN * u },
-            top: if caption { HEAD * u } else { MARGIN * u },
-            bottom: if foot { FOOT * u } else { MARGIN * u },
-        };
-        let eye = Camera::showing(&shown, towards, perspective, options.size, room, options.zoom);
+        let eye = camera(options, &shown, plane, wanted.coloured());
         let origin = origin.unwrap_or_default();
         Ok(Studio { run, options, wanted, origin, limits, eye, first: last.filter(|_| frames.len() == 1) })
     }
@@ -192,27 +186,7 @@ impl<'a> Studio<'a> {
             }
         };
         let parts = Parts::of(run, moment, options, &self.wanted, self.origin, self.limits)?;
-        let [width, height] = options.size;
-        let pixels = draw::draw(&parts.scene, &self.eye, options.size, options.background);
-        let mut picture = Picture { width, height, pixels };
-        let (u, ink) = (sheet::unit(height), Ink::on(options.background));
-        let mut free = width as f32;
-        if options.shows(Part::Legends, true) && !parts.legends.is_empty() {
-            legend::draw(&mut picture, &parts.legends, &ink, u);
-            free -= legend::ROOM * u;
-        }
-        if options.shows(Part::Caption, true) {
-            marks::caption(&mut picture, &run.about.title, &self.remark(frame), free, &ink, u);
-        }
-        let mut from = 24.0 * u;
-        if options.shows(Part::Axes, true) {
-            marks::axes(&mut picture, &self.eye, &ink, u);
-            from = 124.0 * u;
-        }
-        if options.shows(Part::Scale, true) {
-            marks::scale(&mut picture, &self.eye, from, &ink, u);
-        }
-        Ok(picture)
+        Ok(sheet(options, &self.eye, (&parts.scene, &parts.legends), (&run.about.title, &self.remark(frame))))
     }
 
     fn remark(&self, frame: usize) -> String {
@@ -231,6 +205,53 @@ impl<'a> Studio<'a> {
         }
         words.join("   ")
     }
+}
+
+/// Camera that shows all points, from the chosen side, else along the normal of a plane scene.
+fn camera(options: &Options, shown: &[V3], plane: Option<V3>, coloured: bool) -> Camera {
+    let perspective = options.perspective.unwrap_or(plane.is_none());
+    let towards = options.towards.or(plane).unwrap_or_else(options::oblique);
+    let u = sheet::unit(options.size[1]);
+    let foot = options.shows(Part::Axes, true) || options.shows(Part::Scale, true);
+    let room = Room {
+        left: MARGIN * u,
+        right: if options.shows(Part::Legends, true) && coloured { legend::ROOM * u } else { MARGIN * u },
+        top: if options.shows(Part::Caption, true) { HEAD * u } else { MARGIN * u },
+        bottom: if foot { FOOT * u } else { MARGIN * u },
+    };
+    let all = [V3::repeat(-1.0), V3::repeat(1.0)];
+    let shown = if shown.is_empty() { &all } else { shown };
+    Camera::showing(shown, towards, perspective, options.size, room, options.zoom)
+}
+
+/// Picture of a scene with legends, title and remark.
+fn sheet(
+    options: &Options,
+    eye: &Camera,
+    (scene, legends): (&draw::Scene, &[Legend]),
+    (title, remark): (&str, &str),
+) -> Picture {
+    let [width, height] = options.size;
+    let pixels = draw::draw(scene, eye, options.size, options.background);
+    let mut picture = Picture { width, height, pixels };
+    let (u, ink) = (sheet::unit(height), Ink::on(options.background));
+    let mut free = width as f32;
+    if options.shows(Part::Legends, true) && !legends.is_empty() {
+        legend::draw(&mut picture, legends, &ink, u);
+        free -= legend::ROOM * u;
+    }
+    if options.shows(Part::Caption, true) {
+        marks::caption(&mut picture, title, remark, free, &ink, u);
+    }
+    let mut from = 24.0 * u;
+    if options.shows(Part::Axes, true) {
+        marks::axes(&mut picture, eye, &ink, u);
+        from = 124.0 * u;
+    }
+    if options.shows(Part::Scale, true) {
+        marks::scale(&mut picture, eye, from, &ink, u);
+    }
+    picture
 }
 
 fn wanted(run: &Run, options: &Options) -> Result<Wanted, Failure> {

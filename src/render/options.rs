@@ -19,6 +19,10 @@ pub enum Part {
     Boundary,
     /// Sleepers and rails.
     Track,
+    /// Supports, loads, boxes, probes of a scene.
+    Marks,
+    /// Sets of the mesh of a scene.
+    Sets,
     /// Element edges.
     Edges,
     /// Legends.
@@ -31,19 +35,21 @@ pub enum Part {
     Scale,
 }
 
-const PARTS: [(Part, &str); 10] = [
+const PARTS: [(Part, &str); 12] = [
     (Part::Grains, "grains"),
     (Part::Chains, "chains"),
     (Part::Solid, "solid"),
     (Part::Boundary, "boundary"),
     (Part::Track, "track"),
+    (Part::Marks, "marks"),
+    (Part::Sets, "sets"),
     (Part::Edges, "edges"),
     (Part::Legends, "legends"),
     (Part::Caption, "caption"),
     (Part::Axes, "axes"),
     (Part::Scale, "scale"),
 ];
-const BODIES: usize = 5;
+const BODIES: usize = 7;
 
 /// View directions of the viewer; z points up.
 const SIDES: [(&str, [f32; 3]); 7] = [

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Matrix3;
-use trackbed_fem::mesh::Mesh;
+use trackbed_fem::mesh::{Face, Mesh};
 
 use crate::failure::Failure;
 use crate::read::vtk_arrays::Arrays;
@@ -43,42 +43,42 @@ pub(super) fn triangles(nodes: usize) -> &'static [[usize; 3]] {
     }
 }
 
-impl Skin {
-    /// Reads the skin of a mesh.
-    ///
-    /// # Errors
-    /// No mesh.
-    pub fn open(file: &Path) -> Result<Skin, Failure> {
-        let mesh = read_vtu(file)?.mesh;
+/// Faces as triangles, with their own numbering of nodes.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// Mesh nodes.
+    pub nodes: Vec<u32>,
+    /// Mesh element of each triangle.
+    pub element: Vec<u32>,
+    /// Surface nodes of triangles.
+    pub triangles: Vec<u32>,
+    /// Surface nodes of element edge segments.
+    pub edges: Vec<u32>,
+}
+
+impl Surface {
+    /// Triangulates faces of a mesh.
+    pub fn new(mesh: &Mesh, faces: &[Face]) -> Surface {
         let mut of_mesh = vec![u32::MAX; mesh.node_count()];
-        let mut skin = Skin {
-            nodes: Vec::new(),
-            element: Vec::new(),
-            triangles: Vec::new(),
-            edges: Vec::new(),
-            node_ids: Vec::new(),
-            element_ids: Vec::new(),
-            points: Vec::new(),
-            mesh: Mesh::default(),
-        };
+        let mut surface = Surface::default();
         let mut edges = Vec::new();
-        for face in mesh.boundary_faces() {
+        for face in faces {
             let own: Vec<u32> = face
                 .nodes()
                 .iter()
                 .map(|n| {
                     let place = &mut of_mesh[*n as usize];
                     if *place == u32::MAX {
-                        *place = skin.nodes.len() as u32;
-                        skin.nodes.push(*n);
+                        *place = surface.nodes.len() as u32;
+                        surface.nodes.push(*n);
                     }
                     *place
                 })
                 .collect();
             let corners = face.corners().len();
             for triangle in triangles(own.len()) {
-                skin.triangles.extend(triangle.map(|k| own[k]));
-                skin.element.push(face.element);
+                surface.triangles.extend(triangle.map(|k| own[k]));
+                surface.element.push(face.element);
             }
             for k in 0..corners {
                 let (a, b) = (own[k], own[(k + 1) % corners]);
@@ -91,12 +91,29 @@ impl Skin {
         }
         edges.sort_unstable();
         edges.dedup();
-        skin.edges = edges.into_flattened();
-        skin.node_ids = skin.nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect();
-        skin.element_ids = skin.element.iter().map(|e| mesh.element_ids[*e as usize]).collect();
-        skin.points = skin.nodes.iter().flat_map(|n| mesh.coordinates[*n as usize]).collect();
-        skin.mesh = mesh;
-        Ok(skin)
+        surface.edges = edges.into_flattened();
+        surface
+    }
+}
+
+impl Skin {
+    /// Reads the skin of a mesh.
+    ///
+    /// # Errors
+    /// No mesh.
+    pub fn open(file: &Path) -> Result<Skin, Failure> {
+        let mesh = read_vtu(file)?.mesh;
+        let Surface { nodes, element, triangles, edges } = Surface::new(&mesh, &mesh.boundary_faces());
+        Ok(Skin {
+            triangles,
+            edges,
+            node_ids: nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect(),
+            element_ids: element.iter().map(|e| mesh.element_ids[*e as usize]).collect(),
+            points: nodes.iter().flat_map(|n| mesh.coordinates[*n as usize]).collect(),
+            nodes,
+            element,
+            mesh,
+        })
     }
 
     /// Returns the bounding box [m].

@@ -46,13 +46,14 @@ pub use device::Place;
 pub(crate) use hash::Hash;
 pub(crate) use lock::Lock;
 pub use memory::{Prediction, methods, parse_size, size};
-pub(crate) use origin::{default_folder, quoted, scene_hash};
+pub(crate) use origin::{default_folder, named_files, quoted, scene_hash};
 pub use ranks::{Ranked, follow};
 pub(crate) use run_file::RunFile;
 use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 pub(crate) use threads::thread_pool;
+pub(crate) use wall_output::outline;
 
 pub use crate::progress::Verbosity;
 

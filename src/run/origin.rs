@@ -106,8 +106,7 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         hash.add(value.as_bytes());
     }
     let mut files = Vec::new();
-    let named = document.included().chain(files_of(scene)).map(Path::to_path_buf);
-    for file in named.chain(behind_the_mesh(document, scene)) {
+    for file in named_files(document, scene) {
         // Missing files change the hash; the model rejects unreadable ones.
         let content = source::bytes(&document.resolve(&file), source::LARGEST).unwrap_or_default();
         hash.add(&content);
@@ -123,6 +122,12 @@ pub fn origin(document: &Document, scene: &Scene) -> Origin {
         files,
         processor: checkpoint::processor(),
     }
+}
+
+/// Returns the files that a scene names, directly or in its mesh file.
+pub fn named_files(document: &Document, scene: &Scene) -> Vec<PathBuf> {
+    let named = document.included().chain(files_of(scene)).map(Path::to_path_buf);
+    named.chain(behind_the_mesh(document, scene)).collect()
 }
 
 /// Files named only in mesh files: lists, includes.

@@ -41,7 +41,7 @@ pub fn polygons(
 ) -> u32 {
     for (k, wall) in part.walls.others.iter().enumerate() {
         let first = frame.points.len() as u32;
-        let (points, polygons) = picture(&wall.shape, |x| view.state.wall_point(view.model, k, &x), extent);
+        let (points, polygons) = outline(&wall.shape, |x| view.state.wall_point(view.model, k, &x), extent);
         frame.points.extend(points.iter().map(|p| <[f64; 3]>::from(*p)));
         for polygon in polygons {
             frame.polygons.push(polygon.iter().map(|v| v + first).collect());
@@ -53,7 +53,8 @@ pub fn polygons(
     id
 }
 
-fn picture(
+/// Points and polygons of a shape moved by `place`.
+pub fn outline(
     shape: &WallShape,
     place: impl Fn(Vec3) -> Vec3,
     extent: (Vec3, f64),

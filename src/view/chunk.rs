@@ -4,7 +4,23 @@
 //! The text has `meta` and each array's name, type, components and offset. Compact arrays store integers `n`
 //! of 16 or 24 bits (value = low + n · step) in byte planes.
 
+use crate::failure::Failure;
 use serde_json::{Value, json};
+
+/// Blocks of a page by name.
+pub trait Blocks {
+    /// Returns a block; `None` if unknown.
+    ///
+    /// # Errors
+    /// Damaged file.
+    fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure>;
+
+    /// Returns all block names.
+    ///
+    /// # Errors
+    /// Damaged file.
+    fn names(&self) -> Result<Vec<String>, Failure>;
+}
 
 /// Number encoding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

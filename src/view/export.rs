@@ -1,4 +1,4 @@
-//! Results of a run as one HTML file.
+//! Page with all blocks as one HTML file.
 
 use std::io::Write;
 use std::path::Path;
@@ -6,19 +6,19 @@ use std::path::Path;
 use flate2::{Compression, write::ZlibEncoder};
 use serde_json::json;
 
+use super::chunk::Blocks;
 use super::page;
-use super::results::Results;
 use crate::failure::Failure;
 use crate::write::{WriteError, atomic};
 
 /// zlib level: higher levels take twice as long for a few per cent.
 const LEVEL: u32 = 6;
 
-/// Writes the page with all blocks of a run.
+/// Writes the page with all blocks.
 ///
 /// # Errors
 /// Damaged results; I/O errors.
-pub fn export(file: &Path, title: &str, results: &Results) -> Result<(), Failure> {
+pub fn export(file: &Path, title: &str, results: &impl Blocks) -> Result<(), Failure> {
     let names = results.names()?;
     let (head, tail) = page::pieces(title, &json!({ "served": false }));
     // Damaged results are input errors, not I/O errors.

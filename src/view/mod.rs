@@ -1,4 +1,4 @@
-//! Browser viewer of results, served locally or exported as one HTML file.
+//! Browser viewer of results and scenes, served locally or exported as one HTML file.
 //!
 //! The program sends blocks of numbers (`chunk`) on request ([`server`]) or all together ([`mod@export`]);
 //! `web/` draws them.
@@ -9,10 +9,12 @@ pub mod export;
 mod grains;
 mod lines;
 mod page;
+mod preview;
 mod results;
 pub mod server;
 mod solid;
 mod tables;
 
-pub use chunk::Coding;
+pub use chunk::{Blocks, Coding};
+pub use preview::{Live, Still};
 pub use results::Results;

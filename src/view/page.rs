@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
 /// Modules by import name. The first two are three.js (licence: `web/three.LICENSE.txt`).
-const MODULES: [(&str, &str); 24] = [
+const MODULES: [(&str, &str); 26] = [
     ("three", include_str!("web/three.module.min.js")),
     ("orbit", include_str!("web/OrbitControls.js")),
     ("chunk", include_str!("web/chunk.js")),
@@ -21,6 +21,8 @@ const MODULES: [(&str, &str); 24] = [
     ("chains", include_str!("web/chains.js")),
     ("walls", include_str!("web/walls.js")),
     ("solid", include_str!("web/solid.js")),
+    ("model", include_str!("web/model.js")),
+    ("outline", include_str!("web/outline.js")),
     ("stage", include_str!("web/stage.js")),
     ("pick", include_str!("web/pick.js")),
     ("plots", include_str!("web/plots.js")),

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde_json::{Value, json};
 
-use super::chunk::{Chunk, Coding};
+use super::chunk::{Blocks, Chunk, Coding};
 use super::{grains, lines, solid, tables};
 use crate::failure::Failure;
 use crate::results::grains::{Bodies, GrainFile};
@@ -107,33 +107,6 @@ impl Results {
         Ok(self.common.get_or_init(|| made))
     }
 
-    /// Returns a block; `None` if unknown.
-    ///
-    /// # Errors
-    /// Damaged file.
-    pub fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
-        let mut words = name.splitn(3, '/');
-        let (head, number, field) = (words.next().unwrap_or_default(), words.next(), words.next());
-        if head == "scene" && number.is_none() {
-            return self.scene().map(Some);
-        }
-        if head == "table" {
-            let known = tables::TABLES.into_iter().find(|t| Some(*t) == number);
-            let file = known.and_then(|t| series::own(&self.dir, &format!("{t}.csv")));
-            return file.map(|file| tables::table(&file)).transpose();
-        }
-        let Some((part, _)) = PARTS.into_iter().find(|(_, word)| *word == head) else { return Ok(None) };
-        let common = self.common()?;
-        let Some(number) = number else { return Ok(self.whole(part, common)) };
-        let frame = number.parse::<usize>().ok().and_then(|k| self.frames.get(k));
-        let Some(file) = frame.and_then(|frame| frame.file(part)) else { return Ok(None) };
-        if let (Part::Walls, Some(field)) = (part, field) {
-            let values = Walls::open(file)?.field(field)?;
-            return Ok(values.map(|values| solid::field(&values, self.coding)));
-        }
-        self.frame(file, part, field, common).map(Some)
-    }
-
     fn whole(&self, part: Part, common: &Common) -> Option<Vec<u8>> {
         match part {
             Part::Grains => common.bodies.as_ref().map(|bodies| grains::common(bodies, self.coding)),
@@ -203,12 +176,33 @@ impl Results {
         chunk.meta("tables", json!(tables.collect::<Vec<_>>()));
         Ok(chunk.finish())
     }
+}
 
-    /// Returns all block names.
-    ///
-    /// # Errors
-    /// Damaged file.
-    pub fn names(&self) -> Result<Vec<String>, Failure> {
+impl Blocks for Results {
+    fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
+        let mut words = name.splitn(3, '/');
+        let (head, number, field) = (words.next().unwrap_or_default(), words.next(), words.next());
+        if head == "scene" && number.is_none() {
+            return self.scene().map(Some);
+        }
+        if head == "table" {
+            let known = tables::TABLES.into_iter().find(|t| Some(*t) == number);
+            let file = known.and_then(|t| series::own(&self.dir, &format!("{t}.csv")));
+            return file.map(|file| tables::table(&file)).transpose();
+        }
+        let Some((part, _)) = PARTS.into_iter().find(|(_, word)| *word == head) else { return Ok(None) };
+        let common = self.common()?;
+        let Some(number) = number else { return Ok(self.whole(part, common)) };
+        let frame = number.parse::<usize>().ok().and_then(|k| self.frames.get(k));
+        let Some(file) = frame.and_then(|frame| frame.file(part)) else { return Ok(None) };
+        if let (Part::Walls, Some(field)) = (part, field) {
+            let values = Walls::open(file)?.field(field)?;
+            return Ok(values.map(|values| solid::field(&values, self.coding)));
+        }
+        self.frame(file, part, field, common).map(Some)
+    }
+
+    fn names(&self) -> Result<Vec<String>, Failure> {
         let common = self.common()?;
         let mut names: Vec<String> = ["scene", "grains", "solid"].map(String::from).into();
         names.extend(tables::TABLES.iter().map(|t| format!("table/{t}")));

@@ -13,9 +13,10 @@ use hyper::body::Bytes;
 use hyper::http::request::Parts;
 use serde_json::json;
 
-use super::chunk::Coding;
+use super::chunk::{Blocks, Coding};
 use super::connections::{self, Reply, Respond};
 use super::page;
+use super::preview::Live;
 use super::results::Results;
 use crate::failure::Failure;
 use crate::results::series;
@@ -25,10 +26,15 @@ const OPEN: usize = 8;
 const LONGEST: usize = 2000;
 
 struct Site {
-    root: PathBuf,
+    shown: Shown,
     port: u16,
     page: Bytes,
-    runs: Mutex<HashMap<String, Arc<Results>>>,
+}
+
+enum Shown {
+    /// Directory, and runs below it.
+    Folder(PathBuf, Mutex<HashMap<String, Arc<Results>>>),
+    Scene(Live),
 }
 
 type Refusal = (u16, String);
@@ -53,8 +59,22 @@ pub fn bind(port: u16) -> Result<(TcpListener, u16), Failure> {
 pub fn serve(listener: TcpListener, port: u16, dir: &Path) -> Result<(), Failure> {
     let root = dir.canonicalize()?;
     let title = root.file_name().map(|n| n.to_string_lossy().into_owned());
-    let (head, tail) = page::pieces(&title.unwrap_or_default(), &json!({ "served": true }));
-    let site = Site { root, port, page: (head.0 + &tail.0).into(), runs: Mutex::default() };
+    site(listener, port, &title.unwrap_or_default(), Shown::Folder(root, Mutex::default()))
+}
+
+/// Serves a scene until the process ends.
+///
+/// # Errors
+/// I/O errors.
+pub fn serve_scene(listener: TcpListener, port: u16, live: Live) -> Result<(), Failure> {
+    let title = live.title();
+    site(listener, port, &title, Shown::Scene(live))
+}
+
+fn site(listener: TcpListener, port: u16, title: &str, shown: Shown) -> Result<(), Failure> {
+    let watch = matches!(shown, Shown::Scene(_));
+    let (head, tail) = page::pieces(title, &json!({ "served": true, "watch": watch }));
+    let site = Site { shown, port, page: (head.0 + &tail.0).into() };
     Ok(connections::serve(listener, Arc::new(site))?)
 }
 
@@ -118,11 +138,17 @@ impl Site {
         let path = decoded(path).ok_or_else(bad)?;
         let run = query.split('&').find_map(|pair| pair.strip_prefix("run="));
         let run = run.map(decoded).unwrap_or(Some(String::new())).ok_or_else(bad)?;
-        match path.as_str() {
-            "/" => Ok(Content("text/html; charset=utf-8", self.page.clone())),
-            "/folders" => {
-                let folders = json!(series::folders(&self.root)).to_string();
-                Ok(Content("application/json", folders.into()))
+        match (path.as_str(), &self.shown) {
+            ("/", _) => Ok(Content("text/html; charset=utf-8", self.page.clone())),
+            ("/folders", shown) => {
+                let folders = match shown {
+                    Shown::Folder(root, _) => series::folders(root),
+                    Shown::Scene(_) => Vec::new(),
+                };
+                Ok(Content("application/json", json!(folders).to_string().into()))
+            }
+            ("/version", Shown::Scene(live)) => {
+                Ok(Content("application/json", json!(live.version()).to_string().into()))
             }
             _ => match path.strip_prefix("/data/") {
                 Some(name) => self.block(name, &run),
@@ -132,33 +158,41 @@ impl Site {
     }
 
     fn block(&self, name: &str, run: &str) -> Result<Content, Refusal> {
-        let results = self.results(run, name == "scene")?;
-        match results.block(name) {
+        let block = match &self.shown {
+            Shown::Folder(root, runs) => results(root, runs, run, name == "scene")?.block(name),
+            Shown::Scene(live) => live.block(name),
+        };
+        match block {
             Ok(Some(bytes)) => Ok(Content("application/octet-stream", bytes.into())),
-            Ok(None) => Err((404, "the run has no such data".to_string())),
+            Ok(None) => Err((404, "there are no such data".to_string())),
             Err(failure) => Err((422, failure.to_string())),
         }
     }
+}
 
-    /// Run in a subdirectory, reread if `fresh`: it may have grown.
-    fn results(&self, run: &str, fresh: bool) -> Result<Arc<Results>, Refusal> {
-        let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(results) = runs.get(run).filter(|_| !fresh) {
-            return Ok(results.clone());
-        }
-        let dir = match run {
-            "" => Some(self.root.clone()),
-            _ => series::inside(&self.root, run).map_err(|failure| (403, failure.to_string()))?,
-        };
-        let dir = dir.ok_or_else(|| (404, "no such directory".to_string()))?;
-        let results = Results::open(&dir, Coding::Exact).map_err(|failure| (422, failure.to_string()))?;
-        if runs.len() >= OPEN {
-            runs.clear();
-        }
-        let results = Arc::new(results);
-        runs.insert(run.to_string(), results.clone());
-        Ok(results)
+/// Run in a subdirectory, reread if `fresh`: it may have grown.
+fn results(
+    root: &Path,
+    runs: &Mutex<HashMap<String, Arc<Results>>>,
+    run: &str,
+    fresh: bool,
+) -> Result<Arc<Results>, Refusal> {
+    let mut runs = runs.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(results) = runs.get(run).filter(|_| !fresh) {
+        return Ok(results.clone());
     }
+    let dir = match run {
+        "" => Some(root.to_path_buf()),
+        _ => series::inside(root, run).map_err(|failure| (403, failure.to_string()))?,
+    };
+    let dir = dir.ok_or_else(|| (404, "no such directory".to_string()))?;
+    let results = Results::open(&dir, Coding::Exact).map_err(|failure| (422, failure.to_string()))?;
+    if runs.len() >= OPEN {
+        runs.clear();
+    }
+    let results = Arc::new(results);
+    runs.insert(run.to_string(), results.clone());
+    Ok(results)
 }
 
 /// Decodes `%41` and similar; `None` for invalid UTF-8 or control characters.

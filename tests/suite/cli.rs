@@ -94,7 +94,7 @@ fn scenes(dir: &Path) -> Vec<PathBuf> {
     found
 }
 
-fn inputs() -> Vec<PathBuf> {
+pub fn inputs() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![repository().join("inputs")];
     while let Some(folder) = folders.pop() {

@@ -10,6 +10,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { View, launch, open, serve } from './browser.mjs';
 import { check, expect, sum } from './expect.mjs';
 import { onPlayer } from './player.mjs';
+import { onScenes } from './scene.mjs';
 import { onStone } from './stone.mjs';
 import { onTables } from './tables.mjs';
 import { onTrack } from './track.mjs';
@@ -134,6 +135,7 @@ try {
     return `${seen.length} of ${found.length} seen and picked, ${removed} of 96 removed`;
   });
   await third.stop();
+  await onScenes(browser, program, dir, faults);
   await check('faults', 'no errors of scripts, no requests to elsewhere', () => {
     expect(faults.length === 0, faults.join('; '));
   });

@@ -45,6 +45,7 @@ pub use refused::refused;
 pub use runout::{MOST_CELLS, RunoutPlan};
 pub use specimen::{EventPlan, Platen, SpecimenPlan};
 pub use structures::StructurePlan;
+pub use walls::is_plain;
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
 ///

@@ -9,10 +9,14 @@ use crate::scene::units::vector;
 use crate::scene::{SceneError, Table, kinds};
 use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
-use trackbed_fem::mesh::Mesh;
+use trackbed_fem::mesh::{Face, Mesh};
 
 /// Load pattern with time history.
 pub struct NodalLoad {
+    /// Loaded faces.
+    pub faces: Vec<Face>,
+    /// Centres of the faces, or the loaded point [m], and forces there [N].
+    pub forces: Vec<([f64; 3], [f64; 3])>,
     /// (degree of freedom, force [N]) pairs.
     pub entries: Vec<(usize, f64)>,
     /// Load factor over time.
@@ -40,6 +44,7 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
     let mesh = &geometry.mesh;
     let function = time_function(load.optional("history", &load.history))?;
     let mut pattern = vec![0.0; 3 * mesh.node_count()];
+    let (mut loaded, mut forces) = (Vec::new(), Vec::new());
     match load.kind {
         SolidLoadKind::Pressure | SolidLoadKind::Traction => {
             let pressure = load.kind == SolidLoadKind::Pressure;
@@ -51,6 +56,7 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
             let (list, set) = (load.faces.as_deref(), load.set.as_deref());
             let faces = selection::faces(load, geometry, list, load.faces_in, load.side, set)?;
             for face in &faces {
+                let before = sum(face, &pattern);
                 if pressure {
                     let p = load.need("pressure", load.pressure, "a value for a pressure load")?.si;
                     fem::loads::face_pressure(mesh, face, p, &mut pattern);
@@ -58,7 +64,10 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
                     let t = vector(&load.need("traction", load.traction, "a value for a traction load")?);
                     fem::loads::face_traction(mesh, face, t, &mut pattern);
                 }
+                let after = sum(face, &pattern);
+                forces.push((face.centre(mesh), [0, 1, 2].map(|d| after[d] - before[d])));
             }
+            loaded = faces;
         }
         SolidLoadKind::Point => {
             let of_faces = [
@@ -77,14 +86,23 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
                     for d in 0..3 {
                         pattern[3 * node + d] += force[d];
                     }
+                    forces.push((mesh.coordinates[node], force));
                 }
-                (None, Some(at)) => point_load(load, mesh, vector(&at), force, &mut pattern)?,
+                (None, Some(at)) => {
+                    point_load(load, mesh, vector(&at), force, &mut pattern)?;
+                    forces.push((vector(&at), force));
+                }
                 (node, _) => return Err(load.choice(["node", "at"], node.is_some())),
             }
         }
     }
     let entries = pattern.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, v)| (i, *v)).collect();
-    Ok(NodalLoad { entries, function })
+    Ok(NodalLoad { faces: loaded, forces, entries, function })
+}
+
+/// Sum of the nodal forces of a face [N].
+fn sum(face: &Face, pattern: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|d| face.nodes().iter().map(|n| pattern[3 * *n as usize + d]).sum())
 }
 
 fn point_load(

@@ -4,6 +4,7 @@ import { Chains } from 'chains';
 import { rgb } from 'colours';
 import { Grains, label as grainLabel, unit as grainUnit } from 'grains';
 import { legendsOf } from 'legend';
+import { Model } from 'model';
 import { legends as drawLegends } from 'plots';
 import { Solid, DISPLACEMENTS, label as solidLabel } from 'solid';
 import { initial, put } from 'state';
@@ -33,11 +34,13 @@ export class App {
   /** Removes what is drawn. */
   clear() {
     this.stage.scene.clear();
+    this.model?.dispose();
     this.grains = new Grains();
     this.chains = new Chains();
     this.walls = new Walls();
     this.solid = new Solid();
-    this.stage.scene.add(this.solid.group, this.chains.group, this.grains.group, this.walls.group);
+    this.model = new Model();
+    this.stage.scene.add(this.model.group, this.solid.group, this.chains.group, this.grains.group, this.walls.group);
     this.shown = {};
     this.common = {};
     this.largestFactor = this.size = this.base = null;
@@ -49,7 +52,7 @@ export class App {
   async openFiles(files) { return this.open(await local.read(files), ''); }
 
   /** Shows the results of a source from its first frame on. */
-  async open(source, run) {
+  async open(source, run, again = false) {
     await this.idle();
     const scene = await source.block('scene');
     if (!scene) throw new Error('there are no results');
@@ -57,13 +60,14 @@ export class App {
     const has = (part) => meta.frames.some((frame) => frame.parts.includes(part));
     const grains = has('grains') ? await source.block('grains') : null;
     const solid = has('solid') && meta.solidFields.length ? await source.block('solid') : null;
+    const model = meta.model ? await source.block('model') : null;
+    if (again && this.meta) this.follow(meta.origin);
     this.source = source;
     this.meta = meta;
     this.clear();
     this.common = { grains, solid };
-    const kept = this.state.view;
-    const state = Object.assign(this.state, initial(), { run, title: meta.title, status: meta.status });
-    state.view = { ...kept, flat: null };
+    const kept = this.state;
+    const state = Object.assign(this.state, { ...initial(), view: { ...kept.view, flat: null }, model: kept.model }, { run, title: meta.title, status: meta.status });
     state.times = meta.frames.map((frame) => frame.time);
     state.frames = meta.frames.length;
     for (const part of Object.keys(state.parts)) state.parts[part] = has(part);
@@ -72,13 +76,43 @@ export class App {
     state.chains.show = state.parts.chains && !state.parts.grains;
     state.walls.boundary.show = !state.parts.solid;
     if (solid) this.solid.mesh(solid);
+    state.parts.model = Boolean(model);
+    if (model) this.model.take(meta.model, model);
     document.title = `${state.title} – trackbed`;
     await this.changed();
-    await this.first();
+    await this.first(again && this.seen);
+    this.seen ||= Boolean(model);
+  }
+
+  /** Reads the scene again and looks at it from the same place. */
+  reload() { return this.open(new ServedSource(''), '', true); }
+
+  /** Moves the eye with the origin of the numbers. */
+  follow(origin) {
+    const way = new THREE.Vector3(...this.meta.origin.map((x, k) => x - origin[k]));
+    Object.values(this.stage.controls).forEach(({ target, object }) => { target.add(way); object.position.add(way); });
+  }
+
+  /** Looks at an object of a scene and shows what it is. */
+  fly(k) {
+    const item = this.model.items[k];
+    const box = this.model.box(k);
+    if (box) this.stage.look(this.state.view.side, box.translate(new THREE.Vector3(...this.meta.origin).negate()));
+    return this.set({ picked: this.about({ item }), pickedQuantity: '' });
+  }
+
+  /** Rows about a picked object of a scene. */
+  about({ item, place, number }) {
+    const { label, word } = this.model.kinds[item.kind];
+    const data = [['kind', label, ''], ['key', item.key, '']];
+    if (item.count) data.push(['number', item.count, '']);
+    if (number !== undefined) data.push([word === 'grains' ? 'grain' : 'node', `${number}`, '']);
+    if (place) data.push(['place [m]', place.map((x, k) => x + this.meta.origin[k]), '']);
+    return { kind: 'object', title: item.name, data };
   }
 
   /** What is known once a frame is there: the size of everything, whether it is plane. */
-  async first() {
+  async first(stay = false) {
     const { bounds, origin } = this.meta;
     const box = new THREE.Box3(...bounds.map((corner) => new THREE.Vector3(...corner.map((x, k) => x - origin[k]))));
     box.union(this.walls.bounds());
@@ -95,7 +129,7 @@ export class App {
     }
     this.stage.select(state.view.projection);
     Object.values(this.stage.controls).forEach((controls) => { controls.enableRotate = !state.view.flat; });
-    this.look();
+    if (!stay) this.look();
     await this.changed();
   }
 
@@ -218,6 +252,10 @@ export class App {
       this.section();
     }
     if (has.includes('solid') && this.solidSkin) await this.updateSolid(k);
+    if (state.parts.model) {
+      this.model.look(state.model);
+      this.section();
+    }
     if (state.view.projection !== stage.projection) stage.select(state.view.projection);
     if (this.shown.side !== state.view.side && this.shown.side !== undefined) {
       this.look();
@@ -333,12 +371,12 @@ export class App {
     this.shown.section = key;
     const [from, to] = off ? [-1e30, 1e30] : [front ? low : -1e30, rear ? high : 1e30];
     const removed = this.grains.bodies ? this.grains.section(along, from, to) : 0;
-    state.section.removed = removed + this.walls.section(along, from, to);
+    state.section.removed = removed + this.walls.section(along, from, to) + this.model.section(along, from, to);
     this.solid.cut(along, solid ? from : -1e30, solid ? to : 1e30);
   }
 
   beforeDrawing() {
-    if (this.source && (this.grains.bodies || this.walls.stones?.length) && (this.state.section.front || this.state.section.rear)) this.section();
+    if (this.source && (this.grains.bodies || this.walls.stones?.length || this.state.parts.model) && (this.state.section.front || this.state.section.rear)) this.section();
   }
 
   /** Legends over the picture. */

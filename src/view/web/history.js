@@ -105,6 +105,10 @@ export class Histories {
   async pick(x, y) {
     const { app } = this;
     await app.idle();
+    if (app.state.parts.model) {
+      const found = app.model.pick(this.picker, x, y);
+      return app.set({ picked: found && app.about(found), pickedQuantity: '' });
+    }
     const meshes = [];
     if (app.grains.group.visible && app.grains.count) meshes.push([app.grains.spheres.meshes[1], GRAIN]);
     if (app.solid.group.visible && app.solid.object) meshes.push([app.solid.object, NODE]);

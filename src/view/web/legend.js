@@ -7,6 +7,8 @@ const GROUP_COLOURS = ['#e69f00', '#56b4e9', '#009e73', '#f0e442', '#0072b2', '#
 export function legendsOf(app) {
   const { state, grains, chains, solid } = app;
   const list = [];
+  const named = app.model.items.filter((item) => app.model.shows(item, state.model)).slice(0, 14);
+  if (named.length && app.stage.width > 640) list.push({ part: 'model', title: 'Model', unit: '', swatches: named.map((item) => [item.colour, item.name]) });
   const stones = state.grains.show ? app.stoneValues : null;
   if ((grains.group.visible && grains.count || stones) && state.grains.colour !== 'constant') {
     const field = state.grains.colour;

@@ -2,13 +2,14 @@
 import { App } from 'app';
 import { dialogs } from 'dialogs';
 import { Histories } from 'history';
+import { Outline } from 'outline';
 import { Panel } from 'panel';
 import { Player } from 'player';
 import { Avi, download, picture, print } from 'save';
 import { EmbeddedSource, embeddedTexts } from 'source';
 
 const $ = (id) => document.getElementById(id);
-const { served } = JSON.parse($('settings').textContent);
+const { served, watch } = JSON.parse($('settings').textContent);
 if (!document.createElement('canvas').getContext('webgl2')) {
   $('message').textContent = 'WebGL 2 is not available. Use a browser from 2021 or later with hardware acceleration enabled.';
   $('message').className = 'shown error';
@@ -18,26 +19,48 @@ const app = new App(served);
 const panel = new Panel($('panel'), app);
 const player = new Player(app);
 const histories = new Histories(app);
+const outline = new Outline(app);
 dialogs(app);
 
 app.listeners.push((state) => {
   panel.update(state);
+  outline.update();
   $('title').textContent = state.title;
-  const unfinished = state.status && state.status !== 'done' && state.status !== 'opened from disk';
-  $('subtitle').textContent = `t = ${state.time?.toPrecision(4) ?? '–'} s${unfinished ? ` · run: ${state.status}` : ''}`;
+  $('subtitle').textContent = moment(state);
   const mark = state.picked?.kind === 'grain' ? app.grains.bodies.id.indexOf(state.picked.id) : -1;
   const { start } = app.grains.bodies ?? {};
   app.grains.spheres.mark(...(mark >= 0 ? [start[mark], start[mark + 1]] : [-1, -1]));
   $('preset-peak').hidden = !state.parts.chains;
 });
 
+/** Time of the frame; a scene has none. */
+function moment({ status, time }) {
+  if (status === 'scene') return 'before the run';
+  const unfinished = status && status !== 'done' && status !== 'opened from disk';
+  return `t = ${time?.toPrecision(4) ?? '–'} s${unfinished ? ` · run: ${status}` : ''}`;
+}
+
 // Tables belong to a run: read with it.
 const open = app.open.bind(app);
-app.open = async (source, run) => {
-  await open(source, run);
+app.open = async (source, run, again) => {
+  await open(source, run, again);
+  outline.take(app.meta);
   await histories.load();
   await app.changed();
+  // The report takes longer than the picture.
+  if (app.meta.model) app.checked = source.block('check').then((block) => { if (app.source === source) outline.check(block); });
 };
+
+/** Reads the scene again once its files have changed. */
+async function follow() {
+  try {
+    const response = await fetch('/version');
+    if (response.ok && await response.json() !== app.meta?.version) await app.reload();
+  } catch {
+    // The server has ended.
+  }
+  setTimeout(follow, 1000);
+}
 
 /** The picture with legends, title and time as one canvas. */
 async function composed() {
@@ -52,7 +75,7 @@ async function composed() {
   g.scale(ratio, ratio);
   g.font = '600 13px system-ui, sans-serif';
   g.fillStyle = app.dark() ? '#f2f4f7' : '#1c2733';
-  g.fillText(`${app.state.title}   t = ${app.state.time.toPrecision(4)} s`, 12, 22);
+  g.fillText(`${app.state.title}   ${moment(app.state)}`, 12, 22);
   return canvas;
 }
 
@@ -86,7 +109,7 @@ async function saveVideo() {
 
 for (const format of ['png', 'jpg', 'bmp']) $(`save-${format}`).onclick = () => savePicture(format);
 $('save-avi').onclick = saveVideo;
-$('button-print').onclick = async () => print(await composed(), `${app.state.title}, t = ${app.state.time.toPrecision(4)} s`);
+$('button-print').onclick = async () => print(await composed(), `${app.state.title}, ${moment(app.state)}`);
 
 /** The whole track where the load is largest: forces in the ballast, stress in the solid below. */
 async function peak() {
@@ -107,7 +130,7 @@ async function peak() {
 }
 $('preset-peak').onclick = peak;
 
-window.trackbed = { app, state: app.state, player, histories, panel, composed, peak, idle: () => app.idle() };
+window.trackbed = { app, state: app.state, player, histories, panel, outline, composed, peak, idle: () => app.idle() };
 window.trackbed.ready = (async () => {
   try {
     if (!served) {
@@ -115,6 +138,7 @@ window.trackbed.ready = (async () => {
     } else {
       const folders = await (await fetch('/folders')).json();
       await app.openRun(folders.includes('') || !folders.length ? '' : folders[0]);
+      if (watch) setTimeout(follow, 1000);
     }
   } catch (error) {
     app.state.error = error.message;

@@ -17,7 +17,7 @@ const sections = (app) => [
     ['select', 'section.axis', 'Along', () => [['view', 'line of sight'], ['x', 'x'], ['y', 'y'], ['z', 'z']]],
     ['range', 'section.front', 'Front', [0, 1, 0.005]],
     ['range', 'section.rear', 'Rear', [0, 1, 0.005]],
-    ['check', 'section.solid', 'Cut the solid'],
+    ['check', 'section.solid', 'Cut the solid', null, (s) => !s.parts.model],
   ]],
   ['Force chains', 'chains', [
     ['check', 'chains.show', 'Show (loads its file)'],
@@ -66,7 +66,7 @@ const sections = (app) => [
 
 const at = (state, path) => path.split('.').reduce((o, key) => o?.[key], state);
 
-function element(tag, attributes = {}, ...children) {
+export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {
     if (key in made) made[key] = value; else made.setAttribute(key, value);
@@ -171,6 +171,6 @@ export class Panel {
       const has = part === 'reference' ? state.parts.solid || state.parts.grains : state.parts[part];
       document.getElementById(`part-${part}`).hidden = !has;
     }
-    document.getElementById('part-section').hidden = !state.parts.grains;
+    document.getElementById('part-section').hidden = !state.parts.grains && !state.parts.model;
   }
 }

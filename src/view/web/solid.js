@@ -119,7 +119,7 @@ export class Solid {
 }
 
 /** A geometry with its own corner for each entry of `index`: a field of elements jumps between them. */
-function spread(points, index) {
+export function spread(points, index) {
   const geometry = new THREE.BufferGeometry();
   const place = new Float32Array(3 * index.length);
   index.forEach((n, k) => place.set(points.subarray(3 * n, 3 * n + 3), 3 * k));

@@ -68,7 +68,7 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
 
 /// Planes at rest or constant velocity: indexed separately, because sleepers contact them and compaction
 /// moves them.
-pub(super) fn is_plain(wall: &Wall) -> bool {
+pub fn is_plain(wall: &Wall) -> bool {
     wall.kind == WallKind::Plane
         && wall.angular_velocity.is_none_or(|turn| turn.iter().all(|w| w.si == 0.0))
         && wall.oscillation.is_none()
