@@ -67,6 +67,7 @@ pub fn demo(
     }
     view(&ViewArgs {
         dir: results,
+        set: Vec::new(),
         port: 0,
         export: None,
         every: NonZeroUsize::MIN,
