@@ -26,9 +26,19 @@ pub(crate) struct Arrays {
     coding: Coding,
     entries: Vec<Entry>,
     pub points: usize,
+    /// Cells of each kind in [`CELLS`].
+    cells: [usize; CELLS.len()],
 }
 
 const SECTIONS: [&str; 6] = ["PointData", "CellData", "Points", "Cells", "Lines", "Polys"];
+
+/// Attributes that count cells, with the sections that list them.
+const CELLS: [(&str, &str); 4] = [
+    ("NumberOfCells", "Cells"),
+    ("NumberOfVerts", "Verts"),
+    ("NumberOfLines", "Lines"),
+    ("NumberOfPolys", "Polys"),
+];
 
 /// Largest array; files are far smaller.
 const MOST: u64 = 1 << 32;
@@ -42,6 +52,7 @@ impl Arrays {
         let bytes = read_bytes(file, "VTK file")?;
         let fault = |key: &str, found: &str, expected: &str| ReadError::whole(file, key, found, expected);
         let (mut entries, mut coding, mut points) = (Vec::new(), None, None);
+        let mut cells = [0; CELLS.len()];
         let mut section = None;
         for tag in tags(&bytes) {
             match tag.name.as_str() {
@@ -61,6 +72,9 @@ impl Arrays {
                     if points.replace(count).is_some() {
                         return Err(fault("Piece", "a second one", "one piece"));
                     }
+                    cells = CELLS.map(|(attribute, _)| {
+                        tag.attribute(attribute).and_then(|n| n.trim().parse().ok()).unwrap_or(0)
+                    });
                 }
                 "DataArray" => {
                     let Some(section) = &section else { continue };
@@ -85,7 +99,7 @@ impl Arrays {
         }
         let coding = coding.ok_or_else(|| fault("VTK file", "no VTKFile element", "a VTK XML file"))?;
         let points = points.ok_or_else(|| fault("VTK file", "no Piece", "one piece"))?;
-        Ok(Arrays { file: file.to_path_buf(), bytes, coding, entries, points })
+        Ok(Arrays { file: file.to_path_buf(), bytes, coding, entries, points, cells })
     }
 
     /// Array names of a section with component counts.
@@ -116,12 +130,24 @@ impl Arrays {
         if let Some(k) = values.iter().position(|v| !v.is_finite()) {
             return Err(ReadError::whole(&self.file, key, format!("{} at index {k}", values[k]), "a number"));
         }
-        if matches!(section, "Points" | "PointData") {
-            let components = if section == "Points" { 3 } else { entry.components };
-            if values.len() != components * self.points {
-                let expected = format!("{} of {} points", components * self.points, self.points);
-                return Err(ReadError::whole(&self.file, key, format!("{} numbers", values.len()), expected));
+        let rows = match section {
+            "Points" => Some((3, self.points, "points")),
+            "PointData" => Some((entry.components, self.points, "points")),
+            "CellData" => {
+                Some((entry.components, self.cells.iter().fold(0, |n, k| n.saturating_add(*k)), "cells"))
             }
+            _ if name == "offsets" => {
+                let cells =
+                    CELLS.iter().zip(self.cells).filter(|((_, s), _)| *s == section).map(|(_, n)| n).sum();
+                Some((1, cells, "cells"))
+            }
+            _ => None,
+        };
+        if let Some((components, rows, of)) = rows
+            && rows.checked_mul(components) != Some(values.len())
+        {
+            let expected = format!("{} of {rows} {of}", rows.saturating_mul(components));
+            return Err(ReadError::whole(&self.file, key, format!("{} numbers", values.len()), expected));
         }
         Ok(values)
     }
@@ -132,5 +158,35 @@ impl Arrays {
     /// As [`Arrays::values`].
     pub(crate) fn indices(&self, section: &str, name: &str) -> Result<Vec<u32>, ReadError> {
         Ok(self.values(section, name)?.into_iter().map(|v| v as u32).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Arrays;
+
+    /// A field shorter than its cells, or cells other than declared, once ended the viewer.
+    #[test]
+    fn rejects_fields_shorter_than_cells() {
+        let text = |polygons: usize, field: &str| {
+            format!(
+                r#"<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64"><PolyData>
+<Piece NumberOfPoints="3" NumberOfPolys="{polygons}"><CellData>
+<DataArray type="Float64" Name="pressure" format="ascii">{field}</DataArray></CellData><Polys>
+<DataArray type="Int64" Name="offsets" format="ascii">3 6</DataArray></Polys></Piece></PolyData></VTKFile>"#
+            )
+        };
+        let file = std::env::temp_dir().join(format!("trackbed-arrays-{}.vtp", std::process::id()));
+        let open = |polygons, field| {
+            std::fs::write(&file, text(polygons, field)).unwrap();
+            let arrays = Arrays::open(&file, "PolyData").unwrap();
+            std::fs::remove_file(&file).unwrap();
+            arrays
+        };
+        assert_eq!(open(2, "1 2").values("CellData", "pressure").unwrap(), [1.0, 2.0]);
+        let short = open(2, "1").values("CellData", "pressure").unwrap_err().to_string();
+        assert!(short.contains("found 1 numbers, expected 2 of 2 cells"), "{short}");
+        let other = open(1, "1").indices("Polys", "offsets").unwrap_err().to_string();
+        assert!(other.contains("found 2 numbers, expected 1 of 1 cells"), "{other}");
     }
 }
