@@ -5,7 +5,7 @@ With PROGRAM, `trackbed check` must accept the examples of docs/scene.md, assemb
 """
 import os, re, shutil, subprocess, sys, tempfile
 
-WORDS = 50_500
+WORDS = 51_000
 README_WORDS = 600
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
