@@ -66,7 +66,8 @@ history_interval = 0.25
 "#;
 
 /// Elastic, and with stresses kept at integration points.
-const MODELS: [&str; 2] = ["", "model = \"mohr_coulomb\"\ncohesion = \"10 MPa\"\nfriction = 0.4\ndilation = 0.4\n"];
+const MODELS: [&str; 2] =
+    ["", "model = \"mohr_coulomb\"\ncohesion = \"10 MPa\"\nfriction = 0.4\ndilation = 0.4\n"];
 
 #[test]
 fn uniform_stress_is_exact() {
