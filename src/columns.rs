@@ -5,6 +5,9 @@ use std::fmt::{self, Display, Formatter};
 /// Axes of the columns of a vector.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Components of the columns of a symmetric tensor.
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+
 /// Number of columns of a definition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -12,6 +15,8 @@ pub enum Kind {
     Scalar,
     /// Three columns with `_x`, `_y` and `_z` behind the name.
     Vector,
+    /// Six columns with `_xx`, `_yy`, `_zz`, `_xy`, `_yz` and `_zx` behind the name.
+    Tensor,
     /// Any number of columns with 0, 1, … behind the name.
     List,
 }
@@ -63,7 +68,7 @@ impl From<&'static Definition> for Name<'_> {
 }
 
 impl Name<'_> {
-    /// Name of a component: of a vector by axis, of a list by number.
+    /// Name of a component: of a vector by axis, of a tensor or a list by number.
     pub fn at(self, part: usize) -> Self {
         Name { part: Some(part), ..self }
     }
@@ -83,6 +88,7 @@ impl Name<'_> {
         let [before, kind, after] = self.definition.parts();
         let head = match (self.definition.kind, self.part) {
             (Kind::Vector, Some(axis)) => head.strip_suffix(AXES[axis])?.strip_suffix('_')?,
+            (Kind::Tensor, Some(part)) => head.strip_suffix(COMPONENTS[part])?.strip_suffix('_')?,
             (Kind::List, Some(number)) => head.strip_suffix(&number.to_string())?,
             _ => head,
         };
@@ -103,6 +109,7 @@ impl Display for Name<'_> {
         write!(f, "{before}{}{after}", self.item)?;
         match (self.definition.kind, self.part) {
             (Kind::Vector, Some(axis)) => write!(f, "_{}", AXES[axis]),
+            (Kind::Tensor, Some(part)) => write!(f, "_{}", COMPONENTS[part]),
             (Kind::List, Some(number)) => write!(f, "{number}"),
             _ => Ok(()),
         }
@@ -140,6 +147,7 @@ pub fn list() -> String {
     let name = |column: &Definition| match column.kind {
         Kind::Scalar => column.name.to_string(),
         Kind::Vector => format!("{}_x, _y, _z", column.name),
+        Kind::Tensor => format!("{}_xx, ..., _zx", column.name),
         Kind::List => format!("{}0, 1, ...", column.name),
     };
     let lines = TABLES.iter().flat_map(|table| table.columns.iter().map(|column| (table.file, *column)));
@@ -200,12 +208,20 @@ pub mod history {
         GROUP: Vector "<group>" "m" "mean position of a recorded group";
         GROUP_FORCE: Vector "<group>_force" "N" "force of bonds and contacts on a recorded group";
         SUPPORT_REACTION: Vector "<support>_reaction" "N" "force of a named support on the solid";
-        PROBE_U: Vector "<probe>_u" "m" "displacement of an observed node";
-        PROBE_V: Vector "<probe>_v" "m/s" "velocity of an observed node, or mean of observed grains";
+        PROBE_U: Vector "<probe>_u" "m" "displacement of an observed node or point";
+        PROBE_V: Vector "<probe>_v" "m/s" "velocity of an observed node or point, or mean of observed grains";
+        PROBE_A: Vector "<probe>_a" "m/s2" "acceleration of an observed node or point";
+        PROBE_STRESS: Tensor "<probe>_stress" "Pa" "stress at an observed node or point, tension positive";
+        PROBE_STRAIN: Tensor "<probe>_strain" "" "strain tensor at an observed node or point, elongation positive";
+        PROBE_VERTICAL_STRESS: Scalar "<probe>_vertical_stress" "Pa" "mean vertical stress of an observed area or box, tension positive";
+        PROBE_VERTICAL_STRESS_LARGEST: Scalar "<probe>_vertical_stress_largest" "Pa" "vertical stress of largest magnitude of an observed area or box";
         PROBE_GRAINS: Scalar "<probe>_grains" "" "number of observed grains";
         PROBE_X: Vector "<probe>_x" "m" "mean position of observed grains";
         PROBE_SPIN: Vector "<probe>_spin" "rad/s" "mean angular velocity of observed grains";
-        PROBE_MEAN_STRESS: Scalar "<probe>_mean_stress" "Pa" "mean stress of observed grains, tension positive";
+        PROBE_MEAN_STRESS: Scalar "<probe>_mean_stress" "Pa" "mean stress of observed grains or a box, tension positive";
+        PROBE_MEAN_STRESS_LARGEST: Scalar "<probe>_mean_stress_largest" "Pa" "mean stress of largest magnitude in an observed box";
+        MEASURE_POROSITY: Scalar "<measure>_porosity" "" "porosity of a measured box";
+        MEASURE_COORDINATION: Scalar "<measure>_coordination" "" "mean coordination number of grains in a measured box";
         MOUNT_ENERGY: Scalar "mount_energy" "J" "elastic energy of spring-dashpot supports";
         DISSIPATED_MOUNTS: Scalar "dissipated_mounts" "J" "dissipation in spring-dashpot supports";
         WALL_FORCE: Vector "<wall>_force" "N" "force of grains and other walls on a wall";
@@ -253,6 +269,8 @@ pub mod cycles {
         JUMP_ERROR: Scalar "jump_error" "m" "estimated settlement error of cycle jumps";
         BROKEN_BY_TENSION: Scalar "broken_by_tension" "" "bonds broken by tension or bending since the start";
         BROKEN_BY_SHEAR: Scalar "broken_by_shear" "" "bonds broken by shear or twisting since the start";
+        STRESS_PEAK: Scalar "<stress>_peak" "Pa" "value of largest magnitude of a probe's stress in the cycle";
+        STRESS_MEAN: Scalar "<stress>_mean" "Pa" "mean of a probe's stress over the cycle";
     }
 }
 

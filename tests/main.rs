@@ -12,6 +12,7 @@ mod suite {
     mod columns;
     mod contact_laws;
     mod convert;
+    mod curves;
     mod determinism;
     mod device;
     mod examples;

@@ -55,6 +55,7 @@ pub mod model;
 pub mod newmark;
 pub mod nonlinear;
 pub mod reduction;
+pub mod samples;
 pub mod solver;
 pub mod state;
 pub mod statics;

@@ -53,11 +53,14 @@ pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
 
 /// Averaged nodal stress. Shape `[nodes][6]`.
 pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
-    nodal_mean(model, |e| {
-        let kind = model.mesh().connectivity.kind(e);
-        let stresses = at_points(model, u, e, sampling_points(kind).into_iter());
-        extrapolate(kind, &stresses)
-    })
+    nodal_mean(model, |e| elastic_at_nodes(model, u, e))
+}
+
+/// Stress of an elastic element (index) at its nodes.
+pub(crate) fn elastic_at_nodes(model: &Model, u: &[f64], element: usize) -> [[f64; 6]; MAX_NODES] {
+    let kind = model.mesh().connectivity.kind(element);
+    let stresses = at_points(model, u, element, sampling_points(kind).into_iter());
+    extrapolate(kind, &stresses)
 }
 
 /// Averaged nodal values of `of_point(element, index in State::points)`. Shape `[nodes][C]`.
@@ -67,20 +70,41 @@ pub fn nodal_from_points<const C: usize>(
     model: &Model,
     of_point: impl Fn(usize, usize) -> [f64; C] + Send + Sync,
 ) -> Vec<[f64; C]> {
-    nodal_mean(model, |e| {
-        let kind = model.mesh().connectivity.kind(e);
-        let start = model.point_start(e);
-        let mut values = [[0.0; C]; MAX_NODES];
-        for (value, weights) in values.iter_mut().zip(fit_weights(kind, model.quadrature())) {
-            for (i, weight) in weights.iter().enumerate() {
-                let point = of_point(e, start + i);
-                for c in 0..C {
-                    value[c] += weight * point[c];
-                }
+    nodal_mean(model, |e| fitted_at_nodes(model, e, &of_point))
+}
+
+/// Values of an element (index) at its nodes, fitted to `of_point` as in [`nodal_from_points`].
+pub(crate) fn fitted_at_nodes<const C: usize>(
+    model: &Model,
+    element: usize,
+    of_point: &impl Fn(usize, usize) -> [f64; C],
+) -> [[f64; C]; MAX_NODES] {
+    let kind = model.mesh().connectivity.kind(element);
+    let start = model.point_start(element);
+    let mut values = [[0.0; C]; MAX_NODES];
+    for (value, weights) in values.iter_mut().zip(fit_weights(kind, model.quadrature())) {
+        for (i, weight) in weights.iter().enumerate() {
+            let point = of_point(element, start + i);
+            for c in 0..C {
+                value[c] += weight * point[c];
             }
         }
-        values
-    })
+    }
+    values
+}
+
+/// Strain tensor at a point (index in [`State::points`]) of an element (index).
+pub fn strain_at_point(model: &Model, u: &[f64], element: usize, point: usize) -> [f64; 6] {
+    let kind = model.mesh().connectivity.kind(element);
+    let rule = stiffness_points(kind, model.quadrature());
+    let strains = model.element_strains(element);
+    let moved = model.mesh().element_values(element, u);
+    tensor(strains.strain(&strains.at(rule[point - model.point_start(element)].xi), &moved))
+}
+
+/// Tensor components of a strain with engineering shear.
+pub fn tensor([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> [f64; 6] {
+    [xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx]
 }
 
 /// Nodal stress from point states. Shape `[nodes][6]`.
@@ -160,25 +184,35 @@ pub(crate) fn nodal_mean<const C: usize>(
     let mesh = model.mesh();
     let elements: Vec<[[f64; C]; MAX_NODES]> =
         (0..mesh.element_count()).into_par_iter().map(of_element).collect();
-    let mut sums: Vec<BTreeMap<u32, ([f64; C], u32)>> = vec![BTreeMap::new(); mesh.node_count()];
+    let mut sums: Vec<NodeSum<C>> = vec![NodeSum::default(); mesh.node_count()];
     for (e, values) in elements.iter().enumerate() {
         for (&node, value) in mesh.connectivity[e].iter().zip(values) {
-            let (sum, count) = sums[node as usize].entry(mesh.materials[e]).or_insert(([0.0; C], 0));
-            sum.iter_mut().zip(value).for_each(|(sum, s)| *sum += s);
-            *count += 1;
+            sums[node as usize].add(mesh.materials[e], value);
         }
     }
-    sums.iter()
-        .map(|by_material| {
-            let mut mean = [0.0; C];
-            for (sum, count) in by_material.values() {
-                for k in 0..C {
-                    mean[k] += sum[k] / (f64::from(*count) * by_material.len() as f64);
-                }
+    sums.iter().map(NodeSum::mean).collect()
+}
+
+/// Sums and counts of element values at a node, by material.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NodeSum<const C: usize>(BTreeMap<u32, ([f64; C], u32)>);
+
+impl<const C: usize> NodeSum<C> {
+    pub(crate) fn add(&mut self, material: u32, value: &[f64; C]) {
+        let (sum, count) = self.0.entry(material).or_insert(([0.0; C], 0));
+        sum.iter_mut().zip(value).for_each(|(sum, s)| *sum += s);
+        *count += 1;
+    }
+
+    pub(crate) fn mean(&self) -> [f64; C] {
+        let mut mean = [0.0; C];
+        for (sum, count) in self.0.values() {
+            for k in 0..C {
+                mean[k] += sum[k] / (f64::from(*count) * self.0.len() as f64);
             }
-            mean
-        })
-        .collect()
+        }
+        mean
+    }
 }
 
 /// Von Mises stress [Pa].

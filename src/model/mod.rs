@@ -12,7 +12,7 @@ pub mod track;
 
 pub use faults::{read_scene, resolve};
 pub use output::OutputPlan;
-pub use probe::Observed;
+pub use probe::{Observed, PointProbe};
 
 use crate::failure::Failure;
 use crate::message::shown;

@@ -1,7 +1,8 @@
 //! `[output]` resolved.
 
 use super::duration::{TIME_INTEGRATION, counted_step};
-use crate::scene::{Chains, Output, Scene, SceneError, Table};
+use crate::scene::track::RailKind;
+use crate::scene::{Chains, Output, Scene, SceneError, Table, setting};
 use crate::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields};
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -34,6 +35,10 @@ pub struct OutputPlan {
     pub tensors: Vec<&'static str>,
     /// Detailed last part: duration [s], frames.
     pub last: Option<(f64, u32)>,
+    /// Times of additional frames [s].
+    pub frames_at: Vec<f64>,
+    /// An additional frame at the largest load of each cycle.
+    pub frames_at_peaks: bool,
     /// Frames show contacts above the mean force.
     pub strong_chains: bool,
 }
@@ -79,6 +84,8 @@ impl OutputPlan {
                 .filter(|name| o.fields.iter().flatten().any(|n| n == name))
                 .collect(),
             last: last(scene, &o, end, frames)?,
+            frames_at: frames_at(&o, end)?,
+            frames_at_peaks: frames_at_peaks(scene, &o)?,
             strong_chains: o.chains == Some(Chains::Strong),
         })
     }
@@ -142,6 +149,27 @@ fn last(scene: &Scene, o: &Table<Output>, end: f64, frames: u32) -> Result<Optio
     Ok(Some((time, last.frames)))
 }
 
+fn frames_at(o: &Table<Output>, end: f64) -> Result<Vec<f64>, SceneError> {
+    let times = o.frames_at.iter().flatten().enumerate().map(|(k, time)| {
+        let expected = format!("above 0, at most the end at {end} s");
+        o.check(&format!("frames_at.{k}"), time.si, |t| t > 0.0 && t <= end, &expected)
+    });
+    times.collect()
+}
+
+fn frames_at_peaks(scene: &Scene, o: &Table<Output>) -> Result<bool, SceneError> {
+    let track = scene.track.as_ref();
+    let given = ("frames_at_peaks", o.frames_at_peaks.is_some());
+    if track.is_none_or(|t| t.load.is_none()) {
+        o.reject_without([given], "[track.load]")?;
+    }
+    if track.and_then(|t| t.rail.as_ref()).is_some_and(|r| r.kind == RailKind::Beam) {
+        let error = o.reject_with([given], &setting("track.rail.kind", &["beam"]));
+        error.map_err(|e| e.remedy("The seat loads of a rail with mass are not known in advance"))?;
+    }
+    Ok(o.frames_at_peaks.unwrap_or(false))
+}
+
 fn has_extra(scene: &Scene, name: &str) -> bool {
     !scene.grains.is_empty()
         && match name {
@@ -181,6 +209,7 @@ fn refuse_idle_keys(scene: &Scene, o: &Table<Output>, end: f64) -> Result<(), Sc
         [("packing", o.packing.is_some()), ("state", o.state.is_some()), ("chains", o.chains.is_some())];
     let of_time = [
         ("frames", o.frames.is_some()),
+        ("frames_at", o.frames_at.is_some()),
         ("history_interval", o.history_interval.is_some()),
         ("frame_steps", o.frame_steps.is_some()),
         ("history_steps", o.history_steps.is_some()),

@@ -1,16 +1,26 @@
 //! `[[probe]]` resolved.
 
+mod solid;
+
 use super::grains::GrainsPart;
-use super::solid::{self, SolidPart};
+use super::solid::{SolidPart, find_node};
 use crate::scene::units::vector;
 use crate::scene::{Probe, SceneError, Table};
+pub use solid::PointProbe;
 use trackbed_dem::measure::BoxRegion;
+use trackbed_fem::samples::{BoxPoints, Samples};
 
 /// Observed object.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Observed {
     /// Node of the solid, by index.
     Node(usize),
+    /// Fields at a node or point of the solid.
+    Point(PointProbe),
+    /// Points of a rectangle in the solid.
+    Plane(Samples),
+    /// Integration points of the solid in a box.
+    Volume(BoxPoints),
     /// Grain, by index.
     Grain(usize),
     /// Group, by index.
@@ -27,6 +37,8 @@ pub(super) fn probe(
     let given = [
         ("node", table.node.is_some()),
         ("at", table.at.is_some()),
+        ("plane", table.plane.is_some()),
+        ("box", table.solid_box.is_some()),
         ("grain", table.grain.is_some()),
         ("group", table.group.is_some()),
         ("region", table.region.is_some()),
@@ -34,8 +46,13 @@ pub(super) fn probe(
     if given.iter().filter(|(_, present)| *present).count() != 1 {
         return Err(table.one_of(&given));
     }
-    let (own, observed) = match (table.node.is_some() || table.at.is_some(), solid, grains) {
-        (true, Some(solid), _) => node(table, solid)?,
+    let [node, at, plane, volume, ..] = given.map(|(_, present)| present);
+    if !(node || at) {
+        let other = given.iter().find(|(_, present)| *present).map_or("node", |(key, _)| *key);
+        table.reject_with([("fields", table.fields.is_some())], &format!("`{other}`"))?;
+    }
+    let (own, observed) = match (node || at || plane || volume, solid, grains) {
+        (true, Some(solid), _) => of_solid(table, solid)?,
         (true, None, _) => return Err(table.here("a probe of the solid", "a scene with [solid]")),
         (false, _, Some(grains)) => of_grains(table, grains)?,
         (false, _, None) => return Err(table.here("a probe of grains", "a scene with [[grains]]")),
@@ -47,12 +64,26 @@ pub(super) fn probe(
     Ok((name, observed))
 }
 
-fn node(table: &Table<Probe>, solid: &SolidPart) -> Result<(String, Observed), SceneError> {
+fn of_solid(table: &Table<Probe>, part: &SolidPart) -> Result<(String, Observed), SceneError> {
+    if table.plane.is_some() {
+        return Ok(("plane".into(), Observed::Plane(solid::plane(table, part)?)));
+    }
+    if table.solid_box.is_some() {
+        return Ok(("box".into(), Observed::Volume(solid::volume(table, part)?)));
+    }
+    if let Some(fields) = &table.fields {
+        let (name, point) = solid::point(table, part, fields)?;
+        return Ok((name, Observed::Point(point)));
+    }
+    nearest_node(table, part)
+}
+
+fn nearest_node(table: &Table<Probe>, solid: &SolidPart) -> Result<(String, Observed), SceneError> {
     let mesh = solid.model.mesh();
     // Sleepers move when they are set down.
     let ground = solid.sleepers.as_ref().map_or(mesh.node_count(), |s| s.ground_nodes());
     let node = match (table.node, table.at) {
-        (Some(id), _) => solid::find_node(table, mesh, id)?,
+        (Some(id), _) => find_node(table, mesh, id)?,
         (None, at) => {
             let at = at.map_or([0.0; 3], |at| vector(&at));
             let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>();

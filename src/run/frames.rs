@@ -14,7 +14,6 @@ use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::bond::{Break, BreakMode};
 use trackbed_dem::shape::Shape;
-use trackbed_fem::element::stiffness_points;
 use trackbed_fem::stress;
 
 /// Elastic material: inside by definition.
@@ -63,19 +62,14 @@ impl SolidFields {
 /// Extrapolated from Gauss points like stresses.
 fn strains(view: SolidView<'_>, plastic: bool) -> Vec<[f64; 6]> {
     let SolidView { model, state } = view;
-    let tensor = |[xx, yy, zz, xy, yz, zx]: [f64; 6]| [xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx];
     if plastic && state.points.is_empty() {
         return vec![[0.0; 6]; model.mesh().node_count()];
     }
     stress::nodal_from_points(model, |element, p| {
         if plastic {
-            return tensor(state.points[p].plastic_strain);
+            return stress::tensor(state.points[p].plastic_strain);
         }
-        let kind = model.mesh().connectivity.kind(element);
-        let rule = stiffness_points(kind, model.quadrature());
-        let strains = model.element_strains(element);
-        let moved = model.mesh().element_values(element, &state.u);
-        tensor(strains.strain(&strains.at(rule[p - model.point_start(element)].xi), &moved))
+        stress::strain_at_point(model, &state.u, element, p)
     })
 }
 

@@ -81,7 +81,7 @@ pub struct Plate {
     pub material: String,
 }
 
-/// `[[measure]]`: a box whose packing is measured at the end of the main stage.
+/// `[[measure]]`: a box whose packing is measured at the end of the main stage, with `history` during it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Measure {
@@ -90,6 +90,9 @@ pub struct Measure {
     /// Box `[low, high]` [m].
     #[serde(rename = "box")]
     pub region: [[Quantity<Length>; 3]; 2],
+    /// Whether `history.csv` has porosity, coordination number, mean stress; default false.
+    #[serde(default)]
+    pub history: bool,
     /// Radial distribution function, to `radial.csv`; default none.
     pub radial: Option<Radial>,
 }

@@ -147,21 +147,44 @@ fn yes() -> bool {
     true
 }
 
-/// What is observed in `history.csv`: a node of the solid, by number or by the place nearest to it, a grain, a group, or the
-/// grains in a box.
+/// What is observed in `history.csv`: a node or point of the solid, an area or a box in it, a grain, a group, or the grains
+/// in a box.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// Header of columns; default `n<number>`, `grain<number>`, group, `region`.
+    /// Header of columns; default `n<number>`, `point`, `plane`, `box`, `grain<number>`, group, `region`.
     pub name: Option<String>,
-    /// Number of a node: displacement, velocity; or `at`, `grain`, `group`, `region`.
+    /// Number of a node of the solid; or `at`, `plane`, `box`, `grain`, `group`, `region`.
     pub node: Option<u32>,
-    /// Position, of the nearest node [m]; or `node`.
+    /// Point of the undeformed solid, without `fields` its nearest node [m]; or `node`.
     pub at: Option<[Quantity<Length>; 3]>,
+    /// Fields of a node or point, with the values of frames; default displacement, velocity; with `node`, `at`.
+    pub fields: Option<Vec<ProbeField>>,
+    /// Horizontal rectangle `[low, high]` in the undeformed solid: mean, largest vertical stress [m]; or `node`.
+    pub plane: Option<[[Quantity<Length>; 3]; 2]>,
+    /// Box `[low, high]` of the undeformed solid: mean, largest vertical and mean stress [m]; or `node`.
+    #[serde(rename = "box")]
+    pub solid_box: Option<[[Quantity<Length>; 3]; 2]>,
     /// Index of a grain, from 0: position, velocity, spin, mean stress; or `node`.
     pub grain: Option<u32>,
     /// Name of a group: number, means of these; or `node`.
     pub group: Option<String>,
     /// Box `[low, high]`: number, means of centres inside [m]; or `node`.
     pub region: Option<[[Quantity<Length>; 3]; 2]>,
+}
+
+/// Field of the solid at a node or point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProbeField {
+    /// Displacement.
+    Displacement,
+    /// Velocity.
+    Velocity,
+    /// Mean of the last step if coupled.
+    Acceleration,
+    /// Six components.
+    Stress,
+    /// Six tensor components.
+    Strain,
 }

@@ -28,6 +28,10 @@ pub struct Output {
     pub chains: Option<Chains>,
     /// Fields in frames, see below; default unmarked.
     pub fields: Option<Vec<String>>,
+    /// Times of additional frames, each at the end of the nearest step [s]; default none; > 0, ≤ duration.
+    pub frames_at: Option<Vec<Quantity<Time>>>,
+    /// Whether each load cycle has an additional frame at its largest load; default false; with `[track.load]`, not with `"beam"`.
+    pub frames_at_peaks: Option<bool>,
     /// Separate frames of the last part; default none; not with `[track.jump]`.
     pub last: Option<Last>,
     /// Whether `results.pvd`, `frames/` are written; default true.

@@ -72,6 +72,14 @@ impl Row {
             self.put(name.at(axis), value);
         }
     }
+
+    /// Adds the six columns of a symmetric tensor.
+    pub fn tensor<'n>(&mut self, name: impl Into<Name<'n>>, value: [f64; 6]) {
+        let name = name.into();
+        for (part, value) in value.into_iter().enumerate() {
+            self.put(name.at(part), value);
+        }
+    }
 }
 
 /// Column of a table, and its value for an item.

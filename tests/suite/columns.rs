@@ -4,13 +4,14 @@ use super::support::{Folder, Table, repository, run, trackbed};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use trackbed::columns::{Definition, Kind, TABLES, Table as Defined, history};
+use trackbed::columns::{Definition, Kind, TABLES, Table as Defined, cycles, history};
 
 fn is_defined(table: &Defined, head: &str) -> bool {
     let (name, unit) = head.strip_suffix(']').and_then(|h| h.split_once(" [")).unwrap_or((head, ""));
     table.columns.iter().filter(|column| column.unit == unit).any(|column| match column.kind {
         Kind::Scalar => column.of("").item_in(name).is_some(),
         Kind::Vector => (0..3).any(|axis| column.at(axis).item_in(name).is_some()),
+        Kind::Tensor => (0..6).any(|part| column.at(part).item_in(name).is_some()),
         Kind::List => column.of("").item_in(name.trim_end_matches(|c: char| c.is_ascii_digit())).is_some(),
     })
 }
@@ -47,6 +48,8 @@ fn names_of_columns_are_read_back() {
         (history::LOAD.of("_2"), "load_2", "_2"),
         (history::SLEEPER.of("").at(2), "sleeper_z", ""),
         (history::WALL_FORCE.of("plate").at(0), "plate_force_x", "plate"),
+        (history::PROBE_STRESS.of("crest").at(5), "crest_stress_zx", "crest"),
+        (cycles::STRESS_PEAK.of("crest_stress_zz"), "crest_stress_zz_peak", "crest_stress_zz"),
         (history::STRUCTURE_SECTOR.of("pile").at(3), "pile_sector3", "pile"),
         (history::ENERGY_ERROR.into(), "energy_error", ""),
     ];
@@ -99,6 +102,7 @@ fn results_page_names_each_column() {
             let ends: &[&str] = match column.kind {
                 Kind::Scalar => &[""],
                 Kind::Vector => &["_x", "_y", "_z"],
+                Kind::Tensor => &["_xx", "_yy", "_zz", "_xy", "_yz", "_zx"],
                 Kind::List => &["0"],
             };
             let name = column.name.replace("<_n>", "");

@@ -143,6 +143,12 @@ impl CycleRecorder {
         self.slope = slope;
     }
 
+    /// Whether a step of `dt` [s] to `t` [s] belongs to a cycle.
+    pub fn counts(&self, t: f64, dt: f64) -> bool {
+        // By its middle, so rounding of t is harmless.
+        t - 0.5 * dt >= self.begin && !self.over()
+    }
+
     /// Records the state at `t` [s] after a step of `dt` [s]; returns a cycle just completed.
     ///
     /// Arguments: sleeper height [m], load [N], work so far [J], largest formation pressure of the step [Pa].

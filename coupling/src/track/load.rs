@@ -321,6 +321,20 @@ impl CyclicLoad {
         }
     }
 
+    /// Time of the largest force on sleeper `k` in a cycle, from its start [s]; the first of equal ones.
+    pub fn peak_in_cycle(&self, k: usize) -> f64 {
+        const PARTS: u32 = 4000;
+        let (mut peak, mut largest) = (0.0, f64::NEG_INFINITY);
+        for i in 0..PARTS {
+            let since = self.period() * f64::from(i) / f64::from(PARTS);
+            let force = self.in_cycles(k, since);
+            if force > largest {
+                (peak, largest) = (since, force);
+            }
+        }
+        peak
+    }
+
     /// Number of cycles.
     pub fn cycles(&self) -> u32 {
         self.cycles

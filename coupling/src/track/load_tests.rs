@@ -140,3 +140,14 @@ fn an_uneven_rail_swings_the_load() {
     f.wheels(f.end() + 1e-6, 1, &mut wheels);
     assert!(wheels.is_empty());
 }
+
+#[test]
+fn peak_of_a_cycle_is_found() {
+    for (sine, at) in [(true, 0.025), (false, 0.05)] {
+        assert!((wave(sine).peak_in_cycle(1) - at).abs() < 1e-12);
+    }
+    let f = load(Waveform::Ramp { minimum: 0.0, maximum: 10.0, rise: 0.3, hold: 0.2, fall: Some(0.5) });
+    assert!((f.peak_in_cycle(0) - 0.3).abs() < 1e-3);
+    let measured = Waveform::Measured { points: vec![(0.0, 0.0), (0.4, 9.0), (1.0, 0.0)], speed: Some(6.0) };
+    assert!((load(measured).peak_in_cycle(2) - 0.6).abs() < 1e-3);
+}

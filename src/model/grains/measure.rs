@@ -12,6 +12,8 @@ pub struct MeasurePlan {
     pub name: String,
     /// The box.
     pub region: BoxRegion,
+    /// Whether it has columns in `history.csv`.
+    pub history: bool,
     /// Radial distribution function, if requested.
     pub radial: Option<RadialPlan>,
 }
@@ -31,10 +33,13 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<Vec<MeasurePlan>, SceneError
         if scene.measure[..i].iter().any(|other| other.name == m.name) {
             return Err(m.error("name", format!("\"{}\" again", m.name), "each name once"));
         }
+        if m.history && (m.name.is_empty() || m.name.contains([',', '"', '\n'])) {
+            return Err(m.error("name", format!("\"{}\"", m.name), "a name without commas or quotes"));
+        }
         let region = region(&m, "box", &m.region)?;
         let radial = m.optional("radial", &m.radial);
         let radial = radial.map(|r| shells(&r, &region)).transpose()?;
-        measures.push(MeasurePlan { name: m.name.clone(), region, radial });
+        measures.push(MeasurePlan { name: m.name.clone(), region, history: m.history, radial });
     }
     Ok(measures)
 }

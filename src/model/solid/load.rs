@@ -2,12 +2,12 @@
 
 use super::common::time_function;
 use super::geometry::Geometry;
+use super::location::Locator;
 use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{SolidLoad, SolidLoadKind};
 use crate::scene::units::vector;
 use crate::scene::{SceneError, Table, kinds};
-use trackbed_coupling::inverse_map;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::{Face, Mesh};
 
@@ -114,31 +114,15 @@ fn point_load(
 ) -> Result<(), SceneError> {
     // Slack for points on the surface.
     const SLACK: f64 = 1e-9;
-    for (e, element) in mesh.connectivity.iter().enumerate() {
-        let (x, kind) = (mesh.element_coordinates(e), mesh.connectivity.kind(e));
-        let nodes = &x[..element.len()];
-        let inside_box = (0..3).all(|d| {
-            let low = nodes.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min);
-            let high = nodes.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max);
-            let margin = 0.25 * (high - low);
-            low - margin <= point[d] && point[d] <= high + margin
-        });
-        if !inside_box {
-            continue;
-        }
-        let Some(natural) = inverse_map::natural_point(kind, &x, point, kind.natural_centre()) else {
-            continue;
-        };
-        if kind.contains(natural.xi, SLACK) {
-            let n = kind.shape_functions(natural.xi);
-            for (&node, n) in element.iter().zip(n) {
-                for d in 0..3 {
-                    pattern[3 * node as usize + d] += n * force[d];
-                }
-            }
-            return Ok(());
+    let Some((e, xi)) = Locator::new(mesh, mesh.element_count()).find(point, SLACK) else {
+        let found = format!("({}, {}, {})", point[0], point[1], point[2]);
+        return Err(load.error("at", found, "a point of the solid"));
+    };
+    let n = mesh.connectivity.kind(e).shape_functions(xi);
+    for (&node, n) in mesh.connectivity[e].iter().zip(n) {
+        for d in 0..3 {
+            pattern[3 * node as usize + d] += n * force[d];
         }
     }
-    let found = format!("({}, {}, {})", point[0], point[1], point[2]);
-    Err(load.error("at", found, "a point of the solid"))
+    Ok(())
 }

@@ -9,6 +9,7 @@ mod equations;
 mod geometry;
 mod initial_stress;
 mod load;
+mod location;
 mod locking;
 mod material;
 mod motion;
@@ -20,6 +21,7 @@ pub use equations::EquationPlan;
 pub use geometry::{Geometry, geometry};
 pub use initial_stress::{InitialStressKind, InitialStressPlan};
 pub use load::NodalLoad;
+pub use location::Locator;
 pub use selection::find_node;
 pub use sleepers::SleeperBodies;
 

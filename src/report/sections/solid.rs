@@ -24,7 +24,7 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
     });
     let probes = |motion: &'static Definition| {
         overlay(runs, move |run| {
-            let stems = run.table("history").map(|t| t.items(history::PROBE_V.at(0))).unwrap_or_default();
+            let stems = run.table("history").map(|t| t.items(motion.at(0))).unwrap_or_default();
             let of = |stem: &&str| {
                 let (axis, values) = dominant(run, motion.of(stem))?;
                 let time = run.table("history")?.column(history::TIME)?;
@@ -33,6 +33,14 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
             stems.iter().filter_map(of).collect()
         })
     };
+    let stresses = overlay(runs, |run| {
+        let Some(table) = run.table("history") else { return Vec::new() };
+        let (point, area) = (history::PROBE_STRESS, history::PROBE_VERTICAL_STRESS);
+        let points = table.items(point.at(2)).into_iter().map(|stem| (stem, point.of(stem).at(2)));
+        let areas = table.items(area).into_iter().map(|stem| (stem, area.of(stem)));
+        let of = |(stem, name)| Some((String::from(stem), table.points(history::TIME, name)?));
+        points.chain(areas).filter_map(of).collect()
+    });
     let note = match driven.is_empty() {
         true => Markup::default(),
         false => paragraph(
@@ -53,6 +61,8 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
         Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes(history::PROBE_U))
             .figure(),
         Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes(history::PROBE_V))
+            .figure(),
+        Plot::new("Vertical stress at probes", time(), Side::new("stress, tension positive", "Pa"), stresses)
             .figure(),
     ]);
     Section::new("solid", "Solid", joined([figures, note, equilibrium(runs), supports(runs)]))

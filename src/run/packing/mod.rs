@@ -76,6 +76,40 @@ pub fn record(
     })
 }
 
+/// Box with columns in `history.csv`.
+pub struct Measured<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Porosity.
+    pub porosity: f64,
+    /// Mean coordination number.
+    pub coordination: f64,
+    /// Mean stress [Pa], tension positive.
+    pub mean_stress: f64,
+}
+
+/// Measures the boxes with `history`, as [`record`] does at the end.
+pub fn measured<'a>(view: GrainsView<'_>, grains: &'a GrainsPart) -> Vec<Measured<'a>> {
+    if grains.measures.iter().all(|m| !m.history) {
+        return Vec::new();
+    }
+    let GrainsView { model, state } = view;
+    let is_grain = grain_of(view, grains);
+    let contacts = measure::contacts(model, state);
+    let stress = measure::mean_stress_of(model, state, &contacts);
+    let of_box = |MeasurePlan { name, region, .. }: &'a MeasurePlan| {
+        let inside = |b: usize| is_grain(b) && region.holds(&model.wrap(&state.position(b)));
+        let [xx, yy, zz, ..] = measure::region_stress(model, state, &stress, region);
+        Measured {
+            name,
+            porosity: porosity(view, region, is_grain),
+            coordination: measure::coordination_of(model, state, &contacts, inside).mean,
+            mean_stress: (xx + yy + zz) / 3.0,
+        }
+    };
+    grains.measures.iter().filter(|m| m.history).map(of_box).collect()
+}
+
 /// Present, and no sleepers.
 fn grain_of<'a>(view: GrainsView<'a>, grains: &GrainsPart) -> impl Fn(usize) -> bool + Copy + 'a {
     let sleeper = grains.track.rigid_sleeper().map(|_| grains.groups.names.len() as u32 - 1);

@@ -1,6 +1,6 @@
 //! Columns of `history.csv`.
 
-use super::histories::{Energies, Interface, Inventory, Probes, Rails, Sleepers, Supports};
+use super::histories::{Energies, Interface, Inventory, Measures, Probes, Rails, Sleepers, Supports};
 use crate::columns::history;
 use crate::run::bond_output::{Bonds, Groups};
 use crate::run::recorder::{Now, Recorder};
@@ -12,7 +12,7 @@ use crate::run::wall_output::Walls;
 use crate::write::csv::{Column, Row};
 
 /// In column order after time.
-fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 13] {
+fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 14] {
     [
         &Sleepers,
         &Interface,
@@ -22,6 +22,7 @@ fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 13] {
         &Groups,
         &Supports,
         &Probes,
+        &Measures,
         &Walls,
         &Inventory,
         &Slides,

@@ -1,5 +1,6 @@
 //! Columns of `cycles.csv`.
 
+use super::solid_probes::CycleStresses;
 use crate::columns::cycles;
 use crate::model::Job;
 use crate::run::system::System;
@@ -57,7 +58,10 @@ pub fn record(job: &Job, c: &Cycle, broken: (u64, u64), row: &mut Row) {
     }
 }
 
-/// Returns the columns.
-pub fn columns(job: &Job) -> Vec<Column> {
-    Row::columns_of(|row| record(job, &Cycle::default(), (0, 0), row))
+/// Returns the columns; `stresses`: columns of probes in `history.csv`.
+pub fn columns(job: &Job, stresses: &[Column]) -> Vec<Column> {
+    Row::columns_of(|row| {
+        record(job, &Cycle::default(), (0, 0), row);
+        CycleStresses::default().record(stresses, row);
+    })
 }

@@ -1,7 +1,9 @@
 //! Recorders of `history.csv`.
 
+use super::solid_probes;
 use crate::columns::history;
 use crate::model::Observed;
+use crate::run::packing;
 use crate::run::recorder::{Now, Recorder};
 use crate::run::system::{GrainsView, System};
 use crate::write::csv::Row;
@@ -99,7 +101,7 @@ impl<S: System> Recorder<S> for Supports {
     }
 }
 
-/// Motion of observed nodes.
+/// Fields of observed nodes, points and boxes, means of observed grains.
 pub struct Probes;
 
 impl<S: System> Recorder<S> for Probes {
@@ -111,7 +113,10 @@ impl<S: System> Recorder<S> for Probes {
                     row.vector(history::PROBE_U.of(name), of_node(&solid.state.u));
                     row.vector(history::PROBE_V.of(name), of_node(&solid.state.v));
                 }
-                (observed, _, Some(view)) => of_grains(name, *observed, view, row),
+                (Observed::Grain(_) | Observed::Group(_) | Observed::Region(_), _, Some(view)) => {
+                    of_grains(name, observed, view, row);
+                }
+                (_, Some(view), _) => solid_probes::record(name, observed, view, row),
                 _ => {}
             }
         }
@@ -119,13 +124,13 @@ impl<S: System> Recorder<S> for Probes {
 }
 
 /// Position, velocity and angular velocity weighted by mass, stress by volume. Zeros if empty.
-fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row) {
+fn of_grains(name: &str, observed: &Observed, view: GrainsView<'_>, row: &mut Row) {
     let GrainsView { model, state } = view;
     let seen = |b: usize| match observed {
-        Observed::Node(_) => false,
-        Observed::Grain(grain) => b == grain,
-        Observed::Group(part) => model.part(b) == part,
+        Observed::Grain(grain) => b == *grain,
+        Observed::Group(part) => model.part(b) == *part,
         Observed::Region(region) => region.holds(&model.wrap(&state.position(b))),
+        _ => false,
     };
     let bodies: Vec<usize> = (0..model.body_count()).filter(|&b| state.present(b) && seen(b)).collect();
     let mass: f64 = bodies.iter().map(|&b| model.mass(b)).sum();
@@ -144,6 +149,21 @@ fn of_grains(name: &str, observed: Observed, view: GrainsView<'_>, row: &mut Row
     let trace = |b: usize| stress[b][0] + stress[b][1] + stress[b][2];
     let sum: f64 = bodies.iter().map(|&b| model.volume(b) * trace(b) / 3.0).sum();
     row.put(history::PROBE_MEAN_STRESS.of(name), sum / volume.max(f64::MIN_POSITIVE));
+}
+
+/// Packing in measured boxes with `history`.
+pub struct Measures;
+
+impl<S: System> Recorder<S> for Measures {
+    fn record(&self, now: &Now<'_, S>, row: &mut Row) {
+        let (Some(part), Some(view)) = (&now.job.grains, now.system.grains()) else { return };
+        for measured in packing::measured(view, part) {
+            let name = measured.name;
+            row.put(history::MEASURE_POROSITY.of(name), measured.porosity);
+            row.put(history::MEASURE_COORDINATION.of(name), measured.coordination);
+            row.put(history::PROBE_MEAN_STRESS.of(name), measured.mean_stress);
+        }
+    }
 }
 
 /// Present, inserted and removed grains.

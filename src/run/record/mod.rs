@@ -4,6 +4,7 @@ mod columns;
 mod cycle_file;
 mod histories;
 mod plots;
+mod solid_probes;
 
 use super::checkpoint::{Body, Loaded};
 use super::energy_watch::EnergyWatch;
@@ -21,6 +22,7 @@ use crate::model::Job;
 use crate::write::csv::{Column, History, Mark, Row};
 use crate::write::{self, WallFrame, WriteError, Writers};
 use serde::{Deserialize, Serialize};
+use solid_probes::CycleStresses;
 use std::io;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::ledger::Balance;
@@ -36,6 +38,8 @@ pub struct Results<'a> {
     history: History,
     columns: Vec<Column>,
     cycles_file: Option<History>,
+    /// Of probes, if there are cycles.
+    stresses: Vec<Column>,
     course: Course,
 }
 
@@ -58,6 +62,8 @@ struct Course {
     loads: Vec<LoadRecord>,
     #[serde(default)]
     largest_kinetic: f64,
+    #[serde(default)]
+    cycle_stresses: CycleStresses,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -91,10 +97,13 @@ impl<'a> Results<'a> {
         let columns = columns::columns(&now);
         let history = History::create(&dir.join("history.csv"), columns.clone())?;
         let columns = of_structures(job, columns);
-        let cycles_file =
-            load.map(|_| History::create(&dir.join("cycles.csv"), cycle_file::columns(job))).transpose()?;
+        let stresses = stresses(job, system);
+        let cycles_file = load
+            .map(|_| History::create(&dir.join("cycles.csv"), cycle_file::columns(job, &stresses)))
+            .transpose()?;
         let writers = Writers::begin(dir, &job.output.formats)?.only(&job.output.fields);
-        Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
+        let dir = dir.to_path_buf();
+        Ok(Results { job, dir, writers, history, columns, cycles_file, stresses, course })
     }
 
     /// Resumes output and truncates later rows.
@@ -117,15 +126,17 @@ impl<'a> Results<'a> {
         let columns = columns::columns(&now);
         let history = History::resume(&file, columns.clone(), marks.history).map_err(unfit)?;
         let columns = of_structures(job, columns);
+        let stresses = stresses(job, system);
         let cycles_file = marks
             .cycles
-            .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_file::columns(job), mark))
+            .map(|mark| History::resume(&dir.join("cycles.csv"), cycle_file::columns(job, &stresses), mark))
             .transpose()
             .map_err(unfit)?;
         let writers = Writers::resume(dir, &job.output.formats, &marks.writers).map_err(unfit)?;
         let writers = writers.only(&job.output.fields);
         folder::remove_later_frames(dir, course.frame)?;
-        Ok(Results { job, dir: dir.to_path_buf(), writers, history, columns, cycles_file, course })
+        let dir = dir.to_path_buf();
+        Ok(Results { job, dir, writers, history, columns, cycles_file, stresses, course })
     }
 
     /// Saves the state after flushing rows.
@@ -198,13 +209,23 @@ impl<'a> Results<'a> {
         }
         let sleeper = track.observed().and_then(|k| track.sleeper(k, time, system));
         let (Some(cycles), Some(s)) = (&mut self.course.cycles, sleeper) else { return Ok(None) };
+        if let Some(view) = system.solid()
+            && !self.stresses.is_empty()
+            && cycles.counts(time, system.window())
+        {
+            self.course.cycle_stresses.add(self.job, view);
+        }
         let (work, pressure) = (system.seat_work(), system.peak_pressure());
         let Some(cycle) = cycles.record(time, system.window(), s.height, s.load, work, pressure) else {
             return Ok(None);
         };
+        let stresses = std::mem::take(&mut self.course.cycle_stresses);
         if let Some(file) = &mut self.cycles_file {
             let broken = system.grains().map_or((0, 0), |g| g.state.broken_bonds());
-            file.row(&Row::values_of(|row| cycle_file::record(self.job, &cycle, broken, row)))?;
+            file.row(&Row::values_of(|row| {
+                cycle_file::record(self.job, &cycle, broken, row);
+                stresses.record(&self.stresses, row);
+            }))?;
         }
         if let Some(plan) = self.job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()) {
             let error = if plan.grains { self.energy_error(system) } else { 0.0 };
@@ -318,6 +339,12 @@ impl<'a> Results<'a> {
     pub fn cycles(&self) -> &[Cycle] {
         self.course.cycles.as_ref().map_or(&[], |c| &c.done)
     }
+}
+
+/// Columns of probes whose stresses are followed over load cycles.
+fn stresses<S: System>(job: &Job, system: &S) -> Vec<Column> {
+    let cycles = job.grains.as_ref().is_some_and(|g| g.track.load.is_some());
+    solid_probes::stress_columns(job, system.solid().filter(|_| cycles))
 }
 
 fn of_structures(job: &Job, columns: Vec<Column>) -> Vec<Column> {

@@ -139,11 +139,12 @@ impl<'a> TimeLoop<'a> {
         let window = system.window();
         let windows = ((job.end / window).ceil() as u64).max(1);
         let part = grains.map(|(part, _)| part);
-        let load = part.and_then(|g| g.track.load.as_ref());
-        let cadence =
-            Cadence::new(job, window, windows, load, part.is_some_and(|g| g.track.after.jump.is_some()));
         let input = part.map_or_else(TrackInput::default, |part| part.track.input());
         let mut track = Track::new(input, system.grains());
+        let load = part.and_then(|g| g.track.load.as_ref());
+        let observed = load.map(|load| (load, track.observed().unwrap_or(0)));
+        let jumps = part.is_some_and(|g| g.track.after.jump.is_some());
+        let cadence = Cadence::new(job, (window, windows), observed, jumps);
         let mut flow = Flow::new(part, system.grains(), window, job.end);
         let (recorder, place) = match resumed {
             Some(mut loaded) => {
@@ -203,9 +204,10 @@ impl<'a> TimeLoop<'a> {
         }
         self.place.done = k;
         let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
-        if let Some(next) = self.cadence.frame_after(self.place.next_frame, reached, whole) {
+        let next = self.cadence.frame_after(self.place.next_frame, reached, whole);
+        if next.is_some() || self.cadence.has_extra_frame(k) {
             self.recorder.frame(time, system, &self.track).map_err(|e| e.at(time))?;
-            self.place.next_frame = next;
+            self.place.next_frame = next.unwrap_or(self.place.next_frame);
         }
         if let Some(text) = system.progress() {
             self.progress.message(text);
