@@ -5,9 +5,9 @@ use super::shapes::{Sampled, drawn, shapes, unit_volumes};
 use super::sizes::SizeSource;
 use super::target::{Amount, HIGHEST, Site, amount, bed};
 use crate::failure::Failure;
-use crate::scene::{Scene, Table};
 use crate::scene::grains::{FillBox, Grains};
 use crate::scene::units::vector;
+use crate::scene::{Scene, Table};
 use trackbed_dem::BodyInput;
 use trackbed_dem::insert::place;
 

@@ -95,6 +95,8 @@ pub struct FilledGroup {
     pub floor: f64,
     /// Target height above the floor [m].
     pub target: Option<f64>,
+    /// Diameter of a sphere of the mean volume [m].
+    pub size: f64,
     /// Expected porosity.
     pub porosity: f64,
     /// Expected height above the floor [m].

@@ -118,8 +118,7 @@ impl Amount {
         let mass = group.check("target_mass", group.target_mass, |m| m > 0.0, "above 0")?;
         group.check("porosity", group.porosity, |n| n > 0.0 && n < 1.0, "above 0, below 1")?;
         let mean = source.mean_cube() * units.iter().sum::<f64>() / units.len() as f64;
-        let size = libm::cbrt(6.0 / std::f64::consts::PI * mean);
-        let porosity = group.porosity.unwrap_or_else(|| site.porosity(size));
+        let porosity = group.porosity.unwrap_or_else(|| site.porosity(diameter(mean)));
         let volume = |count: usize| {
             let sizes = source.sample(count, group.seed);
             let dealt = super::shapes::deal(&sizes, units.len());
@@ -131,12 +130,15 @@ impl Amount {
                 let room = (1.0 - porosity) * site.area() * height.si - site.before;
                 number(group, key, room, mean, &volume)?
             }
-            (None, None, mass) => {
-                number(group, key, mass.map_or(0.0, |m| m.si) / density, mean, &volume)?
-            }
+            (None, None, mass) => number(group, key, mass.map_or(0.0, |m| m.si) / density, mean, &volume)?,
         };
         Ok(Amount { count, porosity })
     }
+}
+
+/// Diameter of a sphere of a volume [m³].
+fn diameter(volume: f64) -> f64 {
+    libm::cbrt(6.0 / std::f64::consts::PI * volume)
 }
 
 /// Returns the expected bed of grains with a `solid` volume [m³], if it has a height.
@@ -154,6 +156,7 @@ pub(super) fn bed(
         plan: [site.low, site.high],
         floor: site.floor,
         target: group.target_height.map(|h| h.si),
+        size: diameter(solid / amount.count as f64),
         porosity: amount.porosity,
         height: (solid + site.before) / ((1.0 - amount.porosity) * site.area()),
     };
