@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::exchange::{self, CouplingPart, Windows};
-use crate::model::grains::{GrainsPart, Preview};
+use crate::model::grains::{FilledGroup, GrainsPart, Preview};
 use crate::model::solid::SolidPart;
 use crate::plausible;
 use crate::preview::Source;
@@ -88,6 +88,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
             numbers["grains"] = grain_numbers(&model);
+            numbers["grains"]["beds"] = bed_numbers(grains);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
                 let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
                 lines.extend(own);
@@ -194,6 +195,7 @@ fn grain_lines(
     };
     let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}")));
+    lines.extend(grains.groups.filled.iter().map(|bed| format!("  {}", bed.line())));
     lines.extend(grains.groups.remarks.iter().map(|remark| format!("  warning: {remark}")));
     Ok((model, lines))
 }
@@ -207,6 +209,20 @@ fn grain_numbers(model: &dem::Model) -> Value {
         "longest_step": longest,
         "step_limit": model.dt_limit().to_string(),
     })
+}
+
+fn bed_numbers(grains: &GrainsPart) -> Value {
+    let bed = |bed: &FilledGroup| {
+        json!({
+            "group": bed.name,
+            "grains": bed.count,
+            "mass": bed.mass,
+            "porosity": bed.porosity,
+            "height": bed.height,
+            "floor": bed.floor,
+        })
+    };
+    grains.groups.filled.iter().map(bed).collect()
 }
 
 fn coupling_lines(

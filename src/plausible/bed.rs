@@ -9,6 +9,9 @@ use crate::scene::walls::{Wall, WallKind};
 /// Tolerated fraction of misplaced grains.
 const SHARE: f64 = 0.2;
 
+/// Highest plausible over expected height of a bed.
+const ABOVE: f64 = 1.1;
+
 /// Bounding box.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
@@ -262,8 +265,28 @@ fn settling(findings: &mut Findings, scene: &Scene, job: &Job) {
         } else if level.si > bed.high[2] + 10.0 * height.max(0.01) {
             let found = format!("{}, far above all grains", shown(level.si, "m"));
             findings.add(true, "deposition.level", found, "a height within the bed");
+        } else if let Some(top) = highest_top(job)
+            && level.si > top
+        {
+            let found =
+                format!("{}, a level above the bed (top at most {})", shown(level.si, "m"), shown(top, "m"));
+            findings.add(false, "deposition.level", found, "a level below the top of the bed");
         }
     }
+}
+
+/// Highest expected centre of grains of a bed of filled groups alone [m].
+fn highest_top(job: &Job) -> Option<f64> {
+    let groups = &job.grains.as_ref()?.groups;
+    let falls = |part: u32| groups.bodies.iter().any(|b| b.part == part && !b.absent);
+    let falling =
+        (0..groups.names.len() as u32).filter(|&part| falls(part) && !groups.fouling.contains(&part));
+    let mut top = f64::NEG_INFINITY;
+    for part in falling {
+        let group = groups.filled.iter().find(|group| group.part == part)?;
+        top = top.max(group.floor + ABOVE * group.height + 0.5 * group.size);
+    }
+    top.is_finite().then_some(top)
 }
 
 fn compaction(findings: &mut Findings, scene: &Scene) {

@@ -1,6 +1,6 @@
 //! Scene tables of grain groups.
 
-use super::units::{Length, Quantity, Spin, Velocity};
+use super::units::{Length, Mass, Quantity, Spin, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -36,7 +36,7 @@ pub struct Grains {
     pub aspect: Option<f64>,
     /// Radius expansion to a porosity; default none; with `region`.
     pub growth: Option<GrowthSource>,
-    /// Number of grains; or `solid_fraction`; 1–10,000,000; with `fill`, `region`, only an `inlet` (queue); optional with `growth`.
+    /// Number of grains; or `solid_fraction`, `target_height`, `target_mass`; 1–10,000,000; with `fill`, `region`, only an `inlet` (queue); optional with `growth`.
     pub count: Option<usize>,
     /// Sieve table; or `size`, `sizes`; with `fill`, `region`, only an `inlet`, floes of disks.
     pub gradation: Option<GradationSource>,
@@ -46,6 +46,12 @@ pub struct Grains {
     pub sizes: Option<Sizes>,
     /// Box with a contact-free stack up to 200 m; or another source.
     pub fill: Option<FillBox>,
+    /// Expected height of the settled bed above its floor [m]; or `count`; > 0, ≤ 200; with `fill`.
+    pub target_height: Option<Quantity<Length>>,
+    /// Total mass, met within one grain [kg]; or `count`; > 0; with `fill`.
+    pub target_mass: Option<Quantity<Mass>>,
+    /// Expected porosity of the settled bed; default 0.4, more between walls; > 0, < 1; with `fill`.
+    pub porosity: Option<f64>,
     /// Seed of sizes, positions, orientations; default 1.
     #[serde(default = "one")]
     pub seed: u64,

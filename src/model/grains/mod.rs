@@ -35,7 +35,7 @@ pub use bonds::{check_gaps, check_joined};
 pub use compaction::{CompactionPlan, Press};
 pub use deposition::DepositionPlan;
 pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
-pub use groups::{GradedGroup, GroupsPart};
+pub use groups::{FilledGroup, GradedGroup, GroupsPart};
 pub use materials::parameters;
 pub use measure::{MeasurePlan, RadialPlan};
 pub use overlap::check_overlaps;

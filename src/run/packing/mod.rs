@@ -1,11 +1,13 @@
 //! Final packing and its files: `gradation.csv`, `gradation.svg`, `radial.csv`, `packing.csv`.
 
+mod bed_stage;
 mod files;
 mod records;
 mod report;
 mod sieves;
 mod stage_energy;
 
+pub use bed_stage::{BedStage, HeightTarget};
 pub use records::{CompactionRecord, FoulingRecord, GrowthRecord, MeasureRecord, PackingRecord};
 pub(super) use report::report;
 pub use stage_energy::StageEnergy;

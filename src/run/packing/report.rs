@@ -1,9 +1,11 @@
 //! Packing lines of the report.
 
+use super::bed_stage::BedStage;
 use super::records::{CompactionRecord, GrowthRecord, PackingRecord};
 
 /// Formats packing lines.
 pub fn report(
+    beds: &[BedStage],
     growth: &[GrowthRecord],
     compaction: &[CompactionRecord],
     packing: Option<&PackingRecord>,
@@ -25,6 +27,7 @@ pub fn report(
             c.porosity_after
         ));
     }
+    lines.extend(beds.iter().flat_map(BedStage::lines));
     let Some(p) = packing else { return lines };
     lines.push(format!(
         "grains: {:.2} neighbours, {:.2} without rattlers ({:.1} % of the grains); {:.0} % of the contacts carry {:.0} % of \

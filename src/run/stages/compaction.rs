@@ -8,7 +8,7 @@ use crate::model::grains::{CompactionPlan, GrainsPart, Press, refused};
 use crate::progress::Progress;
 use crate::run::bed::{Bed, rms_speed, top_below};
 use crate::run::context::Run;
-use crate::run::packing::CompactionRecord;
+use crate::run::packing::{BedStage, CompactionRecord};
 use crate::run::summary::StageRecord;
 use crate::run::system::GrainsView;
 use crate::run::validity::region_not_filled;
@@ -143,6 +143,8 @@ fn compact(
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
     warn_of_bed(settled, &done, index);
+    let stage = (name.as_str(), &plan.press);
+    settled.beds.extend(bed_after(stage, &done.bed, grains, surface, settled.bodies.len()));
     if let Press::Pouring { parts, level, .. } = &plan.press {
         settled.take(&done.bed);
         bedding::cut(settled, &done.bed, &poured_from, parts, *level);
@@ -172,6 +174,24 @@ fn new_bed<'b>(
     let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
     let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
     Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED))
+}
+
+/// Without sleepers, and grains that are removed above a level.
+fn bed_after(
+    (name, press): (&str, &Press),
+    bed: &Bed<'_>,
+    grains: &GrainsPart,
+    surface: Option<&SolidSurface>,
+    count: usize,
+) -> Option<BedStage> {
+    let Bed { model, state, .. } = bed;
+    let removed = |b: usize| match press {
+        Press::Pouring { parts, level: Some(level), .. } => {
+            parts.contains(&model.part(b)) && state.position(b).z > *level
+        }
+        _ => false,
+    };
+    BedStage::of(name, GrainsView { model, state }, grains, surface, |b| b < count && !removed(b))
 }
 
 /// Of the first `grains` bodies: a platen is no grain.

@@ -33,6 +33,7 @@ impl Stage for FinishedBed {
         summary.stages.extend(bed.stages.iter().cloned());
         summary.bed.growth.clone_from(&bed.growth);
         summary.bed.compaction.clone_from(&bed.compaction);
+        summary.bed.beds.clone_from(&bed.beds);
         summary.bed.stage_energy.clone_from(&bed.energy);
         summary.validity.extend(StageEnergy::checks(&bed.energy));
         grains.bodies.clone_from(&bed.bodies);

@@ -9,8 +9,9 @@ use crate::progress::Progress;
 use crate::run::bed;
 use crate::run::checkpoint::{Loaded, Moment};
 use crate::run::context::Run;
-use crate::run::packing::StageEnergy;
+use crate::run::packing::{BedStage, StageEnergy};
 use crate::run::summary::StageRecord;
+use crate::run::system::GrainsView;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
@@ -112,10 +113,27 @@ fn settle(
             plan.max_time
         ));
     }
-    let mut energy = StageEnergy::of(SETTLING, &model, &state, surface)?;
-    let (bodies, removed) = at_rest(&grains.groups.bodies, &model, &state, plan);
-    bed.warnings.extend(energy.remove(&model, &state, &grains.groups.bodies, &removed));
+    finish(run, (grains, plan), surface, bed, GrainsView { model: &model, state: &state }, progress)
+}
+
+/// Removes grains above the level, and records the bed.
+fn finish(
+    run: &Run<'_>,
+    (grains, plan): (&GrainsPart, &DepositionPlan),
+    surface: Option<&SolidSurface>,
+    bed: &mut Settled,
+    view: GrainsView<'_>,
+    progress: Progress,
+) -> Result<(), Failure> {
+    let GrainsView { model, state } = view;
+    let mut energy = StageEnergy::of(SETTLING, model, state, surface)?;
+    let (bodies, removed) = at_rest(&grains.groups.bodies, model, state, plan);
+    bed.warnings.extend(energy.remove(model, state, &grains.groups.bodies, &removed));
     bed.energy.push(energy);
+    let stays = |b: usize| removed.binary_search(&b).is_err();
+    let settled = BedStage::of(SETTLING, view, grains, surface, stays);
+    bed.warnings.extend(settled.iter().flat_map(BedStage::warnings));
+    bed.beds.extend(settled);
     let removed = removed.len();
     let seconds = progress.finish(&format!(
         "{} grains at rest after {:.2} s, {removed} above the level removed",

@@ -8,7 +8,7 @@ use crate::run::bed::Bed;
 use crate::run::checkpoint::{self, Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::from::END;
-use crate::run::packing::{CompactionRecord, GrowthRecord, StageEnergy};
+use crate::run::packing::{BedStage, CompactionRecord, GrowthRecord, StageEnergy};
 use crate::run::sources;
 use crate::run::summary::{StageRecord, Summary};
 use crate::run::system::CoupledSystem;
@@ -101,6 +101,8 @@ pub struct Settled {
     pub compaction: Vec<CompactionRecord>,
     /// Energy balances of the stages.
     pub energy: Vec<StageEnergy>,
+    /// Bed after the stages.
+    pub beds: Vec<BedStage>,
 }
 
 impl Settled {

@@ -8,7 +8,7 @@ pub use records::*;
 pub use verdict::Verdict;
 
 use super::flow::FlowRecord;
-use super::packing::{CompactionRecord, GrowthRecord, PackingRecord, StageEnergy};
+use super::packing::{BedStage, CompactionRecord, GrowthRecord, PackingRecord, StageEnergy};
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
 use super::validity::Check;
@@ -134,6 +134,9 @@ pub struct BedRecord {
     /// Compaction stages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compaction: Vec<CompactionRecord>,
+    /// Bed after packing stages.
+    #[serde(rename = "bed", skip_serializing_if = "Vec::is_empty")]
+    pub beds: Vec<BedStage>,
     /// Energy balances of packing stages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stage_energy: Vec<StageEnergy>,

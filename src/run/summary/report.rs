@@ -20,7 +20,8 @@ impl Summary {
         self.report_settlement(&mut lines);
         self.report_track(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
-        lines.extend(packing::report(&self.bed.growth, &self.bed.compaction, self.bed.packing.as_ref()));
+        let bed = &self.bed;
+        lines.extend(packing::report(&bed.beds, &bed.growth, &bed.compaction, bed.packing.as_ref()));
         lines.extend(self.bed.runout.iter().flat_map(RunoutRecord::report));
         lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
         lines.extend(self.verdict.report());

@@ -57,6 +57,11 @@ pub(super) fn clusters(group: &Table<Grains>) -> Result<Vec<Cluster>, SceneError
     tables::clusters(&group.locate(file))
 }
 
+/// Returns volumes at a sieve size of 1 m [m³].
+pub(super) fn volumes(group: &Table<Grains>) -> Result<Vec<f64>, SceneError> {
+    Ok(clusters(group)?.iter().map(|c| c.volume / c.sieve_size().powi(3)).collect())
+}
+
 /// Enclosing spheres as substitutes during placement. Returns scales for a sieve size of 1 m.
 pub(super) fn stand_ins(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
     let clusters = clusters(group)?;

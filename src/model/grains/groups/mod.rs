@@ -15,10 +15,11 @@ mod shapes;
 mod sheet;
 mod sizes;
 mod sources;
+mod target;
 mod voronoi;
 mod waiting;
 
-pub use part::{GradedGroup, GroupsPart};
+pub use part::{FilledGroup, GradedGroup, GroupsPart};
 pub use sources::waits;
 
 use super::bonds::BondPart;
@@ -54,7 +55,7 @@ pub(super) fn build(
         }
         part.names.push(group.name.clone());
         let density = materials.all[material].density;
-        add(&group, (material, density), &mut part, bonds)?;
+        add(scene, &group, (material, density), &mut part, bonds)?;
     }
     if !part.fouling.is_empty() && part.fouling.len() == scene.grains.len() {
         let expected = "a second group without `fouling`";
@@ -65,6 +66,7 @@ pub(super) fn build(
 
 /// `(material, density)`: index, density [kg/m³].
 fn add(
+    scene: &Table<Scene>,
     group: &Table<Grains>,
     (material, density): (usize, f64),
     part: &mut GroupsPart,
@@ -93,7 +95,7 @@ fn add(
     }
     if let Some(fill) = &group.fill {
         let first = part.bodies.len();
-        filled::filled(group, fill, &model, part)?;
+        filled::filled((scene, group), fill, (&model, density), part)?;
         if group.shape == GrainShape::Bonded {
             bonded::expand(group, first, density, part, bonds)?;
         }
@@ -152,6 +154,9 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
     let sized = random || (disks && group.floes.is_some());
     for (k, present, used, needs) in [
         ("count", group.count.is_some(), random, "`fill` or `region`"),
+        ("target_height", group.target_height.is_some(), group.fill.is_some(), "`fill`"),
+        ("target_mass", group.target_mass.is_some(), group.fill.is_some(), "`fill`"),
+        ("porosity", group.porosity.is_some(), group.fill.is_some(), "`fill`"),
         ("gradation", group.gradation.is_some(), sized, "`fill` or `region`"),
         ("size", group.size.is_some(), sized, "`fill` or `region`"),
         ("sizes", group.sizes.is_some(), sized, "`fill` or `region`"),

@@ -19,6 +19,8 @@ pub struct GroupsPart {
     pub bodies: Vec<BodyInput>,
     /// Groups with a sieve curve.
     pub graded: Vec<GradedGroup>,
+    /// Groups stacked in a box, with their expected bed.
+    pub filled: Vec<FilledGroup>,
     /// Groups with radius expansion.
     pub growths: Vec<GrowthPlan>,
     /// Groups with prescribed motion.
@@ -76,6 +78,41 @@ pub struct GradedGroup {
     pub grading: Grading,
 }
 
+/// Group stacked in a box, and the bed expected of it.
+#[derive(Clone, Debug)]
+pub struct FilledGroup {
+    /// Group index.
+    pub part: u32,
+    /// Group name.
+    pub name: String,
+    /// Number of grains.
+    pub count: usize,
+    /// Total mass [kg].
+    pub mass: f64,
+    /// Corners of the plan [m].
+    pub plan: [[f64; 2]; 2],
+    /// Height of the floor [m].
+    pub floor: f64,
+    /// Target height above the floor [m].
+    pub target: Option<f64>,
+    /// Diameter of a sphere of the mean volume [m].
+    pub size: f64,
+    /// Expected porosity.
+    pub porosity: f64,
+    /// Expected height above the floor [m].
+    pub height: f64,
+}
+
+impl FilledGroup {
+    /// Formats the expected bed for `check`.
+    pub fn line(&self) -> String {
+        format!(
+            "{}: {} grains, {:.4} kg, expected bed height {:.4} m above z = {} m (porosity {:.3})",
+            self.name, self.count, self.mass, self.height, self.floor, self.porosity
+        )
+    }
+}
+
 /// Radius expansion of grains in a container.
 #[derive(Clone)]
 pub struct GrowthPlan {
@@ -96,5 +133,15 @@ pub(super) fn bounding_radius(shape: &Shape) -> f64 {
         Shape::Clump(clump) => clump.bounding_radius(),
         Shape::Box { half } => half.iter().map(|h| h * h).sum::<f64>().sqrt(),
         Shape::Polyhedron(it) => it.bounding_radius(),
+    }
+}
+
+/// Volume at scale 1 [m³].
+pub(super) fn shape_volume(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+        Shape::Clump(clump) => clump.volume,
+        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
+        Shape::Polyhedron(it) => it.volume,
     }
 }

@@ -1,7 +1,7 @@
 //! Grains at random positions in containers.
 
 use super::container::container;
-use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius};
+use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius, shape_volume};
 use super::shapes::{MOST, deal, shapes};
 use super::sizes::SizeSource;
 use crate::failure::Failure;
@@ -9,7 +9,6 @@ use crate::scene::grains::{Grains, GrowthSource, Region};
 use crate::scene::{SceneError, Table};
 use trackbed_dem::insert::radius_expansion::Growth;
 use trackbed_dem::insert::random_placement;
-use trackbed_dem::shape::Shape;
 use trackbed_dem::{BodyInput, Vec3};
 
 /// Fill ratio of bounding spheres before growth, for easy random placement.
@@ -115,13 +114,4 @@ fn growth(g: &Table<GrowthSource>) -> Result<(f64, Growth), SceneError> {
         ..default
     };
     Ok((g.porosity, how))
-}
-
-fn shape_volume(shape: &Shape) -> f64 {
-    match shape {
-        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
-        Shape::Clump(clump) => clump.volume,
-        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
-        Shape::Polyhedron(it) => it.volume,
-    }
 }

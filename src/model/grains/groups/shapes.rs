@@ -1,7 +1,7 @@
 //! Grain shapes and sizes.
 
 use super::bonded;
-use super::part::{GradedGroup, GroupsPart};
+use super::part::{GradedGroup, GroupsPart, shape_volume};
 use super::sizes::SizeSource;
 use crate::failure::Failure;
 use crate::model::tables;
@@ -28,6 +28,17 @@ pub(super) fn sampled(
     let first = part.shapes.len();
     let unit_scale = shapes(group, part)?;
     let source = SizeSource::of(group)?;
+    Ok(drawn(group, part, source, count, (first, &unit_scale)))
+}
+
+/// Draws grains of shapes from `first` on.
+pub(super) fn drawn(
+    group: &Table<Grains>,
+    part: &mut GroupsPart,
+    source: SizeSource,
+    count: usize,
+    (first, unit_scale): (usize, &[f64]),
+) -> Vec<Sampled> {
     let sizes = source.sample(count, group.seed);
     let dealt = deal(&sizes, unit_scale.len());
     if let SizeSource::Graded(grading) = source
@@ -40,7 +51,21 @@ pub(super) fn sampled(
         });
     }
     let grains = sizes.iter().zip(dealt);
-    Ok(grains.map(|(size, d)| Sampled { shape: first + d, scale: size * unit_scale[d] }).collect())
+    grains.map(|(size, d)| Sampled { shape: first + d, scale: size * unit_scale[d] }).collect()
+}
+
+/// Returns volumes at a sieve size of 1 m, by shape from `first` on [m³].
+pub(super) fn unit_volumes(
+    group: &Table<Grains>,
+    part: &GroupsPart,
+    first: usize,
+    unit_scale: &[f64],
+) -> Result<Vec<f64>, SceneError> {
+    if group.shape == GrainShape::Bonded {
+        return bonded::volumes(group);
+    }
+    let own = part.shapes[first..].iter().zip(unit_scale);
+    Ok(own.map(|(shape, scale)| shape_volume(shape) * scale.powi(3)).collect())
 }
 
 /// Returns scales for a sieve size of 1 m.
