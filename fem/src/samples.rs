@@ -37,6 +37,16 @@ impl Samples {
         Samples { nodes, elements, points }
     }
 
+    /// Position of a point in `mesh` [m].
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn position(&self, mesh: &Mesh, point: usize) -> [f64; 3] {
+        std::array::from_fn(|d| {
+            self.points[point].iter().map(|(k, w)| w * mesh.coordinates[self.nodes[*k] as usize][d]).sum()
+        })
+    }
+
     /// Nodal vectors `field` at the points. Shape of `field` `[3 * nodes]`.
     pub fn vector(&self, field: &[f64]) -> Vec<[f64; 3]> {
         let of_node = |n: &u32| std::array::from_fn(|d| field[3 * *n as usize + d]);

@@ -17,6 +17,14 @@ pub fn probes(c: &Context) -> Vec<Item> {
             Observed::Node(node) => {
                 ball(c.job.solid.as_ref()?.model.mesh().coordinates[*node], PROBE * c.size())
             }
+            Observed::Point(point) => {
+                ball(point.samples.position(c.job.solid.as_ref()?.model.mesh(), 0), PROBE * c.size())
+            }
+            Observed::Plane(_) | Observed::Volume(_) => {
+                let table = &c.scene.probe[k];
+                let [low, high] = table.plane.as_ref().or(table.solid_box.as_ref())?;
+                Shape::cuboid(vector(low), vector(high))
+            }
             Observed::Grain(grain) => {
                 let groups = &c.job.grains.as_ref()?.groups;
                 let body = &groups.bodies[*grain];

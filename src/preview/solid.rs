@@ -141,7 +141,8 @@ pub fn loads(c: &Context) -> Vec<Item> {
         let total = [0, 1, 2].map(|d| load.forces.iter().map(|(_, f)| f[d]).sum::<f64>());
         let size = total.iter().map(|f| f * f).sum::<f64>().sqrt();
         let kind = format!("{:?}", row.kind).to_lowercase();
-        let item = Item::new(format!("solid.load.{k}"), format!("{kind} {k}, {} kN", size.round() / 1e3), shape);
+        let item =
+            Item::new(format!("solid.load.{k}"), format!("{kind} {k}, {} kN", size.round() / 1e3), shape);
         match load.faces.len() {
             0 => item,
             faces => item.counted(faces, "face"),

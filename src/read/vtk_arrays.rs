@@ -52,7 +52,7 @@ impl Arrays {
         let bytes = read_bytes(file, "VTK file")?;
         let fault = |key: &str, found: &str, expected: &str| ReadError::whole(file, key, found, expected);
         let (mut entries, mut coding, mut points) = (Vec::new(), None, None);
-        let mut cells = [0; CELLS.len()];
+        let mut cells = [0_usize; CELLS.len()];
         let mut section = None;
         for tag in tags(&bytes) {
             match tag.name.as_str() {
@@ -133,9 +133,11 @@ impl Arrays {
         let rows = match section {
             "Points" => Some((3, self.points, "points")),
             "PointData" => Some((entry.components, self.points, "points")),
-            "CellData" => {
-                Some((entry.components, self.cells.iter().fold(0, |n, k| n.saturating_add(*k)), "cells"))
-            }
+            "CellData" => Some((
+                entry.components,
+                self.cells.iter().fold(0_usize, |n, k| n.saturating_add(*k)),
+                "cells",
+            )),
             _ if name == "offsets" => {
                 let cells =
                     CELLS.iter().zip(self.cells).filter(|((_, s), _)| *s == section).map(|(_, n)| n).sum();
