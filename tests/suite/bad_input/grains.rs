@@ -240,7 +240,7 @@ fn porosity_above_one() {
 
 #[test]
 fn sizes_in_the_wrong_order() {
-    let sizes = SCATTER.replace("\"equal\", size = 0.1", "\"uniform\", low = 0.2, high = 0.1");
+    let sizes = SCATTER.replace("\"monodisperse\", size = 0.1", "\"uniform\", low = 0.2, high = 0.1");
     grains_scene().scene(SPHERES, &sizes).refused(
         "scene.toml:15: grains.0.sizes: found sizes from 0.2 m to 0.1 m: the first must be the smaller, expected sizes \
          above 0 in rising order, and positive deviations",
@@ -397,9 +397,10 @@ fn replaced_keys_of_grains() {
 
 #[test]
 fn replaced_laws_of_sizes() {
-    for (old, new) in [("equal", "monodisperse"), ("two", "bidisperse")] {
+    let two = "two\", small = 0.05, large = 0.1, large_share = 0.5";
+    for (old, text, new) in [("equal", "equal\", size = 0.1", "monodisperse"), ("two", two, "bidisperse")] {
         grains_scene()
-            .scene(SPHERES, &SCATTER.replace("monodisperse", old))
+            .scene(SPHERES, &SCATTER.replace("monodisperse\", size = 0.1", text))
             .refused(&format!("scene.toml:15: grains.0.sizes.law: found \"{old}\", expected \"{new}\""));
     }
 }
