@@ -20,6 +20,7 @@ mod suite {
     mod extremes;
     mod faces;
     mod fem_cases;
+    mod fill;
     mod floes;
     mod flow;
     mod go_on;

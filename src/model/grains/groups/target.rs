@@ -175,7 +175,7 @@ fn number(
 ) -> Result<usize, SceneError> {
     let about = room / mean;
     if !(0.5..=MOST).contains(&about) {
-        let found = format!("an amount of {about:.4} grains above the earlier groups");
+        let found = format!("{about:.4} grains");
         return Err(group.error(key, found, "an amount of 1 to 10000000 grains"));
     }
     Ok(nearest(room, mean, volume))
