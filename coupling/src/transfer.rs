@@ -185,7 +185,7 @@ impl Transfer {
     ///
     /// Surface velocity: predicted `rate`, in the previous window `last`, computed mean `found` [m/s]. Shapes
     /// `[3·nodes]`.
-    pub fn dashpot_lag(
+    pub fn interface_dashpot_error(
         &self,
         surface: &SolidSurface,
         rate: impl Fn(usize) -> f64,

@@ -3,11 +3,11 @@
 use super::interface_check::InterfaceCheck;
 use super::model::Model;
 use super::solver::solver;
-use super::stiffened::{Held, Stiffened};
-use crate::accelerate::Accelerator;
-use crate::interface::Interface;
-use crate::ledger::Spent;
-use crate::scheme::Passes;
+use super::stiffened::{LinearisedContact, Stiffened};
+use crate::iqn_ils::IqnIls;
+use crate::interface_stability::Interface;
+use crate::energy_balance::WorkAndDissipation;
+use crate::scheme::IterationStats;
 use crate::surface::SolidSurface;
 use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
@@ -30,17 +30,17 @@ pub struct State {
     /// Largest transfer errors.
     pub audit: TransferAudit,
     /// Work and dissipation of the solid.
-    pub(super) spent: Spent,
+    pub(super) spent: WorkAndDissipation,
     /// Last surface velocity [m/s], shape `[3·nodes]`; empty at the start.
     pub(super) rate: Vec<f64>,
     /// Computed minus predicted displacement [m], shape `[3·nodes]`; empty at the start.
     pub(super) correction: Vec<f64>,
     /// Repeated windows.
-    pub passes: Passes,
+    pub passes: IterationStats,
     /// Mean contact loads of the last two windows [N], shape `[3·nodes]`; lagged scheme only.
     pub(super) lagged: [Vec<f64>; 2],
     /// Last contacts; stiffened scheme only.
-    pub(super) held: Vec<Held>,
+    pub(super) held: Vec<LinearisedContact>,
     /// Interface checks.
     pub interface_check: InterfaceCheck,
 }
@@ -62,7 +62,7 @@ pub struct Work<B = dem::Work> {
     pub(super) rate: Vec<f64>,
     pub(super) correction: Vec<f64>,
     pub(super) applied: Vec<dem::AppliedForce>,
-    pub(super) accelerator: Accelerator,
+    pub(super) accelerator: IqnIls,
     pub(super) stiffened: Stiffened,
     pub(super) interface: Interface,
 }
@@ -74,10 +74,10 @@ impl State {
             solid,
             grains,
             audit: TransferAudit::default(),
-            spent: Spent::default(),
+            spent: WorkAndDissipation::default(),
             rate: Vec::new(),
             correction: Vec::new(),
-            passes: Passes::default(),
+            passes: IterationStats::default(),
             lagged: Default::default(),
             held: Vec::new(),
             interface_check: InterfaceCheck::default(),
@@ -89,13 +89,13 @@ impl State {
         self.grains.begin_anew();
         self.solid.time = 0.0;
         self.audit = TransferAudit::default();
-        self.spent = Spent::default();
-        self.passes = Passes::default();
+        self.spent = WorkAndDissipation::default();
+        self.passes = IterationStats::default();
         self.interface_check = InterfaceCheck::default();
     }
 
     /// Adds an initial contact load [N], shape `[3·nodes]`, for the lagged scheme.
-    pub fn carrying(self, load: Vec<f64>) -> State {
+    pub fn with_initial_contact_load(self, load: Vec<f64>) -> State {
         State { lagged: [load.clone(), load], ..self }
     }
 }
@@ -137,7 +137,7 @@ impl<B: dem::BackEnd> Work<B> {
             rate: vec![0.0; n],
             correction: Vec::new(),
             applied: Vec::new(),
-            accelerator: Accelerator::default(),
+            accelerator: IqnIls::default(),
             stiffened: Stiffened::default(),
         })
     }

@@ -141,7 +141,7 @@ fn dashpot_error_matches_closed_form() {
             let touch = SurfaceContact { dashpot: dashpot.map(|c| strength * c), ..touch };
             transfer.add(&surface, &[touch], h, &mut Default::default());
         }
-        let found = transfer.dashpot_lag(&surface, |i| v[i % 3], |i| w[i % 3], |i| s[i % 3]);
+        let found = transfer.interface_dashpot_error(&surface, |i| v[i % 3], |i| w[i % 3], |i| s[i % 3]);
         assert!((found / exact(strength) - 1.0).abs() < 1e-12, "{found} against {}", exact(strength));
     }
 }

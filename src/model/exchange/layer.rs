@@ -3,7 +3,7 @@
 use super::ContactClass;
 use crate::model::grains::GrainsPart;
 use trackbed_coupling::face::landmarks;
-use trackbed_coupling::interface::{Interface, InterfaceNumbers, SurfacePoint, undamped};
+use trackbed_coupling::interface_stability::{Interface, InterfaceStabilityNumbers, SurfacePoint, undamped};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
@@ -61,7 +61,7 @@ pub fn add_numbers(
         let [w, d] = interface.of_points(surface, &points);
         let [along, across] = undamped(springs, damping, stones.mass);
         let phase = (across * stones.mobility).max(along / stones.mass).sqrt();
-        let numbers = InterfaceNumbers { stiffness: w, damping: d, phase };
+        let numbers = InterfaceStabilityNumbers { stiffness: w, damping: d, phase };
         classes.iter_mut().filter(|c| c.grains == name).for_each(|c| c.numbers = numbers);
     }
 }

@@ -23,9 +23,9 @@ use crate::write::{self, WallFrame, WriteError, Writers};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
-use trackbed_coupling::track::jump::{JumpSummary, Jumper};
+use trackbed_coupling::track::cycle_jump::{JumpSummary, CycleJumper};
 use trackbed_coupling::track::{Track, settlement};
 
 /// Output files of a run.
@@ -44,11 +44,11 @@ pub struct Results<'a> {
 struct Course {
     frame: usize,
     cycles: Option<CycleRecorder>,
-    jumper: Option<Jumper>,
+    jumper: Option<CycleJumper>,
     jump_energy: f64,
     /// Energy error before a jump, whose energy follows from the next window [J].
     before_jump: Option<f64>,
-    balance: Balance,
+    balance: EnergyBalance,
     largest_error: f64,
     watch: EnergyWatch,
     settlement: Vec<Vec<[f64; 2]>>,
@@ -83,8 +83,8 @@ impl<'a> Results<'a> {
         let stored = system.stored();
         let course = Course {
             cycles: load.map(|load| cycle_file::recorder(job, system, load)),
-            jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(Jumper::new),
-            balance: Balance { start: stored, now: stored, spent: system.spent(), ..Balance::default() },
+            jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(CycleJumper::new),
+            balance: EnergyBalance { start: stored, now: stored, spent: system.spent(), ..EnergyBalance::default() },
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
@@ -221,7 +221,7 @@ impl<'a> Results<'a> {
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
-        Balance { start: self.course.balance.start, now: system.stored(), spent, ..Balance::default() }
+        EnergyBalance { start: self.course.balance.start, now: system.stored(), spent, ..EnergyBalance::default() }
             .error()
     }
 
@@ -279,7 +279,7 @@ impl<'a> Results<'a> {
     }
 
     /// Energy balance of the last row.
-    pub fn balance(&self) -> &Balance {
+    pub fn balance(&self) -> &EnergyBalance {
         &self.course.balance
     }
 

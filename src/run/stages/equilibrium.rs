@@ -114,7 +114,7 @@ fn couple<'b>(
             let start = coupling::step::State::new(state, resting);
             // Only the lagged scheme keeps the previous load.
             let lagged = plan.scheme == Scheme::Lagged;
-            (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
+            (reference, None, if lagged { start.with_initial_contact_load(contacts) } else { start }, 0.0)
         }
     };
     let model = coupling::step::Model {
@@ -222,7 +222,7 @@ fn equilibrium(
     let Body { part: solid, model, .. } = body;
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
-    let (contacts, resting) = coupling::step::resting_load(grains, start, surface, model.mesh())
+    let (contacts, resting) = coupling::step::initial_contact_load(grains, start, surface, model.mesh())
         .map_err(|e| Failure::Numerical(e.to_string()))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;

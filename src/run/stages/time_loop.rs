@@ -330,7 +330,7 @@ impl<'a> TimeLoop<'a> {
         let balance = self.recorder.balance();
         summary.validity.extend(StageEnergy::check_changes(
             stages,
-            [balance.start.contact_springs, balance.turnover().max(balance.floor())],
+            [balance.start.contact_springs, balance.reference_energy().max(balance.floor())],
         ));
         summary.bed.specimen = self.recorder.specimen(system)?;
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
@@ -356,7 +356,7 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
         spent: balance.spent,
         error: balance.error(),
         work: balance.spent.work(),
-        turned_over: balance.turnover(),
+        turned_over: balance.reference_energy(),
         relative_error: watch.now(),
         largest_error: recorder.largest_error(),
         largest_relative_error: watch.worst(),
@@ -368,7 +368,7 @@ fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Re
     let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
     let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
     let inertia = scaled.map(|(g, view)| {
-        let (kinetic, reference) = (recorder.largest_kinetic(), recorder.balance().turnover());
+        let (kinetic, reference) = (recorder.largest_kinetic(), recorder.balance().reference_energy());
         scaled_inertia(g.steps.mass_factor, kinetic, reference, Fall::of(view))
     });
     let bonds = system.grains().and_then(bond_rotation);

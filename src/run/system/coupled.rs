@@ -7,7 +7,7 @@ use crate::run::checkpoint::Body;
 use crate::run::device::{Steps, failed};
 use std::io;
 use trackbed_coupling as coupling;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
 use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
@@ -161,12 +161,12 @@ impl System for CoupledSystem<'_> {
         &self.work.surface
     }
 
-    fn stored(&self) -> Stored {
-        coupling::step::stored(&self.model, &self.state)
+    fn stored(&self) -> StoredEnergy {
+        coupling::step::stored_energy(&self.model, &self.state)
     }
 
-    fn spent(&self) -> Spent {
-        coupling::step::spent(&self.state)
+    fn spent(&self) -> WorkAndDissipation {
+        coupling::step::work_and_dissipation(&self.state)
     }
 
     fn solid(&self) -> Option<SolidView<'_>> {

@@ -10,7 +10,7 @@ use crate::run::checkpoint_store::Interrupt;
 use crate::run::initial;
 use loading::SolidLoading;
 use std::io;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 use trackbed_fem::newmark::{self, NewmarkSolver};
@@ -76,7 +76,7 @@ pub struct SolidSystem<'a> {
     steps: u64,
     /// Reactions of a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
     reactions: Vec<f64>,
-    spent: Spent,
+    spent: WorkAndDissipation,
 }
 
 impl<'a> SolidSystem<'a> {
@@ -160,7 +160,7 @@ impl<'a> SolidSystem<'a> {
             step,
             steps: 0,
             reactions: Vec::new(),
-            spent: Spent::default(),
+            spent: WorkAndDissipation::default(),
         })
     }
 
@@ -290,16 +290,16 @@ impl System for SolidSystem<'_> {
         }
     }
 
-    fn stored(&self) -> Stored {
+    fn stored(&self) -> StoredEnergy {
         let model = &self.part.model;
         let at_rest = stored_at_rest(model, &self.state, &self.loading.gravity);
         match self.kind {
             SolidKind::QuasiStatic(_) => at_rest,
-            _ => Stored { solid_kinetic: fem::energy::kinetic(model, &self.state), ..at_rest },
+            _ => StoredEnergy { solid_kinetic: fem::energy::kinetic(model, &self.state), ..at_rest },
         }
     }
 
-    fn spent(&self) -> Spent {
+    fn spent(&self) -> WorkAndDissipation {
         self.spent
     }
 

@@ -31,7 +31,7 @@ const WINDOW: f64 = 0.25;
 
 /// Parameters of cycle jumps.
 #[derive(Clone, Copy, Debug)]
-pub struct JumpPlan {
+pub struct CycleJumpOptions {
     /// Displace the grains.
     pub grains: bool,
     /// Simulated cycles before the first jump.
@@ -95,16 +95,16 @@ enum Phase {
 }
 
 /// Centre and orientation per body.
-type Places = Vec<(dem::Vec3, UnitQuaternion<f64>)>;
+type BodyPoses = Vec<(dem::Vec3, UnitQuaternion<f64>)>;
 
 /// Jump controller, part of checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Jumper {
+pub struct CycleJumper {
     phase: Phase,
     /// Next jump over the cycles before it.
     growth: f64,
     /// At the start of the stretch; `begun`: age, settlement.
-    places: Places,
+    places: BodyPoses,
     begun: [f64; 2],
     /// Age, settlement and predicted slope at the last jump.
     predicted: Option<[f64; 3]>,
@@ -112,10 +112,10 @@ pub struct Jumper {
     pub jumps: Vec<JumpRecord>,
 }
 
-impl Jumper {
+impl CycleJumper {
     /// Controller at the start of a run.
-    pub fn new(plan: &JumpPlan) -> Jumper {
-        Jumper {
+    pub fn new(plan: &CycleJumpOptions) -> CycleJumper {
+        CycleJumper {
             phase: Phase::Wait(plan.first - plan.measure),
             growth: START * plan.largest,
             places: Vec::new(),
@@ -128,7 +128,7 @@ impl Jumper {
     /// Continues after a cycle; returns whether bodies were displaced.
     pub fn after_cycle<S: TrackSystem>(
         &mut self,
-        plan: &JumpPlan,
+        plan: &CycleJumpOptions,
         cycles: &mut CycleRecorder,
         system: &mut S,
     ) -> bool {
@@ -159,7 +159,7 @@ impl Jumper {
         }
     }
 
-    fn begin<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &S) {
+    fn begin<S: TrackSystem>(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder, system: &S) {
         if let (true, Some(g)) = (plan.grains, system.grains()) {
             self.places = (0..g.model.body_count())
                 .map(|b| (g.state.position(b), g.state.orientation(g.model, b)))
@@ -173,7 +173,7 @@ impl Jumper {
         self.phase = if room < left { Phase::Over } else { Phase::Stretch(left) };
     }
 
-    fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
+    fn judge(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder) {
         let (now, Some([age, settlement, slope])) = (cycles.latest, self.predicted) else { return };
         let measured = (now[1] - self.begun[1]) / libm::log(now[0] / self.begun[0]);
         let Some(last) = self.jumps.last_mut() else { return };
@@ -192,7 +192,7 @@ impl Jumper {
     }
 
     /// Returns whether bodies were displaced.
-    fn jump<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &mut S) -> bool {
+    fn jump<S: TrackSystem>(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder, system: &mut S) -> bool {
         let [age, settlement] = cycles.latest;
         let number = f64::from(cycles.number());
         let Some(fit) = settlement::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
@@ -253,7 +253,7 @@ impl Jumper {
     }
 
     /// Summary.
-    pub fn summary(&self, plan: &JumpPlan, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
+    pub fn summary(&self, plan: &CycleJumpOptions, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
         JumpSummary {
             method: if plan.grains { "grains" } else { "account" },
@@ -280,7 +280,7 @@ struct Drift {
 }
 
 impl Drift {
-    fn of<S: TrackSystem>(places: &Places, system: &S) -> Option<Drift> {
+    fn of<S: TrackSystem>(places: &BodyPoses, system: &S) -> Option<Drift> {
         let g = system.grains()?;
         let motion: Vec<(dem::Vec3, dem::Vec3)> = places
             .iter()
@@ -327,5 +327,5 @@ impl Drift {
 }
 
 #[cfg(test)]
-#[path = "jump_tests.rs"]
+#[path = "cycle_jump_tests.rs"]
 mod tests;
