@@ -1,7 +1,7 @@
 //! Discs of distributed load transfer (see [`spread`](crate::distributed_transfer)).
 
-use crate::face::{Closest, Location, cross, dot};
 use crate::distributed_transfer::{DistributedTransfer, EccentricDisc};
+use crate::face::{Closest, Location, cross, dot};
 use crate::surface::SolidSurface;
 use std::collections::BTreeMap;
 
@@ -36,8 +36,12 @@ fn operator(surface: &SolidSurface, radius: f64) -> DistributedTransfer {
     let n = surface.nodes().len();
     let border = border(surface);
     let normals = normals(surface);
-    let mut spread =
-        DistributedTransfer { radius, first: vec![0], weights: Vec::with_capacity(30 * n), eccentric: Vec::new() };
+    let mut spread = DistributedTransfer {
+        radius,
+        first: vec![0],
+        weights: Vec::with_capacity(30 * n),
+        eccentric: Vec::new(),
+    };
     for i in 0..n as u32 {
         let x = surface.position(i);
         let points = disc(surface, x, normals[i as usize], &border, radius);
@@ -66,7 +70,12 @@ fn operator(surface: &SolidSurface, radius: f64) -> DistributedTransfer {
                     (0..3).for_each(|d| b[d] += p.weight * s * (p.place[d] - c[d]));
                 }
             }
-            spread.eccentric.push(EccentricDisc { node: i, arm, inverse, levers: levers.into_iter().collect() });
+            spread.eccentric.push(EccentricDisc {
+                node: i,
+                arm,
+                inverse,
+                levers: levers.into_iter().collect(),
+            });
         }
         spread.weights.extend(own.into_iter().filter(|(_, w)| *w != 0.0));
         spread.first.push(spread.weights.len() as u32);

@@ -30,7 +30,7 @@ pub struct StoredEnergy {
 
 impl StoredEnergy {
     /// Kinetic and spring energy [J].
-    fn held(&self) -> f64 {
+    fn kinetic_and_spring_energy(&self) -> f64 {
         let grains = self.grains_kinetic + self.contact_springs + self.bonds + self.mounts;
         grains + self.solid_kinetic + self.solid_strain + self.rail
     }
@@ -184,8 +184,8 @@ impl EnergyBalance {
     }
 
     /// Current kinetic and spring energy [J].
-    pub fn held(&self) -> f64 {
-        self.now.held()
+    pub fn kinetic_and_spring_energy(&self) -> f64 {
+        self.now.kinetic_and_spring_energy()
     }
 
     /// Energy error plus numerical gain of the solid [J], which absorbs any error of a solid without grains.
@@ -200,9 +200,9 @@ impl EnergyBalance {
 
     /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
     /// smallest reference.
-    pub fn floor(&self) -> f64 {
+    pub fn negligible_energy(&self) -> f64 {
         let gravity = |s: &StoredEnergy| s.grains_gravity.abs() + s.solid_gravity.abs();
-        let held = 1e-3 * self.start.held().max(self.now.held());
+        let held = 1e-3 * self.start.kinetic_and_spring_energy().max(self.now.kinetic_and_spring_energy());
         (held + 1e-9 * gravity(&self.start).max(gravity(&self.now))).max(self.reference)
     }
 }
@@ -220,7 +220,10 @@ mod tests {
         let start = StoredEnergy { contact_springs: 2.0, ..StoredEnergy::default() };
         let now = StoredEnergy { grains_kinetic: 3.0, ..StoredEnergy::default() };
         let balance = EnergyBalance { start, now, ..EnergyBalance::default() };
-        assert_eq!((balance.error(), balance.reference_energy(), balance.floor()), (1.0, 5.0, 3e-3));
+        assert_eq!(
+            (balance.error(), balance.reference_energy(), balance.negligible_energy()),
+            (1.0, 5.0, 3e-3)
+        );
     }
 
     /// Internal transfers are no external work; every loss counts once.
@@ -228,7 +231,11 @@ mod tests {
     fn every_way_of_energy_closes() {
         let none = WorkAndDissipation::default;
         let cases: [(&str, WorkAndDissipation, f64); 13] = [
-            ("pads on sleepers", WorkAndDissipation { applied_work: 1.0, pads_on_sleepers: 1.0, ..none() }, 0.0),
+            (
+                "pads on sleepers",
+                WorkAndDissipation { applied_work: 1.0, pads_on_sleepers: 1.0, ..none() },
+                0.0,
+            ),
             ("applied loads", WorkAndDissipation { applied_work: 1.0, ..none() }, 1.0),
             ("walls", WorkAndDissipation { wall_work: 1.0, ..none() }, 1.0),
             ("wheels", WorkAndDissipation { wheels: 1.0, ..none() }, 1.0),
@@ -245,7 +252,11 @@ mod tests {
         for (name, spent, gain) in cases {
             let start = StoredEnergy { solid_strain: 5.0, ..StoredEnergy::default() };
             let now = StoredEnergy { solid_strain: 5.0 + gain, ..StoredEnergy::default() };
-            assert_eq!(EnergyBalance { start, now, spent, ..EnergyBalance::default() }.error(), 0.0, "{name}");
+            assert_eq!(
+                EnergyBalance { start, now, spent, ..EnergyBalance::default() }.error(),
+                0.0,
+                "{name}"
+            );
             let named: f64 = spent.dissipation_terms().into_iter().map(|(_, loss)| loss).sum();
             assert_eq!(named, spent.dissipated(), "{name}");
         }
@@ -254,8 +265,11 @@ mod tests {
     /// Negative error is no gain of the dashpots; positive error is their loss.
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
-        let dashpots =
-            |dashpot, dashpot_lag| WorkAndDissipation { dashpot, dashpot_lag, ..WorkAndDissipation::default() }.dissipation_terms()[0].1;
+        let dashpots = |dashpot, dashpot_lag| {
+            WorkAndDissipation { dashpot, dashpot_lag, ..WorkAndDissipation::default() }.dissipation_terms()
+                [0]
+            .1
+        };
         assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
     }
 }

@@ -125,7 +125,7 @@ pub struct SurfacePoint {
 }
 
 /// Assembled interface.
-pub struct Interface {
+pub struct InterfaceStability {
     mass: SurfaceMass,
     inverse: Vec<[f64; 3]>,
     /// Mass row of each surface node.
@@ -133,14 +133,14 @@ pub struct Interface {
     matrices: PointMatrices,
 }
 
-impl Interface {
+impl InterfaceStability {
     /// Assembles the surface mass.
-    pub fn new(solid: &fem::Model, surface: &SolidSurface) -> Interface {
+    pub fn new(solid: &fem::Model, surface: &SolidSurface) -> InterfaceStability {
         let mass = SurfaceMass::new(solid, surface.faces().iter().map(|f| f.element));
         let rows =
             surface.nodes().iter().map(|&n| mass.row(n).expect("nodes of its elements") as u32).collect();
         let inverse = mass.inverse_diagonal();
-        Interface { mass, inverse, rows, matrices: PointMatrices::default() }
+        InterfaceStability { mass, inverse, rows, matrices: PointMatrices::default() }
     }
 
     /// Returns the numbers for windows of 1 s; contacts with meshed sleepers are omitted.
@@ -181,7 +181,7 @@ impl Interface {
         if self.matrices.points.is_empty() {
             return 0.0;
         }
-        let Interface { mass, inverse, rows, matrices } = self;
+        let InterfaceStability { mass, inverse, rows, matrices } = self;
         let n = mass.len();
         let mut product = |x: &[[f64; 3]], y: &mut [[f64; 3]]| {
             y.fill([0.0; 3]);

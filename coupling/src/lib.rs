@@ -2,14 +2,14 @@
 //!
 //! Units are SI. Nodal arrays have the shape `[3·nodes]`.
 
-mod iqn_ils;
 mod disc_quadrature;
+pub mod distributed_transfer;
+pub mod energy_balance;
 pub mod face;
 pub mod interface_stability;
 pub mod inverse_map;
-pub mod energy_balance;
+mod iqn_ils;
 pub mod scheme;
-pub mod distributed_transfer;
 pub mod stability;
 pub mod step;
 pub mod surface;

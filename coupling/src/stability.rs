@@ -53,8 +53,12 @@ impl EffectiveMasses {
     }
 }
 
-const NONE: EffectiveMasses =
-    EffectiveMasses { corner: f64::INFINITY, side: f64::INFINITY, middle: f64::INFINITY, border: f64::INFINITY };
+const NONE: EffectiveMasses = EffectiveMasses {
+    corner: f64::INFINITY,
+    side: f64::INFINITY,
+    middle: f64::INFINITY,
+    border: f64::INFINITY,
+};
 
 #[derive(Clone, Copy)]
 enum Place {

@@ -4,7 +4,7 @@ use super::system::{GrainsView, SolidView};
 use crate::failure::Failure;
 use std::fmt;
 use std::sync::Arc;
-use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_dem as dem;
 
 /// State at the main loop start or after a window.

@@ -34,13 +34,13 @@ impl EnergyWatch {
     /// # Errors
     /// Above the stop limit.
     pub fn follow(&mut self, balance: &EnergyBalance) -> Result<(), Failure> {
-        self.scale = self.scale.max(balance.reference_energy()).max(balance.floor());
+        self.scale = self.scale.max(balance.reference_energy()).max(balance.negligible_energy());
         self.error = balance.error().abs();
         self.largest = self.largest.max(self.error);
-        let scale = self.scale.max(HELD * balance.held());
+        let scale = self.scale.max(HELD * balance.kinetic_and_spring_energy());
         let share = relative(balance.error_with_numerical_gain(), scale);
         if share <= ENERGY.1 {
-            self.begun |= balance.reference_energy() > 0.0 || balance.held() > 0.0;
+            self.begun |= balance.reference_energy() > 0.0 || balance.kinetic_and_spring_energy() > 0.0;
             return Ok(());
         }
         self.first += 1;
@@ -73,12 +73,17 @@ fn relative(error: f64, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
+    use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 
     fn balance(kinetic: f64, friction: f64) -> EnergyBalance {
         let start = StoredEnergy { grains_kinetic: 1.0, ..StoredEnergy::default() };
         let now = StoredEnergy { grains_kinetic: kinetic, ..StoredEnergy::default() };
-        EnergyBalance { start, now, spent: WorkAndDissipation { friction, ..WorkAndDissipation::default() }, ..EnergyBalance::default() }
+        EnergyBalance {
+            start,
+            now,
+            spent: WorkAndDissipation { friction, ..WorkAndDissipation::default() },
+            ..EnergyBalance::default()
+        }
     }
 
     #[test]
@@ -112,11 +117,17 @@ mod tests {
     /// an error.
     #[test]
     fn a_gain_of_the_time_integration_stops_a_run() {
-        let closed = EnergyBalance { spent: WorkAndDissipation { numerical: -0.3, ..WorkAndDissipation::default() }, ..balance(1.3, 0.0) };
+        let closed = EnergyBalance {
+            spent: WorkAndDissipation { numerical: -0.3, ..WorkAndDissipation::default() },
+            ..balance(1.3, 0.0)
+        };
         assert!(closed.error().abs() < 1e-15);
         let mut watch = EnergyWatch::default();
         assert!((0..3).any(|_| watch.follow(&closed).is_err()));
-        let lost = EnergyBalance { spent: WorkAndDissipation { numerical: 0.3, ..WorkAndDissipation::default() }, ..balance(0.7, 0.0) };
+        let lost = EnergyBalance {
+            spent: WorkAndDissipation { numerical: 0.3, ..WorkAndDissipation::default() },
+            ..balance(0.7, 0.0)
+        };
         EnergyWatch::default().follow(&lost).unwrap();
     }
 

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::state::{State, Work};
-use crate::energy_balance::{WorkAndDissipation, StoredEnergy};
+use crate::energy_balance::{StoredEnergy, WorkAndDissipation};
 use crate::scheme::Scheme;
 use trackbed_dem as dem;
 use trackbed_fem as fem;

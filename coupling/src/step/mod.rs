@@ -10,18 +10,18 @@
 //! Theory manual, sections 5.4 and 5.5; the FEM step is [`trackbed_fem::theta`].
 
 mod energy;
+mod initial_equilibrium;
 mod interface_check;
 mod model;
-mod initial_equilibrium;
 mod solver;
 mod state;
 mod stiffened;
 mod window;
 
 pub use energy::{grain_work_and_dissipation, stored_energy, work_and_dissipation};
+pub use initial_equilibrium::initial_contact_load;
 pub use interface_check::{InterfaceCheck, check_interface};
 pub use model::Model;
-pub use initial_equilibrium::initial_contact_load;
 pub use solver::StepError;
 pub use state::{State, Work};
 pub use window::{exchange, step};

@@ -121,6 +121,6 @@ impl Stiffened {
                 (0..3).for_each(|d| out[3 * nodes[n as usize] as usize + d] += f[d]);
             });
         };
-        solver.predict(model.solid, solid, load, &mut product, rate)
+        solver.solve_with_contact_stiffness(model.solid, solid, load, &mut product, rate)
     }
 }

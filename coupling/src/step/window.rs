@@ -72,8 +72,8 @@ fn stiffened<B: BackEnd>(
         state.passes.solves += u64::from(predict(model, state, work)?);
     }
     grains(model, state, work, applied)?;
-    state.held.clear();
-    state.held.extend(work.grains.surface_contacts().iter().map(LinearisedContact::from));
+    state.last_contacts.clear();
+    state.last_contacts.extend(work.grains.surface_contacts().iter().map(LinearisedContact::from));
     solid(model, state, work)
 }
 
@@ -251,7 +251,7 @@ fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u3
         .predict(
             model,
             &state.grains,
-            &state.held,
+            &state.last_contacts,
             &work.surface,
             &mut *work.solver,
             &state.solid,
@@ -273,6 +273,6 @@ pub fn exchange<B: BackEnd>(
     arrive: &[dem::flow::Arrival],
 ) -> Result<(), dem::flow::FlowError> {
     dem::flow::exchange(&model.grains, &mut state.grains, &mut work.grains, leave, arrive)?;
-    state.held.retain(|c| !leave.contains(&c.body()));
+    state.last_contacts.retain(|c| !leave.contains(&c.body()));
     Ok(())
 }

@@ -3,13 +3,13 @@
 //! Nodes move linearly within a window, x(τ) = x₀ + v τ, v from the coupling [scheme](crate::scheme); with a
 //! [`DistributedTransfer`] by disc means.
 
-mod face_triangles;
 mod face_adjacency;
+mod face_triangles;
 
-use crate::face::{self, Form, Location};
 use crate::distributed_transfer::DistributedTransfer;
-pub use face_triangles::face_triangles;
+use crate::face::{self, Form, Location};
 use face_adjacency::FaceAdjacency;
+pub use face_triangles::face_triangles;
 use trackbed_dem::Vec3;
 use trackbed_dem::bvh::Bvh;
 use trackbed_dem::sheet::SurfaceMesh;

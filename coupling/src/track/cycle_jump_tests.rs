@@ -4,8 +4,15 @@ use crate::track::load::{CyclicLoad, Waveform};
 use crate::track::system::GrainsView;
 use dem::Vec3;
 
-const PLAN: CycleJumpOptions =
-    CycleJumpOptions { grains: true, first: 12, measure: 5, settle: 3, tolerance: 1e-3, largest: 1.0, overlap: 2.0 };
+const PLAN: CycleJumpOptions = CycleJumpOptions {
+    grains: true,
+    first: 12,
+    measure: 5,
+    settle: 3,
+    tolerance: 1e-3,
+    largest: 1.0,
+    overlap: 2.0,
+};
 
 /// Grains displaced by jumps only.
 struct Grains {

@@ -182,7 +182,7 @@ pub struct ContactLoss {
 
 impl TrackRecord {
     /// Warnings about loss of contact.
-    pub fn remarks(&self) -> impl Iterator<Item = String> + '_ {
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
         self.sleepers.iter().enumerate().filter_map(|(k, s)| {
             let ContactLoss { first, seconds, rise } = s.lifted_off?;
             Some(format!(
@@ -228,7 +228,7 @@ mod tests {
         assert!((lift.rise - 0.003).abs() < 1e-12 && (record.lowering - 0.002).abs() < 1e-12);
         assert_eq!((record.largest_force, record.smallest_force, record.load_share), (9.0, -2.0, Some(0.5)));
         assert_eq!((record.rail_deflection, record.bend), (None, None));
-        let text = TrackRecord { sleepers: vec![record] }.remarks().next().unwrap();
+        let text = TrackRecord { sleepers: vec![record] }.warnings().next().unwrap();
         assert!(text.contains("first at t = 0.100000 s"), "{text}");
     }
 }

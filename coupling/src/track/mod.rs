@@ -2,10 +2,10 @@
 
 pub mod band;
 pub mod beam;
+pub mod cycle_jump;
 pub mod cycles;
 pub mod extremes;
 pub mod influence;
-pub mod cycle_jump;
 pub mod load;
 pub mod push_test;
 pub mod rail;

@@ -43,7 +43,7 @@ impl PushTestOptions {
     }
 
     /// Actuator displacement [m] and speed [m/s] `since` its start [s].
-    pub fn ram(&self, since: f64) -> (f64, f64) {
+    pub fn actuator(&self, since: f64) -> (f64, f64) {
         let start = START * self.displacement / self.speed;
         if since < start {
             let share = since.max(0.0) / start;
@@ -85,7 +85,7 @@ pub struct PushTestSummary {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PushTestState {
     /// Start of rest [s] and load then [N].
-    begun: Option<(f64, f64)>,
+    rest_start: Option<(f64, f64)>,
     /// Initial position [m].
     origin: Option<dem::Vec3>,
     /// Windows and sums of the current row.
@@ -112,13 +112,13 @@ impl<'a> PushTest<'a> {
 
     /// Ends the cycles at `t` [s] with the current load [N].
     pub fn begin(&self, state: &mut PushTestState, t: f64, load: f64) {
-        state.begun.get_or_insert((t, load));
+        state.rest_start.get_or_insert((t, load));
     }
 
     /// Load [N] and actuator time [s]; `None` during the cycles.
     fn at(&self, state: &PushTestState, t: f64) -> Option<(f64, f64)> {
-        let (begun, before) = state.begun?;
-        let since = t - begun;
+        let (rest_start, before) = state.rest_start?;
+        let since = t - rest_start;
         let share = if self.plan.rest > 0.0 { (since / self.plan.rest).clamp(0.0, 1.0) } else { 1.0 };
         Some((before + share * (self.plan.load - before), since - self.plan.rest))
     }
@@ -129,12 +129,12 @@ impl<'a> PushTest<'a> {
     }
 
     /// Actuator force [N] and sleeper displacement [m].
-    fn ram(&self, state: &PushTestState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
-        let (ram, ram_speed) = self.plan.ram(self.at(state, t)?.1);
+    fn actuator(&self, state: &PushTestState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
+        let (actuator, actuator_speed) = self.plan.actuator(self.at(state, t)?.1);
         let way = (grains.position(self.body) - state.origin?).dot(&self.plan.direction);
         let speed = grains.velocity(self.body).dot(&self.plan.direction);
         let dashpot = 2.0 * DAMPING * (self.plan.stiffness * self.mass).sqrt();
-        let force = self.plan.stiffness * (ram - way) + dashpot * (ram_speed - speed);
+        let force = self.plan.stiffness * (actuator - way) + dashpot * (actuator_speed - speed);
         // No tension.
         Some((force.max(0.0), way))
     }
@@ -155,7 +155,7 @@ impl<'a> PushTest<'a> {
             let force = dem::Vec3::new(0.0, 0.0, -load / self.seats.len() as f64);
             out.push(dem::AppliedForce { body, force, point: x + q * dem::Vec3::from(*seat) });
         }
-        if let Some((force, _)) = self.ram(state, t, grains) {
+        if let Some((force, _)) = self.actuator(state, t, grains) {
             let point = x + dem::Vec3::new(0.0, 0.0, self.plan.height);
             out.push(dem::AppliedForce { body, force: self.plan.direction * force, point });
         }
@@ -165,18 +165,18 @@ impl<'a> PushTest<'a> {
     /// Adds a window to the curve.
     pub fn follow(&self, state: &mut PushTestState, t: f64, g: GrainsView<'_>) {
         let Some((_, since)) = self.at(state, t) else { return };
-        let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
+        let (x, actuator) = (g.state.position(self.body), self.plan.actuator(since).0);
         if since < 0.0 || state.rows.len() as f64 >= ROWS {
             return;
         }
         let origin = *state.origin.get_or_insert(x);
-        if let Some((force, way)) = self.ram(state, t, g.state) {
+        if let Some((force, way)) = self.actuator(state, t, g.state) {
             for (sum, value) in state.sums.iter_mut().zip([way, force, x.z - origin.z]) {
                 *sum += value;
             }
             state.count += 1;
         }
-        if ram >= (state.rows.len() + 1) as f64 / ROWS * self.plan.displacement {
+        if actuator >= (state.rows.len() + 1) as f64 / ROWS * self.plan.displacement {
             let n = f64::from(state.count.max(1));
             state.rows.push(state.sums.map(|s| s / n));
             (state.sums, state.count) = ([0.0; 3], 0);

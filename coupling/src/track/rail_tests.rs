@@ -71,10 +71,10 @@ fn energy_balances_while_wheel_rolls() {
         rail.step(&mut state, seats, &wheels, (t / 0.05).min(1.0), &mut scratch);
         let e = state.energy();
         reference_energy = reference_energy.max(e.wheels.abs()).max(e.elastic);
-        assert!(e.error().abs() < 1e-9 * reference_energy, "step {n}: {} of {turnover}", e.error());
+        assert!(e.error().abs() < 1e-9 * reference_energy, "step {n}: {} of {reference_energy}", e.error());
         assert!(e.beyond >= 0.0);
     }
-    assert!(reference_energy > 10.0 && state.energy().pads > 1.0, "{turnover} {:?}", state.energy());
+    assert!(reference_energy > 10.0 && state.energy().pads > 1.0, "{reference_energy} {:?}", state.energy());
 }
 
 /// Tends to the static force, never above twice.

@@ -7,7 +7,7 @@ use super::rail::RailInput;
 use super::rails::{LaidRails, Rails};
 use super::row::SleeperRow;
 use super::system::{GrainsView, MeshedSleeper, TrackSystem};
-use crate::energy_balance::{WorkAndDissipation, StoredEnergy};
+use crate::energy_balance::{StoredEnergy, WorkAndDissipation};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 
@@ -278,7 +278,7 @@ impl<'a> Track<'a> {
     }
 
     /// Adds energy and work of rails and pads [J].
-    pub fn account(&self, stored: &mut StoredEnergy, spent: &mut WorkAndDissipation) {
+    pub fn add_energy(&self, stored: &mut StoredEnergy, spent: &mut WorkAndDissipation) {
         if let Some(laid) = &self.state.laid {
             let energy = laid.energy();
             stored.rail += energy.kinetic + energy.elastic;

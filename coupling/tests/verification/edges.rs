@@ -102,7 +102,8 @@ fn lifted_body_recovers_contact() {
         run(&mut c, 0.4, 0.0);
         let rest = -c.work.mean_contact_force(window)[2];
         assert!((rest / weight - 1.0).abs() < 1e-3, "{scheme:?}: rests with {rest} N of {weight}");
-        let (start, spent) = (step::stored_energy(&c.model, &c.state).total(), step::work_and_dissipation(&c.state));
+        let (start, spent) =
+            (step::stored_energy(&c.model, &c.state).total(), step::work_and_dissipation(&c.state));
         run(&mut c, 0.03, 3.0 * weight);
         let flying = run(&mut c, 0.06, 0.0);
         assert_eq!((flying.0, flying.1), (0.0, 0.0), "{scheme:?}: no force in flight");
@@ -112,8 +113,9 @@ fn lifted_body_recovers_contact() {
         let end = run(&mut c, 0.3, 0.0);
         let now = step::work_and_dissipation(&c.state);
         let work = now.work() - spent.work();
-        let error =
-            step::stored_energy(&c.model, &c.state).total() - start + now.dissipated() - spent.dissipated() - work;
+        let error = step::stored_energy(&c.model, &c.state).total() - start + now.dissipated()
+            - spent.dissipated()
+            - work;
         println!(
             "{scheme:?}: landing {:.1} weights, in the end {:.6} to {:.6}, account {:.1e} of the work, {:?}",
             landing.1 / weight,
@@ -145,8 +147,9 @@ fn iterated_windows_agree_on_the_interface() {
             c.step(&[]);
         }
         let spent = step::work_and_dissipation(&c.state);
-        let error =
-            (step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated() - spent.work()) / kinetic;
+        let error = (step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated()
+            - spent.work())
+            / kinetic;
         let interface = spent.interface() / kinetic;
         println!("{scheme:?}: interface {interface:.1e}, account {error:.1e}, {:?}", c.state.passes);
         assert!(spent.dashpot > 0.1 * kinetic, "they met");

@@ -4,7 +4,7 @@ use crate::support::*;
 use std::sync::Arc;
 use trackbed_coupling::step;
 use trackbed_fem as fem;
-use trackbed_fem::reduction::{Reduced, Reduction};
+use trackbed_fem::reduction::{ReducedModel, Reduction};
 
 const PULSE: f64 = 0.05;
 const SETTLING: f64 = 0.3;
@@ -13,7 +13,8 @@ const SETTLING: f64 = 0.3;
 fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
     let mut c = Coupled::new(solid, sleeper_on_a_bed(2, 5e-5), 5);
     if let Some(reduction) = reduction {
-        let reduced = Arc::new(Reduced::new(solid, c.work.surface.faces(), reduction).expect("a reduction"));
+        let reduced =
+            Arc::new(ReducedModel::new(solid, c.work.surface.faces(), reduction).expect("a reduction"));
         println!("{reduction:?}: {}", reduced.estimate());
         c.work.reduce(&c.model, reduced).expect("the same solid");
         assert!(c.work.reduction().is_some());

@@ -5,7 +5,7 @@
 
 use crate::support::*;
 use std::f64::consts::FRAC_PI_8;
-use trackbed_coupling::interface_stability::{Interface, InterfaceStabilityNumbers};
+use trackbed_coupling::interface_stability::{InterfaceStability, InterfaceStabilityNumbers};
 use trackbed_coupling::stability::theta_for_phase;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -81,11 +81,15 @@ fn touching_height(surface: &SolidSurface, place: [f64; 2]) -> f64 {
 }
 
 /// Largest kinetic energy of the solid in the fifth and last tenth of the windows.
-fn swings(mut c: Coupled<'_>, theta: Option<f64>, windows: u64) -> ([f64; 2], InterfaceStabilityNumbers, f64) {
+fn swings(
+    mut c: Coupled<'_>,
+    theta: Option<f64>,
+    windows: u64,
+) -> ([f64; 2], InterfaceStabilityNumbers, f64) {
     c.step(&[]);
     let contacts = c.work.grains.surface_contacts().to_vec();
     assert_eq!(contacts.len(), 1);
-    let mut interface = Interface::new(c.model.solid, &c.work.surface);
+    let mut interface = InterfaceStability::new(c.model.solid, &c.work.surface);
     let numbers = interface.numbers(&c.model.grains, &c.state.grains, &c.work.surface, &contacts);
     let numbers = numbers.at(c.model.window());
     let theta = theta.unwrap_or_else(|| theta_for_phase(numbers.phase));
@@ -240,7 +244,7 @@ fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
         let mut first = draw.coupled(&solid, 1e-5);
         first.step(&[]);
         let contacts = first.work.grains.surface_contacts().to_vec();
-        let mut interface = Interface::new(&solid, &first.work.surface);
+        let mut interface = InterfaceStability::new(&solid, &first.work.surface);
         let unit =
             interface.numbers(&first.model.grains, &first.state.grains, &first.work.surface, &contacts);
         let window =
@@ -308,7 +312,7 @@ fn numbers_of_known_interfaces() {
     let solid = ground(1e8, 0.0);
     let surface = top(&solid);
     let masses = effective_masses(&solid, &surface, 1, |_| true).unwrap();
-    let mut interface = Interface::new(&solid, &surface);
+    let mut interface = InterfaceStability::new(&solid, &surface);
     let patch = (0..8).find(|&p| {
         let x = surface.mesh_position(surface.face_nodes(p)[0]);
         (x[0] - 0.8).abs() + (x[1] - 0.2).abs() < 1e-9

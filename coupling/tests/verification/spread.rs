@@ -205,12 +205,14 @@ fn spreading_adds_no_energy() {
             spread_top(&solid, radius),
         );
         let start = step::stored_energy(&c.model, &c.state).total();
-        let at_start = step::stored_energy(&c.model, &c.state).grains_kinetic + c.model.grains.mass(0) * 9.81 * 0.04;
+        let at_start =
+            step::stored_energy(&c.model, &c.state).grains_kinetic + c.model.grains.mass(0) * 9.81 * 0.04;
         for _ in 0..7500 / substeps {
             c.step(&[]);
         }
         let spent = step::work_and_dissipation(&c.state);
-        let error = step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated() - spent.work();
+        let error =
+            step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated() - spent.work();
         println!(
             "radius {radius}, {substeps} sub-steps: to x = {:.3}, energy error {:.1e} of {at_start:.3} J, interface {:.1e}, dashpot and friction {:.3}, {:?}",
             c.state.grains.position(0).x,

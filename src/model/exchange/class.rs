@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::stability::{EffectiveMasses, ContactStabilityNumbers, largest_stable_d};
+use trackbed_coupling::stability::{ContactStabilityNumbers, EffectiveMasses, largest_stable_d};
 
 /// Default θ with meshed sleepers. At 0.5 stiff unresolved oscillations are undamped, and dashpots that lag
 /// by one window amplify them.

@@ -13,7 +13,8 @@ use crate::scene::{Document, SceneError};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
-    EffectiveMasses, largest_accurate_w, largest_stable_d, largest_stable_w, effective_masses, largest_quiet_w, theta_for_phase, effective_masses_in_window,
+    EffectiveMasses, effective_masses, effective_masses_in_window, largest_accurate_w, largest_quiet_w,
+    largest_stable_d, largest_stable_w, theta_for_phase,
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -142,7 +143,9 @@ impl CouplingPart {
             let ground = || ground.iter().map(|c| c.at(window));
             let theta = self.theta.unwrap_or_else(|| match self.scheme {
                 Scheme::Lagged | Scheme::Iterated { .. } => 0.5,
-                _ => theta_for_phase(ground().map(|c| c.numbers.phase).fold(0.0, f64::max).min(LARGEST_PHASE)),
+                _ => {
+                    theta_for_phase(ground().map(|c| c.numbers.phase).fold(0.0, f64::max).min(LARGEST_PHASE))
+                }
             });
             let sleepers = self.sleeper_classes(grains, model, solid, theta, window);
             if !self.automatic() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {

@@ -62,7 +62,8 @@ impl StageEnergy {
             spent: grain_work_and_dissipation(state),
             reference: dem::measure::reference_energy(model, state),
         };
-        let (error, turned_over) = (balance.error(), balance.reference_energy().max(balance.floor()));
+        let (error, turned_over) =
+            (balance.error(), balance.reference_energy().max(balance.negligible_energy()));
         let relative_error = if error == 0.0 { 0.0 } else { error.abs() / turned_over };
         let made = balance.now.total() - balance.start.total() - balance.spent.work();
         let gain = made.max(0.0) / turned_over.max(f64::MIN_POSITIVE);

@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::energy_balance::EnergyBalance;
+use trackbed_coupling::track::cycle_jump::{CycleJumper, JumpSummary};
 use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
-use trackbed_coupling::track::cycle_jump::{JumpSummary, CycleJumper};
 use trackbed_coupling::track::{Track, settlement};
 
 /// Output files of a run.
@@ -84,7 +84,12 @@ impl<'a> Results<'a> {
         let course = Course {
             cycles: load.map(|load| cycle_file::recorder(job, system, load)),
             jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(CycleJumper::new),
-            balance: EnergyBalance { start: stored, now: stored, spent: system.spent(), ..EnergyBalance::default() },
+            balance: EnergyBalance {
+                start: stored,
+                now: stored,
+                spent: system.spent(),
+                ..EnergyBalance::default()
+            },
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
@@ -221,8 +226,13 @@ impl<'a> Results<'a> {
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
-        EnergyBalance { start: self.course.balance.start, now: system.stored(), spent, ..EnergyBalance::default() }
-            .error()
+        EnergyBalance {
+            start: self.course.balance.start,
+            now: system.stored(),
+            spent,
+            ..EnergyBalance::default()
+        }
+        .error()
     }
 
     /// Returns completed and total cycles; none without cyclic load.
@@ -332,7 +342,7 @@ impl Course {
         balance.spent = system.spent();
         balance.spent.jumps = self.jump_energy;
         balance.reference = system.reference_energy();
-        track.account(&mut balance.now, &mut balance.spent);
+        track.add_energy(&mut balance.now, &mut balance.spent);
     }
 
     fn settle<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) {

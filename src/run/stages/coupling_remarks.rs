@@ -2,8 +2,8 @@
 
 use crate::run::summary::CouplingRecord;
 use crate::run::system::CoupledSystem;
-use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::energy_balance::WorkAndDissipation;
+use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::IterationStats;
 use trackbed_coupling::stability::{INTERFACE_LIMITS, interface_excess, largest_phase, theta_for_phase};
 

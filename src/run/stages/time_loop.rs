@@ -322,7 +322,7 @@ impl<'a> TimeLoop<'a> {
         }
         summary.track.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
         summary.track.sleepers = self.track.record();
-        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
+        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.warnings()));
         summary.energy = Some(energy(&self.recorder));
         summary.validity.extend(summary.track.sleepers.as_ref().and_then(|t| free_sleeper(t, end)));
         summary.validity.extend(validity_of(system, part, &self.recorder));
@@ -330,7 +330,7 @@ impl<'a> TimeLoop<'a> {
         let balance = self.recorder.balance();
         summary.validity.extend(StageEnergy::check_changes(
             stages,
-            [balance.start.contact_springs, balance.reference_energy().max(balance.floor())],
+            [balance.start.contact_springs, balance.reference_energy().max(balance.negligible_energy())],
         ));
         summary.bed.specimen = self.recorder.specimen(system)?;
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);

@@ -7,7 +7,7 @@ use crate::run::device::{Place, Steps, failed};
 use crate::run::ranks::Sharing;
 use std::io;
 use trackbed_coupling as coupling;
-use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;

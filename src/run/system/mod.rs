@@ -12,7 +12,7 @@ pub use trackbed_coupling::track::GrainsView;
 use super::checkpoint::Body;
 use crate::failure::Failure;
 use std::io;
-use trackbed_coupling::energy_balance::{WorkAndDissipation, StoredEnergy};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_fem as fem;

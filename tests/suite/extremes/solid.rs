@@ -221,10 +221,7 @@ fn time_steps() -> Row {
     assert!(errors.iter().all(|e| *e < 1e-3), "{errors:?}");
     Row::new(
         "an element under a sudden pressure, 1000 steps of 1e-9, 1e-6, 1e-3, 0.1, 1, 1000 periods",
-        format!(
-            "right: motion off by {} of the trapezoidal rule, energy balance closed",
-            figures(&errors)
-        ),
+        format!("right: motion off by {} of the trapezoidal rule, energy balance closed", figures(&errors)),
         "trapezoidal rule of an oscillator: angle 2 atan(ω Δt/2) a step",
     )
 }

@@ -87,7 +87,8 @@ pub fn uses(file: &str, text: &str, replaced: &BTreeMap<String, Ban>) -> BTreeMa
 
 /// Parses the table `| phrase | standard term | pages, or anywhere |`: each phrase with true if it is banned anywhere.
 pub fn replaced_phrases(page: &str) -> Vec<(String, bool)> {
-    let table = page.split("## Replaced phrases").nth(1).expect("the page has a heading for replaced phrases");
+    let table =
+        page.split("## Replaced phrases").nth(1).expect("the page has a heading for replaced phrases");
     let rows = table.lines().skip_while(|l| !l.starts_with("|--")).skip(1).take_while(|l| l.starts_with('|'));
     let mut all = Vec::new();
     for row in rows {
