@@ -33,7 +33,7 @@ use trackbed_coupling::step::{self, Model, State, Work};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_coupling::transfer::{Transfer, TransferAudit};
 use trackbed_dem::{Material, ModelInput, Shape, TimeStep};
-use trackbed_fem::reduction::{Reduced, Reduction};
+use trackbed_fem::reduction::{ReducedModel, Reduction};
 use trackbed_fem::theta::{ReducedTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, Rayleigh};
 use watch::Watch;
@@ -82,7 +82,7 @@ fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
     let mut full = ThetaSolver::new(&solid, 0.5, 2e-4).expect("a solid that can be factored");
     let start = Instant::now();
     let mut reduced = reduction.map(|r| {
-        let reduced = Reduced::new(&solid, &faces, r).expect("a reduction");
+        let reduced = ReducedModel::new(&solid, &faces, r).expect("a reduction");
         remarks::add(format!(
             "{name}: {} ({:.1} s to make)",
             reduced.estimate(),

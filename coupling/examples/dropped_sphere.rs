@@ -1,7 +1,7 @@
 //! Sphere dropped on an elastic block, with the energy balance.
 
 use std::error::Error;
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::step;
 use trackbed_coupling::surface::SolidSurface;
@@ -55,15 +55,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         reference: zeros,
     };
     let (mut state, mut work) = (state.clone(), step::Work::new(&model, &state, surface)?);
-    let start = step::stored(&model, &state);
+    let start = step::stored_energy(&model, &state);
     while state.grains.time < 0.02 {
         step::step(&model, &mut state, &mut work, |_, _, _| {}, |_, _| {})?;
     }
-    let balance = Balance {
+    let balance = EnergyBalance {
         start,
-        now: step::stored(&model, &state),
-        spent: step::spent(&state),
-        ..Balance::default()
+        now: step::stored_energy(&model, &state),
+        spent: step::work_and_dissipation(&state),
+        ..EnergyBalance::default()
     };
     let speed = state.grains.velocity(0).z;
     println!("rebound at {speed:.3} m/s, error of the energy {:.1e} J of 0.69 J", balance.error());

@@ -2,14 +2,14 @@
 //!
 //! Units are SI. Nodal arrays have the shape `[3·nodes]`.
 
-mod accelerate;
-mod discs;
+mod disc_quadrature;
+pub mod distributed_transfer;
+pub mod energy_balance;
 pub mod face;
-pub mod interface;
+pub mod interface_stability;
 pub mod inverse_map;
-pub mod ledger;
+mod iqn_ils;
 pub mod scheme;
-pub mod spread;
 pub mod stability;
 pub mod step;
 pub mod surface;

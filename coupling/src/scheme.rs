@@ -47,7 +47,7 @@ impl std::fmt::Display for Scheme {
 
 /// Counts of repeated windows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Passes {
+pub struct IterationStats {
     /// Completed windows.
     pub windows: u64,
     /// DEM passes.

@@ -7,7 +7,7 @@
 //! radiation.
 
 use crate::face::landmarks;
-use crate::interface::InterfaceNumbers;
+use crate::interface_stability::InterfaceStabilityNumbers;
 use crate::scheme::Scheme;
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 
 /// Stability numbers of the contact class with the largest W.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stability {
+pub struct ContactStabilityNumbers {
     /// W = Δt √(Kₙ/m), m the smallest effective nodal mass.
     pub stiffness: f64,
     /// D = C Δt/m, C of the heaviest grain; largest of all classes.
@@ -26,7 +26,7 @@ pub struct Stability {
 
 /// Smallest effective nodal masses [kg].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PointMasses {
+pub struct EffectiveMasses {
     /// Face corners.
     pub corner: f64,
     /// Mid-sides.
@@ -37,7 +37,7 @@ pub struct PointMasses {
     pub border: f64,
 }
 
-impl PointMasses {
+impl EffectiveMasses {
     /// Smallest mass off the border [kg].
     pub fn least(&self) -> f64 {
         self.corner.min(self.side).min(self.middle)
@@ -53,8 +53,12 @@ impl PointMasses {
     }
 }
 
-const NONE: PointMasses =
-    PointMasses { corner: f64::INFINITY, side: f64::INFINITY, middle: f64::INFINITY, border: f64::INFINITY };
+const NONE: EffectiveMasses = EffectiveMasses {
+    corner: f64::INFINITY,
+    side: f64::INFINITY,
+    middle: f64::INFINITY,
+    border: f64::INFINITY,
+};
 
 #[derive(Clone, Copy)]
 enum Place {
@@ -92,7 +96,7 @@ fn lightest_nodes(solid: &fem::Model, surface: &SolidSurface, own: impl Fn(&u32)
 }
 
 /// Returns the largest stable W for ζ' and the ratio of grain mass to nodal mass.
-pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
+pub fn largest_stable_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
     match scheme {
         Scheme::Lagged => 1.2 * damping,
         Scheme::Iterated { .. } => 5.0,
@@ -108,17 +112,17 @@ pub fn largest_w(scheme: Scheme, damping: f64, mass_ratio: f64) -> f64 {
 /// Returns the largest W of automatic windows. Sticking contacts add energy below the stability limit: per
 /// cycle, a bay of track gains 2.2 % of its dissipation at W = 1, and 0.13 % at 0.5 (Theory manual, section
 /// 5.5).
-pub fn quiet_w(scheme: Scheme) -> f64 {
+pub fn largest_quiet_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Predicted { 0.5 } else { f64::INFINITY }
 }
 
 /// Returns the largest W for an energy error of 5 % per impact (Theory manual, section 5.5).
-pub fn accurate_w(scheme: Scheme) -> f64 {
+pub fn largest_accurate_w(scheme: Scheme) -> f64 {
     if scheme == Scheme::Lagged { 0.1 } else { f64::INFINITY }
 }
 
 /// Returns the largest D.
-pub fn largest_d(scheme: Scheme) -> f64 {
+pub fn largest_stable_d(scheme: Scheme) -> f64 {
     match scheme {
         Scheme::Lagged => 0.2,
         Scheme::Predicted => 1.0,
@@ -129,12 +133,12 @@ pub fn largest_d(scheme: Scheme) -> f64 {
 /// Returns the effective nodal masses on faces of `material` within reach of grains (`reached`).
 ///
 /// `None` without unconstrained points.
-pub fn point_masses(
+pub fn effective_masses(
     solid: &fem::Model,
     surface: &SolidSurface,
     material: u32,
     reached: impl Fn(u32) -> bool,
-) -> Option<PointMasses> {
+) -> Option<EffectiveMasses> {
     let mesh = solid.mesh();
     let mass = |patch: u32| {
         let element = surface.faces()[patch as usize].element as usize;
@@ -183,14 +187,14 @@ pub fn point_masses(
 
 /// Limits of W and D of the interface: random systems are stable up to 1; a bed of 60 spheres vibrates above
 /// 0.75.
-pub const INTERFACE: [f64; 2] = [0.75, 0.75];
+pub const INTERFACE_LIMITS: [f64; 2] = [0.75, 0.75];
 
 /// (Ω in a bed over Ω on surface contacts)²: neighbours stiffen a body. With 1, a bed of 60 spheres vibrates
 /// at 3 mm/s.
 const NEIGHBOURS: f64 = 4.0;
 
 /// Returns the growth bound of undamped contacts per window, ½ W² (Ω²/24 − (θ − ½)), Ω among neighbours.
-pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
+pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceStabilityNumbers) -> f64 {
     if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
         return 0.0;
     }
@@ -200,11 +204,11 @@ pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64
 /// Returns the largest ratio of interface numbers to limits, 0 for unlimited schemes.
 ///
 /// For θ = ½ undamped contacts always grow ([`interface_growth`]), so Ω is omitted.
-pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceNumbers) -> f64 {
+pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceStabilityNumbers) -> f64 {
     if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
         return 0.0;
     }
-    let [w, d] = INTERFACE;
+    let [w, d] = INTERFACE_LIMITS;
     let phase = if theta > 0.5 { n.phase / largest_phase(theta) } else { 0.0 };
     (n.stiffness / w).max(n.damping / d).max(phase)
 }
@@ -215,24 +219,24 @@ pub fn largest_phase(theta: f64) -> f64 {
 }
 
 /// Returns θ for Ω with a margin of 10 %, rounded up to 0.0005.
-pub fn theta_for(phase: f64) -> f64 {
+pub fn theta_for_phase(phase: f64) -> f64 {
     0.5 + (1.1 * NEIGHBOURS * phase.powi(2) / 24.0 * 2000.0).ceil() / 2000.0
 }
 
 /// Returns the effective nodal masses of a free body within a window of `window` [s].
 ///
 /// Impulse of a constant normal force over the computed velocity: rigid-body mass in long windows,
-/// [`point_masses`] in short ones. `surface` is of that body only.
+/// [`effective_masses`] in short ones. `surface` is of that body only.
 ///
 /// # Errors
 /// Plastic body, or singular matrix.
-pub fn window_masses(
+pub fn effective_masses_in_window(
     body: &fem::Model,
     surface: &SolidSurface,
     patches: &[u32],
     theta: f64,
     window: f64,
-) -> Result<PointMasses, SolveError> {
+) -> Result<EffectiveMasses, SolveError> {
     let mut solver = ThetaSolver::new(body, theta, window)?;
     let mut masses = NONE;
     for &patch in patches {
@@ -366,16 +370,16 @@ mod tests {
         for (f, study) in found.iter().zip([0.018, 0.042, 0.101]) {
             assert!((f - study).abs() < 6e-4, "{f} against {study}");
         }
-        let least = point_masses(&solid, &surface, 1, |_| true).unwrap();
+        let least = effective_masses(&solid, &surface, 1, |_| true).unwrap();
         println!("least of the block: {least:?} kg, share of a corner {:.4}", least.corner / element);
         // A corner one element from the border has a tenth less.
         let share = least.corner / (found[0] * element);
         assert!(share > 0.85 && share < 1.0 + 1e-9 && least.least() == least.corner, "{share}");
         assert!(least.border < 0.5 * least.corner && least.side > least.corner);
-        assert!(point_masses(&solid, &surface, 2, |_| true).is_none());
-        assert!(point_masses(&solid, &surface, 1, |_| false).is_none());
+        assert!(effective_masses(&solid, &surface, 2, |_| true).is_none());
+        assert!(effective_masses(&solid, &surface, 1, |_| false).is_none());
         let faces = surface.faces().to_vec();
-        let wide = SolidSurface::new(solid.mesh(), faces).spread_over(0.2);
+        let wide = SolidSurface::new(solid.mesh(), faces).distribute_over_discs(0.2);
         assert!(solver.at(&wide, inner, [-1.0, -1.0]) > 3.0 * found[0] * element);
     }
 
@@ -386,9 +390,9 @@ mod tests {
             x[0] = if x[0] > 0.8 { 0.8 + 0.25 * (x[0] - 0.8) } else { x[0] };
         }
         let (solid, surface) = ground(mesh);
-        let all = point_masses(&solid, &surface, 1, |_| true).unwrap();
+        let all = effective_masses(&solid, &surface, 1, |_| true).unwrap();
         let within = |k: u32| surface.face_nodes(k).iter().any(|&n| surface.position(n)[0] < 0.6 - 1e-9);
-        let some = point_masses(&solid, &surface, 1, within).unwrap();
+        let some = effective_masses(&solid, &surface, 1, within).unwrap();
         let ratio = some.least() / all.least();
         println!("all {all:?}, within reach {some:?}");
         assert!((2.5..6.0).contains(&ratio), "{ratio}");

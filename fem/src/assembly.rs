@@ -70,7 +70,7 @@ pub struct Formulation {
     pub mass: Mass,
 }
 
-struct Contribution {
+struct ElementContribution {
     /// 3×3 stiffness block and mass of each pair.
     pairs: Vec<([f64; 9], f64)>,
     /// `∫ rho N_a dV` of each node, if the mass is lumped.
@@ -101,7 +101,7 @@ impl Matrices {
         let mut shares = vec![0.0; if mass == Mass::Lumped { mesh.node_count() } else { 0 }];
         let elements: Vec<usize> = (0..mesh.element_count()).collect();
         for chunk in elements.chunks(CHUNK) {
-            let contributions: Vec<Contribution> =
+            let contributions: Vec<ElementContribution> =
                 chunk.par_iter().map(|&e| contribution(mesh, e, formulation, material_of(e))).collect();
             for (&e, contribution) in chunk.iter().zip(&contributions) {
                 matrices.add(&mesh.connectivity[e], &contribution.pairs);
@@ -328,7 +328,7 @@ impl Matrices {
     }
 
     /// Row sums `∫ rho N_a dV` [kg] of a lumped mass. Shape `[nodes]`.
-    pub fn lumped_shares(&self) -> Option<&[f64]> {
+    pub fn lumped_fractions(&self) -> Option<&[f64]> {
         self.lumped.as_ref().map(|l| l.shares.as_slice())
     }
 
@@ -393,7 +393,7 @@ fn contribution(
     element: usize,
     formulation: Formulation,
     material: (&Elastic, bool),
-) -> Contribution {
+) -> ElementContribution {
     match mesh.connectivity.kind(element) {
         ElementKind::Hex20 => contribution_of::<20>(mesh, element, formulation, material),
         ElementKind::Wedge15 => contribution_of::<15>(mesh, element, formulation, material),
@@ -411,7 +411,7 @@ fn contribution_of<const N: usize>(
     element: usize,
     formulation: Formulation,
     (material, yields): (&Elastic, bool),
-) -> Contribution {
+) -> ElementContribution {
     let Formulation { quadrature, assumed, mass } = formulation;
     let (coordinates, kind) = (mesh.element_coordinates(element), mesh.connectivity.kind(element));
     let mut masses = mass_matrix::<N>(&coordinates, mass_points(kind), material.density);
@@ -450,7 +450,7 @@ fn contribution_of<const N: usize>(
         upper_blocks::<N>(|a, b| stiffness_block(&products, lambda, mu, a, b))
     };
     let masses = (0..N).flat_map(|a| masses[a][a..].iter().copied());
-    Contribution { pairs: blocks.into_iter().zip(masses).collect(), shares }
+    ElementContribution { pairs: blocks.into_iter().zip(masses).collect(), shares }
 }
 
 fn upper_blocks<const N: usize>(block: impl Fn(usize, usize) -> [f64; 9]) -> Vec<[f64; 9]> {

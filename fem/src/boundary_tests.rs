@@ -36,7 +36,7 @@ fn springs_constrain_but_dashpots_do_not() {
     let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
     let free = |constraints: &[Constraint], layers: &[BoundaryLayer]| {
         let supports = Supports::new(&mesh, constraints).unwrap();
-        supports.free_motion_on_springs(&mesh, &spring_points(&mesh, layers))
+        supports.rigid_body_motion_on_springs(&mesh, &spring_points(&mesh, layers))
     };
     let base = faces(&mesh, 0);
     assert_eq!(free(&[], &[BoundaryLayer::springs(base.clone(), 1.0, 1e-3)]), None);

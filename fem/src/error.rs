@@ -1,6 +1,6 @@
 //! Errors of models, methods and solvers.
 
-use crate::material::Region;
+use crate::material::ReturnRegion;
 use crate::solver::AnalysisError;
 use crate::solver::conjugate::Stopped;
 use thiserror::Error;
@@ -92,7 +92,7 @@ pub(crate) fn size(value: f64) -> String {
 #[allow(missing_docs, reason = "the messages are the documentation")]
 pub enum SolveError {
     #[error("insufficiently constrained: rigid-body motion of node {node} in {direction}; add supports")]
-    NotHeld { node: u32, direction: &'static str },
+    RigidBodyMotion { node: u32, direction: &'static str },
     #[error(
         "singular stiffness matrix: zero pivot at node {node} in {direction} ({} of the diagonal), rigid-body motion or zero-energy mode; add supports, connect elements by whole faces, or use full integration in rows one element wide",
         size(*pivot)
@@ -119,7 +119,7 @@ pub enum SolveError {
         element: u32,
         point: u32,
         xi: [f64; 3],
-        region: Region,
+        region: ReturnRegion,
     },
     #[error("step stopped between two iterations, as requested")]
     Stopped,

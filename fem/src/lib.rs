@@ -33,7 +33,6 @@
 
 pub mod assembly;
 pub mod assumed;
-pub mod block;
 pub mod boundary;
 pub mod connectivity;
 pub mod damping;
@@ -44,7 +43,6 @@ pub mod error;
 pub mod integrator;
 pub mod iterative;
 pub mod kinematics;
-pub mod limits;
 pub mod loads;
 pub mod mass;
 pub mod material;
@@ -56,10 +54,12 @@ pub mod newmark;
 pub mod nonlinear;
 pub mod reduction;
 pub mod samples;
+pub mod small_strain_check;
 pub mod solver;
 pub mod state;
 pub mod statics;
 pub mod stress;
+pub mod structured_mesh;
 pub mod supports;
 pub mod surface_mass;
 pub mod theta;
@@ -77,7 +77,7 @@ pub use mass::Mass;
 pub use material::elastic::Elastic;
 pub use material::{
     Cone, ConstitutiveLaw, DruckerPrager, Hardening, Law, LinearElastic, Material, MohrCoulomb, Point,
-    PointState, Points, Region, Response, ReturnError, StateValue,
+    PointState, Points, Response, ReturnError, ReturnRegion, StateValue,
 };
 pub use mesh::{Constraint, Face, Mesh};
 pub use model::{Model, ModelInput};

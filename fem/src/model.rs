@@ -187,7 +187,7 @@ impl Model {
     ///
     /// # Panics
     /// If an element joins these nodes to others.
-    pub fn with_bodies_moved(&self, nodes: Range<usize>, way: [f64; 3]) -> Model {
+    pub fn with_displaced_bodies(&self, nodes: Range<usize>, way: [f64; 3]) -> Model {
         let inside = |n: &u32| nodes.contains(&(*n as usize));
         let whole = |e: &[u32]| e.iter().all(inside) || !e.iter().any(inside);
         assert!(self.mesh.connectivity.iter().all(whole), "only whole bodies can be moved");
@@ -352,7 +352,7 @@ impl Model {
 
     /// Consistent gravity load `∫ rho N_a g dV` [N]. Shape `[3 * nodes]`.
     pub fn gravity_load(&self) -> Vec<f64> {
-        if let Some(shares) = self.matrices.lumped_shares() {
+        if let Some(shares) = self.matrices.lumped_fractions() {
             return shares.iter().flat_map(|m| self.gravity.map(|g| m * g)).collect();
         }
         let uniform: Vec<f64> = self.gravity.iter().copied().cycle().take(self.dof_count()).collect();

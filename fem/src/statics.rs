@@ -7,20 +7,20 @@
 use crate::assembly::Combination;
 use crate::boundary::spring_points;
 use crate::equations::method::Regime;
-use crate::equations::system::{Counts, SystemSolver};
+use crate::equations::system::{IterationCounts, SystemSolver};
 use crate::error::SolveError;
 use crate::model::Model;
 use crate::supports::name;
 
 /// Relative residual that requires correction.
-const IMPROVE: f64 = 1e-13;
+const REFINEMENT_THRESHOLD: f64 = 1e-13;
 const CORRECTIONS: usize = 3;
 /// Largest accepted relative residual.
-const REFUSE: f64 = 1e-6;
+const MAX_RESIDUAL: f64 = 1e-6;
 
 /// Static solution. Shapes `[3 * nodes]`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Static {
+pub struct StaticSolution {
     /// Displacements [m].
     pub u: Vec<f64>,
     /// Support reactions [N]; 0 at free dofs.
@@ -30,7 +30,7 @@ pub struct Static {
 /// Static solver for any number of loads.
 pub struct StaticSolver {
     system: Box<dyn SystemSolver>,
-    enough: f64,
+    refine_below: f64,
     nodal: Vec<f64>,
     equations: Vec<f64>,
 }
@@ -38,14 +38,14 @@ pub struct StaticSolver {
 /// Checks all bodies for rigid-body motion.
 ///
 /// # Errors
-/// [`SolveError::NotHeld`] with a free node and direction.
-pub fn check_held(model: &Model) -> Result<(), SolveError> {
+/// [`SolveError::RigidBodyMotion`] with a free node and direction.
+pub fn check_rigid_body_motion(model: &Model) -> Result<(), SolveError> {
     let springs = spring_points(model.mesh(), model.boundaries());
-    match model.supports().free_motion_on_springs(model.mesh(), &springs) {
+    match model.supports().rigid_body_motion_on_springs(model.mesh(), &springs) {
         None => Ok(()),
         Some((node, direction)) => {
             let (node, direction) = name(model.mesh(), 3 * node + direction);
-            Err(SolveError::NotHeld { node, direction })
+            Err(SolveError::RigidBodyMotion { node, direction })
         }
     }
 }
@@ -54,20 +54,20 @@ impl StaticSolver {
     /// Checks the constraints and prepares the solver of [`methods`](Model::methods).
     ///
     /// # Errors
-    /// [`SolveError::NotHeld`] or [`SolveError::NoStiffness`]; [`SolveError::Plastic`];
+    /// [`SolveError::RigidBodyMotion`] or [`SolveError::NoStiffness`]; [`SolveError::Plastic`];
     /// [`SolveError::Library`].
     pub fn new(model: &Model) -> Result<StaticSolver, SolveError> {
         check_linear(model)?;
-        check_held(model)?;
+        check_rigid_body_motion(model)?;
         let method = model.methods().statics;
         let system = method.solver(&model.equations(Combination::STIFFNESS), Regime::Statics)?;
-        let enough = IMPROVE.max(100.0 * method.tolerance());
+        let refine_below = REFINEMENT_THRESHOLD.max(100.0 * method.tolerance());
         let equations = vec![0.0; model.free_dof_count()];
-        Ok(StaticSolver { system, enough, nodal: vec![0.0; model.dof_count()], equations })
+        Ok(StaticSolver { system, refine_below, nodal: vec![0.0; model.dof_count()], equations })
     }
 
     /// CG counts, if selected.
-    pub fn counts(&self) -> Option<Counts> {
+    pub fn counts(&self) -> Option<IterationCounts> {
         self.system.counts()
     }
 
@@ -80,7 +80,7 @@ impl StaticSolver {
     ///
     /// # Errors
     /// Load of wrong length or not finite; equilibrium not satisfied.
-    pub fn solve(&mut self, model: &Model, load: &[f64]) -> Result<Static, SolveError> {
+    pub fn solve(&mut self, model: &Model, load: &[f64]) -> Result<StaticSolution, SolveError> {
         self.solve_prescribed(model, load, None)
     }
 
@@ -93,7 +93,7 @@ impl StaticSolver {
         model: &Model,
         load: &[f64],
         prescribed: Option<&[f64]>,
-    ) -> Result<Static, SolveError> {
+    ) -> Result<StaticSolution, SolveError> {
         check_load(model, load, 0.0)?;
         check_prescribed(model, prescribed, 0.0)?;
         let supports = model.supports();
@@ -104,11 +104,11 @@ impl StaticSolver {
         let mut worst = (0, f64::INFINITY);
         for _ in 0..CORRECTIONS {
             worst = self.correct(model, load, &mut u)?;
-            if worst.1 <= self.enough || worst.1.is_nan() {
+            if worst.1 <= self.refine_below || worst.1.is_nan() {
                 break;
             }
         }
-        if worst.1.is_nan() || worst.1 > REFUSE.max(self.enough) {
+        if worst.1.is_nan() || worst.1 > MAX_RESIDUAL.max(self.refine_below) {
             let (node, direction) = name(model.mesh(), worst.0);
             return Err(SolveError::Inaccurate { node, direction, residual: worst.1 });
         }
@@ -116,7 +116,7 @@ impl StaticSolver {
         for &(dof, _) in supports.fixed() {
             reactions[dof as usize] = self.nodal[dof as usize] - load[dof as usize];
         }
-        Ok(Static { u, reactions })
+        Ok(StaticSolution { u, reactions })
     }
 
     /// Returns dof and size of the largest relative residual of `F - K u`.
@@ -147,7 +147,7 @@ impl StaticSolver {
 ///
 /// # Errors
 /// As [`StaticSolver::new`] and [`StaticSolver::solve`].
-pub fn solve(model: &Model, load: &[f64]) -> Result<Static, SolveError> {
+pub fn solve(model: &Model, load: &[f64]) -> Result<StaticSolution, SolveError> {
     StaticSolver::new(model)?.solve(model, load)
 }
 

@@ -16,7 +16,7 @@ pub const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 pub const CONSTRAINED: u32 = u32::MAX;
 
 /// Eigenvalue ratio of a free rigid motion: (1e-6)².
-const FREE_MOTION: f64 = 1e-12;
+const RIGID_BODY_MOTION: f64 = 1e-12;
 
 /// Numbered supports of a mesh.
 #[derive(Clone, Debug)]
@@ -100,12 +100,16 @@ impl Supports {
     }
 
     /// Node index and direction of the largest free rigid motion.
-    pub fn free_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
-        self.free_motion_on_springs(mesh, &[])
+    pub fn rigid_body_motion(&self, mesh: &Mesh) -> Option<(usize, usize)> {
+        self.rigid_body_motion_on_springs(mesh, &[])
     }
 
-    /// Like [`Supports::free_motion`], with springs of any stiffness.
-    pub fn free_motion_on_springs(&self, mesh: &Mesh, springs: &[SpringPoint]) -> Option<(usize, usize)> {
+    /// Like [`Supports::rigid_body_motion`], with springs of any stiffness.
+    pub fn rigid_body_motion_on_springs(
+        &self,
+        mesh: &Mesh,
+        springs: &[SpringPoint],
+    ) -> Option<(usize, usize)> {
         let body = bodies(mesh);
         let count = body.iter().max().map_or(0, |b| b + 1);
         let mut members = vec![Vec::new(); count];
@@ -116,10 +120,13 @@ impl Supports {
         for spring in springs {
             springs_of[body[spring.node]].push(*spring);
         }
-        members.iter().zip(&springs_of).find_map(|(nodes, springs)| self.free_motion_of(mesh, nodes, springs))
+        members
+            .iter()
+            .zip(&springs_of)
+            .find_map(|(nodes, springs)| self.rigid_body_motion_of(mesh, nodes, springs))
     }
 
-    fn free_motion_of(
+    fn rigid_body_motion_of(
         &self,
         mesh: &Mesh,
         nodes: &[usize],
@@ -162,7 +169,7 @@ impl Supports {
         }
         let eigen = gram.symmetric_eigen();
         let softest = eigen.eigenvalues.imin();
-        if eigen.eigenvalues[softest] > FREE_MOTION * eigen.eigenvalues.max() {
+        if eigen.eigenvalues[softest] > RIGID_BODY_MOTION * eigen.eigenvalues.max() {
             return None;
         }
         let motion = eigen.eigenvectors.column(softest).into_owned();
@@ -235,11 +242,11 @@ mod tests {
     fn finds_free_rigid_motion() {
         let mesh = Mesh::block([2, 1, 1], [2.0, 1.0, 1.0]);
         let held = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
-        assert_eq!(held.free_motion(&mesh), None);
+        assert_eq!(held.rigid_body_motion(&mesh), None);
         let sliding = Supports::new(&mesh, &on_base(&mesh, &[1, 2])).unwrap();
-        assert_eq!(sliding.free_motion(&mesh).unwrap().1, 0);
+        assert_eq!(sliding.rigid_body_motion(&mesh).unwrap().1, 0);
         let none = Supports::new(&mesh, &[]).unwrap();
-        assert!(none.free_motion(&mesh).is_some());
+        assert!(none.rigid_body_motion(&mesh).is_some());
         // Six constraints hold a body; two on one line leave a rotation.
         let node = |x: f64, y: f64, z: f64| {
             mesh.coordinates.iter().position(|c| *c == [x, y, z]).expect("a corner of the block") as u32
@@ -249,9 +256,9 @@ mod tests {
             list.iter().map(|&(node, direction)| Constraint { node, direction, value: 0.0 }).collect()
         };
         let six = fix(&[(o, 0), (o, 1), (o, 2), (a, 1), (a, 2), (b, 2)]);
-        assert_eq!(Supports::new(&mesh, &six).unwrap().free_motion(&mesh), None);
+        assert_eq!(Supports::new(&mesh, &six).unwrap().rigid_body_motion(&mesh), None);
         let turn = fix(&[(o, 0), (o, 1), (o, 2), (a, 1), (a, 2), (a, 0)]);
-        assert!(Supports::new(&mesh, &turn).unwrap().free_motion(&mesh).is_some());
+        assert!(Supports::new(&mesh, &turn).unwrap().rigid_body_motion(&mesh).is_some());
     }
 
     #[test]
@@ -263,7 +270,7 @@ mod tests {
         let nodes: Vec<u32> = other.connectivity[0].iter().map(|n| n + 20).collect();
         mesh.push_element(2, 1, crate::element::ElementKind::Hex20, &nodes);
         let supports = Supports::new(&mesh, &on_base(&mesh, &[0, 1, 2])).unwrap();
-        assert!(supports.free_motion(&mesh).unwrap().0 >= 20);
+        assert!(supports.rigid_body_motion(&mesh).unwrap().0 >= 20);
     }
 
     #[test]

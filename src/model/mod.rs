@@ -72,7 +72,8 @@ impl Job {
             && (coupled || !matches!(part.analysis, solid::Analysis::Dynamic(_)) || !part.is_linear())
         {
             let ground = part.ground().expect("a part of a model that was made");
-            fem::statics::check_held(ground.as_ref().unwrap_or(&part.model)).map_err(|e| part.failure(&e))?;
+            fem::statics::check_rigid_body_motion(ground.as_ref().unwrap_or(&part.model))
+                .map_err(|e| part.failure(&e))?;
         }
         let mut grains = if scene.grains.is_empty() { None } else { Some(grains::build(scene, gravity)?) };
         if grains.is_none() {

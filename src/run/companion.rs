@@ -4,7 +4,7 @@ use super::system::{GrainsView, SolidView};
 use crate::failure::Failure;
 use std::fmt;
 use std::sync::Arc;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_dem as dem;
 
 /// State at the main loop start or after a window.
@@ -20,9 +20,9 @@ pub struct Shown<'a> {
     /// Solid, if any.
     pub solid: Option<SolidView<'a>>,
     /// Stored energy [J].
-    pub stored: Stored,
+    pub stored: StoredEnergy,
     /// Work and dissipation so far [J].
-    pub spent: Spent,
+    pub spent: WorkAndDissipation,
 }
 
 /// Observer of the main loop, on its thread. Not saved in checkpoints.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
 
 /// Relative energy error for a warning, and for a stop.
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
@@ -33,21 +33,21 @@ impl EnergyWatch {
     ///
     /// # Errors
     /// Above the stop limit.
-    pub fn follow(&mut self, balance: &Balance) -> Result<(), Failure> {
-        self.scale = self.scale.max(balance.turnover()).max(balance.floor());
+    pub fn follow(&mut self, balance: &EnergyBalance) -> Result<(), Failure> {
+        self.scale = self.scale.max(balance.reference_energy()).max(balance.negligible_energy());
         self.error = balance.error().abs();
         self.largest = self.largest.max(self.error);
-        let scale = self.scale.max(HELD * balance.held());
-        let share = relative(balance.unexplained(), scale);
+        let scale = self.scale.max(HELD * balance.kinetic_and_spring_energy());
+        let share = relative(balance.error_with_numerical_gain(), scale);
         if share <= ENERGY.1 {
-            self.begun |= balance.turnover() > 0.0 || balance.held() > 0.0;
+            self.begun |= balance.reference_energy() > 0.0 || balance.kinetic_and_spring_energy() > 0.0;
             return Ok(());
         }
         self.first += 1;
         if !self.begun && self.first <= FIRST && share.is_finite() {
             return Ok(());
         }
-        let error = balance.unexplained();
+        let error = balance.error_with_numerical_gain();
         Err(Failure::Numerical(format!(
             "energy error: {error:.3e} J, {:.0} % of the reference energy {scale:.3e} J (limit {:.0} %). Reduce the time steps (time.grain_step, solid.dynamics, coupling), or start without large overlaps.",
             100.0 * share,
@@ -73,12 +73,17 @@ fn relative(error: f64, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trackbed_coupling::ledger::{Spent, Stored};
+    use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 
-    fn balance(kinetic: f64, friction: f64) -> Balance {
-        let start = Stored { grains_kinetic: 1.0, ..Stored::default() };
-        let now = Stored { grains_kinetic: kinetic, ..Stored::default() };
-        Balance { start, now, spent: Spent { friction, ..Spent::default() }, ..Balance::default() }
+    fn balance(kinetic: f64, friction: f64) -> EnergyBalance {
+        let start = StoredEnergy { grains_kinetic: 1.0, ..StoredEnergy::default() };
+        let now = StoredEnergy { grains_kinetic: kinetic, ..StoredEnergy::default() };
+        EnergyBalance {
+            start,
+            now,
+            spent: WorkAndDissipation { friction, ..WorkAndDissipation::default() },
+            ..EnergyBalance::default()
+        }
     }
 
     #[test]
@@ -112,11 +117,17 @@ mod tests {
     /// an error.
     #[test]
     fn a_gain_of_the_time_integration_stops_a_run() {
-        let closed = Balance { spent: Spent { numerical: -0.3, ..Spent::default() }, ..balance(1.3, 0.0) };
+        let closed = EnergyBalance {
+            spent: WorkAndDissipation { numerical: -0.3, ..WorkAndDissipation::default() },
+            ..balance(1.3, 0.0)
+        };
         assert!(closed.error().abs() < 1e-15);
         let mut watch = EnergyWatch::default();
         assert!((0..3).any(|_| watch.follow(&closed).is_err()));
-        let lost = Balance { spent: Spent { numerical: 0.3, ..Spent::default() }, ..balance(0.7, 0.0) };
+        let lost = EnergyBalance {
+            spent: WorkAndDissipation { numerical: 0.3, ..WorkAndDissipation::default() },
+            ..balance(0.7, 0.0)
+        };
         EnergyWatch::default().follow(&lost).unwrap();
     }
 
@@ -124,9 +135,9 @@ mod tests {
     #[test]
     fn transient_error_continues_run() {
         let ramp = |error: f64, work: f64| {
-            let now = Stored { grains_kinetic: work, ..Stored::default() };
-            let spent = Spent { applied_work: work + error, ..Spent::default() };
-            Balance { now, spent, ..Balance::default() }
+            let now = StoredEnergy { grains_kinetic: work, ..StoredEnergy::default() };
+            let spent = WorkAndDissipation { applied_work: work + error, ..WorkAndDissipation::default() };
+            EnergyBalance { now, spent, ..EnergyBalance::default() }
         };
         let mut watch = EnergyWatch::default();
         for k in 1..30 {

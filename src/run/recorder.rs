@@ -3,7 +3,7 @@
 use super::flow::Flow;
 use crate::model::Job;
 use crate::write::csv::Row;
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::track::Track;
 
 /// State of a run passed to recorders.
@@ -19,7 +19,7 @@ pub struct Now<'a, S> {
     /// Inlets and outlets.
     pub flow: Option<&'a Flow<'a>>,
     /// Energy balance.
-    pub balance: &'a Balance,
+    pub balance: &'a EnergyBalance,
 }
 
 /// Source of columns in `history.csv`.

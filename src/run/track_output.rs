@@ -6,7 +6,7 @@ use crate::write::csv::{Field, write_table};
 use crate::write::{WallFrame, WallKind};
 use std::path::Path;
 use trackbed_coupling::track::Track;
-use trackbed_coupling::track::push::PushSummary;
+use trackbed_coupling::track::push_test::PushTestSummary;
 
 const HALF_WIDTH: f64 = 0.035;
 
@@ -43,7 +43,7 @@ pub fn draw(track: &Track<'_>, frame: &mut WallFrame) {
 ///
 /// # Errors
 /// I/O errors.
-pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushSummary>, Failure> {
+pub fn push(track: &Track<'_>, dir: &Path) -> Result<Option<PushTestSummary>, Failure> {
     let Some((rows, summary)) = track.push_curve() else { return Ok(None) };
     let columns: [Field<[f64; 3]>; 3] =
         [(push::DISPLACEMENT, |r| r[0]), (push::FORCE, |r| r[1]), (push::UPLIFT, |r| r[2])];

@@ -1,8 +1,8 @@
-//! Run-time checks of the coupling window by [interface numbers](crate::interface).
+//! Run-time checks of the coupling window by [interface numbers](crate::interface_stability).
 
 use super::model::Model;
 use super::state::{State, Work};
-use crate::interface::InterfaceNumbers;
+use crate::interface_stability::InterfaceStabilityNumbers;
 use crate::stability::{interface_excess, interface_growth};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
@@ -20,13 +20,13 @@ const PARTS: u32 = 64;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct InterfaceCheck {
     /// Largest interface numbers so far.
-    pub largest: InterfaceNumbers,
+    pub largest: InterfaceStabilityNumbers,
     /// Sum of growth bounds; its exponential bounds the amplitude growth.
     pub growth: f64,
     /// Divisions of a window.
     pub division: u32,
     /// Numbers of the last check for windows of 1 s.
-    last: InterfaceNumbers,
+    last: InterfaceStabilityNumbers,
     windows: u64,
     checked: u64,
     interval: u64,

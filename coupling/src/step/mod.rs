@@ -9,19 +9,19 @@
 //!
 //! Theory manual, sections 5.4 and 5.5; the FEM step is [`trackbed_fem::theta`].
 
-mod account;
+mod energy;
+mod initial_equilibrium;
 mod interface_check;
 mod model;
-mod rest;
 mod solver;
 mod state;
 mod stiffened;
 mod window;
 
-pub use account::{spent, spent_by_grains, stored};
+pub use energy::{grain_work_and_dissipation, stored_energy, work_and_dissipation};
+pub use initial_equilibrium::initial_contact_load;
 pub use interface_check::{InterfaceCheck, check_interface};
 pub use model::Model;
-pub use rest::resting_load;
 pub use solver::StepError;
 pub use state::{State, Work};
 pub use window::{exchange, step};

@@ -3,11 +3,11 @@
 use super::interface_check::InterfaceCheck;
 use super::model::Model;
 use super::solver::solver;
-use super::stiffened::{Held, Stiffened};
-use crate::accelerate::Accelerator;
-use crate::interface::Interface;
-use crate::ledger::Spent;
-use crate::scheme::Passes;
+use super::stiffened::{LinearisedContact, Stiffened};
+use crate::energy_balance::WorkAndDissipation;
+use crate::interface_stability::InterfaceStability;
+use crate::iqn_ils::IqnIls;
+use crate::scheme::IterationStats;
 use crate::surface::SolidSurface;
 use crate::transfer::{Transfer, TransferAudit};
 use serde::{Deserialize, Serialize};
@@ -16,8 +16,8 @@ use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
-use trackbed_fem::nonlinear::{Memory, Statistics};
-use trackbed_fem::reduction::{Estimate, Reduced};
+use trackbed_fem::nonlinear::{SolverState, Statistics};
+use trackbed_fem::reduction::{Estimate, ReducedModel};
 use trackbed_fem::theta::{ReducedTheta, ThetaMethod};
 
 /// State of a run.
@@ -30,17 +30,17 @@ pub struct State {
     /// Largest transfer errors.
     pub audit: TransferAudit,
     /// Work and dissipation of the solid.
-    pub(super) spent: Spent,
+    pub(super) spent: WorkAndDissipation,
     /// Last surface velocity [m/s], shape `[3·nodes]`; empty at the start.
     pub(super) rate: Vec<f64>,
     /// Computed minus predicted displacement [m], shape `[3·nodes]`; empty at the start.
     pub(super) correction: Vec<f64>,
     /// Repeated windows.
-    pub passes: Passes,
+    pub passes: IterationStats,
     /// Mean contact loads of the last two windows [N], shape `[3·nodes]`; lagged scheme only.
     pub(super) lagged: [Vec<f64>; 2],
     /// Last contacts; stiffened scheme only.
-    pub(super) held: Vec<Held>,
+    pub(super) last_contacts: Vec<LinearisedContact>,
     /// Interface checks.
     pub interface_check: InterfaceCheck,
 }
@@ -54,7 +54,7 @@ pub struct Work<B = dem::Work> {
     pub(super) transfer: Transfer,
     pub(super) solver: Box<dyn ThetaMethod>,
     /// Basis of a reduced solid.
-    reduced: Option<Arc<Reduced>>,
+    reduced: Option<Arc<ReducedModel>>,
     pub(super) load: Vec<f64>,
     pub(super) contact_load: Vec<f64>,
     pub(super) other_load: Vec<f64>,
@@ -62,9 +62,9 @@ pub struct Work<B = dem::Work> {
     pub(super) rate: Vec<f64>,
     pub(super) correction: Vec<f64>,
     pub(super) applied: Vec<dem::AppliedForce>,
-    pub(super) accelerator: Accelerator,
+    pub(super) accelerator: IqnIls,
     pub(super) stiffened: Stiffened,
-    pub(super) interface: Interface,
+    pub(super) interface: InterfaceStability,
 }
 
 impl State {
@@ -74,28 +74,28 @@ impl State {
             solid,
             grains,
             audit: TransferAudit::default(),
-            spent: Spent::default(),
+            spent: WorkAndDissipation::default(),
             rate: Vec::new(),
             correction: Vec::new(),
-            passes: Passes::default(),
+            passes: IterationStats::default(),
             lagged: Default::default(),
-            held: Vec::new(),
+            last_contacts: Vec::new(),
             interface_check: InterfaceCheck::default(),
         }
     }
 
     /// Resets time, step counts and balances.
-    pub fn reset_time(&mut self) {
+    pub fn reset_time_and_balances(&mut self) {
         self.grains.reset_time();
         self.solid.time = 0.0;
         self.audit = TransferAudit::default();
-        self.spent = Spent::default();
-        self.passes = Passes::default();
+        self.spent = WorkAndDissipation::default();
+        self.passes = IterationStats::default();
         self.interface_check = InterfaceCheck::default();
     }
 
     /// Adds an initial contact load [N], shape `[3·nodes]`, for the lagged scheme.
-    pub fn carrying(self, load: Vec<f64>) -> State {
+    pub fn with_initial_contact_load(self, load: Vec<f64>) -> State {
         State { lagged: [load.clone(), load], ..self }
     }
 }
@@ -126,7 +126,7 @@ impl<B: dem::BackEnd> Work<B> {
         Ok(Work {
             grains,
             transfer: Transfer::new(&surface),
-            interface: Interface::new(model.solid, &surface),
+            interface: InterfaceStability::new(model.solid, &surface),
             surface,
             solver: solver(model, state.solid.points.is_empty())?,
             reduced: None,
@@ -137,7 +137,7 @@ impl<B: dem::BackEnd> Work<B> {
             rate: vec![0.0; n],
             correction: Vec::new(),
             applied: Vec::new(),
-            accelerator: Accelerator::default(),
+            accelerator: IqnIls::default(),
             stiffened: Stiffened::default(),
         })
     }
@@ -146,7 +146,7 @@ impl<B: dem::BackEnd> Work<B> {
     ///
     /// # Errors
     /// Plastic solid, initial stress, or another solid than the reduced one.
-    pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<Reduced>) -> Result<(), SolveError> {
+    pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<ReducedModel>) -> Result<(), SolveError> {
         self.solver = Box::new(ReducedTheta::new(model.solid, reduced.clone(), model.theta, model.window())?);
         self.reduced = Some(reduced);
         Ok(())
@@ -169,20 +169,20 @@ impl<B: dem::BackEnd> Work<B> {
 
     /// Newton statistics of a plastic solid.
     pub fn newton(&self) -> Option<Statistics> {
-        self.memory().map(|memory| memory.statistics())
+        self.solver_state().map(|memory| memory.statistics())
     }
 
     /// Solver memory of a plastic solid, for a checkpoint.
-    pub fn memory(&self) -> Option<Memory> {
-        self.solver.memory()
+    pub fn solver_state(&self) -> Option<SolverState> {
+        self.solver.solver_state()
     }
 
     /// Restores solver memory of the same model.
     ///
     /// # Errors
     /// Singular matrix.
-    pub fn recall(&mut self, model: &Model<'_>, memory: Option<&Memory>) -> Result<(), SolveError> {
-        memory.map_or(Ok(()), |memory| self.solver.recall(model.solid, memory))
+    pub fn restore(&mut self, model: &Model<'_>, memory: Option<&SolverState>) -> Result<(), SolveError> {
+        memory.map_or(Ok(()), |memory| self.solver.restore(model.solid, memory))
     }
 
     /// Largest mean pressure on a face in the last window [Pa].

@@ -5,7 +5,7 @@
 
 use super::model::Model;
 use crate::face::dot;
-use crate::interface::{PointMatrices, PointMatrix, distribute};
+use crate::interface_stability::{PointMatrices, PointMatrix, distribute};
 use crate::surface::SolidSurface;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
@@ -16,7 +16,7 @@ use trackbed_fem::theta::ThetaMethod;
 
 /// Contact of the last sub-step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Held {
+pub(crate) struct LinearisedContact {
     body: u32,
     sphere: u32,
     patch: u32,
@@ -24,15 +24,15 @@ pub(crate) struct Held {
     force: [f64; 3],
 }
 
-impl Held {
+impl LinearisedContact {
     pub fn body(&self) -> usize {
         self.body as usize
     }
 }
 
-impl From<&SurfaceContact> for Held {
-    fn from(c: &SurfaceContact) -> Held {
-        Held { body: c.body, sphere: c.sphere, patch: c.patch, local: c.local, force: c.force }
+impl From<&SurfaceContact> for LinearisedContact {
+    fn from(c: &SurfaceContact) -> LinearisedContact {
+        LinearisedContact { body: c.body, sphere: c.sphere, patch: c.patch, local: c.local, force: c.force }
     }
 }
 
@@ -42,7 +42,7 @@ impl PointMatrix {
         model: &Model<'_>,
         grains: &dem::State,
         surface: &SolidSurface,
-        c: &Held,
+        c: &LinearisedContact,
     ) -> Option<(PointMatrix, [f64; 3])> {
         let body = c.body as usize;
         let (material, own) = (model.grains.material(body), model.grains.patch_material(c.patch));
@@ -93,7 +93,7 @@ impl Stiffened {
         &mut self,
         model: &Model<'_>,
         grains: &dem::State,
-        held: &[Held],
+        held: &[LinearisedContact],
         surface: &SolidSurface,
         solver: &mut dyn ThetaMethod,
         solid: &fem::state::State,
@@ -121,6 +121,6 @@ impl Stiffened {
                 (0..3).for_each(|d| out[3 * nodes[n as usize] as usize + d] += f[d]);
             });
         };
-        solver.predict(model.solid, solid, load, &mut product, rate)
+        solver.solve_with_contact_stiffness(model.solid, solid, load, &mut product, rate)
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! Theory manual: eqs. (5.6), (5.7).
 
-use super::account::book;
+use super::energy::add_step_energy;
 use super::model::Model;
 use super::solver::StepError;
 use super::state::{State, Work};
-use super::stiffened::Held;
+use super::stiffened::LinearisedContact;
 use crate::scheme::Scheme;
 use crate::surface::Motion;
 use trackbed_dem as dem;
@@ -49,7 +49,7 @@ pub fn step<B: BackEnd>(
     };
     state.passes.windows += 1;
     state.passes.passes += u64::from(passes);
-    book(model, state, work, &audit);
+    add_step_energy(model, state, work, &audit);
     // The next window begins at the computed surface.
     state.correction.clear();
     let motion = state.solid.u.iter().zip(&work.before.u).zip(&work.rate);
@@ -72,8 +72,8 @@ fn stiffened<B: BackEnd>(
         state.passes.solves += u64::from(predict(model, state, work)?);
     }
     grains(model, state, work, applied)?;
-    state.held.clear();
-    state.held.extend(work.grains.surface_contacts().iter().map(Held::from));
+    state.last_contacts.clear();
+    state.last_contacts.extend(work.grains.surface_contacts().iter().map(LinearisedContact::from));
     solid(model, state, work)
 }
 
@@ -91,7 +91,7 @@ fn lagged<B: BackEnd>(
     let audit = solid(model, state, work)?;
     mean_velocity(&state.solid, work, model.window());
     // This window's contact load acts on the solid in the next.
-    book(model, state, work, &audit);
+    add_step_energy(model, state, work, &audit);
     grains(model, state, work, applied)?;
     state.lagged.swap(0, 1);
     state.lagged[0].copy_from_slice(&work.contact_load);
@@ -251,7 +251,7 @@ fn predict<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<u3
         .predict(
             model,
             &state.grains,
-            &state.held,
+            &state.last_contacts,
             &work.surface,
             &mut *work.solver,
             &state.solid,
@@ -273,6 +273,6 @@ pub fn exchange<B: BackEnd>(
     arrive: &[dem::flow::Arrival],
 ) -> Result<(), dem::flow::FlowError> {
     dem::flow::exchange(&model.grains, &mut state.grains, &mut work.grains, leave, arrive)?;
-    state.held.retain(|c| !leave.contains(&c.body()));
+    state.last_contacts.retain(|c| !leave.contains(&c.body()));
     Ok(())
 }

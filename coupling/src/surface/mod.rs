@@ -1,15 +1,15 @@
 //! Moving contact surface of the solid.
 //!
 //! Nodes move linearly within a window, x(τ) = x₀ + v τ, v from the coupling [scheme](crate::scheme); with a
-//! [`Spread`] by disc means.
+//! [`DistributedTransfer`] by disc means.
 
-mod facets;
-mod sides;
+mod face_adjacency;
+mod face_triangles;
 
+use crate::distributed_transfer::DistributedTransfer;
 use crate::face::{self, Form, Location};
-use crate::spread::Spread;
-pub use facets::facets;
-use sides::Sides;
+use face_adjacency::FaceAdjacency;
+pub use face_triangles::face_triangles;
 use trackbed_dem::Vec3;
 use trackbed_dem::bvh::Bvh;
 use trackbed_dem::sheet::SurfaceMesh;
@@ -51,8 +51,8 @@ pub struct SolidSurface {
     max_speed: f64,
     tree: Bvh,
     boxes: Vec<([f64; 3], [f64; 3])>,
-    pub(crate) spread: Option<Spread>,
-    sides: Sides,
+    pub(crate) spread: Option<DistributedTransfer>,
+    sides: FaceAdjacency,
     /// Undeformed normals at [`places`].
     areas: Vec<[[f64; 3]; 5]>,
     scratch: Vec<[f64; 3]>,
@@ -89,7 +89,7 @@ impl SolidSurface {
         let boxes: Vec<_> = of_kind().map(|(s, x)| face::bounds(s, &x)).collect();
         let forms = of_kind().map(|(s, x)| [Form::new(s, &x), Form::default()]).collect();
         let areas = of_kind().map(|(s, x)| places(s).map(|p| Form::new(s, &x).area(p))).collect();
-        let sides = Sides::new(&shapes, &face_nodes);
+        let sides = FaceAdjacency::new(&shapes, &face_nodes);
         SolidSurface {
             tree: Bvh::new(&boxes),
             boxes,
@@ -115,7 +115,7 @@ impl SolidSurface {
     }
 
     /// Distributed load transfer, if any.
-    pub fn spread(&self) -> Option<&Spread> {
+    pub fn spread(&self) -> Option<&DistributedTransfer> {
         self.spread.as_ref()
     }
 
@@ -172,7 +172,7 @@ impl SolidSurface {
         face::interpolate(self.shape(patch), &x, natural)
     }
 
-    /// Undeformed triangles, for polyhedra; `None` with other faces ([`facets`]).
+    /// Undeformed triangles, for polyhedra; `None` with other faces ([`face_triangles`]).
     pub fn triangles(&self) -> Option<SurfaceMesh> {
         let flat = self.shapes.iter().all(|s| *s == FaceShape::Tri3);
         flat.then(|| SurfaceMesh {
@@ -366,7 +366,7 @@ impl SolidSurface {
     }
 }
 
-fn smooth(spread: Option<&Spread>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
+fn smooth(spread: Option<&DistributedTransfer>, field: &[[f64; 3]], out: &mut [[f64; 3]]) {
     match spread {
         None => out.copy_from_slice(field),
         Some(spread) => spread.mean(field, out),

@@ -73,7 +73,7 @@ impl Extremes {
             largest_force: self.force[1],
             smallest_force: self.force[0],
             lowering: self.height[0] - self.height[1],
-            lifted_off: self.lifted.map(|first| LiftOff {
+            lifted_off: self.lifted.map(|first| ContactLoss {
                 first,
                 seconds: self.lifted_time,
                 rise: self.highest - self.height[0],
@@ -151,7 +151,7 @@ pub struct SleeperRecord {
     pub lowering: f64,
     /// Loss of contact, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub lifted_off: Option<LiftOff>,
+    pub lifted_off: Option<ContactLoss>,
     /// Largest force over one axle load, with axles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_share: Option<f64>,
@@ -171,7 +171,7 @@ pub struct SleeperRecord {
 
 /// Loss of contact of a sleeper.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct LiftOff {
+pub struct ContactLoss {
     /// First start [s].
     pub first: f64,
     /// Total time [s].
@@ -182,9 +182,9 @@ pub struct LiftOff {
 
 impl TrackRecord {
     /// Warnings about loss of contact.
-    pub fn remarks(&self) -> impl Iterator<Item = String> + '_ {
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
         self.sleepers.iter().enumerate().filter_map(|(k, s)| {
-            let LiftOff { first, seconds, rise } = s.lifted_off?;
+            let ContactLoss { first, seconds, rise } = s.lifted_off?;
             Some(format!(
                 "sleeper {}: without contact for {seconds:.6} s in total, first at t = {first:.6} s; largest uplift {:.3} mm since the first cycle",
                 k + 1,
@@ -228,7 +228,7 @@ mod tests {
         assert!((lift.rise - 0.003).abs() < 1e-12 && (record.lowering - 0.002).abs() < 1e-12);
         assert_eq!((record.largest_force, record.smallest_force, record.load_share), (9.0, -2.0, Some(0.5)));
         assert_eq!((record.rail_deflection, record.bend), (None, None));
-        let text = TrackRecord { sleepers: vec![record] }.remarks().next().unwrap();
+        let text = TrackRecord { sleepers: vec![record] }.warnings().next().unwrap();
         assert!(text.contains("first at t = 0.100000 s"), "{text}");
     }
 }

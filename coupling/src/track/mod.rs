@@ -2,12 +2,12 @@
 
 pub mod band;
 pub mod beam;
+pub mod cycle_jump;
 pub mod cycles;
 pub mod extremes;
 pub mod influence;
-pub mod jump;
 pub mod load;
-pub mod push;
+pub mod push_test;
 pub mod rail;
 pub mod rails;
 pub mod row;

@@ -2,12 +2,12 @@
 
 use super::extremes::{Extremes, MomentumCheck, Observation, TrackRecord};
 use super::load::{CyclicLoad, Waveform};
-use super::push::{Push, PushPlan, PushState, PushSummary};
+use super::push_test::{PushTest, PushTestOptions, PushTestState, PushTestSummary};
 use super::rail::RailInput;
 use super::rails::{LaidRails, Rails};
 use super::row::SleeperRow;
 use super::system::{GrainsView, MeshedSleeper, TrackSystem};
-use crate::ledger::{Spent, Stored};
+use crate::energy_balance::{StoredEnergy, WorkAndDissipation};
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
 
@@ -21,7 +21,7 @@ pub struct TrackInput<'a> {
     /// Rail with mass on each row of seats.
     pub rail: Option<RailInput>,
     /// Lateral push after the cycles.
-    pub push: Option<&'a PushPlan>,
+    pub push: Option<&'a PushTestOptions>,
 }
 
 /// Track of a run; rigid sleepers are the last bodies.
@@ -31,7 +31,7 @@ pub struct Track<'a> {
     /// First rigid sleeper.
     first: usize,
     rails: Option<Rails>,
-    push: Option<Push<'a>>,
+    push: Option<PushTest<'a>>,
     state: TrackState,
     /// At the start of a (possibly repeated) window.
     before: Option<LaidRails>,
@@ -44,7 +44,7 @@ pub struct TrackState {
     /// Placed rails.
     laid: Option<LaidRails>,
     extremes: Vec<Extremes>,
-    push: PushState,
+    push: PushTestState,
 }
 
 /// Position and load of a sleeper.
@@ -93,7 +93,7 @@ impl<'a> Track<'a> {
         let first = view.map_or(0, |v| v.model.body_count()).saturating_sub(count);
         let push = match (push, row, view) {
             (Some(plan), Some(row), Some(view)) => {
-                Some(Push::new(plan, row, view.model.gravity().z, first + count / 2))
+                Some(PushTest::new(plan, row, view.model.gravity().z, first + count / 2))
             }
             _ => None,
         };
@@ -123,8 +123,8 @@ impl<'a> Track<'a> {
         }
     }
 
-    /// Curve and results of a push test (see [`Push::curve`]).
-    pub fn push_curve(&self) -> Option<(&[[f64; 3]], PushSummary)> {
+    /// Curve and results of a push test (see [`PushTest::curve`]).
+    pub fn push_curve(&self) -> Option<(&[[f64; 3]], PushTestSummary)> {
         self.push.as_ref()?.curve(&self.state.push)
     }
 
@@ -178,7 +178,7 @@ impl<'a> Track<'a> {
     }
 
     /// Whether sleeper `k` had no contact in the last window.
-    fn is_lifted(&self, k: usize, view: GrainsView<'_>) -> bool {
+    fn has_lost_contact(&self, k: usize, view: GrainsView<'_>) -> bool {
         let Some(row) = self.row.filter(|r| !r.held[2]) else { return false };
         let weight = row.mass * view.model.gravity().z;
         let speed = view.state.velocity(self.first + k).z;
@@ -210,7 +210,7 @@ impl<'a> Track<'a> {
                 rail: self.rail_deflection(k),
                 bend: meshed.map_or(0.0, |m| m.moved.bend),
             };
-            let lifted = meshed.map_or_else(|| self.is_lifted(k, view), |m| m.contact == [0.0; 3]);
+            let lifted = meshed.map_or_else(|| self.has_lost_contact(k, view), |m| m.contact == [0.0; 3]);
             match self.state.extremes.get_mut(k) {
                 None => self.state.extremes.push(Extremes::start(&now)),
                 Some(e) => e.update(&now, lifted, t - window, window),
@@ -278,7 +278,7 @@ impl<'a> Track<'a> {
     }
 
     /// Adds energy and work of rails and pads [J].
-    pub fn account(&self, stored: &mut Stored, spent: &mut Spent) {
+    pub fn add_energy(&self, stored: &mut StoredEnergy, spent: &mut WorkAndDissipation) {
         if let Some(laid) = &self.state.laid {
             let energy = laid.energy();
             stored.rail += energy.kinetic + energy.elastic;

@@ -16,7 +16,7 @@ pub struct GrainsView<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct SleeperMotion {
     /// Displacement of the centre of mass [m].
-    pub way: [f64; 3],
+    pub translation: [f64; 3],
     /// Angle between base normal and vertical [rad].
     pub tilt: f64,
     /// Load-weighted mean seat displacement, upwards [m].

@@ -92,7 +92,7 @@ fn separate_sides_match_uncoupled_runs_bitwise() {
         (Scheme::Stiffened, 0.0),
         (Scheme::Iterated { tolerance: 1e-6, passes: 5 }, 0.0),
     ] {
-        let mut c = Coupled::with_surface(&solid, heap(), 5, top(&solid).spread_over(radius));
+        let mut c = Coupled::with_surface(&solid, heap(), 5, top(&solid).distribute_over_discs(radius));
         c.model.scheme = scheme;
         for _ in 0..WINDOWS {
             c.step_loaded(&[], |_, load| push(load));
@@ -142,7 +142,7 @@ fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
     assert_eq!(c.state.audit.exchanges, 0);
     assert!(c.state.grains.balance.dissipated() > 0.1);
     // Energy balance of the solid.
-    let (stored, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
+    let (stored, spent) = (step::stored_energy(&c.model, &c.state), step::work_and_dissipation(&c.state));
     let kept = stored.solid_kinetic + stored.solid_strain + spent.rayleigh;
     assert!((spent.solid_load_work / kept - 1.0).abs() < 1e-10, "{} {kept}", spent.solid_load_work);
     let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -53,11 +53,11 @@ fn curved_traverse_conserves_energy() {
             c.step(&[(0, [0.0, 0.0, -FORCE])]);
             assert_eq!(c.work.grains.surface_contacts().len(), 1, "one contact, at borders too");
             if start.is_none() && c.state.grains.position(0).x >= 0.27 {
-                start = Some((step::spent(&c.state), step::stored(&c.model, &c.state)));
+                start = Some((step::work_and_dissipation(&c.state), step::stored_energy(&c.model, &c.state)));
             }
         }
         let (spent0, stored0) = start.expect("the traverse has begun");
-        let (spent, stored) = (step::spent(&c.state), step::stored(&c.model, &c.state));
+        let (spent, stored) = (step::work_and_dissipation(&c.state), step::stored_energy(&c.model, &c.state));
         let (pushed, held) = (spent.applied_work - spent0.applied_work, spent.wall_work - spent0.wall_work);
         let kept = stored.total() - stored0.total();
         let lost = pushed + held - kept;

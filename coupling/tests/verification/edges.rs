@@ -75,7 +75,7 @@ fn iterated_windows_restore_plastic_stresses() {
         let apart = now.u.iter().zip(&again.u).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
         assert!(apart <= 1e-6 * largest(&now.u), "window {k}: {apart} of {}", largest(&now.u));
     }
-    let plastic = step::spent(&c.state).plastic;
+    let plastic = step::work_and_dissipation(&c.state).plastic;
     println!("{:?}, {plastic} J plastic", c.state.passes);
     assert!(c.state.passes.passes > 2 * c.state.passes.windows && plastic > 1e-3);
 }
@@ -102,7 +102,8 @@ fn lifted_body_recovers_contact() {
         run(&mut c, 0.4, 0.0);
         let rest = -c.work.mean_contact_force(window)[2];
         assert!((rest / weight - 1.0).abs() < 1e-3, "{scheme:?}: rests with {rest} N of {weight}");
-        let (start, spent) = (step::stored(&c.model, &c.state).total(), step::spent(&c.state));
+        let (start, spent) =
+            (step::stored_energy(&c.model, &c.state).total(), step::work_and_dissipation(&c.state));
         run(&mut c, 0.03, 3.0 * weight);
         let flying = run(&mut c, 0.06, 0.0);
         assert_eq!((flying.0, flying.1), (0.0, 0.0), "{scheme:?}: no force in flight");
@@ -110,10 +111,11 @@ fn lifted_body_recovers_contact() {
         let landing = run(&mut c, 0.4, 0.0);
         assert!(landing.1 > 3.0 * weight, "{scheme:?}: lands with {} N", landing.1);
         let end = run(&mut c, 0.3, 0.0);
-        let now = step::spent(&c.state);
+        let now = step::work_and_dissipation(&c.state);
         let work = now.work() - spent.work();
-        let error =
-            step::stored(&c.model, &c.state).total() - start + now.dissipated() - spent.dissipated() - work;
+        let error = step::stored_energy(&c.model, &c.state).total() - start + now.dissipated()
+            - spent.dissipated()
+            - work;
         println!(
             "{scheme:?}: landing {:.1} weights, in the end {:.6} to {:.6}, account {:.1e} of the work, {:?}",
             landing.1 / weight,
@@ -140,13 +142,14 @@ fn iterated_windows_agree_on_the_interface() {
         body.z = -1.0;
         c.state.grains.set_velocity(&c.model.grains, 0, body, Vec3::zeros());
         let kinetic = 0.5 * c.model.grains.mass(0);
-        let start = step::stored(&c.model, &c.state).total();
+        let start = step::stored_energy(&c.model, &c.state).total();
         for _ in 0..60 {
             c.step(&[]);
         }
-        let spent = step::spent(&c.state);
-        let error =
-            (step::stored(&c.model, &c.state).total() - start + spent.dissipated() - spent.work()) / kinetic;
+        let spent = step::work_and_dissipation(&c.state);
+        let error = (step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated()
+            - spent.work())
+            / kinetic;
         let interface = spent.interface() / kinetic;
         println!("{scheme:?}: interface {interface:.1e}, account {error:.1e}, {:?}", c.state.passes);
         assert!(spent.dashpot > 0.1 * kinetic, "they met");

@@ -72,7 +72,7 @@ impl<'a> Impact<'a> {
         };
         let coupled = on_cube(solid, 0.0, vec![sphere], (substeps, dt));
         let momentum = momentum(&coupled);
-        let energy = step::stored(&coupled.model, &coupled.state).total();
+        let energy = step::stored_energy(&coupled.model, &coupled.state).total();
         Impact { coupled, momentum, energy, geometric: Vec3::zeros() }
     }
 
@@ -115,14 +115,14 @@ impl<'a> Impact<'a> {
 
     /// With the interface work error.
     fn energy_error(&self) -> f64 {
-        let spent = step::spent(&self.coupled.state);
-        let now = step::stored(&self.coupled.model, &self.coupled.state).total();
+        let spent = step::work_and_dissipation(&self.coupled.state);
+        let now = step::stored_energy(&self.coupled.model, &self.coupled.state).total();
         (now + spent.dissipated() - self.energy).abs() / self.energy
     }
 
     /// Vibration energy of the block over the impact energy.
     fn vibration(&self) -> f64 {
-        let stored = step::stored(&self.coupled.model, &self.coupled.state);
+        let stored = step::stored_energy(&self.coupled.model, &self.coupled.state);
         let (p, _) = fem::energy::momentum(self.coupled.model.solid, &self.coupled.state.solid);
         let rigid = Vec3::from(p).norm_squared() / (2.0 * BLOCK_MASS);
         (stored.solid_kinetic + stored.solid_strain - rigid) / self.energy
@@ -182,7 +182,7 @@ fn energy_drift_of_subcycling_is_small() {
         let mut impact = Impact::new(&solid, 0.0, 1.0, substeps, 2e-6);
         impact.run();
         let error = impact.energy_error();
-        let interface = step::spent(&impact.coupled.state).interface() / impact.energy;
+        let interface = step::work_and_dissipation(&impact.coupled.state).interface() / impact.energy;
         println!("{substeps} sub-steps: energy error {error:.2e}, of it at the interface {interface:.2e}");
         assert!(error < bound);
         assert!(impact.drift().0 < 1e-10);
@@ -231,7 +231,7 @@ fn quiet_packing_gains_no_energy() {
     for slot in &mut largest {
         for _ in 0..windows {
             c.step(&[]);
-            let stored = step::stored(&c.model, &c.state);
+            let stored = step::stored_energy(&c.model, &c.state);
             *slot = slot.max(stored.grains_kinetic + stored.solid_kinetic);
         }
     }
@@ -325,9 +325,9 @@ fn stiffened_prediction_includes_slip_and_spin() {
             c.model.scheme = scheme;
             // No prediction in the first window.
             c.step(&[]);
-            let before = step::spent(&c.state).interface();
+            let before = step::work_and_dissipation(&c.state).interface();
             c.step(&[]);
-            step::spent(&c.state).interface() - before
+            step::work_and_dissipation(&c.state).interface() - before
         };
         let (stiffened, present) = (missed(Scheme::Stiffened), missed(Scheme::Predicted));
         println!(

@@ -401,16 +401,16 @@ fn sliding_balances_energy_on_every_kind() {
             },
             10,
         );
-        let start = step::stored(&c.model, &c.state).total();
-        let kinetic = step::stored(&c.model, &c.state).grains_kinetic;
+        let start = step::stored_energy(&c.model, &c.state).total();
+        let kinetic = step::stored_energy(&c.model, &c.state).grains_kinetic;
         let mut touched = Vec::new();
         for _ in 0..2_500 {
             c.step(&[]);
             touched.extend(c.work.grains.surface_contacts().iter().filter(|s| s.body == 0).map(|s| s.patch));
         }
         touched.dedup();
-        let spent = step::spent(&c.state);
-        let end = step::stored(&c.model, &c.state).total();
+        let spent = step::work_and_dissipation(&c.state);
+        let end = step::stored_energy(&c.model, &c.state).total();
         let error = (end - start + spent.dissipated() - spent.work()) / kinetic;
         let audit = c.state.audit;
         println!(

@@ -1,10 +1,10 @@
 //! Dilated polyhedra on triangulated faces of the solid.
 
 use crate::support::*;
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::step;
-use trackbed_coupling::surface::{SolidSurface, facets};
+use trackbed_coupling::surface::{SolidSurface, face_triangles};
 use trackbed_dem as dem;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::surface::NoSurface;
@@ -13,7 +13,7 @@ use trackbed_fem as fem;
 
 fn triangles(solid: &fem::Model) -> SolidSurface {
     let faces = SolidSurface::facing(solid.mesh(), [0.0, 0.0, 1.0], 0.3);
-    SolidSurface::new(solid.mesh(), faces.iter().flat_map(facets).collect())
+    SolidSurface::new(solid.mesh(), faces.iter().flat_map(face_triangles).collect())
 }
 
 fn polyhedron(corners: &[Vec3], radius: f64) -> Shape {
@@ -58,7 +58,7 @@ fn stone_weight_acts_on_base() {
             vec![dem::BodyInput { position: Vec3::new(place[0], place[1], 0.11), ..Default::default() }];
         let mut c = coupled(&solid, input, 2);
         let mass = c.model.grains.mass(0);
-        let start = (step::stored(&c.model, &c.state), step::spent(&c.state));
+        let start = (step::stored_energy(&c.model, &c.state), step::work_and_dissipation(&c.state));
         while c.state.grains.time < 1.6 {
             c.step(&[]);
         }
@@ -68,11 +68,11 @@ fn stone_weight_acts_on_base() {
         let reaction: f64 =
             fem::energy::reactions(&solid, &c.state.solid, &load).iter().skip(2).step_by(3).sum();
         let audit = c.state.audit;
-        let balance = Balance {
+        let balance = EnergyBalance {
             start: start.0,
-            now: step::stored(&c.model, &c.state),
-            spent: step::spent(&c.state),
-            ..Balance::default()
+            now: step::stored_energy(&c.model, &c.state),
+            spent: step::work_and_dissipation(&c.state),
+            ..EnergyBalance::default()
         };
         let weight = 9.81 * mass;
         println!(
@@ -83,13 +83,13 @@ fn stone_weight_acts_on_base() {
             reaction / weight - 1.0,
             audit.force,
             audit.moment,
-            balance.error() / balance.turnover(),
+            balance.error() / balance.reference_energy(),
             c.state.grains.velocity(0).norm(),
         );
         assert!((force / weight - 1.0).abs() < 1e-8);
         assert!((reaction / weight - 1.0).abs() < 1e-8);
         assert!(audit.exchanges > 1000 && audit.force < 1e-12 && audit.moment < 1e-12, "{audit:?}");
-        assert!(balance.error().abs() < 1e-3 * balance.turnover(), "{balance:?}");
+        assert!(balance.error().abs() < 1e-3 * balance.reference_energy(), "{balance:?}");
     }
 }
 
@@ -151,19 +151,19 @@ fn jumping_stones_conserve_energy() {
         .collect();
     let mut c = coupled(&solid, input, 2);
     c.model.scheme = Scheme::Iterated { tolerance: 1e-9, passes: 40 };
-    let start = step::stored(&c.model, &c.state);
+    let start = step::stored_energy(&c.model, &c.state);
     let mut worst = 0.0_f64;
     while c.state.grains.time < 0.25 {
         c.step(&[]);
-        let (now, spent) = (step::stored(&c.model, &c.state), step::spent(&c.state));
+        let (now, spent) = (step::stored_energy(&c.model, &c.state), step::work_and_dissipation(&c.state));
         let fall = start.total() - now.grains_gravity;
         worst = worst.max(
-            Balance { start, now, spent, ..Balance::default() }.error().abs()
+            EnergyBalance { start, now, spent, ..EnergyBalance::default() }.error().abs()
                 / fall.max(0.05 * start.total().abs()),
         );
     }
-    let shaken = step::stored(&c.model, &c.state);
-    let interface = step::spent(&c.state).interface() / start.total();
+    let shaken = step::stored_energy(&c.model, &c.state);
+    let interface = step::work_and_dissipation(&c.state).interface() / start.total();
     println!(
         "account within {worst:.1e}, interface {interface:.1e}; solid {:.2e} J of {:.2e} J",
         shaken.solid_kinetic + shaken.solid_strain,

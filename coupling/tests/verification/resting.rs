@@ -5,8 +5,8 @@
 
 use crate::support::*;
 use std::f64::consts::FRAC_PI_8;
-use trackbed_coupling::interface::{Interface, InterfaceNumbers};
-use trackbed_coupling::stability::theta_for;
+use trackbed_coupling::interface_stability::{InterfaceStability, InterfaceStabilityNumbers};
+use trackbed_coupling::stability::theta_for_phase;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
@@ -81,20 +81,24 @@ fn touching_height(surface: &SolidSurface, place: [f64; 2]) -> f64 {
 }
 
 /// Largest kinetic energy of the solid in the fifth and last tenth of the windows.
-fn swings(mut c: Coupled<'_>, theta: Option<f64>, windows: u64) -> ([f64; 2], InterfaceNumbers, f64) {
+fn swings(
+    mut c: Coupled<'_>,
+    theta: Option<f64>,
+    windows: u64,
+) -> ([f64; 2], InterfaceStabilityNumbers, f64) {
     c.step(&[]);
     let contacts = c.work.grains.surface_contacts().to_vec();
     assert_eq!(contacts.len(), 1);
-    let mut interface = Interface::new(c.model.solid, &c.work.surface);
+    let mut interface = InterfaceStability::new(c.model.solid, &c.work.surface);
     let numbers = interface.numbers(&c.model.grains, &c.state.grains, &c.work.surface, &contacts);
     let numbers = numbers.at(c.model.window());
-    let theta = theta.unwrap_or_else(|| theta_for(numbers.phase));
+    let theta = theta.unwrap_or_else(|| theta_for_phase(numbers.phase));
     c.model.theta = theta;
     c.work = trackbed_coupling::step::Work::new(&c.model, &c.state, top(c.model.solid)).unwrap();
     let mut largest = [0.0_f64; 2];
     for k in 1..=windows {
         c.step(&[]);
-        let stored = trackbed_coupling::step::stored(&c.model, &c.state);
+        let stored = trackbed_coupling::step::stored_energy(&c.model, &c.state);
         let kinetic = stored.solid_kinetic;
         match 10 * k / windows {
             4 => largest[0] = largest[0].max(kinetic),
@@ -175,7 +179,7 @@ impl Draw {
         let fastest = (6.0 * self.stone.stiffness / mass).sqrt();
         let substeps = (window * fastest * 25.0).ceil().max(4.0);
         let surface = || match self.spread {
-            Some(radius) => top(solid).spread_over(radius),
+            Some(radius) => top(solid).distribute_over_discs(radius),
             None => top(solid),
         };
         let overlap = 9.81 * mass / self.stone.stiffness;
@@ -198,7 +202,7 @@ impl Draw {
 }
 
 /// Windows per slowest contact period, at least four.
-fn period(numbers: &InterfaceNumbers) -> u64 {
+fn period(numbers: &InterfaceStabilityNumbers) -> u64 {
     let swing = numbers.phase.max(numbers.stiffness.min(1.0) / 3.0);
     (2.0 * std::f64::consts::PI / swing).ceil().clamp(4.0, 60.0) as u64
 }
@@ -215,7 +219,7 @@ fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
         if part < 2 {
             continue;
         }
-        let stored = trackbed_coupling::step::stored(&c.model, &c.state);
+        let stored = trackbed_coupling::step::stored_energy(&c.model, &c.state);
         let kinetic = stored.solid_kinetic + stored.grains_kinetic;
         largest[part as usize - 2] = largest[part as usize - 2].max(kinetic);
     }
@@ -240,13 +244,13 @@ fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
         let mut first = draw.coupled(&solid, 1e-5);
         first.step(&[]);
         let contacts = first.work.grains.surface_contacts().to_vec();
-        let mut interface = Interface::new(&solid, &first.work.surface);
+        let mut interface = InterfaceStability::new(&solid, &first.work.surface);
         let unit =
             interface.numbers(&first.model.grains, &first.state.grains, &first.work.surface, &contacts);
         let window =
             (1.0 / unit.stiffness).min(1.0 / unit.damping.max(1e-9)).min(0.85 / unit.phase.max(1e-9));
         let n = unit.at(window);
-        let theta = theta_for(n.phase);
+        let theta = theta_for_phase(n.phase);
         let mut line = format!(
             "border {case} {} {} {} | mass {:.3} kg, W {:.2} D {:.2} phase {:.2} theta {theta:.4} |",
             draw.name,
@@ -303,12 +307,12 @@ fn border_from_both_sides_in_full() {
 /// W = Δt √(K/m) for one contact; n contacts at one point multiply W² and D by n; Ω = √(3.5 Kₜ/m).
 #[test]
 fn numbers_of_known_interfaces() {
-    use trackbed_coupling::interface::SurfacePoint;
-    use trackbed_coupling::stability::point_masses;
+    use trackbed_coupling::interface_stability::SurfacePoint;
+    use trackbed_coupling::stability::effective_masses;
     let solid = ground(1e8, 0.0);
     let surface = top(&solid);
-    let masses = point_masses(&solid, &surface, 1, |_| true).unwrap();
-    let mut interface = Interface::new(&solid, &surface);
+    let masses = effective_masses(&solid, &surface, 1, |_| true).unwrap();
+    let mut interface = InterfaceStability::new(&solid, &surface);
     let patch = (0..8).find(|&p| {
         let x = surface.mesh_position(surface.face_nodes(p)[0]);
         (x[0] - 0.8).abs() + (x[1] - 0.2).abs() < 1e-9

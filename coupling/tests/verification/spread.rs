@@ -15,7 +15,7 @@ const M: usize = 8;
 const H: f64 = 1.0 / M as f64;
 
 fn spread_top(model: &fem::Model, radius: f64) -> SolidSurface {
-    top(model).spread_over(radius)
+    top(model).distribute_over_discs(radius)
 }
 
 /// Nodal load of one contact with its audit.
@@ -204,13 +204,15 @@ fn spreading_adds_no_energy() {
             substeps,
             spread_top(&solid, radius),
         );
-        let start = step::stored(&c.model, &c.state).total();
-        let at_start = step::stored(&c.model, &c.state).grains_kinetic + c.model.grains.mass(0) * 9.81 * 0.04;
+        let start = step::stored_energy(&c.model, &c.state).total();
+        let at_start =
+            step::stored_energy(&c.model, &c.state).grains_kinetic + c.model.grains.mass(0) * 9.81 * 0.04;
         for _ in 0..7500 / substeps {
             c.step(&[]);
         }
-        let spent = step::spent(&c.state);
-        let error = step::stored(&c.model, &c.state).total() - start + spent.dissipated() - spent.work();
+        let spent = step::work_and_dissipation(&c.state);
+        let error =
+            step::stored_energy(&c.model, &c.state).total() - start + spent.dissipated() - spent.work();
         println!(
             "radius {radius}, {substeps} sub-steps: to x = {:.3}, energy error {:.1e} of {at_start:.3} J, interface {:.1e}, dashpot and friction {:.3}, {:?}",
             c.state.grains.position(0).x,

@@ -1,8 +1,8 @@
 //! Solution methods for the linear equations of an elastic model.
 
 use super::cholesky::Cholesky;
-use super::iteration::{Iteration, block_jacobi_memory};
 use super::mumps;
+use super::pcg::{PcgSystem, block_jacobi_memory};
 use super::system::{Equations, NO_STIFFNESS, SystemSolver};
 use crate::error::SolveError;
 use serde::{Deserialize, Serialize};
@@ -100,10 +100,10 @@ impl Method {
             (Method::Direct, Regime::Statics) => Box::new(Cholesky::of_stiffness(equations)?),
             (Method::Direct, Regime::Dynamics) => Box::new(Cholesky::factor(equations)?),
             (Method::Iterative { tolerance }, Regime::Statics) => {
-                Box::new(Iteration::aggregation(equations, tolerance)?)
+                Box::new(PcgSystem::aggregation(equations, tolerance)?)
             }
             (Method::Iterative { tolerance }, Regime::Dynamics) => {
-                Box::new(Iteration::block_jacobi(equations, tolerance)?)
+                Box::new(PcgSystem::block_jacobi(equations, tolerance)?)
             }
             (Method::Mumps(method), regime) => {
                 let null_pivot = if regime == Regime::Statics { NO_STIFFNESS } else { f64::EPSILON };

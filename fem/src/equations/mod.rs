@@ -2,12 +2,12 @@
 //! [`SystemSolver`](system::SystemSolver).
 
 pub mod cholesky;
-pub mod iteration;
 pub mod mass;
 pub mod method;
 pub mod mumps;
 pub mod ordering;
 mod pattern;
+pub mod pcg;
 pub mod system;
 
 pub use pattern::{analyse, values};

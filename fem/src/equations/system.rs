@@ -53,7 +53,7 @@ impl Equations<'_> {
 
 /// Counts of an iterative solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counts {
+pub struct IterationCounts {
     /// Systems solved.
     pub solves: u64,
     /// Total iterations.
@@ -140,7 +140,7 @@ pub trait SystemSolver: Send + Sync {
     }
 
     /// Counts of an iterative solver.
-    fn counts(&self) -> Option<Counts> {
+    fn counts(&self) -> Option<IterationCounts> {
         None
     }
 

@@ -1,13 +1,13 @@
 //! Time integrators behind one trait, [`TimeIntegrator`].
 
-mod memory;
+mod solver_state;
 mod step_control;
 
 use crate::error::SolveError;
 use crate::model::Model;
 use crate::state::{State, StepAudit};
-pub use memory::{Memory, Statistics};
 use serde::{Deserialize, Serialize};
+pub use solver_state::{SolverState, Statistics};
 pub use step_control::StepControl;
 pub(crate) use step_control::StepLength;
 
@@ -33,14 +33,14 @@ impl<F: FnMut(f64, &mut [f64])> Loading for F {
 }
 
 /// Loading by two closures.
-pub struct Driven<L, P> {
+pub struct LoadFunctions<L, P> {
     /// See [`Loading::load`].
     pub load: L,
     /// See [`Loading::prescribed`].
     pub prescribed: P,
 }
 
-impl<L: FnMut(f64, &mut [f64]), P: FnMut(f64, &mut [f64])> Loading for Driven<L, P> {
+impl<L: FnMut(f64, &mut [f64]), P: FnMut(f64, &mut [f64])> Loading for LoadFunctions<L, P> {
     fn load(&mut self, time: f64, load: &mut [f64]) {
         (self.load)(time, load);
     }
@@ -92,7 +92,7 @@ pub trait TimeIntegrator: Send + Sync {
     ) -> Result<(), SolveError>;
 
     /// Checkpointed state of methods with Newton iteration.
-    fn memory(&self) -> Option<Memory> {
+    fn solver_state(&self) -> Option<SolverState> {
         None
     }
 
@@ -100,7 +100,7 @@ pub trait TimeIntegrator: Send + Sync {
     ///
     /// # Errors
     /// Failed factorisation.
-    fn recall(&mut self, _model: &Model, _memory: &Memory) -> Result<(), SolveError> {
+    fn restore(&mut self, _model: &Model, _memory: &SolverState) -> Result<(), SolveError> {
         Ok(())
     }
 

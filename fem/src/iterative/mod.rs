@@ -8,5 +8,5 @@
 
 pub mod aggregation;
 pub mod block_jacobi;
-pub mod product;
-mod upper;
+pub mod matrix_product;
+mod upper_blocks;

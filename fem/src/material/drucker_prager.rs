@@ -7,11 +7,11 @@
 //!
 //! Theory manual: equation (4.12) of `docs/theory/solid.md`.
 
-use super::elastic::{Elastic, Fault};
+use super::elastic::{Elastic, InvalidConstant};
 use super::hardening::Hardening;
 use super::law::{ConstitutiveLaw, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial};
 use super::local;
-use super::point::{Point, PointState, Region};
+use super::point::{Point, PointState, ReturnRegion};
 use super::spectral::{Voigt, invariants};
 use super::strength;
 use serde::{Deserialize, Serialize};
@@ -196,8 +196,8 @@ impl DruckerPrager {
                 add_hardening(&mut a, &t, &s, region, &strength, &moduli);
             }
             let ratio = match region {
-                Region::ConeApex => 0.0,
-                Region::Cap => 1.0,
+                ReturnRegion::ConeApex => 0.0,
+                ReturnRegion::Cap => 1.0,
                 _ => s[1] / t[1],
             };
             tangent = stiffness(&direction, &a, ratio, &moduli);
@@ -212,8 +212,8 @@ impl ConstitutiveLaw for DruckerPrager {
     }
 
     /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
-    fn fault(&self, elastic: &Elastic) -> Option<Fault> {
-        self.shared().fault(|| self.softening_limit(elastic))
+    fn invalid_constant(&self, elastic: &Elastic) -> Option<InvalidConstant> {
+        self.shared().invalid_constant(|| self.softening_limit(elastic))
     }
 
     fn is_associated(&self) -> bool {
@@ -246,8 +246,9 @@ impl ConstitutiveLaw for DruckerPrager {
         strength.cone(&[p, j2.sqrt()]).max(p - strength.tension.unwrap_or(f64::INFINITY))
     }
 
-    fn reduced(&self, factor: f64) -> DruckerPrager {
-        let strength::Reduced { cohesion, friction, dilation, tension } = self.shared().reduced(factor);
+    fn with_strength_divided_by(&self, factor: f64) -> DruckerPrager {
+        let strength::ReducedStrength { cohesion, friction, dilation, tension } =
+            self.shared().with_strength_divided_by(factor);
         DruckerPrager { cohesion, friction, dilation, tension, cone: self.cone }
     }
 }
@@ -268,46 +269,54 @@ impl Strength {
         moduli.shear + moduli.bulk * self.eta * self.flow
     }
 
-    fn project(&self, t: &Meridian, moduli: &Moduli) -> (Meridian, Region) {
+    fn project(&self, t: &Meridian, moduli: &Moduli) -> (Meridian, ReturnRegion) {
         let f = self.cone(t);
         let multiplier = f.max(0.0) / self.stiffness(moduli);
         let p = t[0] - moduli.bulk * self.flow * multiplier;
         match self.tension {
             Some(cut) if p > cut => {
                 let corner = self.top - self.eta * cut;
-                if t[1] <= corner { ([cut, t[1]], Region::Cap) } else { ([cut, corner], Region::ConeCap) }
+                if t[1] <= corner {
+                    ([cut, t[1]], ReturnRegion::Cap)
+                } else {
+                    ([cut, corner], ReturnRegion::ConeCap)
+                }
             }
             _ => {
                 let q = self.top - self.eta * p;
                 // Not `q < 0`: on the axis the apex is the limit.
-                if q > 0.0 { ([p, q], Region::Cone) } else { ([self.top / self.eta, 0.0], Region::ConeApex) }
+                if q > 0.0 {
+                    ([p, q], ReturnRegion::Cone)
+                } else {
+                    ([self.top / self.eta, 0.0], ReturnRegion::ConeApex)
+                }
             }
         }
     }
 
     /// Derivative of the returned stress by `kappa` at fixed trial.
-    fn rate(&self, region: Region, s: &Meridian, moduli: &Moduli) -> Meridian {
+    fn rate(&self, region: ReturnRegion, s: &Meridian, moduli: &Moduli) -> Meridian {
         let top = self.top_rate - self.eta_rate * s[0];
         match region {
-            Region::Cone => {
+            ReturnRegion::Cone => {
                 let multiplier = top / self.stiffness(moduli);
                 [moduli.bulk * self.flow * multiplier, moduli.shear * multiplier]
             }
-            Region::ConeApex => [top / self.eta, 0.0],
-            Region::ConeCap => [0.0, top],
+            ReturnRegion::ConeApex => [top / self.eta, 0.0],
+            ReturnRegion::ConeCap => [0.0, top],
             _ => [0.0; 2],
         }
     }
 
     /// Derivative of the returned by the trial `(p, q)` at fixed strength.
-    fn tangent(&self, region: Region, moduli: &Moduli) -> [[f64; 2]; 2] {
+    fn tangent(&self, region: ReturnRegion, moduli: &Moduli) -> [[f64; 2]; 2] {
         match region {
-            Region::Cone => {
+            ReturnRegion::Cone => {
                 let d = 1.0 / self.stiffness(moduli);
                 let (p, q) = (moduli.bulk * self.flow * d, moduli.shear * d);
                 [[1.0 - p * self.eta, -p], [-q * self.eta, 1.0 - q]]
             }
-            Region::Cap => [[0.0, 0.0], [0.0, 1.0]],
+            ReturnRegion::Cap => [[0.0, 0.0], [0.0, 1.0]],
             _ => [[0.0; 2]; 2],
         }
     }
@@ -334,7 +343,7 @@ fn add_hardening(
     a: &mut [[f64; 2]; 2],
     t: &Meridian,
     s: &Meridian,
-    region: Region,
+    region: ReturnRegion,
     strength: &Strength,
     moduli: &Moduli,
 ) {

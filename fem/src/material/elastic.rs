@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Invalid constant: name, value, expectation.
-pub type Fault = (&'static str, f64, &'static str);
+pub type InvalidConstant = (&'static str, f64, &'static str);
 
 /// Isotropic elastic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,7 +69,7 @@ impl Elastic {
     }
 
     /// First invalid constant.
-    pub fn fault(&self) -> Option<Fault> {
+    pub fn invalid_constant(&self) -> Option<InvalidConstant> {
         if !(self.young > 0.0 && self.young.is_finite()) {
             return Some(("Young's modulus", self.young, "a finite number above 0"));
         }
@@ -109,9 +109,9 @@ mod tests {
     #[test]
     fn unusable_constants_are_named() {
         let good = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
-        assert!(good.fault().is_none());
-        assert_eq!(Elastic { young: 0.0, ..good }.fault().unwrap().0, "Young's modulus");
-        assert_eq!(Elastic { poisson: 0.5, ..good }.fault().unwrap().0, "Poisson's ratio");
-        assert_eq!(Elastic { density: f64::NAN, ..good }.fault().unwrap().0, "density");
+        assert!(good.invalid_constant().is_none());
+        assert_eq!(Elastic { young: 0.0, ..good }.invalid_constant().unwrap().0, "Young's modulus");
+        assert_eq!(Elastic { poisson: 0.5, ..good }.invalid_constant().unwrap().0, "Poisson's ratio");
+        assert_eq!(Elastic { density: f64::NAN, ..good }.invalid_constant().unwrap().0, "density");
     }
 }

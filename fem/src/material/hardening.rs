@@ -5,7 +5,7 @@
 //!
 //! Theory manual: equation (4.11) of `docs/theory/solid.md`.
 
-use super::elastic::Fault;
+use super::elastic::InvalidConstant;
 use serde::{Deserialize, Serialize};
 
 /// Cohesion [Pa] or friction angle [rad] as a function of `kappa` [-].
@@ -113,7 +113,7 @@ impl Hardening {
     }
 
     /// First invalid value; `bounded`: growth needs a limit.
-    pub(super) fn fault(&self, name: &'static str, bounded: bool) -> Option<Fault> {
+    pub(super) fn invalid_constant(&self, name: &'static str, bounded: bool) -> Option<InvalidConstant> {
         match self {
             Hardening::Constant(value) => (!value.is_finite()).then_some((name, *value, "a finite number")),
             Hardening::Linear { initial, modulus, limit } => {
@@ -180,10 +180,10 @@ mod tests {
 
     #[test]
     fn unusable_laws_are_named() {
-        let expected = |law: Hardening, bounded| law.fault("cohesion", bounded).unwrap().2;
+        let expected = |law: Hardening, bounded| law.invalid_constant("cohesion", bounded).unwrap().2;
         let line = |modulus, limit| Hardening::Linear { initial: 1.0, modulus, limit };
         assert!(expected(line(-1.0, None), false).contains("limit of hardening"));
-        assert!(line(1.0, None).fault("cohesion", false).is_none());
+        assert!(line(1.0, None).invalid_constant("cohesion", false).is_none());
         assert!(expected(line(1.0, None), true).contains("limit of hardening"));
         assert!(expected(line(1.0, Some(0.5)), false).contains("side"));
         assert!(expected(Hardening::Table(vec![]), false).contains("one or more"));

@@ -1,7 +1,7 @@
 //! Interface of constitutive laws.
 
-use super::elastic::{Elastic, Fault};
-use super::point::{Point, PointState, Region};
+use super::elastic::{Elastic, InvalidConstant};
+use super::point::{Point, PointState, ReturnRegion};
 use thiserror::Error;
 
 /// Relative overshoot that still counts as elastic.
@@ -22,7 +22,7 @@ pub struct Response {
     /// Final stress and history.
     pub state: PointState,
     /// Region of the final stress.
-    pub region: Region,
+    pub region: ReturnRegion,
     /// Consistent tangent [Pa], `d stress[i] / d strain[j]`, engineering shear; zero unless requested.
     pub tangent: [[f64; 6]; 6],
 }
@@ -57,7 +57,7 @@ pub trait ConstitutiveLaw {
     fn source(&self) -> &'static str;
 
     /// First invalid constant.
-    fn fault(&self, elastic: &Elastic) -> Option<Fault>;
+    fn invalid_constant(&self, elastic: &Elastic) -> Option<InvalidConstant>;
 
     /// Whether stress is proportional to strain, as linear solvers require.
     fn is_linear(&self) -> bool {
@@ -118,7 +118,7 @@ pub trait ConstitutiveLaw {
 
     /// Law with strength divided by `factor` (above 0).
     #[must_use]
-    fn reduced(&self, factor: f64) -> Self
+    fn with_strength_divided_by(&self, factor: f64) -> Self
     where
         Self: Sized;
 }
@@ -140,5 +140,5 @@ pub(super) fn elastic_response(
     want_tangent: bool,
 ) -> Response {
     let tangent = if want_tangent { elastic.matrix() } else { [[0.0; 6]; 6] };
-    Response { state: PointState { stress: *trial, ..*old }, region: Region::Elastic, tangent }
+    Response { state: PointState { stress: *trial, ..*old }, region: ReturnRegion::Elastic, tangent }
 }

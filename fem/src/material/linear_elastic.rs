@@ -1,6 +1,6 @@
 //! Linear elasticity as a constitutive law.
 
-use super::elastic::{Elastic, Fault};
+use super::elastic::{Elastic, InvalidConstant};
 use super::law::{ConstitutiveLaw, Response, ReturnError, elastic_response, elastic_trial};
 use super::point::Point;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ impl ConstitutiveLaw for LinearElastic {
         "linear elasticity: Timoshenko & Goodier, Theory of Elasticity 1970"
     }
 
-    fn fault(&self, _: &Elastic) -> Option<Fault> {
+    fn invalid_constant(&self, _: &Elastic) -> Option<InvalidConstant> {
         None
     }
 
@@ -46,7 +46,7 @@ impl ConstitutiveLaw for LinearElastic {
         f64::NEG_INFINITY
     }
 
-    fn reduced(&self, _: f64) -> LinearElastic {
+    fn with_strength_divided_by(&self, _: f64) -> LinearElastic {
         LinearElastic
     }
 }

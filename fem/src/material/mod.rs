@@ -21,13 +21,13 @@ mod spectral;
 mod strength;
 
 pub use drucker_prager::{Cone, DruckerPrager};
-pub use elastic::{Elastic, Fault};
+pub use elastic::{Elastic, InvalidConstant};
 pub use hardening::Hardening;
 pub use law::{ConstitutiveLaw, Response, ReturnError, StateValue};
 pub use linear_elastic::LinearElastic;
 pub use modified_cam_clay::{Consolidation, ModifiedCamClay, Shear};
 pub use mohr_coulomb::MohrCoulomb;
-pub use point::{Point, PointState, Points, Region};
+pub use point::{Point, PointState, Points, ReturnRegion};
 
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -77,9 +77,9 @@ macro_rules! laws {
 
             /// See [`ConstitutiveLaw::reduced`].
             #[must_use]
-            pub fn reduced(&self, factor: f64) -> Law {
+            pub fn with_strength_divided_by(&self, factor: f64) -> Law {
                 match self {
-                    $(Law::$law(law) => Law::$law(law.reduced(factor)),)*
+                    $(Law::$law(law) => Law::$law(law.with_strength_divided_by(factor)),)*
                 }
             }
         }
@@ -127,8 +127,9 @@ impl Material {
     }
 
     /// First invalid constant: name, value, expectation.
-    pub fn fault(&self) -> Option<Fault> {
-        let (law, elastic) = (|| self.law.fault(&self.elastic), || self.elastic.fault());
+    pub fn invalid_constant(&self) -> Option<InvalidConstant> {
+        let (law, elastic) =
+            (|| self.law.invalid_constant(&self.elastic), || self.elastic.invalid_constant());
         // Derived constants are invalid only if the law's are.
         if self.law.has_constant_elasticity() { elastic().or_else(law) } else { law().or_else(elastic) }
     }
@@ -144,8 +145,8 @@ impl Material {
     }
 
     /// Material with strength divided by `factor`, see [`ConstitutiveLaw::reduced`].
-    pub fn reduced(&self, factor: f64) -> Material {
-        Material { elastic: self.elastic, law: self.law.reduced(factor) }
+    pub fn with_strength_divided_by(&self, factor: f64) -> Material {
+        Material { elastic: self.elastic, law: self.law.with_strength_divided_by(factor) }
     }
 }
 

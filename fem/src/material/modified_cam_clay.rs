@@ -18,9 +18,9 @@
 
 pub use super::cam_clay_return::Shear;
 use super::cam_clay_return::{Clay, Step, contract, split, tangent};
-use super::elastic::{Elastic, Fault};
+use super::elastic::{Elastic, InvalidConstant};
 use super::law::{ConstitutiveLaw, Response, ReturnError, StateValue, YIELD_TOLERANCE};
-use super::point::{Point, PointState, Region};
+use super::point::{Point, PointState, ReturnRegion};
 use super::spectral::{Voigt, invariants};
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +97,7 @@ impl ConstitutiveLaw for ModifiedCamClay {
         "modified Cam clay: Roscoe & Burland 1968; implicit integration: Borja & Lee, Comput. Methods Appl. Mech. Eng. 78, 1990"
     }
 
-    fn fault(&self, _: &Elastic) -> Option<Fault> {
+    fn invalid_constant(&self, _: &Elastic) -> Option<InvalidConstant> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let above = "a finite number above 0";
         let (shear, good) = match self.shear {
@@ -202,7 +202,7 @@ impl ConstitutiveLaw for ModifiedCamClay {
             (true, true) => step.elastic_tangent(&end),
             (true, false) => step.plastic_tangent(&end),
         };
-        let region = if elastic { Region::Elastic } else { Region::Named("ellipse") };
+        let region = if elastic { ReturnRegion::Elastic } else { ReturnRegion::Named("ellipse") };
         Ok(Response { state, region, tangent })
     }
 
@@ -225,7 +225,7 @@ impl ConstitutiveLaw for ModifiedCamClay {
     }
 
     /// Reduces the tangent of the triaxial friction angle, `sin(phi) = 3 M / (6 + M)`.
-    fn reduced(&self, factor: f64) -> ModifiedCamClay {
+    fn with_strength_divided_by(&self, factor: f64) -> ModifiedCamClay {
         let phi = libm::asin(3.0 * self.critical_ratio / (6.0 + self.critical_ratio));
         let sin = libm::sin(libm::atan(libm::tan(phi) / factor));
         ModifiedCamClay { critical_ratio: 6.0 * sin / (3.0 - sin), ..*self }

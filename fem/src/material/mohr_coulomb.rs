@@ -7,11 +7,11 @@
 //!
 //! Theory manual: equation (4.13) of `docs/theory/solid.md`.
 
-use super::elastic::{Elastic, Fault};
+use super::elastic::{Elastic, InvalidConstant};
 use super::hardening::Hardening;
 use super::law::{ConstitutiveLaw, Response, ReturnError, YIELD_TOLERANCE, elastic_response, elastic_trial};
 use super::local;
-use super::point::{Point, PointState, Region};
+use super::point::{Point, PointState, ReturnRegion};
 use super::principal_return::{self, Moduli, Strength};
 use super::spectral::{self, Voigt, invariants};
 use super::strength;
@@ -53,17 +53,19 @@ impl MohrCoulomb {
         for phi in [low, high] {
             let strength = Strength::new((1.0, 1.0), (phi, 0.0), libm::sin(self.dilation), None);
             for region in [
-                Region::Plane,
-                Region::EdgeCompression,
-                Region::EdgeExtension,
-                Region::Apex,
-                Region::PlaneTension,
-                Region::EdgeCompressionTension,
-                Region::EdgeExtensionTension,
+                ReturnRegion::Plane,
+                ReturnRegion::EdgeCompression,
+                ReturnRegion::EdgeExtension,
+                ReturnRegion::Apex,
+                ReturnRegion::PlaneTension,
+                ReturnRegion::EdgeCompressionTension,
+                ReturnRegion::EdgeExtensionTension,
             ] {
                 let absent = match region {
-                    Region::Apex => phi == 0.0,
-                    Region::Plane | Region::EdgeCompression | Region::EdgeExtension => false,
+                    ReturnRegion::Apex => phi == 0.0,
+                    ReturnRegion::Plane | ReturnRegion::EdgeCompression | ReturnRegion::EdgeExtension => {
+                        false
+                    }
                     _ => self.tension.is_none(),
                 };
                 if absent {
@@ -158,8 +160,8 @@ impl ConstitutiveLaw for MohrCoulomb {
     }
 
     /// Friction softening depends on stress and fails with [`ReturnError::Softening`] instead.
-    fn fault(&self, elastic: &Elastic) -> Option<Fault> {
-        self.shared().fault(|| self.softening_limit(elastic))
+    fn invalid_constant(&self, elastic: &Elastic) -> Option<InvalidConstant> {
+        self.shared().invalid_constant(|| self.softening_limit(elastic))
     }
 
     fn is_associated(&self) -> bool {
@@ -190,8 +192,9 @@ impl ConstitutiveLaw for MohrCoulomb {
         (0.5 * strength.plane(&s)).max(s[0] - strength.tension.unwrap_or(f64::INFINITY))
     }
 
-    fn reduced(&self, factor: f64) -> MohrCoulomb {
-        let strength::Reduced { cohesion, friction, dilation, tension } = self.shared().reduced(factor);
+    fn with_strength_divided_by(&self, factor: f64) -> MohrCoulomb {
+        let strength::ReducedStrength { cohesion, friction, dilation, tension } =
+            self.shared().with_strength_divided_by(factor);
         MohrCoulomb { cohesion, friction, dilation, tension }
     }
 }
@@ -229,7 +232,7 @@ fn add_hardening(
     a: &mut [[f64; 3]; 3],
     s: &[f64; 3],
     flow: &[f64; 3],
-    region: Region,
+    region: ReturnRegion,
     strength: &Strength,
     moduli: &Moduli,
 ) {
@@ -251,7 +254,7 @@ fn add_hardening(
 
 /// Spin terms of the tangent, `mu (s_i - s_j) / (t_i - t_j)`; for equal trial values 0 if kept equal, else
 /// `mu`.
-fn shear_moduli(t: &[f64; 3], s: &[f64; 3], region: Region, mu: f64) -> [f64; 3] {
+fn shear_moduli(t: &[f64; 3], s: &[f64; 3], region: ReturnRegion, mu: f64) -> [f64; 3] {
     let (first, second) = principal_return::equal_pairs(region);
     let size = t[0].abs().max(t[2].abs());
     let ratio = |i: usize, j: usize, equal: bool| {

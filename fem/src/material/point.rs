@@ -93,7 +93,7 @@ impl<'a> IntoIterator for &'a mut Points {
 
 /// Region of the yield surface; principal stresses `s1 >= s2 >= s3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Region {
+pub enum ReturnRegion {
     /// Elastic.
     Elastic,
     /// Mohr–Coulomb: plane of `s1` and `s3`.
@@ -128,9 +128,9 @@ pub enum Region {
     Named(&'static str),
 }
 
-impl Region {
+impl ReturnRegion {
     /// Whether the step had plastic flow.
     pub fn is_plastic(self) -> bool {
-        self != Region::Elastic
+        self != ReturnRegion::Elastic
     }
 }

@@ -9,7 +9,7 @@
 //! section 8.2.
 
 use super::elastic::Elastic;
-use super::point::Region;
+use super::point::ReturnRegion;
 
 #[derive(Clone, Copy)]
 pub(super) struct Moduli {
@@ -85,18 +85,18 @@ impl Strength {
 }
 
 /// Best region; margin [Pa]: smallest condition.
-struct Choice {
+struct ReturnCandidate {
     stress: [f64; 3],
-    region: Region,
+    region: ReturnRegion,
     margin: f64,
 }
 
-impl Choice {
+impl ReturnCandidate {
     #[inline(always)]
-    fn offer(&mut self, region: Region, stress: [f64; 3], conditions: [f64; 4]) -> bool {
+    fn offer(&mut self, region: ReturnRegion, stress: [f64; 3], conditions: [f64; 4]) -> bool {
         let margin = conditions[0].min(conditions[1]).min(conditions[2].min(conditions[3]));
         if margin > self.margin {
-            *self = Choice { stress, region, margin };
+            *self = ReturnCandidate { stress, region, margin };
         }
         margin >= 0.0
     }
@@ -104,11 +104,12 @@ impl Choice {
 
 /// Returned stress and region of a sorted trial stress. If rounding rejects all regions, the least violated
 /// is selected; hence conditions repeat.
-pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], Region) {
-    let mut choice = Choice { stress: *trial, region: Region::Elastic, margin: f64::NEG_INFINITY };
+pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], ReturnRegion) {
+    let mut choice =
+        ReturnCandidate { stress: *trial, region: ReturnRegion::Elastic, margin: f64::NEG_INFINITY };
     let _ = plane_and_edges(trial, strength, moduli, &mut choice)
         || match strength.tension {
-            Some(t) => cut_off(t, trial, strength, moduli, &mut choice),
+            Some(t) => tension_cutoff(t, trial, strength, moduli, &mut choice),
             None => apex(trial, strength, moduli, &mut choice),
         };
     (choice.stress, choice.region)
@@ -123,7 +124,7 @@ fn dot(x: &[f64; 3], y: &[f64; 3]) -> f64 {
     x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 }
 
-fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut ReturnCandidate) -> bool {
     let cut = q.tension.unwrap_or(f64::INFINITY);
     // s1 follows from s3, so that large steps stay on the surface.
     let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
@@ -131,7 +132,7 @@ fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     let multiplier = f / (q.a * r[0] - q.b * r[2]);
     let s3 = trial[2] - multiplier * r[2];
     let s = [(q.b * s3 + q.k) / q.a, trial[1] - multiplier * r[1], s3];
-    if choice.offer(Region::Plane, s, [f, s[0] - s[1], s[1] - s[2], cut - s[0]]) {
+    if choice.offer(ReturnRegion::Plane, s, [f, s[0] - s[1], s[1] - s[2], cut - s[0]]) {
         return true;
     }
     // Edges: s = start + s3 * line, on one side of the apex if s1 >= s3.
@@ -141,7 +142,7 @@ fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     let s1 = start + slope * s3;
     let s = [s1, s1, s3];
     let e = flow(moduli, trial, &s);
-    if choice.offer(Region::EdgeCompression, s, [e[1], -e[2], s1 - s3, cut - s1]) {
+    if choice.offer(ReturnRegion::EdgeCompression, s, [e[1], -e[2], s1 - s3, cut - s1]) {
         return true;
     }
     let u = moduli.scaled_strain(&[q.flow_b, q.flow_a, q.flow_a]);
@@ -149,10 +150,10 @@ fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     let s1 = start + slope * s3;
     let s = [s1, s3, s3];
     let e = flow(moduli, trial, &s);
-    choice.offer(Region::EdgeExtension, s, [-e[1], e[0], s1 - s3, cut - s1])
+    choice.offer(ReturnRegion::EdgeExtension, s, [-e[1], e[0], s1 - s3, cut - s1])
 }
 
-fn apex(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+fn apex(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut ReturnCandidate) -> bool {
     if q.sin == 0.0 {
         return false;
     }
@@ -161,84 +162,94 @@ fn apex(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) ->
     let (low, high) = (q.flow_b, q.flow_a);
     let compression = low * (e[0] + e[1]) + high * e[2];
     let extension = low * e[0] + high * (e[1] + e[2]);
-    choice.offer(Region::Apex, s, [compression, extension, compression, extension])
+    choice.offer(ReturnRegion::Apex, s, [compression, extension, compression, extension])
 }
 
-fn cut_off(t: f64, trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut Choice) -> bool {
+fn tension_cutoff(
+    t: f64,
+    trial: &[f64; 3],
+    q: &Strength,
+    moduli: &Moduli,
+    choice: &mut ReturnCandidate,
+) -> bool {
     let s3 = q.corner(t);
     let steep = q.flow_a / q.flow_b;
     let drop = (trial[0] - t) * moduli.lambda / (moduli.lambda + 2.0 * moduli.mu);
     let s = [t, trial[1] - drop, trial[2] - drop];
-    if choice.offer(Region::TensionPlane, s, [trial[0] - t, t - s[1], s[2] - s3, trial[0] - t]) {
+    if choice.offer(ReturnRegion::TensionPlane, s, [trial[0] - t, t - s[1], s[2] - s3, trial[0] - t]) {
         return true;
     }
     let (d1, d3) = (trial[0] - t, trial[2] - s3);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d3);
     let s = [t, trial[1] - drop, s3];
     let (e1, e3) = (d1 - drop, d3 - drop);
-    if choice.offer(Region::PlaneTension, s, [-e3, e1 + steep * e3, t - s[1], s[1] - s3]) {
+    if choice.offer(ReturnRegion::PlaneTension, s, [-e3, e1 + steep * e3, t - s[1], s[1] - s3]) {
         return true;
     }
     let (d1, d2) = (trial[0] - t, trial[1] - t);
     let drop = 0.5 * moduli.lambda / (moduli.lambda + moduli.mu) * (d1 + d2);
     let s = [t, t, trial[2] - drop];
-    if choice.offer(Region::TensionEdge, s, [d2 - drop, d1 - drop, t - s[2], s[2] - s3]) {
+    if choice.offer(ReturnRegion::TensionEdge, s, [d2 - drop, d1 - drop, t - s[2], s[2] - s3]) {
         return true;
     }
     let s = [t, t, s3];
     let e = flow(moduli, trial, &s);
-    if choice.offer(Region::EdgeCompressionTension, s, [-e[2], e[1], e[0], e[0] + e[1] + steep * e[2]]) {
+    if choice.offer(ReturnRegion::EdgeCompressionTension, s, [-e[2], e[1], e[0], e[0] + e[1] + steep * e[2]])
+    {
         return true;
     }
     let s = [t, s3, s3];
     let e = flow(moduli, trial, &s);
-    if choice.offer(Region::EdgeExtensionTension, s, [-e[1], -e[2], e[0], e[0] + steep * (e[1] + e[2])]) {
+    if choice.offer(ReturnRegion::EdgeExtensionTension, s, [-e[1], -e[2], e[0], e[0] + steep * (e[1] + e[2])])
+    {
         return true;
     }
     let s = [t; 3];
     let e = flow(moduli, trial, &s);
-    choice.offer(Region::TensionCorner, s, [e[2], e[1], e[0], e[2]])
+    choice.offer(ReturnRegion::TensionCorner, s, [e[2], e[1], e[0], e[2]])
 }
 
 /// Equal pairs of principal stresses: (1,2) and (2,3).
-pub(super) fn equal_pairs(region: Region) -> (bool, bool) {
+pub(super) fn equal_pairs(region: ReturnRegion) -> (bool, bool) {
     match region {
-        Region::EdgeCompression | Region::TensionEdge | Region::EdgeCompressionTension => (true, false),
-        Region::EdgeExtension | Region::EdgeExtensionTension => (false, true),
-        Region::Apex | Region::TensionCorner => (true, true),
+        ReturnRegion::EdgeCompression | ReturnRegion::TensionEdge | ReturnRegion::EdgeCompressionTension => {
+            (true, false)
+        }
+        ReturnRegion::EdgeExtension | ReturnRegion::EdgeExtensionTension => (false, true),
+        ReturnRegion::Apex | ReturnRegion::TensionCorner => (true, true),
         _ => (false, false),
     }
 }
 
 /// Velocity of the surface with `kappa` at `s`.
-fn drift(region: Region, s: &[f64; 3], q: &Strength) -> [f64; 3] {
+fn drift(region: ReturnRegion, s: &[f64; 3], q: &Strength) -> [f64; 3] {
     // a' = sin', b' = -sin'.
     let along_s1 = (q.k_rate - q.sin_rate * (s[0] + s[2])) / q.a;
     let corner = (q.sin_rate * (s[0] + s[2]) - q.k_rate) / q.b;
     match region {
-        Region::EdgeCompression => [along_s1, along_s1, 0.0],
-        Region::EdgeExtension => [along_s1, 0.0, 0.0],
-        Region::Apex => [(q.k_rate - 2.0 * s[0] * q.sin_rate) / (2.0 * q.sin); 3],
-        Region::PlaneTension | Region::EdgeCompressionTension => [0.0, 0.0, corner],
-        Region::EdgeExtensionTension => [0.0, corner, corner],
+        ReturnRegion::EdgeCompression => [along_s1, along_s1, 0.0],
+        ReturnRegion::EdgeExtension => [along_s1, 0.0, 0.0],
+        ReturnRegion::Apex => [(q.k_rate - 2.0 * s[0] * q.sin_rate) / (2.0 * q.sin); 3],
+        ReturnRegion::PlaneTension | ReturnRegion::EdgeCompressionTension => [0.0, 0.0, corner],
+        ReturnRegion::EdgeExtensionTension => [0.0, corner, corner],
         _ => [0.0; 3],
     }
 }
 
 /// Direction `l` of a line and `w`, orthogonal to the flow.
-fn line(region: Region, q: &Strength) -> Option<([f64; 3], [f64; 3])> {
+fn line(region: ReturnRegion, q: &Strength) -> Option<([f64; 3], [f64; 3])> {
     match region {
-        Region::EdgeCompression => Some(([q.b, q.b, q.a], [q.flow_b, q.flow_b, q.flow_a])),
-        Region::EdgeExtension => Some(([q.b, q.a, q.a], [q.flow_b, q.flow_a, q.flow_a])),
-        Region::PlaneTension => Some(([0.0, 1.0, 0.0], [0.0, 1.0, 0.0])),
-        Region::TensionEdge => Some(([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])),
+        ReturnRegion::EdgeCompression => Some(([q.b, q.b, q.a], [q.flow_b, q.flow_b, q.flow_a])),
+        ReturnRegion::EdgeExtension => Some(([q.b, q.a, q.a], [q.flow_b, q.flow_a, q.flow_a])),
+        ReturnRegion::PlaneTension => Some(([0.0, 1.0, 0.0], [0.0, 1.0, 0.0])),
+        ReturnRegion::TensionEdge => Some(([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])),
         _ => None,
     }
 }
 
 /// Derivative of the returned stress by `kappa` at fixed trial.
-pub(super) fn rate(region: Region, s: &[f64; 3], q: &Strength, moduli: &Moduli) -> [f64; 3] {
-    if region == Region::Plane {
+pub(super) fn rate(region: ReturnRegion, s: &[f64; 3], q: &Strength, moduli: &Moduli) -> [f64; 3] {
+    if region == ReturnRegion::Plane {
         let r = moduli.stress(&[q.flow_a, 0.0, -q.flow_b]);
         let multiplier = (q.k_rate - q.sin_rate * (s[0] + s[2])) / (q.a * r[0] - q.b * r[2]);
         return r.map(|r| r * multiplier);
@@ -255,7 +266,7 @@ pub(super) fn rate(region: Region, s: &[f64; 3], q: &Strength, moduli: &Moduli) 
 }
 
 /// `A[i][j] = d s_i / d e_j` at fixed strength, `e` trial principal strain.
-pub(super) fn tangent(region: Region, q: &Strength, moduli: &Moduli) -> [[f64; 3]; 3] {
+pub(super) fn tangent(region: ReturnRegion, q: &Strength, moduli: &Moduli) -> [[f64; 3]; 3] {
     if let Some((l, w)) = line(region, q) {
         let scale = 2.0 * moduli.mu / dot(&moduli.scaled_strain(&w), &l);
         return l.map(|l| w.map(|w| scale * l * w));
@@ -263,9 +274,9 @@ pub(super) fn tangent(region: Region, q: &Strength, moduli: &Moduli) -> [[f64; 3
     let elastic: [[f64; 3]; 3] =
         std::array::from_fn(|i| moduli.stress(&std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 })));
     let (normal, flow) = match region {
-        Region::Elastic => return elastic,
-        Region::Plane => ([q.a, 0.0, -q.b], [q.flow_a, 0.0, -q.flow_b]),
-        Region::TensionPlane => ([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
+        ReturnRegion::Elastic => return elastic,
+        ReturnRegion::Plane => ([q.a, 0.0, -q.b], [q.flow_a, 0.0, -q.flow_b]),
+        ReturnRegion::TensionPlane => ([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
         _ => return [[0.0; 3]; 3],
     };
     let (r, n) = (moduli.stress(&flow), moduli.stress(&normal));

@@ -2,7 +2,7 @@
 //!
 //! Theory manual: equation (4.16) of `docs/theory/solid.md`.
 
-use super::elastic::Fault;
+use super::elastic::InvalidConstant;
 use super::hardening::Hardening;
 
 pub(super) const SOURCE: &str = "plasticity: return maps in principal stresses, de Souza Neto, Peric & Owen 2008; Clausen, \
@@ -15,7 +15,7 @@ pub(super) struct Strength<'a> {
     pub tension: Option<f64>,
 }
 
-pub(super) struct Reduced {
+pub(super) struct ReducedStrength {
     pub cohesion: Hardening,
     pub friction: Hardening,
     pub dilation: f64,
@@ -25,9 +25,9 @@ pub(super) struct Reduced {
 impl Strength<'_> {
     /// Strength divided by `factor`: `c / F`, `tan(phi) / F`, cut-off `/ F`; dilation angle capped by the
     /// reduced friction angle. Source: Griffiths and Lane (1999), equations 1 and 2.
-    pub fn reduced(&self, factor: f64) -> Reduced {
+    pub fn with_strength_divided_by(&self, factor: f64) -> ReducedStrength {
         let friction = self.friction.map(|phi| libm::atan(libm::tan(phi) / factor));
-        Reduced {
+        ReducedStrength {
             cohesion: self.cohesion.map(|c| c / factor),
             dilation: self.dilation.min(friction.range().0),
             friction,
@@ -40,10 +40,11 @@ impl Strength<'_> {
     }
 
     /// First invalid constant; cohesion softening must exceed `softening_limit` [Pa].
-    pub fn fault(&self, softening_limit: impl FnOnce() -> f64) -> Option<Fault> {
+    pub fn invalid_constant(&self, softening_limit: impl FnOnce() -> f64) -> Option<InvalidConstant> {
         let Strength { cohesion, friction, dilation, tension } = *self;
-        if let Some(fault) =
-            friction.fault("friction angle", true).or_else(|| cohesion.fault("cohesion", false))
+        if let Some(fault) = friction
+            .invalid_constant("friction angle", true)
+            .or_else(|| cohesion.invalid_constant("cohesion", false))
         {
             return Some(fault);
         }

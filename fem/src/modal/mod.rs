@@ -17,7 +17,7 @@ use crate::equations::cholesky::Cholesky;
 use crate::error::{SolveError, size};
 use crate::model::Model;
 use crate::newmark::check_density;
-use crate::statics::check_held;
+use crate::statics::check_rigid_body_motion;
 use krylov::{Operator, Ritz};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -27,7 +27,7 @@ const SHIFT: f64 = 1e-3;
 /// Squared rigid frequency over the lowest smooth one.
 const RIGID: f64 = 1e-6;
 /// Largest accepted residual.
-const REFUSE: f64 = 1e-5;
+const MAX_RESIDUAL: f64 = 1e-5;
 /// Relative rounding of eigenvalues.
 const TIE: f64 = 1e-8;
 
@@ -107,14 +107,14 @@ pub fn solve(model: &Model, count: usize) -> Result<Modes, ModalError> {
         modes.zero_modes = modes.circular.iter().filter(|w| *w * *w < RIGID * scale).count();
     }
     participation(model, &mut modes);
-    match modes.residuals.iter().position(|r| r.is_nan() || *r > REFUSE) {
+    match modes.residuals.iter().position(|r| r.is_nan() || *r > MAX_RESIDUAL) {
         Some(i) => Err(ModalError::Inaccurate { mode: i + 1, residual: modes.residuals[i] }),
         None => Ok(modes),
     }
 }
 
 fn shifted_factor(model: &Model, scale: f64) -> Result<(Cholesky, f64), SolveError> {
-    if check_held(model).is_ok() {
+    if check_rigid_body_motion(model).is_ok() {
         match Cholesky::of_stiffness(&model.equations(Combination::STIFFNESS)) {
             Ok(factor) => return Ok((factor, 0.0)),
             // Mechanism not visible in the geometry.

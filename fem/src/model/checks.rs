@@ -55,7 +55,7 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), ModelError> {
 
 pub(super) fn check_materials(mesh: &Mesh, materials: &BTreeMap<u32, Material>) -> Result<(), ModelError> {
     for (&material, constants) in materials {
-        if let Some((constant, value, expected)) = constants.fault() {
+        if let Some((constant, value, expected)) = constants.invalid_constant() {
             return Err(ModelError::MaterialConstant { material, constant, value, expected });
         }
     }

@@ -22,7 +22,7 @@ mod start;
 
 use crate::assembly::Combination;
 use crate::energy::inner_force;
-use crate::equations::system::{Counts, SystemSolver};
+use crate::equations::system::{IterationCounts, SystemSolver};
 pub use crate::error::NewmarkError;
 use crate::error::SolveError;
 use crate::integrator::{Conditions, Loading, OnStep, StepReport, TimeIntegrator, steps_of};
@@ -36,7 +36,7 @@ pub use start::{initial_acceleration, initial_acceleration_prescribed};
 
 /// Loads and prescribed motion of one step.
 #[derive(Clone, Copy, Debug)]
-pub struct Drive<'a> {
+pub struct StepLoads<'a> {
     /// Initial load [N], shape `[3 * nodes]`; required by HHT-α only.
     pub load_start: Option<&'a [f64]>,
     /// Final load [N], shape `[3 * nodes]`.
@@ -116,7 +116,7 @@ impl NewmarkSolver {
     }
 
     /// CG counts, if selected.
-    pub fn counts(&self) -> Option<Counts> {
+    pub fn counts(&self) -> Option<IterationCounts> {
         self.system.counts()
     }
 
@@ -147,7 +147,7 @@ impl NewmarkSolver {
         state: &mut State,
         load_end: &[f64],
     ) -> Result<StepAudit, SolveError> {
-        self.advance(model, state, Drive { load_start: None, load_end, prescribed: None })
+        self.advance(model, state, StepLoads { load_start: None, load_end, prescribed: None })
     }
 
     /// Advances `state` by `dt` under loads and prescribed motion; the audit uses mean forces.
@@ -158,7 +158,7 @@ impl NewmarkSolver {
         &mut self,
         model: &Model,
         state: &mut State,
-        drive: Drive<'_>,
+        drive: StepLoads<'_>,
     ) -> Result<StepAudit, SolveError> {
         self.check(model, state, &drive)?;
         let (Newmark { beta, gamma }, dt, c) = (self.method, self.dt, model.rayleigh());
@@ -224,7 +224,7 @@ impl NewmarkSolver {
         Ok(audit)
     }
 
-    fn check(&self, model: &Model, state: &State, drive: &Drive<'_>) -> Result<(), SolveError> {
+    fn check(&self, model: &Model, state: &State, drive: &StepLoads<'_>) -> Result<(), SolveError> {
         let end = state.time + self.dt;
         check_load(model, drive.load_end, end)?;
         if let Some(load) = drive.load_start {
@@ -240,7 +240,7 @@ impl NewmarkSolver {
     }
 
     /// Energy terms with mean forces.
-    fn audit(&mut self, model: &Model, old: &State, drive: &Drive<'_>) -> StepAudit {
+    fn audit(&mut self, model: &Model, old: &State, drive: &StepLoads<'_>) -> StepAudit {
         let (new, c, n) = (&self.next, model.rayleigh(), old.u.len());
         let (work, product) = (&mut self.work, &mut self.product);
         let dot = |a: &dyn Fn(usize) -> f64, p: &[f64]| (0..n).map(|d| a(d) * p[d]).sum::<f64>();
@@ -315,7 +315,7 @@ impl TimeIntegrator for NewmarkSolver {
             conditions.evaluate(model, state, ends, loading);
             let [start, end] = &conditions.loads;
             let prescribed = conditions.prescribed();
-            let drive = Drive { load_start: Some(start), load_end: end, prescribed };
+            let drive = StepLoads { load_start: Some(start), load_end: end, prescribed };
             let audit = self.advance(model, state, drive);
             self.conditions = conditions;
             let audit = audit?;

@@ -13,11 +13,11 @@
 //! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
 use super::conditions::{check_state, ensure_points, prescribe, subtract_springs};
-use super::halving::Halving;
 use super::internal_force::InternalForce;
 use super::motion::{close, inner_force};
 use super::newton::{Failure, INERTIA, Newton, Problem};
 use super::options::NewtonOptions;
+use super::step_halving::StepHalving;
 use crate::assembly::Combination;
 use crate::error::SolveError;
 use crate::integrator::{Loading, Statistics, StepControl, StepLength};
@@ -27,7 +27,7 @@ use crate::state::{State, StepAudit};
 use crate::statics::check_load;
 
 /// Elastoplastic dynamics solver; requires an initial acceleration ([`initial_acceleration`]).
-pub struct Dynamics {
+pub struct NonlinearNewmark {
     method: Newmark,
     hht: f64,
     newton: Newton,
@@ -40,7 +40,7 @@ pub struct Dynamics {
     scratch: Vec<f64>,
 }
 
-impl Dynamics {
+impl NonlinearNewmark {
     /// Newmark with unconditionally stable parameters.
     ///
     /// # Errors
@@ -50,22 +50,22 @@ impl Dynamics {
         method: Newmark,
         options: NewtonOptions,
         control: StepControl,
-    ) -> Result<Dynamics, SolveError> {
+    ) -> Result<NonlinearNewmark, SolveError> {
         method.check()?;
-        Dynamics::build(model, method, 0.0, options, control)
+        NonlinearNewmark::build(model, method, 0.0, options, control)
     }
 
     /// HHT-α with parameter in [-1/3, 0].
     ///
     /// # Errors
-    /// As [`Dynamics::newmark`].
+    /// As [`NonlinearNewmark::newmark`].
     pub fn hht(
         model: &Model,
         alpha: f64,
         options: NewtonOptions,
         control: StepControl,
-    ) -> Result<Dynamics, SolveError> {
-        Dynamics::build(model, Newmark::of_hht_in_range(alpha)?, alpha, options, control)
+    ) -> Result<NonlinearNewmark, SolveError> {
+        NonlinearNewmark::build(model, Newmark::of_hht_in_range(alpha)?, alpha, options, control)
     }
 
     fn build(
@@ -74,11 +74,11 @@ impl Dynamics {
         hht: f64,
         options: NewtonOptions,
         control: StepControl,
-    ) -> Result<Dynamics, SolveError> {
+    ) -> Result<NonlinearNewmark, SolveError> {
         control.check()?;
         check_dynamics(model, control.initial)?;
         let zeros = || vec![0.0; model.dof_count()];
-        Ok(Dynamics {
+        Ok(NonlinearNewmark {
             method,
             hht,
             newton: Newton::new(model, options)?,
@@ -98,7 +98,7 @@ impl Dynamics {
     }
 }
 
-impl Halving for Dynamics {
+impl StepHalving for NonlinearNewmark {
     fn parts(&self) -> (&Newton, &StepLength) {
         (&self.newton, &self.length)
     }
@@ -141,7 +141,7 @@ impl Halving for Dynamics {
         self.newton.solve(model, &problem)?;
         let next = &mut self.next;
         for d in 0..state.u.len() {
-            let w = self.newton.w[d];
+            let w = self.newton.du[d];
             next.u[d] = state.u[d] + w;
             next.v[d] += velocity * w;
             next.a[d] += by_square * w;
@@ -156,7 +156,7 @@ impl Halving for Dynamics {
     }
 }
 
-impl Dynamics {
+impl NonlinearNewmark {
     fn predict(&mut self, model: &Model, state: &State, dt: f64) {
         let Newmark { beta, gamma } = self.method;
         inner_force(model, &mut self.newton.force, state, &mut self.inner[0], &mut self.scratch);
@@ -206,13 +206,13 @@ impl Dynamics {
         let (next, n) = (&self.next, state.u.len());
         let mut audit = StepAudit::default();
         for d in 0..n {
-            audit.external_work += 0.5 * (load_start[d] + load_end[d]) * self.newton.w[d];
+            audit.external_work += 0.5 * (load_start[d] + load_end[d]) * self.newton.du[d];
         }
         if self.fixed.iter().any(|f| *f != 0.0) {
             inner_force(model, &mut self.newton.force, next, end, &mut self.scratch);
             for d in model.supports().fixed().iter().map(|(dof, _)| *dof as usize) {
                 let reactions = start[d] + end[d] - load_start[d] - load_end[d];
-                audit.support_work += 0.5 * reactions * self.newton.w[d];
+                audit.support_work += 0.5 * reactions * self.newton.du[d];
             }
         }
         for d in 0..n {

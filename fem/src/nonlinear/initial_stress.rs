@@ -11,8 +11,8 @@ use super::options::NewtonOptions;
 use super::quasi_static::QuasiStatic;
 use crate::element::stiffness_points;
 use crate::error::SolveError;
-use crate::integrator::{Driven, Statistics, StepControl, TimeIntegrator};
-use crate::material::{Point, PointState, Region};
+use crate::integrator::{LoadFunctions, Statistics, StepControl, TimeIntegrator};
+use crate::material::{Point, PointState, ReturnRegion};
 use crate::model::Model;
 use crate::state::State;
 use std::collections::BTreeMap;
@@ -136,12 +136,12 @@ fn set(
             if material.law.yield_function(old) > 0.0 || new.stress.iter().any(|s| !s.is_finite()) {
                 let response = material.law.update(&material.elastic, old, &[0.0; 6], false, values);
                 let response = response.map_err(|_| {
-                    let (element, region) = (mesh.element_ids[e], Region::Elastic);
+                    let (element, region) = (mesh.element_ids[e], ReturnRegion::Elastic);
                     let (time, residual) = (state.time, f64::NAN);
                     let (point, xi) = (i as u32 + 1, point.xi);
                     SolveError::Diverged { time, iterations: 0, residual, element, point, xi, region }
                 })?;
-                returned += usize::from(response.region != Region::Elastic);
+                returned += usize::from(response.region != ReturnRegion::Elastic);
                 // This return is not part of the ground's history.
                 new.stress = response.state.stress;
             }
@@ -169,9 +169,9 @@ pub fn equilibrate(
     ensure_points(model, &mut next);
     let mut solver = QuasiStatic::new(model, options, StepControl::fixed(1.0 / f64::from(steps.max(1))))?;
     // The part already in equilibrium acts from the start.
-    let carried = solver.carried(model, &next);
+    let carried = solver.internal_force(model, &next);
     let fixed: Vec<f64> = model.supports().fixed().iter().map(|(dof, _)| next.u[*dof as usize]).collect();
-    let mut loading = Driven {
+    let mut loading = LoadFunctions {
         load: |time: f64, f: &mut [f64]| {
             for d in 0..f.len() {
                 f[d] = time * load[d] + (1.0 - time) * carried[d];

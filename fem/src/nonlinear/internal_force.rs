@@ -4,7 +4,7 @@
 
 use super::points::{Moved, PointTable};
 use crate::element::MAX_NODES;
-use crate::material::{Point, PointState, Points, Region};
+use crate::material::{Point, PointState, Points, ReturnRegion};
 use crate::mesh::Mesh;
 use crate::model::Model;
 
@@ -22,7 +22,7 @@ pub(crate) struct InternalForce {
     /// Trial state of the points. Shape `[points]`.
     pub points: Points,
     /// Region of each point. Shape `[points]`.
-    pub regions: Vec<Region>,
+    pub regions: Vec<ReturnRegion>,
     /// Nodal forces [N]. Shape `[3 * nodes]`.
     pub force: Vec<f64>,
     pub plastic: usize,
@@ -35,7 +35,7 @@ struct Slice<'a> {
     points: &'a mut [PointState],
     values: &'a mut [f64],
     first_value: usize,
-    regions: &'a mut [Region],
+    regions: &'a mut [ReturnRegion],
     forces: &'a mut [[f64; 3]],
 }
 
@@ -52,7 +52,7 @@ impl InternalForce {
         InternalForce {
             table: PointTable::new(model),
             points: Points::new(points, model.value_count()),
-            regions: vec![Region::Elastic; points],
+            regions: vec![ReturnRegion::Elastic; points],
             force: vec![0.0; model.dof_count()],
             plastic: 0,
             element_force: vec![[0.0; 3]; model.mesh().connectivity.nodes().len()],
@@ -104,7 +104,7 @@ impl InternalForce {
 
     /// Whether element `e` has an inelastic tangent.
     pub fn leaves_elastic_matrix(&self, model: &Model, e: usize) -> bool {
-        let yields = || self.regions[self.table.points(e)].iter().any(|r| *r != Region::Elastic);
+        let yields = || self.regions[self.table.points(e)].iter().any(|r| *r != ReturnRegion::Elastic);
         !model.material(e).law.has_constant_elasticity() || (self.plastic > 0 && yields())
     }
 }
@@ -149,7 +149,7 @@ impl Input<'_> {
         e: usize,
         points: &mut [PointState],
         values: &mut [f64],
-        regions: &mut [Region],
+        regions: &mut [ReturnRegion],
         forces: &mut [[f64; 3]],
     ) -> Result<usize, PointFailure> {
         let mut moved = element_increment(self.model.mesh(), e, self.increment);
@@ -172,7 +172,7 @@ impl Input<'_> {
                     .update(&material.elastic, old, &strain, false, new)
                     .map_err(|_| PointFailure { element: e, point: i })?;
                 (points[i], regions[i]) = (response.state, response.region);
-                plastic += usize::from(response.region != Region::Elastic);
+                plastic += usize::from(response.region != ReturnRegion::Elastic);
             }
             self.table.add_force(e, i, self.table.volume(at + i), &points[i].stress, &mut sums);
         }

@@ -36,7 +36,7 @@ pub(crate) enum Matrix {
 pub(crate) struct LinearSystem {
     analysis: Arc<Analysis>,
     elastic: DirectSolver,
-    elastic_of: Option<Combination>,
+    elastic_combination: Option<Combination>,
     tangent: Option<DirectSolver>,
     tangent_ready: bool,
     lower: Vec<f64>,
@@ -57,7 +57,7 @@ impl LinearSystem {
         let unsymmetric = if model.symmetric_tangent() { 0 } else { entries };
         Ok(LinearSystem {
             elastic: DirectSolver::new(analysis.clone()),
-            elastic_of: None,
+            elastic_combination: None,
             tangent: None,
             tangent_ready: false,
             lower: vec![0.0; entries],
@@ -67,8 +67,8 @@ impl LinearSystem {
         })
     }
 
-    pub fn elastic_of(&self) -> Option<Combination> {
-        self.elastic_of
+    pub fn elastic_combination(&self) -> Option<Combination> {
+        self.elastic_combination
     }
 
     /// Factors the elastic matrix unless current.
@@ -82,10 +82,10 @@ impl LinearSystem {
         linear: Combination,
         statistics: &mut Statistics,
     ) -> Result<(), SolveError> {
-        if self.elastic_of == Some(linear) {
+        if self.elastic_combination == Some(linear) {
             return Ok(());
         }
-        self.elastic_of = None;
+        self.elastic_combination = None;
         let start = Instant::now();
         tangent.set_elastic(model, linear);
         tangent.write(model, &mut self.lower, &mut self.upper);
@@ -101,12 +101,12 @@ impl LinearSystem {
         }
         statistics.factorizations_symmetric += 1;
         statistics.factor_seconds += start.elapsed().as_secs_f64();
-        self.elastic_of = Some(linear);
+        self.elastic_combination = Some(linear);
         Ok(())
     }
 
     /// Prepares the tangent: factors it or selects GMRES.
-    pub fn take_tangent(
+    pub fn set_tangent(
         &mut self,
         model: &Model,
         tangent: &Tangent,

@@ -6,7 +6,6 @@
 pub(crate) mod conditions;
 pub mod dynamics;
 pub mod energy;
-mod halving;
 pub mod initial_stress;
 mod internal_force;
 mod linear_system;
@@ -15,10 +14,11 @@ pub(crate) mod newton;
 mod options;
 mod points;
 mod quasi_static;
+mod step_halving;
 pub mod strength_reduction;
 mod tangent;
 
-pub use crate::integrator::{Driven, Loading, Memory, Statistics, StepControl, StepReport};
-pub use dynamics::Dynamics;
+pub use crate::integrator::{LoadFunctions, Loading, SolverState, Statistics, StepControl, StepReport};
+pub use dynamics::NonlinearNewmark;
 pub use options::{LinearMethod, NewtonOptions, Variant};
 pub use quasi_static::QuasiStatic;

@@ -25,28 +25,28 @@ use super::tangent::Tangent;
 use crate::assembly::Combination;
 use crate::element::stiffness_points;
 use crate::error::SolveError;
-use crate::integrator::{Memory, Statistics, StepLength, StepReport};
-use crate::material::{Points, Region};
+use crate::integrator::{SolverState, Statistics, StepLength, StepReport};
+use crate::material::{Points, ReturnRegion};
 use crate::model::Model;
 use crate::state::State;
 use std::time::Instant;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Stuck {
+pub(crate) struct NotConverged {
     pub residual: f64,
     pub iterations: u32,
     element: usize,
     point: usize,
-    region: Region,
+    region: ReturnRegion,
 }
 
 pub(crate) enum Failure {
     /// No convergence; a smaller step may succeed.
-    Stuck(Stuck),
+    NotConverged(NotConverged),
     Fatal(SolveError),
 }
 
-impl Stuck {
+impl NotConverged {
     /// Error with the element number of the files.
     pub fn error(&self, model: &Model, time: f64) -> SolveError {
         let mesh = model.mesh();
@@ -80,16 +80,16 @@ pub(crate) struct Problem<'a> {
 /// Residual ratio without progress.
 const PROGRESS: f64 = 0.5;
 /// Stalled after these iterations.
-const STALLED: u32 = 3;
+const STALL_LIMIT: u32 = 3;
 /// Fraction of the force tolerance that waives the energy criterion.
-const WELL_BELOW: f64 = 0.1;
-const SHORTEST: f64 = 0.1;
+const FORCE_ONLY_RATIO: f64 = 0.1;
+const MIN_STEP_LENGTH: f64 = 0.1;
 /// Longest step without tangent.
-const LONGEST: f64 = 4.0;
-const ENOUGH: f64 = 0.5;
-const SEARCHES: u32 = 5;
+const MAX_STEP_LENGTH: f64 = 4.0;
+const LINE_SEARCH_TOLERANCE: f64 = 0.5;
+const MAX_LINE_SEARCHES: u32 = 5;
 /// Relative residual of an aborted iteration.
-const HOPELESS: f64 = 1e6;
+const DIVERGENCE_LIMIT: f64 = 1e6;
 
 /// Inertia fraction in the force norm: velocity rounding stays below 1e-8 at a tolerance of 1e-6.
 pub(crate) const INERTIA: f64 = 1e-3;
@@ -100,7 +100,7 @@ pub(crate) struct Newton {
     pub system: LinearSystem,
     pub tangent: Tangent,
     /// Increment [m]. Shape `[3 * nodes]`.
-    pub w: Vec<f64>,
+    pub du: Vec<f64>,
     /// Residual [N] over all dofs.
     pub residual: Vec<f64>,
     pub statistics: Statistics,
@@ -125,7 +125,7 @@ impl Newton {
             force: InternalForce::new(model),
             system: LinearSystem::new(model)?,
             tangent: Tangent::new(model),
-            w: vec![0.0; n],
+            du: vec![0.0; n],
             residual: vec![0.0; n],
             statistics: Statistics::default(),
             report,
@@ -144,10 +144,10 @@ impl Newton {
             .map_err(Failure::Fatal)?;
         self.report.residuals.clear();
         self.report.iterations = 0;
-        self.w.fill(0.0);
+        self.du.fill(0.0);
         self.evaluate(model, problem, 0.0)?;
         let moving = problem.fixed.iter().any(|f| *f != 0.0);
-        let mut size = self.measure(model, problem);
+        let mut size = self.record_relative_residual(model, problem);
         if !moving && size <= self.options.force_tolerance {
             self.report.plastic_points = 0;
             return Ok(());
@@ -164,13 +164,13 @@ impl Newton {
             if iteration == 1 {
                 self.predict(model, problem, moving);
             } else {
-                matrix = self.choose(model, problem, iteration, matrix);
+                matrix = self.select_matrix(model, problem, iteration, matrix);
                 model.supports().gather(&self.residual, &mut self.equations);
             }
             self.system.solve(model, matrix, &self.tangent, &mut self.equations, &mut self.statistics);
             model.supports().scatter(&self.equations, &mut self.correction);
-            let (work, norm) = (self.work(model), self.size(model));
-            self.base.copy_from_slice(&self.w);
+            let (work, norm) = (self.correction_work(model), self.residual_norm(model));
+            self.base.copy_from_slice(&self.du);
             self.evaluate(model, problem, 1.0)?;
             // Prescribed increments are not scaled.
             if self.options.line_search && iteration > 1 {
@@ -178,29 +178,29 @@ impl Newton {
             }
             self.report.iterations = iteration;
             self.statistics.iterations += 1;
-            size = self.measure(model, problem);
-            if !size.is_finite() || size > HOPELESS {
+            size = self.record_relative_residual(model, problem);
+            if !size.is_finite() || size > DIVERGENCE_LIMIT {
                 break;
             }
             self.stalls += u32::from(iteration > 2 && size > PROGRESS * best);
             best = best.min(size);
-            let left = self.work(model).abs();
+            let left = self.correction_work(model).abs();
             most = most.max(work.abs());
             let NewtonOptions { force_tolerance, energy_tolerance, .. } = self.options;
-            let quiet = left <= energy_tolerance * most || size <= WELL_BELOW * force_tolerance;
+            let quiet = left <= energy_tolerance * most || size <= FORCE_ONLY_RATIO * force_tolerance;
             if size <= force_tolerance && quiet {
                 self.report.plastic_points = self.force.plastic;
                 return Ok(());
             }
         }
-        Err(Failure::Stuck(self.stuck(model, problem, size)))
+        Err(Failure::NotConverged(self.not_converged(model, problem, size)))
     }
 
     /// Prescribed increments act through the elastic matrix.
     fn predict(&mut self, model: &Model, problem: &Problem<'_>, moving: bool) {
         if moving {
             for (&(dof, _), value) in model.supports().fixed().iter().zip(problem.fixed) {
-                self.w[dof as usize] = *value;
+                self.du[dof as usize] = *value;
             }
             let stiffness = 1.0 + problem.linear.stiffness;
             self.add_linear(model, Combination { stiffness, ..problem.linear });
@@ -212,20 +212,26 @@ impl Newton {
         let Combination { stiffness, mass, dashpots } = linear;
         if dashpots != 0.0 && !model.matrices().dashpots().is_empty() {
             self.product.fill(0.0);
-            model.dashpot_times(&self.w, &mut self.product);
+            model.dashpot_times(&self.du, &mut self.product);
             self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= dashpots * p);
         }
         if stiffness != 0.0 {
-            model.stiffness_times(&self.w, &mut self.product);
+            model.stiffness_times(&self.du, &mut self.product);
             self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= stiffness * p);
         }
         if mass != 0.0 {
-            model.mass_times(&self.w, &mut self.product);
+            model.mass_times(&self.du, &mut self.product);
             self.residual.iter_mut().zip(&self.product).for_each(|(r, p)| *r -= mass * p);
         }
     }
 
-    fn choose(&mut self, model: &Model, problem: &Problem<'_>, iteration: u32, last: Matrix) -> Matrix {
+    fn select_matrix(
+        &mut self,
+        model: &Model,
+        problem: &Problem<'_>,
+        iteration: u32,
+        last: Matrix,
+    ) -> Matrix {
         let due = match self.options.variant {
             Variant::Full => true,
             Variant::Modified(0) => iteration == 2,
@@ -243,54 +249,54 @@ impl Newton {
             model,
             &self.force,
             problem.old,
-            &self.w,
+            &self.du,
             problem.linear,
-            self.stalls >= STALLED,
+            self.stalls >= STALL_LIMIT,
         );
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
-        self.system.take_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
+        self.system.set_tangent(model, &self.tangent, self.options.linear, &mut self.statistics)
     }
 
     /// Residual at `base + length * correction`, or at `w`.
     fn evaluate(&mut self, model: &Model, problem: &Problem<'_>, length: f64) -> Result<(), Failure> {
         if length > 0.0 {
-            for d in 0..self.w.len() {
-                self.w[d] = self.base[d] + length * self.correction[d];
+            for d in 0..self.du.len() {
+                self.du[d] = self.base[d] + length * self.correction[d];
             }
         }
         let start = Instant::now();
-        let outcome = self.force.evaluate(model, problem.old, &self.w);
+        let outcome = self.force.evaluate(model, problem.old, &self.du);
         self.statistics.evaluations += 1;
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
         if let Err(PointFailure { element, point }) = outcome {
             let (residual, iterations) = (f64::NAN, self.report.iterations + 1);
-            let region = Region::Elastic;
-            return Err(Failure::Stuck(Stuck { residual, iterations, element, point, region }));
+            let region = ReturnRegion::Elastic;
+            return Err(Failure::NotConverged(NotConverged { residual, iterations, element, point, region }));
         }
-        for d in 0..self.w.len() {
+        for d in 0..self.du.len() {
             self.residual[d] = problem.rhs[d] - self.force.force[d];
         }
-        subtract_springs(model, &self.w, &mut self.residual);
+        subtract_springs(model, &self.du, &mut self.residual);
         self.add_linear(model, problem.linear);
         Ok(())
     }
 
-    fn measure(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
+    fn record_relative_residual(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
         let given = problem.forces.unwrap_or_else(|| square(problem.rhs).sqrt());
         let forces = given.max(square(&self.force.force).sqrt());
-        let residual = self.size(model);
+        let residual = self.residual_norm(model);
         let size = if residual == 0.0 { 0.0 } else { residual / forces };
         self.report.residuals.push(size);
         size
     }
 
-    fn size(&self, model: &Model) -> f64 {
+    fn residual_norm(&self, model: &Model) -> f64 {
         let free = model.supports().free();
         free.iter().map(|&d| self.residual[d as usize].powi(2)).sum::<f64>().sqrt()
     }
 
-    fn work(&self, model: &Model) -> f64 {
+    fn correction_work(&self, model: &Model) -> f64 {
         let free = model.supports().free();
         free.iter().map(|&d| self.residual[d as usize] * self.correction[d as usize]).sum()
     }
@@ -305,14 +311,14 @@ impl Newton {
         matrix: Matrix,
     ) -> Result<(), Failure> {
         if before <= 0.0 {
-            return self.search_by_size(model, problem, size);
+            return self.search_by_norm(model, problem, size);
         }
         let tangent = self.options.variant == Variant::Full && matrix == Matrix::Tangent;
-        let longest = if tangent { 1.0 } else { LONGEST };
+        let longest = if tangent { 1.0 } else { MAX_STEP_LENGTH };
         let (mut low, mut high) = ((0.0, before), None);
-        let mut now = (1.0, self.work(model));
-        for _ in 0..SEARCHES {
-            if now.1.abs() <= ENOUGH * before || (now.1 > 0.0 && now.0 >= longest) {
+        let mut now = (1.0, self.correction_work(model));
+        for _ in 0..MAX_LINE_SEARCHES {
+            if now.1.abs() <= LINE_SEARCH_TOLERANCE * before || (now.1 > 0.0 && now.0 >= longest) {
                 break;
             }
             if now.1 > 0.0 {
@@ -328,19 +334,19 @@ impl Newton {
                 }
                 None => longest.min(2.0 * now.0),
             };
-            let next = next.max(SHORTEST);
+            let next = next.max(MIN_STEP_LENGTH);
             if next == now.0 {
                 break;
             }
             self.evaluate(model, problem, next)?;
-            now = (next, self.work(model));
+            now = (next, self.correction_work(model));
         }
         Ok(())
     }
 
-    fn search_by_size(&mut self, model: &Model, problem: &Problem<'_>, before: f64) -> Result<(), Failure> {
+    fn search_by_norm(&mut self, model: &Model, problem: &Problem<'_>, before: f64) -> Result<(), Failure> {
         let mut length = 1.0;
-        while length > 2.0 * SHORTEST && self.size(model) > before {
+        while length > 2.0 * MIN_STEP_LENGTH && self.residual_norm(model) > before {
             length *= 0.5;
             self.evaluate(model, problem, length)?;
         }
@@ -348,7 +354,7 @@ impl Newton {
     }
 
     /// Position for error messages: largest residual, then largest plastic strain growth.
-    fn stuck(&self, model: &Model, problem: &Problem<'_>, residual: f64) -> Stuck {
+    fn not_converged(&self, model: &Model, problem: &Problem<'_>, residual: f64) -> NotConverged {
         let mut worst = (0.0, 0);
         for &d in model.supports().free() {
             let r = self.residual[d as usize].abs();
@@ -369,13 +375,13 @@ impl Newton {
         }
         let element = if element == usize::MAX { 0 } else { element };
         let region = self.force.regions[self.force.table.points(element).start + point];
-        Stuck { residual, iterations: self.report.iterations, element, point, region }
+        NotConverged { residual, iterations: self.report.iterations, element, point, region }
     }
 }
 
 impl Newton {
     pub fn commit(&mut self, state: &mut State, time: f64, dt: f64) {
-        state.u.iter_mut().zip(&self.w).for_each(|(u, w)| *u += w);
+        state.u.iter_mut().zip(&self.du).for_each(|(u, w)| *u += w);
         std::mem::swap(&mut state.points, &mut self.force.points);
         state.time = time;
         self.statistics.steps += 1;
@@ -383,18 +389,18 @@ impl Newton {
         self.report.dt = dt;
     }
 
-    pub fn memory(&self, length: Option<StepLength>) -> Memory {
-        Memory { statistics: self.statistics, length, factored: self.system.elastic_of() }
+    pub fn solver_state(&self, length: Option<StepLength>) -> SolverState {
+        SolverState { statistics: self.statistics, length, factored: self.system.elastic_combination() }
     }
 
     /// Restores checkpointed state, including the elastic factor.
     ///
     /// # Errors
     /// Failed factorisation.
-    pub fn recall(
+    pub fn restore(
         &mut self,
         model: &Model,
-        memory: &Memory,
+        memory: &SolverState,
         length: Option<&mut StepLength>,
     ) -> Result<(), SolveError> {
         if let Some(combination) = memory.factored {

@@ -4,15 +4,15 @@
 //! limit load.
 
 use super::conditions::{prescribe, subtract_springs};
-use super::halving::Halving;
 use super::newton::{Failure, Newton, Problem};
 use super::options::NewtonOptions;
+use super::step_halving::StepHalving;
 use crate::assembly::Combination;
 use crate::error::SolveError;
 use crate::integrator::{Loading, Statistics, StepControl, StepLength};
 use crate::model::Model;
 use crate::state::{State, StepAudit};
-use crate::statics::{check_held, check_load};
+use crate::statics::{check_load, check_rigid_body_motion};
 
 /// Quasi-static solver.
 pub struct QuasiStatic {
@@ -34,7 +34,7 @@ impl QuasiStatic {
         control: StepControl,
     ) -> Result<QuasiStatic, SolveError> {
         control.check()?;
-        check_held(model)?;
+        check_rigid_body_motion(model)?;
         Ok(QuasiStatic {
             newton: Newton::new(model, options)?,
             length: StepLength::new(control),
@@ -55,7 +55,7 @@ impl QuasiStatic {
     }
 
     /// Forces [N] of stresses and boundary springs. Shape `[3 * nodes]`.
-    pub(super) fn carried(&mut self, model: &Model, state: &State) -> Vec<f64> {
+    pub(super) fn internal_force(&mut self, model: &Model, state: &State) -> Vec<f64> {
         self.newton.force.of_states(model, &state.points);
         let mut carried = self.newton.force.force.clone();
         model.boundary_spring_times(&state.u, &mut carried);
@@ -77,7 +77,7 @@ impl QuasiStatic {
     }
 }
 
-impl Halving for QuasiStatic {
+impl StepHalving for QuasiStatic {
     fn parts(&self) -> (&Newton, &StepLength) {
         (&self.newton, &self.length)
     }

@@ -147,12 +147,13 @@ pub fn at_factor(
     factor: f64,
 ) -> Result<(Model, State), SolveError> {
     let reduced = reduced(model, factor)?;
-    let (next, _, outcome) = carry(&reduced, state, load, options)?;
+    let (next, _, outcome) = solve_at_reduced_strength(&reduced, state, load, options)?;
     outcome.map(|()| (reduced, next))
 }
 
 fn reduced(model: &Model, factor: f64) -> Result<Model, SolveError> {
-    let materials = model.materials().iter().map(|(&number, m)| (number, m.reduced(factor))).collect();
+    let materials =
+        model.materials().iter().map(|(&number, m)| (number, m.with_strength_divided_by(factor))).collect();
     model.with_laws(materials).map_err(|_| SolveError::Option {
         what: "the factor of reduction",
         value: factor,
@@ -161,7 +162,7 @@ fn reduced(model: &Model, factor: f64) -> Result<Model, SolveError> {
 }
 
 /// Returns the last converged state, its trial, and whether the load is complete.
-fn carry(
+fn solve_at_reduced_strength(
     reduced: &Model,
     state: &State,
     load: &[f64],
@@ -182,7 +183,8 @@ fn attempt(
     options: &ReductionOptions,
     factor: f64,
 ) -> Result<Trial, SolveError> {
-    let (trial, statistics, outcome) = carry(&reduced(model, factor)?, state, load, options)?;
+    let (trial, statistics, outcome) =
+        solve_at_reduced_strength(&reduced(model, factor)?, state, load, options)?;
     match outcome {
         Ok(()) | Err(SolveError::Diverged { .. }) => Ok(Trial {
             factor,

@@ -10,7 +10,7 @@ use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
 use crate::assumed::modes::{self, Amplitudes};
 use crate::element::MAX_NODES;
-use crate::material::{Points, REGULARISATION, Region};
+use crate::material::{Points, REGULARISATION, ReturnRegion};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
@@ -232,7 +232,7 @@ impl Input<'_> {
         let mut values = vec![0.0; self.model.values(e, 0).len()];
         matrix.fill(0.0);
         for (i, p) in table.points(e).enumerate() {
-            if constant && self.force.regions[p] == Region::Elastic {
+            if constant && self.force.regions[p] == ReturnRegion::Elastic {
                 continue;
             }
             // Succeeded for the force.

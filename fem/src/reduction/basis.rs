@@ -2,7 +2,7 @@
 //!
 //! Theory manual: equation (4.19) of `docs/theory/solid.md`.
 
-use super::{Estimate, MOST_SHAPES, Reduction, ReductionError};
+use super::{Estimate, MAX_SHAPES, Reduction, ReductionError};
 use crate::loads;
 use crate::mesh::Face;
 use crate::modal::{self, Modes};
@@ -29,7 +29,7 @@ pub struct Cost {
 
 /// Reduced solid with mass-orthonormal basis; rows are dofs.
 #[derive(Clone, Debug)]
-pub struct Reduced {
+pub struct ReducedModel {
     count: usize,
     /// V. Shape `[3 * nodes][shapes]`.
     pub(crate) shape: Vec<f64>,
@@ -44,7 +44,7 @@ pub struct Reduced {
     estimate: Estimate,
 }
 
-impl Reduced {
+impl ReducedModel {
     /// Predicts the values read per step, which determine the time.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl Reduced {
     /// # Errors
     /// Plasticity, insufficient constraints, no density, no free surface dofs, too many basis vectors,
     /// unconverged modes.
-    pub fn new(model: &Model, faces: &[Face], reduction: Reduction) -> Result<Reduced, ReductionError> {
+    pub fn new(model: &Model, faces: &[Face], reduction: Reduction) -> Result<ReducedModel, ReductionError> {
         check_density(model)?;
         let dofs = surface_dofs(model, faces);
         let (statics, modes) = match reduction {
@@ -82,7 +82,7 @@ impl Reduced {
         if dofs.is_empty() {
             return Err(ReductionError::NoSurface);
         }
-        if shapes > MOST_SHAPES || 2 * shapes > model.free_dof_count() {
+        if shapes > MAX_SHAPES || 2 * shapes > model.free_dof_count() {
             return Err(ReductionError::TooMany { shapes, dofs: model.free_dof_count() });
         }
         let mut solver = StaticSolver::new(model)?;
@@ -193,7 +193,7 @@ impl<'m> Span<'m> {
         self.momenta.push(momentum);
     }
 
-    fn finish(self, natural: &Modes) -> Result<Reduced, ReductionError> {
+    fn finish(self, natural: &Modes) -> Result<ReducedModel, ReductionError> {
         let (n, count) = (self.model.dof_count(), self.shapes.len());
         let columns = DMatrix::from_fn(n, count, |d, k| self.shapes[k][d]);
         let images = |times: &dyn Fn(&[f64], &mut [f64])| {
@@ -226,7 +226,7 @@ impl<'m> Span<'m> {
             }
             shapes.transpose() * damping
         });
-        Ok(Reduced {
+        Ok(ReducedModel {
             count,
             force: by_rows(&(forces * &turn)),
             momentum: by_rows(&momenta),

@@ -8,7 +8,7 @@
 //! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps all nodes. A Galerkin basis is never
 //! too soft: the deflection errors of [`Estimate`] are in 0 to 1.
 //!
-//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MOST_SHAPES`] basis vectors;
+//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors;
 //! approximate stresses near point forces.
 
 mod basis;
@@ -16,7 +16,7 @@ mod estimate;
 #[cfg(test)]
 mod tests;
 
-pub use basis::{Cost, Reduced};
+pub use basis::{Cost, ReducedModel};
 pub use estimate::Estimate;
 
 use crate::error::SolveError;
@@ -24,7 +24,7 @@ use crate::modal::ModalError;
 use thiserror::Error;
 
 /// Largest number of basis vectors; beyond it the sparse factor is faster.
-pub const MOST_SHAPES: usize = 1000;
+pub const MAX_SHAPES: usize = 1000;
 
 /// Type of reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub enum ReductionError {
     /// Too many basis vectors.
     #[error(
         "reduction of {shapes} modes for {dofs} free degrees of freedom, expected at most {} modes and half the degrees of freedom",
-        MOST_SHAPES
+        MAX_SHAPES
     )]
     TooMany {
         /// Requested basis vectors.

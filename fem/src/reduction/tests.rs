@@ -55,7 +55,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 fn surface_condensation_is_statically_exact() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());
     let faces = top(&model);
-    let reduced = Reduced::new(&model, &faces, Reduction::Surface { modes: 0 }).unwrap();
+    let reduced = ReducedModel::new(&model, &faces, Reduction::Surface { modes: 0 }).unwrap();
     let e = *reduced.estimate();
     println!("{e}");
     assert!(e.pressure.abs() < 1e-9 && e.point.iter().all(|p| p.abs() < 1e-9), "{e:?}");
@@ -76,7 +76,7 @@ fn surface_condensation_is_statically_exact() {
 fn motion_in_span_matches_full_solid() {
     let model = block(Rayleigh { alpha_m: 30.0, beta_k: 2e-4 }, Vec::new());
     let faces = top(&model);
-    let reduced = Arc::new(Reduced::new(&model, &faces, Reduction::Modes { modes: 12 }).unwrap());
+    let reduced = Arc::new(ReducedModel::new(&model, &faces, Reduction::Modes { modes: 12 }).unwrap());
     let modes = crate::modal::solve(&model, 12).unwrap();
     let mut pushed = vec![0.0; model.dof_count()];
     model.mass_times(&modes.shapes[7], &mut pushed);
@@ -128,7 +128,7 @@ fn energy_balances_in_the_span() {
         (Reduction::Modes { modes: 20 }, 0.5),
         (Reduction::Modes { modes: 20 }, 0.7),
     ] {
-        let reduced = Arc::new(Reduced::new(&model, &faces, reduction).unwrap());
+        let reduced = Arc::new(ReducedModel::new(&model, &faces, reduction).unwrap());
         let mut solver = ReducedTheta::new(&model, reduced, theta, 1e-3).unwrap();
         let mut state = State::new(&model);
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
@@ -161,7 +161,7 @@ fn estimate_matches_run() {
         .unwrap();
     let mut last = 1.0;
     for modes in [5, 40, 120] {
-        let reduced = Arc::new(Reduced::new(&model, &faces, Reduction::Modes { modes }).unwrap());
+        let reduced = Arc::new(ReducedModel::new(&model, &faces, Reduction::Modes { modes }).unwrap());
         let e = *reduced.estimate();
         println!("{e}");
         assert!(e.pressure.abs() < 1e-9, "the pressure is one of the shapes");
@@ -187,13 +187,13 @@ fn what_cannot_be_reduced_is_refused() {
     let model = block(Rayleigh::default(), Vec::new());
     let faces = top(&model);
     assert!(matches!(
-        Reduced::new(&model, &faces, Reduction::Modes { modes: 0 }),
+        ReducedModel::new(&model, &faces, Reduction::Modes { modes: 0 }),
         Err(ReductionError::NoModes)
     ));
     assert!(matches!(
-        Reduced::new(&model, &[], Reduction::Surface { modes: 0 }),
+        ReducedModel::new(&model, &[], Reduction::Surface { modes: 0 }),
         Err(ReductionError::NoSurface)
     ));
-    let many = Reduced::new(&model, &faces, Reduction::Modes { modes: 5000 });
+    let many = ReducedModel::new(&model, &faces, Reduction::Modes { modes: 5000 });
     assert!(matches!(many, Err(ReductionError::TooMany { shapes: 5012, .. })), "{many:?}");
 }

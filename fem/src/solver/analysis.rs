@@ -4,7 +4,7 @@
 //! elimination tree. Limits: fewer than 2^31 entries.
 
 use super::AnalysisError;
-use super::pattern::{MIRRORED, Upper, postorder};
+use super::pattern::{MIRRORED, UpperPattern, postorder};
 use super::structure::Structure;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::SymbolicSparseColMatRef;
@@ -38,7 +38,7 @@ impl Analysis {
     /// * `order` `[equations]`: elimination order, possibly postordered.
     ///
     /// # Errors
-    /// [`AnalysisError::Pattern`] if the input is invalid, [`AnalysisError::Memory`] if the factor cannot be
+    /// [`AnalysisError::Pattern`] if the input is invalid, [`AnalysisError::SolverState`] if the factor cannot be
     /// addressed.
     pub fn from_pattern(
         column_start: Vec<usize>,
@@ -47,15 +47,15 @@ impl Analysis {
     ) -> Result<Analysis, AnalysisError> {
         check(&column_start, &row, &order)?;
         let equations = order.len();
-        let memory = || AnalysisError::Memory { equations };
+        let memory = || AnalysisError::SolverState { equations };
         if row.len() >= MIRRORED as usize || equations >= MIRRORED as usize {
             return Err(memory());
         }
-        let mut upper = Upper::new(&column_start, &row, &positions(&order));
+        let mut upper = UpperPattern::new(&column_start, &row, &positions(&order));
         let post = postorder(&upper.elimination_tree());
         if post.iter().enumerate().any(|(i, &p)| i != p as usize) {
             order = post.iter().map(|&p| order[p as usize]).collect();
-            upper = Upper::new(&column_start, &row, &positions(&order));
+            upper = UpperPattern::new(&column_start, &row, &positions(&order));
         }
         let symbolic = supernodes(&upper, equations).ok_or_else(memory)?;
         let count = symbolic.n_supernodes();
@@ -102,7 +102,7 @@ impl Analysis {
         let structure = &self.structure;
         let triangles = if symmetric { 1 } else { 2 };
         let threads = structure.most_tasks().min(rayon::current_num_threads());
-        let places = structure.work_len + structure.handed_len + threads * structure.branch_len;
+        let places = structure.work_len + structure.exported_len + threads * structure.branch_len;
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
         // Kernel scratch per pivot column: at most 8 bytes for faer, 20 for row exchanges.
@@ -171,7 +171,7 @@ fn positions(order: &[usize]) -> Vec<u32> {
     position
 }
 
-fn supernodes(upper: &Upper, n: usize) -> Option<SymbolicSupernodalCholesky<usize>> {
+fn supernodes(upper: &UpperPattern, n: usize) -> Option<SymbolicSupernodalCholesky<usize>> {
     let pattern = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &upper.start, None, &upper.row);
     let need = StackReq::or(
         prefactorize_symbolic_cholesky_scratch::<usize>(n, upper.row.len()),

@@ -17,7 +17,7 @@ pub(super) struct Updates<'a> {
     pub work: &'a [f64],
     pub work_start: usize,
     /// Updates from branches to upper fronts.
-    pub handed: &'a [f64],
+    pub exported: &'a [f64],
     /// Triangles per update: 1 or 2.
     pub triangles: usize,
 }
@@ -26,8 +26,8 @@ impl<'a> Updates<'a> {
     fn get(&self, structure: &Structure, c: usize, which: usize) -> &'a [f64] {
         let len = dense::update_len(structure.below(c));
         let start = self.triangles * structure.update[c] + which * len;
-        if structure.handed[c] {
-            &self.handed[start..start + len]
+        if structure.exported[c] {
+            &self.exported[start..start + len]
         } else {
             &self.work[start - self.work_start..][..len]
         }

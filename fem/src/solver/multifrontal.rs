@@ -21,7 +21,7 @@ pub struct DirectSolver {
     /// Row exchanges in the pivot block, in order.
     rows: Vec<u32>,
     work: Buffer,
-    handed: Buffer,
+    exported: Buffer,
     scratch: Option<Scratch>,
     slots: Vec<Mutex<Slot>>,
     solution: Solution,
@@ -51,7 +51,7 @@ impl DirectSolver {
             second: Buffer::default(),
             rows: Vec::new(),
             work: Buffer::default(),
-            handed: Buffer::default(),
+            exported: Buffer::default(),
             scratch: None,
             slots: Vec::new(),
             solution: Solution::default(),
@@ -76,7 +76,11 @@ impl DirectSolver {
         let analysis = self.analysis.clone();
         let structure = analysis.structure();
         self.reserve(structure, 1);
-        let run = |s: usize, store: Store<'_>, children: Updates<'_>, shared, scratch: &mut Scratch| {
+        let run = |s: usize,
+                   store: FrontStorage<'_>,
+                   children: Updates<'_>,
+                   shared,
+                   scratch: &mut Scratch| {
             front::factor_symmetric(structure, s, lower, store.first, store.update, children, shared, scratch)
         };
         self.run(structure, 1, &run).map_err(|position| {
@@ -85,7 +89,7 @@ impl DirectSolver {
         })?;
         self.kind = Kind::Symmetric;
         let start = analysis.pattern().0;
-        self.find_weakest(|pivot, position| pivot * pivot / lower[start[analysis.equation(position)]]);
+        self.find_weakest_pivot(|pivot, position| pivot * pivot / lower[start[analysis.equation(position)]]);
         Ok(())
     }
 
@@ -107,7 +111,11 @@ impl DirectSolver {
         let structure = analysis.structure();
         self.reserve(structure, 2);
         let values = (lower, upper);
-        let run = |s: usize, store: Store<'_>, children: Updates<'_>, shared, scratch: &mut Scratch| {
+        let run = |s: usize,
+                   store: FrontStorage<'_>,
+                   children: Updates<'_>,
+                   shared,
+                   scratch: &mut Scratch| {
             let panels = Panels { first: store.first, second: store.second, rows: store.rows };
             front::factor_unsymmetric(structure, s, values, panels, store.update, children, shared, scratch)
         };
@@ -117,7 +125,7 @@ impl DirectSolver {
         })?;
         self.kind = Kind::Unsymmetric;
         let scale = analysis.column_scale(lower, upper);
-        self.find_weakest(|pivot, position| pivot.abs() / scale[analysis.equation(position)]);
+        self.find_weakest_pivot(|pivot, position| pivot.abs() / scale[analysis.equation(position)]);
         Ok(())
     }
 
@@ -129,7 +137,7 @@ impl DirectSolver {
 
     /// Allocated buffers [bytes].
     pub fn allocated(&self) -> usize {
-        let buffers = [&self.first, &self.second, &self.work, &self.handed];
+        let buffers = [&self.first, &self.second, &self.work, &self.exported];
         let values: usize = buffers.iter().map(|buffer| buffer.capacity()).sum();
         let slots: usize = self
             .slots
@@ -189,7 +197,7 @@ impl DirectSolver {
         let count = structure.count();
         self.first.reserve(structure.panel[count]);
         self.work.reserve(triangles * structure.work_len);
-        self.handed.reserve(triangles * structure.handed_len);
+        self.exported.reserve(triangles * structure.exported_len);
         if triangles == 2 {
             self.second.reserve(structure.second[count]);
             self.rows.resize(self.analysis.size(), 0);
@@ -212,17 +220,17 @@ impl DirectSolver {
     /// Returns the first failed position in elimination order.
     fn run<F>(&mut self, structure: &Structure, triangles: usize, front: &F) -> Result<(), usize>
     where
-        F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
+        F: Fn(usize, FrontStorage<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
     {
-        let drive = Drive { structure, triangles, front };
+        let drive = Traversal { structure, triangles, front };
         let scratch = self.scratch.as_mut().expect("made with the buffers");
         for round in &structure.rounds {
-            let branches = Space {
+            let branches = BranchStorage {
                 first: &mut self.first[..],
                 second: &mut self.second[..],
                 rows: &mut self.rows[..],
-                handed: &mut self.handed[..],
-                start: Start::default(),
+                exported: &mut self.exported[..],
+                start: FrontOffsets::default(),
             };
             let tasks = &structure.tasks[round.tasks.clone()];
             drive.branches(tasks, branches, &self.slots).map_or(Ok(()), Err)?;
@@ -230,14 +238,14 @@ impl DirectSolver {
             for &s in &structure.upper[round.upper.clone()] {
                 let s = s as usize;
                 let store = (&mut *first, &mut *second, &mut self.rows[..]);
-                let (update, children) = drive.cut(s, &mut self.work, &self.handed);
-                drive.one(s, store, Start::default(), update, children, true, scratch)?;
+                let (update, children) = drive.split_stack(s, &mut self.work, &self.exported);
+                drive.factor_front(s, store, FrontOffsets::default(), update, children, true, scratch)?;
             }
         }
         Ok(())
     }
 
-    fn find_weakest(&mut self, ratio: impl Fn(f64, usize) -> f64) {
+    fn find_weakest_pivot(&mut self, ratio: impl Fn(f64, usize) -> f64) {
         let analysis = self.analysis.clone();
         let structure = analysis.structure();
         for s in 0..structure.count() {
@@ -252,7 +260,7 @@ impl DirectSolver {
     }
 }
 
-struct Store<'a> {
+struct FrontStorage<'a> {
     first: &'a mut [f64],
     second: &'a mut [f64],
     rows: &'a mut [u32],
@@ -260,33 +268,33 @@ struct Store<'a> {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Start {
+struct FrontOffsets {
     first: usize,
     second: usize,
     rows: usize,
-    handed: usize,
+    exported: usize,
 }
 
-struct Space<'a> {
+struct BranchStorage<'a> {
     first: &'a mut [f64],
     second: &'a mut [f64],
     rows: &'a mut [u32],
-    handed: &'a mut [f64],
-    start: Start,
+    exported: &'a mut [f64],
+    start: FrontOffsets,
 }
 
-struct Drive<'a, F> {
+struct Traversal<'a, F> {
     structure: &'a Structure,
     triangles: usize,
     front: &'a F,
 }
 
-impl<F> Drive<'_, F>
+impl<F> Traversal<'_, F>
 where
-    F: Fn(usize, Store<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
+    F: Fn(usize, FrontStorage<'_>, Updates<'_>, bool, &mut Scratch) -> Result<(), usize> + Sync,
 {
     /// Returns the least failed position.
-    fn branches(&self, tasks: &[Task], space: Space<'_>, slots: &[Mutex<Slot>]) -> Option<usize> {
+    fn branches(&self, tasks: &[Task], space: BranchStorage<'_>, slots: &[Mutex<Slot>]) -> Option<usize> {
         match tasks {
             [] => None,
             [task] => {
@@ -313,38 +321,45 @@ where
         }
     }
 
-    fn halve<'a>(&self, space: Space<'a>, next: &Task) -> (Space<'a>, Space<'a>) {
+    fn halve<'a>(&self, space: BranchStorage<'a>, next: &Task) -> (BranchStorage<'a>, BranchStorage<'a>) {
         let (structure, triangles, start) = (self.structure, self.triangles, space.start);
         let s = next.first;
-        let first_handed = (s..next.end).find(|&s| structure.handed[s]).expect("a branch ends in the task");
-        let middle = Start {
+        let first_exported =
+            (s..next.end).find(|&s| structure.exported[s]).expect("a branch ends in the task");
+        let middle = FrontOffsets {
             first: structure.panel[s],
             second: if triangles == 2 { structure.second[s] } else { 0 },
             rows: if triangles == 2 { structure.begin[s] as usize } else { 0 },
-            handed: triangles * structure.update[first_handed],
+            exported: triangles * structure.update[first_exported],
         };
         let first = space.first.split_at_mut(middle.first - start.first);
         let second = space.second.split_at_mut(middle.second - start.second);
         let rows = space.rows.split_at_mut(middle.rows - start.rows);
-        let handed = space.handed.split_at_mut(middle.handed - start.handed);
+        let exported = space.exported.split_at_mut(middle.exported - start.exported);
         (
-            Space { first: first.0, second: second.0, rows: rows.0, handed: handed.0, start },
-            Space { first: first.1, second: second.1, rows: rows.1, handed: handed.1, start: middle },
+            BranchStorage { first: first.0, second: second.0, rows: rows.0, exported: exported.0, start },
+            BranchStorage {
+                first: first.1,
+                second: second.1,
+                rows: rows.1,
+                exported: exported.1,
+                start: middle,
+            },
         )
     }
 
-    fn branch(&self, task: &Task, space: Space<'_>, slot: &mut Slot) -> Option<usize> {
-        let Space { first, second, rows, handed, start } = space;
+    fn branch(&self, task: &Task, space: BranchStorage<'_>, slot: &mut Slot) -> Option<usize> {
+        let BranchStorage { first, second, rows, exported, start } = space;
         let (work, scratch) = (&mut slot.work[..], &mut slot.scratch);
         for s in task.first..task.end {
             let store = (&mut *first, &mut *second, &mut *rows);
-            let result = if self.structure.handed[s] {
-                let update = self.range(s, start.handed);
-                let children = Updates { work, work_start: 0, handed: &[], triangles: self.triangles };
-                self.one(s, store, start, &mut handed[update], children, false, scratch)
+            let result = if self.structure.exported[s] {
+                let update = self.range(s, start.exported);
+                let children = Updates { work, work_start: 0, exported: &[], triangles: self.triangles };
+                self.factor_front(s, store, start, &mut exported[update], children, false, scratch)
             } else {
-                let (update, children) = self.cut(s, work, &[]);
-                self.one(s, store, start, update, children, false, scratch)
+                let (update, children) = self.split_stack(s, work, &[]);
+                self.factor_front(s, store, start, update, children, false, scratch)
             };
             if let Err(position) = result {
                 return Some(position);
@@ -360,25 +375,30 @@ where
     }
 
     /// Update of the front, and the children's stack.
-    fn cut<'a>(&self, s: usize, work: &'a mut [f64], handed: &'a [f64]) -> (&'a mut [f64], Updates<'a>) {
+    fn split_stack<'a>(
+        &self,
+        s: usize,
+        work: &'a mut [f64],
+        exported: &'a [f64],
+    ) -> (&'a mut [f64], Updates<'a>) {
         let triangles = self.triangles;
         let split = triangles * self.structure.split[s];
         let own = self.range(s, 0);
         let (left, right) = work.split_at_mut(split);
         if self.structure.left[s] {
-            let children = Updates { work: right, work_start: split, handed, triangles };
+            let children = Updates { work: right, work_start: split, exported, triangles };
             (&mut left[own], children)
         } else {
-            let children = Updates { work: left, work_start: 0, handed, triangles };
+            let children = Updates { work: left, work_start: 0, exported, triangles };
             (&mut right[own.start - split..own.end - split], children)
         }
     }
 
-    fn one(
+    fn factor_front(
         &self,
         s: usize,
         (first, second, rows): (&mut [f64], &mut [f64], &mut [u32]),
-        start: Start,
+        start: FrontOffsets,
         update: &mut [f64],
         children: Updates<'_>,
         shared: bool,
@@ -395,7 +415,7 @@ where
             (&mut [][..], &mut [][..])
         };
         let first = &mut first[structure.panel[s] - start.first..structure.panel[s + 1] - start.first];
-        let store = Store { first, second, rows, update };
+        let store = FrontStorage { first, second, rows, update };
         (self.front)(s, store, children, shared, scratch).map_err(|j| structure.columns(s).start + j)
     }
 }

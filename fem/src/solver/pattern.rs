@@ -6,20 +6,20 @@
 /// List end, or parent of a root.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Flag in [`Upper::source`]: entry from the other side of the diagonal.
+/// Flag in [`UpperPattern::source`]: entry from the other side of the diagonal.
 pub(super) const MIRRORED: u32 = 1 << 31;
 
 /// Upper triangle in elimination order.
-pub(super) struct Upper {
+pub(super) struct UpperPattern {
     pub start: Vec<usize>,
     pub row: Vec<usize>,
     /// Index of the entry in the caller's pattern, with [`MIRRORED`] if transposed.
     pub source: Vec<u32>,
 }
 
-impl Upper {
+impl UpperPattern {
     /// From the caller's lower triangle; `position[equation]` is the elimination position.
-    pub fn new(column_start: &[usize], row: &[usize], position: &[u32]) -> Upper {
+    pub fn new(column_start: &[usize], row: &[usize], position: &[u32]) -> UpperPattern {
         let n = position.len();
         let mut start = vec![0_usize; n + 1];
         for c in 0..n {
@@ -45,7 +45,7 @@ impl Upper {
                 source[place] = k as u32 | side;
             }
         }
-        Upper { start, row: found, source }
+        UpperPattern { start, row: found, source }
     }
 
     pub fn elimination_tree(&self) -> Vec<u32> {
@@ -115,12 +115,12 @@ mod tests {
             row.extend_from_slice(c);
             start.push(row.len());
         }
-        let upper = Upper::new(&start, &row, &[0, 1, 2, 3, 4, 5, 6]);
+        let upper = UpperPattern::new(&start, &row, &[0, 1, 2, 3, 4, 5, 6]);
         // By hand: column 0 fills (5,3).
         let parent = upper.elimination_tree();
         assert_eq!(parent, [3, 2, 6, 5, 5, NONE, NONE]);
         assert_eq!(postorder(&parent), [0, 3, 4, 5, 1, 2, 6]);
-        let mirrored = Upper::new(&start, &row, &[6, 5, 4, 3, 2, 1, 0]);
+        let mirrored = UpperPattern::new(&start, &row, &[6, 5, 4, 3, 2, 1, 0]);
         assert!(mirrored.source.iter().filter(|&&s| s & MIRRORED != 0).count() == 5);
     }
 

@@ -66,7 +66,7 @@ impl Solution {
             pass.backward(s as usize, x, below, (0, 0), true);
         }
         for task in &structure.tasks {
-            for s in (task.first..task.end).filter(|&s| structure.handed[s]) {
+            for s in (task.first..task.end).filter(|&s| structure.exported[s]) {
                 pass.fetch(s, x, below, (0, 0));
             }
         }
@@ -202,7 +202,7 @@ impl<const K: usize> Pass<'_, K> {
     /// `x_s = L11^-T (x_s - L21^T below)`, or with U instead of L^T.
     fn backward(&self, s: usize, x: &mut [f64], below: &mut [f64], origin: (usize, usize), upper: bool) {
         let structure = self.structure;
-        if !structure.handed[s] {
+        if !structure.exported[s] {
             self.fetch(s, x, below, origin);
         }
         let (panel, width, rows) = self.panel(s);

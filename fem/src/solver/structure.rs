@@ -11,7 +11,7 @@
 //! Source: Duff and Reid (1983); Liu (1992).
 
 use super::dense::update_len;
-use super::pattern::{NONE, Upper};
+use super::pattern::{NONE, UpperPattern};
 use std::ops::Range;
 
 /// Branch limit: this fraction of all flops, at least [`BRANCH_FLOPS`].
@@ -71,8 +71,8 @@ pub(super) struct Structure {
     /// Whether the update is on the left stack.
     pub left: Vec<bool>,
     /// Whether the update passes to the upper fronts.
-    pub handed: Vec<bool>,
-    pub handed_len: usize,
+    pub exported: Vec<bool>,
+    pub exported_len: usize,
     /// Work space of upper fronts and branch thread, in values of one triangle.
     pub work_len: usize,
     pub branch_len: usize,
@@ -120,7 +120,7 @@ impl Structure {
         w * r * r + r * w * (w + 1.0) + w * (w + 1.0) * (2.0 * w + 1.0) / 6.0
     }
 
-    pub fn new(begin: Vec<u32>, rows_start: Vec<usize>, rows: Vec<u32>, upper: &Upper) -> Structure {
+    pub fn new(begin: Vec<u32>, rows_start: Vec<usize>, rows: Vec<u32>, upper: &UpperPattern) -> Structure {
         let mut structure = Structure { begin, rows_start, rows, ..Structure::default() };
         structure.link();
         structure.locate_rows();
@@ -214,7 +214,7 @@ impl Structure {
         self.second.push(second);
     }
 
-    fn locate_entries(&mut self, upper: &Upper) {
+    fn locate_entries(&mut self, upper: &UpperPattern) {
         let n = upper.start.len() - 1;
         let entries = upper.row.len();
         self.entry_start = vec![0; n + 1];
@@ -269,7 +269,7 @@ impl Structure {
             }
         }
         let limit = (self.flops / BRANCHES).max(BRANCH_FLOPS);
-        self.handed = vec![false; count];
+        self.exported = vec![false; count];
         self.update = vec![0; count];
         self.split = vec![0; count];
         self.left = depth.iter().map(|d| d & 1 == 0).collect();
@@ -283,7 +283,7 @@ impl Structure {
             if self.parent[s] != NONE && below_flops[self.parent[s] as usize] <= limit {
                 continue;
             }
-            self.handed[s] = true;
+            self.exported[s] = true;
             match self.tasks.last_mut() {
                 Some(task) if task.end == first[s] && load + below_flops[s] <= limit => {
                     task.end = s + 1;
@@ -325,7 +325,7 @@ impl Structure {
             let mut place = base;
             for t in tasks.clone() {
                 for s in self.tasks[t].first..self.tasks[t].end {
-                    if self.handed[s] {
+                    if self.exported[s] {
                         self.update[s] = place;
                         place += update_len(self.below(s));
                         // Later rounds read it.
@@ -335,7 +335,7 @@ impl Structure {
                     }
                 }
             }
-            self.handed_len = self.handed_len.max(place);
+            self.exported_len = self.exported_len.max(place);
             self.rounds.push(Round { tasks, upper });
         }
     }
@@ -356,11 +356,11 @@ impl Structure {
                 let children: usize = self
                     .children(s)
                     .iter()
-                    .filter(|&&c| !self.handed[c as usize])
+                    .filter(|&&c| !self.exported[c as usize])
                     .map(|&c| update_len(self.below(c as usize)))
                     .sum();
                 let theirs = height[1 - own];
-                if !self.handed[s] {
+                if !self.exported[s] {
                     height[own] += update_len(self.below(s));
                     self.update[s] = if own == 0 {
                         height[0] - update_len(self.below(s))

@@ -18,7 +18,7 @@
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
 use crate::energy::{at_supports, inner_force};
-use crate::equations::system::{Added, Counts, SystemSolver};
+use crate::equations::system::{Added, IterationCounts, SystemSolver};
 use crate::error::SolveError;
 use crate::integrator::{Loading, OnStep, StepReport, TimeIntegrator};
 use crate::model::Model;
@@ -74,7 +74,7 @@ impl ThetaSolver {
     }
 
     /// CG counts, if selected.
-    pub fn counts(&self) -> Option<Counts> {
+    pub fn counts(&self) -> Option<IterationCounts> {
         self.system.counts()
     }
 
@@ -242,7 +242,7 @@ impl ThetaMethod for ThetaSolver {
         Ok(audit)
     }
 
-    fn predict(
+    fn solve_with_contact_stiffness(
         &mut self,
         model: &Model,
         state: &State,

@@ -53,7 +53,7 @@ pub trait ThetaMethod: TimeIntegrator {
     ///
     /// # Errors
     /// [`SolveError::Plastic`]; values not finite; no convergence.
-    fn predict(
+    fn solve_with_contact_stiffness(
         &mut self,
         model: &Model,
         _state: &State,

@@ -14,7 +14,7 @@ use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
 use crate::energy::at_supports;
 use crate::error::SolveError;
-use crate::integrator::{Loading, Memory, OnStep, Statistics, StepReport, TimeIntegrator};
+use crate::integrator::{Loading, OnStep, SolverState, Statistics, StepReport, TimeIntegrator};
 use crate::model::Model;
 use crate::newmark::check_dynamics;
 use crate::nonlinear::NewtonOptions;
@@ -133,7 +133,7 @@ impl NonlinearTheta {
         self.newton.solve(model, &problem)?;
         let next = &mut self.next;
         for d in 0..n {
-            let w = self.newton.w[d];
+            let w = self.newton.du[d];
             let change = (w / dt - state.v[d]) / theta;
             next.u[d] = state.u[d] + w;
             next.v[d] = state.v[d] + change;
@@ -143,16 +143,16 @@ impl NonlinearTheta {
         next.time = time;
         let mut audit = StepAudit::default();
         for d in 0..n {
-            audit.external_work += mean_load[d] * self.newton.w[d];
+            audit.external_work += mean_load[d] * self.newton.du[d];
         }
         if self.fixed.iter().any(|f| *f != 0.0) {
             // Supports supply theta times the residual.
             for d in model.supports().fixed().iter().map(|(dof, _)| *dof as usize) {
-                audit.support_work -= theta * self.newton.residual[d] * self.newton.w[d];
+                audit.support_work -= theta * self.newton.residual[d] * self.newton.du[d];
             }
         }
         for d in 0..n {
-            self.rhs[d] = self.newton.w[d] / dt;
+            self.rhs[d] = self.newton.du[d] / dt;
         }
         let audit =
             close(model, &self.newton.force.table, [state, next], audit, &self.rhs, &mut self.scratch);
@@ -217,8 +217,10 @@ impl ThetaMethod for NonlinearTheta {
                     }
                     return Ok(audit);
                 }
-                Err(Failure::Stuck(stuck)) if parts >= PARTS => return Err(stuck.error(model, state.time)),
-                Err(Failure::Stuck(_)) => {
+                Err(Failure::NotConverged(stuck)) if parts >= PARTS => {
+                    return Err(stuck.error(model, state.time));
+                }
+                Err(Failure::NotConverged(_)) => {
                     parts *= 2;
                     self.newton.statistics.halvings += 1;
                 }
@@ -240,11 +242,11 @@ impl TimeIntegrator for NonlinearTheta {
         super::integrate(self, model, state, to, loading, on_step)
     }
 
-    fn memory(&self) -> Option<Memory> {
-        Some(self.newton.memory(None))
+    fn solver_state(&self) -> Option<SolverState> {
+        Some(self.newton.solver_state(None))
     }
 
-    fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
-        self.newton.recall(model, memory, None)
+    fn restore(&mut self, model: &Model, memory: &SolverState) -> Result<(), SolveError> {
+        self.newton.restore(model, memory, None)
     }
 }

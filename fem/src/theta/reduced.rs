@@ -14,7 +14,7 @@ use crate::error::SolveError;
 use crate::integrator::{Loading, OnStep, StepReport, TimeIntegrator};
 use crate::model::Model;
 use crate::newmark::check_dynamics;
-use crate::reduction::Reduced;
+use crate::reduction::ReducedModel;
 use crate::state::{State, StepAudit};
 use crate::statics::{check_finite, check_linear, check_load};
 use nalgebra::{DMatrix, DVector, Dyn, linalg};
@@ -25,7 +25,7 @@ pub struct ReducedTheta {
     theta: f64,
     dt: f64,
     report: StepReport,
-    reduced: Arc<Reduced>,
+    reduced: Arc<ReducedModel>,
     diagonal: Vec<f64>,
     factor: Option<linalg::Cholesky<f64, Dyn>>,
     next: State,
@@ -41,7 +41,7 @@ impl ReducedTheta {
     /// theta out of range, length not above 0, plastic material.
     pub fn new(
         model: &Model,
-        reduced: Arc<Reduced>,
+        reduced: Arc<ReducedModel>,
         theta: f64,
         dt: f64,
     ) -> Result<ReducedTheta, SolveError> {

@@ -7,7 +7,7 @@ use trackbed_fem::element::quadrature::Quadrature::Gauss3;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Face, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
-use trackbed_fem::newmark::{Drive, Newmark, NewmarkSolver, initial_acceleration};
+use trackbed_fem::newmark::{Newmark, NewmarkSolver, StepLoads, initial_acceleration};
 use trackbed_fem::state::State;
 use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{Mass, energy, loads, statics};
@@ -221,7 +221,7 @@ fn energy_balances_with_boundary_layers() {
                 let audit = match &mut newmark {
                     Some(solver) => {
                         let drive =
-                            Drive { load_start: Some(&start), load_end: &end, prescribed: Some(&motion) };
+                            StepLoads { load_start: Some(&start), load_end: &end, prescribed: Some(&motion) };
                         solver.advance(&model, &mut state, drive).unwrap()
                     }
                     None => window.step_prescribed(&model, &mut state, &end, Some(&motion)).unwrap(),
@@ -284,7 +284,7 @@ fn average_acceleration_conserves_on_moved_supports() {
     for step in 1..=200 {
         let motion = vec![1e-4 * (50.0 * f64::from(step) * dt).sin().powi(3); model.supports().fixed().len()];
         let before = state.clone();
-        let drive = Drive { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
+        let drive = StepLoads { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
         let audit = solver.advance(&model, &mut state, drive).unwrap();
         let (old, new) =
             (energy::reactions(&model, &before, &load), energy::reactions(&model, &state, &load));
@@ -309,7 +309,7 @@ fn results_independent_of_thread_count() {
             let mut solver = NewmarkSolver::hht(&model, -0.1, 1e-3).unwrap();
             for _ in 0..10 {
                 let motion = vec![1e-5; model.supports().fixed().len()];
-                let drive = Drive { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
+                let drive = StepLoads { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
                 solver.advance(&model, &mut state, drive).unwrap();
             }
             state.u.iter().chain(&state.a).map(|x| x.to_bits()).collect::<Vec<_>>()

@@ -40,7 +40,7 @@ pub fn soils(kind: ElementKind, counts: [usize; 3], methods: Methods) -> Model {
 }
 
 /// Gravity, pressure on part of the top, uneven support settlement.
-pub fn solve(model: &Model) -> (statics::Static, u32) {
+pub fn solve(model: &Model) -> (statics::StaticSolution, u32) {
     let mut load = model.gravity_load();
     for face in model.mesh().boundary_faces() {
         let [x, y, z] = face.centre(model.mesh());

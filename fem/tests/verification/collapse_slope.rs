@@ -34,7 +34,7 @@ fn slope(counts: [usize; 2], factor: f64) -> Model {
             constraints.push(Constraint { node: node as u32, direction, value: 0.0 });
         }
     }
-    let soil = mohr_coulomb(SOIL, 0.05 * WEIGHT * HEIGHT, 20.0, 0.0).reduced(factor);
+    let soil = mohr_coulomb(SOIL, 0.05 * WEIGHT * HEIGHT, 20.0, 0.0).with_strength_divided_by(factor);
     let materials: BTreeMap<u32, _> = [(1, soil)].into();
     let gravity = [0.0, 0.0, -WEIGHT / SOIL.density];
     let input = ModelInput {

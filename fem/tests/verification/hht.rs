@@ -8,7 +8,7 @@ use trackbed_fem::loads;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::Mesh;
 use trackbed_fem::model::Model;
-use trackbed_fem::newmark::{Drive, Newmark, NewmarkError, NewmarkSolver, initial_acceleration};
+use trackbed_fem::newmark::{Newmark, NewmarkError, NewmarkSolver, StepLoads, initial_acceleration};
 use trackbed_fem::state::State;
 
 const SOIL: Elastic = Elastic { young: 20e6, poisson: 0.3, density: 2000.0 };
@@ -50,7 +50,7 @@ fn shown(solver: &mut NewmarkSolver, model: &Model, dof: usize) -> (f64, f64) {
     let mut state = State::new(model);
     state.u[dof] = 1e-3;
     initial_acceleration(model, &mut state, &load).unwrap();
-    let drive = Drive { load_start: Some(&load), load_end: &load, prescribed: None };
+    let drive = StepLoads { load_start: Some(&load), load_end: &load, prescribed: None };
     let mut u = [0.0; 4];
     for n in 0..64 {
         solver.advance(model, &mut state, drive).unwrap();
@@ -125,7 +125,7 @@ fn after_pulse(model: &Model, mut solver: NewmarkSolver, steps: usize) -> State 
     let (mut state, mut start) = (State::new(model), at(0));
     for n in 1..=steps {
         let end = at(n);
-        let drive = Drive { load_start: Some(&start), load_end: &end, prescribed: None };
+        let drive = StepLoads { load_start: Some(&start), load_end: &end, prescribed: None };
         solver.advance(model, &mut state, drive).unwrap();
         start = end;
     }
@@ -174,14 +174,14 @@ fn rejects_invalid_parameters_and_missing_loads() {
     let mut solver = NewmarkSolver::conditionally_stable(&model, explicit, 1e-6).unwrap();
     assert!(solver.step(&model, &mut state, &load).is_ok());
     let motion = vec![0.0; 59];
-    let drive = Drive { load_start: None, load_end: &load, prescribed: Some(&motion) };
+    let drive = StepLoads { load_start: None, load_end: &load, prescribed: Some(&motion) };
     let error = solver.advance(&model, &mut state, drive).unwrap_err();
     assert_eq!(error, SolveError::Newmark(NewmarkError::Prescribed));
     let mut solver = NewmarkSolver::new(&model, Newmark::AVERAGE_ACCELERATION, 1e-3).unwrap();
-    let drive = Drive { load_start: None, load_end: &load, prescribed: Some(&motion[1..]) };
+    let drive = StepLoads { load_start: None, load_end: &load, prescribed: Some(&motion[1..]) };
     let error = solver.advance(&model, &mut state, drive).unwrap_err();
     assert!(matches!(error, SolveError::Length { found: 58, expected: 59, .. }), "{error}");
     let motion = vec![f64::NAN; 59];
-    let drive = Drive { prescribed: Some(&motion), ..drive };
+    let drive = StepLoads { prescribed: Some(&motion), ..drive };
     assert!(matches!(solver.advance(&model, &mut state, drive), Err(SolveError::NotFinite { .. })));
 }

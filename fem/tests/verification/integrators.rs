@@ -5,8 +5,10 @@
 
 use std::sync::Arc;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
-use trackbed_fem::nonlinear::{Driven, Dynamics, NewtonOptions, QuasiStatic, StepControl, Variant};
-use trackbed_fem::reduction::{Reduced, Reduction};
+use trackbed_fem::nonlinear::{
+    LoadFunctions, NewtonOptions, NonlinearNewmark, QuasiStatic, StepControl, Variant,
+};
+use trackbed_fem::reduction::{ReducedModel, Reduction};
 use trackbed_fem::theta::{NonlinearTheta, ReducedTheta, ThetaSolver};
 use trackbed_fem::{
     Constraint, DruckerPrager, Elastic, Material, Mesh, Model, ModelInput, Quadrature, Rayleigh, SolveError,
@@ -58,7 +60,7 @@ fn reduced(model: &Model) -> ReducedTheta {
     let (mesh, modes) = (model.mesh(), Reduction::Modes { modes: 12 });
     let faces = mesh.boundary_faces();
     let top: Vec<_> = faces.into_iter().filter(|f| f.centre(mesh)[2] == LENGTH).collect();
-    let shapes = Arc::new(Reduced::new(model, &top, modes).unwrap());
+    let shapes = Arc::new(ReducedModel::new(model, &top, modes).unwrap());
     ReducedTheta::new(model, shapes, 0.5, DT).unwrap()
 }
 
@@ -96,9 +98,13 @@ fn dynamic_methods_agree_and_conserve_energy() {
         (
             "plastic Newmark",
             &plastic,
-            Box::new(Dynamics::newmark(&plastic, average, options, control).unwrap()),
+            Box::new(NonlinearNewmark::newmark(&plastic, average, options, control).unwrap()),
         ),
-        ("plastic HHT", &plastic, Box::new(Dynamics::hht(&plastic, -0.05, options, control).unwrap())),
+        (
+            "plastic HHT",
+            &plastic,
+            Box::new(NonlinearNewmark::hht(&plastic, -0.05, options, control).unwrap()),
+        ),
         ("plastic mid-point", &plastic, Box::new(NonlinearTheta::new(&plastic, 0.5, DT, options).unwrap())),
     ];
     for (name, model, mut method) in methods {
@@ -147,7 +153,7 @@ fn reduced_model_rejects_moved_supports() {
     let (mut method, mut state) = (reduced(&model), State::new(&model));
     let before = state.clone();
     let load = |_: f64, _: &mut [f64]| ();
-    let mut raised = Driven { load, prescribed: |_: f64, values: &mut [f64]| values.fill(1e-3) };
+    let mut raised = LoadFunctions { load, prescribed: |_: f64, values: &mut [f64]| values.fill(1e-3) };
     let error = method.integrate(&model, &mut state, DT, &mut raised, &mut |_, _, _| ()).unwrap_err();
     assert!(matches!(error, SolveError::Option { expected: "0", .. }), "{error}");
     assert_eq!(state, before);

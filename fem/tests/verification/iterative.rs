@@ -4,7 +4,7 @@ use crate::common::{Random, difference, fix};
 use crate::mixed::block;
 use trackbed_fem::boundary::BoundaryLayer;
 use trackbed_fem::energy;
-use trackbed_fem::newmark::{Drive, NewmarkSolver};
+use trackbed_fem::newmark::{NewmarkSolver, StepLoads};
 use trackbed_fem::solver::conjugate::Stopped;
 use trackbed_fem::theta::{ThetaMethod, ThetaSolver};
 use trackbed_fem::{
@@ -100,7 +100,7 @@ fn newmark_and_hht_match_direct_solver() {
         for (k, ends) in loads(&model, 11).windows(2).enumerate() {
             let prescribed = shake(&model, k);
             let drive =
-                Drive { load_start: Some(&ends[0]), load_end: &ends[1], prescribed: Some(&prescribed) };
+                StepLoads { load_start: Some(&ends[0]), load_end: &ends[1], prescribed: Some(&prescribed) };
             solver.advance(&model, &mut state, drive).unwrap();
         }
         (state, solver.counts())
@@ -211,7 +211,8 @@ pub fn predict(methods: Methods) -> (Vec<f64>, u32) {
     let mut contacts =
         |w: &[f64], f: &mut [f64]| top.iter().for_each(|&n| f[3 * n + 2] += 1e6 * w[3 * n + 2]);
     let mut rate = vec![0.0; model.dof_count()];
-    let iterations = solver.predict(&model, &state, load, &mut contacts, &mut rate).unwrap();
+    let iterations =
+        solver.solve_with_contact_stiffness(&model, &state, load, &mut contacts, &mut rate).unwrap();
     (rate, iterations)
 }
 

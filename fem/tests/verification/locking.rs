@@ -6,7 +6,7 @@ use crate::plastic_common::footing;
 use std::f64::consts::FRAC_PI_2;
 use trackbed_fem::TimeIntegrator;
 use trackbed_fem::element::quadrature::Quadrature;
-use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl};
+use trackbed_fem::nonlinear::{LoadFunctions, NewtonOptions, QuasiStatic, StepControl};
 use trackbed_fem::{
     AssumedStrain, Constraint, Dilatation, DruckerPrager, Elastic, ElementKind, Material, Mesh, Model,
     ModelInput, MohrCoulomb, State, loads, statics, stress,
@@ -247,7 +247,8 @@ fn patches_pass_with_assumed_strains() {
         let mut state = State::new(&model);
         state.u.fill(0.0);
         let mut solver = QuasiStatic::new(&model, NewtonOptions::default(), StepControl::fixed(1.0)).unwrap();
-        let mut driven = Driven { load: |_: f64, _: &mut [f64]| {}, prescribed: |_: f64, _: &mut [f64]| {} };
+        let mut driven =
+            LoadFunctions { load: |_: f64, _: &mut [f64]| {}, prescribed: |_: f64, _: &mut [f64]| {} };
         solver.integrate(&model, &mut state, 1.0, &mut driven, &mut |_, _, _| {}).unwrap();
         let miss = difference(&state.u, &exact);
         assert!(miss < 1e-10, "{} plastic: {miss:e}", kind.name());
@@ -274,7 +275,7 @@ fn push(linear: bool, rule: Quadrature, assumed: AssumedStrain) -> (f64, Vec<Vec
         dof % 3 == 2 && x[2] == 0.0 && x[0] <= 1.0
     };
     let pushed: Vec<bool> = model.supports().fixed().iter().map(|(dof, _)| under(*dof)).collect();
-    let mut driven = Driven {
+    let mut driven = LoadFunctions {
         load: |_: f64, _: &mut [f64]| {},
         prescribed: |time: f64, values: &mut [f64]| {
             values.iter_mut().zip(&pushed).filter(|(_, p)| **p).for_each(|(v, _)| *v = -time);

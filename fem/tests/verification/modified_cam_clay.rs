@@ -263,7 +263,7 @@ fn reduced_strength_divides_the_tangent_of_the_friction_angle() {
     use trackbed_fem::ConstitutiveLaw;
     let tangent = |m: f64| (3.0 * m / (6.0 + m)).asin().tan();
     for factor in [1.0, 1.3, 2.0] {
-        let reduced = CLAY.reduced(factor).critical_ratio;
+        let reduced = CLAY.with_strength_divided_by(factor).critical_ratio;
         assert!((tangent(reduced) * factor / tangent(M) - 1.0).abs() < 1e-12, "{factor}: {reduced}");
     }
 }

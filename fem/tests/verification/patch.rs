@@ -6,7 +6,7 @@ use crate::common::{difference, model, read_mesh, table};
 use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::model::Model;
-use trackbed_fem::statics::{self, Static};
+use trackbed_fem::statics::{self, StaticSolution};
 use trackbed_fem::stress;
 
 const GRADIENT: [[f64; 3]; 3] =
@@ -20,7 +20,7 @@ const STRESS: [f64; 6] = [
     -5769.2307692307695,
 ];
 
-fn solve(case: &str, rule: Quadrature) -> (Model, Static) {
+fn solve(case: &str, rule: Quadrature) -> (Model, StaticSolution) {
     let (mesh, constraints) = read_mesh(case);
     let model = model(mesh, constraints, Elastic { young: 30e6, poisson: 0.3, density: 2000.0 }, rule);
     let solution = statics::solve(&model, &vec![0.0; model.dof_count()]).unwrap();

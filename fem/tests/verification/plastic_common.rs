@@ -105,7 +105,7 @@ impl Footing {
 
     /// Time is the settlement [m].
     pub fn loading(&self) -> impl trackbed_fem::nonlinear::Loading + '_ {
-        trackbed_fem::nonlinear::Driven {
+        trackbed_fem::nonlinear::LoadFunctions {
             load: |_: f64, _: &mut [f64]| (),
             prescribed: |time: f64, values: &mut [f64]| {
                 values.iter_mut().zip(&self.pushed).filter(|(_, p)| **p).for_each(|(v, _)| *v = -time);

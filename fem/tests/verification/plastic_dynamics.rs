@@ -6,8 +6,8 @@ use crate::plastic_common::{mohr_coulomb, tight};
 use trackbed_fem::TimeIntegrator;
 use trackbed_fem::boundary::BoundaryLayer;
 use trackbed_fem::mass::Mass;
-use trackbed_fem::newmark::{Drive, Newmark, NewmarkSolver};
-use trackbed_fem::nonlinear::dynamics::{Dynamics, initial_acceleration};
+use trackbed_fem::newmark::{Newmark, NewmarkSolver, StepLoads};
+use trackbed_fem::nonlinear::dynamics::{NonlinearNewmark, initial_acceleration};
 use trackbed_fem::nonlinear::{Loading, NewtonOptions, StepControl};
 use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{
@@ -100,7 +100,7 @@ fn elastic_response_matches_linear_newmark() {
         initial_acceleration(model, &mut b, &shaken.at(0.0)).unwrap();
         assert!(difference(&b.a, &a.a) < 1e-10);
         let mut linear = NewmarkSolver::hht(model, hht, dt).unwrap();
-        let mut driver = Dynamics::hht(model, hht, tight(), StepControl::fixed(dt)).unwrap();
+        let mut driver = NonlinearNewmark::hht(model, hht, tight(), StepControl::fixed(dt)).unwrap();
         let (mut sum_a, mut sum_b) = ([0.0; 4], [0.0; 4]);
         let parts =
             |x: &StepAudit| [x.external_work, x.support_work, x.damping_dissipation, x.boundary_dissipation];
@@ -108,8 +108,11 @@ fn elastic_response_matches_linear_newmark() {
             let (from, to) = (dt * f64::from(step), dt * f64::from(step + 1));
             let prescribed = shaken.moved(to);
             let (load_start, load_end) = (shaken.at(from), shaken.at(to));
-            let drive =
-                Drive { load_start: Some(&load_start), load_end: &load_end, prescribed: Some(&prescribed) };
+            let drive = StepLoads {
+                load_start: Some(&load_start),
+                load_end: &load_end,
+                prescribed: Some(&prescribed),
+            };
             let audit = linear.advance(model, &mut a, drive).unwrap();
             (0..4).for_each(|k| sum_a[k] += parts(&audit)[k]);
             let end = b.time + dt;
@@ -227,7 +230,8 @@ fn an_oscillator_with_friction() {
     moving.iter().for_each(|d| state.v[*d] = v0);
     initial_acceleration(&model, &mut state, &vec![0.0; model.dof_count()]).unwrap();
     let mut driver =
-        Dynamics::newmark(&model, Newmark::AVERAGE_ACCELERATION, tight(), StepControl::fixed(dt)).unwrap();
+        NonlinearNewmark::newmark(&model, Newmark::AVERAGE_ACCELERATION, tight(), StepControl::fixed(dt))
+            .unwrap();
     let (mut found, mut when, mut plastic) = (0.0, 0.0, 0.0);
     let mut rest = |_: f64, _: &mut [f64]| ();
     driver
@@ -296,7 +300,8 @@ fn energy_balance_closes_under_yield() {
             } else {
                 let control = StepControl::fixed(dt);
                 let alpha = if scheme == "hht" { -0.1 } else { 0.0 };
-                let mut driver = Dynamics::hht(&model, alpha, NewtonOptions::default(), control).unwrap();
+                let mut driver =
+                    NonlinearNewmark::hht(&model, alpha, NewtonOptions::default(), control).unwrap();
                 let mut loading = at;
                 driver
                     .integrate(&model, &mut state, 60.0 * dt, &mut loading, &mut |s, _, x| add(x.unwrap(), s))
@@ -337,8 +342,10 @@ fn bits_and_restart() {
                     load[d] = weight[d] + pulse(time) * top[d];
                 }
             };
-            let new =
-                || Dynamics::hht(&model, -0.1, NewtonOptions::default(), StepControl::fixed(1e-3)).unwrap();
+            let new = || {
+                NonlinearNewmark::hht(&model, -0.1, NewtonOptions::default(), StepControl::fixed(1e-3))
+                    .unwrap()
+            };
             let (mut state, mut driver) = (State::new(&model), new());
             for step in 1..=10 {
                 if restart && step == 6 {

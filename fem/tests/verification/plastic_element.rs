@@ -7,7 +7,7 @@
 use crate::common::{model, read_mesh, table};
 use crate::plastic_common::{drucker_prager, mohr_coulomb, tight};
 use trackbed_fem::TimeIntegrator;
-use trackbed_fem::nonlinear::{Driven, QuasiStatic, StepControl};
+use trackbed_fem::nonlinear::{LoadFunctions, QuasiStatic, StepControl};
 use trackbed_fem::{Cone, Constraint, Elastic, Material, Quadrature, State, loads};
 
 const CASE: &str = "P1_single_element";
@@ -31,7 +31,7 @@ fn follow(file: &str, material: &Material, ratio: f64, rule: Quadrature) -> (f64
     let dofs: Vec<bool> =
         model.supports().fixed().iter().map(|(d, _)| d % 3 == 2 && top.contains(&(d / 3))).collect();
     let axial = |time: f64| rows[time.round() as usize][0];
-    let mut loading = Driven {
+    let mut loading = LoadFunctions {
         load: |_: f64, load: &mut [f64]| load.copy_from_slice(&held),
         prescribed: |time: f64, values: &mut [f64]| {
             values.iter_mut().zip(&dofs).filter(|(_, top)| **top).for_each(|(v, _)| *v = axial(time));

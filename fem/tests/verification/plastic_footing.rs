@@ -6,7 +6,7 @@ use crate::common::difference;
 use crate::common::model;
 use crate::plastic_common::{cpu_seconds, footing, mohr_coulomb};
 use trackbed_fem::TimeIntegrator;
-use trackbed_fem::nonlinear::{Driven, NewtonOptions, QuasiStatic, StepControl, Variant};
+use trackbed_fem::nonlinear::{LoadFunctions, NewtonOptions, QuasiStatic, StepControl, Variant};
 use trackbed_fem::{Constraint, Elastic, Mesh, Quadrature, State};
 
 const SOIL: Elastic = Elastic { young: 1e7, poisson: 0.3, density: 2000.0 };
@@ -124,7 +124,7 @@ fn cost_of_unsymmetric_systems() {
                     .iter()
                     .map(|(d, _)| d % 3 == 2 && model.mesh().coordinates[*d as usize / 3][2] == 3.5)
                     .collect();
-                let mut loading = Driven {
+                let mut loading = LoadFunctions {
                     load: |_: f64, _: &mut [f64]| (),
                     prescribed: |time: f64, values: &mut [f64]| {
                         values.iter_mut().zip(&pushed).filter(|(_, p)| **p).for_each(|(v, _)| *v = -time);

@@ -12,8 +12,8 @@ mod walks;
 
 use crate::common::Random;
 use trackbed_fem::material::{
-    Cone, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb, PointState, Region, Response, regularise,
-    update,
+    Cone, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb, PointState, Response, ReturnRegion,
+    regularise, update,
 };
 
 /// E = 50 MPa, nu = 0.3.
@@ -107,8 +107,8 @@ pub fn mixed_step(
 }
 
 /// Laws with the regions to reach.
-pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
-    use Region::*;
+pub fn laws() -> Vec<(&'static str, Material, Vec<ReturnRegion>)> {
+    use ReturnRegion::*;
     let open = vec![Plane, EdgeCompression, EdgeExtension, Apex];
     let cut = vec![
         Plane,
@@ -125,8 +125,8 @@ pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
     let line = |initial: f64, modulus: f64, limit| Hardening::Linear { initial, modulus, limit };
     let table =
         Hardening::Table(vec![(0.0, rad(20.0)), (2e-3, rad(30.0)), (8e-3, rad(33.0)), (2e-2, rad(31.0))]);
-    let mut list: Vec<(&'static str, Material, Vec<Region>)> = Vec::new();
-    let mut mc = |name, law: MohrCoulomb, regions: &Vec<Region>| {
+    let mut list: Vec<(&'static str, Material, Vec<ReturnRegion>)> = Vec::new();
+    let mut mc = |name, law: MohrCoulomb, regions: &Vec<ReturnRegion>| {
         list.push((name, Material::plastic(SOIL, law), regions.clone()));
     };
     mc("mc 30/30", mohr_coulomb(c, 30.0, 30.0, None), &open);
@@ -149,7 +149,7 @@ pub fn laws() -> Vec<(&'static str, Material, Vec<Region>)> {
     let both = MohrCoulomb { friction: table.clone(), ..harder };
     mc("mc hardening c, phi", both.clone(), &open);
     mc("mc hardening c, phi cut", MohrCoulomb { tension: Some(0.4 * c), ..both }, &cut);
-    let mut dp = |name, law: DruckerPrager, regions: &[Region]| {
+    let mut dp = |name, law: DruckerPrager, regions: &[ReturnRegion]| {
         list.push((name, Material::plastic(SOIL, law), regions.to_vec()));
     };
     let (open, cut) = ([Cone, ConeApex], [Cone, Cap, ConeCap]);

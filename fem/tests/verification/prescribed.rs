@@ -9,7 +9,7 @@ use trackbed_fem::material::elastic::Elastic;
 use trackbed_fem::mesh::{Constraint, Mesh};
 use trackbed_fem::model::{Model, ModelInput};
 use trackbed_fem::newmark::{
-    Drive, Newmark, NewmarkSolver, initial_acceleration, initial_acceleration_prescribed,
+    Newmark, NewmarkSolver, StepLoads, initial_acceleration, initial_acceleration_prescribed,
 };
 use trackbed_fem::state::State;
 use trackbed_fem::statics::StaticSolver;
@@ -62,7 +62,7 @@ fn harmonic_base_motion_matches_standing_wave() {
             if window {
                 windows.step_prescribed(&model, &mut state, &load, Some(&motion)).unwrap();
             } else {
-                let drive = Drive { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
+                let drive = StepLoads { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
                 newmark.advance(&model, &mut state, drive).unwrap();
             }
         }
@@ -109,7 +109,7 @@ fn base_motion_matches_relative_motion() {
                 .advance(
                     &model,
                     &mut moved,
-                    Drive { load_start: Some(&zero), load_end: &zero, prescribed: Some(&motion) },
+                    StepLoads { load_start: Some(&zero), load_end: &zero, prescribed: Some(&motion) },
                 )
                 .unwrap();
             // Node 0 is on the base.
@@ -148,7 +148,7 @@ fn constant_speed_strains_nothing() {
             let audit = if solver == 2 {
                 window.step_prescribed(&model, &mut state, &load, Some(&motion)).unwrap()
             } else {
-                let drive = Drive { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
+                let drive = StepLoads { load_start: Some(&load), load_end: &load, prescribed: Some(&motion) };
                 newmark.advance(&model, &mut state, drive).unwrap()
             };
             work = work.max(audit.support_work.abs());
@@ -172,7 +172,7 @@ fn supports_keep_their_last_position() {
     let mut solver = NewmarkSolver::new(&model, Newmark { beta: 0.36, gamma: 0.7 }, 5e-3).unwrap();
     for step in 1..=20 {
         let motion = along_x(&model, 1e-4 * f64::from(step));
-        let drive = Drive { load_start: None, load_end: &load, prescribed: Some(&motion) };
+        let drive = StepLoads { load_start: None, load_end: &load, prescribed: Some(&motion) };
         solver.advance(&model, &mut state, drive).unwrap();
     }
     for _ in 0..4000 {
@@ -243,7 +243,7 @@ fn momentum_balances_with_the_reactions() {
                     State { u: mid(&before.u, &state.u), v: mid(&before.v, &state.v), ..State::new(&model) };
                 outer(&middle, &forces)
             } else {
-                let drive = Drive { load_start: Some(&start), load_end: &end, prescribed: Some(&motion) };
+                let drive = StepLoads { load_start: Some(&start), load_end: &end, prescribed: Some(&motion) };
                 newmark.advance(&model, &mut state, drive).unwrap();
                 let total = |s: &State, load: &[f64]| {
                     let mut forces = energy::reactions(&model, s, load);

@@ -9,7 +9,7 @@ use trackbed_fem::element::quadrature::Quadrature;
 use trackbed_fem::loads;
 use trackbed_fem::material::{Elastic, Material};
 use trackbed_fem::model::{Model, ModelInput};
-use trackbed_fem::statics::{self, Static};
+use trackbed_fem::statics::{self, StaticSolution};
 use trackbed_fem::stress;
 
 struct Case {
@@ -28,7 +28,7 @@ enum Surface {
     Traction([f64; 3]),
 }
 
-fn solve(case: &Case, rule: Quadrature) -> (Model, Vec<f64>, Static) {
+fn solve(case: &Case, rule: Quadrature) -> (Model, Vec<f64>, StaticSolution) {
     let (mesh, constraints) = read_mesh(case.name);
     let model = Model::new(ModelInput {
         mesh,
@@ -52,7 +52,7 @@ fn solve(case: &Case, rule: Quadrature) -> (Model, Vec<f64>, Static) {
 }
 
 /// Compares both rules with the tables; returns the full-rule solution.
-fn assert_tables_met(case: &Case) -> (Model, Vec<f64>, Static) {
+fn assert_tables_met(case: &Case) -> (Model, Vec<f64>, StaticSolution) {
     let (model, load, solution) = solve(case, Quadrature::Gauss3);
     let reference: Vec<f64> =
         table(case.name, "reference_displacement.csv").iter().flat_map(|r| r[1..4].to_vec()).collect();

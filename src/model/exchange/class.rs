@@ -1,9 +1,9 @@
 //! Contact classes (material pairs) and the stability of their coupling.
 
 use serde::{Deserialize, Serialize};
-use trackbed_coupling::interface::InterfaceNumbers;
+use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::stability::{PointMasses, Stability, largest_d};
+use trackbed_coupling::stability::{ContactStabilityNumbers, EffectiveMasses, largest_stable_d};
 
 /// Default θ with meshed sleepers. At 0.5 stiff unresolved oscillations are undamped, and dashpots that lag
 /// by one window amplify them.
@@ -21,7 +21,7 @@ pub struct ContactClass {
     /// Damping ratio ζ with the grain mass only.
     pub damping_ratio: f64,
     /// Effective nodal masses at the surface [kg].
-    pub masses: PointMasses,
+    pub masses: EffectiveMasses,
     /// Smallest and largest grain mass [kg].
     pub stones: [f64; 2],
     /// Damping ratio ζ' of the lightest and heaviest grain at the lightest point.
@@ -35,7 +35,7 @@ pub struct ContactClass {
     /// Limit of D, if any.
     pub d_limit: Option<f64>,
     /// W and D of a dense grain layer, Ω of its lightest grain. Zero on meshed sleepers.
-    pub numbers: InterfaceNumbers,
+    pub numbers: InterfaceStabilityNumbers,
 }
 
 impl ContactClass {
@@ -92,8 +92,8 @@ impl ContactClass {
 }
 
 /// Returns the largest W and D of all classes.
-pub fn stability(classes: &[ContactClass]) -> Stability {
-    Stability {
+pub fn stability(classes: &[ContactClass]) -> ContactStabilityNumbers {
+    ContactStabilityNumbers {
         stiffness: classes.iter().map(|c| c.w).fold(0.0, f64::max),
         damping: classes.iter().map(|c| c.d).fold(0.0, f64::max),
     }
@@ -122,7 +122,7 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
         .map(|c| {
             let fitting = (f64::from(substeps) / c.excess()) as u32;
             // Only meshed sleepers have a lower limit.
-            let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_d(scheme);
+            let lax = c.d > c.d_limit.unwrap_or(f64::INFINITY) && c.d <= largest_stable_d(scheme);
             let fewer = match fitting {
                 _ if lax => {
                     let theta = (20.0 * (0.5 + 0.25 * c.d)).ceil() / 20.0;

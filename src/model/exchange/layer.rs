@@ -1,9 +1,11 @@
-//! Interface numbers W and D of a dense grain layer on the surface.
+//! InterfaceStability numbers W and D of a dense grain layer on the surface.
 
 use super::ContactClass;
 use crate::model::grains::GrainsPart;
 use trackbed_coupling::face::landmarks;
-use trackbed_coupling::interface::{Interface, InterfaceNumbers, SurfacePoint, undamped};
+use trackbed_coupling::interface_stability::{
+    InterfaceStability, InterfaceStabilityNumbers, SurfacePoint, undamped,
+};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
@@ -45,7 +47,7 @@ pub fn add_numbers(
     (solid, surface): (&fem::Model, &SolidSurface),
     within: impl Fn(u32) -> bool,
 ) {
-    let mut interface = Interface::new(solid, surface);
+    let mut interface = InterfaceStability::new(solid, surface);
     let Some(middle) = lightest(solid, surface, within) else { return };
     let bodies = grains.stone_groups();
     for (material, name) in grains.materials.touching() {
@@ -61,7 +63,7 @@ pub fn add_numbers(
         let [w, d] = interface.of_points(surface, &points);
         let [along, across] = undamped(springs, damping, stones.mass);
         let phase = (across * stones.mobility).max(along / stones.mass).sqrt();
-        let numbers = InterfaceNumbers { stiffness: w, damping: d, phase };
+        let numbers = InterfaceStabilityNumbers { stiffness: w, damping: d, phase };
         classes.iter_mut().filter(|c| c.grains == name).for_each(|c| c.numbers = numbers);
     }
 }

@@ -10,10 +10,11 @@ pub use table::build;
 use super::grains::GrainsPart;
 use super::solid::SolidPart;
 use crate::scene::{Document, SceneError};
-use trackbed_coupling::interface::InterfaceNumbers;
+use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
-    PointMasses, accurate_w, largest_d, largest_w, point_masses, quiet_w, theta_for, window_masses,
+    EffectiveMasses, effective_masses, effective_masses_in_window, largest_accurate_w, largest_quiet_w,
+    largest_stable_d, largest_stable_w, theta_for_phase,
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -97,8 +98,8 @@ impl CouplingPart {
     fn spread(&self, surface: SolidSurface, grains: &GrainsPart) -> SolidSurface {
         match self.transfer {
             TransferPlan::Point => surface,
-            TransferPlan::Disc(radius) => surface.spread_over(radius),
-            TransferPlan::Part(part) => surface.spread_over(part * grains.groups.mean_reach()),
+            TransferPlan::Disc(radius) => surface.distribute_over_discs(radius),
+            TransferPlan::Part(part) => surface.distribute_over_discs(part * grains.groups.mean_reach()),
         }
     }
 
@@ -132,7 +133,7 @@ impl CouplingPart {
                 };
                 let most = (f64::from(MOST) * growth) as u32;
                 // W and D are proportional to the window; the run divides windows if needed.
-                let of_one = |c: ContactClass| c.excess().max(c.w / quiet_w(self.scheme));
+                let of_one = |c: ContactClass| c.excess().max(c.w / largest_quiet_w(self.scheme));
                 let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
             }
@@ -142,7 +143,9 @@ impl CouplingPart {
             let ground = || ground.iter().map(|c| c.at(window));
             let theta = self.theta.unwrap_or_else(|| match self.scheme {
                 Scheme::Lagged | Scheme::Iterated { .. } => 0.5,
-                _ => theta_for(ground().map(|c| c.numbers.phase).fold(0.0, f64::max).min(LARGEST_PHASE)),
+                _ => {
+                    theta_for_phase(ground().map(|c| c.numbers.phase).fold(0.0, f64::max).min(LARGEST_PHASE))
+                }
             });
             let sleepers = self.sleeper_classes(grains, model, solid, theta, window);
             if !self.automatic() || substeps == 1 || sleepers.iter().all(|c| c.excess() <= 1.0) {
@@ -206,7 +209,7 @@ impl CouplingPart {
         // Massless solids are rejected elsewhere.
         let within = |face: u32| reached(model, surface, face);
         let places =
-            ids.iter().filter_map(|&id| Some((id, point_masses(&solid.model, surface, id, within)?)));
+            ids.iter().filter_map(|&id| Some((id, effective_masses(&solid.model, surface, id, within)?)));
         let places: Vec<_> = places.collect();
         let mut classes = self.with_stones(grains, model, solid, own, &places);
         layer::add_numbers(&mut classes, (grains, model, own), (&solid.model, surface), within);
@@ -229,7 +232,7 @@ impl CouplingPart {
         let Ok((body, surface)) = sleepers.alone(&solid.model) else { return Vec::new() };
         let surface = self.spread(surface, grains);
         let faces = sleepers.telling_faces(&surface);
-        let Ok(masses) = window_masses(&body, &surface, &faces, theta, window) else {
+        let Ok(masses) = effective_masses_in_window(&body, &surface, &faces, theta, window) else {
             return Vec::new();
         };
         let own = model.patch_material(self.ground_faces as u32);
@@ -249,7 +252,7 @@ impl CouplingPart {
         model: &dem::Model,
         solid: &SolidPart,
         own: usize,
-        places: &[(u32, PointMasses)],
+        places: &[(u32, EffectiveMasses)],
     ) -> Vec<ContactClass> {
         let mut classes = Vec::new();
         for (material, name) in grains.materials.touching() {
@@ -259,8 +262,8 @@ impl CouplingPart {
             for (id, masses) in places {
                 let m = masses.least();
                 let pair = stones.map(|stone| damping_ratio * ((m + stone) / m).sqrt());
-                let limit = |k: usize| largest_w(self.scheme, pair[k], stones[k] / m);
-                let d_limit = largest_d(self.scheme);
+                let limit = |k: usize| largest_stable_w(self.scheme, pair[k], stones[k] / m);
+                let d_limit = largest_stable_d(self.scheme);
                 classes.push(ContactClass {
                     grains: name.clone(),
                     solid: solid.material_names.get(id).cloned().unwrap_or_else(|| id.to_string()),
@@ -270,10 +273,10 @@ impl CouplingPart {
                     stones,
                     pair_damping: pair,
                     w: (stiffness / m).sqrt(),
-                    w_limit: limit(0).min(limit(1)).min(accurate_w(self.scheme)),
+                    w_limit: limit(0).min(limit(1)).min(largest_accurate_w(self.scheme)),
                     d: 2.0 * damping_ratio * (stones[1] * stiffness).sqrt() / m,
                     d_limit: d_limit.is_finite().then_some(d_limit),
-                    numbers: InterfaceNumbers::default(),
+                    numbers: InterfaceStabilityNumbers::default(),
                 });
             }
         }

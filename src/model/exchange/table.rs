@@ -6,7 +6,7 @@ use crate::model::solid::SolidPart;
 use crate::scene::coupling::{Coupling, FacesName, SchemeName, Substeps, TransferTable};
 use crate::scene::{SceneError, Table};
 use trackbed_coupling::scheme::Scheme;
-use trackbed_coupling::surface::{SolidSurface, facets};
+use trackbed_coupling::surface::{SolidSurface, face_triangles};
 
 const PASSES: u32 = 20;
 
@@ -41,7 +41,7 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<
         return Err(c.error("direction", "no boundary face that looks this way", "at least one"));
     }
     if polyhedra || c.faces == Some(FacesName::Flat) {
-        faces = faces.iter().flat_map(facets).collect();
+        faces = faces.iter().flat_map(face_triangles).collect();
     }
     let ground_faces = faces.len();
     if solid.sleepers.is_some() {

@@ -83,7 +83,7 @@ impl SolidPart {
             SolveError::NoStiffness { node, pivot, .. } if conditioning::is_poor(&self.model) => {
                 Failure::Input(format!("{file}: {}", conditioning::message(&self.model, *node, *pivot)))
             }
-            SolveError::NotHeld { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
+            SolveError::RigidBodyMotion { .. } | SolveError::NoStiffness { .. } => Failure::Input(format!(
                 "{file}: constraints: found too few ({error}), expected supports that prevent rigid-body motion"
             )),
             SolveError::Stopped => Failure::Interrupted("interrupted".into()),

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::run::validity::{Check, Limits};
 use serde::{Deserialize, Serialize};
-use trackbed_coupling::ledger::{Balance, Stored};
-use trackbed_coupling::step::spent_by_grains;
+use trackbed_coupling::energy_balance::{EnergyBalance, StoredEnergy};
+use trackbed_coupling::step::grain_work_and_dissipation;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
@@ -56,13 +56,14 @@ impl StageEnergy {
             None => dem::find_contacts(model, &mut start, &mut work, &dem::surface::NoSurface),
         }
         .map_err(|e| Failure::Numerical(format!("grains at the start of {stage}: {e}")))?;
-        let balance = Balance {
+        let balance = EnergyBalance {
             start: stored(model, &start),
             now: stored(model, state),
-            spent: spent_by_grains(state),
+            spent: grain_work_and_dissipation(state),
             reference: dem::measure::reference_energy(model, state),
         };
-        let (error, reference_energy) = (balance.error(), balance.turnover().max(balance.floor()));
+        let (error, reference_energy) =
+            (balance.error(), balance.reference_energy().max(balance.negligible_energy()));
         let relative_error = if error == 0.0 { 0.0 } else { error.abs() / reference_energy };
         let made = balance.now.total() - balance.start.total() - balance.spent.work();
         let gain = made.max(0.0) / reference_energy.max(f64::MIN_POSITIVE);
@@ -154,15 +155,15 @@ impl StageEnergy {
     }
 }
 
-fn stored(model: &dem::Model, state: &dem::State) -> Stored {
+fn stored(model: &dem::Model, state: &dem::State) -> StoredEnergy {
     let e = dem::measure::energies(model, state);
-    Stored {
+    StoredEnergy {
         grains_kinetic: e.kinetic(),
         contact_springs: e.elastic_normal + e.elastic_tangential,
         bonds: e.elastic_bonds,
         mounts: e.elastic_mounts,
         grains_gravity: e.gravity,
-        ..Stored::default()
+        ..StoredEnergy::default()
     }
 }
 

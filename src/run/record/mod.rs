@@ -25,9 +25,9 @@ use serde::{Deserialize, Serialize};
 use solid_probes::CycleStresses;
 use std::io;
 use std::path::{Path, PathBuf};
-use trackbed_coupling::ledger::Balance;
+use trackbed_coupling::energy_balance::EnergyBalance;
+use trackbed_coupling::track::cycle_jump::{CycleJumper, JumpSummary};
 use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
-use trackbed_coupling::track::jump::{JumpSummary, Jumper};
 use trackbed_coupling::track::{Track, settlement};
 
 /// Output files of a run.
@@ -48,11 +48,11 @@ pub struct Results<'a> {
 struct Course {
     frame: usize,
     cycles: Option<CycleRecorder>,
-    jumper: Option<Jumper>,
+    jumper: Option<CycleJumper>,
     jump_energy: f64,
     /// Energy error before a jump, whose energy follows from the next window [J].
     before_jump: Option<f64>,
-    balance: Balance,
+    balance: EnergyBalance,
     largest_error: f64,
     watch: EnergyWatch,
     settlement: Vec<Vec<[f64; 2]>>,
@@ -89,8 +89,13 @@ impl<'a> Results<'a> {
         let stored = system.stored();
         let course = Course {
             cycles: load.map(|load| cycle_file::recorder(job, system, load)),
-            jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(Jumper::new),
-            balance: Balance { start: stored, now: stored, spent: system.spent(), ..Balance::default() },
+            jumper: job.grains.as_ref().and_then(|g| g.track.after.jump.as_ref()).map(CycleJumper::new),
+            balance: EnergyBalance {
+                start: stored,
+                now: stored,
+                spent: system.spent(),
+                ..EnergyBalance::default()
+            },
             ..Course::default()
         };
         let now = Now { time: 0.0, system, job, track, flow, balance: &course.balance };
@@ -242,8 +247,13 @@ impl<'a> Results<'a> {
     fn energy_error<S: System>(&self, system: &S) -> f64 {
         let mut spent = system.spent();
         spent.jumps = self.course.jump_energy;
-        Balance { start: self.course.balance.start, now: system.stored(), spent, ..Balance::default() }
-            .error()
+        EnergyBalance {
+            start: self.course.balance.start,
+            now: system.stored(),
+            spent,
+            ..EnergyBalance::default()
+        }
+        .error()
     }
 
     /// Returns completed and total cycles; none without cyclic load.
@@ -300,7 +310,7 @@ impl<'a> Results<'a> {
     }
 
     /// Energy balance of the last row.
-    pub fn balance(&self) -> &Balance {
+    pub fn balance(&self) -> &EnergyBalance {
         &self.course.balance
     }
 
@@ -359,7 +369,7 @@ impl Course {
         balance.spent = system.spent();
         balance.spent.jumps = self.jump_energy;
         balance.reference = system.reference_energy();
-        track.account(&mut balance.now, &mut balance.spent);
+        track.add_energy(&mut balance.now, &mut balance.spent);
     }
 
     fn settle<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) {

@@ -27,7 +27,8 @@ impl Carried {
         let bed: Option<Settled> = loaded.take()?;
         let state = if coupled {
             let (_, _, state, _) =
-                loaded.take::<(Vec<f64>, Option<fem::nonlinear::Memory>, coupling::step::State, f64)>()?;
+                loaded
+                    .take::<(Vec<f64>, Option<fem::nonlinear::SolverState>, coupling::step::State, f64)>()?;
             state.grains
         } else {
             loaded.take()?

@@ -2,13 +2,13 @@
 
 use crate::run::summary::CouplingRecord;
 use crate::run::system::CoupledSystem;
-use trackbed_coupling::interface::InterfaceNumbers;
-use trackbed_coupling::ledger::Spent;
-use trackbed_coupling::scheme::Passes;
-use trackbed_coupling::stability::{INTERFACE, interface_excess, largest_phase, theta_for};
+use trackbed_coupling::energy_balance::WorkAndDissipation;
+use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
+use trackbed_coupling::scheme::IterationStats;
+use trackbed_coupling::stability::{INTERFACE_LIMITS, interface_excess, largest_phase, theta_for_phase};
 
 /// Warns about unconverged windows of the iterated scheme.
-pub fn unconverged(passes: &Passes) -> Option<String> {
+pub fn unconverged(passes: &IterationStats) -> Option<String> {
     (passes.unconverged > 0).then(|| {
         format!(
             "coupling: {} of {} windows not converged within coupling.max_passes. The best pass was used. Increase coupling.max_passes, or reduce coupling.substeps.",
@@ -21,7 +21,7 @@ pub fn unconverged(passes: &Passes) -> Option<String> {
 const LATE: f64 = 0.05;
 
 /// Warns about dashpots that dissipate less than their law, because the solid deviates from its prediction.
-pub fn late(spent: &Spent) -> Option<String> {
+pub fn late(spent: &WorkAndDissipation) -> Option<String> {
     let law = spent.dissipated() - spent.interface_dashpot_error;
     let part = -spent.interface_dashpot_error / spent.work().abs().max(law);
     (part > LATE).then(|| {
@@ -39,8 +39,8 @@ const GROWTH: f64 = 1.0;
 /// Warns about an interface beyond its stability limit.
 pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -> Option<String> {
     let (model, check) = (&system.model, &system.state.interface_check);
-    let InterfaceNumbers { stiffness, damping, phase } = check.largest;
-    let numbers = InterfaceNumbers { phase: 0.0, ..check.largest };
+    let InterfaceStabilityNumbers { stiffness, damping, phase } = check.largest;
+    let numbers = InterfaceStabilityNumbers { phase: 0.0, ..check.largest };
     let excess = interface_excess(model.scheme, model.theta, &numbers);
     if !system.automatic && excess > 1.0 {
         let fitting = (f64::from(record.substeps) / excess) as u32;
@@ -51,7 +51,7 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
         };
         return Some(format!(
             "coupling: unstable windows: W = {stiffness:.2}, D = {damping:.2} for all contacts on the solid (limit {}). Contacts may excite the ground. Set {fewer}.",
-            INTERFACE[0]
+            INTERFACE_LIMITS[0]
         ));
     }
     (check.growth > GROWTH).then(|| {
@@ -60,7 +60,7 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
             model.theta,
             largest_phase(model.theta),
             libm::exp(check.growth.min(700.0)),
-            theta_for(phase)
+            theta_for_phase(phase)
         )
     })
 }

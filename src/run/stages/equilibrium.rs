@@ -114,7 +114,7 @@ fn couple<'b>(
             let start = coupling::step::State::new(state, resting);
             // Only the lagged scheme keeps the previous load.
             let lagged = plan.scheme == Scheme::Lagged;
-            (reference, None, if lagged { start.carrying(contacts) } else { start }, 0.0)
+            (reference, None, if lagged { start.with_initial_contact_load(contacts) } else { start }, 0.0)
         }
     };
     let model = coupling::step::Model {
@@ -133,7 +133,7 @@ fn couple<'b>(
         Place::Gpu => Steps::device(&model.grains, &state.grains)?,
     };
     let mut work = coupling::step::Work::with_back_end(&model, &state, surface, steps)
-        .and_then(|mut work| work.recall(&model, memory.as_ref()).map(|()| work))
+        .and_then(|mut work| work.restore(&model, memory.as_ref()).map(|()| work))
         .map_err(|e| solid.failure(&e))?;
     reduce(run, solid, &model, &mut work, summary)?;
     summary.model.solid_step = Some(model.window());
@@ -166,7 +166,7 @@ fn reduce(
     summary: &mut Summary,
 ) -> Result<(), Failure> {
     let Some(reduction) = solid.reduction else { return Ok(()) };
-    let cost = fem::reduction::Reduced::cost(model.solid, work.surface.faces(), reduction);
+    let cost = fem::reduction::ReducedModel::cost(model.solid, work.surface.faces(), reduction);
     let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
         format!(
             "solid.reduction: {} modes make an FEM step about {:.1}× slower ({:.1} instead of {:.1} million numbers read). Remove it, or set kind = \"modes\".",
@@ -180,7 +180,7 @@ fn reduce(
         slower.iter().for_each(|r| message::warn(r));
     }
     summary.warnings.extend(slower);
-    let reduced = fem::reduction::Reduced::new(model.solid, work.surface.faces(), reduction)
+    let reduced = fem::reduction::ReducedModel::new(model.solid, work.surface.faces(), reduction)
         .map_err(|e| Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice")))?;
     work.reduce(model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
     summary.model.reduction = work.reduction();
@@ -188,7 +188,7 @@ fn reduce(
 }
 
 /// Reference displacement, solver history, states, seat work [J].
-type Kept = (Vec<f64>, Option<fem::nonlinear::Memory>, coupling::step::State, f64);
+type Kept = (Vec<f64>, Option<fem::nonlinear::SolverState>, coupling::step::State, f64);
 
 /// A final state of another run restarts the balances.
 fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
@@ -196,7 +196,7 @@ fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
     if loaded.moment.stage != END {
         return Ok((reference, memory, state, seat_work));
     }
-    state.reset_time();
+    state.reset_time_and_balances();
     Ok((reference, None, state, 0.0))
 }
 
@@ -222,7 +222,7 @@ fn equilibrium(
     let Body { part: solid, model, .. } = body;
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
-    let (contacts, resting) = coupling::step::resting_load(grains, start, surface, model.mesh())
+    let (contacts, resting) = coupling::step::initial_contact_load(grains, start, surface, model.mesh())
         .map_err(|e| Failure::Numerical(e.to_string()))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;

@@ -324,7 +324,7 @@ impl<'a> TimeLoop<'a> {
         }
         summary.track.settlement = settlement(self.recorder.cycles(), part, &self.recorder);
         summary.track.sleepers = self.track.record();
-        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.remarks()));
+        summary.warnings.extend(summary.track.sleepers.iter().flat_map(|t| t.warnings()));
         summary.energy = Some(energy(&self.recorder));
         summary.validity.extend(summary.track.sleepers.as_ref().and_then(|t| free_sleeper(t, end)));
         summary.validity.extend(validity_of(system, part, &self.recorder));
@@ -332,7 +332,7 @@ impl<'a> TimeLoop<'a> {
         let balance = self.recorder.balance();
         summary.validity.extend(StageEnergy::check_changes(
             stages,
-            [balance.start.contact_springs, balance.turnover().max(balance.floor())],
+            [balance.start.contact_springs, balance.reference_energy().max(balance.negligible_energy())],
         ));
         summary.bed.specimen = self.recorder.specimen(system)?;
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
@@ -358,7 +358,7 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
         flows: balance.spent,
         error: balance.error(),
         work: balance.spent.work(),
-        reference_energy: balance.turnover(),
+        reference_energy: balance.reference_energy(),
         relative_error: watch.now(),
         largest_error: recorder.largest_error(),
         largest_relative_error: watch.worst(),
@@ -370,7 +370,7 @@ fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Re
     let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
     let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
     let inertia = scaled.map(|(g, view)| {
-        let (kinetic, reference) = (recorder.largest_kinetic(), recorder.balance().turnover());
+        let (kinetic, reference) = (recorder.largest_kinetic(), recorder.balance().reference_energy());
         scaled_inertia(g.steps.mass_factor, kinetic, reference, Fall::of(view))
     });
     let bonds = system.grains().and_then(bond_rotation);

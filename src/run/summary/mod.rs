@@ -17,7 +17,7 @@ use crate::write::WriteError;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::track::extremes::TrackRecord;
-use trackbed_coupling::track::push::PushSummary;
+use trackbed_coupling::track::push_test::PushTestSummary;
 
 /// Content of `summary.json`, in this order.
 #[derive(Debug, Default, Serialize)]
@@ -113,7 +113,7 @@ pub struct SolidRecord {
 pub struct TrackSummary {
     /// Lateral push.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub push: Option<PushSummary>,
+    pub push: Option<PushTestSummary>,
     /// Settlement per cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settlement: Option<SettlementRecord>,

@@ -4,11 +4,11 @@ use crate::model::exchange::ContactClass;
 use crate::run::events::EventRecord;
 use crate::run::system::SolidView;
 use serde::{Deserialize, Serialize};
-use trackbed_coupling::interface::InterfaceNumbers;
-use trackbed_coupling::ledger::{Spent, Stored};
-use trackbed_coupling::scheme::{Passes, Scheme};
-use trackbed_coupling::stability::Stability;
-use trackbed_coupling::track::jump::JumpSummary;
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
+use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
+use trackbed_coupling::scheme::{IterationStats, Scheme};
+use trackbed_coupling::stability::ContactStabilityNumbers;
+use trackbed_coupling::track::cycle_jump::JumpSummary;
 use trackbed_coupling::track::settlement::Fit;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
@@ -62,11 +62,11 @@ pub struct ModelRecord {
 #[derive(Debug, Serialize)]
 pub struct EnergyRecord {
     /// Initial stored energy [J].
-    pub start: Stored,
+    pub start: StoredEnergy,
     /// Final stored energy [J].
-    pub end: Stored,
+    pub end: StoredEnergy,
     /// Work and dissipation [J].
-    pub flows: Spent,
+    pub flows: WorkAndDissipation,
     /// Δ stored + dissipated − work [J].
     pub error: f64,
     /// Load work [J].
@@ -142,15 +142,15 @@ pub struct CouplingRecord {
     /// Implicitness θ.
     pub theta: f64,
     /// Largest interface numbers in their windows.
-    pub interface: InterfaceNumbers,
+    pub interface: InterfaceStabilityNumbers,
     /// Window division, 1 without.
     pub division: u32,
     /// Largest stability numbers of all contact classes.
-    pub stability: Stability,
+    pub stability: ContactStabilityNumbers,
     /// Contact classes with numbers and limits.
     pub classes: Vec<ContactClass>,
     /// Windows and repetitions.
-    pub passes: Passes,
+    pub passes: IterationStats,
     /// Interface work on grains plus solid [J], ideally zero.
     pub interface_work_error: f64,
     /// Load transfer method.

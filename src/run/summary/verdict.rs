@@ -64,7 +64,7 @@ impl Verdict {
             // The energy check stops the run itself.
             let what = "largest energy error over reference energy";
             checks.push(Judged::new(what, e.largest_relative_error, ENERGY.0, None));
-            for (name, loss) in e.flows.losses() {
+            for (name, loss) in e.flows.dissipation_terms() {
                 let below = (-loss).max(0.0) / e.reference_energy.max(f64::MIN_POSITIVE);
                 if below > NEGATIVE {
                     let what = format!("energy gained from {name} over reference energy");
@@ -134,8 +134,8 @@ impl Verdict {
 mod tests {
     use super::*;
     use crate::run::summary::{CouplingRecord, MomentumRecord};
-    use trackbed_coupling::scheme::{Passes, Scheme};
-    use trackbed_coupling::stability::Stability;
+    use trackbed_coupling::scheme::{IterationStats, Scheme};
+    use trackbed_coupling::stability::ContactStabilityNumbers;
     use trackbed_coupling::transfer::TransferAudit;
 
     #[test]
@@ -167,9 +167,9 @@ mod tests {
                 theta: 0.5,
                 interface: Default::default(),
                 division: 1,
-                stability: Stability::default(),
+                stability: ContactStabilityNumbers::default(),
                 classes: Vec::new(),
-                passes: Passes { windows: 9, passes: 9, unconverged, solves: 0 },
+                passes: IterationStats { windows: 9, passes: 9, unconverged, solves: 0 },
                 interface_work_error: 0.0,
                 transfer_kind: String::new(),
             }),

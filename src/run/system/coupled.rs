@@ -7,7 +7,7 @@ use crate::run::checkpoint::Body;
 use crate::run::device::{Steps, failed};
 use std::io;
 use trackbed_coupling as coupling;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
@@ -86,7 +86,7 @@ impl CoupledSystem<'_> {
 
     fn put(
         &self,
-        memory: Option<fem::nonlinear::Memory>,
+        memory: Option<fem::nonlinear::SolverState>,
         seat_work: f64,
         body: &mut Body<'_>,
     ) -> io::Result<()> {
@@ -109,7 +109,7 @@ impl TrackSystem for CoupledSystem<'_> {
         let faces = s.bodies.face_count();
         let first = s.first_face + k * faces;
         Some(MeshedSleeper {
-            place: [x + moved.way[0], y + moved.way[1], z + moved.way[2]],
+            place: [x + moved.translation[0], y + moved.translation[1], z + moved.translation[2]],
             height: z + moved.seats,
             moved,
             contact: self.work.contact_force_on(first..first + faces, self.last_window),
@@ -145,7 +145,7 @@ impl System for CoupledSystem<'_> {
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
         let seat_work = self.seats.as_ref().map_or(0.0, |s| s.work);
-        self.put(self.work.memory(), seat_work, body)
+        self.put(self.work.solver_state(), seat_work, body)
     }
 
     fn save_end(&self, body: &mut Body<'_>) -> io::Result<()> {
@@ -161,12 +161,12 @@ impl System for CoupledSystem<'_> {
         &self.work.surface
     }
 
-    fn stored(&self) -> Stored {
-        coupling::step::stored(&self.model, &self.state)
+    fn stored(&self) -> StoredEnergy {
+        coupling::step::stored_energy(&self.model, &self.state)
     }
 
-    fn spent(&self) -> Spent {
-        coupling::step::spent(&self.state)
+    fn spent(&self) -> WorkAndDissipation {
+        coupling::step::work_and_dissipation(&self.state)
     }
 
     fn solid(&self) -> Option<SolidView<'_>> {

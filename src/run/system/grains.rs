@@ -7,7 +7,7 @@ use crate::run::device::{Place, Steps, failed};
 use crate::run::ranks::Sharing;
 use std::io;
 use trackbed_coupling as coupling;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
@@ -174,20 +174,20 @@ impl System for GrainsSystem {
             .map_err(|e| Failure::Numerical(e.to_string()))
     }
 
-    fn stored(&self) -> Stored {
+    fn stored(&self) -> StoredEnergy {
         let e = dem::measure::energies(&self.model, &self.state);
-        Stored {
+        StoredEnergy {
             grains_kinetic: e.kinetic_translation + e.kinetic_rotation,
             contact_springs: e.elastic_normal + e.elastic_tangential,
             bonds: e.elastic_bonds,
             mounts: e.elastic_mounts,
             grains_gravity: e.gravity,
-            ..Stored::default()
+            ..StoredEnergy::default()
         }
     }
 
-    fn spent(&self) -> Spent {
-        coupling::step::spent_by_grains(&self.state)
+    fn spent(&self) -> WorkAndDissipation {
+        coupling::step::grain_work_and_dissipation(&self.state)
     }
 }
 

@@ -12,7 +12,7 @@ pub use trackbed_coupling::track::GrainsView;
 use super::checkpoint::Body;
 use crate::failure::Failure;
 use std::io;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
@@ -53,9 +53,9 @@ pub trait System: TrackSystem {
         &dem::surface::NoSurface
     }
     /// Returns the stored energy [J].
-    fn stored(&self) -> Stored;
+    fn stored(&self) -> StoredEnergy;
     /// Returns work and dissipation [J].
-    fn spent(&self) -> Spent;
+    fn spent(&self) -> WorkAndDissipation;
     /// Returns the smallest meaningful reference energy [J].
     fn reference_energy(&self) -> f64 {
         self.grains().map_or(0.0, |g| dem::measure::reference_energy(g.model, g.state))
@@ -91,10 +91,10 @@ pub trait System: TrackSystem {
 }
 
 /// Returns strain and gravitational energy [J]; nodal weights `gravity` [N], shape `[3·nodes]`.
-pub fn stored_at_rest(model: &fem::Model, state: &fem::state::State, gravity: &[f64]) -> Stored {
-    Stored {
+pub fn stored_at_rest(model: &fem::Model, state: &fem::state::State, gravity: &[f64]) -> StoredEnergy {
+    StoredEnergy {
         solid_strain: fem::energy::strain(model, state),
         solid_gravity: -gravity.iter().zip(&state.u).map(|(f, u)| f * u).sum::<f64>(),
-        ..Stored::default()
+        ..StoredEnergy::default()
     }
 }

@@ -23,11 +23,11 @@ pub fn free_sleeper(track: &TrackRecord, duration: f64) -> Option<Check> {
 mod tests {
     use super::*;
     use crate::run::validity::Outcome;
-    use trackbed_coupling::track::extremes::{LiftOff, SleeperRecord};
+    use trackbed_coupling::track::extremes::{ContactLoss, SleeperRecord};
 
     #[test]
     fn a_hovering_sleeper_is_found() {
-        let lift = |seconds| Some(LiftOff { first: 0.0, seconds, rise: 0.0 });
+        let lift = |seconds| Some(ContactLoss { first: 0.0, seconds, rise: 0.0 });
         let track = |times: &[f64]| {
             let sleepers =
                 times.iter().map(|&t| SleeperRecord { lifted_off: lift(t), ..SleeperRecord::default() });

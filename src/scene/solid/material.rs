@@ -148,7 +148,7 @@ impl SolidMaterial {
             MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager => self.frictional(self.elastic()?)?,
             MaterialModel::ModifiedCamClay => self.cam_clay()?,
         };
-        match material.fault() {
+        match material.invalid_constant() {
             None => Ok(material),
             Some((constant, value, expected)) => {
                 let found = if constant.contains("angle") {

@@ -3,7 +3,7 @@
 //! Source: Vaněk, Mandel and Brezina (1996), section 5: a row with its strongly coupled rows, if all are
 //! free, forms an aggregate; leftover rows join their strongest neighbour.
 
-use super::rows::{PART, Rows};
+use super::rows::{BlockRows, PART};
 use rayon::prelude::*;
 
 /// Row without aggregate, coupled to no other.
@@ -16,7 +16,7 @@ pub struct Aggregates {
 }
 
 /// Strong couplings of each row: `|A_pq|² > threshold² |A_pp| |A_qq|` in the Frobenius norm.
-fn strong<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Vec<Vec<(u32, f64)>> {
+fn strong<const N: usize>(rows: &impl BlockRows<N>, threshold: f64) -> Vec<Vec<(u32, f64)>> {
     let square = |b: &[[f64; N]; N]| b.iter().flatten().map(|v| v * v).sum::<f64>();
     let size: Vec<f64> = (0..rows.count())
         .map(|p| {
@@ -45,7 +45,7 @@ fn strong<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Vec<Vec<(u32, 
         .collect()
 }
 
-pub fn aggregate<const N: usize>(rows: &impl Rows<N>, threshold: f64) -> Aggregates {
+pub fn aggregate<const N: usize>(rows: &impl BlockRows<N>, threshold: f64) -> Aggregates {
     let strong = strong(rows, threshold);
     let (mut of, mut count) = (vec![NONE; strong.len()], 0);
     for (p, coupled) in strong.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Galerkin matrix of the next level, `Pᵀ A P`.
 
-use super::rows::{Block, Blocks, Rows};
+use super::rows::{Block, BlockRows, Blocks};
 use super::transfer::add_product;
 use rayon::prelude::*;
 
@@ -9,7 +9,7 @@ const CHUNK: usize = 256;
 const NONE: u32 = u32::MAX;
 
 /// `Pᵀ A P`, exactly symmetric; zero diagonal entries, of unused modes, become 1.
-pub fn galerkin<const N: usize>(rows: &impl Rows<N>, p: &Blocks<N, 6>, columns: usize) -> Blocks<6, 6> {
+pub fn galerkin<const N: usize>(rows: &impl BlockRows<N>, p: &Blocks<N, 6>, columns: usize) -> Blocks<6, 6> {
     let mut sums: Vec<Vec<(u32, Block<6, 6>)>> = vec![Vec::new(); columns];
     let all: Vec<usize> = (0..rows.count()).collect();
     for chunk in all.chunks(CHUNK) {
@@ -50,7 +50,7 @@ pub fn galerkin<const N: usize>(rows: &impl Rows<N>, p: &Blocks<N, 6>, columns: 
 
 /// `P_rowᵀ (A P)_row` on and above the diagonal. `place` is scratch, all [`NONE`].
 fn contributions<const N: usize>(
-    rows: &impl Rows<N>,
+    rows: &impl BlockRows<N>,
     p: &Blocks<N, 6>,
     row: usize,
     place: &mut [u32],

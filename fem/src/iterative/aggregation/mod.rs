@@ -13,14 +13,14 @@ mod rows;
 mod transfer;
 
 use super::block_jacobi::BlockJacobi;
-use super::product::Product;
+use super::matrix_product::MatrixProduct;
 use crate::solver::conjugate::Preconditioner;
 use aggregates::{NONE, aggregate};
 use galerkin::galerkin;
 use level::{Level, largest_eigenvalue};
 use nalgebra::linalg::Cholesky;
 use nalgebra::{DMatrix, DVector, Dyn, SMatrix};
-use rows::{Block, Blocks, Half, Rows};
+use rows::{Block, BlockRows, Blocks, UpperTriangle};
 use transfer::{Transfer, tentative};
 
 /// Strength threshold of the first level; larger values cost time and memory.
@@ -32,7 +32,7 @@ const LEVELS: usize = 8;
 
 /// Levels and coarsest factor.
 pub struct Aggregation {
-    finest: Level<3, Product>,
+    finest: Level<3, MatrixProduct>,
     levels: Vec<Level<6, Blocks<6, 6>>>,
     factor: Cholesky<f64, Dyn>,
     sides: Vec<[Vec<f64>; 2]>,
@@ -50,7 +50,7 @@ impl Aggregation {
     /// # Errors
     /// A level matrix is not positive definite: insufficient constraints.
     pub fn new(
-        mut product: Product,
+        mut product: MatrixProduct,
         jacobi: &BlockJacobi,
         coordinates: &[[f64; 3]],
     ) -> Result<Aggregation, NotPositive> {
@@ -62,7 +62,7 @@ impl Aggregation {
         let largest = largest_eigenvalue(&mut product, &inverse);
         let modes = rigid_motions(coordinates, product.free());
         let (transfer, matrix, mut modes) =
-            next_level(&Half::new(&product), STRENGTH, &modes, &inverse, largest);
+            next_level(&UpperTriangle::new(&product), STRENGTH, &modes, &inverse, largest);
         let finest = Level::new(product, inverse, largest, transfer);
         let (mut levels, mut matrix) = (Vec::new(), matrix);
         while matrix.len() > COARSEST && levels.len() < LEVELS {
@@ -99,7 +99,7 @@ impl Aggregation {
 }
 
 fn next_level<const N: usize>(
-    rows: &impl Rows<N>,
+    rows: &impl BlockRows<N>,
     strength: f64,
     modes: &[Block<N, 6>],
     inverse: &[Block<N, N>],

@@ -1,6 +1,6 @@
 //! Block matrices by rows.
 
-use super::super::product::Product;
+use super::super::matrix_product::MatrixProduct;
 use crate::assembly::Matrices;
 use crate::solver::conjugate::Operator;
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ pub const PART: usize = 64;
 pub type Block<const R: usize, const C: usize> = [[f64; C]; R];
 
 /// Square block matrix by rows.
-pub trait Rows<const N: usize>: Sync {
+pub trait BlockRows<const N: usize>: Sync {
     /// Number of block rows.
     fn count(&self) -> usize;
 
@@ -20,15 +20,15 @@ pub trait Rows<const N: usize>: Sync {
 }
 
 /// Free-dof stiffness from its upper half, with identity rows for constrained dofs.
-pub struct Half<'a> {
+pub struct UpperTriangle<'a> {
     matrices: &'a Matrices,
     free: &'a [[bool; 3]],
     below: Vec<[u32; 2]>,
     start: Vec<u32>,
 }
 
-impl<'a> Half<'a> {
-    pub fn new(product: &'a Product) -> Half<'a> {
+impl<'a> UpperTriangle<'a> {
+    pub fn new(product: &'a MatrixProduct) -> UpperTriangle<'a> {
         let (matrices, free) = (product.matrices(), product.free());
         let nodes = matrices.node_count();
         let mut start = vec![0_u32; nodes + 1];
@@ -42,11 +42,11 @@ impl<'a> Half<'a> {
                 next[q] += 1;
             }
         }
-        Half { matrices, free, below, start }
+        UpperTriangle { matrices, free, below, start }
     }
 }
 
-impl Rows<3> for Half<'_> {
+impl BlockRows<3> for UpperTriangle<'_> {
     fn count(&self) -> usize {
         self.free.len()
     }
@@ -121,7 +121,7 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
     }
 }
 
-impl Rows<6> for Blocks<6, 6> {
+impl BlockRows<6> for Blocks<6, 6> {
     fn count(&self) -> usize {
         self.len()
     }

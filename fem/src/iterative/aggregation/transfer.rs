@@ -7,7 +7,7 @@
 //! eigenvalue of D⁻¹ A. Aggregates with fewer free dofs than modes have zero columns.
 
 use super::aggregates::{Aggregates, NONE};
-use super::rows::{Block, Blocks, PART, Rows};
+use super::rows::{Block, BlockRows, Blocks, PART};
 use rayon::prelude::*;
 
 /// Relative norm below which a mode is linearly dependent.
@@ -59,7 +59,7 @@ pub fn tentative<const N: usize>(
 impl<const N: usize> Transfer<N> {
     /// Smooths the tentative prolongator of these aggregates. `inverse`: D⁻¹.
     pub fn new(
-        rows: &impl Rows<N>,
+        rows: &impl BlockRows<N>,
         aggregates: &Aggregates,
         base: &[Block<N, 6>],
         inverse: &[Block<N, N>],

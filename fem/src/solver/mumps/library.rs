@@ -33,11 +33,11 @@ unsafe extern "C" {
 }
 
 /// Serialises MUMPS calls: its instances share variables.
-static TURN: Mutex<()> = Mutex::new(());
+static LIBRARY_LOCK: Mutex<()> = Mutex::new(());
 
-fn turn() -> MutexGuard<'static, ()> {
+fn lock_library() -> MutexGuard<'static, ()> {
     // Panics cannot interrupt MUMPS calls, so poisoning is harmless.
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+    LIBRARY_LOCK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 const ANALYSE: c_int = 1;
@@ -45,8 +45,8 @@ const FACTOR: c_int = 2;
 const SOLVE: c_int = 3;
 
 /// Memory margin over the estimate, initial and maximum [%].
-const ROOM: c_int = 20;
-const MOST_ROOM: c_int = 320;
+const EXTRA_WORKSPACE: c_int = 20;
+const MAX_EXTRA_WORKSPACE: c_int = 320;
 
 /// Relative exchange threshold, never reached by positive definite matrices.
 const PIVOTING: f64 = 1e-14;
@@ -93,11 +93,11 @@ impl Factor {
             return Ok(Factor { size, instance: None, memory: 0 });
         }
         let mut instance = Instance::analysed(&mut matrix, settings)?;
-        let mut room = ROOM;
+        let mut room = EXTRA_WORKSPACE;
         loop {
             instance.set(14, room);
             match instance.run(FACTOR) {
-                Err(MumpsError::Room) if room < MOST_ROOM => room *= 2,
+                Err(MumpsError::Room) if room < MAX_EXTRA_WORKSPACE => room *= 2,
                 Err(other) => return Err(other),
                 Ok(()) => break,
             }
@@ -108,7 +108,7 @@ impl Factor {
         if instance.info(12) > 0 {
             return Err(MumpsError::NotPositive { pivots: instance.info(12).unsigned_abs() });
         }
-        instance.forget_matrix(size);
+        instance.release_matrix(size);
         let memory = 1_000_000 * instance.info(22).unsigned_abs() as usize + matrix.memory();
         Ok(Factor { size, instance: Some(instance), memory })
     }
@@ -142,24 +142,24 @@ impl Factor {
 /// MUMPS instance; holds no foreign pointers between calls.
 struct Instance(NonNull<Structure>);
 
-// SAFETY: an instance has one owner and no thread affinity; shared variables change only under `TURN`.
+// SAFETY: an instance has one owner and no thread affinity; shared variables change only under `LIBRARY_LOCK`.
 unsafe impl Send for Instance {}
 // SAFETY: a shared `Instance` only returns integers, which change only through `&mut`.
 unsafe impl Sync for Instance {}
 
 impl Drop for Instance {
     fn drop(&mut self) {
-        let _turn = turn();
+        let _turn = lock_library();
         // SAFETY: the pointer comes from `trackbed_mumps_start`; this is its last use.
         unsafe { trackbed_mumps_end(self.0.as_ptr()) }
     }
 }
 
 impl Instance {
-    /// Analyses the pattern; points to `matrix` until [`Instance::forget_matrix`].
+    /// Analyses the pattern; points to `matrix` until [`Instance::release_matrix`].
     fn analysed(matrix: &mut Coordinates, settings: Settings) -> Result<Instance, MumpsError> {
         let Coordinates { row, column, value, place } = matrix;
-        let n = c_int::try_from(place.len()).map_err(|_| MumpsError::Memory)?;
+        let n = c_int::try_from(place.len()).map_err(|_| MumpsError::SolverState)?;
         assert!(
             row.len() == column.len() && row.len() == value.len(),
             "one row, column and value for every entry"
@@ -170,11 +170,11 @@ impl Instance {
             "rows, columns and places from 1 to {n}"
         );
         let raw = {
-            let _turn = turn();
+            let _turn = lock_library();
             // SAFETY: no arguments.
             unsafe { trackbed_mumps_start() }
         };
-        let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::Memory)?);
+        let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::SolverState)?);
         let (nnz, id) = (row.len() as c_longlong, instance.0.as_ptr());
         // SAFETY: `nnz`, `nnz`, `nnz` and `n` values, read only by analysis and factorisation, while the
         // caller owns them.
@@ -215,7 +215,7 @@ impl Instance {
         Ok(())
     }
 
-    fn forget_matrix(&mut self, size: usize) {
+    fn release_matrix(&mut self, size: usize) {
         let (id, n) = (self.0.as_ptr(), size as c_int);
         // SAFETY: empty matrix; solves without refinement do not read it.
         unsafe { trackbed_mumps_matrix(id, n, 0, null_mut(), null_mut(), null_mut(), null_mut()) }
@@ -253,14 +253,14 @@ impl Instance {
 
     fn run(&mut self, job: c_int) -> Result<(), MumpsError> {
         let code = {
-            let _turn = turn();
+            let _turn = lock_library();
             // SAFETY: callers have set the data of the job.
             unsafe { trackbed_mumps_run(self.0.as_ptr(), job) }
         };
         match code {
             0.. => Ok(()),
             -8 | -9 | -14 | -15 | -17 | -20 => Err(MumpsError::Room),
-            -5 | -7 | -13 | -19 => Err(MumpsError::Memory),
+            -5 | -7 | -13 | -19 => Err(MumpsError::SolverState),
             -90 => Err(MumpsError::Files),
             -10 => Err(MumpsError::NotPositive { pivots: 1 }),
             code => Err(MumpsError::Code { code, detail: self.info(2) }),

@@ -1,7 +1,7 @@
 //! Checks of the conformance suite.
 
 use super::paths::{Case, Owned, Random, rotated, work};
-use trackbed_fem::{PointState, Points, Region};
+use trackbed_fem::{PointState, Points, ReturnRegion};
 
 const SEEDS: [u64; 3] = [1, 7, 42];
 const STEPS: usize = 60;
@@ -85,7 +85,7 @@ pub fn elastic_cycles(case: &Case) {
                 let increment: [f64; 6] =
                     std::array::from_fn(|k| case.elastic * (corner[k] - from[k]) / PARTS as f64);
                 let (response, new) = case.step(&at, &increment, false);
-                assert_eq!(response.region, Region::Elastic, "the cycle leaves the elastic range");
+                assert_eq!(response.region, ReturnRegion::Elastic, "the cycle leaves the elastic range");
                 let mean: [f64; 6] =
                     std::array::from_fn(|k| 0.5 * (at.state.stress[k] + new.state.stress[k]));
                 done += work(&mean, &increment);
@@ -160,8 +160,8 @@ pub fn round_trip(case: &Case) {
 
 pub fn statements(case: &Case) {
     let (law, elastic) = (&case.material.law, &case.material.elastic);
-    assert!(case.material.fault().is_none() && !law.source().is_empty());
-    assert!(case.material.reduced(1.3).fault().is_none());
+    assert!(case.material.invalid_constant().is_none() && !law.source().is_empty());
+    assert!(case.material.with_strength_divided_by(1.3).invalid_constant().is_none());
     let start = case.start();
     let tiny = [1e-9 * case.elastic; 6];
     let (response, _) = case.step(&start, &tiny, true);
@@ -178,7 +178,7 @@ pub fn statements(case: &Case) {
         let ((with, a), (without, b)) = (case.step(old, increment, true), case.step(old, increment, false));
         assert_eq!((with.state, with.region, &a), (without.state, without.region, &b));
         assert!(a.values.iter().all(|v| v.is_finite()), "a value was not written");
-        assert!(!law.is_linear() || with.region == Region::Elastic);
+        assert!(!law.is_linear() || with.region == ReturnRegion::Elastic);
         if law.has_symmetric_tangent() {
             for i in 0..6 {
                 for j in 0..i {

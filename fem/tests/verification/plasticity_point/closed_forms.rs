@@ -137,12 +137,16 @@ fn the_apex_takes_over_from_the_cut_off() {
     for (material, before, after) in [
         (
             Material::plastic(SOIL, MohrCoulomb { cohesion: soft.clone(), ..mc }),
-            Region::TensionCorner,
-            Region::Apex,
+            ReturnRegion::TensionCorner,
+            ReturnRegion::Apex,
         ),
-        (Material::plastic(SOIL, DruckerPrager { cohesion: soft, ..dp }), Region::Cap, Region::ConeApex),
+        (
+            Material::plastic(SOIL, DruckerPrager { cohesion: soft, ..dp }),
+            ReturnRegion::Cap,
+            ReturnRegion::ConeApex,
+        ),
     ] {
-        assert_eq!(material.fault(), None);
+        assert_eq!(material.invalid_constant(), None);
         let mut state = PointState::default();
         let mut seen = Vec::new();
         for _ in 0..200 {
@@ -169,7 +173,8 @@ fn strength_reduction() {
         dilation: rad(25.0),
         tension: Some(10e3),
     };
-    let trackbed_fem::Law::MohrCoulomb(reduced) = Material::plastic(SOIL, law.clone()).reduced(factor).law
+    let trackbed_fem::Law::MohrCoulomb(reduced) =
+        Material::plastic(SOIL, law.clone()).with_strength_divided_by(factor).law
     else {
         panic!("same law")
     };
@@ -180,10 +185,11 @@ fn strength_reduction() {
     assert_eq!(reduced.friction.at(0.0).0, phi(30.0));
     assert_eq!(reduced.friction.at(0.2).0, phi(35.0));
     assert_eq!((reduced.dilation, reduced.tension), (phi(30.0), Some(10e3 / factor)));
-    assert!(Material::plastic(SOIL, reduced).fault().is_none());
+    assert!(Material::plastic(SOIL, reduced).invalid_constant().is_none());
     // psi below the reduced phi is kept.
-    let kept = Material::plastic(SOIL, drucker_prager(1e4, 30.0, 5.0, Cone::Compression, None)).reduced(2.0);
+    let kept = Material::plastic(SOIL, drucker_prager(1e4, 30.0, 5.0, Cone::Compression, None))
+        .with_strength_divided_by(2.0);
     let trackbed_fem::Law::DruckerPrager(kept) = kept.law else { panic!("same law") };
     assert_eq!((kept.dilation, kept.cohesion), (rad(5.0), Hardening::Constant(5e3)));
-    assert_eq!(Material::from(SOIL).reduced(2.0), Material::from(SOIL));
+    assert_eq!(Material::from(SOIL).with_strength_divided_by(2.0), Material::from(SOIL));
 }

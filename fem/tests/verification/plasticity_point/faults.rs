@@ -6,8 +6,8 @@ use super::*;
 fn faults_of_strength_constants() {
     let base = || mohr_coulomb(20e3, 30.0, 10.0, None);
     let constant = Hardening::Constant;
-    let fault = |law: MohrCoulomb| Material::plastic(SOIL, law).fault().expect("a fault");
-    assert_eq!(Material::plastic(SOIL, base()).fault(), None);
+    let fault = |law: MohrCoulomb| Material::plastic(SOIL, law).invalid_constant().expect("a fault");
+    assert_eq!(Material::plastic(SOIL, base()).invalid_constant(), None);
     assert_eq!(fault(MohrCoulomb { friction: constant(30.0), ..base() }).0, "friction angle");
     assert_eq!(fault(MohrCoulomb { friction: constant(rad(90.0)), ..base() }).0, "friction angle");
     assert_eq!(
@@ -22,12 +22,18 @@ fn faults_of_strength_constants() {
     assert_eq!(fault(mohr_coulomb(0.0, 0.0, 0.0, None)).0, "cohesion");
     assert_eq!(fault(MohrCoulomb { tension: Some(-1.0), ..base() }).0, "tension cut-off");
     assert_eq!(fault(MohrCoulomb { tension: Some(34.7e3), ..base() }).0, "tension cut-off");
-    assert_eq!(Material::plastic(SOIL, MohrCoulomb { tension: Some(34.6e3), ..base() }).fault(), None);
+    assert_eq!(
+        Material::plastic(SOIL, MohrCoulomb { tension: Some(34.6e3), ..base() }).invalid_constant(),
+        None
+    );
     let falling = Hardening::Table(vec![(0.0, 2e4), (0.2, 1e4), (0.1, 5e3)]);
     assert_eq!(fault(MohrCoulomb { cohesion: falling, ..base() }).0, "cohesion");
     let angle = Hardening::Table(vec![(0.0, rad(30.0)), (0.1, rad(5.0))]);
     assert_eq!(fault(MohrCoulomb { friction: angle, ..base() }).0, "dilation angle");
-    assert_eq!(Material::from(Elastic { young: -1.0, ..SOIL }).fault().unwrap().0, "Young's modulus");
+    assert_eq!(
+        Material::from(Elastic { young: -1.0, ..SOIL }).invalid_constant().unwrap().0,
+        "Young's modulus"
+    );
 }
 
 /// Slower softening always has a return. On the plane the limit is exact:
@@ -48,9 +54,11 @@ fn softening_limit() {
         println!("softening limit dc/dkappa = {limit:.4e} Pa (plane alone {plane:.4e})");
         assert!(limit >= plane * (1.0 + 1e-12) && limit < 0.1 * plane);
         let law = |slope| MohrCoulomb { cohesion: soft(slope), ..base.clone() };
-        assert!(Material::plastic(SOIL, law(1.001 * limit)).fault().unwrap().2.contains("snaps back"));
+        assert!(
+            Material::plastic(SOIL, law(1.001 * limit)).invalid_constant().unwrap().2.contains("snaps back")
+        );
         let material = Material::plastic(SOIL, law(0.98 * limit));
-        assert_eq!(material.fault(), None);
+        assert_eq!(material.invalid_constant(), None);
         let mut random = Random(7);
         for _ in 0..3000 {
             step(&material, &PointState::default(), &random_strain(&mut random, 3e-3, 4e-3));
@@ -60,9 +68,11 @@ fn softening_limit() {
         let base = drucker_prager(20e3, 30.0, 10.0, Cone::Compression, tension);
         let limit = base.softening_limit(&SOIL);
         let law = |slope| DruckerPrager { cohesion: soft(slope), ..base.clone() };
-        assert!(Material::plastic(SOIL, law(1.001 * limit)).fault().unwrap().2.contains("snaps back"));
+        assert!(
+            Material::plastic(SOIL, law(1.001 * limit)).invalid_constant().unwrap().2.contains("snaps back")
+        );
         let material = Material::plastic(SOIL, law(0.98 * limit));
-        assert_eq!(material.fault(), None);
+        assert_eq!(material.invalid_constant(), None);
         let mut random = Random(7);
         for _ in 0..3000 {
             step(&material, &PointState::default(), &random_strain(&mut random, 3e-3, 4e-3));

@@ -69,14 +69,16 @@ fn multipliers_are_not_negative() {
     for (phi, psi) in [(30.0, 30.0), (30.0, 10.0), (40.0, 1.0), (5.0, 0.0), (0.0, 0.0), (60.0, 20.0)] {
         for tension in [None, Some(0.3 * c), Some(0.0)] {
             let material = Material::plastic(SOIL, mohr_coulomb(c, phi, psi, tension));
-            assert_eq!(material.fault(), None);
+            assert_eq!(material.invalid_constant(), None);
             let surfaces = surfaces(c, phi, psi, tension);
             let mut random = Random(3 + phi as u64);
             for _ in 0..400 {
                 let mut e = random_strain(&mut random, 3e-3, 6e-3);
                 e[3..].fill(0.0);
                 let response = step(&material, &PointState::default(), &e);
-                if response.region == Region::Elastic || response.region == Region::Apex && psi == 0.0 {
+                if response.region == ReturnRegion::Elastic
+                    || response.region == ReturnRegion::Apex && psi == 0.0
+                {
                     continue;
                 }
                 let state = response.state;
@@ -132,7 +134,7 @@ fn associated_returns_are_closest_points() {
         for _ in 0..60 {
             let e = random_strain(&mut random, 3e-3, 5e-3);
             let response = step(&material, &PointState::default(), &e);
-            if response.region == Region::Elastic {
+            if response.region == ReturnRegion::Elastic {
                 continue;
             }
             states += 1;
@@ -175,7 +177,7 @@ fn associated_returns_of_mohr_coulomb_against_all_corners_and_rays() {
         let mut count = 0;
         while count < 300 {
             let response = step(&material, &PointState::default(), &random_strain(&mut random, 3e-3, 5e-3));
-            if response.region == Region::Elastic {
+            if response.region == ReturnRegion::Elastic {
                 continue;
             }
             count += 1;

@@ -39,13 +39,13 @@ fn point_returns_of_the_table() {
         let response = step(&law(&row[0]), &PointState::default(), &strain);
         let cone = row[0].starts_with("drucker");
         let region = match (row[1].as_str(), cone) {
-            ("0", _) => Region::Elastic,
-            ("1", false) => Region::Plane,
-            ("2", false) => Region::EdgeCompression,
-            ("3", false) => Region::EdgeExtension,
-            ("4", false) => Region::Apex,
-            ("1", true) => Region::Cone,
-            ("4", true) => Region::ConeApex,
+            ("0", _) => ReturnRegion::Elastic,
+            ("1", false) => ReturnRegion::Plane,
+            ("2", false) => ReturnRegion::EdgeCompression,
+            ("3", false) => ReturnRegion::EdgeExtension,
+            ("4", false) => ReturnRegion::Apex,
+            ("1", true) => ReturnRegion::Cone,
+            ("4", true) => ReturnRegion::ConeApex,
             other => panic!("{other:?}"),
         };
         assert_eq!(response.region, region, "{row:?}");

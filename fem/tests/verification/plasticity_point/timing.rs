@@ -14,17 +14,17 @@ fn nanoseconds_per_update() {
     let hard = Material::plastic(SOIL, MohrCoulomb { cohesion: line, ..mohr_coulomb(c, 30.0, 10.0, None) });
     let compressed = PointState { stress: [-8e4, -8e4, -8e4, 0.0, 0.0, 0.0], ..PointState::default() };
     let cases = [
-        ("linear", &Material::from(SOIL), Region::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
-        ("mc", &mc, Region::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
-        ("mc near the surface", &mc, Region::Elastic, [1.2e-3, 0.4e-3, -0.9e-3, 1e-5, 2e-4, 3e-4]),
-        ("mc", &mc, Region::Plane, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
-        ("mc", &mc, Region::EdgeCompression, [2.1e-3, 2e-3, -8e-3, 1e-4, 1e-4, 1e-4]),
-        ("mc", &mc, Region::EdgeExtension, [8e-3, -4.1e-3, -4e-3, 1e-4, 1e-4, 1e-4]),
-        ("mc", &mc, Region::Apex, [8e-3, 7e-3, 6e-3, 1e-4, 1e-4, 1e-4]),
-        ("mc cut", &cut, Region::TensionCorner, [8e-3, 7e-3, 6e-3, 1e-4, 1e-4, 1e-4]),
-        ("mc hardening", &hard, Region::Plane, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
-        ("dp", &dp, Region::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
-        ("dp", &dp, Region::Cone, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
+        ("linear", &Material::from(SOIL), ReturnRegion::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
+        ("mc", &mc, ReturnRegion::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
+        ("mc near the surface", &mc, ReturnRegion::Elastic, [1.2e-3, 0.4e-3, -0.9e-3, 1e-5, 2e-4, 3e-4]),
+        ("mc", &mc, ReturnRegion::Plane, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
+        ("mc", &mc, ReturnRegion::EdgeCompression, [2.1e-3, 2e-3, -8e-3, 1e-4, 1e-4, 1e-4]),
+        ("mc", &mc, ReturnRegion::EdgeExtension, [8e-3, -4.1e-3, -4e-3, 1e-4, 1e-4, 1e-4]),
+        ("mc", &mc, ReturnRegion::Apex, [8e-3, 7e-3, 6e-3, 1e-4, 1e-4, 1e-4]),
+        ("mc cut", &cut, ReturnRegion::TensionCorner, [8e-3, 7e-3, 6e-3, 1e-4, 1e-4, 1e-4]),
+        ("mc hardening", &hard, ReturnRegion::Plane, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
+        ("dp", &dp, ReturnRegion::Elastic, [1e-4, 2e-4, -1e-4, 1e-4, 2e-4, 3e-4]),
+        ("dp", &dp, ReturnRegion::Cone, [2e-3, 1e-4, -4e-3, 1e-3, 2e-3, 3e-3]),
     ];
     for (name, material, region, strain) in cases {
         assert_eq!(step(material, &compressed, &strain).region, region, "{name}");

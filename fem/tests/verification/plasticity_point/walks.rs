@@ -85,7 +85,7 @@ fn walks_at_the_extremes() {
                 let mc = mohr_coulomb(unit, phi, psi, tension);
                 let dp = drucker_prager(unit, phi, psi, Cone::Compression, tension);
                 for material in [Material::plastic(elastic, mc), Material::plastic(elastic, dp)] {
-                    assert_eq!(material.fault(), None);
+                    assert_eq!(material.invalid_constant(), None);
                     let name = format!("phi {phi} psi {psi} unit {unit:e} nu {poisson} {tension:?}");
                     let (f, w) = walk(&name, &material, unit, 2e-4, 1000, 43);
                     (outside, work, count) = (outside.max(f), work.min(w), count + 1);
@@ -118,7 +118,7 @@ fn rejects_steep_friction_softening() {
     let old = PointState { stress: [-4e5, -4e5, -4e5, 0.0, 0.0, 0.0], ..PointState::default() };
     let run = |until: f64| {
         let material = Material::plastic(SOIL, law(until));
-        assert_eq!(material.fault(), None);
+        assert_eq!(material.invalid_constant(), None);
         let mut state = old;
         for _ in 0..40 {
             state = update(&material, &state, &[0.0, 0.0, 0.0, 2e-3, 0.0, 0.0], false)?.state;

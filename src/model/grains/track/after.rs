@@ -5,8 +5,8 @@ use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::TrackTable;
 use crate::scene::{SceneError, Table};
 use trackbed_coupling::track::CyclicLoad;
-use trackbed_coupling::track::jump::JumpPlan;
-use trackbed_coupling::track::push::PushPlan;
+use trackbed_coupling::track::cycle_jump::CycleJumpOptions;
+use trackbed_coupling::track::push_test::PushTestOptions;
 use trackbed_dem::Vec3;
 
 /// `fixed`: reason why a jump cannot move grains.
@@ -43,7 +43,7 @@ fn jump(
     j: &Table<CycleJump>,
     part: &TrackPart,
     fixed: Option<&str>,
-) -> Result<JumpPlan, SceneError> {
+) -> Result<CycleJumpOptions, SceneError> {
     let Some(load) = &part.load else {
         return Err(track.requirement("jump", "[track.load] with cycles"));
     };
@@ -66,7 +66,7 @@ fn jump(
         let expected = format!("fewer than the {} cycles of the load", load.cycles());
         return Err(j.error("first", j.first.to_string(), expected));
     }
-    Ok(JumpPlan {
+    Ok(CycleJumpOptions {
         grains,
         first: j.first,
         measure: j.measure,
@@ -77,7 +77,7 @@ fn jump(
     })
 }
 
-fn push(track: &Table<TrackTable>, p: &Table<Push>, part: &TrackPart) -> Result<PushPlan, SceneError> {
+fn push(track: &Table<TrackTable>, p: &Table<Push>, part: &TrackPart) -> Result<PushTestOptions, SceneError> {
     let direction = Vec3::new(p.direction[0], p.direction[1], 0.0);
     let found = format!("({}, {})", p.direction[0], p.direction[1]);
     let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
@@ -100,7 +100,7 @@ fn push(track: &Table<TrackTable>, p: &Table<Push>, part: &TrackPart) -> Result<
     p.check("rest", p.rest, |t| t >= 0.0, "0 or more")?;
     p.check("height", p.height, |_| true, "a length")?;
     p.check("stiffness", p.stiffness, |k| k > 0.0, "above 0")?;
-    Ok(PushPlan {
+    Ok(PushTestOptions {
         direction,
         speed: p.speed.si,
         displacement: p.displacement.si,

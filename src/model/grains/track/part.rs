@@ -2,8 +2,8 @@
 
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::track::CyclicLoad;
-use trackbed_coupling::track::jump::JumpPlan;
-use trackbed_coupling::track::push::PushPlan;
+use trackbed_coupling::track::cycle_jump::CycleJumpOptions;
+use trackbed_coupling::track::push_test::PushTestOptions;
 use trackbed_coupling::track::rail::RailInput;
 use trackbed_coupling::track::{SleeperRow, TrackInput};
 
@@ -35,9 +35,9 @@ pub struct SleeperPlan {
 #[derive(Clone, Debug, Default)]
 pub struct AfterPlan {
     /// Cycle jumps.
-    pub jump: Option<JumpPlan>,
+    pub jump: Option<CycleJumpOptions>,
     /// Lateral push at the end.
-    pub push: Option<PushPlan>,
+    pub push: Option<PushTestOptions>,
     /// Loads for bed stiffness [N].
     pub between: Option<[f64; 2]>,
 }
@@ -50,7 +50,7 @@ impl TrackPart {
             stiff.min(0.5 / (pad[1] * lightness))
         });
         let ram = self.after.push.as_ref().zip(self.sleeper.as_ref());
-        let ram = ram.map(|(push, sleeper)| PushPlan::longest_step(push.stiffness, sleeper.row.mass));
+        let ram = ram.map(|(push, sleeper)| PushTestOptions::longest_step(push.stiffness, sleeper.row.mass));
         pads.unwrap_or(f64::INFINITY).min(ram.unwrap_or(f64::INFINITY))
     }
 
@@ -87,7 +87,7 @@ impl TrackPart {
     /// Input errors.
     pub fn check_ram(&self, document: &Document, dt: f64) -> Result<(), SceneError> {
         let (Some(push), Some(sleeper)) = (&self.after.push, &self.sleeper) else { return Ok(()) };
-        let most = PushPlan::largest_stiffness(sleeper.row.mass, dt);
+        let most = PushTestOptions::largest_stiffness(sleeper.row.mass, dt);
         if push.stiffness > most {
             let expected = format!("at most {most:.3e} N/m, the limit of the time step of {dt:.3e} s");
             let found = format!("{:.3e} N/m", push.stiffness);

@@ -126,7 +126,7 @@ impl SleeperBodies {
     pub fn set_down(&self, model: &fem::Model, heights: &[f64]) -> fem::Model {
         let mut model = model.clone();
         for (k, height) in heights.iter().enumerate() {
-            model = model.with_bodies_moved(self.nodes_of(k), [0.0, 0.0, height - self.waiting]);
+            model = model.with_displaced_bodies(self.nodes_of(k), [0.0, 0.0, height - self.waiting]);
         }
         model
     }
@@ -161,7 +161,7 @@ impl SleeperBodies {
         };
         let [x, y] = [0, 1].map(|d| self.sum_z(k, u, &self.slopes[d]));
         SleeperMotion {
-            way: [0, 1, 2].map(mean),
+            translation: [0, 1, 2].map(mean),
             tilt: libm::atan(libm::hypot(x, y)),
             seats: self.rise_of_seats(k, u),
             bend: self.sum_z(k, u, &self.bend),

@@ -41,9 +41,9 @@ fn motions_are_measured_exactly() {
             let m = bodies.moved(k, &u);
             let parabola = 0.04 * 1.3 * 1.3;
             let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{elements:?} {k}: {a} {b}");
-            close(m.way[0], 0.01);
-            close(m.way[1], -0.03);
-            close(m.way[2], 0.5 + parabola / 3.0);
+            close(m.translation[0], 0.01);
+            close(m.translation[1], -0.03);
+            close(m.translation[2], 0.5 + parabola / 3.0);
             close(m.tilt, 0.02_f64.hypot(0.01).atan());
             close(m.bend, parabola);
             // Mean of x² over feet of 0.15 and 0.2 m.

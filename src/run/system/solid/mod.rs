@@ -10,12 +10,12 @@ use crate::run::checkpoint_store::Interrupt;
 use crate::run::initial;
 use loading::SolidLoading;
 use std::io;
-use trackbed_coupling::ledger::{Spent, Stored};
+use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 use trackbed_fem::newmark::{self, NewmarkSolver};
-use trackbed_fem::nonlinear::dynamics::{self, Dynamics};
-use trackbed_fem::nonlinear::{Memory, QuasiStatic, Statistics, StepControl, energy};
+use trackbed_fem::nonlinear::dynamics::{self, NonlinearNewmark};
+use trackbed_fem::nonlinear::{QuasiStatic, SolverState, Statistics, StepControl, energy};
 use trackbed_fem::{SolveError, State, TimeIntegrator};
 
 const SMALLEST_PART: f64 = 1.0 / 256.0;
@@ -52,10 +52,10 @@ impl SolidKind {
             }
             SolidKind::Elastic(TimeMethod::Hht(alpha)) => Box::new(NewmarkSolver::hht(model, alpha, step)?),
             SolidKind::Plastic(TimeMethod::Newmark(method)) => {
-                Box::new(Dynamics::newmark(model, method, newton, control)?)
+                Box::new(NonlinearNewmark::newmark(model, method, newton, control)?)
             }
             SolidKind::Plastic(TimeMethod::Hht(alpha)) => {
-                Box::new(Dynamics::hht(model, alpha, newton, control)?)
+                Box::new(NonlinearNewmark::hht(model, alpha, newton, control)?)
             }
             SolidKind::QuasiStatic(plan) => Box::new(quasi_static(part, plan, [step; 2])?),
         })
@@ -68,7 +68,7 @@ pub struct SolidSystem<'a> {
     kind: SolidKind,
     loading: SolidLoading<'a>,
     /// Before an aborted step, for checkpoints.
-    given_up: Option<Memory>,
+    given_up: Option<SolverState>,
     state: State,
     before: State,
     integrator: Box<dyn TimeIntegrator>,
@@ -76,7 +76,7 @@ pub struct SolidSystem<'a> {
     steps: u64,
     /// Reactions of a solid in equilibrium [N], else empty. Shape `[3·nodes]`.
     reactions: Vec<f64>,
-    spent: Spent,
+    spent: WorkAndDissipation,
 }
 
 impl<'a> SolidSystem<'a> {
@@ -122,9 +122,9 @@ impl<'a> SolidSystem<'a> {
     ) -> Result<Self, Failure> {
         let loading = SolidLoading::new(part, kind, interrupt);
         let mut system = SolidSystem::with(part, kind, step, loading, State::new(&part.model))?;
-        if system.integrator.memory().is_some() {
+        if system.integrator.solver_state().is_some() {
             let memory = loaded.take()?;
-            system.integrator.recall(&part.model, &memory).map_err(|e| part.failure(&e))?;
+            system.integrator.restore(&part.model, &memory).map_err(|e| part.failure(&e))?;
         }
         // The stored load follows from the time.
         match kind {
@@ -160,13 +160,13 @@ impl<'a> SolidSystem<'a> {
             step,
             steps: 0,
             reactions: Vec::new(),
-            spent: Spent::default(),
+            spent: WorkAndDissipation::default(),
         })
     }
 
     /// Returns Newton statistics; none if elastic.
     pub fn statistics(&self) -> Option<Statistics> {
-        self.integrator.memory().map(|memory| memory.statistics())
+        self.integrator.solver_state().map(|memory| memory.statistics())
     }
 
     fn add_work_at_rest(&mut self) {
@@ -233,7 +233,7 @@ impl System for SolidSystem<'_> {
     fn advance(&mut self, _: Applied<'_>) -> Result<(), Failure> {
         let (part, elastic) = (self.part, matches!(self.kind, SolidKind::Elastic(_)));
         self.before.copy_from(&self.state);
-        let (memory, spent_before) = (self.integrator.memory(), self.spent);
+        let (memory, spent_before) = (self.integrator.solver_state(), self.spent);
         // Elastic time is summed; other steps may be divided.
         let to = if elastic { self.state.time + self.step } else { (self.steps + 1) as f64 * self.step };
         let spent = &mut self.spent;
@@ -276,7 +276,7 @@ impl System for SolidSystem<'_> {
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
-        if let Some(memory) = self.given_up.or_else(|| self.integrator.memory()) {
+        if let Some(memory) = self.given_up.or_else(|| self.integrator.solver_state()) {
             body.put(&memory)?;
         }
         let SolidSystem { state, steps, reactions, spent, .. } = self;
@@ -290,16 +290,16 @@ impl System for SolidSystem<'_> {
         }
     }
 
-    fn stored(&self) -> Stored {
+    fn stored(&self) -> StoredEnergy {
         let model = &self.part.model;
         let at_rest = stored_at_rest(model, &self.state, &self.loading.gravity);
         match self.kind {
             SolidKind::QuasiStatic(_) => at_rest,
-            _ => Stored { solid_kinetic: fem::energy::kinetic(model, &self.state), ..at_rest },
+            _ => StoredEnergy { solid_kinetic: fem::energy::kinetic(model, &self.state), ..at_rest },
         }
     }
 
-    fn spent(&self) -> Spent {
+    fn spent(&self) -> WorkAndDissipation {
         self.spent
     }
 

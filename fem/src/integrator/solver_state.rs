@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Checkpointed state of an elastoplastic solver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
+pub struct SolverState {
     pub(crate) statistics: Statistics,
     /// Next step length, unless prescribed.
     pub(crate) length: Option<StepLength>,
@@ -14,7 +14,7 @@ pub struct Memory {
     pub(crate) factored: Option<Combination>,
 }
 
-impl Memory {
+impl SolverState {
     /// Counts and times.
     pub fn statistics(&self) -> Statistics {
         self.statistics

@@ -2,7 +2,7 @@
 //!
 //! Parts of rows buffer contributions to later parts, added in part order. x and y are 0 at constrained dofs.
 
-use super::upper::Upper;
+use super::upper_blocks::UpperBlocks;
 use crate::assembly::{Combination, Matrices};
 use crate::solver::conjugate::Operator;
 use crate::solver::conjugate::vectors::NODES;
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Matrix of a combination, with scratch.
-pub struct Product {
+pub struct MatrixProduct {
     matrices: Arc<Matrices>,
     combination: Combination,
     /// Combined entries in single precision, if rounded.
@@ -38,9 +38,9 @@ struct Part {
     y: Vec<[f64; 4]>,
 }
 
-impl Product {
+impl MatrixProduct {
     /// Matrix `combination` on the free dofs.
-    pub fn new(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> Product {
+    pub fn new(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> MatrixProduct {
         let nodes = matrices.node_count();
         let mut parts: Vec<Part> = (0..nodes)
             .step_by(NODES)
@@ -64,13 +64,13 @@ impl Product {
         }
         let free = |dof: usize| supports.free_index()[dof] != CONSTRAINED;
         let free = (0..nodes).map(|n| [0, 1, 2].map(|k| free(3 * n + k))).collect();
-        Product { matrices, combination, single: None, parts, start, from, free }
+        MatrixProduct { matrices, combination, single: None, parts, start, from, free }
     }
 
     /// Matrix in single precision, which halves memory traffic; vectors and sums are double. Overflow becomes
     /// infinite, which the iteration reports.
-    pub fn rounded(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> Product {
-        let mut product = Product::new(matrices, supports, combination);
+    pub fn rounded(matrices: Arc<Matrices>, supports: &Supports, combination: Combination) -> MatrixProduct {
+        let mut product = MatrixProduct::new(matrices, supports, combination);
         let (matrices, c) = (product.matrices.clone(), combination);
         let mut single = Vec::with_capacity(matrices.stiffness_blocks().len());
         let mut dashpots = matrices.dashpot_blocks().peekable();
@@ -175,7 +175,7 @@ impl Part {
         inertia: f64,
     ) {
         let slots = matrices.slots(self.nodes.start).start..matrices.slots(self.nodes.end - 1).end;
-        let rows = Upper {
+        let rows = UpperBlocks {
             start: &matrices.row_starts()[self.nodes.start..=self.nodes.end],
             place: &self.place,
             blocks: &blocks[slots.clone()],
@@ -198,7 +198,7 @@ impl Part {
     }
 }
 
-impl Operator for Product {
+impl Operator for MatrixProduct {
     fn apply(&mut self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>().0);
         let (matrices, c) = (&*self.matrices, self.combination);

@@ -5,29 +5,29 @@ use crate::model::Model;
 
 /// Largest strain, rotation and displacement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extent {
+pub struct SmallStrainMeasures {
     /// Largest strain at a Gauss point, `sqrt(ε:ε)` [-].
     pub strain: f64,
     /// Its element (file number).
-    pub strained: u32,
+    pub strain_element: u32,
     /// Largest rotation at a Gauss point, half the curl [rad].
     pub rotation: f64,
     /// Its element.
-    pub rotated: u32,
+    pub rotation_element: u32,
     /// Largest displacement relative to element size, without the mean [m].
     pub displacement: f64,
     /// Longest side of that element's bounds [m].
     pub size: f64,
     /// Its element.
-    pub moved: u32,
+    pub displacement_element: u32,
 }
 
 /// Computes the extent of a displacement, shape `[3 * nodes]`.
-pub fn extent(model: &Model, u: &[f64]) -> Extent {
+pub fn small_strain_measures(model: &Model, u: &[f64]) -> SmallStrainMeasures {
     let mesh = model.mesh();
     let nodes = mesh.node_count().max(1) as f64;
     let mean: [f64; 3] = std::array::from_fn(|k| u.iter().skip(k).step_by(3).sum::<f64>() / nodes);
-    let (mut found, mut worst) = (Extent::default(), 0.0);
+    let (mut found, mut worst) = (SmallStrainMeasures::default(), 0.0);
     for (e, &id) in mesh.element_ids.iter().enumerate() {
         let (strains, moved) = (model.element_strains(e), mesh.element_values(e, u));
         for point in stiffness_points(mesh.connectivity.kind(e), model.quadrature()) {
@@ -36,11 +36,11 @@ pub fn extent(model: &Model, u: &[f64]) -> Extent {
             let normal = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
             let size = (normal + 0.5 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt();
             if size > found.strain {
-                (found.strain, found.strained) = (size, id);
+                (found.strain, found.strain_element) = (size, id);
             }
             let rotation = rotation(&at.gradients, &moved[..mesh.connectivity[e].len()]);
             if rotation > found.rotation {
-                (found.rotation, found.rotated) = (rotation, id);
+                (found.rotation, found.rotation_element) = (rotation, id);
             }
         }
         let nodes = &mesh.connectivity[e];
@@ -53,7 +53,7 @@ pub fn extent(model: &Model, u: &[f64]) -> Extent {
         let displacement = nodes.iter().map(way).fold(0.0, f64::max);
         if displacement / size > worst {
             worst = displacement / size;
-            (found.displacement, found.size, found.moved) = (displacement, size, id);
+            (found.displacement, found.size, found.displacement_element) = (displacement, size, id);
         }
     }
     found

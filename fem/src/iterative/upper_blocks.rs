@@ -3,7 +3,7 @@
 //! AVX2 or plain code, selected at run time. Limits: results differ by rounding without fused multiply-add.
 
 /// Rows of the upper half; columns are positions in the vectors of a part.
-pub struct Upper<'a, T> {
+pub struct UpperBlocks<'a, T> {
     /// Row bounds with any offset.
     pub start: &'a [usize],
     /// Column position of each entry, diagonal first.
@@ -14,14 +14,14 @@ pub struct Upper<'a, T> {
     pub inertia: f64,
 }
 
-impl<T: Copy + Into<f64>> Upper<'_, T> {
+impl<T: Copy + Into<f64>> UpperBlocks<'_, T> {
     /// `y += A x` with the rows and their transpose. Fourth lane: 0 in x, undefined in y.
     pub fn times<const MASS: bool>(&self, x: &[[f64; 4]], y: &mut [[f64; 4]]) {
         #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
         {
             #[target_feature(enable = "avx2,fma")]
             fn wide<T: Copy + Into<f64>, const MASS: bool>(
-                rows: &Upper<'_, T>,
+                rows: &UpperBlocks<'_, T>,
                 x: &[[f64; 4]],
                 y: &mut [[f64; 4]],
             ) {

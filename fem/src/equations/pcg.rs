@@ -1,11 +1,11 @@
 //! Conjugate gradients for `A x = b` on the free dofs.
 
-use super::system::{Added, Counts, Equations, SystemSolver};
+use super::system::{Added, Equations, IterationCounts, SystemSolver};
 use crate::assembly::{Combination, Matrices};
 use crate::error::SolveError;
 use crate::iterative::aggregation::{self, Aggregation};
 use crate::iterative::block_jacobi::BlockJacobi;
-use crate::iterative::product::Product;
+use crate::iterative::matrix_product::MatrixProduct;
 use crate::solver::conjugate::{ConjugateGradients, Operator, Preconditioner};
 use crate::supports::{Supports, name};
 use std::sync::Arc;
@@ -14,17 +14,17 @@ use std::sync::Arc;
 const LIMIT: u32 = 2000;
 
 /// Matrix, preconditioner and work space; solves allocate nothing.
-pub struct Iteration<P> {
-    matrix: Product,
+pub struct PcgSystem<P> {
+    matrix: MatrixProduct,
     preconditioner: P,
     gradients: ConjugateGradients,
     tolerance: f64,
     load: Vec<f64>,
     solution: Vec<f64>,
-    counts: Counts,
+    counts: IterationCounts,
 }
 
-impl Iteration<BlockJacobi> {
+impl PcgSystem<BlockJacobi> {
     /// Builds an iteration with block-Jacobi preconditioner.
     ///
     /// # Errors
@@ -32,15 +32,15 @@ impl Iteration<BlockJacobi> {
     pub fn block_jacobi(
         equations: &Equations<'_>,
         tolerance: f64,
-    ) -> Result<Iteration<BlockJacobi>, SolveError> {
+    ) -> Result<PcgSystem<BlockJacobi>, SolveError> {
         let Equations { matrices, supports, combination, .. } = *equations;
-        let matrix = Product::new(matrices.clone(), supports, combination);
+        let matrix = MatrixProduct::new(matrices.clone(), supports, combination);
         let preconditioner = jacobi(equations, &matrix)?;
-        Ok(Iteration::new(matrix, preconditioner, 3 * equations.mesh.node_count(), tolerance))
+        Ok(PcgSystem::new(matrix, preconditioner, 3 * equations.mesh.node_count(), tolerance))
     }
 }
 
-impl Iteration<Aggregation> {
+impl PcgSystem<Aggregation> {
     /// Builds an iteration with smoothed aggregation, for stiffness-dominated matrices.
     ///
     /// # Errors
@@ -48,15 +48,15 @@ impl Iteration<Aggregation> {
     pub fn aggregation(
         equations: &Equations<'_>,
         tolerance: f64,
-    ) -> Result<Iteration<Aggregation>, SolveError> {
+    ) -> Result<PcgSystem<Aggregation>, SolveError> {
         let Equations { matrices, supports, combination, .. } = *equations;
-        let matrix = Product::new(matrices.clone(), supports, combination);
+        let matrix = MatrixProduct::new(matrices.clone(), supports, combination);
         // Reduced precision suffices for a preconditioner.
-        let rounded = Product::rounded(matrices.clone(), supports, combination);
+        let rounded = MatrixProduct::rounded(matrices.clone(), supports, combination);
         let jacobi = jacobi(equations, &matrix)?;
         let preconditioner = Aggregation::new(rounded, &jacobi, &equations.mesh.coordinates)
             .map_err(|aggregation::NotPositive| SolveError::Singular)?;
-        Ok(Iteration::new(matrix, preconditioner, 3 * equations.mesh.node_count(), tolerance))
+        Ok(PcgSystem::new(matrix, preconditioner, 3 * equations.mesh.node_count(), tolerance))
     }
 
     /// Rows of each aggregation level, finest first.
@@ -65,7 +65,7 @@ impl Iteration<Aggregation> {
     }
 }
 
-fn jacobi(equations: &Equations<'_>, matrix: &Product) -> Result<BlockJacobi, SolveError> {
+fn jacobi(equations: &Equations<'_>, matrix: &MatrixProduct) -> Result<BlockJacobi, SolveError> {
     BlockJacobi::new(&matrix.diagonal_blocks()).map_err(|dof| {
         let (node, direction) = name(equations.mesh, dof);
         SolveError::NoStiffness { node, direction, pivot: 0.0 }
@@ -75,21 +75,21 @@ fn jacobi(equations: &Equations<'_>, matrix: &Product) -> Result<BlockJacobi, So
 /// Additional memory of a block-Jacobi iteration [bytes].
 pub fn block_jacobi_memory(matrices: Arc<Matrices>, supports: &Supports) -> usize {
     let values = 3 * matrices.node_count();
-    let product = Product::new(matrices, supports, Combination::default());
+    let product = MatrixProduct::new(matrices, supports, Combination::default());
     // Product, inverse blocks, six vectors.
     product.memory() + 16 * values + 6 * 8 * values
 }
 
-impl<P> Iteration<P> {
-    fn new(matrix: Product, preconditioner: P, values: usize, tolerance: f64) -> Iteration<P> {
+impl<P> PcgSystem<P> {
+    fn new(matrix: MatrixProduct, preconditioner: P, values: usize, tolerance: f64) -> PcgSystem<P> {
         let gradients = ConjugateGradients::new(values, LIMIT);
         let (load, solution) = (vec![0.0; values], vec![0.0; values]);
-        let counts = Counts::default();
-        Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts }
+        let counts = IterationCounts::default();
+        PcgSystem { matrix, preconditioner, gradients, tolerance, load, solution, counts }
     }
 }
 
-impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
+impl<P: Preconditioner + Send + Sync> SystemSolver for PcgSystem<P> {
     fn solve(
         &mut self,
         supports: &Supports,
@@ -99,7 +99,7 @@ impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
         for &d in supports.free() {
             self.solution[d as usize] = guess(d as usize);
         }
-        let Iteration { matrix, preconditioner, gradients, tolerance, load, solution, counts } = self;
+        let PcgSystem { matrix, preconditioner, gradients, tolerance, load, solution, counts } = self;
         supports.scatter(x, load);
         let iterations = gradients
             .solve(matrix, preconditioner, load, solution, *tolerance)
@@ -118,7 +118,7 @@ impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
         added: Added<'_>,
         tolerance: f64,
     ) -> Result<u32, SolveError> {
-        let Iteration { matrix, preconditioner, gradients, load, solution, .. } = self;
+        let PcgSystem { matrix, preconditioner, gradients, load, solution, .. } = self;
         supports.scatter(x, load);
         solution.fill(0.0);
         let iterations = gradients
@@ -128,7 +128,7 @@ impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
         Ok(iterations)
     }
 
-    fn counts(&self) -> Option<Counts> {
+    fn counts(&self) -> Option<IterationCounts> {
         Some(self.counts)
     }
 
@@ -139,7 +139,7 @@ impl<P: Preconditioner + Send + Sync> SystemSolver for Iteration<P> {
 }
 
 struct Sum<'a, 'b> {
-    matrix: &'a mut Product,
+    matrix: &'a mut MatrixProduct,
     added: Added<'b>,
     supports: &'a Supports,
 }

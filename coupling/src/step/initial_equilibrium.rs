@@ -10,7 +10,7 @@ use trackbed_fem as fem;
 ///
 /// # Errors
 /// The grains cannot make a step.
-pub fn resting_load(
+pub fn initial_contact_load(
     grains: &dem::Model,
     mut state: dem::State,
     surface: &mut SolidSurface,

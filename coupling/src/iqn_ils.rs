@@ -9,7 +9,7 @@ const DEPTH: usize = 8;
 const INDEPENDENT: f64 = 1e-8;
 
 #[derive(Default)]
-pub(crate) struct Accelerator {
+pub(crate) struct IqnIls {
     /// Pairs of residual and g, oldest first.
     passes: Vec<[Vec<f64>; 2]>,
     basis: Vec<Vec<f64>>,
@@ -17,7 +17,7 @@ pub(crate) struct Accelerator {
     upper: Vec<Vec<f64>>,
 }
 
-impl Accelerator {
+impl IqnIls {
     pub fn start(&mut self) {
         self.passes.clear();
     }
@@ -82,7 +82,7 @@ mod tests {
         let map = |x: &[f64]| {
             vec![-3.0 * x[0] + x[1] + 4.0, 2.0 * x[1] - x[2] + 1.0, 0.3 * x[0] - 0.5 * x[2] - 2.0]
         };
-        let mut accelerator = Accelerator::default();
+        let mut accelerator = IqnIls::default();
         let mut x = vec![1.0, -2.0, 3.0];
         let mut off = f64::INFINITY;
         for _ in 0..5 {

@@ -24,7 +24,7 @@ const MARGIN: f64 = 1.02;
 
 /// Stability numbers of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct InterfaceNumbers {
+pub struct InterfaceStabilityNumbers {
     /// W = Δt √λmax(M⁻¹ B_K) [-].
     pub stiffness: f64,
     /// D = Δt λmax(M⁻¹ B_C) [-].
@@ -33,10 +33,10 @@ pub struct InterfaceNumbers {
     pub phase: f64,
 }
 
-impl InterfaceNumbers {
+impl InterfaceStabilityNumbers {
     /// Scales the numbers for 1 s to windows of `window` [s].
-    pub fn at(&self, window: f64) -> InterfaceNumbers {
-        InterfaceNumbers {
+    pub fn at(&self, window: f64) -> InterfaceStabilityNumbers {
+        InterfaceStabilityNumbers {
             stiffness: window * self.stiffness,
             damping: window * self.damping,
             phase: window * self.phase,
@@ -44,8 +44,8 @@ impl InterfaceNumbers {
     }
 
     /// Componentwise maximum.
-    pub fn max(&self, other: &InterfaceNumbers) -> InterfaceNumbers {
-        InterfaceNumbers {
+    pub fn max(&self, other: &InterfaceStabilityNumbers) -> InterfaceStabilityNumbers {
+        InterfaceStabilityNumbers {
             stiffness: self.stiffness.max(other.stiffness),
             damping: self.damping.max(other.damping),
             phase: self.phase.max(other.phase),
@@ -125,7 +125,7 @@ pub struct SurfacePoint {
 }
 
 /// Assembled interface.
-pub struct Interface {
+pub struct InterfaceStability {
     mass: SurfaceMass,
     inverse: Vec<[f64; 3]>,
     /// Mass row of each surface node.
@@ -133,14 +133,14 @@ pub struct Interface {
     matrices: PointMatrices,
 }
 
-impl Interface {
+impl InterfaceStability {
     /// Assembles the surface mass.
-    pub fn new(solid: &fem::Model, surface: &SolidSurface) -> Interface {
+    pub fn new(solid: &fem::Model, surface: &SolidSurface) -> InterfaceStability {
         let mass = SurfaceMass::new(solid, surface.faces().iter().map(|f| f.element));
         let rows =
             surface.nodes().iter().map(|&n| mass.row(n).expect("nodes of its elements") as u32).collect();
         let inverse = mass.inverse_diagonal();
-        Interface { mass, inverse, rows, matrices: PointMatrices::default() }
+        InterfaceStability { mass, inverse, rows, matrices: PointMatrices::default() }
     }
 
     /// Returns the numbers for windows of 1 s; contacts with meshed sleepers are omitted.
@@ -150,12 +150,12 @@ impl Interface {
         grains: &dem::State,
         surface: &SolidSurface,
         contacts: &[SurfaceContact],
-    ) -> InterfaceNumbers {
+    ) -> InterfaceStabilityNumbers {
         let own = || contacts.iter().filter(|c| !model.on_other_surface(c.patch));
         let points: Vec<SurfacePoint> = own().map(|c| point(model, grains, c)).collect();
         let [stiffness, damping] = self.of_points(surface, &points);
         let phase = phase(model, grains, surface, own().zip(&points));
-        InterfaceNumbers { stiffness, damping, phase }
+        InterfaceStabilityNumbers { stiffness, damping, phase }
     }
 
     /// Returns W and D of `points` for windows of 1 s.
@@ -181,7 +181,7 @@ impl Interface {
         if self.matrices.points.is_empty() {
             return 0.0;
         }
-        let Interface { mass, inverse, rows, matrices } = self;
+        let InterfaceStability { mass, inverse, rows, matrices } = self;
         let n = mass.len();
         let mut product = |x: &[[f64; 3]], y: &mut [[f64; 3]]| {
             y.fill([0.0; 3]);

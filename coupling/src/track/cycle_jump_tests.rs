@@ -4,8 +4,15 @@ use crate::track::load::{CyclicLoad, Waveform};
 use crate::track::system::GrainsView;
 use dem::Vec3;
 
-const PLAN: JumpPlan =
-    JumpPlan { grains: true, first: 12, measure: 5, settle: 3, tolerance: 1e-3, largest: 1.0, overlap: 2.0 };
+const PLAN: CycleJumpOptions = CycleJumpOptions {
+    grains: true,
+    first: 12,
+    measure: 5,
+    settle: 3,
+    tolerance: 1e-3,
+    largest: 1.0,
+    overlap: 2.0,
+};
 
 /// Grains displaced by jumps only.
 struct Grains {
@@ -51,12 +58,12 @@ fn corner() -> Grains {
 
 /// Both spheres follow a sleeper with settlement `law`. Per jump: cycles before and skipped, displacements of
 /// sphere and rattler.
-fn jumps_of(plan: &JumpPlan, cycles: u32, law: impl Fn(f64) -> f64) -> (Jumper, Vec<[f64; 4]>) {
+fn jumps_of(plan: &CycleJumpOptions, cycles: u32, law: impl Fn(f64) -> f64) -> (CycleJumper, Vec<[f64; 4]>) {
     let wave = Waveform::Wave { sine: false, minimum: 0.0, maximum: 1.0, frequency: 1.0 };
     let load =
         CyclicLoad { waveform: wave, cycles: 10_000, rest: 0.0, ramp: 0.0, seating: None, places: vec![0.0] };
     let mut recorder = CycleRecorder::new(&load, [0.2, 0.8], BedColumn::default());
-    let (mut system, mut jumper) = (corner(), Jumper::new(plan));
+    let (mut system, mut jumper) = (corner(), CycleJumper::new(plan));
     let mut settled = 0.0;
     let mut jumps = Vec::new();
     recorder.record(0.0, 1.0, 0.0, 0.0, 0.0, 0.0);
@@ -110,7 +117,7 @@ fn large_error_shortens_next_jump() {
 /// Limit: 1/2000 of 1 mm over three planes, with motion towards one.
 #[test]
 fn overlap_change_limits_jumps() {
-    let plan = JumpPlan { overlap: 1e-4, largest: 10.0, ..PLAN };
+    let plan = CycleJumpOptions { overlap: 1e-4, largest: 10.0, ..PLAN };
     let b = 1e-6;
     let (jumper, jumps) = jumps_of(&plan, 20, |n| b * n.ln());
     let [number, skipped, way, _] = jumps[0];

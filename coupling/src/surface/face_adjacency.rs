@@ -2,7 +2,7 @@
 
 use trackbed_fem::FaceShape;
 
-pub(super) struct Sides {
+pub(super) struct FaceAdjacency {
     /// Index of each side, shared by its faces. Shape `[faces][4]`.
     pub number: Vec<[u32; 4]>,
     /// Whether each side is free. Shape `[faces][4]`.
@@ -14,8 +14,8 @@ pub(super) struct Sides {
     pub rim: Vec<bool>,
 }
 
-impl Sides {
-    pub fn new(shapes: &[FaceShape], nodes: &[[u32; 8]]) -> Sides {
+impl FaceAdjacency {
+    pub fn new(shapes: &[FaceShape], nodes: &[[u32; 8]]) -> FaceAdjacency {
         let mut all: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(4 * shapes.len());
         for ((shape, nodes), face) in shapes.iter().zip(nodes).zip(0..) {
             let corners = shape.corner_count();
@@ -25,7 +25,7 @@ impl Sides {
             }));
         }
         all.sort_unstable();
-        let mut sides = Sides {
+        let mut sides = FaceAdjacency {
             number: vec![[0; 4]; shapes.len()],
             border: vec![[true; 4]; shapes.len()],
             seams: Vec::new(),
@@ -56,7 +56,7 @@ mod tests {
         // │ │╲4   5 is beyond 4.
         // 0─1
         let nodes = [[0, 1, 2, 3, 10, 11, 12, 13], [1, 4, 2, 1, 1, 1, 1, 1], [4, 5, 2, 14, 15, 16, 4, 4]];
-        let sides = Sides::new(&shapes, &nodes);
+        let sides = FaceAdjacency::new(&shapes, &nodes);
         assert_eq!(sides.seams, [[0, 1], [1, 2]]);
         assert_eq!(sides.border[0], [true, false, true, true]);
         assert_eq!(sides.border[1][..3], [true, false, false]);
@@ -67,6 +67,6 @@ mod tests {
         assert!(sides.rim[..6].iter().all(|r| *r));
         // The fourth triangle closes the ring about node 2.
         let around = [[0, 1, 2, 0, 0, 0, 0, 0], [1, 3, 2, 1, 1, 1, 1, 1], [3, 0, 2, 3, 3, 3, 3, 3]];
-        assert_eq!(Sides::new(&[FaceShape::Tri3; 3], &around).rim, [true, true, false, true]);
+        assert_eq!(FaceAdjacency::new(&[FaceShape::Tri3; 3], &around).rim, [true, true, false, true]);
     }
 }

@@ -31,7 +31,7 @@ const WINDOW: f64 = 0.25;
 
 /// Parameters of cycle jumps.
 #[derive(Clone, Copy, Debug)]
-pub struct JumpPlan {
+pub struct CycleJumpOptions {
     /// Displace the grains.
     pub grains: bool,
     /// Simulated cycles before the first jump.
@@ -95,31 +95,31 @@ enum Phase {
 }
 
 /// Centre and orientation per body.
-type Places = Vec<(dem::Vec3, UnitQuaternion<f64>)>;
+type BodyPoses = Vec<(dem::Vec3, UnitQuaternion<f64>)>;
 
 /// Jump controller, part of checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Jumper {
+pub struct CycleJumper {
     phase: Phase,
     /// Next jump over the cycles before it.
     growth: f64,
-    /// At the start of the stretch; `begun`: age, settlement.
-    places: Places,
-    begun: [f64; 2],
+    /// At the start of the stretch; `stretch_start`: age, settlement.
+    places: BodyPoses,
+    stretch_start: [f64; 2],
     /// Age, settlement and predicted slope at the last jump.
     predicted: Option<[f64; 3]>,
     /// Jumps so far.
     pub jumps: Vec<JumpRecord>,
 }
 
-impl Jumper {
+impl CycleJumper {
     /// Controller at the start of a run.
-    pub fn new(plan: &JumpPlan) -> Jumper {
-        Jumper {
+    pub fn new(plan: &CycleJumpOptions) -> CycleJumper {
+        CycleJumper {
             phase: Phase::Wait(plan.first - plan.measure),
             growth: START * plan.largest,
             places: Vec::new(),
-            begun: [0.0; 2],
+            stretch_start: [0.0; 2],
             predicted: None,
             jumps: Vec::new(),
         }
@@ -128,7 +128,7 @@ impl Jumper {
     /// Continues after a cycle; returns whether bodies were displaced.
     pub fn after_cycle<S: TrackSystem>(
         &mut self,
-        plan: &JumpPlan,
+        plan: &CycleJumpOptions,
         cycles: &mut CycleRecorder,
         system: &mut S,
     ) -> bool {
@@ -147,7 +147,7 @@ impl Jumper {
                 false
             }
             Phase::Stretch(_) => {
-                self.judge(plan, cycles);
+                self.check_prediction(plan, cycles);
                 let moved = self.jump(plan, cycles, system);
                 if plan.settle == 0 || !moved {
                     self.begin(plan, cycles, system);
@@ -159,13 +159,13 @@ impl Jumper {
         }
     }
 
-    fn begin<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &S) {
+    fn begin<S: TrackSystem>(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder, system: &S) {
         if let (true, Some(g)) = (plan.grains, system.grains()) {
             self.places = (0..g.model.body_count())
                 .map(|b| (g.state.position(b), g.state.orientation(g.model, b)))
                 .collect();
         }
-        self.begun = cycles.latest;
+        self.stretch_start = cycles.latest;
         cycles.counting = true;
         let share = if plan.grains { 0.0 } else { STRETCH * f64::from(cycles.simulated()) };
         let left = plan.measure.max(share as u32);
@@ -173,9 +173,9 @@ impl Jumper {
         self.phase = if room < left { Phase::Over } else { Phase::Stretch(left) };
     }
 
-    fn judge(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder) {
+    fn check_prediction(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder) {
         let (now, Some([age, settlement, slope])) = (cycles.latest, self.predicted) else { return };
-        let measured = (now[1] - self.begun[1]) / libm::log(now[0] / self.begun[0]);
+        let measured = (now[1] - self.stretch_start[1]) / libm::log(now[0] / self.stretch_start[0]);
         let Some(last) = self.jumps.last_mut() else { return };
         last.measured_slope = Some(measured);
         // Error in settlement (grains displaced) or by the slope.
@@ -192,7 +192,12 @@ impl Jumper {
     }
 
     /// Returns whether bodies were displaced.
-    fn jump<S: TrackSystem>(&mut self, plan: &JumpPlan, cycles: &mut CycleRecorder, system: &mut S) -> bool {
+    fn jump<S: TrackSystem>(
+        &mut self,
+        plan: &CycleJumpOptions,
+        cycles: &mut CycleRecorder,
+        system: &mut S,
+    ) -> bool {
         let [age, settlement] = cycles.latest;
         let number = f64::from(cycles.number());
         let Some(fit) = settlement::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
@@ -205,16 +210,17 @@ impl Jumper {
         let mut moves = Vec::new();
         if plan.grains {
             let Some(drift) = Drift::of(&self.places, system) else { return false };
-            let own = (settlement - self.begun[1]) / libm::log(age / self.begun[0]);
+            let own = (settlement - self.stretch_start[1]) / libm::log(age / self.stretch_start[0]);
             // Uplift or small settlement gives no reliable drift direction.
             if own < 0.25 * fit.slope {
                 return false;
             }
-            let whole =
-                |n: u32| fit.slope * libm::log(1.0 + f64::from(n) / number) / (settlement - self.begun[1]);
+            let whole = |n: u32| {
+                fit.slope * libm::log(1.0 + f64::from(n) / number) / (settlement - self.stretch_start[1])
+            };
             let most = plan.overlap / drift.overlap_change;
             if whole(skipped) > most {
-                let ratio = libm::expm1(most * (settlement - self.begun[1]) / fit.slope);
+                let ratio = libm::expm1(most * (settlement - self.stretch_start[1]) / fit.slope);
                 skipped = skipped.min((ratio * number) as u32);
             }
             change = Some(whole(skipped) * drift.overlap_change);
@@ -253,7 +259,7 @@ impl Jumper {
     }
 
     /// Summary.
-    pub fn summary(&self, plan: &JumpPlan, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
+    pub fn summary(&self, plan: &CycleJumpOptions, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
         JumpSummary {
             method: if plan.grains { "displace" } else { "extrapolate" },
@@ -280,7 +286,7 @@ struct Drift {
 }
 
 impl Drift {
-    fn of<S: TrackSystem>(places: &Places, system: &S) -> Option<Drift> {
+    fn of<S: TrackSystem>(places: &BodyPoses, system: &S) -> Option<Drift> {
         let g = system.grains()?;
         let motion: Vec<(dem::Vec3, dem::Vec3)> = places
             .iter()
@@ -327,5 +333,5 @@ impl Drift {
 }
 
 #[cfg(test)]
-#[path = "jump_tests.rs"]
+#[path = "cycle_jump_tests.rs"]
 mod tests;

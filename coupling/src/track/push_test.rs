@@ -19,7 +19,7 @@ const LARGEST_STEP: f64 = 0.1;
 
 /// Lateral push test.
 #[derive(Clone, Copy, Debug)]
-pub struct PushPlan {
+pub struct PushTestOptions {
     /// Unit vector.
     pub direction: dem::Vec3,
     /// Actuator speed [m/s].
@@ -36,14 +36,14 @@ pub struct PushPlan {
     pub stiffness: f64,
 }
 
-impl PushPlan {
+impl PushTestOptions {
     /// Duration with the preceding rest [s].
     pub fn duration(&self) -> f64 {
         self.rest + (1.0 + 0.5 * START) * self.displacement / self.speed
     }
 
     /// Actuator displacement [m] and speed [m/s] `since` its start [s].
-    pub fn ram(&self, since: f64) -> (f64, f64) {
+    pub fn actuator(&self, since: f64) -> (f64, f64) {
         let start = START * self.displacement / self.speed;
         if since < start {
             let share = since.max(0.0) / start;
@@ -66,7 +66,7 @@ impl PushPlan {
 
 /// Results of a push test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PushSummary {
+pub struct PushTestSummary {
     /// Force at 2 mm [N]; `None` if not reached.
     pub resistance_at_2_mm: Option<f64>,
     /// Largest force [N].
@@ -83,9 +83,9 @@ pub struct PushSummary {
 
 /// State of a push test, part of checkpoints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct PushState {
+pub struct PushTestState {
     /// Start of rest [s] and load then [N].
-    begun: Option<(f64, f64)>,
+    rest_start: Option<(f64, f64)>,
     /// Initial position [m].
     origin: Option<dem::Vec3>,
     /// Windows and sums of the current row.
@@ -96,45 +96,45 @@ pub struct PushState {
 }
 
 /// Running push test.
-pub struct Push<'a> {
-    plan: &'a PushPlan,
+pub struct PushTest<'a> {
+    plan: &'a PushTestOptions,
     mass: f64,
     weight: f64,
     seats: &'a [[f64; 3]],
     body: usize,
 }
 
-impl<'a> Push<'a> {
+impl<'a> PushTest<'a> {
     /// Push of sleeper `body` of `row`, gravity along z [m/s²].
-    pub fn new(plan: &'a PushPlan, row: &'a SleeperRow, gravity: f64, body: usize) -> Push<'a> {
-        Push { plan, mass: row.mass, weight: -row.mass * gravity, seats: &row.seats, body }
+    pub fn new(plan: &'a PushTestOptions, row: &'a SleeperRow, gravity: f64, body: usize) -> PushTest<'a> {
+        PushTest { plan, mass: row.mass, weight: -row.mass * gravity, seats: &row.seats, body }
     }
 
     /// Ends the cycles at `t` [s] with the current load [N].
-    pub fn begin(&self, state: &mut PushState, t: f64, load: f64) {
-        state.begun.get_or_insert((t, load));
+    pub fn begin(&self, state: &mut PushTestState, t: f64, load: f64) {
+        state.rest_start.get_or_insert((t, load));
     }
 
     /// Load [N] and actuator time [s]; `None` during the cycles.
-    fn at(&self, state: &PushState, t: f64) -> Option<(f64, f64)> {
-        let (begun, before) = state.begun?;
-        let since = t - begun;
+    fn at(&self, state: &PushTestState, t: f64) -> Option<(f64, f64)> {
+        let (rest_start, before) = state.rest_start?;
+        let since = t - rest_start;
         let share = if self.plan.rest > 0.0 { (since / self.plan.rest).clamp(0.0, 1.0) } else { 1.0 };
         Some((before + share * (self.plan.load - before), since - self.plan.rest))
     }
 
     /// Vertical load at `t` [N]; `None` during the cycles.
-    pub fn load(&self, state: &PushState, t: f64) -> Option<f64> {
+    pub fn load(&self, state: &PushTestState, t: f64) -> Option<f64> {
         self.at(state, t).map(|(load, _)| load)
     }
 
     /// Actuator force [N] and sleeper displacement [m].
-    fn ram(&self, state: &PushState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
-        let (ram, ram_speed) = self.plan.ram(self.at(state, t)?.1);
+    fn actuator(&self, state: &PushTestState, t: f64, grains: &dem::State) -> Option<(f64, f64)> {
+        let (actuator, actuator_speed) = self.plan.actuator(self.at(state, t)?.1);
         let way = (grains.position(self.body) - state.origin?).dot(&self.plan.direction);
         let speed = grains.velocity(self.body).dot(&self.plan.direction);
         let dashpot = 2.0 * DAMPING * (self.plan.stiffness * self.mass).sqrt();
-        let force = self.plan.stiffness * (ram - way) + dashpot * (ram_speed - speed);
+        let force = self.plan.stiffness * (actuator - way) + dashpot * (actuator_speed - speed);
         // No tension.
         Some((force.max(0.0), way))
     }
@@ -142,7 +142,7 @@ impl<'a> Push<'a> {
     /// Adds the forces at `t` [s]; returns whether the cycles are over.
     pub fn apply(
         &self,
-        state: &PushState,
+        state: &PushTestState,
         t: f64,
         model: &dem::Model,
         grains: &dem::State,
@@ -155,7 +155,7 @@ impl<'a> Push<'a> {
             let force = dem::Vec3::new(0.0, 0.0, -load / self.seats.len() as f64);
             out.push(dem::AppliedForce { body, force, point: x + q * dem::Vec3::from(*seat) });
         }
-        if let Some((force, _)) = self.ram(state, t, grains) {
+        if let Some((force, _)) = self.actuator(state, t, grains) {
             let point = x + dem::Vec3::new(0.0, 0.0, self.plan.height);
             out.push(dem::AppliedForce { body, force: self.plan.direction * force, point });
         }
@@ -163,20 +163,20 @@ impl<'a> Push<'a> {
     }
 
     /// Adds a window to the curve.
-    pub fn follow(&self, state: &mut PushState, t: f64, g: GrainsView<'_>) {
+    pub fn follow(&self, state: &mut PushTestState, t: f64, g: GrainsView<'_>) {
         let Some((_, since)) = self.at(state, t) else { return };
-        let (x, ram) = (g.state.position(self.body), self.plan.ram(since).0);
+        let (x, actuator) = (g.state.position(self.body), self.plan.actuator(since).0);
         if since < 0.0 || state.rows.len() as f64 >= ROWS {
             return;
         }
         let origin = *state.origin.get_or_insert(x);
-        if let Some((force, way)) = self.ram(state, t, g.state) {
+        if let Some((force, way)) = self.actuator(state, t, g.state) {
             for (sum, value) in state.sums.iter_mut().zip([way, force, x.z - origin.z]) {
                 *sum += value;
             }
             state.count += 1;
         }
-        if ram >= (state.rows.len() + 1) as f64 / ROWS * self.plan.displacement {
+        if actuator >= (state.rows.len() + 1) as f64 / ROWS * self.plan.displacement {
             let n = f64::from(state.count.max(1));
             state.rows.push(state.sums.map(|s| s / n));
             (state.sums, state.count) = ([0.0; 3], 0);
@@ -184,18 +184,18 @@ impl<'a> Push<'a> {
     }
 
     /// Displacement [m], force [N], uplift [m] per row, and results; `None` before the start.
-    pub fn curve<'b>(&self, state: &'b PushState) -> Option<(&'b [[f64; 3]], PushSummary)> {
+    pub fn curve<'b>(&self, state: &'b PushTestState) -> Option<(&'b [[f64; 3]], PushTestSummary)> {
         (!state.rows.is_empty()).then(|| (&state.rows[..], self.summary(&state.rows)))
     }
 
-    fn summary(&self, rows: &[[f64; 3]]) -> PushSummary {
+    fn summary(&self, rows: &[[f64; 3]]) -> PushTestSummary {
         let peak = rows.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap_or_default();
         let two = rows.windows(2).find(|w| w[0][0] < 2e-3 && 2e-3 <= w[1][0]).map(|w| {
             let share = (2e-3 - w[0][0]) / (w[1][0] - w[0][0]);
             w[0][1] + share * (w[1][1] - w[0][1])
         });
         let tail = &rows[rows.len() - rows.len().div_ceil(4)..];
-        PushSummary {
+        PushTestSummary {
             resistance_at_2_mm: two,
             peak: peak[1],
             displacement_at_peak: peak[0],

@@ -10,19 +10,19 @@
 
 use crate::face::{cross, dot};
 
-/// Load transfer operator, built by [`spread_over`](crate::surface::SolidSurface::spread_over).
-pub struct Spread {
+/// Load transfer operator, built by [`distribute_over_discs`](crate::surface::SolidSurface::distribute_over_discs).
+pub struct DistributedTransfer {
     pub(crate) radius: f64,
     /// Start of the weights of each node. Shape `[nodes + 1]`.
     pub(crate) first: Vec<u32>,
     /// Surface node and weight.
     pub(crate) weights: Vec<(u32, f64)>,
     /// Nodes off the centroid of their disc.
-    pub(crate) turned: Vec<Turned>,
+    pub(crate) eccentric: Vec<EccentricDisc>,
 }
 
 /// Rotation of an eccentric disc.
-pub(crate) struct Turned {
+pub(crate) struct EccentricDisc {
     pub node: u32,
     /// xᵢ − c.
     pub arm: [f64; 3],
@@ -31,7 +31,7 @@ pub(crate) struct Turned {
     pub levers: Vec<(u32, [f64; 3])>,
 }
 
-impl Spread {
+impl DistributedTransfer {
     /// Radius of the discs [m].
     pub fn radius(&self) -> f64 {
         self.radius
@@ -46,7 +46,7 @@ impl Spread {
                 (0..3).for_each(|d| o[d] += w * u[d]);
             }
         }
-        for t in &self.turned {
+        for t in &self.eccentric {
             let mut moment = [0.0; 3];
             for (j, b) in &t.levers {
                 let m = cross(*b, field[*j as usize]);
@@ -64,7 +64,7 @@ impl Spread {
                 add(j, force.map(|f| w * f));
             }
         }
-        for t in self.turned.iter().filter(|t| forces[t.node as usize] != [0.0; 3]) {
+        for t in self.eccentric.iter().filter(|t| forces[t.node as usize] != [0.0; 3]) {
             let lever = cross(t.arm, forces[t.node as usize]);
             let moment = t.inverse.map(|row| dot(row, lever));
             t.levers.iter().for_each(|(j, b)| add(*j, cross(moment, *b)));

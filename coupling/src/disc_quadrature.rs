@@ -1,7 +1,7 @@
-//! Discs of distributed load transfer (see [`spread`](crate::spread)).
+//! Discs of distributed load transfer (see [`spread`](crate::distributed_transfer)).
 
+use crate::distributed_transfer::{DistributedTransfer, EccentricDisc};
 use crate::face::{Closest, Location, cross, dot};
-use crate::spread::{Spread, Turned};
 use crate::surface::SolidSurface;
 use std::collections::BTreeMap;
 
@@ -23,21 +23,25 @@ struct Point {
 }
 
 impl SolidSurface {
-    /// Distributes each contact force over a disc of `radius` [m], see [`Spread`]; zero disables it.
+    /// Distributes each contact force over a disc of `radius` [m], see [`DistributedTransfer`]; zero disables it.
     ///
     /// The surface must be undeformed.
-    pub fn spread_over(mut self, radius: f64) -> SolidSurface {
+    pub fn distribute_over_discs(mut self, radius: f64) -> SolidSurface {
         self.spread = (radius > 0.0).then(|| operator(&self, radius));
         self
     }
 }
 
-fn operator(surface: &SolidSurface, radius: f64) -> Spread {
+fn operator(surface: &SolidSurface, radius: f64) -> DistributedTransfer {
     let n = surface.nodes().len();
     let border = border(surface);
     let normals = normals(surface);
-    let mut spread =
-        Spread { radius, first: vec![0], weights: Vec::with_capacity(30 * n), turned: Vec::new() };
+    let mut spread = DistributedTransfer {
+        radius,
+        first: vec![0],
+        weights: Vec::with_capacity(30 * n),
+        eccentric: Vec::new(),
+    };
     for i in 0..n as u32 {
         let x = surface.position(i);
         let points = disc(surface, x, normals[i as usize], &border, radius);
@@ -66,7 +70,12 @@ fn operator(surface: &SolidSurface, radius: f64) -> Spread {
                     (0..3).for_each(|d| b[d] += p.weight * s * (p.place[d] - c[d]));
                 }
             }
-            spread.turned.push(Turned { node: i, arm, inverse, levers: levers.into_iter().collect() });
+            spread.eccentric.push(EccentricDisc {
+                node: i,
+                arm,
+                inverse,
+                levers: levers.into_iter().collect(),
+            });
         }
         spread.weights.extend(own.into_iter().filter(|(_, w)| *w != 0.0));
         spread.first.push(spread.weights.len() as u32);

@@ -2,14 +2,14 @@
 
 use super::model::Model;
 use super::state::{State, Work};
-use crate::ledger::{Spent, Stored};
+use crate::energy_balance::{StoredEnergy, WorkAndDissipation};
 use crate::scheme::Scheme;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
 
 /// Splits the work of the loads, which the solver does not.
-pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step: &StepAudit) {
+pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step: &StepAudit) {
     for (i, u) in state.solid.u.iter().enumerate() {
         let du = u - work.before.u[i];
         state.spent.contacts_on_solid += work.contact_load[i] * du;
@@ -19,8 +19,7 @@ pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step
     let rate = |i: usize| work.rate[i];
     let found = |i: usize| (u[i] - before[i]) / model.window();
     let last = |i: usize| if state.rate.is_empty() { work.rate[i] } else { state.rate[i] };
-    state.spent.interface_dashpot_error +=
-        work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
+    state.flows.interface_dashpot_error += work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
         state.rate.clear();
@@ -33,9 +32,9 @@ pub(super) fn book<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step
 }
 
 /// Returns the stored energy.
-pub fn stored(model: &Model<'_>, state: &State) -> Stored {
+pub fn stored_energy(model: &Model<'_>, state: &State) -> StoredEnergy {
     let grains = dem::measure::energies(&model.grains, &state.grains);
-    Stored {
+    StoredEnergy {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
         contact_springs: grains.elastic_normal + grains.elastic_tangential,
         bonds: grains.elastic_bonds,
@@ -44,15 +43,15 @@ pub fn stored(model: &Model<'_>, state: &State) -> Stored {
         solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
         solid_strain: fem::energy::strain(model.solid, &state.solid),
         solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
-        ..Stored::default()
+        ..StoredEnergy::default()
     }
 }
 
 /// Returns work and dissipation of both sides since the start.
-pub fn spent(state: &State) -> Spent {
+pub fn work_and_dissipation(state: &State) -> WorkAndDissipation {
     let solid = &state.spent;
-    let grains = spent_by_grains(&state.grains);
-    Spent {
+    let grains = grain_work_and_dissipation(&state.grains);
+    WorkAndDissipation {
         dashpot: grains.dashpot + solid.interface_dashpot_error,
         interface_dashpot_error: solid.interface_dashpot_error,
         solid_load_work: solid.solid_load_work,
@@ -65,10 +64,10 @@ pub fn spent(state: &State) -> Spent {
     }
 }
 
-/// Returns the grains' part of [`spent`].
-pub fn spent_by_grains(grains: &dem::State) -> Spent {
+/// Returns the grains' part of [`work_and_dissipation`].
+pub fn grain_work_and_dissipation(grains: &dem::State) -> WorkAndDissipation {
     let ledger = &grains.balance;
-    Spent {
+    WorkAndDissipation {
         applied_work: ledger.work_applied + ledger.work_body_forces,
         // Includes gravity potential of wrapped and inserted grains.
         wall_work: ledger.work_walls
@@ -83,7 +82,7 @@ pub fn spent_by_grains(grains: &dem::State) -> Spent {
         breaks: ledger.released_by_breaks,
         local_damping: ledger.dissipated_local_damping,
         surface_on_grains: ledger.work_surface,
-        ..Spent::default()
+        ..WorkAndDissipation::default()
     }
 }
 
@@ -114,7 +113,7 @@ mod tests {
         ];
         // Powers of two: exact and distinct.
         all.into_iter().zip(0..).for_each(|(part, k)| *part = f64::from(1 << k));
-        let spent = spent_by_grains(&grains);
+        let spent = grain_work_and_dissipation(&grains);
         assert_eq!(spent.work() + spent.surface_on_grains, grains.balance.work());
         assert_eq!(spent.dissipated(), grains.balance.dissipated());
         assert_eq!(spent.surface_on_grains, grains.balance.work_surface);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Stored energy [J].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Stored {
+pub struct StoredEnergy {
     /// Kinetic energy of the grains, with rotation.
     pub grains_kinetic: f64,
     /// Contact springs.
@@ -28,16 +28,16 @@ pub struct Stored {
     pub rail: f64,
 }
 
-impl Stored {
+impl StoredEnergy {
     /// Kinetic and spring energy [J].
-    fn held(&self) -> f64 {
+    fn kinetic_and_spring_energy(&self) -> f64 {
         let grains = self.grains_kinetic + self.contact_springs + self.bonds + self.mounts;
         grains + self.solid_kinetic + self.solid_strain + self.rail
     }
 
     /// Sum of absolute changes [J].
-    fn changes(&self, start: &Stored) -> f64 {
-        let parts = |s: &Stored| {
+    fn sum_of_changes(&self, start: &StoredEnergy) -> f64 {
+        let parts = |s: &StoredEnergy| {
             let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.mounts, s.grains_gravity];
             let rest = [s.solid_kinetic, s.solid_strain, s.solid_gravity, s.rail];
             grains.into_iter().chain(rest)
@@ -61,7 +61,7 @@ impl Stored {
 
 /// Work and dissipation since the start [J].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Spent {
+pub struct WorkAndDissipation {
     /// Applied loads on grains and sleeper, body forces on grains except gravity.
     pub applied_work: f64,
     /// Moving walls and prescribed motion on grains; inlets less outlets.
@@ -117,7 +117,7 @@ pub struct Spent {
     pub far_field_track: f64,
 }
 
-impl Spent {
+impl WorkAndDissipation {
     /// External work [J].
     pub fn work(&self) -> f64 {
         let outside = self.applied_work - self.pads_on_sleepers + self.wheels + self.wall_work;
@@ -133,7 +133,7 @@ impl Spent {
     }
 
     /// Named dissipations [J], non-negative except for numerical error.
-    pub fn losses(&self) -> [(&'static str, f64); 11] {
+    pub fn dissipation_terms(&self) -> [(&'static str, f64); 11] {
         [
             ("dashpots of contacts", self.dashpot - self.interface_dashpot_error.min(0.0)),
             ("friction", self.friction),
@@ -150,11 +150,11 @@ impl Spent {
     }
 
     /// Sum of absolute works and dissipations [J].
-    fn absolute_sum(&self) -> f64 {
+    fn sum_of_magnitudes(&self) -> f64 {
         let works = [self.applied_work - self.pads_on_sleepers, self.wheels, self.wall_work];
         let rest = [self.solid_load_work, self.jumps, self.breaks];
-        let losses = self.losses().into_iter().map(|(_, loss)| loss);
-        works.into_iter().chain(rest).chain(losses).map(f64::abs).sum()
+        let dissipation_terms = self.dissipation_terms().into_iter().map(|(_, loss)| loss);
+        works.into_iter().chain(rest).chain(dissipation_terms).map(f64::abs).sum()
     }
 
     /// Interface work error [J].
@@ -165,44 +165,44 @@ impl Spent {
 
 /// Energy balance of a run.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// Stored energy at the start.
-    pub start: Stored,
+    pub start: StoredEnergy,
     /// Current stored energy.
-    pub now: Stored,
+    pub now: StoredEnergy,
     /// Work and dissipation since the start.
-    pub spent: Spent,
+    pub spent: WorkAndDissipation,
     /// Smallest reference energy [J], from [`reference_energy`](trackbed_dem::measure::reference_energy).
     #[serde(default)]
     pub reference: f64,
 }
 
-impl Balance {
+impl EnergyBalance {
     /// Energy error [J].
     pub fn error(&self) -> f64 {
         self.now.total() - self.start.total() + self.spent.dissipated() - self.spent.work()
     }
 
     /// Current kinetic and spring energy [J].
-    pub fn held(&self) -> f64 {
-        self.now.held()
+    pub fn kinetic_and_spring_energy(&self) -> f64 {
+        self.now.kinetic_and_spring_energy()
     }
 
     /// Energy error plus numerical gain of the solid [J], which absorbs any error of a solid without grains.
-    pub fn unexplained(&self) -> f64 {
+    pub fn error_with_numerical_gain(&self) -> f64 {
         self.error().abs() + (-self.spent.numerical).max(0.0)
     }
 
     /// Reference energy [J]: the larger of Σ |work| + Σ |dissipation| and Σ |Δ stored energy|.
-    pub fn turnover(&self) -> f64 {
-        self.spent.absolute_sum().max(self.now.changes(&self.start))
+    pub fn reference_energy(&self) -> f64 {
+        self.spent.sum_of_magnitudes().max(self.now.sum_of_changes(&self.start))
     }
 
     /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
     /// smallest reference.
-    pub fn floor(&self) -> f64 {
-        let gravity = |s: &Stored| s.grains_gravity.abs() + s.solid_gravity.abs();
-        let held = 1e-3 * self.start.held().max(self.now.held());
+    pub fn negligible_energy(&self) -> f64 {
+        let gravity = |s: &StoredEnergy| s.grains_gravity.abs() + s.solid_gravity.abs();
+        let held = 1e-3 * self.start.kinetic_and_spring_energy().max(self.now.kinetic_and_spring_energy());
         (held + 1e-9 * gravity(&self.start).max(gravity(&self.now))).max(self.reference)
     }
 }
@@ -214,39 +214,50 @@ mod tests {
     /// Terms of opposite sign must not cancel.
     #[test]
     fn nothing_hides_behind_a_sum() {
-        let spent = Spent { friction: -27e9, dashpot: 27e9, ..Spent::default() };
-        let balance = Balance { spent, ..Balance::default() };
-        assert_eq!((balance.error(), balance.turnover()), (0.0, 54e9));
-        let start = Stored { contact_springs: 2.0, ..Stored::default() };
-        let now = Stored { grains_kinetic: 3.0, ..Stored::default() };
-        let balance = Balance { start, now, ..Balance::default() };
-        assert_eq!((balance.error(), balance.turnover(), balance.floor()), (1.0, 5.0, 3e-3));
+        let spent = WorkAndDissipation { friction: -27e9, dashpot: 27e9, ..WorkAndDissipation::default() };
+        let balance = EnergyBalance { spent, ..EnergyBalance::default() };
+        assert_eq!((balance.error(), balance.reference_energy()), (0.0, 54e9));
+        let start = StoredEnergy { contact_springs: 2.0, ..StoredEnergy::default() };
+        let now = StoredEnergy { grains_kinetic: 3.0, ..StoredEnergy::default() };
+        let balance = EnergyBalance { start, now, ..EnergyBalance::default() };
+        assert_eq!(
+            (balance.error(), balance.reference_energy(), balance.negligible_energy()),
+            (1.0, 5.0, 3e-3)
+        );
     }
 
     /// Internal transfers are no external work; every loss counts once.
     #[test]
     fn every_way_of_energy_closes() {
-        let none = Spent::default;
-        let cases: [(&str, Spent, f64); 13] = [
-            ("pads on sleepers", Spent { applied_work: 1.0, pads_on_sleepers: 1.0, ..none() }, 0.0),
-            ("applied loads", Spent { applied_work: 1.0, ..none() }, 1.0),
-            ("walls", Spent { wall_work: 1.0, ..none() }, 1.0),
-            ("wheels", Spent { wheels: 1.0, ..none() }, 1.0),
-            ("loads on the solid", Spent { solid_load_work: 1.0, ..none() }, 1.0),
-            ("jumps", Spent { jumps: 1.0, ..none() }, 1.0),
-            ("dashpots", Spent { dashpot: 1.0, ..none() }, -1.0),
-            ("friction", Spent { friction: 1.0, ..none() }, -1.0),
-            ("Rayleigh damping", Spent { rayleigh: 1.0, ..none() }, -1.0),
-            ("absorbing boundaries", Spent { absorbed: 1.0, ..none() }, -1.0),
-            ("plastic flow", Spent { plastic: 1.0, ..none() }, -1.0),
-            ("pads", Spent { pads: 1.0, ..none() }, -1.0),
-            ("track outside the model", Spent { far_field_track: 1.0, ..none() }, -1.0),
+        let none = WorkAndDissipation::default;
+        let cases: [(&str, WorkAndDissipation, f64); 13] = [
+            (
+                "pads on sleepers",
+                WorkAndDissipation { applied_work: 1.0, pads_on_sleepers: 1.0, ..none() },
+                0.0,
+            ),
+            ("applied loads", WorkAndDissipation { applied_work: 1.0, ..none() }, 1.0),
+            ("walls", WorkAndDissipation { wall_work: 1.0, ..none() }, 1.0),
+            ("wheels", WorkAndDissipation { wheels: 1.0, ..none() }, 1.0),
+            ("loads on the solid", WorkAndDissipation { solid_load_work: 1.0, ..none() }, 1.0),
+            ("jumps", WorkAndDissipation { jumps: 1.0, ..none() }, 1.0),
+            ("dashpots", WorkAndDissipation { dashpot: 1.0, ..none() }, -1.0),
+            ("friction", WorkAndDissipation { friction: 1.0, ..none() }, -1.0),
+            ("Rayleigh damping", WorkAndDissipation { rayleigh: 1.0, ..none() }, -1.0),
+            ("absorbing boundaries", WorkAndDissipation { absorbed: 1.0, ..none() }, -1.0),
+            ("plastic flow", WorkAndDissipation { plastic: 1.0, ..none() }, -1.0),
+            ("pads", WorkAndDissipation { pads: 1.0, ..none() }, -1.0),
+            ("track outside the model", WorkAndDissipation { far_field_track: 1.0, ..none() }, -1.0),
         ];
         for (name, spent, gain) in cases {
-            let start = Stored { solid_strain: 5.0, ..Stored::default() };
-            let now = Stored { solid_strain: 5.0 + gain, ..Stored::default() };
-            assert_eq!(Balance { start, now, spent, ..Balance::default() }.error(), 0.0, "{name}");
-            let named: f64 = spent.losses().into_iter().map(|(_, loss)| loss).sum();
+            let start = StoredEnergy { solid_strain: 5.0, ..StoredEnergy::default() };
+            let now = StoredEnergy { solid_strain: 5.0 + gain, ..StoredEnergy::default() };
+            assert_eq!(
+                EnergyBalance { start, now, spent, ..EnergyBalance::default() }.error(),
+                0.0,
+                "{name}"
+            );
+            let named: f64 = spent.dissipation_terms().into_iter().map(|(_, loss)| loss).sum();
             assert_eq!(named, spent.dissipated(), "{name}");
         }
     }
@@ -255,7 +266,9 @@ mod tests {
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
         let dashpots = |dashpot, interface_dashpot_error| {
-            Spent { dashpot, interface_dashpot_error, ..Spent::default() }.losses()[0].1
+            WorkAndDissipation { dashpot, interface_dashpot_error, ..WorkAndDissipation::default() }.dissipation_terms()
+                [0]
+            .1
         };
         assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
     }

@@ -3,12 +3,12 @@
 use super::conditions::{check_state, ensure_points};
 use super::newton::{Failure, Newton};
 use crate::error::SolveError;
-use crate::integrator::{Loading, Memory, OnStep, StepLength, TimeIntegrator};
+use crate::integrator::{Loading, OnStep, SolverState, StepLength, TimeIntegrator};
 use crate::model::Model;
 use crate::state::{State, StepAudit};
 
 /// Newton method with adaptive steps.
-pub(crate) trait Halving: Send + Sync {
+pub(crate) trait StepHalving: Send + Sync {
     fn parts(&self) -> (&Newton, &StepLength);
 
     fn parts_mut(&mut self) -> (&mut Newton, &mut StepLength);
@@ -28,7 +28,7 @@ pub(crate) trait Halving: Send + Sync {
     }
 }
 
-impl<M: Halving> TimeIntegrator for M {
+impl<M: StepHalving> TimeIntegrator for M {
     /// # Errors
     /// [`SolveError::Diverged`] if the smallest step fails (state of the last accepted step); values not
     /// finite; foreign state; failed factorisation.
@@ -54,7 +54,7 @@ impl<M: Halving> TimeIntegrator for M {
                     length.accept(dt, newton.report.iterations);
                     on_step(state, &newton.report, audit.as_ref());
                 }
-                Err(Failure::Stuck(stuck)) => {
+                Err(Failure::NotConverged(stuck)) => {
                     if !length.halve(dt) {
                         return Err(stuck.error(model, state.time));
                     }
@@ -66,17 +66,17 @@ impl<M: Halving> TimeIntegrator for M {
         Ok(())
     }
 
-    fn memory(&self) -> Option<Memory> {
+    fn solver_state(&self) -> Option<SolverState> {
         let (newton, length) = self.parts();
-        Some(newton.memory(Some(*length)))
+        Some(newton.solver_state(Some(*length)))
     }
 
-    fn recall(&mut self, model: &Model, memory: &Memory) -> Result<(), SolveError> {
+    fn restore(&mut self, model: &Model, memory: &SolverState) -> Result<(), SolveError> {
         let (newton, length) = self.parts_mut();
-        newton.recall(model, memory, Some(length))
+        newton.restore(model, memory, Some(length))
     }
 
     fn reactions(&self) -> Option<&[f64]> {
-        Halving::reactions(self)
+        StepHalving::reactions(self)
     }
 }

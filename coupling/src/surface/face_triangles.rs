@@ -18,7 +18,7 @@ fn triangles(shape: FaceShape) -> &'static [[usize; 3]] {
 ///
 /// Force and moment stay exact. Facets of side s miss the bulge s²/8R of a face with radius of curvature R;
 /// closest points need no Newton iteration.
-pub fn facets(face: &Face) -> impl Iterator<Item = Face> + '_ {
+pub fn face_triangles(face: &Face) -> impl Iterator<Item = Face> + '_ {
     triangles(face.shape).iter().map(|corners| {
         let mut nodes = [face.nodes[corners[0]]; 8];
         (0..3).for_each(|k| nodes[k] = face.nodes[corners[k]]);
@@ -41,7 +41,7 @@ mod tests {
         // Half of the quadrilateral; a corner replaces the missing mid-node.
         let tri3 = Face { shape: FaceShape::Tri3, ..quad8 };
         for (face, count, area) in [(quad8, 6, 1.0), (quad4, 2, 1.0), (tri3, 1, 0.5)] {
-            let own: Vec<Face> = facets(&face).collect();
+            let own: Vec<Face> = face_triangles(&face).collect();
             let surface = SolidSurface::new(&mesh, own.clone());
             let sum = (0..own.len() as u32).map(|k| surface.area_vector(k)[2]).sum::<f64>();
             assert_eq!(own.len(), count);
