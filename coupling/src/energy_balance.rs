@@ -266,9 +266,9 @@ mod tests {
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
         let dashpots = |dashpot, interface_dashpot_error| {
-            WorkAndDissipation { dashpot, interface_dashpot_error, ..WorkAndDissipation::default() }.dissipation_terms()
-                [0]
-            .1
+            WorkAndDissipation { dashpot, interface_dashpot_error, ..WorkAndDissipation::default() }
+                .dissipation_terms()[0]
+                .1
         };
         assert_eq!((dashpots(-2.0, -3.0), dashpots(5.0, 3.0)), (1.0, 5.0));
     }

@@ -19,7 +19,8 @@ pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Wo
     let rate = |i: usize| work.rate[i];
     let found = |i: usize| (u[i] - before[i]) / model.window();
     let last = |i: usize| if state.rate.is_empty() { work.rate[i] } else { state.rate[i] };
-    state.flows.interface_dashpot_error += work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
+    state.spent.interface_dashpot_error +=
+        work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
         state.rate.clear();
