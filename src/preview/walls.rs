@@ -75,7 +75,7 @@ fn base(c: &Context) -> f64 {
     };
     let level = c.scene.deposition.as_ref().and_then(|d| d.level).map(|level| level.si);
     let ground = c.job.solid.as_ref().map(|_| c.bounds[1][2]);
-    level.or(groups.filter_map(top).reduce(f64::max)).or(ground).unwrap_or(0.0)
+    groups.filter_map(top).reduce(f64::max).or(level).or(ground).unwrap_or(0.0)
 }
 
 pub fn sleepers(c: &Context) -> Vec<Item> {

@@ -386,7 +386,9 @@ export class App {
     [canvas.width, canvas.height] = [this.stage.width * ratio, this.stage.height * ratio];
     const g = canvas.getContext('2d');
     g.scale(ratio, ratio);
-    if (this.state.view.legends) drawLegends(g, this.stage.width, this.state.legends, this.dark());
+    // On narrow screens the list below the picture is the legend of a scene.
+    const legends = this.state.legends.filter(({ part }) => part !== 'model' || this.stage.width > 640);
+    if (this.state.view.legends) drawLegends(g, this.stage.width, legends, this.dark());
   }
 
   dark() {

@@ -8,7 +8,7 @@ export function legendsOf(app) {
   const { state, grains, chains, solid } = app;
   const list = [];
   const named = app.model.items.filter((item) => app.model.shows(item, state.model)).slice(0, 14);
-  if (named.length && app.stage.width > 640) list.push({ part: 'model', title: 'Model', unit: '', swatches: named.map((item) => [item.colour, item.name]) });
+  if (named.length) list.push({ part: 'model', title: 'Model', unit: '', swatches: named.map((item) => [item.colour, item.name]) });
   const stones = state.grains.show ? app.stoneValues : null;
   if ((grains.group.visible && grains.count || stones) && state.grains.colour !== 'constant') {
     const field = state.grains.colour;

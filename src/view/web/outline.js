@@ -54,7 +54,7 @@ export class Outline {
       return element('div', { className: 'row item', title: `${item.name} (${item.key}): ${item.count}` }, show, swatch, name, element('span', { className: 'count', textContent: item.count }));
     });
     const summary = element('summary', {}, box, ` ${label} (${own.length})`);
-    return element('details', { id: `part-${word}`, open: own.length <= 12 }, summary, element('div', { className: 'rows' }, ...rows));
+    return element('details', { id: `kind-${word}`, open: own.length <= 12 }, summary, element('div', { className: 'rows' }, ...rows));
   }
 
   box(id, put, get) {
