@@ -7,7 +7,7 @@ mod report;
 mod sieves;
 mod stage_energy;
 
-pub use bed_stage::{BedStage, HeightTarget};
+pub use bed_stage::BedStage;
 pub use records::{CompactionRecord, FoulingRecord, GrowthRecord, MeasureRecord, PackingRecord};
 pub(super) use report::report;
 pub use stage_energy::StageEnergy;
