@@ -97,7 +97,7 @@ fn spheres_settle_to_the_target_height() {
 
 #[test]
 fn clumps_settle_to_the_target_height() {
-    let (_, summary) = settled(&scene(&clumps(), "target_height = 0.16\nporosity = 0.43", ""));
+    let (_, summary) = settled(&scene(&clumps(), "target_height = 0.16\nporosity = 0.42", ""));
     let height = summary["bed"][0]["height"].as_f64().unwrap();
     assert!((height / 0.16 - 1.0).abs() < 0.05, "{}", summary["bed"]);
 }
