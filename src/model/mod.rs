@@ -105,10 +105,7 @@ impl Job {
         }
         let end = duration::end_time(scene, grains.as_ref())?;
         let solid_step = duration::solid_step(scene, end)?;
-        let probes = scene
-            .rows("probe", &scene.probe)
-            .map(|p| probe::probe(&p, solid.as_ref(), grains.as_ref()))
-            .collect::<Result<Vec<_>, _>>()?;
+        let probes = probe::probes(scene, solid.as_ref(), grains.as_ref())?;
         let output = OutputPlan::new(scene, end)?;
         let title = if scene.title.is_empty() {
             document.file().display().to_string()

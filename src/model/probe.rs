@@ -5,7 +5,7 @@ mod solid;
 use super::grains::GrainsPart;
 use super::solid::{SolidPart, find_node};
 use crate::scene::units::vector;
-use crate::scene::{Probe, SceneError, Table};
+use crate::scene::{Probe, Scene, SceneError, Table};
 pub use solid::PointProbe;
 use trackbed_dem::measure::BoxRegion;
 use trackbed_fem::samples::{BoxPoints, Samples};
@@ -29,7 +29,23 @@ pub enum Observed {
     Region(BoxRegion),
 }
 
-pub(super) fn probe(
+pub(super) fn probes(
+    scene: &Table<Scene>,
+    solid: Option<&SolidPart>,
+    grains: Option<&GrainsPart>,
+) -> Result<Vec<(String, Observed)>, SceneError> {
+    let all = scene.rows("probe", &scene.probe).map(|p| probe(&p, solid, grains));
+    let all = all.collect::<Result<Vec<_>, _>>()?;
+    // Both have a column of mean stress.
+    for m in scene.rows("measure", &scene.measure).filter(|m| m.history) {
+        if all.iter().any(|(name, _)| *name == m.name) {
+            return Err(m.error("name", format!("\"{}\", the name of a [[probe]]", m.name), "another name"));
+        }
+    }
+    Ok(all)
+}
+
+fn probe(
     table: &Table<Probe>,
     solid: Option<&SolidPart>,
     grains: Option<&GrainsPart>,
