@@ -1,4 +1,4 @@
-//! Discs of distributed load transfer (see [`spread`](crate::distributed_transfer)).
+//! Discs of distributed load transfer (see [`distributed_transfer`](crate::distributed_transfer)).
 
 use crate::distributed_transfer::{DistributedTransfer, EccentricDisc};
 use crate::face::{Closest, Location, cross, dot};

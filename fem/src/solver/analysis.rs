@@ -38,7 +38,7 @@ impl Analysis {
     /// * `order` `[equations]`: elimination order, possibly postordered.
     ///
     /// # Errors
-    /// [`AnalysisError::Pattern`] if the input is invalid, [`AnalysisError::SolverState`] if the factor cannot be
+    /// [`AnalysisError::Pattern`] if the input is invalid, [`AnalysisError::Memory`] if the factor cannot be
     /// addressed.
     pub fn from_pattern(
         column_start: Vec<usize>,
@@ -47,7 +47,7 @@ impl Analysis {
     ) -> Result<Analysis, AnalysisError> {
         check(&column_start, &row, &order)?;
         let equations = order.len();
-        let memory = || AnalysisError::SolverState { equations };
+        let memory = || AnalysisError::Memory { equations };
         if row.len() >= MIRRORED as usize || equations >= MIRRORED as usize {
             return Err(memory());
         }

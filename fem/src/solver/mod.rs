@@ -18,7 +18,7 @@ use thiserror::Error;
 pub enum AnalysisError {
     /// Factor not addressable, or out of memory.
     #[error("not enough memory for the factorization of {equations} equations")]
-    SolverState {
+    Memory {
         /// Equation count.
         equations: usize,
     },

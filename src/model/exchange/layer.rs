@@ -1,4 +1,4 @@
-//! InterfaceStability numbers W and D of a dense grain layer on the surface.
+//! Interface numbers W and D of a dense grain layer on the surface.
 
 use super::ContactClass;
 use crate::model::grains::GrainsPart;

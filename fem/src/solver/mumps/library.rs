@@ -159,7 +159,7 @@ impl Instance {
     /// Analyses the pattern; points to `matrix` until [`Instance::release_matrix`].
     fn analysed(matrix: &mut Coordinates, settings: Settings) -> Result<Instance, MumpsError> {
         let Coordinates { row, column, value, place } = matrix;
-        let n = c_int::try_from(place.len()).map_err(|_| MumpsError::SolverState)?;
+        let n = c_int::try_from(place.len()).map_err(|_| MumpsError::Memory)?;
         assert!(
             row.len() == column.len() && row.len() == value.len(),
             "one row, column and value for every entry"
@@ -174,7 +174,7 @@ impl Instance {
             // SAFETY: no arguments.
             unsafe { trackbed_mumps_start() }
         };
-        let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::SolverState)?);
+        let mut instance = Instance(NonNull::new(raw).ok_or(MumpsError::Memory)?);
         let (nnz, id) = (row.len() as c_longlong, instance.0.as_ptr());
         // SAFETY: `nnz`, `nnz`, `nnz` and `n` values, read only by analysis and factorisation, while the
         // caller owns them.
@@ -260,7 +260,7 @@ impl Instance {
         match code {
             0.. => Ok(()),
             -8 | -9 | -14 | -15 | -17 | -20 => Err(MumpsError::Room),
-            -5 | -7 | -13 | -19 => Err(MumpsError::SolverState),
+            -5 | -7 | -13 | -19 => Err(MumpsError::Memory),
             -90 => Err(MumpsError::Files),
             -10 => Err(MumpsError::NotPositive { pivots: 1 }),
             code => Err(MumpsError::Code { code, detail: self.info(2) }),

@@ -50,7 +50,7 @@ pub enum MumpsError {
     Missing,
     /// Out of memory.
     #[error("MUMPS: out of memory for the factorization")]
-    SolverState,
+    Memory,
     /// Far more memory needed than estimated.
     #[error("MUMPS: the factorization needs far more memory than estimated")]
     Room,
