@@ -186,7 +186,12 @@ impl<'a> Studio<'a> {
             }
         };
         let parts = Parts::of(run, moment, options, &self.wanted, self.origin, self.limits)?;
-        Ok(sheet(options, &self.eye, (&parts.scene, &parts.legends), (&run.about.title, &self.remark(frame))))
+        Ok(compose(
+            options,
+            &self.eye,
+            (&parts.scene, &parts.legends),
+            (&run.about.title, &self.remark(frame)),
+        ))
     }
 
     fn remark(&self, frame: usize) -> String {
@@ -225,7 +230,7 @@ fn camera(options: &Options, shown: &[V3], plane: Option<V3>, coloured: bool) ->
 }
 
 /// Picture of a scene with legends, title and remark.
-fn sheet(
+fn compose(
     options: &Options,
     eye: &Camera,
     (scene, legends): (&draw::Scene, &[Legend]),

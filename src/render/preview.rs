@@ -5,7 +5,7 @@ use std::path::Path;
 use super::draw::{Colour, Line, Look, Paint, Scene, Sphere, Triangle, Tube, V3};
 use super::options::{Options, Part, refuse};
 use super::sheet::{Key, Legend};
-use super::{Form, NAME, Refused, Written, camera, colours, encode, sheet, target};
+use super::{Form, NAME, Refused, Written, camera, colours, compose, encode, target};
 use crate::failure::Failure;
 use crate::preview::{Item, KINDS, Preview};
 
@@ -41,7 +41,7 @@ pub fn render(options: &Options, preview: &Preview) -> Result<Written, Failure> 
     let names = shown(options, preview).take(ROWS).map(|item| (colour(item), item.name.clone()));
     let legends = [Legend { title: "Model".to_string(), key: Key::Names(names.collect()) }];
     let eye = camera(options, &corners, None, true);
-    let picture = sheet(options, &eye, (&scene, &legends), (&preview.title, "before the run"));
+    let picture = compose(options, &eye, (&scene, &legends), (&preview.title, "before the run"));
     encode::write(&file, form, &picture).map_err(Refused::Disk)?;
     Ok(Written { file, size: options.size, frames: Vec::new(), times: Vec::new() })
 }
