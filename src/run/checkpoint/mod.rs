@@ -38,7 +38,7 @@ pub fn read_file(file: &Path) -> Result<(Origin, Loaded, String), Failure> {
 /// Validates a checkpoint or state file.
 ///
 /// # Errors
-/// As [`read_file`].
+/// As `read_file`.
 pub fn check_file(file: &Path) -> Result<(), Failure> {
     read_file(file).map(drop)
 }
