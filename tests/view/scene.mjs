@@ -85,7 +85,11 @@ export async function onScenes(browser, program, dir, faults) {
     return `${seen.size} pictures`;
   });
   await check('picked', 'objects are picked in the picture and found from the list', async () => {
-    await view.run(() => trackbed.histories.pick(...trackbed.histories.picker.project([0.5, 0.5, 0.5]).map(Math.round)));
+    // The ball of the probe, the last object.
+    await view.run(() => {
+      const [x, y, z] = trackbed.app.model.items.at(-1).balls;
+      return trackbed.histories.pick(...trackbed.histories.picker.project([x, y, z]).map(Math.round));
+    });
     await view.idle();
     const { picked } = await view.state();
     const rows = new Map(picked.data.map(([name, value]) => [name, value]));
