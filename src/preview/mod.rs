@@ -22,7 +22,7 @@ use context::Context;
 use item::union;
 
 /// Warning with the object that it is about.
-pub struct Remark {
+pub struct Warning {
     /// Sentence, as `check` prints it.
     pub text: String,
     /// Whether implausible.
@@ -38,7 +38,7 @@ pub struct Preview {
     /// Objects, by kind.
     pub items: Vec<Item>,
     /// Warnings, the serious ones first.
-    pub remarks: Vec<Remark>,
+    pub warnings: Vec<Warning>,
     /// Bounding box [m].
     pub bounds: [[f64; 3]; 2],
 }
@@ -61,8 +61,8 @@ impl Preview {
             }
             context.bounds = bounds.unwrap_or(none);
         }
-        let remarks = remarks(&scene, job, &items);
-        Ok(Preview { title: job.title.clone(), items, remarks, bounds: context.bounds })
+        let warnings = warnings(&scene, job, &items);
+        Ok(Preview { title: job.title.clone(), items, warnings, bounds: context.bounds })
     }
 
     /// Returns the objects of a kind, by its word.
@@ -71,15 +71,15 @@ impl Preview {
     }
 }
 
-fn remarks(scene: &Scene, job: &Job, items: &[Item]) -> Vec<Remark> {
-    let findings = plausible::weigh(scene, job).into_iter().map(|finding| Remark {
+fn warnings(scene: &Scene, job: &Job, items: &[Item]) -> Vec<Warning> {
+    let findings = plausible::weigh(scene, job).into_iter().map(|finding| Warning {
         text: finding.to_string(),
         serious: finding.serious,
         item: nearest(&finding.key, items),
     });
     let solid = job.solid.iter().flat_map(|part| &part.warnings).map(|text| (text, "solid"));
     let grains = job.grains.iter().flat_map(|part| &part.groups.remarks).map(|text| (text, "grains"));
-    let others = solid.chain(grains).map(|(text, key)| Remark {
+    let others = solid.chain(grains).map(|(text, key)| Warning {
         text: text.clone(),
         serious: false,
         item: nearest(key, items),

@@ -148,11 +148,11 @@ fn about(preview: &Preview) -> Value {
         json!({ "kind": item.kind, "key": item.key, "name": item.name, "count": item.count,
             "colour": format!("#{}", item.colour), "bounds": item.shape.bounds() })
     });
-    let remarks = preview
-        .remarks
+    let warnings = preview
+        .warnings
         .iter()
-        .map(|remark| json!({ "text": remark.text, "serious": remark.serious, "item": remark.item }));
-    json!({ "kinds": kinds.collect::<Vec<_>>(), "items": items.collect::<Vec<_>>(), "remarks": remarks.collect::<Vec<_>>() })
+        .map(|warning| json!({ "text": warning.text, "serious": warning.serious, "item": warning.item }));
+    json!({ "kinds": kinds.collect::<Vec<_>>(), "items": items.collect::<Vec<_>>(), "warnings": warnings.collect::<Vec<_>>() })
 }
 
 fn model(preview: &Preview, coding: Coding) -> Vec<u8> {

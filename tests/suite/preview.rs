@@ -178,7 +178,7 @@ fn warnings_name_their_objects() {
     let file = folder.write("scene.toml", &SCENE.replace("\"20 MPa\"", "20.0"));
     let (document, job) = Source { file, set: Vec::new() }.resolve().unwrap();
     let preview = Preview::new(&document, &job).unwrap();
-    let found = preview.remarks.iter().find(|r| r.text.starts_with("solid.material.0.young: ")).unwrap();
+    let found = preview.warnings.iter().find(|r| r.text.starts_with("solid.material.0.young: ")).unwrap();
     assert!(found.serious);
     assert_eq!(preview.items[found.item.unwrap()].name, "clay");
 }

@@ -116,8 +116,8 @@ export async function onScenes(browser, program, dir, faults) {
     expect((await view.run(() => document.querySelectorAll('#outline .item').length)) === 0, 'no model is listed');
     await keep(view, 'errors');
     save(SCENE.replace('"20 MPa"', '20'));
-    await follows(() => document.getElementById('errors').hidden && document.querySelector('.remark'));
-    await view.page.locator('.remark').first().click();
+    await follows(() => document.getElementById('errors').hidden && document.querySelector('.warning'));
+    await view.page.locator('.warning').first().click();
     await view.idle();
     const { picked } = await view.state();
     expect(picked?.title === 'clay', JSON.stringify(picked));

@@ -18,8 +18,8 @@ export class Outline {
     this.root.replaceChildren(...(model ? this.parts(model) : []));
   }
 
-  parts({ kinds, items, remarks }) {
-    const parts = remarks.length ? [this.remarks(remarks)] : [];
+  parts({ kinds, items, warnings }) {
+    const parts = warnings.length ? [this.warnings(warnings)] : [];
     kinds.forEach((kind, number) => {
       const own = [...items.entries()].filter(([, item]) => item.kind === number);
       if (own.length) parts.push(this.kind(kind, own));
@@ -28,14 +28,14 @@ export class Outline {
     return [...parts, this.report];
   }
 
-  remarks(remarks) {
-    const rows = remarks.map(({ text, serious, item }) => {
-      const row = element('button', { className: serious ? 'remark serious' : 'remark', textContent: text });
+  warnings(warnings) {
+    const rows = warnings.map(({ text, serious, item }) => {
+      const row = element('button', { className: serious ? 'warning serious' : 'warning', textContent: text });
       if (item !== null) row.onclick = () => this.app.fly(item); else row.disabled = true;
       return row;
     });
-    const title = `Warnings (${remarks.length})`;
-    return element('details', { id: 'part-remarks', open: true }, element('summary', { textContent: title }), element('div', { className: 'rows' }, ...rows));
+    const title = `Warnings (${warnings.length})`;
+    return element('details', { id: 'part-warnings', open: true }, element('summary', { textContent: title }), element('div', { className: 'rows' }, ...rows));
   }
 
   kind({ word, label, shown }, own) {
