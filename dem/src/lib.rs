@@ -29,7 +29,7 @@ pub mod stability;
 mod testing;
 pub mod wall;
 
-pub use base::{Vec3, balance_terms, error, random};
+pub use base::{Vec3, balance_terms, error, force_tracking, random};
 pub use bodies::input::BodyInput;
 pub use engine::back_end::BackEnd;
 pub use engine::{input, model, state, step, timestep, work};
@@ -39,6 +39,7 @@ pub use shape::plane::{Plane, PlaneMotion};
 pub use spatial::{bvh, detect, distance, sheet, surface};
 
 pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveError, Wind};
+pub use force_tracking::{AppliedLoad, ForceTracking, LoadRange};
 pub use error::{ModelError, Partner, StepError};
 pub use input::{AppliedForce, LocalDamping, ModelInput, SearchSkin, TimeStep};
 pub use law::material::{Material, PairOverride};

@@ -22,6 +22,9 @@ impl<S: System> Recorder<S> for Walls {
         }
         for wall in &part.walls.recorded {
             let (name, wall) = (&wall.name, wall.wall);
+            if let Some(servo) = &part.walls.others[wall].servo {
+                row.put(history::WALL_TARGET.of(name), servo.target(now.time));
+            }
             let (force, moment) = view.state.wall_force(wall);
             row.vector(history::WALL_FORCE.of(name), force);
             row.vector(history::WALL_MOMENT.of(name), moment);

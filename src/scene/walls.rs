@@ -116,6 +116,18 @@ pub struct Servo {
     pub max_speed: Quantity<Velocity>,
     /// Gain, smaller against oscillation; default 0.5; > 0, ≤ 1.
     pub gain: Option<f64>,
+    /// Constant speed after a time, in place of the force.
+    pub displacement_control: Option<DisplacementControl>,
+}
+
+/// Displacement control of a servo wall: the platen of a compression test after confinement.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementControl {
+    /// Start [s]; ≥ 0.
+    pub from: Quantity<Time>,
+    /// Speed along the direction of pressing [m/s].
+    pub speed: Quantity<Velocity>,
 }
 
 /// Haversines on top of the force of a servo: force · (1 + (peak − 1) (1 − cos 2πf(t − start))/2).

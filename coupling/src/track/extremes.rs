@@ -122,6 +122,12 @@ impl MomentumCheck {
         self.impulse[k] += impulse;
     }
 
+    /// Mean downward seat force of sleeper `k` in the window [N]; none before its first step.
+    pub fn mean_force(&self, k: usize) -> Option<f64> {
+        self.from?;
+        (self.duration > 0.0).then(|| -self.impulse[k] / self.duration)
+    }
+
     /// Whether sleeper `k` had no contact; upward weight `force` [N], upward `speed` [m/s].
     pub fn is_free(&self, k: usize, mass: f64, force: f64, speed: f64) -> bool {
         if self.from.is_none() {

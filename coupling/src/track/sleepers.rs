@@ -45,6 +45,8 @@ pub struct TrackState {
     laid: Option<LaidRails>,
     extremes: Vec<Extremes>,
     push: PushTestState,
+    /// Load of the observed sleeper, window by window; without rails.
+    tracking: dem::ForceTracking,
 }
 
 /// Position and load of a sleeper.
@@ -199,6 +201,12 @@ impl<'a> Track<'a> {
             self.advance_rails(view.model, view.state);
         }
         let window = system.window();
+        let observed = self.observed().filter(|_| self.rails.is_none());
+        if let Some((k, applied)) = observed.and_then(|k| Some((k, self.momentum.mean_force(k)?))) {
+            // Simpson's rule.
+            let [begin, middle, end] = [t - window, t - 0.5 * window, t].map(|t| load.on(k, t));
+            self.state.tracking.add(window, (begin + 4.0 * middle + end) / 6.0, applied);
+        }
         if t + 0.5 * window < load.cycles_begin() {
             return;
         }
@@ -275,6 +283,11 @@ impl<'a> Track<'a> {
     /// Observed sleeper: the middle one.
     pub fn observed(&self) -> Option<usize> {
         (self.count() > 0).then(|| self.count() / 2)
+    }
+
+    /// Load of the observed rigid sleeper compared with its target; none with rails.
+    pub fn applied_load(&self) -> Option<(usize, dem::AppliedLoad)> {
+        Some((self.observed()?, self.state.tracking.result()?))
     }
 
     /// Adds energy and work of rails and pads [J].

@@ -4,6 +4,7 @@ pub mod balance_terms;
 pub(crate) mod capacity;
 pub mod error;
 pub(crate) mod failure;
+pub mod force_tracking;
 pub mod random;
 mod vector;
 

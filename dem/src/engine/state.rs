@@ -5,6 +5,7 @@
 
 use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
+use crate::base::force_tracking::AppliedLoad;
 use crate::bodies::block::{Block, spin_of};
 use crate::bodies::table::BodyKind;
 use crate::bond::{BondList, BondState};
@@ -213,6 +214,11 @@ impl State {
         self.walls[wall].offset
     }
 
+    /// Displacement of a wall's centre since time zero [m].
+    pub fn wall_travel(&self, wall: usize) -> Vec3 {
+        self.walls[wall].offset - self.walls[wall].origin
+    }
+
     /// Rotation of a wall.
     pub fn wall_orientation(&self, wall: usize) -> UnitQuaternion<f64> {
         self.walls[wall].orientation
@@ -236,6 +242,11 @@ impl State {
     /// Contact force on a wall [N] and moment about its centre [N m] in the last step.
     pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
         (self.walls[wall].force, self.walls[wall].moment)
+    }
+
+    /// Force of a servo-controlled wall compared with its target; none for other walls.
+    pub fn wall_load(&self, wall: usize) -> Option<AppliedLoad> {
+        self.walls[wall].tracking.result()
     }
 
     /// Sphere–wall contacts in the last step.
@@ -264,6 +275,9 @@ impl State {
         self.balance = BalanceTerms::default();
         self.driven_speed = 0.0;
         self.bonds.breaks.clear();
+        for wall in &mut self.walls {
+            (wall.origin, wall.tracking) = (wall.offset, Default::default());
+        }
     }
 
     /// Requests a neighbour search, if the external surface exceeded its

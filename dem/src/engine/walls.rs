@@ -56,7 +56,14 @@ pub(crate) fn advance(
                 if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
                     let impedance = sum.stiffness * kick + 2.0 * wall.damping * 2.0 * sum.damping;
                     let d = servo.direction;
-                    speed = d * servo.speed(state.time, sum.force.dot(&d), impedance, own.velocity.dot(&d));
+                    let (target, force) = (servo.target(state.time), sum.force.dot(&d));
+                    speed = d * match servo.driven_speed(state.time) {
+                        Some(driven) => driven,
+                        None => {
+                            own.tracking.add(kick, target, force);
+                            servo.speed(target - force, impedance, own.velocity.dot(&d), &mut own.integral)
+                        }
+                    };
                 }
                 let before = own.velocity;
                 own.steady += speed * dt;

@@ -1,13 +1,18 @@
 //! Servo-controlled wall with a target force on the grains.
 //!
-//! Velocity along direction d: v = g (F* − F)/Z, F the force on the grains along d, F* the target, g the
-//! gain, Z = Σ (K Δt + 2C) over the wall's contacts, K their stiffness, C = 2ζ√(mK) their dashpot bound. With
-//! g = 1 an elastic contact is corrected in one step. The massless wall acts as a dashpot of impedance Z/g in
-//! series with F*: dissipative, stable for g < 1 (at g = 1 the force may oscillate), exact at rest. Without
-//! contact its velocity grows 10 % per step, which avoids chatter under a light target.
+//! Velocity along direction d, with the force F on the grains along d, target F*, gain g and
+//! Z = Σ (K Δt + 2C) over the wall's contacts (K stiffness, C = 2ζ√(mK) dashpot bound):
+//!
+//! v = w + g (F* − F)/Z,  Δw = (g²/4) (F* − F)/Z per step.
+//!
+//! The proportional part acts as a dashpot of impedance Z/g, the integral part w in series with it as a mass
+//! of 4 Z Δt/g²: both are passive, so the plate is stable for g ≤ 1 and critically damped on its own contact
+//! springs. The integral part removes the lag of a dashpot: a ramp of the target is followed without error, a
+//! sine with (ω/ω₀)², ω₀² = k g²/(4 Z Δt) on a specimen of stiffness k. Without contact w is zero and the
+//! velocity grows 10 % per step, which avoids chatter under a light target.
 //!
 //! Source: gain from the sum of contact stiffnesses, P. A. Cundall and O. D. L. Strack, Géotechnique 29,
-//! 1979, and later manuals; dashpot term added.
+//! 1979; dashpot term and integral part added (K. J. Åström and T. Hägglund, PID Controllers, 1995, ch. 3).
 //!
 //! Theory manual: eq. (3.11), `docs/theory/motion.md`.
 
@@ -16,6 +21,9 @@ use crate::base::Vec3;
 /// Growth per step without contact; smallest over greatest speed.
 const GROWTH: f64 = 1.1;
 const LEAST: f64 = 1e-3;
+
+/// Integral over squared proportional gain: critical damping.
+const INTEGRAL: f64 = 0.25;
 
 /// Servo control of a wall force.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +36,8 @@ pub struct Servo {
     pub max_speed: f64,
     /// Gain in (0, 1], usually 0.5.
     pub gain: f64,
+    /// Displacement control: from a time [s] on, a constant speed along the direction [m/s].
+    pub driven: Option<[f64; 2]>,
 }
 
 impl Servo {
@@ -42,12 +52,22 @@ impl Servo {
         }
     }
 
-    /// Velocity [m/s] for the next step; force along the direction [N], impedance Z [N s/m].
-    pub(crate) fn speed(&self, time: f64, force: f64, impedance: f64, last: f64) -> f64 {
-        let missing = self.target(time) - force;
+    /// Speed [m/s] under displacement control.
+    pub(crate) fn driven_speed(&self, time: f64) -> Option<f64> {
+        self.driven.filter(|[from, _]| time >= *from).map(|[_, speed]| speed)
+    }
+
+    /// Velocity [m/s] for the next step; `missing` = target − force along the direction [N], impedance
+    /// Z [N s/m]. Updates the integral part w [m/s].
+    pub(crate) fn speed(&self, missing: f64, impedance: f64, last: f64, integral: &mut f64) -> f64 {
         let speed = if impedance > 0.0 {
-            self.gain * missing / impedance
+            let per_impedance = missing / impedance;
+            let greatest = self.max_speed;
+            let sum = *integral + INTEGRAL * self.gain * self.gain * per_impedance;
+            *integral = sum.clamp(-greatest, greatest);
+            *integral + self.gain * per_impedance
         } else {
+            *integral = 0.0;
             missing.signum() * (GROWTH * last.abs()).max(LEAST * self.max_speed)
         };
         speed.clamp(-self.max_speed, self.max_speed)
@@ -58,25 +78,77 @@ impl Servo {
 mod tests {
     use super::*;
 
+    fn servo(gain: f64) -> Servo {
+        Servo { direction: Vec3::z(), force: vec![[1.0, 10.0], [3.0, 20.0]], max_speed: 1.0, gain, driven: None }
+    }
+
     #[test]
     fn target_follows_its_table() {
-        let servo =
-            Servo { direction: Vec3::z(), force: vec![[1.0, 10.0], [3.0, 20.0]], max_speed: 1.0, gain: 0.5 };
         for (t, f) in [(0.0, 10.0), (1.0, 10.0), (1.5, 12.5), (3.0, 20.0), (9.0, 20.0)] {
-            assert!((servo.target(t) - f).abs() < 1e-14, "{t}");
+            assert!((servo(0.5).target(t) - f).abs() < 1e-14, "{t}");
         }
-        assert_eq!(servo.speed(0.0, 20.0, 100.0, 0.3), -0.05);
-        assert_eq!(servo.speed(0.0, 1e9, 100.0, 0.3), -1.0);
+    }
+
+    #[test]
+    fn speed_has_both_parts() {
+        let mut integral = 0.0;
+        // g (F* − F)/Z = 0.5 · 10/100; w = 0.25 · 0.25 · 10/100.
+        assert!((servo(0.5).speed(10.0, 100.0, 0.3, &mut integral) - 0.05625).abs() < 1e-15);
+        assert!((integral - 0.00625).abs() < 1e-15);
+        assert_eq!(servo(0.5).speed(-1e9, 100.0, 0.3, &mut integral), -1.0);
+        assert_eq!(integral, -1.0, "no wind-up beyond the greatest speed");
     }
 
     /// Gradual acceleration from rest or after loss of contact.
     #[test]
     fn approach_begins_slowly() {
-        let servo = Servo { direction: Vec3::z(), force: vec![[0.0, 10.0]], max_speed: 1.0, gain: 0.5 };
-        assert_eq!(servo.speed(0.0, 0.0, 0.0, 0.0), 1e-3);
-        assert!((servo.speed(0.0, 0.0, 0.0, -0.05) - 0.055).abs() < 1e-15);
-        assert_eq!(servo.speed(0.0, 0.0, 0.0, 0.95), 1.0);
-        let last = (0..73).fold(0.0, |v, _| servo.speed(0.0, 0.0, 0.0, v));
-        assert!(last < 1.0 && servo.speed(0.0, 0.0, 0.0, last) > last, "{last}");
+        let speed = |last: f64| servo(0.5).speed(10.0, 0.0, last, &mut 0.7);
+        assert_eq!(speed(0.0), 1e-3);
+        assert!((speed(-0.05) - 0.055).abs() < 1e-15);
+        assert_eq!(speed(0.95), 1.0);
+        let last = (0..73).fold(0.0, |v, _| speed(v));
+        assert!(last < 1.0 && speed(last) > last, "{last}");
+    }
+
+    /// Plate on a specimen of stiffness k behind contacts of stiffness K and dashpot C, per unit impedance.
+    fn follow(gain: f64, [stiffness, damping]: [f64; 2], target: impl Fn(f64) -> f64, steps: usize) -> f64 {
+        let servo = Servo { max_speed: 1e9, ..servo(gain) };
+        let (mut x, mut v, mut w, mut worst) = (0.0, 0.0, 0.0, 0.0_f64);
+        for k in 0..steps {
+            let force = stiffness * x + damping * v;
+            let missing = target(k as f64) - force;
+            if k > steps / 2 {
+                worst = worst.max(missing.abs());
+            }
+            v = servo.speed(missing, 1.0, v, &mut w);
+            x += v;
+        }
+        worst
+    }
+
+    /// Z = KΔt + 2C = 1: any share of springs and dashpots, and specimens down to 1/1000 of the contacts.
+    #[test]
+    fn constant_force_is_reached_for_any_gain() {
+        for gain in [0.05, 0.25, 0.5, 1.0] {
+            for damping in [0.0, 0.1, 0.3, 0.499] {
+                for softness in [1.0, 0.1, 1e-3] {
+                    let stiffness = (1.0 - 2.0 * damping) * softness;
+                    let worst = follow(gain, [stiffness, damping], |_| 1.0, 2_000_000);
+                    assert!(worst < 1e-6, "{gain} {damping} {softness}: {worst:e}");
+                }
+            }
+        }
+    }
+
+    /// Lag of a ramp: none; of a sine: (ω/ω₀)². A dashpot alone lags by ωZ/(gk) = 0.63.
+    #[test]
+    fn ramp_and_sine_are_followed() {
+        let soft = [1e-3, 0.3];
+        let ramp = follow(1.0, soft, |t| 1e-4 * t, 400_000);
+        assert!(ramp < 1e-6, "{ramp:e}");
+        let omega = std::f64::consts::TAU / 1e4;
+        let sine = follow(1.0, soft, |t| libm::sin(omega * t), 400_000);
+        let expected = omega * omega / (INTEGRAL * soft[0]);
+        assert!((sine / expected - 1.0).abs() < 0.1, "{sine:e} {expected:e}");
     }
 }

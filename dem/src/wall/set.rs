@@ -176,6 +176,9 @@ impl Walls {
                     momentum: Vec3::zeros(),
                     acceleration: Vec3::zeros(),
                     change: Vec3::zeros(),
+                    integral: 0.0,
+                    origin: Vec3::zeros(),
+                    tracking: Default::default(),
                     feet: Vec::new(),
                     meets: Vec::new(),
                 };

@@ -1,6 +1,7 @@
 //! Pose and motion of walls.
 
 use crate::base::Vec3;
+use crate::base::force_tracking::ForceTracking;
 use crate::lanes::quaternion::QuaternionLanes;
 use crate::lanes::{Real, V3};
 use crate::law::History;
@@ -40,6 +41,12 @@ pub(crate) struct WallState {
     pub acceleration: Vec3,
     /// Velocity change in the last step if servo-controlled [m/s].
     pub change: Vec3,
+    /// Integral part of a servo's velocity along its direction [m/s].
+    pub integral: f64,
+    /// Displacement at time zero [m].
+    pub origin: Vec3,
+    /// Force of a servo compared with its target.
+    pub tracking: ForceTracking,
     pub feet: Vec<VertexContact>,
     /// Wall–wall contacts, sorted by wall and feature.
     pub meets: Vec<WallContactHistory>,

@@ -407,7 +407,7 @@ pub(crate) fn pressed(mut input: ModelInput, way: Vec3) -> ModelInput {
     let side = |b: &BodyInput| b.position.dot(&way) - 0.01 * b.scale;
     let point = way * input.bodies.iter().map(side).fold(f64::INFINITY, f64::min);
     let plate = WallShape::Plane { point, normal: way + Vec3::new(0.0, 0.002, 0.0) };
-    let servo = Servo { direction: way, force: vec![[0.0, 300.0]], max_speed: 3.0, gain: 0.5 };
+    let servo = Servo { direction: way, force: vec![[0.0, 300.0]], max_speed: 3.0, gain: 0.5, driven: None };
     input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(plate, 1) });
     input
 }

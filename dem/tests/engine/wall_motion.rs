@@ -113,7 +113,7 @@ fn servo_holds_its_pressure() {
             WallShape::Plane { point: Vec3::new(0.0, 0.0, 0.09), normal: -Vec3::z() }
         };
         let force = vec![[0.0, 5e3 * area], [0.5, 5e3 * area], [0.55, 1e3 * area]];
-        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 0.5 };
+        let servo = Servo { direction: -Vec3::z(), force, max_speed: 0.2, gain: 0.5, driven: None };
         input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(shape, 0) });
         let mut run = Run::new(input);
         let total = |run: &Run| {

@@ -19,7 +19,7 @@ use std::io::{self, Write};
 
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
 /// Supported format version.
-pub(super) const FORM: u32 = 18;
+pub(super) const FORM: u32 = 19;
 pub(super) const CHECKSUM: usize = 8;
 const BUFFER: usize = 1 << 18;
 

@@ -20,7 +20,7 @@ use crate::run::summary::{
 };
 use crate::run::system::System;
 use crate::run::track_output;
-use crate::run::validity::{Check, Fall, bond_rotation, free_sleeper, scaled_inertia, stiffness_drift};
+use crate::run::validity::{Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift};
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::track::cycles::Cycle;
 use trackbed_coupling::track::{Track, TrackInput};
@@ -328,6 +328,10 @@ impl<'a> TimeLoop<'a> {
         summary.energy = Some(energy(&self.recorder));
         summary.validity.extend(summary.track.sleepers.as_ref().and_then(|t| free_sleeper(t, end)));
         summary.validity.extend(validity_of(system, part, &self.recorder));
+        if let (Some(part), Some(view)) = (part, system.grains()) {
+            summary.loads = applied_loads(part, view, &self.track, end);
+            summary.validity.extend(load_error(&summary.loads));
+        }
         let stages = self.settled.map_or(&[][..], |settled| &settled.energy);
         let balance = self.recorder.balance();
         summary.validity.extend(StageEnergy::check_changes(

@@ -11,7 +11,7 @@ use super::flow::FlowRecord;
 use super::packing::{BedStage, CompactionRecord, GrowthRecord, PackingRecord, StageEnergy};
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
-use super::validity::Check;
+use super::validity::{Check, LoadCheck};
 use crate::failure::Failure;
 use crate::write::WriteError;
 use serde::Serialize;
@@ -33,6 +33,9 @@ pub struct Summary {
     /// Validity checks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validity: Vec<Check>,
+    /// Applied loads and motions against their targets.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadCheck>,
     /// Stages with wall time and steps.
     pub stages: Vec<StageRecord>,
     /// Sizes of the model.

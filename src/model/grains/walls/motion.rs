@@ -89,7 +89,12 @@ pub(super) fn servo(wall: &Table<Wall>) -> Result<Option<Servo>, SceneError> {
     {
         return Err(s.error("history", "times that do not rise", "points with rising times"));
     }
-    Ok(Some(Servo { direction: along, force: points, max_speed: s.max_speed.si, gain }))
+    let driven = s.optional("displacement_control", &s.displacement_control);
+    if let Some(d) = &driven {
+        d.check("from", d.from, |t| t >= 0.0, "0 or more")?;
+    }
+    let driven = driven.map(|d| [d.from.si, d.speed.si]);
+    Ok(Some(Servo { direction: along, force: points, max_speed: s.max_speed.si, gain, driven }))
 }
 
 /// Each pulse uses [`POINTS`] table points.
