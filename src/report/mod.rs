@@ -71,7 +71,7 @@ fn title(runs: &[RunData]) -> String {
 
 fn head(runs: &[RunData]) -> Markup {
     let whose = match runs {
-        [run] => format!("Results in {}", run.dir.display()),
+        [run] => format!("Results in {}", page::shown_path(&run.dir).display()),
         _ => "Results of several runs".into(),
     };
     let version = env!("CARGO_PKG_VERSION");
