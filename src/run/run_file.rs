@@ -89,8 +89,7 @@ impl RunFile {
     /// Returns the scene with overrides; none if not understood.
     pub fn document(&self) -> Option<Document> {
         let scene = Path::new(&self.scene);
-        let mut document =
-            Document::with_included(scene, self.text.clone(), self.included.clone()).ok()?;
+        let mut document = Document::with_included(scene, self.text.clone(), self.included.clone()).ok()?;
         self.overrides.iter().try_for_each(|o| document.set(o)).ok()?;
         Some(document)
     }

@@ -41,9 +41,7 @@ fn counts(runs: &[RunData]) -> Markup {
         runs,
         &[
             ("scene", &|r| text(Some(r.title()))),
-            ("scene file", &|r| {
-                r.file.as_ref().map_or(Cell::Nothing, |f| path_cell(Path::new(&f.scene)))
-            }),
+            ("scene file", &|r| r.file.as_ref().map_or(Cell::Nothing, |f| path_cell(Path::new(&f.scene)))),
             ("folder", &|r| path_cell(&r.dir)),
             ("status", &|r| text(r.text("status"))),
             ("program version", &|r| text(r.text("version").or(r.file.as_ref().map(|f| f.version.as_str())))),
@@ -88,8 +86,7 @@ fn materials(runs: &[RunData], kind: &str) -> Markup {
         if values.iter().all(|v| *v == values[0]) {
             return values[0].clone().map_or(Cell::Nothing, Cell::Text);
         }
-        let texts: Vec<String> =
-            values.into_iter().map(|v| v.unwrap_or_else(|| "\u{2013}".into())).collect();
+        let texts: Vec<String> = values.into_iter().map(|v| v.unwrap_or_else(|| "\u{2013}".into())).collect();
         Cell::Html(html! { mark { (texts.join(" | ")) } })
     };
     let rows: Vec<(String, Vec<Cell>)> = (0..count)
