@@ -242,6 +242,9 @@ pub struct ReportArgs {
     /// Title of the report [default: title of the scene].
     #[arg(long)]
     pub title: Option<String>,
+    /// Axle load of a cycle in tonnes: settlement against traffic (MGT), extrapolated.
+    #[arg(long, value_name = "TONNES")]
+    pub axle_load: Option<f64>,
 }
 
 /// Arguments of `modal`.

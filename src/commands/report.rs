@@ -10,7 +10,8 @@ use crate::report::{self, Options};
 /// # Errors
 /// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
-    let options = Options { folders: args.folders, out: args.out, title: args.title };
+    let options =
+        Options { folders: args.folders, out: args.out, title: args.title, axle_load: args.axle_load };
     let page = report::write(&options)?;
     print(&format!("{} written\n", page.display()))
 }

@@ -180,12 +180,14 @@ fn lock(dir: &Path) -> Option<(u32, bool)> {
     Some((process, system::is_running(process)))
 }
 
-/// Makes labels unique by longer paths, then numbers.
+/// Makes labels unique by the parent directory, then numbers.
 pub fn distinguish(runs: &mut [RunData]) {
     let alike = |runs: &[RunData], k: usize| runs.iter().filter(|r| r.label == runs[k].label).count() > 1;
     let doubled: Vec<usize> = (0..runs.len()).filter(|&k| alike(runs, k)).collect();
     for &k in &doubled {
-        runs[k].label = runs[k].dir.display().to_string();
+        let parts: Vec<_> = runs[k].dir.components().collect();
+        let last: PathBuf = parts[parts.len().saturating_sub(2)..].iter().collect();
+        runs[k].label = last.display().to_string();
     }
     let doubled: Vec<usize> = (0..runs.len()).filter(|&k| alike(runs, k)).collect();
     for &k in &doubled {

@@ -23,6 +23,8 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Page title; default: scene title.
     pub title: Option<String>,
+    /// Axle load of a cycle [t], for settlement against traffic.
+    pub axle_load: Option<f64>,
 }
 
 /// Writes a report and returns its path.
@@ -47,10 +49,13 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         let found = out.display();
         return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
+    if let Some(load) = options.axle_load.filter(|t| !(*t > 0.0 && *t <= 100.0)) {
+        return Err(Failure::Input(format!("--axle-load: found {load}, expected above 0, at most 100 t")));
+    }
     let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
     data::distinguish(&mut runs);
     let title = options.title.clone().unwrap_or_else(|| title(&runs));
-    let text = page::page(&title, &head(&runs), &sections::all(&runs));
+    let text = page::page(&title, &head(&runs), &sections::all(&runs, options.axle_load));
     put(&out, &text)?;
     Ok(out)
 }
@@ -71,7 +76,7 @@ fn title(runs: &[RunData]) -> String {
 
 fn head(runs: &[RunData]) -> Markup {
     let whose = match runs {
-        [run] => format!("Results in {}", run.dir.display()),
+        [run] => format!("Results in {}", page::shown_path(&run.dir).display()),
         _ => "Results of several runs".into(),
     };
     let version = env!("CARGO_PKG_VERSION");

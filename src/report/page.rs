@@ -3,7 +3,9 @@
 //! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants.
 
 use super::quantity::{Scale, exact, number, scale, with_unit};
+use crate::write::svg::minus;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::path::{Path, PathBuf};
 
 /// Section of the page.
 #[derive(Clone, Debug)]
@@ -24,44 +26,54 @@ impl Section {
 }
 
 const STYLE: &str = "
-body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: #111; background: #fff; margin: 0 auto; max-width: 1180px;
+:root { color-scheme: light dark; --ink: #111; --paper: #fff; --line: #bbb; --faint: #ddd; --note: #444; --code: #f6f6f6;
+  --link: #00558a; --grid: #d8d8d8; --grid2: #efefef; --bad: #fdecea; --care: #fff6e0; }
+@media screen and (prefers-color-scheme: dark) { :root { --ink: #e8e8e8; --paper: #16181b; --line: #555; --faint: #33373c;
+  --note: #b8bcc2; --code: #22262b; --link: #7cc4f2; --grid: #3c4148; --grid2: #272b30; --bad: #4a1f1a; --care: #43340f; } }
+body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: var(--ink); background: var(--paper); margin: 0 auto; max-width: 1180px;
   padding: 0 20px 60px; }
 h1 { font-size: 25px; margin: 26px 0 4px; overflow-wrap: anywhere; }
-h2 { font-size: 19px; margin: 34px 0 8px; padding-top: 10px; border-top: 1px solid #bbb; }
+h2 { font-size: 19px; margin: 34px 0 8px; padding-top: 10px; border-top: 1px solid var(--line); }
 h3 { font-size: 16px; margin: 18px 0 6px; }
 p, li { max-width: 85ch; }
 nav { font-size: 14px; margin: 14px 0; }
 nav a { margin-right: 14px; white-space: nowrap; }
-a { color: #00558a; }
+a { color: var(--link); }
 .tables { overflow-x: auto; }
 table { border-collapse: collapse; margin: 8px 0 14px; font-size: 14px; }
-th, td { padding: 3px 12px 3px 6px; text-align: left; border-bottom: 1px solid #ddd; vertical-align: top;
+th, td { padding: 3px 12px 3px 6px; text-align: left; border-bottom: 1px solid var(--faint); vertical-align: top;
   overflow-wrap: anywhere; }
-thead th { border-bottom: 1.5px solid #555; overflow-wrap: normal; }
-tbody th { font-weight: normal; color: #333; }
+thead th { border-bottom: 1.5px solid var(--note); overflow-wrap: normal; }
+tbody th { font-weight: normal; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+td small { color: var(--note); }
 thead th.n { text-align: right; }
+mark { background: var(--care); color: inherit; }
 .facts td.n, .facts th.n { text-align: left; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(420px, 100%), 1fr)); gap: 18px 26px; align-items: start; }
 figure { margin: 6px 0; max-width: 620px; break-inside: avoid; }
 figure > svg { width: 100%; height: auto; display: block; }
+svg text { fill: var(--ink); } svg .major { stroke: var(--grid); } svg .minor { stroke: var(--grid2); }
+svg .frame { stroke: var(--note); } svg .hollow { fill: var(--paper); }
 figcaption { font-weight: bold; font-size: 14px; margin: 0 0 4px 40px; }
 ul.legend { list-style: none; margin: 4px 0 0 40px; padding: 0; display: flex; flex-wrap: wrap; gap: 2px 18px;
   font-size: 13px; }
 ul.legend li { overflow-wrap: anywhere; }
 ul.legend svg { vertical-align: -1px; margin-right: 6px; }
-.note { color: #444; font-size: 14px; }
-.run { border: 1px solid #bbb; border-left-width: 8px; padding: 8px 14px; margin: 10px 0; break-inside: avoid; }
+.note { color: var(--note); font-size: 14px; }
+.run { border: 1px solid var(--line); border-left-width: 8px; padding: 8px 14px; margin: 10px 0; break-inside: avoid; }
 .run h3 { margin: 0 0 4px; overflow-wrap: anywhere; }
 .run ul { margin: 6px 0; padding-left: 22px; }
-.passed { border-left-color: #009e73; } .warned { border-left-color: #e69f00; } .failed { border-left-color: #d55e00; }
-.open { border-left-color: #0072b2; }
+.passed { border-left-color: #009e73; } .warned { border-left-color: #e69f00; background: var(--care); }
+.failed { border-left-color: #d5300a; background: var(--bad); } .open { border-left-color: #0072b2; }
 .bar { display: inline-block; height: 10px; background: #0072b2; vertical-align: middle; }
-pre { font-size: 12.5px; background: #f6f6f6; padding: 10px; overflow-x: auto; white-space: pre-wrap;
+pre { font-size: 12.5px; background: var(--code); padding: 10px; overflow-x: auto; white-space: pre-wrap;
   overflow-wrap: anywhere; }
 summary { cursor: pointer; }
-@media print { body { font-size: 11pt; max-width: none; padding: 0; } nav { display: none; }
-  h2 { break-after: avoid; } .plots { grid-template-columns: 1fr 1fr; } a { color: inherit; text-decoration: none; } }
+@page { margin: 16mm 14mm; }
+@media print { body { font-size: 10pt; max-width: none; padding: 0; } nav, details { display: none; }
+  h2, h3, thead { break-after: avoid; } tr, figure, .run { break-inside: avoid; } thead { display: table-header-group; }
+  .tables { overflow: visible; } .plots { grid-template-columns: 1fr 1fr; } a { color: inherit; text-decoration: none; } }
 ";
 
 /// Void elements, closed as in XML.
@@ -99,6 +111,14 @@ pub fn page(title: &str, head: &Markup, sections: &[Section]) -> String {
 fn printable(c: char) -> char {
     let fits = !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     if fits || matches!(c, '\n' | '\t') { c } else { '\u{fffd}' }
+}
+
+/// Path for display: a report may be passed on, so absolute paths are shortened to their last part.
+pub fn shown_path(path: &Path) -> PathBuf {
+    match path.file_name() {
+        Some(name) if path.is_absolute() => PathBuf::from(name),
+        _ => path.to_path_buf(),
+    }
 }
 
 /// Formats a text paragraph.
@@ -141,6 +161,8 @@ pub enum Cell {
     Value(f64, &'static str),
     /// SI value in the column unit.
     Scaled(f64, Scale, &'static str),
+    /// SI value with the difference from a reference in per cent.
+    Compared(f64, &'static str, f64),
     /// Markup.
     Html(Markup),
 }
@@ -163,6 +185,9 @@ impl Cell {
                 Cell::Text(text) => td { (text) },
                 Cell::Html(content) => td { (content) },
                 Cell::Value(v, unit) => td class="n" title=(exact(*v, unit)) { (with_unit(*v, unit)) },
+                Cell::Compared(v, unit, percent) => {
+                    td class="n" title=(exact(*v, unit)) { (with_unit(*v, unit)) small { " (" (signed(*percent)) ")" } }
+                },
                 Cell::Scaled(v, scale, unit) => {
                     td class="n" title=(exact(*v, unit)) { (number(v * scale.factor)) }
                 },
@@ -171,8 +196,14 @@ impl Cell {
     }
 
     fn is_number(&self) -> bool {
-        matches!(self, Cell::Value(..) | Cell::Scaled(..))
+        matches!(self, Cell::Value(..) | Cell::Compared(..) | Cell::Scaled(..))
     }
+}
+
+/// Formats per cent with sign: three digits, at most one decimal.
+fn signed(percent: f64) -> String {
+    let decimals = if percent.abs() < 99.95 { 1 } else { 0 };
+    minus(&format!("{percent:+.decimals$} %"))
 }
 
 /// Formats a left-aligned table of mixed rows.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::read::source;
-use crate::scene::Document;
+use crate::scene::{Document, IncludedText};
 use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -36,6 +36,9 @@ pub struct RunFile {
     pub bed: bool,
     /// Scene text without overrides.
     pub text: String,
+    /// Texts of included files.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub included: Vec<IncludedText>,
 }
 
 impl RunFile {
@@ -48,6 +51,7 @@ impl RunFile {
             from: from.map(|source| source.dir.display().to_string()),
             bed: from.is_some_and(|source| source.bed),
             text: document.text().into(),
+            included: document.included_texts().collect(),
         }
     }
 
@@ -84,7 +88,8 @@ impl RunFile {
 
     /// Returns the scene with overrides; none if not understood.
     pub fn document(&self) -> Option<Document> {
-        let mut document = Document::parse(Path::new(&self.scene), self.text.clone()).ok()?;
+        let scene = Path::new(&self.scene);
+        let mut document = Document::with_included(scene, self.text.clone(), self.included.clone()).ok()?;
         self.overrides.iter().try_for_each(|o| document.set(o)).ok()?;
         Some(document)
     }

@@ -1,6 +1,6 @@
 //! Scene file as a tree with the line of every key, for error messages.
 
-use super::include::{self, Included};
+use super::include::{self, Included, IncludedText};
 use super::value::Value;
 use super::wording::explain;
 use super::{Problem, SceneError};
@@ -23,6 +23,8 @@ pub struct Document {
     overrides: Vec<(String, String)>,
     /// Overrides as given, with names instead of indices.
     given: Vec<String>,
+    /// Texts of included files, read in place of the files.
+    stored: Vec<IncludedText>,
 }
 
 impl Document {
@@ -43,6 +45,18 @@ impl Document {
     /// # Errors
     /// Invalid TOML.
     pub fn parse(file: &Path, text: String) -> Result<Document, SceneError> {
+        Document::with_included(file, text, Vec::new())
+    }
+
+    /// Parses `text` as the content of `file`, with stored texts of included files.
+    ///
+    /// # Errors
+    /// Invalid TOML.
+    pub fn with_included(
+        file: &Path,
+        text: String,
+        stored: Vec<IncludedText>,
+    ) -> Result<Document, SceneError> {
         syntax(file, &text, 0)?;
         let mut document = Document {
             file: file.to_path_buf(),
@@ -50,6 +64,7 @@ impl Document {
             included: Vec::new(),
             overrides: Vec::new(),
             given: Vec::new(),
+            stored,
         };
         document.included = include::read(&document)?;
         Ok(document)
@@ -238,6 +253,15 @@ impl Document {
     /// Returns the scene file.
     pub fn file(&self) -> &Path {
         &self.file
+    }
+
+    /// Returns the texts of the included files.
+    pub fn included_texts(&self) -> impl Iterator<Item = IncludedText> {
+        self.included.iter().map(Included::stored)
+    }
+
+    pub(super) fn stored_text(&self, name: &str) -> Option<&str> {
+        self.stored.iter().find(|file| file.name == name).map(|file| file.text.as_str())
     }
 
     /// Returns the included files, as named in the scene.

@@ -5,11 +5,21 @@
 use super::SceneError;
 use super::document::{Document, line_of, syntax};
 use crate::read::source;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 pub(super) const KEY: &str = "include";
+
+/// Text of an included file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct IncludedText {
+    /// Name in the scene.
+    pub name: String,
+    /// Content.
+    pub text: String,
+}
 
 #[derive(Clone)]
 pub(super) struct Included {
@@ -23,6 +33,12 @@ pub(super) struct Included {
 impl Included {
     pub fn tree(&self) -> DeTable<'_> {
         DeTable::parse(&self.text).expect("the text was parsed when the file was read").into_inner()
+    }
+
+    pub fn stored(&self) -> IncludedText {
+        let own = &self.text[self.start..];
+        let text = own.strip_suffix('\n').unwrap_or(own).to_string();
+        IncludedText { name: self.named.to_string_lossy().into_owned(), text }
     }
 
     pub fn end(&self) -> usize {
@@ -65,10 +81,13 @@ pub(super) fn read(document: &Document) -> Result<Vec<Included>, SceneError> {
             return Err(document.error(&key, "no name", expected));
         };
         let file = document.file().parent().unwrap_or(Path::new("")).join(name.as_ref());
-        let own = source::text(&file).map_err(|refusal| {
-            let (found, expected) = refusal.words(|e| e.to_string());
-            document.error(&key, format!("{}: {found}", file.display()), expected)
-        })?;
+        let own = match document.stored_text(name) {
+            Some(text) => text.to_string(),
+            None => source::text(&file).map_err(|refusal| {
+                let (found, expected) = refusal.words(|e| e.to_string());
+                document.error(&key, format!("{}: {found}", file.display()), expected)
+            })?,
+        };
         let text = format!("{}{own}\n", " ".repeat(start));
         syntax(&file, &text, start)?;
         let included = Included { named: PathBuf::from(name.as_ref()), file, text, start };

@@ -35,6 +35,7 @@ pub use crate::read::Problem;
 /// Input error of a scene, of the same form as from mesh readers.
 pub use crate::read::ReadError as SceneError;
 pub use document::Document;
+pub use include::IncludedText;
 pub use output::{Chains, Output};
 pub use table::{Number, Table, kinds, setting};
 pub use wind::Wind;

@@ -6,6 +6,7 @@ use super::support::{
 use quick_xml::events::Event;
 use std::fs;
 use std::path::Path;
+use trackbed_coupling::track::settlement::settlement_after;
 
 struct Page {
     sections: Vec<String>,
@@ -191,7 +192,79 @@ fn settlement_laws_of_many_cycles() {
     page.contains("cycle 24");
     // Dashed laws on both plots.
     assert!(page.source.matches("Alva-Hurtado").count() >= 3);
-    page.lacks(&["pressure", "solid"]);
+    page.lacks(&["pressure", "solid", "traffic"]);
+    page.contains(" ± ");
+    let out = folder.join("out");
+    report(&[&out, Path::new("--axle-load"), Path::new("22.5")]).good();
+    let page = Page::read(&out.join("report.html"));
+    page.has(&["traffic"]);
+    // 10 MGT are 444,444 axles of 22.5 t; the band is the range of the laws.
+    page.contains("444444");
+    let at = |fit: &serde_json::Value| {
+        let values: Vec<f64> =
+            fit["parameters"].as_array().unwrap().iter().map(|p| p[1].as_f64().unwrap()).collect();
+        settlement_after(fit["law"].as_str().unwrap(), &values, 10e6 / 22.5)
+    };
+    let fair = fits.iter().filter(|fit| fit["r2"].as_f64().unwrap() >= 0.5);
+    let all: Vec<f64> = fair.filter_map(at).collect();
+    for bound in [all.iter().copied().reduce(f64::min), all.iter().copied().reduce(f64::max)] {
+        page.says(bound.unwrap());
+    }
+    for wrong in ["0", "-3", "101"] {
+        let said = report(&[&out, Path::new(&format!("--axle-load={wrong}"))]);
+        assert_eq!(said.code, 2, "{said:?}");
+        assert!(said.stderr.contains("expected above 0, at most 100 t"), "{}", said.stderr);
+    }
+}
+
+/// A folder that was moved, without scene and included files, reads as before.
+#[test]
+fn results_folder_stands_alone() {
+    let folder = Folder::new("report_alone");
+    let part = GRAINS.find("[[material]]").unwrap();
+    let end = part + GRAINS[part + 1..].find("\n[").map_or(GRAINS.len(), |n| n + 2);
+    fs::create_dir(folder.join("parts")).unwrap();
+    folder.write("parts/stone.toml", &GRAINS[part..end]);
+    let text = format!("include = [\"parts/stone.toml\"]\n{}{}", &GRAINS[..part], &GRAINS[end..]);
+    let scene = folder.write("scene.toml", &text);
+    run(&scene, &folder.join("out"), &[]).good();
+    let before = {
+        report(&[&folder.join("out")]).good();
+        Page::read(&folder.join("out/report.html"))
+    };
+    fs::create_dir(folder.join("elsewhere")).unwrap();
+    fs::rename(folder.join("out"), folder.join("elsewhere/out")).unwrap();
+    fs::remove_file(&scene).unwrap();
+    fs::remove_dir_all(folder.join("parts")).unwrap();
+    report(&[&folder.join("elsewhere/out")]).good();
+    let after = Page::read(&folder.join("elsewhere/out/report.html"));
+    after.contains("2650");
+    after.contains("Included file parts/stone.toml");
+    assert!(!after.text.contains("another program version"), "the scene is understood");
+    assert_eq!((after.sections, after.numbers), (before.sections, before.numbers));
+    assert!(!after.source.contains(&folder.path().display().to_string()), "an absolute path");
+}
+
+/// The failed run is first and names its check.
+#[test]
+fn failed_verdict_comes_first() {
+    let folder = scene_folder("report_failed", COUPLED);
+    let [good, bad] = ["good", "bad"].map(|name| folder.join(name));
+    run(&folder.join("scene.toml"), &good, &[]).good();
+    run(&folder.join("scene.toml"), &bad, &[]).good();
+    let file = bad.join("summary.json");
+    let mut summary = json(&file);
+    summary["verdict"]["outcome"] = "failed".into();
+    let check = serde_json::json!({ "name": "strain", "value": 9.0, "limit": 1.0, "status": "failed", "message": "strain 9" });
+    summary["validity"].as_array_mut().unwrap().push(check);
+    summary["warnings"] = serde_json::json!(["a small thing", "strain 9"]);
+    fs::write(&file, summary.to_string()).unwrap();
+    let html = folder.join("both.html");
+    report(&[&good, &bad, Path::new("--out"), &html]).good();
+    let page = Page::read(&html);
+    let at = |text: &str| page.source.find(text).unwrap_or_else(|| panic!("{text}"));
+    assert!(at("run failed") < at("run passed") || at("run failed") < at("run warned"));
+    assert!(at("failed: strain 9") < at("a small thing"));
 }
 
 #[test]
@@ -262,7 +335,11 @@ fn modes_and_several_runs() {
     both.has(&["compare", "settlement", "overview", "reproduce"]);
     both.contains("Two loads");
     both.contains("track.load.maximum");
-    both.contains(&one.display().to_string());
+    assert!(!both.source.contains(&folder.path().display().to_string()), "an absolute path");
+    // Loads of 5 and 8 kN: the second run is compared with the first.
+    let [first, second] =
+        [&one, &two].map(|dir| Table::read(&dir.join("cycles.csv")).column("settlement").pop().unwrap());
+    both.contains(&format!("{:+.1} %", 100.0 * (second - first) / first.abs()).replace('-', "\u{2212}"));
     for dir in [&one, &two] {
         both.says(json(&dir.join("summary.json"))["energy"]["work"].as_f64().unwrap());
         Table::read(&dir.join("cycles.csv")).column("settlement").into_iter().for_each(|v| both.says(v));

@@ -5,14 +5,19 @@
 //! Indraratna et al. 1997–2010; Shenton 1985; Sato 1995; after the review of Dahlberg, Proc. IMechE F 215,
 //! 2001.
 //!
-//! Residuals of neighbouring cycles are correlated, hence no confidence intervals.
+//! Standard errors of parameters allow for the correlation of neighbouring residuals, ρ between successive
+//! cycles: factor √((1 + ρ)/(1 − ρ)) (G. V. Bayley and J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 1946).
 
 use serde::Serialize;
 
 /// First cycle of fits; earlier ones seat the sleeper.
 pub const FIRST: f64 = 10.0;
-/// Smallest number of cycles of a fit.
+/// Smallest number of cycles from [`FIRST`] on; with fewer, fits begin at [`EARLY`].
 pub const FEWEST: usize = 10;
+/// First cycle of short runs.
+pub const EARLY: f64 = 2.0;
+/// Points beyond the number of parameters.
+const SPARE: usize = 2;
 
 /// Fitted law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +30,8 @@ pub struct Fit {
     pub parameters: Vec<(&'static str, f64)>,
     /// Coefficient of determination.
     pub r2: f64,
+    /// Standard errors of the parameters; empty if undetermined.
+    pub standard_errors: Vec<f64>,
     /// Root-mean-square residual [m].
     pub rms_error: f64,
     /// First and last cycle.
@@ -40,15 +47,34 @@ impl Fit {
     }
 }
 
-/// Fits all laws to settlements [m] from [`FIRST`] on; `load` is the largest load [N].
+/// Settlement after N cycles [m] by a law with its parameters in the order of [`Fit::parameters`]; none for
+/// unknown laws and Hettler's, a reformulation of Alva-Hurtado & Selig.
+pub fn settlement_after(law: &str, parameters: &[f64], n: f64) -> Option<f64> {
+    let log = libm::log10(n);
+    let value = match (law, parameters) {
+        ("Alva-Hurtado & Selig", [s1, c]) => s1 * (1.0 + c * log),
+        ("ORE D71", [s1]) => s1 * (1.0 + 0.2 * log),
+        ("Indraratna", [s1, a, b]) => s1 * (1.0 + a * log + 0.5 * b * log * log),
+        ("power", [a, b]) => a * libm::pow(n, *b),
+        ("Shenton", [a, b]) => a * libm::pow(n, 0.2) + b * n,
+        ("Sato", [gamma, alpha, beta]) => -gamma * libm::expm1(-alpha * n) + beta * n,
+        _ => return None,
+    };
+    value.is_finite().then_some(value)
+}
+
+/// Fits all laws to settlements [m] from [`FIRST`] on, in short runs from [`EARLY`] on; `load` is the largest
+/// load [N].
 ///
-/// Empty with fewer than [`FEWEST`] cycles or constant settlement.
+/// Laws with too many parameters for the cycles are left out. Empty for constant settlement.
 pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
-    let used: Vec<[f64; 2]> = cycles.iter().copied().filter(|c| c[0] >= FIRST).collect();
+    let from = |first: f64| -> Vec<[f64; 2]> { cycles.iter().copied().filter(|c| c[0] >= first).collect() };
+    let late = from(FIRST);
+    let used = if late.len() >= FEWEST { late } else { from(EARLY) };
     let mean = used.iter().map(|c| c[1]).sum::<f64>() / used.len().max(1) as f64;
     let spread = used.iter().map(|c| (c[1] - mean).powi(2)).sum::<f64>();
     // Rounding only.
-    if used.len() < FEWEST || spread <= 1e-24 * used.len() as f64 * mean * mean || !spread.is_finite() {
+    if used.len() <= SPARE || spread <= 1e-24 * used.len() as f64 * mean * mean || !spread.is_finite() {
         return Vec::new();
     }
     let data = Data { used: &used, spread };
@@ -56,11 +82,9 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     let mut out = Vec::new();
     if let Some((c, rest)) = data.linear(&[one, log]) {
         let form = "s1 (1 + C log10 N)";
-        out.push(data.fit("Alva-Hurtado & Selig", form, vec![("s1", c[0]), ("C", c[1] / c[0])], rest));
-        // Hettler's unit: mm per kN^1.6.
-        let r = 1e3 * c[0] / libm::pow(1e-3 * load, 1.6);
-        let parameters = vec![("r [mm/kN^1.6]", r), ("C", c[1] / c[0] / std::f64::consts::LN_10)];
-        out.push(data.fit("Hettler", "r F^1.6 (1 + C ln N)", parameters, rest));
+        let fit = data.fit("Alva-Hurtado & Selig", form, vec![("s1", c[0]), ("C", c[1] / c[0])], rest);
+        let hettler = hettler(&fit, load);
+        out.extend([fit, hettler]);
     }
     if let Some((c, rest)) = data.linear(&[&|n| 1.0 + 0.2 * libm::log10(n)]) {
         out.push(data.fit("ORE D71", "s1 (1 + 0.2 log10 N)", vec![("s1", c[0])], rest));
@@ -83,8 +107,22 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
         let parameters = vec![("gamma", c[0]), ("alpha", libm::exp(ln)), ("beta", c[1])];
         out.push(data.fit("Sato", "gamma (1 - exp(-alpha N)) + beta N", parameters, rest));
     }
-    out.retain(|f| f.parameters.iter().all(|p| p.1.is_finite()));
+    out.retain(|f| f.points >= f.parameters.len() + SPARE && f.parameters.iter().all(|p| p.1.is_finite()));
     out
+}
+
+/// Hettler's parameters of a fit by Alva-Hurtado & Selig: mm per kN^1.6, natural logarithm.
+fn hettler(fit: &Fit, load: f64) -> Fit {
+    let [s1, c] = [fit.parameters[0].1, fit.parameters[1].1];
+    let factors = [1e3 / libm::pow(1e-3 * load, 1.6), 1.0 / std::f64::consts::LN_10];
+    let errors = fit.standard_errors.iter().zip(factors).map(|(e, f)| e * f);
+    Fit {
+        law: "Hettler",
+        form: "r F^1.6 (1 + C ln N)",
+        parameters: vec![("r [mm/kN^1.6]", s1 * factors[0]), ("C", c * factors[1])],
+        standard_errors: errors.collect(),
+        ..fit.clone()
+    }
 }
 
 /// Regression of s on ln N.
@@ -146,6 +184,44 @@ impl Data<'_> {
         (rest.is_finite() && c.iter().all(|x| x.is_finite())).then_some((c, rest))
     }
 
+    /// Standard errors of the parameters, linearised; `None` if undetermined.
+    fn standard_errors(&self, law: &str, parameters: &[f64], rest: f64) -> Option<Vec<f64>> {
+        let (rows, count) = (self.used.len(), parameters.len());
+        if rows <= count {
+            return None;
+        }
+        let slope = |k: usize, n: f64| -> Option<f64> {
+            let step = STEP * parameters[k].abs().max(f64::MIN_POSITIVE.sqrt());
+            let at = |sign: f64| {
+                let mut moved = parameters.to_vec();
+                moved[k] += sign * step;
+                settlement_after(law, &moved, n)
+            };
+            Some((at(1.0)? - at(-1.0)?) / (2.0 * step))
+        };
+        let mut slopes = nalgebra::DMatrix::zeros(rows, count);
+        for (i, point) in self.used.iter().enumerate() {
+            for k in 0..count {
+                slopes[(i, k)] = slope(k, point[0])?;
+            }
+        }
+        let sizes: Vec<f64> = slopes.column_iter().map(|c| c.norm()).collect();
+        for (mut column, size) in slopes.column_iter_mut().zip(&sizes) {
+            column /= *size;
+        }
+        let inverse = (slopes.transpose() * &slopes).try_inverse()?;
+        let residuals: Option<Vec<f64>> =
+            self.used.iter().map(|p| Some(p[1] - settlement_after(law, parameters, p[0])?)).collect();
+        let residuals = residuals?;
+        let products: f64 = residuals.windows(2).map(|r| r[0] * r[1]).sum();
+        let squares: f64 = residuals.iter().map(|r| r * r).sum();
+        let correlation = if squares > 0.0 { (products / squares).clamp(0.0, CORRELATED) } else { 0.0 };
+        let variance = rest / (rows - count) as f64 * (1.0 + correlation) / (1.0 - correlation);
+        let errors: Vec<f64> =
+            (0..count).map(|k| (variance * inverse[(k, k)].max(0.0)).sqrt() / sizes[k]).collect();
+        errors.iter().all(|e| e.is_finite()).then_some(errors)
+    }
+
     fn fit(
         &self,
         law: &'static str,
@@ -154,10 +230,13 @@ impl Data<'_> {
         rest: f64,
     ) -> Fit {
         let points = self.used.len();
+        let values: Vec<f64> = parameters.iter().map(|p| p.1).collect();
+        let standard_errors = self.standard_errors(law, &values, rest).unwrap_or_default();
         Fit {
             law,
             form,
             parameters,
+            standard_errors,
             r2: 1.0 - rest / self.spread,
             rms_error: (rest / points as f64).sqrt(),
             range: [self.used[0][0], self.used[points - 1][0]],
@@ -165,6 +244,11 @@ impl Data<'_> {
         }
     }
 }
+
+/// Relative step of numerical derivatives.
+const STEP: f64 = 1e-6;
+/// Largest correlation of successive residuals.
+const CORRELATED: f64 = 0.99;
 
 /// Grid points of [`search`].
 const GRID: usize = 120;

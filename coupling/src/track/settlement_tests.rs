@@ -89,6 +89,44 @@ fn insufficient_data_gives_no_fit() {
     assert!(slope(&growing[..2], 1.0).is_none());
 }
 
+/// One parameter, white noise: σ/√Σ(1 + 0.2 log N)²; three in four fits within 1.15 standard errors.
+#[test]
+fn standard_errors_match_linear_regression() {
+    let curve = noisy(|n| 0.003 * (1.0 + 0.2 * n.log10()));
+    let fit = fitted(&curve, "ORE D71");
+    let squares: f64 = (10..=400).map(|n| (1.0 + 0.2 * f64::from(n).log10()).powi(2)).sum();
+    let expected = fit.rms_error * (391.0_f64 / 390.0).sqrt() / squares.sqrt();
+    let found = fit.standard_errors[0];
+    assert!(found >= expected * 0.999 && found < 1.3 * expected, "{found:e} {expected:e}");
+    assert!((fit.parameter("s1").unwrap() - 0.003).abs() < 4.0 * found);
+}
+
+/// A wave of 60 cycles in the residuals: neighbours are alike, so the error is larger than of white noise.
+#[test]
+fn correlated_residuals_widen_errors() {
+    let wave = |n: f64| 1e-4 * (n / 60.0 * std::f64::consts::TAU).sin();
+    let curve: Vec<[f64; 2]> =
+        (1..=400).map(f64::from).map(|n| [n, 0.003 * (1.0 + 0.2 * n.log10()) + wave(n)]).collect();
+    let fit = fitted(&curve, "ORE D71");
+    let squares: f64 = (10..=400).map(|n| (1.0 + 0.2 * f64::from(n).log10()).powi(2)).sum();
+    let white = fit.rms_error / squares.sqrt();
+    assert!(fit.standard_errors[0] > 5.0 * white, "{:e} {white:e}", fit.standard_errors[0]);
+}
+
+/// From the second cycle on; as many parameters as the cycles allow.
+#[test]
+fn short_runs_are_fitted() {
+    let curve: Vec<[f64; 2]> =
+        [0.9, 1.0, 1.17, 1.28, 1.39].iter().enumerate().map(|(k, s)| [k as f64 + 1.0, 1e-3 * s]).collect();
+    let found = fits(&curve, 40e3);
+    assert!(found.iter().any(|f| f.law == "power") && !found.iter().any(|f| f.law == "Sato"), "{found:?}");
+    for fit in &found {
+        assert_eq!((fit.range, fit.points), ([2.0, 5.0], 4), "{}", fit.law);
+        assert_eq!(fit.standard_errors.len(), fit.parameters.len(), "{}", fit.law);
+    }
+    assert!(fits(&curve[..3], 40e3).is_empty(), "two cycles from the second on");
+}
+
 #[test]
 fn slope_matches_logarithm() {
     let curve: Vec<[f64; 2]> =

@@ -51,19 +51,19 @@ pub fn svg(title: &str, labels: [String; 2], sides: (&Ruler, &Ruler, bool), curv
 
 fn frame(area: &Area<'_>, labels: &[String; 2]) -> Markup {
     let (left, right, bottom) = (round(area.left), round(area.right), HEIGHT - BOTTOM);
-    let colour = |tick: &Tick| if tick.label.is_some() { "#d8d8d8" } else { "#efefef" };
+    let class = |tick: &Tick| if tick.label.is_some() { "major" } else { "minor" };
     let (w, h) = (round(right - left), round(bottom - TOP));
     let font = (FONT * (h / text_width(&labels[1], FONT)).min(1.0) * 10.0).floor() / 10.0;
     html! {
         @for (tick, at) in area.x.ticks.iter().map(|t| (t, area.x(t.value))) {
-            path d={ "M" (at) " " (TOP) "V" (bottom) } stroke=(colour(tick)) {} "\n"
+            path d={ "M" (at) " " (TOP) "V" (bottom) } class=(class(tick)) {} "\n"
             @if let Some(label) = &tick.label { (text(at, bottom + 17.0, "middle", label)) }
         }
         @for (tick, at) in area.y.ticks.iter().map(|t| (t, area.y(t.value))) {
-            path d={ "M" (left) " " (at) "H" (right) } stroke=(colour(tick)) {} "\n"
+            path d={ "M" (left) " " (at) "H" (right) } class=(class(tick)) {} "\n"
             @if let Some(label) = &tick.label { (text(left - 7.0, at + 0.35 * FONT, "end", label)) }
         }
-        rect x=(left) y=(TOP) width=(w) height=(h) fill="none" stroke="#333" {} "\n"
+        rect x=(left) y=(TOP) width=(w) height=(h) fill="none" class="frame" {} "\n"
         (text(0.5 * (left + right), bottom + 40.0, "middle", &labels[0]))
         g transform={ "translate(15 " (round(0.5 * (TOP + bottom))) ") rotate(-90)" } font-size=(font) {
             (text(0.0, 0.0, "middle", &labels[1]))
@@ -74,7 +74,7 @@ fn frame(area: &Area<'_>, labels: &[String; 2]) -> Markup {
 
 fn curve(curve: &Curve, area: &Area<'_>) -> Markup {
     let pixels = thinned(curve.points.iter().map(|p| [area.x(p[0]), area.y(p[1])]));
-    let colour = COLOURS[curve.look.colour % COLOURS.len()];
+    let colour = colour(curve.look);
     let joined = curve.look.line && pixels.len() > 1;
     let marked = curve.look.marks || pixels.len() == 1;
     let list: Vec<String> = pixels.iter().filter(|_| joined).map(|[x, y]| format!("{x},{y}")).collect();
@@ -93,16 +93,24 @@ fn mark(shape: usize, colour: &str, x: f64, y: f64) -> Markup {
     html! {
         @match shape % 4 {
             0 => circle cx=(x) cy=(y) r="3" fill=(colour) {},
-            1 => rect x=(left) y=(top) width="5.6" height="5.6" fill="white" stroke=(colour) stroke-width="1.4" {},
+            1 => rect x=(left) y=(top) width="5.6" height="5.6" class="hollow" stroke=(colour) stroke-width="1.4" {},
             2 => path d={ "M" (x) " " (y) "m-4 0l4 -4l4 4l-4 4z" } fill=(colour) {},
-            _ => path d={ "M" (x) " " (y) "m0 -4l4 7h-8z" } fill="white" stroke=(colour) stroke-width="1.4" {},
+            _ => path d={ "M" (x) " " (y) "m0 -4l4 7h-8z" } class="hollow" stroke=(colour) stroke-width="1.4" {},
         }
+    }
+}
+
+/// Black follows the text, for dark pages.
+fn colour(look: Look) -> &'static str {
+    match COLOURS[look.colour % COLOURS.len()] {
+        "#000000" => "currentColor",
+        colour => colour,
     }
 }
 
 /// Draws a legend sample.
 pub fn sample(look: Look) -> Markup {
-    let colour = COLOURS[look.colour % COLOURS.len()];
+    let colour = colour(look);
     html! {
         svg viewBox="0 0 34 12" width="34" height="12" aria-hidden="true" {
             @if look.line {

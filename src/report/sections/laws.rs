@@ -1,6 +1,7 @@
 //! Settlement laws of the summary.
 
 use serde_json::Value;
+use trackbed_coupling::track::settlement::settlement_after;
 
 const POINTS: usize = 120;
 
@@ -13,6 +14,8 @@ pub struct Law {
     pub form: String,
     /// Parameters by name; settlements [m].
     pub parameters: Vec<(String, f64)>,
+    /// Standard errors of the parameters; empty if unknown.
+    pub standard_errors: Vec<f64>,
     /// R².
     pub r2: f64,
     /// RMS residual [m].
@@ -29,27 +32,19 @@ impl Law {
             name: fit["law"].as_str()?.into(),
             form: fit["form"].as_str()?.into(),
             parameters: fit["parameters"].as_array()?.iter().filter_map(parameter).collect(),
+            standard_errors: fit["standard_errors"]
+                .as_array()
+                .map_or(Vec::new(), |all| all.iter().filter_map(Value::as_f64).collect()),
             r2: fit["r2"].as_f64()?,
             rms_error: fit["rms_error"].as_f64()?,
             range: [fit["range"].get(0)?.as_f64()?, fit["range"].get(1)?.as_f64()?],
         })
     }
 
-    /// Returns settlement after N cycles [m]; none if unknown or a reformulation (Hettler's is Alva-Hurtado &
-    /// Selig).
+    /// Returns settlement after N cycles [m]; none if unknown or a reformulation (Hettler's).
     pub fn at(&self, n: f64) -> Option<f64> {
-        let p = |name: &str| self.parameters.iter().find(|p| p.0 == name).map(|p| p.1);
-        let log = libm::log10(n);
-        let value = match self.name.as_str() {
-            "Alva-Hurtado & Selig" => p("s1")? * (1.0 + p("C")? * log),
-            "ORE D71" => p("s1")? * (1.0 + 0.2 * log),
-            "Indraratna" => p("s1")? * (1.0 + p("a")? * log + 0.5 * p("b")? * log * log),
-            "power" => p("a")? * libm::pow(n, p("b")?),
-            "Shenton" => p("a")? * libm::pow(n, 0.2) + p("b")? * n,
-            "Sato" => -p("gamma")? * libm::expm1(-p("alpha")? * n) + p("beta")? * n,
-            _ => return None,
-        };
-        value.is_finite().then_some(value)
+        let values: Vec<f64> = self.parameters.iter().map(|p| p.1).collect();
+        settlement_after(&self.name, &values, n)
     }
 
     /// Returns the curve over the fitted cycles, if any.

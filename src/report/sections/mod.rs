@@ -25,8 +25,8 @@ use super::page::Section;
 
 type Make = fn(&[RunData]) -> Option<Section>;
 
-/// Returns all sections with data.
-pub fn all(runs: &[RunData]) -> Vec<Section> {
+/// Returns all sections with data; `axle_load` of a cycle [t].
+pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
     let sections: [Make; 23] = [
         verdict::verdict,
         compare::compare,
@@ -52,5 +52,10 @@ pub fn all(runs: &[RunData]) -> Vec<Section> {
         steps::timings,
         reproduce::reproduce,
     ];
-    sections.iter().filter_map(|section| section(runs)).collect()
+    let mut all: Vec<Section> = sections.iter().filter_map(|section| section(runs)).collect();
+    if let Some(section) = axle_load.and_then(|load| settlement::traffic(runs, load)) {
+        let after = all.iter().position(|s| s.id == "settlement").map_or(all.len(), |k| k + 1);
+        all.insert(after, section);
+    }
+    all
 }

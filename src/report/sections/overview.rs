@@ -4,9 +4,10 @@ use super::compare::shown;
 use super::overlay::facts;
 use crate::columns::{cycles, history};
 use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, headed, joined, paragraph, table};
-use maud::Markup;
+use crate::report::page::{self, Cell, Section, headed, joined, paragraph, table};
+use maud::{Markup, html};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 const ELSEWHERE: [&str; 3] = ["material", "title", "probe"];
 /// The scene text is complete.
@@ -15,23 +16,15 @@ const OPTIONS: usize = 60;
 /// Formats the overview.
 pub fn overview(runs: &[RunData]) -> Option<Section> {
     let mut parts = vec![counts(runs)];
-    // Differing materials are shown in the comparison.
-    let alike = |run: &RunData| run.keys == runs[0].keys;
-    let shown: Vec<&RunData> = if runs.iter().all(alike) { vec![&runs[0]] } else { runs.iter().collect() };
-    for run in shown {
-        let whose = if runs.len() > 1 && !runs.iter().all(alike) {
-            format!(" of {}", run.label)
-        } else {
-            String::new()
-        };
-        for (kind, what) in [
-            ("material", "Materials of grains, walls and sleepers"),
-            ("solid.material", "Materials of the solid"),
-        ] {
-            parts.push(headed(&format!("{what}{whose}"), materials(run, kind)));
-        }
-        parts.push(options(run, &whose));
+    for (kind, what) in [
+        ("material", "Materials of grains, walls and sleepers"),
+        ("solid.material", "Materials of the solid"),
+    ] {
+        parts.push(headed(what, materials(runs, kind)));
     }
+    // Differing keys are shown in the comparison.
+    let whose = if runs.len() > 1 { format!(" of {}", runs[0].label) } else { String::new() };
+    parts.push(options(&runs[0], &whose));
     Section::new("overview", "Scene and model", joined(parts))
 }
 
@@ -48,8 +41,8 @@ fn counts(runs: &[RunData]) -> Markup {
         runs,
         &[
             ("scene", &|r| text(Some(r.title()))),
-            ("scene file", &|r| text(r.file.as_ref().map(|f| f.scene.as_str()))),
-            ("folder", &|r| Cell::Text(r.dir.display().to_string())),
+            ("scene file", &|r| r.file.as_ref().map_or(Cell::Nothing, |f| path_cell(Path::new(&f.scene)))),
+            ("folder", &|r| path_cell(&r.dir)),
             ("status", &|r| text(r.text("status"))),
             ("program version", &|r| text(r.text("version").or(r.file.as_ref().map(|f| f.version.as_str())))),
             ("nodes", &path("model.nodes", "")),
@@ -69,26 +62,42 @@ fn counts(runs: &[RunData]) -> Markup {
     )
 }
 
-fn materials(run: &RunData, kind: &str) -> Markup {
+fn path_cell(path: &Path) -> Cell {
+    Cell::Text(page::shown_path(path).display().to_string())
+}
+
+/// Materials of all runs in one table; values that differ are marked, in the order of the runs.
+fn materials(runs: &[RunData], kind: &str) -> Markup {
     let key_of = |key: &str| {
         let rest = key.strip_prefix(kind)?.strip_prefix('.')?;
         let (index, key) = rest.split_once('.')?;
         Some((index.parse::<usize>().ok()?, key.to_string()))
     };
-    let all: Vec<(usize, String, &String)> =
-        run.keys.iter().filter_map(|(k, v)| key_of(k).map(|(index, key)| (index, key, v))).collect();
+    let all: BTreeSet<(usize, String)> =
+        runs.iter().flat_map(|run| run.keys.keys().filter_map(|key| key_of(key))).collect();
     let named = |key: &str| matches!(key, "name" | "id");
     let keys: BTreeSet<&String> = all.iter().map(|a| &a.1).filter(|k| !named(k)).collect();
     let count = all.iter().map(|a| a.0 + 1).max().unwrap_or(0);
-    let value = |index: usize, key: &str| all.iter().find(|a| a.0 == index && a.1 == key).map(|a| shown(a.2));
+    let value = |run: &RunData, index: usize, key: &str| {
+        run.keys.get(&format!("{kind}.{index}.{key}")).map(|value| shown(value))
+    };
+    let cell = |index: usize, key: &str| {
+        let values: Vec<Option<String>> = runs.iter().map(|run| value(run, index, key)).collect();
+        if values.iter().all(|v| *v == values[0]) {
+            return values[0].clone().map_or(Cell::Nothing, Cell::Text);
+        }
+        let texts: Vec<String> = values.into_iter().map(|v| v.unwrap_or_else(|| "\u{2013}".into())).collect();
+        Cell::Html(html! { mark { (texts.join(" | ")) } })
+    };
     let rows: Vec<(String, Vec<Cell>)> = (0..count)
         .map(|i| {
-            let name = match (value(i, "name"), value(i, "id")) {
+            let of = |key: &str| runs.iter().find_map(|run| value(run, i, key));
+            let name = match (of("name"), of("id")) {
                 (Some(name), Some(id)) => format!("{id}: {name}"),
                 (Some(name), None) => name,
                 (None, id) => id.unwrap_or_else(|| i.to_string()),
             };
-            (name, keys.iter().map(|key| value(i, key).map_or(Cell::Nothing, Cell::Text)).collect())
+            (name, keys.iter().map(|key| cell(i, key)).collect())
         })
         .collect();
     let heads: Vec<&str> = std::iter::once("material").chain(keys.iter().map(|k| k.as_str())).collect();

@@ -1,7 +1,7 @@
 //! Command, scene, overrides and sources of the runs.
 
 use crate::report::data::RunData;
-use crate::report::page::{Section, paragraph};
+use crate::report::page::{self, Section, paragraph};
 use crate::run::quoted;
 use maud::{Markup, html};
 use serde_json::Value;
@@ -27,13 +27,14 @@ pub fn reproduce(runs: &[RunData]) -> Option<Section> {
 
 fn one(run: &RunData) -> Markup {
     let Some(file) = &run.file else { return Markup::default() };
-    let mut command = format!("trackbed run {} --out {}", quoted(Path::new(&file.scene)), quoted(&run.dir));
+    let [scene, dir] = [Path::new(&file.scene), &run.dir].map(page::shown_path);
+    let mut command = format!("trackbed run {} --out {}", quoted(&scene), quoted(&dir));
     file.overrides.iter().for_each(|o| command += &format!(" --set {}", quoted(Path::new(o))));
     file.source().iter().for_each(|source| command += &source.words());
     let hash = match run.text("scene_hash") {
         Some(hash) => format!(
             "Version {} of the program; hash of the scene, its overrides and its files {hash}. The same scene gives the same bits \
-             on any number of threads; paths are as they were given when the run began.",
+             on any number of threads.",
             file.version
         ),
         None => format!("Program version {}.", file.version),
@@ -42,5 +43,8 @@ fn one(run: &RunData) -> Markup {
         pre { (command) } "\n"
         (paragraph(&hash))
         details { "\n" summary { "Scene file, without overrides" } "\n" pre { (file.text) } "\n" } "\n"
+        @for included in &file.included {
+            details { "\n" summary { "Included file " (included.name) } "\n" pre { (included.text) } "\n" } "\n"
+        }
     }
 }

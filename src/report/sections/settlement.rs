@@ -82,7 +82,7 @@ fn lowering(runs: &[RunData]) -> Markup {
             })
             .collect()
     });
-    let y = Side::new("settlement since the start", "m").downwards();
+    let y = Side::new("settlement since the start", "m").downwards().with_zero();
     Plot::new("Settlement of the sleeper in time", Side::new("time", "s"), y, curves).figure()
 }
 
@@ -108,8 +108,11 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
     for (run, laws) in runs.iter().zip(laws) {
         for law in laws {
             let name = if runs.len() > 1 { format!("{}: {}", run.label, law.name) } else { law.name.clone() };
-            let parameters: Vec<String> =
-                law.parameters.iter().map(|(name, v)| format!("{name} = {}", number(*v))).collect();
+            let with_error = |(k, (name, v)): (usize, &(String, f64))| match law.standard_errors.get(k) {
+                Some(error) => format!("{name} = {} ± {}", number(*v), rounded(1.96 * error)),
+                None => format!("{name} = {}", number(*v)),
+            };
+            let parameters: Vec<String> = law.parameters.iter().enumerate().map(with_error).collect();
             let precise: Vec<String> =
                 law.parameters.iter().map(|(name, v)| format!("{name} = {}", exact(*v, ""))).collect();
             let text = html! { span title=(precise.join(", ")) { (parameters.join(", ")) } };
@@ -127,9 +130,10 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
         }
     }
     let note = match rows.is_empty() {
-        true => "No law fitted: fewer than ten cycles after the tenth.",
+        true => "No law fitted: fewer than three cycles from the second on, or constant settlement.",
         false => {
-            "Least squares in the settlement itself, cycles from the tenth on; settlements in metres. Of several runs the plot \
+            "Least squares in the settlement itself, cycles from the tenth on, in short runs from the second; settlements in metres; \
+             ± 95 % confidence, with the correlation of successive cycles. Of several runs the plot \
              has the law with the largest R². Hettler's curve is that of Alva-Hurtado & Selig."
         }
     };
@@ -137,6 +141,61 @@ fn fits(runs: &[RunData], laws: &[Vec<Law>]) -> Markup {
     let note = if missing { Markup::default() } else { paragraph(note) };
     let heads = ["law", "form", "parameters", "R²", "rms error", "cycles"];
     joined([headed("Settlement laws", table(&heads, &rows)), note])
+}
+
+/// Two digits.
+fn rounded(value: f64) -> String {
+    let decimals = (1 - libm::log10(value.abs().max(f64::MIN_POSITIVE)).floor() as i32).clamp(-300, 300);
+    let unit = libm::pow(10.0, f64::from(decimals));
+    number((value * unit).round() / unit)
+}
+
+/// Traffic for which laws are extrapolated [MGT].
+const TRAFFIC: [f64; 5] = [0.01, 0.1, 1.0, 10.0, 100.0];
+/// Laws of the band.
+const FAIR: f64 = 0.5;
+
+/// Settlement against traffic for the axle load of one cycle [t]: laws beyond the cycles, with their range.
+pub fn traffic(runs: &[RunData], axle_load: f64) -> Option<Section> {
+    let per_cycle = 1e-6 * axle_load;
+    let curves = one(runs, |r| {
+        let points = r.table("cycles")?.points(cycles::CYCLE, cycles::SETTLEMENT)?;
+        Some(points.into_iter().map(|[n, s]| [n * per_cycle, s]).collect())
+    });
+    let mut rows = Vec::new();
+    for run in runs {
+        let laws: Vec<Law> = run.list("settlement.fits").iter().filter_map(Law::of).collect();
+        let last = laws.iter().map(|law| law.range[1]).fold(0.0, f64::max);
+        for mgt in TRAFFIC.into_iter().filter(|mgt| last > 0.0 && mgt / per_cycle > last) {
+            let n = mgt / per_cycle;
+            let fair = laws.iter().filter(|law| law.r2 >= FAIR);
+            let all: Vec<(f64, &Law, f64)> = fair.filter_map(|law| Some((law.r2, law, law.at(n)?))).collect();
+            let Some(best) = all.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let bound = |pick: fn(f64, f64) -> f64| all.iter().map(|a| a.2).reduce(pick);
+            let name =
+                if runs.len() > 1 { format!("{}: {} MGT", run.label, mgt) } else { format!("{mgt} MGT") };
+            rows.push((
+                name,
+                vec![
+                    Cell::text(format!("{n:.0}")),
+                    Cell::of(Some(best.2), "m"),
+                    Cell::text(best.1.name.clone()),
+                    Cell::of(bound(f64::min), "m"),
+                    Cell::of(bound(f64::max), "m"),
+                ],
+            ));
+        }
+    }
+    let (x, y) =
+        (Side::new("traffic", "MGT").with_zero(), Side::new("settlement", "m").downwards().with_zero());
+    let figure = Plot::new("Settlement against traffic", x, y, curves).figure();
+    let heads = ["traffic", "passages", "best law", "law", "smallest of all laws", "largest"];
+    let note = paragraph(&format!(
+        "A cycle is the passage of an axle of {axle_load} t; 1 MGT is a million gross tonnes. Laws with R² of at least {FAIR}, beyond the simulated \
+         cycles: an extrapolation, whose error is at least the range of the laws. Not included: tamping, wet weather, mixed axle loads."
+    ));
+    let table = headed("Extrapolation", table(&heads, &rows));
+    Section::new("traffic", "Settlement against traffic", joined([plots([figure]), table, note]))
 }
 
 fn by_cycle(runs: &[RunData]) -> Markup {

@@ -9,19 +9,29 @@ use serde_json::Value;
 
 /// Formats checks and warnings.
 pub fn verdict(runs: &[RunData]) -> Option<Section> {
-    let cards = joined(runs.iter().map(card));
+    let mut order: Vec<&RunData> = runs.iter().collect();
+    order.sort_by_key(|run| severity(run));
+    let cards = joined(order.into_iter().map(card));
     Section::new("verdict", "Checks and warnings", joined([cards, judged(runs)]))
 }
 
-fn card(run: &RunData) -> Markup {
-    let remarks = remarks(run);
-    let class = match run.state() {
-        State::Passed if !remarks.is_empty() => "warned",
+/// Failed runs come first.
+fn severity(run: &RunData) -> usize {
+    ["failed", "open", "warned", "passed"].iter().position(|c| *c == class(run)).unwrap_or(0)
+}
+
+fn class(run: &RunData) -> &'static str {
+    match run.state() {
+        State::Passed if !remarks(run).is_empty() => "warned",
         State::Passed | State::Modes => "passed",
         State::Warned => "warned",
         State::Failed | State::Stopped => "failed",
         State::Interrupted | State::Running => "open",
-    };
+    }
+}
+
+fn card(run: &RunData) -> Markup {
+    let (remarks, class) = (remarks(run), class(run));
     html! {
         div class={ "run " (class) } {
             "\n" h3 { (run.label) } "\n"
@@ -99,7 +109,16 @@ fn remarks(run: &RunData) -> Vec<String> {
         let what = j["name"].as_str().unwrap_or_default();
         out.push(format!("{outcome}: {what}: {} (limit {})", number("value"), number("warn_above")));
     }
-    out.extend(run.list("warnings").iter().filter_map(Value::as_str).map(String::from));
+    let failed = |text: &str| {
+        run.list("validity").iter().any(|c| c["status"] == "failed" && c["message"].as_str() == Some(text))
+    };
+    out.extend(
+        run.list("warnings")
+            .iter()
+            .filter_map(Value::as_str)
+            .map(|text| if failed(text) { format!("failed: {text}") } else { text.to_string() }),
+    );
+    out.sort_by_key(|remark| !remark.starts_with("failed"));
     for (name, rows) in run.damaged() {
         out.push(format!("{name}.csv: {rows} damaged rows omitted"));
     }
