@@ -226,7 +226,7 @@ pub mod history {
         DISSIPATED_MOUNTS: Scalar "dissipated_mounts" "J" "dissipation in spring-dashpot supports";
         WALL_FORCE: Vector "<wall>_force" "N" "force of grains and other walls on a wall";
         WALL_MOMENT: Vector "<wall>_moment" "N m" "moment of that force about the centre of the wall";
-        WALL_TARGET: Scalar "<wall>_target" "N" "target force of a servo-controlled wall";
+        WALL_TARGET: Scalar "<wall>_target" "N" "target force of a servo-controlled wall, 0 under displacement control";
         WALL_DISPLACEMENT: Vector "<wall>_displacement" "m" "displacement of the centre of the wall";
         GRAINS_PRESENT: Scalar "grains_present" "" "number of grains in the model";
         MASS_PRESENT: Scalar "mass_present" "kg" "mass of the grains in the model";

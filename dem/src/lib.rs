@@ -39,8 +39,8 @@ pub use shape::plane::{Plane, PlaneMotion};
 pub use spatial::{bvh, detect, distance, sheet, surface};
 
 pub use body_force::{BodyForce, DragArea, Measured, Orbit, Water, Wave, WaveError, Wind};
-pub use force_tracking::{AppliedLoad, ForceTracking, LoadRange};
 pub use error::{ModelError, Partner, StepError};
+pub use force_tracking::{AppliedLoad, ForceTracking, LoadRange};
 pub use input::{AppliedForce, LocalDamping, ModelInput, SearchSkin, TimeStep};
 pub use law::material::{Material, PairOverride};
 pub use law::scarring::Scarring;

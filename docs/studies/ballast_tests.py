@@ -94,16 +94,29 @@ def triaxial(folder):
     strain = [100 * (c[start] - v) / c[start] for v in c]
     volume = [100 * (1 - a[i] * b[i] * c[i] / (a[start] * b[start] * c[start])) for i in range(len(t))]
     peak = max((i for i in range(start, len(t)) if strain[i] > 0.2), key=lambda i: angle[i])
-    late = [i for i in range(len(t)) if strain[i] > 0.8 * strain[-1]]
-    slip = (volume[late[-1]] - volume[late[0]]) / (strain[late[-1]] - strain[late[0]])
-    return {
+    def near(value, half):
+        return [i for i in range(start, len(t)) if abs(strain[i] - value) <= half]
+
+    def dilation(span):
+        return -slope([strain[i] for i in span], [volume[i] for i in span]) if len(span) > 2 else None
+
+    late = near(strain[-1], 0.2 * strain[-1])
+    at_five = near(5.0, 0.05)
+    result = {
         "peak angle [deg]": angle[peak],
         "at strain [%]": strain[peak],
         "cell, axial stress [kPa]": [cell[peak], axial[peak]],
         "cell pressure of all the shear [kPa]": mean(cell[start:]),
+        "rate of dilation at the peak": dilation(near(strain[peak], 0.5)),
+        "angle of the last fifth [deg]": mean([angle[i] for i in late]),
         "volume strain at the end [%]": volume[-1],
-        "rate of dilation at the end": -slip,
+        "rate of dilation in the last fifth": dilation(late),
     }
+    if at_five:
+        result["volume strain at 5 % [%]"] = mean([volume[i] for i in at_five])
+    if strain[-1] > 10.5:
+        result["rate of dilation at 10 %"] = dilation(near(10.0, 0.5))
+    return result
 
 
 def cyclic(folder):

@@ -23,7 +23,8 @@ impl<S: System> Recorder<S> for Walls {
         for wall in &part.walls.recorded {
             let (name, wall) = (&wall.name, wall.wall);
             if let Some(servo) = &part.walls.others[wall].servo {
-                row.put(history::WALL_TARGET.of(name), servo.target(now.time));
+                let driven = servo.driven.is_some_and(|[from, _]| now.time >= from);
+                row.put(history::WALL_TARGET.of(name), if driven { 0.0 } else { servo.target(now.time) });
             }
             let (force, moment) = view.state.wall_force(wall);
             row.vector(history::WALL_FORCE.of(name), force);

@@ -37,7 +37,7 @@ pub struct GrainMaterial {
     /// Friction μₐ of asperities in μ + μₐ/(1 + F/(p R²)); default 0; ≥ 0; with `"linear"`, `corner_strength`.
     #[serde(default)]
     pub asperity_friction: f64,
-    /// Pressure p of it, mean contact pressure with `corner_strength` [Pa]; > 0; with `asperity_friction`.
+    /// Pressure p of it: force over R², with `corner_strength` over πR² [Pa]; > 0; with `asperity_friction`.
     pub asperity_pressure: Option<Quantity<Stress>>,
     /// Coefficient of restitution; 0.0001–1; shorter steps if small.
     pub restitution: f64,

@@ -191,7 +191,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
             memory.spring = memory.spring * c.kept;
         }
         let grip = T::grip(&law.tangential, own.circle);
-        let limit = T::limit(&law.tangential, common.friction, normal, touch.radius, own.circle);
+        let limit = T::limit(&law.tangential, common.friction, normal, touch.radius);
         let slid = slider::plane(&mut memory.spring, n, slip_velocity, &grip, cs, limit, time, step, on);
         dashpot = dashpot + slid.dashpot;
         let mut friction = if carried.is_some() { lost + slid.friction } else { slid.friction };
@@ -240,8 +240,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     fn friction_limit(&self, overlap: f64, radius: f64, history: &History) -> (f64, f64) {
         let (force, stiffness) = self.springs(overlap, radius, history);
         let normal = force + self.common.pull * radius;
-        let circle = self.normal.circle(overlap, radius, history.rate);
-        (T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius, circle), stiffness)
+        (T::limit(&self.tangential.splat::<f64>(), self.common.friction, normal, radius), stiffness)
     }
 
     #[inline(always)]

@@ -22,7 +22,7 @@ pub struct Material {
     pub friction: f64,
     /// Asperity friction at vanishing force [-] (`rough.rs`).
     pub asperity_friction: f64,
-    /// Normal force over effective radius squared at half of it [Pa].
+    /// Half-value pressure [Pa]: normal force over R², with conical damage over πR².
     pub asperity_pressure: f64,
     /// Restitution of a central impact, in (0, 1].
     pub restitution: f64,

@@ -62,7 +62,7 @@ impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     }
 
     #[inline(always)]
-    fn limit<R: Real>(law: &Rough<R>, friction: R, normal: R, radius: R, _: R) -> R {
+    fn limit<R: Real>(law: &Rough<R>, friction: R, normal: R, radius: R) -> R {
         let half = law.pressure * radius * radius;
         (friction + law.asperities * (half / (half + normal))) * normal
     }

@@ -1,11 +1,12 @@
 //! Tangential law: Mindlin's spring with conical damage and pressure-dependent friction.
 //!
-//! Spring of `mindlin.rs` on the circle a = √(R u) of `conical_damage.rs`. With asperities (Suhr & Six,
+//! Spring of `mindlin.rs` on the circle a = √(R u) of `conical_damage.rs`. With asperities (after Suhr & Six,
 //! Powder Technol. 294, 2016)
 //!
-//! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π a²) the mean pressure,
+//! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π R₀²) the nominal pressure on the uncrushed corner.
 //!
-//! so crushed corners, p̄ = 2/3 σ, keep μ + μₐ/(1 + 2σ/3p). Mixing as in `rough.rs`.
+//! The mean pressure F/(π a²) of a crushed corner is 2/3 of its strength at any force, so it cannot lower the
+//! friction with the load. Mixing as in `rough.rs`.
 //!
 //! Theory manual: eq. (1.13), `docs/theory/contacts.md`.
 
@@ -23,7 +24,7 @@ pub struct RoughMindlin<R = f64> {
     /// Shear modulus G* [Pa].
     pub shear: R,
     asperities: R,
-    /// π × mean pressure at half asperity friction [Pa].
+    /// π × nominal pressure at half asperity friction [Pa].
     pressure: R,
 }
 
@@ -48,8 +49,8 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
     }
 
     #[inline(always)]
-    fn limit<R: Real>(law: &RoughMindlin<R>, friction: R, normal: R, _: R, circle: R) -> R {
-        let half = law.pressure * circle * circle;
+    fn limit<R: Real>(law: &RoughMindlin<R>, friction: R, normal: R, radius: R) -> R {
+        let half = law.pressure * radius * radius;
         let share = half / (half + normal).max(R::splat(f64::MIN_POSITIVE));
         (friction + law.asperities * share) * normal
     }

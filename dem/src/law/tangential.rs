@@ -41,7 +41,7 @@ pub trait TangentialLaw<N: NormalLaw>: Constants {
 
     /// Returns the friction limit [N], by default Coulomb's.
     #[inline(always)]
-    fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R, _circle: R) -> R {
+    fn limit<R: Real>(_: &Self::Lanes<R>, friction: R, normal: R, _radius: R) -> R {
         friction * normal
     }
 

@@ -157,7 +157,8 @@ pub fn mill(n: usize) -> ModelInput {
     let shaking = Motion { oscillation: Some(swing), angular_velocity: Vec3::y() * 0.1, ..Motion::default() };
     input.walls.push(WallInput { motion: shaking, ..WallInput::fixed(floor, 0) });
     let lid = WallShape::Plane { point: Vec3::z() * (width + 0.13), normal: -Vec3::z() };
-    let servo = Servo { direction: -Vec3::z(), force: vec![[0.0, 50.0]], max_speed: 0.5, gain: 0.5, driven: None };
+    let servo =
+        Servo { direction: -Vec3::z(), force: vec![[0.0, 50.0]], max_speed: 0.5, gain: 0.5, driven: None };
     input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(lid, 0) });
     let corner = |k: usize| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.05 } else { -0.05 });
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -275,8 +275,13 @@ fn a_driven_plate_presses_a_block() {
     // A plane wall like the others.
     input.walls.push(WallInput::fixed(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, 0));
     input.walls.push(rigid(cuboid(Vec3::z() * 0.051, Vec3::new(0.1, 0.08, 0.05)), free(4.0)));
-    let servo =
-        trackbed_dem::Servo { direction: -Vec3::z(), force: vec![[0.0, 200.0]], max_speed: 0.2, gain: 0.5, driven: None };
+    let servo = trackbed_dem::Servo {
+        direction: -Vec3::z(),
+        force: vec![[0.0, 200.0]],
+        max_speed: 0.2,
+        gain: 0.5,
+        driven: None,
+    };
     let plate = WallShape::Plane { point: Vec3::z() * 0.11, normal: -Vec3::z() };
     input.walls.push(WallInput { servo: Some(servo), ..WallInput::fixed(plate, 0) });
     let mut run = Run::new(input);

@@ -20,7 +20,9 @@ use crate::run::summary::{
 };
 use crate::run::system::System;
 use crate::run::track_output;
-use crate::run::validity::{Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift};
+use crate::run::validity::{
+    Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift,
+};
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::track::cycles::Cycle;
 use trackbed_coupling::track::{Track, TrackInput};

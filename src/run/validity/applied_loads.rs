@@ -23,12 +23,7 @@ pub struct LoadCheck {
 }
 
 /// Compares the loads of a run over `end` [s].
-pub fn applied_loads(
-    part: &GrainsPart,
-    view: GrainsView<'_>,
-    track: &Track<'_>,
-    end: f64,
-) -> Vec<LoadCheck> {
+pub fn applied_loads(part: &GrainsPart, view: GrainsView<'_>, track: &Track<'_>, end: f64) -> Vec<LoadCheck> {
     let walls = part.walls.others.iter().zip(&part.walls.names).enumerate();
     let servo = walls.clone().filter_map(|(k, (_, name))| {
         let load = view.state.wall_load(k)?;

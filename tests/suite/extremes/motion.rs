@@ -9,6 +9,7 @@ rows! {
     gravities: "gravity of any size";
     moving_walls: "walls that move fast";
     skipping_walls: "walls that skip a grain in one step";
+    servo_walls: "servo walls asked for more than they can follow";
 }
 
 fn far() -> Row {
@@ -96,5 +97,47 @@ fn skipping_walls() -> Row {
         "the plate at 300, 1e3, 3e3, 1e4 m/s, K = 1e5: 1.2, 4, 12, 40 radii in a step",
         "stopped: `speed of wall 0` more than half the smallest radius a step",
         "v' = (1 + e) v",
+    )
+}
+
+/// Plate on a ball on the floor: five pulses from 2 to 4 N.
+fn pressed(frequency: f64, max_speed: f64, keys: &str) -> Case {
+    let start = 0.2;
+    let text = stone(&format!("restitution = 0.5\n{keys}"))
+        + &ball("ball", [0.0, 0.0, 0.01], 0.01, [0.0; 3])
+        + &floor()
+        + &plane("plate", [0.0, 0.0, 0.0201], [0.0, 0.0, -1.0])
+        + &format!(
+            "servo = {{ force = 2.0, max_speed = {max_speed:?}, pulses = {{ peak = 2.0, frequency = {frequency:?}, count = 5, \
+             start = {start:?} }} }}\n"
+        )
+        + &time(start + 5.0 / frequency, 200);
+    Case::run(&text, &[])
+}
+
+fn servo_walls() -> Row {
+    let error = |case: Case| case.good().value("/loads/0/error");
+    let fast: Vec<f64> =
+        [1.0, 10.0, 100.0, 1000.0].map(|f| error(pressed(f, 1.0, ""))).into_iter().collect();
+    let stiff: Vec<f64> = ["stiffness = 1e4\n", "stiffness = 1e8\n"].map(|k| error(pressed(10.0, 1.0, k))).into();
+    assert!(fast.iter().chain(&stiff).all(|e| *e < 0.02), "{fast:?} {stiff:?}");
+    // 20 um in 5 ms need 6 mm/s.
+    let late = pressed(100.0, 1e-3, "").good();
+    let failed = late.value("/loads/0/error");
+    assert!(failed > 0.1, "{failed}");
+    let summary = late.summary();
+    assert_eq!(summary["verdict"]["outcome"], "failed", "{summary}");
+    let checks = summary["validity"].as_array().unwrap();
+    let check = checks.iter().find(|c| c["name"] == "error of an applied load over its amplitude").unwrap();
+    assert!(check["status"] == "failed" && check["message"].as_str().unwrap().starts_with("wall plate: force"));
+    Row::new(
+        "plate that pulses a ball at 1, 10, 100, 1000 Hz; K = 1e4, 1e8 N/m; max_speed a sixth of the one needed",
+        format!(
+            "right: error of the force {}, {}; too slow: {} (verdict failed)",
+            figures(&fast),
+            figures(&stiff),
+            figures(&[failed])
+        ),
+        "target force",
     )
 }

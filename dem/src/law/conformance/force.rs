@@ -115,16 +115,11 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
     assert!(largest > 0.0);
 }
 
-/// Closed-form friction limit at normal force [N] and overlap [m].
-fn limit(m: &Material, normal: f64, overlap: f64, history: &History) -> f64 {
-    // Pressure over R², or with conical damage over the current circle.
-    let square = if m.corner_strength.is_finite() {
-        let k = (1.0 - m.corner_angle.sin()) / m.corner_angle.sin();
-        let elastic = overlap - (history.rate - RADIUS) * k;
-        std::f64::consts::PI * history.rate * elastic.max(0.0)
-    } else {
-        RADIUS * RADIUS
-    };
+/// Closed-form friction limit at normal force [N].
+fn limit(m: &Material, normal: f64) -> f64 {
+    // Pressure over R², or with conical damage over π R².
+    let crushes = m.corner_strength.is_finite();
+    let square = RADIUS * RADIUS * if crushes { std::f64::consts::PI } else { 1.0 };
     let added = m.asperity_friction / (1.0 + normal / (m.asperity_pressure * square));
     (m.friction + if added.is_nan() { 0.0 } else { added }) * normal
 }
@@ -138,7 +133,7 @@ pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
         for m in path.moments() {
             let f = m.evaluate(&law, &mut history, path.dt());
             let tangential = f.force - m.geometry.normal * f.normal;
-            let limit = limit(material, f.normal, m.geometry.overlap, &history);
+            let limit = limit(material, f.normal);
             assert!(f.normal >= 0.0 && tangential.norm() <= limit * (1.0 + 1e-9) + 1e-300);
             *if tangential.norm() > limit * (1.0 - 1e-9) { &mut sliding } else { &mut sticking } += 1;
         }
