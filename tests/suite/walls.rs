@@ -130,12 +130,12 @@ fn a_servo_follows_pulses() {
 fn displacement_control_follows_force() {
     let out = Folder::new("servo_driven");
     let set = [
-        "grains.0.count=200",
+        "grains.0.count=400",
         "walls.2.point=[0.0,0.0,0.05]",
         "walls.2.servo.history=",
         "walls.2.servo.displacement_control={ from = 0.3, speed = \"10 mm/s\" }",
         "deposition.max_time=0.2",
-        "deposition.level=0.03",
+        "deposition.level=0.044",
         "time.end=0.4",
         "output.frames=1",
     ];

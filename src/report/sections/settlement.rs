@@ -169,7 +169,10 @@ pub fn traffic(runs: &[RunData], axle_load: f64) -> Option<Section> {
         for mgt in TRAFFIC.into_iter().filter(|mgt| last > 0.0 && mgt / per_cycle > last) {
             let n = mgt / per_cycle;
             let fair = laws.iter().filter(|law| law.r2 >= FAIR);
-            let all: Vec<(f64, &Law, f64)> = fair.filter_map(|law| Some((law.r2, law, law.at(n)?))).collect();
+            // A law that rises again, as a parabola does, is no extrapolation.
+            let beyond = |law: &Law| law.at(n).filter(|s| Some(*s) >= law.at(law.range[1]));
+            let all: Vec<(f64, &Law, f64)> =
+                fair.filter_map(|law| Some((law.r2, law, beyond(law)?))).collect();
             let Some(best) = all.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
             let bound = |pick: fn(f64, f64) -> f64| all.iter().map(|a| a.2).reduce(pick);
             let name =
