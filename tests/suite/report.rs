@@ -321,6 +321,9 @@ fn grains_alone() {
         &["grains.0.count=150", "output.frames=0", "time.end=0.6"],
     );
     page.contains("Stress and strain of servo walls");
+    page.has(&["applied"]);
+    let (page, summary) = (page, json(&folder.join("out/summary.json")));
+    page.says(summary["loads"][0]["applied"]["mean"].as_f64().unwrap());
 }
 
 #[test]

@@ -27,7 +27,7 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// Returns all sections with data; `axle_load` of a cycle [t].
 pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
-    let sections: [Make; 23] = [
+    let sections: [Make; 24] = [
         verdict::verdict,
         compare::compare,
         overview::overview,
@@ -36,6 +36,7 @@ pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
         track::pressure,
         track::sleepers,
         track::push,
+        walls::applied,
         walls::walls,
         loads::loads,
         packing::packing,

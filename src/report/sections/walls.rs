@@ -3,13 +3,36 @@
 use super::overlay::{dominant, overlay};
 use crate::columns::{Definition, history};
 use crate::report::data::RunData;
-use crate::report::page::{Section, joined, paragraph, plots};
+use crate::report::page::{Cell, Section, joined, paragraph, plots, table};
 use crate::report::plot::{Plot, Side};
 use crate::results::tables::Table;
 use crate::scene::walls::{Wall, WallKind};
 
 /// Contact threshold over largest force.
 const TOUCH: f64 = 0.01;
+
+/// Formats loads and motions against their targets.
+pub fn applied(runs: &[RunData]) -> Option<Section> {
+    let mut rows = Vec::new();
+    for run in runs {
+        for load in run.list("loads") {
+            let text = |key: &str| load[key].as_str().unwrap_or_default();
+            let unit = if text("quantity").ends_with("[m]") { "m" } else { "N" };
+            let name =
+                format!("{}: {}", text("name"), text("quantity").split(" [").next().unwrap_or_default());
+            let name = if runs.len() > 1 { format!("{}: {name}", run.label) } else { name };
+            let number = |side: &str, key: &str| Cell::of(load[side][key].as_f64(), unit);
+            let percent =
+                load["error"].as_f64().map_or(Cell::Nothing, |e| Cell::text(format!("{:.2} %", 100.0 * e)));
+            let phase = load["phase"].as_f64().map_or(Cell::Nothing, |p| Cell::text(format!("{p:.2}°")));
+            let sides = ["target", "applied"].map(|side| ["min", "mean", "max"].map(|key| number(side, key)));
+            rows.push((name, sides.concat().into_iter().chain([phase, percent]).collect()));
+        }
+    }
+    let heads =
+        ["", "target: smallest", "mean", "largest", "applied: smallest", "mean", "largest", "phase", "error"];
+    Section::new("applied", "Applied loads", table(&heads, &rows))
+}
 
 /// Formats wall forces.
 pub fn walls(runs: &[RunData]) -> Option<Section> {
