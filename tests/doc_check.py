@@ -1,12 +1,15 @@
-"""Checks the pages: python3 tests/doc_check.py [PROGRAM]
+"""Checks the pages and the heads of inputs/: python3 tests/doc_check.py [PROGRAM]
 
 Relative links and anchors must exist; at most WORDS words, README_WORDS in README outside tables and code.
+Each TOML file of inputs/ begins with a comment that states purpose, time and sources (see `head`); docs/scenes.md lists each scene.
 With PROGRAM, `trackbed check` must accept the examples of docs/scene.md, assembled into scenes.
 """
-import os, re, shutil, subprocess, sys, tempfile
+import os, re, shutil, subprocess, sys, tempfile, tomllib
 
 WORDS = 50_000
 README_WORDS = 600
+HEAD_LINES = 5
+LABELS = ["Shows", "Time", "Sources", "Use"]
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -152,6 +155,77 @@ def examples(program):
                 yield f"docs/scene.md: the examples as scene {name}: {done.stderr.strip()}"
 
 
-faults = list(links()) + list(too_long()) + (list(examples(sys.argv[1])) if len(sys.argv) > 1 else [])
-print("\n".join(faults) or "links" + (" and examples" if len(sys.argv) > 1 else "") + " are right")
+def inputs():
+    """Name and text of each TOML file of inputs/; True for scenes, not for studies, libraries and included files."""
+    folder = os.path.join(ROOT, "inputs")
+    for path, _, files in sorted(os.walk(folder)):
+        for file in sorted(f for f in files if f.endswith(".toml")):
+            text = open(os.path.join(path, file), encoding="utf-8").read()
+            tables = tomllib.loads(text)
+            scene = "scene" not in tables and ("solid" in tables or "grains" in tables)
+            yield os.path.relpath(os.path.join(path, file), folder).replace(os.sep, "/"), text, scene
+
+
+def head(text):
+    """Texts of the first comment by label, and its errors.
+
+    Each text begins with "# LABEL: " and continues with "#   ". Order of LABELS; `Use` (commands, options) may repeat. Scenes need
+    Shows, Time and Sources, other files Shows and Sources: at most HEAD_LINES lines without `Use`.
+    """
+    found, labels, lines = {}, [], 0
+    for line in text.split("\n"):
+        if not line.startswith("#"):
+            break
+        start = re.match(rf"# ({'|'.join(LABELS)}): (?=\S)", line)
+        if start:
+            labels.append(start[1])
+        elif not (labels and re.match(r"#   \S", line)):
+            return found, f"found the comment line {line!r}, expected \"# LABEL: \" with {', '.join(LABELS)}, or \"#   \" to continue"
+        found[labels[-1]] = f"{found.get(labels[-1], '')} {line[start.end() if start else 4:]}".strip()
+        lines += labels[-1] != "Use"
+    order = [LABELS.index(label) for label in labels]
+    if order != sorted(order) or any(labels.count(label) > 1 for label in LABELS[:3]):
+        return found, f"found {', '.join(labels)}, expected the order {', '.join(LABELS)}"
+    return found, f"found {lines} lines, expected at most {HEAD_LINES}" if lines > HEAD_LINES else None
+
+
+def numbers(text):
+    return re.findall(r"\d[\d.,]*(?<=\d)", text)
+
+
+def table():
+    """CPU time by scene in docs/scenes.md; None in tables without it."""
+    folder, times = "", {}
+    for _, line in lines(os.path.join(ROOT, "docs/scenes.md")):
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if cells and cells[0].startswith("scene"):
+            folder, timed = ("verify/" if "inputs/verify" in cells[0] else ""), "CPU" in cells[-1]
+        # A second name of a row is in the folder of the first.
+        beside = folder
+        for name in re.findall(r"`([^`]*\.toml)`", cells[0] if cells else ""):
+            name = name if "/" in name and not folder else beside + name
+            times[name], beside = cells[-1] if timed else None, beside or os.path.dirname(name) + "/"
+    return times
+
+
+def heads():
+    """Errors of the heads of inputs/ and of the table of scenes."""
+    times = table()
+    for name, text, scene in inputs():
+        found, error = head(text)
+        missing = [label for label in ("Shows", "Time", "Sources") if label not in found and (scene or label != "Time")]
+        if error or missing:
+            yield f"inputs/{name}:1: {error or 'found no ' + ', '.join(missing) + ' in the first comment'}"
+        elif scene and name not in times:
+            yield f"docs/scenes.md: found no row of {name}"
+        elif scene and times[name] is not None and not numbers(times[name]):
+            yield f"docs/scenes.md: found no CPU time of {name}"
+        elif scene and (other := set(numbers((times[name] or "").split("(")[0])) - set(numbers(found["Time"]))):
+            yield f"docs/scenes.md: found {name} with {', '.join(sorted(other))} s, expected a time of its head: {found['Time']}"
+        times.pop(name, None)
+    yield from (f"docs/scenes.md: found {name}, expected a file of inputs/" for name in times)
+
+
+faults = list(links()) + list(too_long()) + list(heads()) + (list(examples(sys.argv[1])) if len(sys.argv) > 1 else [])
+print("\n".join(faults) or "links, heads" + (" and examples" if len(sys.argv) > 1 else "") + " are right")
 sys.exit(bool(faults))

@@ -13,7 +13,8 @@ STONES = [("cubical", 14, (1.0, 0.95, 0.9)), ("flat", 14, (1.1, 1.0, 0.55)), ("e
 RADIUS = 0.12
 
 random.seed(20)
-print("# Convex stones by make_polyhedra.py; unit: half of the middle axis.")
+print("# Shows: Five convex stones with rounded edges; unit: half of the middle axis.")
+print("# Sources: Written by make_polyhedra.py; proportions chosen, not measured.")
 print('name = "five convex stones"\nsource = "corners at random places of ellipsoids"')
 for name, count, half in STONES:
     corners = []

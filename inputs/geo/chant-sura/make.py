@@ -56,7 +56,8 @@ with open("ground.obj", "w", encoding="utf-8") as out:
         out.write(f"f {a} {c} {d}\nf {a} {d} {b}\n")
 
 with open("plate.toml", "w", encoding="utf-8") as out:
-    out.write("# Plate of ETAG 027 as used at Chant Sura, 0.93 x 0.93 x 0.47 m, by make.py.\n")
+    out.write("# Shows: Plate of ETAG 027 as used at Chant Sura, 0.93 x 0.93 x 0.47 m.\n")
+    out.write("# Sources: Outer sizes: Lu et al. 2019; written by make.py.\n")
     out.write('name = "plate of ETAG 027"\nsource = "outer sizes: Lu and others 2019"\n\n[[stones]]\nname = "plate"\n')
     out.write(f"radius = {ROUND}\ncorners = [\n")
     for axis in range(3):

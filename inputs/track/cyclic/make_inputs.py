@@ -107,8 +107,9 @@ def union_moments(centres, radii, cells=900):
 def make_stones():
     rng = np.random.default_rng(SEED)
     text = [
-        "# Six ballast-like stones as clumps of overlapping spheres; sieve size 1, so scale = sieve size in metres.",
-        "# Frame: centroid and principal axes of the union. Written by make_inputs.py.",
+        "# Shows: Six ballast-like stones as clumps of ten to twelve spheres; sieve size 1 m, so scale = sieve size in metres. Frame: centroid and principal axes of the",
+        "#   union.",
+        "# Sources: Written by make_inputs.py; shapes chosen, not measured.",
         'name = "ballast, six stones"',
         'source = "convex hulls of random points near ellipsoids, filled greedily with spheres"',
     ]
