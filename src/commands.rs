@@ -66,7 +66,9 @@ fn new(args: &NewArgs) -> Result<(), Failure> {
     let folder = args.folder.clone().unwrap_or_else(|| template.into());
     let scene = start::make(template, &folder)?;
     let scene = scene.display();
-    print(&format!("{scene} written; next: trackbed check {scene}, trackbed run {scene}\n"))
+    print(&format!(
+        "{scene} written; next:\n  trackbed view {scene}\n  trackbed check {scene}\n  trackbed run {scene}\n"
+    ))
 }
 
 #[cfg(not(feature = "mpi"))]

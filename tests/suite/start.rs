@@ -20,7 +20,9 @@ fn templates_are_valid_scenes() {
         let own = folder.join(name);
         let made = trackbed(["new", name, own.to_str().unwrap()]).good();
         let scene = own.join("scene.toml");
-        assert!(made.stdout.starts_with(&format!("{} written; next: ", scene.display())), "{made:?}");
+        let next: Vec<String> =
+            ["view", "check", "run"].map(|c| format!("  trackbed {c} {}", scene.display())).into();
+        assert_eq!(made.stdout, format!("{} written; next:\n{}\n", scene.display(), next.join("\n")));
         let shipped = repository().join("inputs").join(template.source);
         // Memory use varies.
         let check = |scene: &PathBuf| {
