@@ -98,7 +98,7 @@ try {
         const { picked } = app.state;
         const value = (name) => picked.data.find((row) => row[0] === name)?.[1];
         const way = picked && Math.hypot(...['x', 'y', 'z'].map((k) => picked.history[`displacement ${k} [m]`].y.at(-1)));
-        out.push(picked && { id, title: picked.title, place: picked.place, speed: value('Speed'), extent: value('longest extent'), way });
+        out.push(picked && { id, title: picked.title, place: picked.place, speed: value('Speed'), extent: value('Longest extent'), way });
       }
       return out;
     });
@@ -160,6 +160,6 @@ async function shoot(view, file) {
   expect(fs.statSync(file).size < 300e3, `${file} has ${fs.statSync(file).size} bytes`);
   await view.page.setViewportSize(size);
   await view.page.reload();
-  await view.page.waitForFunction('window.trackbed');
+  await view.page.waitForFunction(() => window.trackbed);
   await view.run(() => trackbed.ready.then(() => trackbed.idle()));
 }

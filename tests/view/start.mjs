@@ -71,7 +71,7 @@ export async function onStart(view, browser, address, faults) {
     expect(parts.chains === 'chains Contact force', parts.chains);
     expect(parts.sizes === 'grains Grains: Sieve size', parts.sizes);
     await view.page.reload();
-    await view.page.waitForFunction('window.trackbed');
+    await view.page.waitForFunction(() => window.trackbed);
     await view.run(() => trackbed.ready.then(() => trackbed.idle()));
     return Object.values(parts).join('; ');
   });
@@ -108,7 +108,7 @@ export async function onStart(view, browser, address, faults) {
     await view.click('button-theme');
     expect(await side() === light, 'the button changes the theme');
     await page.reload();
-    await page.waitForFunction('window.trackbed');
+    await page.waitForFunction(() => window.trackbed);
     await view.run(() => trackbed.ready.then(() => trackbed.idle()));
     expect(await side() === light, 'the theme is kept for the session');
     await page.emulateMedia({ colorScheme: 'light' });

@@ -54,15 +54,15 @@ export async function onTrack(view, only) {
     const { picked } = await view.state();
     expect(picked.kind === 'grain' && picked.id === seen.id, `${picked.title} in place of stone ${seen.id}`);
     const text = await page.locator('#picked').innerText();
-    expect(text.includes(`Grain ${seen.id}`) && ['Speed', 'sieve size', 'longest extent'].every((row) => text.includes(row)), text.replaceAll('\n', ' '));
+    expect(text.includes(`Grain ${seen.id}`) && ['Speed', 'Sieve size', 'Longest extent'].every((row) => text.includes(row)), text.replaceAll('\n', ' '));
     const rows = new Map(picked.data.map(([name, value]) => [name, value]));
     // Sieve sizes lie between the sieves of the gradation, in the scale of the scene.
-    expect(rows.get('sieve size') > 0.045 && rows.get('sieve size') < 0.142 && rows.get('sieve size') < rows.get('longest extent'), JSON.stringify(picked.data));
+    expect(rows.get('Sieve size') > 0.045 && rows.get('Sieve size') < 0.142 && rows.get('Sieve size') < rows.get('Longest extent'), JSON.stringify(picked.data));
     expect(/^(ballast|crib_front|crib_back)$/.test(rows.get('Group')) && rows.get('Material') === 'stone', JSON.stringify(picked.data));
     await view.run(() => trackbed.app.set('frame', 0));
     await page.waitForFunction((was) => document.getElementById('picked-data').innerText !== was, await page.locator('#picked-data').innerText()).catch(() => {});
-    const before0 = (await view.state()).picked.data.find((row) => row[0] === 'position')[1];
-    expect(before0.join() !== rows.get('position').join(), 'the card follows the frame');
+    const before0 = (await view.state()).picked.data.find((row) => row[0] === 'Position')[1];
+    expect(before0.join() !== rows.get('Position').join(), 'the card follows the frame');
     await view.run((k) => trackbed.app.set('frame', k), frames - 1);
     const history = Object.values(picked.history)[0];
     expect(history.x.length === frames, `${history.x.length} points in the history`);
@@ -91,7 +91,7 @@ export async function onTrack(view, only) {
     expect(picked.kind === 'node' && picked.id === node.id, `${picked.title} in place of ${node.id}`);
     expect(/stress/.test(quantity), `curve of ${quantity} in place of the field of the picture`);
     expect(picked.history[quantity].x.length === frames, `${picked.history[quantity].x.length} points in the curve`);
-    const names = picked.data.filter(([name]) => name === 'material').map((row) => row[1]);
+    const names = picked.data.filter(([name]) => name === 'Material').map((row) => row[1]);
     expect(names.length === 1 && /^(subgrade|embankment)$/.test(names[0]), JSON.stringify(picked.data));
     await view.select('solid-field', 'von_mises');
     await page.waitForFunction(() => /Von Mises/.test(trackbed.state.pickedQuantity));

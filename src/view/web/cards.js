@@ -2,6 +2,8 @@
 import { label as grainLabel, groupName, unit as grainUnit } from 'grains';
 import { label as solidLabel, unit as solidUnit } from 'solid';
 
+const MATERIAL = 'element:material';
+
 /** Card with rows [name, value, unit], which `renew` gives for another frame. */
 async function card(kind, id, rows, more = {}) {
   const title = `${kind === 'node' ? 'Node' : 'Grain'} ${id}`;
@@ -10,21 +12,21 @@ async function card(kind, id, rows, more = {}) {
 
 const world = (place, origin) => Array.from(place, (x, k) => x + origin[k]);
 
-/** Rows of fields of a grain; its group and material by name. */
-async function fieldRows(meta, valueOf) {
-  const rows = [];
+/** Rows of a grain: group and material by name, `own` ones, fields. */
+async function grainRows(meta, own, valueOf) {
+  const [names, fields] = [[], []];
   for (const field of meta.grainFields) {
     const value = await valueOf(field);
     if (value === undefined) continue;
     if (field !== 'part') {
-      rows.push([grainLabel(field), value, grainUnit(field)]);
+      fields.push([grainLabel(field), value, grainUnit(field)]);
       continue;
     }
-    rows.unshift(['Group', groupName(meta, value), '']);
+    names.push(['Group', groupName(meta, value), '']);
     const material = meta.groups?.[value]?.material;
-    if (material) rows.splice(1, 0, ['Material', material, '']);
+    if (material) names.push(['Material', material, '']);
   }
-  return rows;
+  return [...names, ...own, ...fields];
 }
 
 /** Card of the grain of a sphere. */
@@ -37,10 +39,9 @@ export function grainCard(app, sphere) {
     const { start, diameter } = grains.bodies;
     const place = world(grains.position.subarray(3 * body, 3 * body + 3), meta.origin);
     const spheres = start[body + 1] - start[body];
-    const fields = await fieldRows(meta, async (field) => (await app.grainValues(field, state.frame))[body]);
-    const size = ['sieve size', grains.sieve(body), 'm'];
-    const more = spheres > 1 ? [['longest extent', diameter[body], 'm'], ['spheres', spheres, '']] : [['diameter', diameter[body], 'm']];
-    return { data: [size, ...more, ['position', place, 'm'], ...fields], place };
+    const sizes = spheres > 1 ? [['Longest extent', diameter[body], 'm'], ['Spheres', spheres, '']] : [['Diameter', diameter[body], 'm']];
+    const own = [['Sieve size', grains.sieve(body), 'm'], ...sizes, ['Position', place, 'm']];
+    return { data: await grainRows(meta, own, async (field) => (await app.grainValues(field, state.frame))[body]), place };
   });
 }
 
@@ -49,12 +50,13 @@ export function facedCard(app, triangle) {
   const id = app.walls.stoneIds[triangle];
   return card('faced', id, async () => {
     const { source, walls, meta, state } = app;
-    const own = walls.stoneIds.indexOf(id);
-    if (own < 0) return null;
-    const stone = walls.stoneAt(own);
+    const first = walls.stoneIds.indexOf(id);
+    if (first < 0) return null;
+    const stone = walls.stoneAt(first);
     const place = world(stone.place, meta.origin);
-    const fields = await fieldRows(meta, async (field) => (await source.block(`walls/${state.frame}/${field}`))?.arrays.value[stone.triangle]);
-    return { data: [['longest extent', stone.extent, 'm'], ['position', place, 'm'], ...fields], place };
+    const own = [['Longest extent', stone.extent, 'm'], ['Position', place, 'm']];
+    const valueOf = async (field) => (await source.block(`walls/${state.frame}/${field}`))?.arrays.value[stone.triangle];
+    return { data: await grainRows(meta, own, valueOf), place };
   });
 }
 
@@ -68,18 +70,16 @@ export function nodeCard(app, triangle, far) {
     const { solid, meta, state, source } = app;
     const u = solid.displacement.subarray(3 * node, 3 * node + 3);
     const place = world(solid.skin.points.subarray(3 * node, 3 * node + 3), meta.origin);
-    const data = [['position', place, 'm'], ...['x', 'y', 'z'].map((axis, k) => [`displacement ${axis}`, u[k], 'm'])];
+    const data = [['Position', place, 'm'], ...['x', 'y', 'z'].map((axis, k) => [`Displacement ${axis}`, u[k], 'm'])];
     const { field } = state.solid;
     if (solid.values && !field.startsWith('displacement') && field !== MATERIAL) {
       data.push([solidLabel(field), solid.values[solid.ofElements ? triangle : node], solidUnit(field)]);
     }
-    data.push(['element', solid.skin.element_ids[triangle], '']);
+    data.push(['Element', solid.skin.element_ids[triangle], '']);
     if (meta.solidFields.includes(MATERIAL)) {
       const number = (await source.block(`solid/${state.frame}/${MATERIAL}`))?.arrays.value[triangle];
-      data.push(['material', meta.materials?.[number] ?? number, '']);
+      data.push(['Material', meta.materials?.[number] ?? number, '']);
     }
     return { data, place };
   }, { node });
 }
-
-const MATERIAL = 'element:material';

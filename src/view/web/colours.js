@@ -67,15 +67,16 @@ export function pieceTexture() {
 /** Colour of the page by the name of its CSS variable. */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** Least and largest of values; `wide`: apart in any case. */
-export function limits(values, wide) {
+/** Least and largest of values; those of equal values, apart from rounding, are set apart by a share of their size. */
+export function limits(values, share = 0) {
   let [low, high] = [Infinity, -Infinity];
   for (const v of values) {
     if (v < low) low = v;
     if (v > high) high = v;
   }
   if (!(high >= low)) return [0, 1];
-  const half = wide && high === low ? 0.5 * (Math.abs(low) || 1) : 0;
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const half = high - low <= 1e-6 * size ? share * (size || 1) : 0;
   return [low - half, high + half];
 }
 
@@ -83,8 +84,8 @@ export function limits(values, wide) {
 export function figure(value) {
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(2).replace('e+', 'e');
-  return String(Number(value.toPrecision(3)));
+  if (size >= 1e5 || size < 1e-3) return value.toExponential(2).replace('e+', 'e').replace(/^-/, '−');
+  return String(Number(value.toPrecision(3))).replace('-', '−');
 }
 
 /** At most `most` steps of 1, 2 or 5 times a power of ten between two limits. */

@@ -82,7 +82,7 @@ export class Grains {
     u.mode.value = look.palette ? 2 : values ? 0 : 1;
     if (!values) return;
     u.map.value = look.palette === 'pieces' ? pieceTexture() : look.palette ? groupTexture() : mapTexture(look.map);
-    this.range = look.auto ? limits(values) : [look.min, look.max];
+    this.range = look.auto ? limits(values, 0.01) : [look.min, look.max];
     u.range.value.set(...this.range);
     const { start } = this.bodies;
     const out = this.spheres.numbers;

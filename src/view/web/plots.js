@@ -3,7 +3,7 @@ import { colour, figures, limits, scaled, ticks } from 'colours';
 
 /** Scale of values with a label such as `load [N]`: name with the unit that suits them, position, ticks as [position, text]. */
 function axis(values, label, from, to) {
-  const [low, high] = limits(values, true);
+  const [low, high] = limits(values, 0.5);
   const [, name, plain] = /^(.*?)(?: \[(.*)\])?$/.exec(label);
   const { factor, unit } = scaled(plain ?? '', Math.max(Math.abs(low), Math.abs(high)));
   const place = (v) => from + ((v - low) / (high - low)) * (to - from);
@@ -23,7 +23,7 @@ export function plot(canvas, { x, y, xLabel, yLabel, line, mark, points }) {
   g.fillStyle = colour('--paper');
   g.fillRect(0, 0, w, h);
   g.font = '11px system-ui, sans-serif';
-  const [left, right, top, bottom] = [52, w - 12, 22, h - 30];
+  const [left, right, top, bottom] = [52, w - 18, 22, h - 30];
   const [across, up] = [axis(x, xLabel, left, right), axis(y, yLabel, bottom, top)];
   const stroke = (style, width, places) => {
     Object.assign(g, { strokeStyle: style, lineWidth: width });

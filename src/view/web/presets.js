@@ -15,7 +15,7 @@ const PRESETS = [
   },
   {
     id: 'settlement', label: 'Settlement', title: 'Vertical displacement of the solid and displacement of the grains since the first frame',
-    fits: ({ state }) => state.frames > 1 && (state.parts.solid || state.parts.grains),
+    fits: ({ state }) => state.frames > 1 && state.parts.solid,
     values: ({ state }) => ({
       frame: state.frames - 1, grains: { colour: 'displacement' }, solid: { field: 'displacement_z' }, reference: { since: '1', frame: 0 },
     }),

@@ -79,7 +79,7 @@ export class Solid {
     u.tint.value.set(...rgb(look.constant));
     u.mode.value = values ? 0 : 1;
     if (!values) return;
-    this.range = look.auto ? limits(values) : [look.min, look.max];
+    this.range = look.auto ? limits(values, 0.01) : [look.min, look.max];
     u.range.value.set(...this.range);
     u.map.value = mapTexture(look.map);
     u.bands.value = look.bands ? 12 : 0;
