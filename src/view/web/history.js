@@ -113,7 +113,9 @@ export class Histories {
     }
     if (playing || (picked.frame === frame && picked.carded === fields)) return;
     Object.assign(picked, { frame, carded: fields });
-    picked.renew().then((rows) => { if (rows) showPicked(Object.assign(picked, rows)); });
+    const current = (rows) => rows && this.app.state.picked === picked;
+    // Without its fields in a frame, the card keeps the last ones.
+    picked.renew().then((rows) => { if (current(rows)) showPicked(Object.assign(picked, rows)); }, () => {});
   }
 
   settlementAt(row) {

@@ -42,11 +42,12 @@ function moment({ status, time }) {
   return `t = ${time?.toPrecision(4) ?? '–'} s${unfinished ? ` · run: ${status}` : ''}`;
 }
 
+let first = true;
 app.opened = async (meta) => {
   const { source } = app;
-  // The list of a scene is its legend on narrow screens.
-  if (!app.seenAny && innerWidth <= 640) document.body.classList.toggle('bare', !meta.model && !meta.errors);
-  app.seenAny = true;
+  // Narrow screens have no room for controls; the list of a scene is its legend.
+  if (first && innerWidth <= 640) document.body.classList.toggle('bare', !meta.model && !meta.errors);
+  first = false;
   outline.take(meta);
   await histories.load();
   $('presets').replaceChildren(...presetButtons(app, histories, () => player.play(0)));

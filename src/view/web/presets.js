@@ -39,7 +39,7 @@ const PRESETS = [
   },
 ];
 
-const stress = (meta) => ['stress_zz'].find((field) => meta.solidFields.includes(field));
+const stress = (meta) => (meta.solidFields.includes('stress_zz') ? 'stress_zz' : undefined);
 
 /** Applies a preset. */
 export async function apply(preset, app, histories) {
@@ -49,7 +49,8 @@ export async function apply(preset, app, histories) {
   const values = { frame };
   for (const part of ['grains', 'chains', 'solid', 'section', 'reference', 'walls']) values[part] = { ...fresh[part], ...parts[part] };
   for (const [key, value] of Object.entries(view)) {
-    if (app.state.view[key] !== value && !app.state.view.flat) values[`view.${key}`] = value;
+    // Setting a side turns the camera back; the same focus leaves it.
+    if ((key === 'side' || app.state.view[key] !== value) && !app.state.view.flat) values[`view.${key}`] = value;
   }
   await app.set(values);
   if (values.solid.field === stress(app.meta)) await trim(app, 'solid', 0.01);
