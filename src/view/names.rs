@@ -38,7 +38,8 @@ mod tests {
     fn reads_names_of_groups_and_materials() {
         let text = "[[grains]]\nname = \"ballast\"\nmaterial = \"stone\"\n[[grains]]\nname = \"crib\"\n\
                     [[solid.material]]\nid = 2\nname = \"clay\"\n[[solid.material]]\nid = 3\n";
-        let groups = json!([{ "name": "ballast", "material": "stone" }, { "name": "crib", "material": null }]);
+        let groups =
+            json!([{ "name": "ballast", "material": "stone" }, { "name": "crib", "material": null }]);
         assert_eq!(of_scene(text), [groups, json!({ "2": "clay" })]);
     }
 
