@@ -5,7 +5,7 @@ use super::item::{Item, Shape};
 use super::palette::{self, AXES};
 use crate::model::solid::{self, SolidPart};
 use crate::results::solid::Surface;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use trackbed_dem::Vec3;
 use trackbed_fem::mesh::{Face, Mesh};
 
@@ -16,6 +16,8 @@ const ARROW: f64 = 0.07;
 const SUPPORT: f64 = 0.012;
 /// Size of supports over element size.
 const OF_ELEMENT: f64 = 0.3;
+/// Cell size over the model size; one support per cell and direction is drawn.
+const CELL: f64 = 0.035;
 /// Radius of set nodes over the size of supports.
 const NODE: f64 = 0.2;
 
@@ -90,7 +92,7 @@ fn mark_size(c: &Context, mesh: &Mesh) -> f64 {
     (SUPPORT * c.size()).min(OF_ELEMENT * libm::cbrt(volume / count))
 }
 
-/// Constrained nodes by direction; those with a displacement apart.
+/// Constrained nodes by direction; nodes with a displacement apart. Marks: the outermost node of each cell.
 pub fn supports(c: &Context) -> Vec<Item> {
     let Some(part) = &c.job.solid else { return Vec::new() };
     let (mesh, fixed) = (part.model.mesh(), part.model.supports().fixed());
@@ -101,19 +103,28 @@ pub fn supports(c: &Context) -> Vec<Item> {
     let mut items = Vec::new();
     for (direction, colour) in (0..3).zip(AXES) {
         for moves in [false, true] {
-            let (mut shape, mut count) = (Shape::default(), 0);
+            let (mut marked, mut count) = (BTreeMap::new(), 0);
             for (position, (dof, value)) in fixed.iter().enumerate() {
                 let (node, along) = (*dof as usize / 3, *dof as usize % 3);
                 let own = *value != 0.0 || moving.contains(&position);
                 if along != direction || own != moves || node >= nodes {
                     continue;
                 }
+                let far = |n: usize| (mesh.coordinates[n][direction] - middle[direction]).abs();
+                let cell = mesh.coordinates[node].map(|x| (x / (CELL * c.size())).floor() as i64);
+                let outermost = marked.entry(cell).or_insert(node);
+                if far(node) > far(*outermost) {
+                    *outermost = node;
+                }
+                count += 1;
+            }
+            let mut shape = Shape::default();
+            for node in marked.into_values() {
                 let x = mesh.coordinates[node];
                 let mut outwards = Vec3::zeros();
                 outwards[direction] = if x[direction] > middle[direction] { 1.0 } else { -1.0 };
                 shape.support(x, outwards, size);
                 shape.ids.resize(shape.points.len(), mesh.node_ids[node]);
-                count += 1;
             }
             if count > 0 {
                 let name = format!(

@@ -80,12 +80,15 @@ impl Chunk {
             high[k % components] = high[k % components].max(*v);
         }
         let most = f64::from((1_u32 << (8 * planes)) - 1);
-        let steps: Vec<f64> = low.iter().zip(&high).map(|(l, h)| (h - l) / most).collect();
+        // Numbers of groups and materials stay exact.
+        let whole = values.iter().all(|v| v.fract() == 0.0);
+        let step = |range: f64| if whole && range <= most { 1.0 } else { range / most };
+        let steps: Vec<f64> = low.iter().zip(&high).map(|(l, h)| step(h - l)).collect();
         let kind = if planes == 2 { "q16" } else { "q24" };
         let at = self.note(name, kind, components, values.len());
         self.arrays[at]["low"] = json!(low);
         self.arrays[at]["step"] = json!(steps);
-        let whole: Vec<u32> = values
+        let packed: Vec<u32> = values
             .iter()
             .enumerate()
             .map(|(k, v)| match steps[k % components] {
@@ -94,7 +97,7 @@ impl Chunk {
             })
             .collect();
         for plane in 0..planes {
-            self.bytes.extend(whole.iter().map(|n| (n >> (8 * plane)) as u8));
+            self.bytes.extend(packed.iter().map(|n| (n >> (8 * plane)) as u8));
         }
     }
 
@@ -117,5 +120,18 @@ impl Chunk {
         out.extend(text);
         out.extend(self.bytes);
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_stay_exact() {
+        let mut chunk = Chunk::new(Coding::Compact);
+        chunk.numbers("part", &[0.0, 3.0, 2.0], 1);
+        assert_eq!(chunk.arrays[0]["step"], json!([1.0]));
+        assert_eq!(chunk.bytes, [0, 3, 2, 0, 0, 0]);
     }
 }

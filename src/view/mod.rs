@@ -8,6 +8,7 @@ mod connections;
 pub mod export;
 mod grains;
 mod lines;
+mod names;
 mod page;
 mod preview;
 mod results;

@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
 /// Modules by import name. The first two are three.js (licence: `web/three.LICENSE.txt`).
-const MODULES: [(&str, &str); 26] = [
+const MODULES: [(&str, &str); 30] = [
     ("three", include_str!("web/three.module.min.js")),
     ("orbit", include_str!("web/OrbitControls.js")),
     ("chunk", include_str!("web/chunk.js")),
@@ -27,12 +27,16 @@ const MODULES: [(&str, &str); 26] = [
     ("pick", include_str!("web/pick.js")),
     ("plots", include_str!("web/plots.js")),
     ("legend", include_str!("web/legend.js")),
+    ("cards", include_str!("web/cards.js")),
     ("save", include_str!("web/save.js")),
     ("panel", include_str!("web/panel.js")),
+    ("presets", include_str!("web/presets.js")),
+    ("theme", include_str!("web/theme.js")),
     ("dialogs", include_str!("web/dialogs.js")),
     ("state", include_str!("web/state.js")),
     ("player", include_str!("web/player.js")),
     ("history", include_str!("web/history.js")),
+    ("parts", include_str!("web/parts.js")),
     ("app", include_str!("web/app.js")),
     ("main", include_str!("web/main.js")),
 ];

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde_json::{Value, json};
 
 use super::chunk::{Blocks, Chunk, Coding};
-use super::{grains, lines, solid, tables};
+use super::{grains, lines, names, solid, tables};
 use crate::failure::Failure;
 use crate::results::grains::{Bodies, GrainFile};
 use crate::results::lines::{Chains, Walls};
@@ -174,6 +174,9 @@ impl Results {
         chunk.meta("grainFields", json!(common.grain_fields));
         chunk.meta("solidFields", json!(common.solid_fields));
         chunk.meta("tables", json!(tables.collect::<Vec<_>>()));
+        let [groups, materials] = names::of_run(&self.dir);
+        chunk.meta("groups", groups);
+        chunk.meta("materials", materials);
         Ok(chunk.finish())
     }
 }

@@ -51,6 +51,11 @@ fn shipped_scenes_have_all_objects() {
         }
         let bodies = job.grains.as_ref().map_or(0, |g| g.groups.bodies.iter().filter(|b| !b.absent).count());
         assert_eq!(preview.of("grains").map(|item| number(&item.count)).sum::<usize>(), bodies, "{name}");
+        for item in preview.of("supports") {
+            // Pyramids of five points, one per cell of the model.
+            let marks = item.shape.points.len() / 5;
+            assert!(marks <= number(&item.count).min(2500), "{name}: {} has {marks} marks", item.name);
+        }
         for item in &preview.items {
             used[item.kind] += 1;
             let points = item.shape.points.len() as u32;

@@ -28,7 +28,7 @@ export async function open(browser, address, faults, size = { width: 900, height
   });
   const begun = Date.now();
   await page.goto(address);
-  await page.waitForFunction('window.trackbed', null, { timeout: 60000 });
+  await page.waitForFunction(() => window.trackbed, null, { timeout: 60000 });
   await page.evaluate('trackbed.ready.then(() => trackbed.idle())');
   page.firstPicture = (Date.now() - begun) / 1000;
   return page;

@@ -11,6 +11,8 @@ import { View, launch, open, serve } from './browser.mjs';
 import { check, expect, sum } from './expect.mjs';
 import { onPlayer } from './player.mjs';
 import { onScenes } from './scene.mjs';
+import { onSolid } from './solid.mjs';
+import { onStart } from './start.mjs';
 import { onStone } from './stone.mjs';
 import { onTables } from './tables.mjs';
 import { onTrack } from './track.mjs';
@@ -30,6 +32,7 @@ try {
     expect(state.frames > 5 && state.parts.grains && state.parts.solid && !state.error, JSON.stringify(state));
     const seen = (await view.run(() => trackbed.app.stage.width * trackbed.app.stage.height)) - await view.count('white');
     expect(seen > 12000, `${seen} pixels are drawn`);
+    await onStart(view, browser, pathToFileURL(page).href, faults);
     if (picture) await shoot(view, picture);
     await onPlayer(view, process.env.KEEP);
     await onTrack(view);
@@ -75,7 +78,7 @@ try {
     await view.select('grains-colour', 'part');
     const groups = await view.hash();
     const names = (await view.state()).legends[0].swatches.map((s) => s[1]);
-    expect(names.join() === 'group 0,group 1,group 2,group 3', names.join());
+    expect(names.join() === 'impact1,impact2,impact3,impact4', names.join());
     await view.set({ 'grains.show': false });
     const hidden = await view.hash();
     expect(new Set([plain, speed, groups, hidden]).size === 4, 'pictures are alike');
@@ -84,6 +87,7 @@ try {
   });
   await check('faces picked', 'grains with faces are picked, and removed by the section', async () => {
     const view = new View(await open(browser, third.address, faults));
+    await view.set({ frame: 0 });
     // Visible grains are picked where drawn; displacements match speeds.
     const found = await view.run(async () => {
       const { app, histories } = trackbed;
@@ -94,7 +98,7 @@ try {
         const { picked } = app.state;
         const value = (name) => picked.data.find((row) => row[0] === name)?.[1];
         const way = picked && Math.hypot(...['x', 'y', 'z'].map((k) => picked.history[`displacement ${k} [m]`].y.at(-1)));
-        out.push(picked && { id, title: picked.title, place: picked.place, speed: value('Speed'), extent: value('longest extent'), way });
+        out.push(picked && { id, title: picked.title, place: picked.place, speed: value('Speed'), extent: value('Longest extent'), way });
       }
       return out;
     });
@@ -135,6 +139,7 @@ try {
     return `${seen.length} of ${found.length} seen and picked, ${removed} of 96 removed`;
   });
   await third.stop();
+  await onSolid(browser, program, dir, faults);
   await onScenes(browser, program, dir, faults);
   await check('faults', 'no errors of scripts, no requests to elsewhere', () => {
     expect(faults.length === 0, faults.join('; '));
@@ -149,12 +154,12 @@ process.exitCode = sum() ? 0 : 1;
 async function shoot(view, file) {
   const size = view.page.viewportSize();
   await view.page.setViewportSize({ width: 1000, height: 640 });
-  await view.run(() => trackbed.peak());
+  await view.run(() => trackbed.preset('peak'));
   await view.set({ 'grains.show': true, 'grains.opacity': 0.3, 'solid.bands': true });
   await view.page.screenshot({ path: file });
   expect(fs.statSync(file).size < 300e3, `${file} has ${fs.statSync(file).size} bytes`);
   await view.page.setViewportSize(size);
   await view.page.reload();
-  await view.page.waitForFunction('window.trackbed');
+  await view.page.waitForFunction(() => window.trackbed);
   await view.run(() => trackbed.ready.then(() => trackbed.idle()));
 }

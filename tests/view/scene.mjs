@@ -156,6 +156,13 @@ export async function onScenes(browser, program, dir, faults) {
     for (const kind of ['Solid', 'Grains', 'Filled regions', 'Sleepers', 'Rails, seat loads', 'Supports', 'Walls']) {
       expect(kinds.some((k) => k.startsWith(kind)), `${kind} in ${kinds.join('; ')}`);
     }
+    const [right, places] = await still.run(() => [trackbed.app.stage.width - 180, trackbed.app.model.items.filter((item) => trackbed.app.model.shows(item, trackbed.state.model))
+      .flatMap((item) => Array.from({ length: item.points.length / 3 }, (_, k) => trackbed.histories.picker.project(item.points.subarray(3 * k, 3 * k + 3))[0]))]);
+    expect(places.every((x) => x > 0 && x < right), `the model ends at ${Math.max(...places)}, the legend begins at ${right}`);
+    // Dense meshes have fewer marks of five points than fixed nodes.
+    const [marks, nodes] = await still.run(() => trackbed.app.model.items.filter((item) => item.name === 'fixed in y')
+      .map((item) => [item.points.length / 15, Number.parseInt(item.count.replace(',', ''), 10)])[0]);
+    expect(marks > 50 && marks < nodes / 2, `${marks} marks of ${nodes} nodes`);
     await keep(still, 'track');
     await still.page.setViewportSize({ width: 390, height: 780 });
     await still.click('fit');

@@ -5,6 +5,8 @@ export async function onStone(view) {
   const last = (await view.state()).frames - 1;
   await check('S0-66', 'colour by part: pieces after breakage', async () => {
     await view.select('grains-colour', 'piece');
+    await view.page.keyboard.press('Home');
+    await view.idle();
     await view.click('fit');
     const [red, green] = [await view.count('red'), await view.count('green')];
     expect(red > 800 && green === 0, `whole: ${red} red and ${green} green pixels`);

@@ -11,7 +11,7 @@ export async function onTrack(view, only) {
   const frames = (await view.state()).frames;
 
   await check('S0-58', 'background: palette and a colour of its own', async () => {
-    const at = () => view.pixel(20, 250);
+    const at = () => view.pixel(20, 45);
     const seen = [];
     for (const colour of ['33414f', 'ffffff', '000000']) {
       await view.control('view-background');
@@ -54,7 +54,16 @@ export async function onTrack(view, only) {
     const { picked } = await view.state();
     expect(picked.kind === 'grain' && picked.id === seen.id, `${picked.title} in place of stone ${seen.id}`);
     const text = await page.locator('#picked').innerText();
-    expect(/Speed/.test(text) && /diameter/.test(text) && text.includes(`Grain ${seen.id}`), text);
+    expect(text.includes(`Grain ${seen.id}`) && ['Speed', 'Sieve size', 'Longest extent'].every((row) => text.includes(row)), text.replaceAll('\n', ' '));
+    const rows = new Map(picked.data.map(([name, value]) => [name, value]));
+    // Sieve sizes lie between the sieves of the gradation, in the scale of the scene.
+    expect(rows.get('Sieve size') > 0.045 && rows.get('Sieve size') < 0.142 && rows.get('Sieve size') < rows.get('Longest extent'), JSON.stringify(picked.data));
+    expect(/^(ballast|crib_front|crib_back)$/.test(rows.get('Group')) && rows.get('Material') === 'stone', JSON.stringify(picked.data));
+    await view.run(() => trackbed.app.set('frame', 0));
+    await page.waitForFunction((was) => document.getElementById('picked-data').innerText !== was, await page.locator('#picked-data').innerText()).catch(() => {});
+    const before0 = (await view.state()).picked.data.find((row) => row[0] === 'Position')[1];
+    expect(before0.join() !== rows.get('Position').join(), 'the card follows the frame');
+    await view.run((k) => trackbed.app.set('frame', k), frames - 1);
     const history = Object.values(picked.history)[0];
     expect(history.x.length === frames, `${history.x.length} points in the history`);
     expect(await page.locator('#plot-picked').isVisible(), 'its plot is there');
@@ -78,12 +87,18 @@ export async function onTrack(view, only) {
     expect(node, 'no node is seen');
     await view.clickAt(node.at);
     await page.waitForFunction(() => trackbed.state.picked?.history);
-    const { picked } = await view.state();
+    const { picked, pickedQuantity: quantity } = await view.state();
     expect(picked.kind === 'node' && picked.id === node.id, `${picked.title} in place of ${node.id}`);
-    await page.locator('#picked-quantity').selectOption({ index: 3 });
+    expect(/stress/.test(quantity), `curve of ${quantity} in place of the field of the picture`);
+    expect(picked.history[quantity].x.length === frames, `${picked.history[quantity].x.length} points in the curve`);
+    const names = picked.data.filter(([name]) => name === 'Material').map((row) => row[1]);
+    expect(names.length === 1 && /^(subgrade|embankment)$/.test(names[0]), JSON.stringify(picked.data));
+    await view.select('solid-field', 'von_mises');
+    await page.waitForFunction(() => /Von Mises/.test(trackbed.state.pickedQuantity));
+    await view.select('solid-field', 'stress_zz');
+    await page.locator('#picked-quantity').selectOption({ index: 0 });
     await view.idle();
-    const quantity = (await view.state()).pickedQuantity;
-    expect(/stress/.test(quantity), quantity);
+    expect(/displacement z/.test((await view.state()).pickedQuantity), 'another quantity is selected');
     await page.keyboard.press('Escape');
     await view.idle();
     expect((await view.state()).picked === null, 'Escape closes it');
@@ -202,7 +217,7 @@ export async function onTrack(view, only) {
     const total = (await view.state()).legends.at(-1);
     await view.select('reference-since', '1');
     const since = (await view.state()).legends.at(-1);
-    expect(Math.abs(since.range[0]) !== Math.abs(total.range[0]) && /since frame 0/.test(since.title), JSON.stringify([total, since]));
+    expect(Math.abs(since.range[0]) !== Math.abs(total.range[0]) && since.note === 'since frame 0', JSON.stringify([total, since]));
     await view.select('reference-since', '');
     await view.select('grains-colour', 'displacement');
     const stones = (await view.state()).legends[0];

@@ -64,21 +64,59 @@ export function pieceTexture() {
   return made.get('pieces');
 }
 
-/** A number for a legend. */
+/** Colour of the page by the name of its CSS variable. */
+export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Least and largest of values; those of equal values, apart from rounding, are set apart by a share of their size. */
+export function limits(values, share = 0) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const v of values) {
+    if (v < low) low = v;
+    if (v > high) high = v;
+  }
+  if (!(high >= low)) return [0, 1];
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const half = high - low <= 1e-6 * size ? share * (size || 1) : 0;
+  return [low - half, high + half];
+}
+
+/** A number with three digits. */
 export function figure(value) {
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(2).replace('e+', 'e');
-  return String(Number(value.toPrecision(3)));
+  if (size >= 1e5 || size < 1e-3) return value.toExponential(2).replace('e+', 'e').replace(/^-/, '−');
+  return String(Number(value.toPrecision(3))).replace('-', '−');
+}
+
+/** At most `most` steps of 1, 2 or 5 times a power of ten between two limits. */
+export function ticks(low, high, most) {
+  if (!(high > low)) return [low];
+  const rough = (high - low) / most;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough * (1 - 1e-9));
+  const out = [];
+  for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++) out.push(k * step);
+  return out;
+}
+
+/** Texts of ticks, with the same decimals. */
+export function figures(at) {
+  const step = at.length > 1 ? at[1] - at[0] : 0;
+  const decimals = Math.max(-Math.floor(Math.log10(step) + 1e-6), 0);
+  if (!step || decimals > 6 || Math.max(...at.map(Math.abs)) >= 1e6) return at.map(figure);
+  return at.map((t) => t.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, '').replace('-', '−'));
 }
 
 const PREFIXES = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ']];
+/** Units with prefixes: smallest and largest factor. */
+const PREFIXED = { Pa: [1, 1e9], N: [1, 1e9], 'N/m': [1, 1e9], J: [1e-6, 1e9], m: [1e-6, 1], 'm/s': [1e-6, 1] };
 
 /** The prefix with which numbers up to `most` of a unit read best, as { factor, unit }. */
 export function scaled(unit, most) {
-  const most1 = Math.abs(most);
-  if (!['Pa', 'N', 'm', 'm/s'].includes(unit) || !(most1 > 0)) return { factor: 1, unit };
-  const known = PREFIXES.filter(([f]) => unit === 'Pa' || unit === 'N' ? f >= 1 : f <= 1);
-  const [factor, prefix] = known.find(([f]) => most1 >= 1.1 * f) ?? known.at(-1);
+  const size = Math.abs(most);
+  const [least, largest] = PREFIXED[unit] ?? [1, 1];
+  if (!PREFIXED[unit] || !(size > 0)) return { factor: 1, unit };
+  const known = PREFIXES.filter(([f]) => f >= least && f <= largest);
+  const [factor, prefix] = known.find(([f]) => size >= 1.1 * f) ?? known.at(-1);
   return { factor, unit: prefix + unit };
 }

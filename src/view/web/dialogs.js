@@ -56,7 +56,7 @@ export function showPicked(picked) {
     const row = document.createElement('tr');
     const number = typeof value === 'number';
     const { factor, unit } = number ? scaled(plain, value) : { factor: 1, unit: plain };
-    const shown = number ? figure(value / factor) : Array.isArray(value) ? value.map((v) => v.toFixed(4)).join(', ') : value;
+    const shown = number && !unit && Number.isInteger(value) ? value : number ? figure(value / factor) : Array.isArray(value) ? value.map((v) => v.toFixed(4)).join(', ') : value;
     for (const text of [name, `${shown}${unit ? ` ${unit}` : ''}`]) {
       const cell = document.createElement('td');
       cell.textContent = text;

@@ -1,15 +1,17 @@
 // Grains of a frame: places of all spheres from those of their bodies, colours, removal by the section.
 import * as THREE from 'three';
 import { FIELDS } from 'fields';
-import { groupTexture, mapTexture, pieceTexture, rgb } from 'colours';
+import { groupTexture, limits, mapTexture, pieceTexture, rgb } from 'colours';
 import { Spheres } from 'spheres';
 
 /** Number of the kind in pictures for picking. */
 export const GRAIN = 1;
 
 /** What the user reads of a field, and its unit. */
-export const label = (field) => FIELDS[field]?.label ?? field;
-export const unit = (field) => FIELDS[field]?.unit ?? '';
+export const label = (field) => (field === 'sieve' ? 'Sieve size' : FIELDS[field]?.label ?? field);
+export const unit = (field) => (field === 'sieve' ? 'm' : FIELDS[field]?.unit ?? '');
+/** Name of a group in the scene, or its number. */
+export const groupName = (meta, number) => meta.groups?.[number]?.name || `group ${number}`;
 
 export class Grains {
   constructor() {
@@ -80,13 +82,7 @@ export class Grains {
     u.mode.value = look.palette ? 2 : values ? 0 : 1;
     if (!values) return;
     u.map.value = look.palette === 'pieces' ? pieceTexture() : look.palette ? groupTexture() : mapTexture(look.map);
-    let [least, most] = [Infinity, -Infinity];
-    for (const v of values) {
-      if (v < least) least = v;
-      if (v > most) most = v;
-    }
-    if (!values.length) [least, most] = [0, 1];
-    this.range = look.auto ? [least, most] : [look.min, look.max];
+    this.range = look.auto ? limits(values, 0.01) : [look.min, look.max];
     u.range.value.set(...this.range);
     const { start } = this.bodies;
     const out = this.spheres.numbers;
@@ -120,6 +116,21 @@ export class Grains {
       if (a === undefined) return 0;
       return Math.hypot(...[0, 1, 2].map((k) => this.position[3 * b + k] - p[3 * a + k]));
     });
+  }
+
+  /** Sieve size of a body [m]: middle of its extents along its principal axes. */
+  sieve(body) {
+    const { start, radius, offset, diameter } = this.bodies;
+    if (start[body + 1] - start[body] === 1) return diameter[body];
+    const extents = [0, 1, 2].map((k) => {
+      let [low, high] = [Infinity, -Infinity];
+      for (let s = start[body]; s < start[body + 1]; s++) {
+        low = Math.min(low, offset[3 * s + k] - radius[s]);
+        high = Math.max(high, offset[3 * s + k] + radius[s]);
+      }
+      return high - low;
+    });
+    return extents.sort((a, b) => a - b)[1];
   }
 
   /** The body that a sphere belongs to. */

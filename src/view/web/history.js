@@ -1,6 +1,8 @@
 // Curves beside the picture: settlement, load and deflection, what was picked; with the time of the frame marked.
+import { facedCard, grainCard, nodeCard } from 'cards';
 import { FACED, Walls } from 'walls';
 import { Grains, GRAIN, label as grainLabel, unit as grainUnit } from 'grains';
+import { limits } from 'colours';
 import { NODE, label as solidLabel, unit as solidUnit } from 'solid';
 import { cyclesAt, plot, rowAt } from 'plots';
 import { Picker } from 'pick';
@@ -9,6 +11,13 @@ import { showPicked } from 'dialogs';
 const $ = (id) => document.getElementById(id);
 /** Frames that a history is made of at most. */
 const MOST = 200;
+/** Columns of `history.csv` that are plotted first: displacements of probes, reactions, energies. */
+const FIRST = [/_u_z \[m\]/, /reaction_z \[N\]/, /displacement_z \[m\]/, /force_z \[N\]/, /formation_pressure/, /^solid_strain/, /^grains_kinetic/];
+
+/** Unit of a column such as `load [N]`, with its brackets. */
+const unitOf = (name) => / \[.*\]$/.exec(name)?.[0] ?? '';
+
+const varies = (values) => { const [low, high] = limits(values); return high > low; };
 
 export class Histories {
   constructor(app) {
@@ -21,7 +30,9 @@ export class Histories {
       if (down && e.button === 0 && Math.hypot(e.offsetX - down[0], e.offsetY - down[1]) < 4) this.pick(e.offsetX, e.offsetY);
     });
     $('picked-close').onclick = () => app.set('picked', null);
-    $('picked-quantity').onchange = () => app.set('pickedQuantity', $('picked-quantity').value);
+    for (const quantity of ['picked', 'history']) {
+      $(`${quantity}-quantity`).onchange = () => app.set(`${quantity}Quantity`, $(`${quantity}-quantity`).value);
+    }
     app.listeners.push((state) => this.update(state));
   }
 
@@ -37,27 +48,28 @@ export class Histories {
         app.state.error = error.message;
       }
     }
-    const history = this.tables.history;
-    const column = (test) => [...(history?.entries() ?? [])].find(([name]) => test.test(name));
+    const history = this.tables.history ?? new Map();
+    const column = (test) => [...history].find(([name]) => test.test(name))?.[1];
     const [load, place] = [column(/^load(_1)? \[/), column(/^sleeper(_1)?_z \[/)];
-    this.time = history?.get('time [s]');
-    this.curve = null;
+    this.time = history.get('time [s]');
+    this.curve = this.loads = this.settlement = null;
     if (load && place && this.time?.length > 1) {
-      const start = place[1][0];
-      const x = place[1].map((z) => 1000 * (start - z));
-      this.curve = { x, y: load[1].map((f) => f / 1000), xLabel: 'deflection [mm]', yLabel: 'load [kN]' };
-      this.cycles = cyclesAt(load[1]);
-      this.loads = load[1];
+      this.curve = { x: place.map((z) => place[0] - z), y: load, xLabel: 'deflection [m]', yLabel: 'load [N]' };
+      this.cycles = cyclesAt(load);
+      this.loads = load;
     }
-    const push = this.tables.push;
-    if (push) {
-      const [x, y] = [[...push.values()][0], [...push.values()][1]];
-      this.curve = { x: x.map((v) => 1000 * v), y: y.map((v) => v / 1000), xLabel: 'displacement [mm]', yLabel: 'force [kN]', still: true };
+    if (this.tables.push) {
+      const [x, y] = this.tables.push.values();
+      this.curve = { x, y, xLabel: 'displacement [m]', yLabel: 'force [N]', still: true };
     }
-    const cycles = this.tables.cycles;
-    this.settlement = cycles && cycles.get('cycle')?.length
-      ? { x: cycles.get('cycle'), y: cycles.get('settlement [m]').map((s) => 1000 * s), xLabel: 'cycle N', yLabel: 'settlement [mm]' }
-      : null;
+    const { cycles } = this.tables;
+    if (cycles?.get('cycle')?.length) {
+      this.settlement = { x: cycles.get('cycle'), y: cycles.get('settlement [m]'), xLabel: 'cycle N', yLabel: 'settlement [m]' };
+    }
+    this.columns = new Map([...history].filter(([name, values]) => name !== 'time [s]' && values.length > 1 && varies(values)));
+    const names = [...this.columns.keys()];
+    const first = FIRST.map((test) => names.find((name) => test.test(name))).find((name) => name) ?? names[0];
+    app.state.historyQuantity = first ?? '';
   }
 
   /** The frame in which the load is largest; the last one where there is no load. */
@@ -81,11 +93,29 @@ export class Histories {
       settlement: show('plot-settlement', this.settlement && this.settlementAt(row)),
       load: show('plot-load', this.curve && (this.curve.still ? this.curve : { ...this.curve, mark: [this.curve.x[row], this.curve.y[row]] })),
     };
-    const { picked } = state;
-    showPicked(picked);
+    const { picked, historyQuantity: name } = state;
+    const column = this.columns?.get(name);
+    this.marks.history = show('plot-history', column && { x: this.time, y: column, xLabel: 'time [s]', yLabel: unitOf(name), line: state.time });
+    if (column) this.offer('history', [...this.columns.keys()], name);
     const curve = picked?.history?.[state.pickedQuantity];
     this.marks.picked = show('plot-picked', curve && { ...curve, line: state.time });
-    if (picked?.history) this.offer(Object.keys(picked.history), state.pickedQuantity);
+    if (curve) this.offer('picked', Object.keys(picked.history), state.pickedQuantity);
+    showPicked(picked);
+    if (picked?.renew) this.renew(picked, state);
+  }
+
+  /** Brings card and curve of what was picked to the frame and the fields of the picture. */
+  renew(picked, { frame, playing }) {
+    const fields = this.fields();
+    if (picked.fields !== fields) {
+      picked.fields = fields;
+      this.following = this.follow(picked);
+    }
+    if (playing || (picked.frame === frame && picked.carded === fields)) return;
+    Object.assign(picked, { frame, carded: fields });
+    const current = (rows) => rows && this.app.state.picked === picked;
+    // Without its fields in a frame, the card keeps the last ones.
+    picked.renew().then((rows) => { if (current(rows)) showPicked(Object.assign(picked, rows)); }, () => {});
   }
 
   settlementAt(row) {
@@ -95,8 +125,8 @@ export class Histories {
     return { ...this.settlement, points: x.length < 60, line };
   }
 
-  offer(names, chosen) {
-    const select = $('picked-quantity');
+  offer(plotted, names, chosen) {
+    const select = $(`${plotted}-quantity`);
     if ([...select.options].map((o) => o.value).join() !== names.join()) select.replaceChildren(...names.map((n) => new Option(n, n)));
     select.value = chosen;
   }
@@ -114,85 +144,55 @@ export class Histories {
     if (app.solid.group.visible && app.solid.object) meshes.push([app.solid.object, NODE]);
     if (app.walls.group.visible && app.walls.stoneMesh.visible) meshes.push([app.walls.stoneMesh, FACED]);
     const found = this.picker.at(x, y, meshes);
-    if (!found) return app.set('picked', null);
-    const made = { [GRAIN]: () => this.grain(found.index), [FACED]: () => this.faced(found.index), [NODE]: () => this.node(found.index, x, y) };
-    const picked = await made[found.kind]();
+    const kinds = { [GRAIN]: grainCard, [FACED]: facedCard, [NODE]: nodeCard };
+    const picked = found && await kinds[found.kind](app, found.index, (point) => this.far(point, x, y));
+    if (picked) Object.assign(picked, { frame: app.state.frame, carded: this.fields() });
     await app.set({ picked, pickedQuantity: '' });
-    return this.follow(picked);
+    return this.following;
   }
 
-  async grain(sphere) {
-    const { app } = this;
-    const { grains, meta, state } = app;
-    const body = grains.bodyOf(sphere);
-    const id = grains.bodies.id[body];
-    const place = [0, 1, 2].map((k) => grains.position[3 * body + k] + meta.origin[k]);
-    const data = [['position', place, 'm'], ['diameter', grains.bodies.diameter[body], 'm']];
-    const spheres = grains.bodies.start[body + 1] - grains.bodies.start[body];
-    if (spheres > 1) data.push(['spheres', spheres, '']);
-    for (const field of meta.grainFields) {
-      const values = await app.grainValues(field, state.frame);
-      data.push([grainLabel(field), values[body], grainUnit(field)]);
-    }
-    return { kind: 'grain', id, title: `Grain ${id}`, data, place };
+  /** Distance in the picture between a point and a pixel [CSS pixels]. */
+  far(point, x, y) {
+    const [px, py] = this.picker.project(point);
+    return Math.hypot(px - x, py - y);
   }
 
-  /** A grain with faces, by one of its triangles. */
-  async faced(triangle) {
-    const { source, walls, meta, state } = this.app;
-    const stone = walls.stoneAt(triangle);
-    const place = stone.place.map((x, k) => x + meta.origin[k]);
-    const data = [['position', place, 'm'], ['longest extent', stone.extent, 'm']];
-    for (const field of meta.grainFields) {
-      const block = await source.block(`walls/${state.frame}/${field}`);
-      if (block) data.push([grainLabel(field), block.arrays.value[stone.triangle], grainUnit(field)]);
-    }
-    return { kind: 'faced', id: stone.id, title: `Grain ${stone.id}`, data, place };
-  }
-
-  async node(triangle, x, y) {
-    const { app } = this;
-    const { solid, meta, state } = app;
-    const corners = [...solid.skin.triangles.subarray(3 * triangle, 3 * triangle + 3)];
-    const far = (n) => {
-      const [px, py] = this.picker.project(solid.place(n, state.solid.factor));
-      return Math.hypot(px - x, py - y);
-    };
-    const node = corners.reduce((a, b) => (far(b) < far(a) ? b : a));
-    const id = solid.skin.node_ids[node];
-    const u = [0, 1, 2].map((k) => solid.displacement[3 * node + k]);
-    const place = [0, 1, 2].map((k) => solid.skin.points[3 * node + k] + meta.origin[k]);
-    const data = [['position', place, 'm'], ['displacement x', u[0], 'm'], ['displacement y', u[1], 'm'], ['displacement z', u[2], 'm']];
-    const { field } = state.solid;
-    if (solid.values && !field.startsWith('displacement')) {
-      data.push([solidLabel(field), solid.values[solid.ofElements ? triangle : node], solidUnit(field)]);
-    }
-    data.push(['element', solid.skin.element_ids[triangle], '']);
-    return { kind: 'node', id, node, title: `Node ${id}`, data, place };
+  /** Fields that card and curve of what was picked depend on. */
+  fields() {
+    const { grains, solid, reference } = this.app.state;
+    return JSON.stringify([grains.colour, solid.field, reference]);
   }
 
   /** Makes the history of what was picked, frame by frame. */
   async follow(picked) {
     const { app } = this;
-    const { state, meta } = app;
+    const { state } = app;
     const step = Math.ceil(state.frames / MOST);
     const [times, rows] = [[], []];
-    const field = picked.kind !== 'node' ? (meta.grainFields.includes(state.grains.colour) ? state.grains.colour : 'speed') : state.solid.field;
+    const node = picked.kind === 'node';
+    const field = node ? state.solid.field : state.grains.colour;
+    const current = () => state.picked === picked && picked.fields === this.fields();
     for (let k = 0; k < state.frames; k += step) {
-      if (state.picked !== picked) return;
-      const row = picked.kind === 'node' ? await this.nodeRow(picked.node, k, field) : await this.stoneRow(picked, k, field);
+      if (!current()) return;
+      const row = node ? await this.nodeRow(picked.node, k, field) : await this.stoneRow(picked, k, field);
       if (!row) continue;
       times.push(state.times[k]);
       rows.push(row);
     }
-    if (!rows.length || state.picked !== picked) return;
+    if (!rows.length || !current()) return;
     const history = {};
     for (const name of Object.keys(rows[0])) {
-      const first = name.startsWith('displacement') && picked.kind !== 'node' ? rows[0][name] : 0;
-      history[name] = { x: times, y: rows.map((row) => row[name] - first), xLabel: 'time [s]', yLabel: `${picked.title}: ${name}`, points: times.length < 40 };
+      const first = name.startsWith('displacement') && !node ? rows[0][name] : 0;
+      const y = rows.map((row) => row[name] - first);
+      history[name] = { x: times, y, xLabel: 'time [s]', yLabel: `${picked.title}${unitOf(name)}`, points: times.length < 40 };
     }
     picked.history = history;
-    await app.set('pickedQuantity', Object.keys(history)[0]);
+    const names = Object.keys(history);
+    const { pickedQuantity: chosen } = state;
+    // The field of the picture follows the displacements.
+    const coloured = names.length > 3 && (node || app.meta.grainFields.includes(field));
+    if (!names.includes(chosen) || picked.shown !== field) await app.set('pickedQuantity', names[coloured ? 3 : 0]);
+    picked.shown = field;
   }
 
   async stoneRow({ kind, id }, k, field) {
@@ -202,7 +202,8 @@ export class Histories {
     const found = block && (kind === 'faced' ? Walls.stoneIn(block, id) : Grains.placeIn(common.grains, block, id));
     if (!found) return null;
     const row = { 'displacement z [m]': found.place[2], 'displacement x [m]': found.place[0], 'displacement y [m]': found.place[1] };
-    if (meta.grainFields.includes(field)) {
+    if (!meta.grainFields.includes(field)) field = meta.grainFields.includes('speed') ? 'speed' : '';
+    if (field) {
       const unit = grainUnit(field);
       row[`${grainLabel(field)}${unit ? ` [${unit}]` : ''}`] = (await source.block(`${part}/${k}/${field}`))?.arrays.value[found.body ?? found.triangle] ?? 0;
     }

@@ -5,8 +5,10 @@ import { Histories } from 'history';
 import { Outline } from 'outline';
 import { Panel } from 'panel';
 import { Player } from 'player';
+import { apply, presetButtons, presetOf } from 'presets';
 import { Avi, download, picture, print } from 'save';
 import { EmbeddedSource, embeddedTexts } from 'source';
+import { theme } from 'theme';
 
 const $ = (id) => document.getElementById(id);
 const { served, watch } = JSON.parse($('settings').textContent);
@@ -21,6 +23,7 @@ const player = new Player(app);
 const histories = new Histories(app);
 const outline = new Outline(app);
 dialogs(app);
+theme($('button-theme'), () => app.changed());
 
 app.listeners.push((state) => {
   panel.update(state);
@@ -30,7 +33,6 @@ app.listeners.push((state) => {
   const mark = state.picked?.kind === 'grain' ? app.grains.bodies.id.indexOf(state.picked.id) : -1;
   const { start } = app.grains.bodies ?? {};
   app.grains.spheres.mark(...(mark >= 0 ? [start[mark], start[mark + 1]] : [-1, -1]));
-  $('preset-peak').hidden = !state.parts.chains;
 });
 
 /** Time of the frame; a scene has none. */
@@ -40,15 +42,18 @@ function moment({ status, time }) {
   return `t = ${time?.toPrecision(4) ?? '–'} s${unfinished ? ` · run: ${status}` : ''}`;
 }
 
-// Tables belong to a run: read with it.
-const open = app.open.bind(app);
-app.open = async (source, run, again) => {
-  await open(source, run, again);
-  outline.take(app.meta);
+let first = true;
+app.opened = async (meta) => {
+  const { source } = app;
+  // Narrow screens have no room for controls; the list of a scene is its legend.
+  if (first && innerWidth <= 640) document.body.classList.toggle('bare', !meta.model && !meta.errors);
+  first = false;
+  outline.take(meta);
   await histories.load();
+  $('presets').replaceChildren(...presetButtons(app, histories, () => player.play(0)));
   await app.changed();
   // The report takes longer than the picture.
-  if (app.meta.model) app.checked = source.block('check').then((block) => { if (app.source === source) outline.check(block); });
+  if (meta.model) app.checked = source.block('check').then((block) => { if (app.source === source) outline.check(block); });
 };
 
 /** Reads the scene again once its files have changed. */
@@ -111,26 +116,7 @@ for (const format of ['png', 'jpg', 'bmp']) $(`save-${format}`).onclick = () => 
 $('save-avi').onclick = saveVideo;
 $('button-print').onclick = async () => print(await composed(), `${app.state.title}, ${moment(app.state)}`);
 
-/** The whole track where the load is largest: forces in the ballast, stress in the solid below. */
-async function peak() {
-  player.play(0);
-  const field = app.meta.solidFields.includes('stress_zz') ? 'stress_zz' : app.state.solid.field;
-  await app.set({
-    frame: histories.peakFrame(), 'grains.show': false, 'chains.show': true, 'chains.colour': 'force', 'chains.map': 'blue-red',
-    'solid.show': true, 'solid.field': field, 'solid.auto': true, 'solid.map': 'viridis', 'solid.opacity': 1,
-    'walls.boundary.show': false, 'walls.track.show': true, 'walls.track.opacity': 0.35, 'view.side': 'oblique',
-    'view.focus': app.state.parts.grains ? 'grains' : 'all',
-  });
-  // Below single stones the stress has peaks that would take all colours: limits without the outermost hundredths.
-  const sorted = Float32Array.from(app.solid.values ?? []).sort();
-  if (sorted.length > 100) {
-    const [min, max] = [0.01, 0.99].map((share) => sorted[Math.round(share * (sorted.length - 1))]);
-    await app.set({ 'solid.auto': false, 'solid.min': min, 'solid.max': max });
-  }
-}
-$('preset-peak').onclick = peak;
-
-window.trackbed = { app, state: app.state, player, histories, panel, outline, composed, peak, idle: () => app.idle() };
+window.trackbed = { app, state: app.state, player, histories, panel, outline, composed, preset: (id) => apply(presetOf(id), app, histories), idle: () => app.idle() };
 window.trackbed.ready = (async () => {
   try {
     if (!served) {

@@ -1,6 +1,7 @@
 // Controls at the side: each is tied to a place in the state by its path.
 import { MAPS } from 'colours';
 
+/** Settings with a colour map. */
 const mapped = (look) => !['constant', 'part', 'piece'].includes(look.colour ?? look.field);
 
 /** Rows: kind, path, label, what the kind needs, and when it is shown. */
@@ -88,7 +89,7 @@ export class Panel {
         if (row[4]) this.conditions.push([row[4], made]);
         body.append(...made);
       });
-      const box = element('details', { id: `part-${key}`, open: ['grains', 'chains', 'solid'].includes(key) }, element('summary', { textContent: title }), body);
+      const box = element('details', { id: `part-${key}`, open: key === 'solid' || key === 'grains' }, element('summary', { textContent: title }), body);
       root.append(box);
     }
   }

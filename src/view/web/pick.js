@@ -10,7 +10,7 @@ export class Picker {
 
   /** `meshes`: [mesh, number of its kind]; others are hidden. Returns { kind, index } or null. */
   at(x, y, meshes) {
-    const { renderer, scene, camera, width, height } = this.stage;
+    const { renderer, scene, camera } = this.stage;
     const hidden = [];
     const materials = new Map(meshes.map(([mesh, kind]) => [mesh, kind]));
     scene.traverse((object) => {
@@ -28,13 +28,13 @@ export class Picker {
     scene.background = null;
     const clear = [renderer.getClearColor(new THREE.Color()), renderer.getClearAlpha()];
     renderer.setClearColor(0x000000, 0);
-    camera.setViewOffset(width, height, x, y, 1, 1);
+    this.stage.shift([x, y]);
     renderer.setRenderTarget(this.target);
     renderer.clear();
     renderer.render(scene, camera);
     renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, this.pixel);
     renderer.setRenderTarget(null);
-    camera.clearViewOffset();
+    this.stage.shift();
     renderer.setClearColor(...clear);
     scene.background = background;
     meshes.forEach(([mesh], k) => {

@@ -1,73 +1,62 @@
-// Small plots beside the picture, with the time of the frame marked, and legends in the picture.
-import { colourAt, figure, scaled } from 'colours';
+// Small plots below the picture, with the time of the frame marked.
+import { colour, figures, limits, scaled, ticks } from 'colours';
 
-const INK = '#1c2733';
-
-/** Ticks at round numbers between two limits. */
-export function ticks(low, high, most) {
-  if (!(high > low)) return [low];
-  const rough = (high - low) / most;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough);
-  const out = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) out.push(k * step);
-  return out;
+/** Scale of values with a label such as `load [N]`: name with the unit that suits them, position, ticks as [position, text]. */
+function axis(values, label, from, to) {
+  const [low, high] = limits(values, 0.5);
+  const [, name, plain] = /^(.*?)(?: \[(.*)\])?$/.exec(label);
+  const { factor, unit } = scaled(plain ?? '', Math.max(Math.abs(low), Math.abs(high)));
+  const place = (v) => from + ((v - low) / (high - low)) * (to - from);
+  const whole = factor === 1 && values.every(Number.isInteger);
+  const at = ticks(low / factor, high / factor, 4).filter((t) => !whole || Number.isInteger(t));
+  const texts = figures(at);
+  return { name: unit ? `${name} [${unit}]` : name, place, ticks: at.map((t, k) => [place(t * factor), texts[k]]) };
 }
 
-/** Draws y over x on a canvas. `marks`: points that are marked, `line`: an x that is marked. */
+/** Draws y over x on a canvas. `line`: an x that is marked, `mark`: a point. */
 export function plot(canvas, { x, y, xLabel, yLabel, line, mark, points }) {
   const ratio = Math.min(window.devicePixelRatio, 2);
   const [w, h] = [canvas.clientWidth || 260, canvas.clientHeight || 150];
   [canvas.width, canvas.height] = [w * ratio, h * ratio];
   const g = canvas.getContext('2d');
   g.scale(ratio, ratio);
-  g.fillStyle = '#ffffff';
+  g.fillStyle = colour('--paper');
   g.fillRect(0, 0, w, h);
   g.font = '11px system-ui, sans-serif';
-  const limits = (values) => {
-    let [low, high] = [Infinity, -Infinity];
-    for (const v of values) [low, high] = [Math.min(low, v), Math.max(high, v)];
-    if (!(high >= low)) return [0, 1];
-    return high > low ? [low, high] : [low - 0.5 * (Math.abs(low) || 1), low + 0.5 * (Math.abs(low) || 1)];
+  const [left, right, top, bottom] = [52, w - 18, 22, h - 30];
+  const [across, up] = [axis(x, xLabel, left, right), axis(y, yLabel, bottom, top)];
+  const stroke = (style, width, places) => {
+    Object.assign(g, { strokeStyle: style, lineWidth: width });
+    g.beginPath();
+    places.forEach(([px, py], k) => g[k ? 'lineTo' : 'moveTo'](px, py));
+    g.stroke();
   };
-  const [[x0, x1], [y0, y1]] = [limits(x), limits(y)];
-  const frame = { left: 52, right: w - 10, top: 20, bottom: h - 30 };
-  const px = (v) => frame.left + ((v - x0) / (x1 - x0)) * (frame.right - frame.left);
-  const py = (v) => frame.bottom - ((v - y0) / (y1 - y0)) * (frame.bottom - frame.top);
-  g.strokeStyle = '#dde2e8';
-  g.fillStyle = '#55606d';
-  g.lineWidth = 1;
-  g.textAlign = 'center';
-  for (const t of ticks(x0, x1, 4)) {
-    g.beginPath(); g.moveTo(px(t), frame.top); g.lineTo(px(t), frame.bottom); g.stroke();
-    g.fillText(figure(Number(t.toPrecision(6))), px(t), frame.bottom + 13);
+  const write = (text, px, py, align, ink) => {
+    Object.assign(g, { fillStyle: colour(ink), textAlign: align });
+    g.fillText(text, px, py);
+  };
+  for (const [px, text] of across.ticks) {
+    stroke(colour('--line'), 1, [[px, top], [px, bottom]]);
+    write(text, px, bottom + 13, 'center', '--faint');
   }
-  g.textAlign = 'right';
-  for (const t of ticks(y0, y1, 4)) {
-    g.beginPath(); g.moveTo(frame.left, py(t)); g.lineTo(frame.right, py(t)); g.stroke();
-    g.fillText(figure(Number(t.toPrecision(6))), frame.left - 4, py(t) + 4);
+  for (const [py, text] of up.ticks) {
+    stroke(colour('--line'), 1, [[left, py], [right, py]]);
+    write(text, left - 4, py + 4, 'right', '--faint');
   }
-  g.fillStyle = INK;
-  g.textAlign = 'left';
-  g.fillText(yLabel, 6, 12);
-  g.textAlign = 'right';
-  g.fillText(xLabel, frame.right, h - 4);
-  g.strokeStyle = '#0072b2';
-  g.lineWidth = 1.4;
-  g.beginPath();
-  for (let k = 0; k < x.length; k++) g[k ? 'lineTo' : 'moveTo'](px(x[k]), py(y[k]));
-  g.stroke();
-  if (points) for (let k = 0; k < x.length; k++) dot(g, px(x[k]), py(y[k]), 2.4, '#0072b2');
-  if (line !== undefined && line !== null) {
-    g.strokeStyle = '#d55e00';
-    g.beginPath(); g.moveTo(px(line), frame.top); g.lineTo(px(line), frame.bottom); g.stroke();
-  }
-  if (mark) dot(g, px(mark[0]), py(mark[1]), 4, '#d55e00');
-  return { line: line === undefined || line === null ? null : px(line), mark: mark ? [px(mark[0]), py(mark[1])] : null };
+  write(up.name, 6, 12, 'left', '--ink');
+  write(across.name, right, h - 4, 'right', '--ink');
+  const places = Array.from(x, (v, k) => [across.place(v), up.place(y[k])]);
+  stroke(colour('--accent'), 1.4, places);
+  if (points) places.forEach((place) => dot(g, place, 2.4, colour('--accent')));
+  const at = line === undefined || line === null ? null : across.place(line);
+  if (at !== null) stroke('#d55e00', 1.4, [[at, top], [at, bottom]]);
+  const marked = mark ? [across.place(mark[0]), up.place(mark[1])] : null;
+  if (mark) dot(g, marked, 4, '#d55e00');
+  return { line: at, mark: marked, labels: [across.name, up.name] };
 }
 
-function dot(g, x, y, r, colour) {
-  g.fillStyle = colour;
+function dot(g, [x, y], r, style) {
+  g.fillStyle = style;
   g.beginPath(); g.arc(x, y, r, 0, 2 * Math.PI); g.fill();
 }
 
@@ -83,58 +72,11 @@ export function rowAt(x, at) {
 
 /** Number of load cycles that have ended at each row: the load has come down through its middle so often. */
 export function cyclesAt(load) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const v of load) [low, high] = [Math.min(low, v), Math.max(high, v)];
+  const [low, high] = limits(load);
   const middle = 0.5 * (low + high);
   let count = 0;
   return load.map((v, k) => {
     if (k && load[k - 1] > middle && v <= middle) count += 1;
     return count;
   });
-}
-
-/** Draws legends, one below the other, at the right edge of a picture `width` wide; `dark`: the background is. */
-export function legends(g, width, list, dark) {
-  const ink = dark ? '#f2f4f7' : INK;
-  let y = 14;
-  g.textBaseline = 'alphabetic';
-  for (const { title, unit: plain, range, map, swatches, bands } of list) {
-    const { factor, unit } = scaled(plain, range ? Math.max(...range.map(Math.abs)) : 0);
-    g.font = '600 12px system-ui, sans-serif';
-    const rows = swatches ? swatches.length : 7;
-    const size = swatches ? 18 * rows : 132;
-    const wide = 156;
-    const x = width - wide - 12;
-    g.fillStyle = dark ? 'rgba(20,26,33,0.72)' : 'rgba(255,255,255,0.82)';
-    g.beginPath(); g.roundRect(x - 8, y - 2, wide + 12, size + 42, 5); g.fill();
-    g.fillStyle = ink;
-    g.textAlign = 'left';
-    const head = unit ? `${title} [${unit}]` : title;
-    g.fillText(head.length > 25 && unit ? title : head, x, y + 13, wide - 2);
-    if (head.length > 25 && unit) { g.font = '12px system-ui, sans-serif'; g.fillText(`[${unit}]`, x + 26, y + 28); }
-    const top = y + 30 + (head.length > 25 && unit && !swatches ? 4 : 0);
-    g.font = '12px system-ui, sans-serif';
-    if (swatches) {
-      swatches.forEach(([colour, text], k) => {
-        g.fillStyle = colour; g.fillRect(x, top + 18 * k - 4, 14, 12);
-        g.fillStyle = ink; g.fillText(text, x + 22, top + 18 * k + 6, wide - 26);
-      });
-    } else {
-      for (let k = 0; k < size; k++) {
-        let t = 1 - k / (size - 1);
-        if (bands) t = (Math.floor(Math.min(t, 0.99999) * bands) + 0.5) / bands;
-        g.fillStyle = `rgb(${colourAt(map, t).map((v) => Math.round(255 * v)).join(',')})`;
-        g.fillRect(x, top + k, 18, 1.5);
-      }
-      g.strokeStyle = ink; g.lineWidth = 0.8; g.strokeRect(x, top, 18, size);
-      g.fillStyle = ink;
-      for (let k = 0; k < rows - 2; k++) {
-        const t = k / (rows - 3);
-        const at = top + (1 - t) * size;
-        g.fillRect(x + 18, at - 0.5, 4, 1);
-        g.fillText(figure((range[0] + t * (range[1] - range[0])) / factor), x + 27, at + 4);
-      }
-    }
-    y += size + 52;
-  }
 }

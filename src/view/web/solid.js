@@ -1,6 +1,6 @@
 // The solid: its deformed skin with a field.
 import * as THREE from 'three';
-import { mapTexture, rgb } from 'colours';
+import { limits, mapTexture, rgb } from 'colours';
 import { lineMaterial, surfaceMaterial } from 'shaders';
 
 /** Number of the kind in pictures for picking. */
@@ -79,12 +79,7 @@ export class Solid {
     u.tint.value.set(...rgb(look.constant));
     u.mode.value = values ? 0 : 1;
     if (!values) return;
-    let [least, most] = [Infinity, -Infinity];
-    for (const v of values) {
-      if (v < least) least = v;
-      if (v > most) most = v;
-    }
-    this.range = look.auto ? [least, most] : [look.min, look.max];
+    this.range = look.auto ? limits(values, 0.01) : [look.min, look.max];
     u.range.value.set(...this.range);
     u.map.value = mapTexture(look.map);
     u.bands.value = look.bands ? 12 : 0;
@@ -110,6 +105,13 @@ export class Solid {
       material.uniforms.cut.value.set(...axis);
       material.uniforms.ends.value.set(low, high);
     }
+  }
+
+  /** Box of the deformed skin. */
+  box(factor) {
+    const box = new THREE.Box3();
+    for (let n = 0; n < this.skin.node_ids.length; n++) box.expandByPoint(new THREE.Vector3(...this.place(n, factor)));
+    return box;
   }
 
   /** Deformed place of a node of the skin. */

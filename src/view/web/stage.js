@@ -13,9 +13,8 @@ export const VIEWS = {
 };
 
 export class Stage {
-  constructor(canvas, changed) {
+  constructor(canvas) {
     this.canvas = canvas;
-    this.changed = changed;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.scene = new THREE.Scene();
@@ -28,6 +27,7 @@ export class Stage {
       camera.up.set(0, 0, 1);
       const controls = new OrbitControls(camera, canvas);
       controls.addEventListener('change', () => this.wanted());
+      controls.addEventListener('start', () => { this.moved = true; });
       controls.zoomToCursor = true;
       controls.autoRotateSpeed = 4;
       this.controls[name] = controls;
@@ -35,11 +35,15 @@ export class Stage {
     this.projection = 'perspective';
     this.box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
     this.lamp = 'camera';
-    this.before = () => {};
-    this.after = () => {};
+    this.before = this.after = this.resized = () => {};
+    /** Whether the user has moved the camera since the last fit. */
+    this.moved = false;
+    /** Edges of the picture that are covered [CSS pixels], and half their difference. */
+    this.margins = { left: 0, right: 0, top: 0, bottom: 0 };
+    this.offset = [0, 0];
     this.frames = 0;
     this.select('perspective');
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    new ResizeObserver(() => { this.resize(); this.resized(); }).observe(canvas.parentElement);
     this.resize();
   }
 
@@ -71,28 +75,38 @@ export class Stage {
   /** What is to be seen. */
   setBox(box) { this.box.copy(box); }
 
-  /** Looks at a box from a side. */
+  /** Fits a box between the margins, from a side. */
   look(view, box = this.box) {
     const centre = box.getCenter(new THREE.Vector3());
     const radius = 0.5 * this.box.getSize(new THREE.Vector3()).length() || 1;
     const direction = new THREE.Vector3(...VIEWS[view]).normalize();
-    const half = Math.tan((this.cameras.perspective.fov * Math.PI) / 360);
+    const { margins } = this;
+    const wide = Math.max(this.width - margins.left - margins.right, 0.3 * this.width);
+    const high = Math.max(this.height - margins.top - margins.bottom, 0.3 * this.height);
+    this.offset = [0.5 * (margins.right - margins.left), 0.5 * (margins.bottom - margins.top)];
+    const share = high / this.height;
+    const half = share * Math.tan((this.cameras.perspective.fov * Math.PI) / 360);
     const right = new THREE.Vector3().crossVectors(direction, this.camera.up).normalize().negate();
     const above = new THREE.Vector3().crossVectors(right, direction).negate();
-    // Room for the legends at the edge; the corners of the box decide the distance.
-    const aspect = Math.max(this.width - 220, 0.6 * this.width) / this.height;
+    // The corners of the box determine distance and centre: for each axis of the picture, the planes of its edges.
+    const flat = this.projection === 'parallel';
+    const target = centre.clone();
     let distance = 0;
-    let size = 0;
-    for (let c = 0; c < 8; c++) {
-      const corner = new THREE.Vector3(...[0, 1, 2].map((k) => (c >> k & 1 ? box.max : box.min).getComponent(k))).sub(centre);
-      const across = Math.max(Math.abs(corner.dot(right)) / aspect, Math.abs(corner.dot(above)));
-      size = Math.max(size, across);
-      distance = Math.max(distance, across / half + corner.dot(direction));
+    for (const [axis, slope] of [[right, (half * wide) / high], [above, half]]) {
+      let [low, far] = [Infinity, -Infinity];
+      for (let c = 0; c < 8; c++) {
+        const corner = new THREE.Vector3(...[0, 1, 2].map((k) => (c >> k & 1 ? box.max : box.min).getComponent(k))).sub(centre);
+        const [side, depth] = [corner.dot(axis), flat ? 0 : slope * corner.dot(direction)];
+        [low, far] = [Math.min(low, side - depth), Math.max(far, side + depth)];
+      }
+      target.addScaledVector(axis, 0.5 * (low + far));
+      distance = Math.max(distance, (0.53 * (far - low)) / slope);
     }
-    this.control.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(direction, this.projection === 'parallel' ? 3 * radius : 1.06 * distance);
-    if (this.projection === 'parallel') this.camera.zoom = 1 / (1.06 * size);
-    this.camera.updateProjectionMatrix();
+    this.control.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(direction, flat ? 3 * radius : distance);
+    if (flat) this.camera.zoom = 1 / (distance * half / share);
+    this.shift();
+    this.moved = false;
     this.control.update();
     this.wanted();
   }
@@ -106,8 +120,15 @@ export class Stage {
     this.cameras.perspective.aspect = aspect;
     const parallel = this.cameras.parallel;
     [parallel.left, parallel.right] = [-aspect, aspect];
-    Object.values(this.cameras).forEach((camera) => camera.updateProjectionMatrix());
+    this.shift();
     this.draw();
+  }
+
+  /** Moves the centre of the picture to the middle between the margins; `pixel`: a pixel alone. */
+  shift(pixel) {
+    const [x, y] = this.offset;
+    const part = pixel ? [x + pixel[0], y + pixel[1], 1, 1] : [x, y, this.width, this.height];
+    Object.values(this.cameras).forEach((camera) => camera.setViewOffset(this.width, this.height, ...part));
   }
 
   /** Draws before the next picture of the screen. */

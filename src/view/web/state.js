@@ -25,7 +25,7 @@ export function initial() {
       track: { show: true, colour: '#8f959c', opacity: 1 }, rail: '#5b4a3f', stone: '#a89f91',
     },
     model: { kinds: {}, hidden: {} },
-    picked: null, pickedQuantity: '', legends: [], saved: null,
+    picked: null, pickedQuantity: '', historyQuantity: '', legends: [], saved: null,
   };
 }
 

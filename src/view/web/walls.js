@@ -134,11 +134,11 @@ export class Walls {
     });
   }
 
-  /** Box around what has an end: sleepers, rails, walls that are no planes. */
-  bounds() {
+  /** Box of sleepers, rails and walls other than planes; `visible`: without hidden ones. */
+  bounds(visible = false) {
     const box = new THREE.Box3();
     this.parts.slice(1).forEach((part) => {
-      if (part.count) box.union(part.mesh.geometry.boundingBox);
+      if (part.count && (part.mesh.visible || !visible)) box.union(part.mesh.geometry.boundingBox);
     });
     return box;
   }
