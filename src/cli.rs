@@ -242,6 +242,9 @@ pub struct ReportArgs {
     /// Title of the report [default: title of the scene].
     #[arg(long)]
     pub title: Option<String>,
+    /// Overwrite an existing file that is no report.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Arguments of `modal`.
@@ -321,6 +324,9 @@ pub enum MeshCommand {
         /// Version of a .msh file [default: 4.1].
         #[arg(long)]
         format: Option<MeshFormat>,
+        /// Overwrite existing files.
+        #[arg(long)]
+        force: bool,
     },
 }
 

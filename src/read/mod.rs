@@ -31,6 +31,7 @@ mod stl;
 pub mod surface;
 mod table;
 mod tokens;
+pub(crate) mod unit;
 pub(crate) mod vtk_arrays;
 pub(crate) mod vtk_grid;
 mod vtk_legacy;
