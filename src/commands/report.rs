@@ -10,7 +10,7 @@ use crate::report::{self, Options};
 /// # Errors
 /// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
-    let options = Options { folders: args.folders, out: args.out, title: args.title };
+    let options = Options { folders: args.folders, out: args.out, title: args.title, force: args.force };
     let page = report::write(&options)?;
     print(&format!("{} written\n", page.display()))
 }

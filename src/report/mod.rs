@@ -9,6 +9,7 @@ mod quantity;
 mod sections;
 
 use crate::failure::Failure;
+use crate::read::source;
 use crate::write::{WriteError, atomic};
 use data::RunData;
 use maud::Markup;
@@ -23,7 +24,12 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Page title; default: scene title.
     pub title: Option<String>,
+    /// Overwrite files other than reports.
+    pub force: bool,
 }
+
+/// Text of every report.
+const MARK: &str = "; report by trackbed ";
 
 /// Writes a report and returns its path.
 ///
@@ -47,12 +53,22 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         let found = out.display();
         return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
+    if out.exists() && !options.force && !is_report(&out) {
+        let found = out.display();
+        let expected = "a new file, a report, or --force to overwrite it";
+        return Err(Failure::Input(format!("{found}: found an existing file, expected {expected}")));
+    }
     let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
     data::distinguish(&mut runs);
     let title = options.title.clone().unwrap_or_else(|| title(&runs));
     let text = page::page(&title, &head(&runs), &sections::all(&runs));
     put(&out, &text)?;
     Ok(out)
+}
+
+fn is_report(file: &Path) -> bool {
+    let text = source::text(file).unwrap_or_default();
+    text.lines().any(|line| line.contains("<p class=\"note\">Results ") && line.contains(MARK))
 }
 
 fn put(out: &Path, text: &str) -> Result<(), Failure> {
@@ -76,6 +92,6 @@ fn head(runs: &[RunData]) -> Markup {
     };
     let version = env!("CARGO_PKG_VERSION");
     page::paragraph(&format!(
-        "{whose}; report by trackbed {version}. Hover over a value to see it in SI units, as in the files."
+        "{whose}{MARK}{version}. Hover over a value to see it in SI units, as in the files."
     ))
 }
