@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::error::ReadError;
 
-/// Lengths other than metres, with metres per unit; 0 if ambiguous.
+/// Lengths other than metres, with metres per unit.
 const LENGTHS: [(&str, f64); 23] = [
     ("mm", 1e-3),
     ("millimetre", 1e-3),

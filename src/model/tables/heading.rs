@@ -199,7 +199,7 @@ impl<const N: usize> Heading<N> {
     }
 }
 
-/// Column with the name; of several, that of the standard name.
+/// Column with the name; of several, the standard one.
 fn named(column: &Column, titles: &[Title]) -> Result<Option<usize>, String> {
     let all: Vec<usize> = (0..titles.len()).filter(|k| column.is_named(&titles[*k])).collect();
     let exact: Vec<usize> = all.iter().copied().filter(|k| titles[*k].0 == column.name).collect();

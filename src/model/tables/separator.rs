@@ -57,8 +57,11 @@ impl Separators {
         if mark == Some(',') && self.columns != Separator::Semicolon {
             return Err("a number with a decimal point; decimal commas only between semicolons");
         }
-        let plain = field.replacen(',', ".", 1);
-        let number = plain.parse::<f64>().map_err(|_| "a number")?;
+        let number = match mark {
+            Some(',') => field.replacen(',', ".", 1).parse::<f64>(),
+            _ => field.parse(),
+        };
+        let number = number.map_err(|_| "a number")?;
         if let Some(mark) = mark
             && self.columns == Separator::Semicolon
             && *self.decimals.get_or_insert(mark) != mark
