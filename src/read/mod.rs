@@ -50,7 +50,7 @@ pub(crate) use mesh_file::FARTHEST;
 pub use mesh_file::{FileMaterial, MeshFile};
 pub use obj::read_obj;
 pub use stl::read_stl;
-pub use surface::{SURFACE_ENDINGS, Surface, read_surface};
+pub use surface::{SURFACE_ENDINGS, Surface, read_surface, surface_unit};
 pub use vtk_legacy::read_vtk;
 pub use vtu::read_vtu;
 

@@ -143,12 +143,17 @@ fn of_command(body: &str) -> Option<(String, &'static str)> {
     Some((label, length))
 }
 
-/// Error of a length unit other than metres in a comment or the command /UNITS; its remedy is `solid.scale`.
+/// Error of a length unit other than metres in a comment of a mesh, or the command /UNITS.
 pub(super) fn refusal(file: &Path, line: usize, text: &str) -> Option<ReadError> {
+    refusal_without(file, line, text, "solid.scale")
+}
+
+/// As [`refusal`]; its remedy is the key `scale`.
+pub(super) fn refusal_without(file: &Path, line: usize, text: &str, key: &str) -> Option<ReadError> {
     let text = text.trim();
     let remedy = |unit: &str| {
         let scale = length(unit).unwrap_or(1.0);
-        format!("Set solid.scale = {scale}, or convert the file")
+        format!("Set {key} = {scale}, or convert the file")
     };
     if let Some((label, unit)) = of_command(text) {
         let error = ReadError::at(file, line, "/UNITS", format!("{label} ({unit})"), "SI or MKS (m)");
