@@ -51,8 +51,8 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Modal(args) => print(&modal::modal(&args)?),
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),
-        Command::Mesh { command: MeshCommand::Convert { mesh, output, format } } => {
-            mesh::convert(&mesh, &output, format)
+        Command::Mesh { command: MeshCommand::Convert { mesh, output, format, force } } => {
+            mesh::convert(&mesh, &output, format, force)
         }
         Command::Convert(args) => convert::convert(&args),
         Command::Stone { command } => stone::stone(&command),

@@ -29,25 +29,29 @@ pub fn install() {
 /// Without viewer clients and study runs.
 const FILES: usize = 16;
 
+/// Number of files that can be opened, up to `most`; `most` if unknown.
+pub fn free_files(most: usize) -> usize {
+    let mut open = Vec::with_capacity(most);
+    while open.len() < most {
+        match File::open(system::NULL_DEVICE) {
+            Ok(file) => open.push(file),
+            Err(error) if system::lacks_files(&error) => return open.len(),
+            // Not available on this system.
+            Err(_) => return most,
+        }
+    }
+    most
+}
+
 /// Checks the limit of open files before a run.
 ///
 /// # Errors
 /// Limit too low.
 pub fn check_files() -> Result<(), Failure> {
-    let mut open = Vec::with_capacity(FILES);
-    while open.len() < FILES {
-        match File::open(system::NULL_DEVICE) {
-            Ok(file) => open.push(file),
-            Err(error) if system::lacks_files(&error) => {
-                let found = open.len();
-                let text = format!(
-                    "open files: found a limit of {found}, expected {FILES} or more. Raise the system limit (ulimit -n)"
-                );
-                return Err(Failure::Other(text));
-            }
-            // Not available on this system.
-            Err(_) => break,
-        }
+    let found = free_files(FILES);
+    if found < FILES {
+        let expected = format!("{FILES} or more. Raise the system limit (ulimit -n)");
+        return Err(Failure::Other(format!("open files: found a limit of {found}, expected {expected}")));
     }
     Ok(())
 }

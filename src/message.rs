@@ -5,6 +5,7 @@
 
 use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
+use std::borrow::Cow;
 use std::io::Write;
 
 const LONGEST: usize = 8000;
@@ -39,8 +40,39 @@ fn write(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Escapes control characters and shortens to `longest`, with the total length.
+/// Longest number in plain digits; f64 need 17 and leading zeros.
+const DIGITS: usize = 24;
+
+/// Numbers of more digits in exponent form: the digits of 1e300 fill lines.
+fn short_numbers(text: &str) -> Cow<'_, str> {
+    let of_number = |c: char| c.is_ascii_digit() || c == '.';
+    let mut out = String::new();
+    let mut rest = text;
+    let mut before = ' ';
+    while let Some(start) = rest.find(of_number) {
+        let (head, tail) = rest.split_at(start);
+        let end = tail.find(|c| !of_number(c)).unwrap_or(tail.len());
+        let (word, after) = tail.split_at(end);
+        let number = word.trim_end_matches('.');
+        before = head.chars().next_back().unwrap_or(before);
+        let of_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '/' | '\\');
+        let alone = !of_word(before) && !after.starts_with(of_word);
+        out.push_str(head);
+        match number.parse::<f64>() {
+            Ok(value) if number.len() > DIGITS && alone => {
+                out.push_str(&format!("{value:e}{}", &word[number.len()..]));
+            }
+            _ => out.push_str(word),
+        }
+        before = '0';
+        rest = after;
+    }
+    if out.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(out + rest) }
+}
+
+/// Escapes control characters and shortens: numbers, and the text to `longest`, with the total length.
 pub(crate) fn shown(text: &str, longest: usize) -> String {
+    let text = short_numbers(text);
     if text.len() <= longest && !text.contains(char::is_control) {
         return text.to_string();
     }
@@ -68,5 +100,13 @@ mod tests {
         assert_eq!(shown("a\u{1b}[31m\u{7}\0é", 40), "a\\u{1b}[31m\\u{7}\\u{0}é");
         assert_eq!(shown(&"x".repeat(200_000), 5), "xxxxx… (200000 characters)");
         assert_eq!(shown("ééé", 3), "ééé");
+        let long = format!("found -{:.0}, {:.0}.", 1e300, 2e30);
+        assert_eq!(shown(&long, 40), "found -1e300, 2e30.");
+        assert_eq!(shown(&format!("found {}", 1e-300), 40), "found 1e-300");
+        for text in
+            ["packing_0000000000000000000000000000000001.csv", "0.00012345678901234567", "3f1e", "…1.5…"]
+        {
+            assert_eq!(shown(text, 60), text);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::output::print;
+use super::output::{print, refuse_existing};
 use crate::cli::{MeshArgs, MeshFormat};
 use crate::failure::Failure;
 use crate::mesh_tools::{self, Problem};
@@ -38,9 +38,11 @@ pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;
     let mut problems = mesh_tools::check(&file.mesh, &file.constraints);
     let mut notes = file.warnings.clone();
-    if file.no_constraints {
+    // Supports can be in the scene.
+    if file.constraints.is_empty() && !is_scene(&args.input) {
         problems.retain(|problem| !matches!(problem, Problem::Unconstrained { .. }));
-        notes.push("this format contains no constraints; add [[solid.support]] to the scene".into());
+        let subject = if file.no_constraints { "this format" } else { "the mesh" };
+        notes.push(format!("{subject} contains no constraints; add [[solid.support]] to the scene"));
     }
     if problems.is_empty() {
         return print(&format!("{}: no defects found\n{}", args.input.display(), remarks(&notes)));
@@ -49,7 +51,12 @@ pub(super) fn check(args: &MeshArgs) -> Result<(), Failure> {
     Err(Failure::Input(format!("{}: found {text}, expected a mesh without defects", args.input.display())))
 }
 
-pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>) -> Result<(), Failure> {
+pub(super) fn convert(
+    args: &MeshArgs,
+    output: &Path,
+    format: Option<MeshFormat>,
+    force: bool,
+) -> Result<(), Failure> {
     let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     if !ending.is_empty() && !MESH_ENDINGS.contains(&ending.as_str()) {
         let found = output.display();
@@ -62,10 +69,20 @@ pub(super) fn convert(args: &MeshArgs, output: &Path, format: Option<MeshFormat>
         return Err(Failure::Input(format!("--format: found {found}, expected an output file .msh")));
     }
     refuse_input(&args.input, output)?;
+    for file in written(output) {
+        refuse_existing(&file, force)?;
+    }
     let file = read(args)?;
     let options = MeshOptions { msh2: format == Some(MeshFormat::Msh2) };
     let lost = write_mesh_file(output, &file, options)?;
     print(&format!("{} written\n{}{}", output.display(), remarks(&file.warnings), remarks(&lost)))
+}
+
+fn written(output: &Path) -> Vec<PathBuf> {
+    match output.extension() {
+        None => folder_files(output),
+        Some(_) => vec![output.to_path_buf()],
+    }
 }
 
 fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
@@ -78,8 +95,7 @@ fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
     }
     let read = read.iter().flat_map(|file| mesh_files(file));
     let read: Vec<PathBuf> = read.filter_map(|file| file.canonicalize().ok()).collect();
-    let lists = output.extension().is_none();
-    let written = if lists { folder_files(output) } else { vec![output.to_path_buf()] };
+    let written = written(output);
     let both = written.iter().find(|file| file.canonicalize().is_ok_and(|file| read.contains(&file)));
     match both {
         None => Ok(()),
@@ -96,7 +112,10 @@ fn is_scene(input: &Path) -> bool {
 
 fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
     if !is_scene(&args.input) {
-        return Ok(read_mesh_file(&args.input)?);
+        let mut file = read_mesh_file(&args.input)?;
+        let unit = file.unit.take().map(|error| error.to_string());
+        file.warnings.extend(unit);
+        return Ok(file);
     }
     let document = Document::open(&args.input)?;
     let scene: Scene = document.read()?;

@@ -2,6 +2,19 @@
 
 use crate::failure::Failure;
 use std::io::Write;
+use std::path::Path;
+
+/// Rejects an existing file without `--force`.
+///
+/// # Errors
+/// Input error.
+pub fn refuse_existing(file: &Path, force: bool) -> Result<(), Failure> {
+    if force || !file.exists() {
+        return Ok(());
+    }
+    let expected = "a new file, or --force to overwrite it";
+    Err(Failure::Input(format!("{}: found an existing file, expected {expected}", file.display())))
+}
 
 /// Prints text; a closed reader is no failure.
 ///

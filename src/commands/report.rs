@@ -10,8 +10,12 @@ use crate::report::{self, Options};
 /// # Errors
 /// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
+<<<<<<< HEAD
     let options =
         Options { folders: args.folders, out: args.out, title: args.title, axle_load: args.axle_load };
+=======
+    let options = Options { folders: args.folders, out: args.out, title: args.title, force: args.force };
+>>>>>>> h-files
     let page = report::write(&options)?;
     print(&format!("{} written\n", page.display()))
 }

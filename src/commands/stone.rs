@@ -135,6 +135,14 @@ fn source(file: &Path) -> Result<Source, Failure> {
     let body = Polyhedron::new(&surface).map_err(|e| {
         Failure::Input(format!("{}: surface: found {e}, expected one closed surface", file.display()))
     })?;
+    if body.pieces() > 1 {
+        let found = format!("{} separate pieces", body.pieces());
+        let expected = "one, as a stone is in one piece. Write each stone into its own file";
+        return Err(Failure::Input(format!(
+            "{}: surface: found {found}, expected {expected}",
+            file.display()
+        )));
+    }
     let name = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Source { name, body })
 }
@@ -241,6 +249,9 @@ fn info(input: &Path) -> Result<(), Failure> {
             let [x, y, z] = m.principal();
             let mut e = body.extents();
             e.sort_by(|a, b| b.total_cmp(a));
+            if body.pieces() > 1 {
+                line(format!("note: {} separate pieces, measured as one body", body.pieces()));
+            }
             line(format!("volume            {:>12.6e} m³", m.volume));
             line(format!("holes             {:>12}", body.holes()));
             line(format!(

@@ -51,18 +51,8 @@ pub(super) fn scene(path: &Path, set: &[String]) -> Result<Option<Source>, Failu
     Err(Failure::Input("--set: found, but it has no effect without a scene".to_string()))
 }
 
-fn refuse_existing(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
-    if !file.exists() || args.force {
-        return Ok(());
-    }
-    Err(Failure::Input(format!(
-        "{}: found an existing file, expected a new file, or --force to overwrite it",
-        file.display()
-    )))
-}
-
 fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
-    refuse_existing(args, file)?;
+    refuse_existing(file, args.force)?;
     let results = Results::open(&args.dir, Coding::Compact)?.every(args.every.get());
     let name = args.dir.canonicalize()?.file_name().map(|n| n.to_string_lossy().into_owned());
     view::export::export(file, &name.unwrap_or_default(), &results)?;
@@ -71,7 +61,7 @@ fn export(args: &ViewArgs, file: &Path) -> Result<(), Failure> {
 }
 
 fn export_scene(args: &ViewArgs, file: &Path, source: &Source) -> Result<(), Failure> {
-    refuse_existing(args, file)?;
+    refuse_existing(file, args.force)?;
     let (document, job) = source.resolve()?;
     let still = Still(Preview::new(&document, &job)?);
     view::export::export(file, &still.0.title, &still)?;

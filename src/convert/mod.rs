@@ -81,7 +81,7 @@ fn look(input: &Path) -> Result<Input, Failure> {
     }
     let bytes = source::bytes(input, LARGEST).map_err(|refusal| Failure::Input(refusal.sentence(input)))?;
     // Comments may use any 8-bit code page; data are ASCII.
-    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes)).into_owned();
     let first = text.lines().map(str::trim).find(|l| !l.is_empty()).unwrap_or_default();
     let starts = |head: &str| first.get(..head.len()).is_some_and(|f| f.eq_ignore_ascii_case(head));
     Ok(match () {

@@ -51,7 +51,7 @@ fn output(findings: &mut Findings, scene: &Scene, job: &Job) {
     if let Some(interval) = scene.output.history_interval {
         let rows = job.end / interval.si;
         if rows > 1e7 {
-            let found = format!("{}, {rows:.0} rows", shown(interval.si, "s"));
+            let found = format!("{}, {} rows", shown(interval.si, "s"), shown(rows, ""));
             findings.add(rows > 1e9, "output.history_interval", found, "at most 10 million rows");
         }
         if job.end > 0.0 && interval.si > job.end {

@@ -88,7 +88,8 @@ pub(super) struct Deck {
 pub fn read_inp(file: &Path) -> Result<MeshFile, ReadError> {
     let mut builder = Builder::new(file);
     let mut deck = Deck::default();
-    let blocks = read_blocks(file)?;
+    let (blocks, unit) = read_blocks(file)?;
+    builder.made.unit = unit;
     if blocks.is_empty() {
         return Err(ReadError::whole(file, "Abaqus input", "no keyword", "keywords such as *NODE"));
     }

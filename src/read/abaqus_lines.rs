@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::ReadError;
 use super::mesh_file::{Builder, read_text};
+use super::unit;
 
 /// Nesting depth of *INCLUDE.
 const DEPTH: usize = 10;
@@ -59,16 +60,28 @@ fn unquoted(text: &str) -> &str {
     text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(text)
 }
 
-pub(super) fn read_blocks(file: &Path) -> Result<Vec<Block>, ReadError> {
-    let mut blocks = Vec::new();
-    follow(file, 0, &mut blocks, &mut Vec::new())?;
-    Ok(blocks)
+/// Blocks, and a stated length unit other than metres.
+pub(super) fn read_blocks(file: &Path) -> Result<(Vec<Block>, Option<Box<ReadError>>), ReadError> {
+    let (mut blocks, mut unit) = (Vec::new(), None);
+    follow(file, 0, &mut blocks, &mut Vec::new(), &mut unit)?;
+    let headings = blocks.iter().filter(|block: &&Block| block.keyword == "HEADING");
+    let stated = headings.flat_map(|block| block.data.iter().map(|(line, text)| (&block.file, *line, text)));
+    let of_heading =
+        stated.filter_map(|(file, line, text)| unit::refusal(file, line, text)).map(Box::new).next();
+    Ok((blocks, unit.or(of_heading)))
+}
+
+fn unit_of_comments(file: &Path, text: &str) -> Option<Box<ReadError>> {
+    let nodes = |line: &str| line.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("*node"));
+    let above = (1..).zip(text.lines()).take_while(|(_, line)| !nodes(line));
+    let mut comments = above.filter(|(_, line)| line.starts_with("**"));
+    comments.find_map(|(line, text)| unit::refusal(file, line, text)).map(Box::new)
 }
 
 /// Readable files among `file` and its includes; the mesh reader reports the missing ones.
 pub(super) fn files(file: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
-    let _ = follow(file, 0, &mut Vec::new(), &mut files);
+    let _ = follow(file, 0, &mut Vec::new(), &mut files, &mut None);
     files
 }
 
@@ -77,9 +90,13 @@ fn follow(
     depth: usize,
     blocks: &mut Vec<Block>,
     files: &mut Vec<PathBuf>,
+    unit: &mut Option<Box<ReadError>>,
 ) -> Result<(), ReadError> {
     files.push(file.to_path_buf());
     let text = read_text(file, "Abaqus input")?;
+    if unit.is_none() {
+        *unit = unit_of_comments(file, &text);
+    }
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.starts_with("**"));
     while let Some((number, text)) = lines.next() {
         let (line, text) = (number + 1, text.trim());
@@ -131,7 +148,7 @@ fn follow(
             let found = format!("{} files included", files.len());
             return Err(ReadError::at(file, line, "*INCLUDE", found, format!("at most {FILES}")));
         }
-        follow(&file.parent().unwrap_or(Path::new("")).join(input), depth + 1, blocks, files)?;
+        follow(&file.parent().unwrap_or(Path::new("")).join(input), depth + 1, blocks, files, unit)?;
     }
     Ok(())
 }

@@ -70,6 +70,8 @@ pub struct Lists {
     pub constraints: Vec<Constraint>,
     /// Guesses and likely mistakes, one sentence each.
     pub warnings: Vec<String>,
+    /// As of [`MeshFile`].
+    pub unit: Option<Box<ReadError>>,
 }
 
 /// Reads the lists; `constraints` is optional.
@@ -89,14 +91,14 @@ pub fn read_lists(
     if let Some(file) = constraints {
         read_constraints(file, &index, &mut lists)?;
     }
-    let Lists { mesh, constraints, warnings } = &mut lists;
+    let Lists { mesh, constraints, warnings, .. } = &mut lists;
     drop_unused_nodes(nodes, mesh, constraints, &mut BTreeMap::new(), warnings);
     Ok(lists)
 }
 
 impl From<Lists> for MeshFile {
     fn from(lists: Lists) -> MeshFile {
-        let Lists { mesh, constraints, warnings } = lists;
+        let Lists { mesh, constraints, warnings, unit } = lists;
         let mut element_types: Vec<(String, usize)> = Vec::new();
         for kind in mesh.connectivity.kinds() {
             let (family, nodes) = if kind.is_linear() { (185, 8) } else { (186, 20) };
@@ -106,7 +108,7 @@ impl From<Lists> for MeshFile {
                 None => element_types.push((name, 1)),
             }
         }
-        MeshFile { mesh, constraints, element_types, warnings, ..MeshFile::default() }
+        MeshFile { mesh, constraints, element_types, warnings, unit, ..MeshFile::default() }
     }
 }
 
@@ -116,7 +118,8 @@ const VALUES: [&str; 6] =
     ["coordinate x", "coordinate y", "coordinate z", "nodal rotation", "nodal rotation", "nodal rotation"];
 
 fn read_nodes(file: &Path, lists: &mut Lists) -> Result<NodeIndex, ReadError> {
-    let table = Table::read(file, Content::Nodes)?;
+    let mut table = Table::read(file, Content::Nodes)?;
+    lists.unit = table.unit.take();
     if table.rows.is_empty() {
         return Err(ReadError::whole(file, "nodes", "none", "at least 4 rows of id x y z"));
     }

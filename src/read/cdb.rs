@@ -51,6 +51,7 @@ pub fn read_cdb(file: &Path) -> Result<MeshFile, ReadError> {
     while let Some((line, body)) = lines.next() {
         command(&mut lines, line, body, &mut builder, &mut archive)?;
     }
+    builder.made.unit = lines.unit.take();
     cdb_elements::add(&mut builder, &archive)?;
     add_components(&mut builder, &archive);
     for (line, fields) in &archive.constraints {

@@ -6,16 +6,18 @@ use super::cdb::{Archive, Component};
 use super::cdb_elements::RawElement;
 use super::error::ReadError;
 use super::mesh_file::Builder;
-use super::number;
+use super::{number, unit};
 
 pub(super) struct Lines<'a> {
     file: PathBuf,
     lines: std::iter::Peekable<std::iter::Enumerate<std::str::Lines<'a>>>,
+    /// Unit other than metres in a comment or /UNITS.
+    pub unit: Option<Box<ReadError>>,
 }
 
 impl<'a> Lines<'a> {
     pub fn new(file: &Path, text: &'a str) -> Lines<'a> {
-        Lines { file: file.to_path_buf(), lines: text.lines().enumerate().peekable() }
+        Lines { file: file.to_path_buf(), lines: text.lines().enumerate().peekable(), unit: None }
     }
 
     /// Next command without comments.
@@ -24,6 +26,11 @@ impl<'a> Lines<'a> {
             let body = line.split('!').next().unwrap_or_default().trim();
             if !body.is_empty() && !body.starts_with('/') {
                 return Some((number + 1, body));
+            }
+            if self.unit.is_none() {
+                let text = line.trim_start();
+                let text = text.strip_prefix("/COM,").or_else(|| text.strip_prefix("/com,")).unwrap_or(text);
+                self.unit = unit::refusal(&self.file, number + 1, text).map(Box::new);
             }
         }
         None

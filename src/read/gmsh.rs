@@ -24,6 +24,7 @@ use super::faces::{self, Faces};
 use super::gmsh4;
 use super::mesh_file::{Builder, MeshFile, order_from_edges, read_bytes};
 use super::tokens::{Encoding, Tokens};
+use super::unit;
 
 /// Edges in the order of Gmsh's mid-side nodes (figures of "Node ordering").
 const HEX: [[usize; 2]; 12] =
@@ -176,6 +177,10 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
                 Some(line) if known => {
                     let shown: String = line.chars().take(40).collect();
                     return Err(tokens.fault(name, format!("\"{shown}\""), end));
+                }
+                Some(line) if name == "$Comments" && builder.made.unit.is_none() => {
+                    let number = tokens.line().saturating_sub(1);
+                    builder.made.unit = unit::refusal(file, number, line).map(Box::new);
                 }
                 Some(_) => {}
                 None => return Err(tokens.fault(name, "the end of the file", end)),

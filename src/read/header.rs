@@ -10,6 +10,8 @@
 //! Headings must have SI units and the column order of the list. Other lines are errors: they could be
 //! commands or overflowed numbers.
 
+use super::unit;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     Nodes,
@@ -139,31 +141,6 @@ const PLAIN: [&str; 28] = [
     "selected",
 ];
 
-const UNITS: [&str; 22] = [
-    "mm",
-    "millimetre",
-    "millimetres",
-    "millimeter",
-    "millimeters",
-    "cm",
-    "centimetre",
-    "centimetres",
-    "centimeter",
-    "centimeters",
-    "dm",
-    "km",
-    "um",
-    "µm",
-    "nm",
-    "ft",
-    "feet",
-    "foot",
-    "inch",
-    "inches",
-    "yd",
-    "mil",
-];
-
 const CURVILINEAR: [&str; 9] =
     ["r", "theta", "phi", "rho", "radius", "cylindrical", "spherical", "polar", "toroidal"];
 
@@ -192,6 +169,11 @@ pub(super) fn refusal(body: &str, content: Content) -> Option<(&'static str, Str
     heading(body, content)
 }
 
+/// Apart from `in`, which is also a word.
+fn is_unit(word: &str) -> bool {
+    word != "in" && unit::is_length(word)
+}
+
 fn heading(body: &str, content: Content) -> Option<(&'static str, String, String)> {
     let shown: String = body.chars().take(60).collect();
     let lower = body.to_lowercase();
@@ -201,8 +183,8 @@ fn heading(body: &str, content: Content) -> Option<(&'static str, String, String
     for (at, word) in words.iter().enumerate() {
         let plain = word.trim_end_matches(|c: char| c.is_ascii_digit());
         // `coordinates in m`; otherwise `in` means inches.
-        let of_unit = words.get(at + 1).is_some_and(|next| UNITS.contains(next) || PLAIN.contains(next));
-        if UNITS.contains(word) || *word == "in" && !of_unit {
+        let of_unit = words.get(at + 1).is_some_and(|next| is_unit(next) || PLAIN.contains(next));
+        if is_unit(word) || *word == "in" && !of_unit {
             let expected =
                 "metres; convert the list, or set solid.scale and take the unit out of the heading";
             return Some(("unit of the heading", format!("{word} in \"{shown}\""), expected.into()));

@@ -31,6 +31,8 @@ pub struct MeshFile {
     pub element_types: Vec<(String, usize)>,
     /// Guesses, omissions and likely mistakes, one sentence each.
     pub warnings: Vec<String>,
+    /// Stated length unit other than metres, as the error without `solid.scale`.
+    pub unit: Option<Box<ReadError>>,
 }
 
 /// Largest coordinate: keeps volumes and their products finite.

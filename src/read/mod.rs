@@ -31,6 +31,7 @@ mod stl;
 pub mod surface;
 mod table;
 mod tokens;
+pub(crate) mod unit;
 pub(crate) mod vtk_arrays;
 pub(crate) mod vtk_grid;
 mod vtk_legacy;
@@ -49,7 +50,7 @@ pub(crate) use mesh_file::FARTHEST;
 pub use mesh_file::{FileMaterial, MeshFile};
 pub use obj::read_obj;
 pub use stl::read_stl;
-pub use surface::{SURFACE_ENDINGS, Surface, read_surface};
+pub use surface::{SURFACE_ENDINGS, Surface, read_surface, surface_unit};
 pub use vtk_legacy::read_vtk;
 pub use vtu::read_vtu;
 

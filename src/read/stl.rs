@@ -28,13 +28,14 @@ pub fn read_stl(file: &Path) -> Result<Surface, ReadError> {
 
 fn parse(file: &Path, bytes: &[u8]) -> Result<Surface, ReadError> {
     let count = bytes.get(80..HEAD).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let plain = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let length = count.and_then(|n| n.checked_mul(FACET)).map(|n| n + HEAD);
     let surface = if length == Some(bytes.len()) {
         binary(file, bytes)?
-    } else if bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"))
+    } else if plain.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"))
         && !bytes.contains(&0)
     {
-        text(file, &String::from_utf8_lossy(bytes))?
+        text(file, &String::from_utf8_lossy(plain))?
     } else {
         let expected = match (count, length) {
             (Some(n), Some(l)) => {

@@ -45,6 +45,7 @@ fn reads_text_and_binary_identically() {
     }
     let loud = ascii().to_uppercase().replace('\n', "\r\n");
     assert_eq!(read(loud.as_bytes()).unwrap(), text);
+    assert_eq!(read(format!("\u{feff}{loud}").as_bytes()).unwrap(), text);
     let twice = read((ascii() + "\n" + &ascii()).as_bytes()).unwrap();
     assert_eq!(twice.triangles.len(), 8);
     // A missing last line loses nothing.

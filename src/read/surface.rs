@@ -3,12 +3,13 @@
 //! The plain list gives the numbers of vertices and triangles, the vertices (`x y z`), and three vertex ids
 //! per triangle, from 1 (from 0 if a 0 occurs). Any winding is accepted; surfaces may be open.
 
+use std::io::Read;
 use std::path::Path;
 
 use super::error::ReadError;
 use super::header::Content;
 use super::table::Table;
-use super::{MESH_ENDINGS, asc, geotiff, obj, skin, stl};
+use super::{MESH_ENDINGS, asc, geotiff, obj, skin, source, stl, unit};
 
 pub use trackbed_dem::shape::polyhedron::Surface;
 
@@ -41,6 +42,24 @@ pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
             Err(ReadError::whole(path, "file extension", found, expected))
         }
     }
+}
+
+/// Start of a file in which comments state its unit [bytes].
+const HEAD: u64 = 1 << 16;
+
+/// Length unit other than metres that a comment of a text file states, as the error without `scale`.
+pub fn surface_unit(path: &Path) -> Option<ReadError> {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase())?;
+    if !["obj", "dat", "txt", "tri", "srf"].contains(&ending.as_str()) {
+        return None;
+    }
+    let mut bytes = Vec::new();
+    source::open(path, source::LARGEST).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+    let text = String::from_utf8_lossy(&bytes);
+    let comments =
+        (1..).zip(text.lines()).filter(|(_, line)| line.trim_start().starts_with(['#', '!', '*', '/']));
+    let mut stated = comments.filter_map(|(line, text)| unit::refusal_without(path, line, text, "scale"));
+    stated.next()
 }
 
 /// Merges vertices of separate triangles.

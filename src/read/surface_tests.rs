@@ -82,3 +82,21 @@ fn merges_rounded_stl_vertices() {
     assert_eq!((surface.vertices.len(), surface.triangles.len()), (4, 4));
     assert!((Polyhedron::new(&surface).unwrap().moments().volume - 1.0 / 6.0).abs() < 1e-6);
 }
+
+#[test]
+fn comment_states_unit() {
+    let unit = |name: &str, content: &str| {
+        let file = File::new(name, content);
+        surface_unit(&file.0).map(|error| error.to_string())
+    };
+    let error = unit("u.obj", "# Units: mm\nv 0 0 0\n").unwrap();
+    assert!(
+        error.contains("u.obj:1: unit of the comment: found mm in \"# Units: mm\", expected metres"),
+        "{error}"
+    );
+    assert!(error.ends_with(". Set scale = 0.001, or convert the file."), "{error}");
+    assert!(unit("v.dat", &format!("! X [in] Y [in] Z [in]\n{TET}")).unwrap().contains("found in in"));
+    for content in ["# ballast of 31.5 mm\nv 0 0 0\n", "# units: m\n", "v 0 0 0\n"] {
+        assert_eq!(unit("w.obj", content), None);
+    }
+}

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::error::ReadError;
 use super::header::{self, Content};
 use super::mesh_file::read_bytes;
-use super::number;
+use super::{number, unit};
 
 const PAGE: usize = 15;
 
@@ -23,6 +23,8 @@ pub struct Row {
 pub struct Table {
     pub file: PathBuf,
     pub rows: Vec<Row>,
+    /// Unit other than metres in a comment above the rows.
+    pub unit: Option<Box<ReadError>>,
     text: String,
 }
 
@@ -36,6 +38,7 @@ impl Table {
 
     fn parse(file: &Path, content: Content, text: String) -> Result<Table, ReadError> {
         let mut rows: Vec<Row> = Vec::new();
+        let mut unit = None;
         // Line of a banner whose column heading is pending.
         let mut page: Option<usize> = None;
         let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
@@ -57,6 +60,9 @@ impl Table {
             }
             check_overflow(file, line, body, !rows.is_empty())?;
             if body.starts_with(['!', '#', '/', '*']) {
+                if rows.is_empty() && unit.is_none() {
+                    unit = unit::refusal(file, line, body).map(Box::new);
+                }
                 continue;
             }
             let body = body.split(['!', '#']).next().unwrap_or_default().trim();
@@ -81,7 +87,7 @@ impl Table {
         }
         match page {
             Some(banner) => Err(open_page(file, banner)),
-            None => Ok(Table { file: file.to_path_buf(), rows, text }),
+            None => Ok(Table { file: file.to_path_buf(), rows, unit, text }),
         }
     }
 

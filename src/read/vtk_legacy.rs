@@ -7,6 +7,7 @@ use std::path::Path;
 use super::error::ReadError;
 use super::mesh_file::{Builder, MeshFile, read_bytes};
 use super::tokens::{Encoding, Tokens};
+use super::unit;
 use super::vtk_grid::{self, Array, Grid};
 
 /// Reads a legacy VTK file.
@@ -21,7 +22,8 @@ pub fn read_vtk(file: &Path) -> Result<MeshFile, ReadError> {
         let shown: String = first.chars().take(40).collect();
         return Err(tokens.fault("first line", format!("\"{shown}\""), "# vtk DataFile Version …"));
     }
-    tokens.rest_of_line();
+    let title = tokens.rest_of_line().unwrap_or_default();
+    let unit = unit::refusal(file, 2, title).map(Box::new);
     let how = tokens.next_line().unwrap_or_default();
     let encoding = match how.to_ascii_uppercase().as_str() {
         "ASCII" => Encoding::Text,
@@ -35,7 +37,9 @@ pub fn read_vtk(file: &Path) -> Result<MeshFile, ReadError> {
     while let Some(line) = reader.tokens.next_line() {
         reader.keyword(line)?;
     }
-    vtk_grid::mesh(Builder::new(file), reader.grid)
+    let mut builder = Builder::new(file);
+    builder.made.unit = unit;
+    vtk_grid::mesh(builder, reader.grid)
 }
 
 struct Reader<'a> {

@@ -27,7 +27,9 @@ impl Tag<'_> {
 
 /// Tags in order, without comments and declarations, up to the first damaged tag.
 pub(crate) fn tags(bytes: &[u8]) -> impl Iterator<Item = Tag<'_>> {
-    let mut reader = Reader::from_reader(bytes);
+    // The reader counts positions behind a byte order mark.
+    let mark = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+    let mut reader = Reader::from_reader(&bytes[mark..]);
     // Pairing is not checked: appended binary data can break it.
     reader.config_mut().check_end_names = false;
     reader.config_mut().allow_unmatched_ends = true;
@@ -40,7 +42,7 @@ pub(crate) fn tags(bytes: &[u8]) -> impl Iterator<Item = Tag<'_>> {
                 Event::Eof => return None,
                 _ => continue,
             };
-            return Some(Tag { name, start, closed, end: reader.buffer_position() as usize });
+            return Some(Tag { name, start, closed, end: mark + reader.buffer_position() as usize });
         }
     })
 }
@@ -63,6 +65,9 @@ mod tests {
         assert_eq!(found[0].attribute("d"), None);
         assert_eq!(found[0].text_after(text), b"text");
         assert_eq!(found[2].text_after(text), b"");
+        let marked = [b"\xef\xbb\xbf".as_slice(), text].concat();
+        let tag = tags(&marked).next().unwrap();
+        assert_eq!((tag.end, tag.text_after(&marked)), (found[0].end + 3, b"text".as_slice()));
     }
 
     #[test]

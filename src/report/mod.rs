@@ -9,6 +9,7 @@ mod quantity;
 mod sections;
 
 use crate::failure::Failure;
+use crate::read::source;
 use crate::write::{WriteError, atomic};
 use data::RunData;
 use maud::Markup;
@@ -23,9 +24,17 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Page title; default: scene title.
     pub title: Option<String>,
+<<<<<<< HEAD
     /// Axle load of a cycle [t], for settlement against traffic.
     pub axle_load: Option<f64>,
+=======
+    /// Overwrite files other than reports.
+    pub force: bool,
+>>>>>>> h-files
 }
+
+/// Text of every report.
+const MARK: &str = "; report by trackbed ";
 
 /// Writes a report and returns its path.
 ///
@@ -49,8 +58,15 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         let found = out.display();
         return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
+<<<<<<< HEAD
     if let Some(load) = options.axle_load.filter(|t| !(*t > 0.0 && *t <= 100.0)) {
         return Err(Failure::Input(format!("--axle-load: found {load}, expected above 0, at most 100 t")));
+=======
+    if out.exists() && !options.force && !is_report(&out) {
+        let found = out.display();
+        let expected = "a new file, a report, or --force to overwrite it";
+        return Err(Failure::Input(format!("{found}: found an existing file, expected {expected}")));
+>>>>>>> h-files
     }
     let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
     data::distinguish(&mut runs);
@@ -58,6 +74,11 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
     let text = page::page(&title, &head(&runs), &sections::all(&runs, options.axle_load));
     put(&out, &text)?;
     Ok(out)
+}
+
+fn is_report(file: &Path) -> bool {
+    let text = source::text(file).unwrap_or_default();
+    text.lines().any(|line| line.contains("<p class=\"note\">Results ") && line.contains(MARK))
 }
 
 fn put(out: &Path, text: &str) -> Result<(), Failure> {
@@ -81,6 +102,6 @@ fn head(runs: &[RunData]) -> Markup {
     };
     let version = env!("CARGO_PKG_VERSION");
     page::paragraph(&format!(
-        "{whose}; report by trackbed {version}. Hover over a value to see it in SI units, as in the files."
+        "{whose}{MARK}{version}. Hover over a value to see it in SI units, as in the files."
     ))
 }

@@ -32,7 +32,8 @@ impl Table {
         };
         let bytes = source::bytes(file, source::LARGEST).map_err(|r| Failure::Input(r.sentence(file)))?;
         let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |k| k + 1);
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(&bytes[..end]);
+        let start = bytes[..end].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..end]);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(start);
         let names: Vec<String> = match reader.headers() {
             Ok(names) => names.iter().map(String::from).collect(),
             Err(e) => return Err(refused(e.to_string(), "a table of numbers with a head")),
@@ -105,6 +106,8 @@ mod tests {
         assert_eq!(Table::read(&file).unwrap().unwrap().rows(), 0);
         fs::write(&file, "time [s]").unwrap();
         assert!(Table::read(&file).is_err(), "the head is not whole yet");
+        fs::write(&file, "\u{feff}time [s],n\n1,2\n").unwrap();
+        assert_eq!(Table::read(&file).unwrap().unwrap().heads, ["time", "n"]);
         fs::remove_dir_all(&dir).unwrap();
     }
 }

@@ -35,10 +35,11 @@ impl Lock {
     /// # Errors
     /// Locked by another process, no directory; I/O errors.
     pub fn take(dir: &Path) -> Result<Lock, Failure> {
-        if dir.exists() && !dir.is_dir() {
-            return Err(Failure::Other(format!("{}: found a file, expected a directory", dir.display())));
-        }
-        let system = |e: io::Error| Failure::Other(format!("{}: {}", dir.display(), system::words(&e)));
+        refuse_file(dir)?;
+        let system = |e: io::Error| {
+            let found = system::words(&e);
+            Failure::Other(format!("{}: found {found}, expected a writable directory", dir.display()))
+        };
         let missing = dir.ancestors().take_while(|d| !d.as_os_str().is_empty() && !d.exists());
         let mut made: Vec<PathBuf> = missing.map(PathBuf::from).collect();
         made.reverse();
@@ -117,6 +118,18 @@ fn lock(path: &Path) -> io::Result<Option<(File, bool)>> {
     Ok(None)
 }
 
+/// Rejects a file, or a link without target, in place of a directory or above it.
+fn refuse_file(dir: &Path) -> Result<(), Failure> {
+    let is_there = |path: &&Path| !path.as_os_str().is_empty() && path.symlink_metadata().is_ok();
+    match dir.ancestors().find(is_there).filter(|path| !path.is_dir()) {
+        None => Ok(()),
+        Some(path) => {
+            let found = if path.exists() { "a file" } else { "a link without target" };
+            Err(Failure::Input(format!("{}: found {found}, expected a directory", path.display())))
+        }
+    }
+}
+
 fn remove(made: &[PathBuf]) {
     // Non-empty directories stay.
     made.iter().rev().for_each(|dir| drop(fs::remove_dir(dir)));
@@ -164,11 +177,20 @@ mod tests {
         assert!(Lock::take(&inner).unwrap().left_behind);
         assert!(inner.is_dir() && !inner.join(FILE).exists());
         fs::write(dir.join("file"), "").unwrap();
+        let sentence = |name: &str, found: &str| {
+            format!("{}: found {found}, expected a directory", dir.join(name).display())
+        };
         let error = Lock::take(&dir.join("file")).unwrap_err();
-        assert!(
-            error.code() == 1 && error.to_string().ends_with("found a file, expected a directory"),
-            "{error}"
-        );
+        assert_eq!((error.code(), error.to_string()), (2, sentence("file", "a file")));
+        let error = Lock::take(&dir.join("file/x")).unwrap_err();
+        assert_eq!((error.code(), error.to_string()), (2, sentence("file", "a file")));
+        assert_eq!(fs::read(dir.join("file")).unwrap(), b"");
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("loop", dir.join("loop")).unwrap();
+            let error = Lock::take(&dir.join("loop")).unwrap_err();
+            assert_eq!((error.code(), error.to_string()), (2, sentence("loop", "a link without target")));
+        }
         fs::remove_dir_all(&dir).unwrap();
     }
 }

@@ -22,10 +22,14 @@ use tokio::net::TcpStream;
 use tokio::sync::Semaphore;
 use tokio::task::AbortHandle;
 
+use crate::guard;
+
 /// Requests computed in parallel.
 const THREADS: usize = 4;
 /// Most open connections; the longest stalled are closed.
 const CONNECTIONS: usize = 128;
+/// Open files kept for the responses.
+const SPARE: usize = 8;
 /// Most unsent bytes; beyond, the longest stalled are closed.
 const QUEUED: usize = 512 << 20;
 const HEAD: usize = 16 << 10;
@@ -105,15 +109,17 @@ pub fn serve(listener: TcpListener, site: Arc<impl Respond>) -> io::Result<()> {
             threads: Semaphore::new(THREADS),
             open: Mutex::default(),
         });
+        let most = guard::free_files(CONNECTIONS + SPARE).saturating_sub(SPARE).max(2);
         for id in 0_u64.. {
             match listener.accept().await {
                 Ok((stream, _)) => {
-                    connections.close_stalled(CONNECTIONS - 1);
+                    connections.close_stalled(most - 1);
                     open(id, stream, &connections, &site);
                 }
                 // Out of file handles.
                 Err(_) => {
-                    connections.close_stalled(CONNECTIONS / 4);
+                    let open = connections.open().len();
+                    connections.close_stalled(open / 2);
                     tokio::time::sleep(Duration::from_millis(50)).await;
                 }
             }

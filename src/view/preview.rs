@@ -2,7 +2,9 @@
 //! `check` (report of `trackbed check`).
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -22,7 +24,7 @@ pub struct Still(pub Preview);
 impl Blocks for Still {
     fn block(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
         Ok(match name {
-            "scene" => Some(scene(Ok(&self.0), "", &self.0.title)),
+            "scene" => Some(scene(Ok(&self.0), "", &self.0.title, false)),
             "model" => Some(model(&self.0, Coding::Compact)),
             _ => None,
         })
@@ -35,9 +37,26 @@ impl Blocks for Still {
 
 /// Preview that follows its files.
 pub struct Live {
-    source: Source,
+    shared: Arc<Shared>,
     check: Check,
-    latest: Mutex<Arc<Latest>>,
+    checks: AtomicUsize,
+}
+
+/// Longest wait of a request for the scene that is being read.
+const WAIT: Duration = Duration::from_secs(2);
+/// Most parallel checks, fewer than the server's threads.
+const CHECKS: usize = 2;
+
+struct Shared {
+    source: Source,
+    state: Mutex<State>,
+    ended: Condvar,
+}
+
+struct State {
+    latest: Arc<Latest>,
+    /// Whether a thread reads the changed scene.
+    reading: bool,
 }
 
 struct Latest {
@@ -57,33 +76,93 @@ impl Latest {
     }
 }
 
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Ends a reading, also after a panic.
+struct Reading(Arc<Shared>);
+
+impl Drop for Reading {
+    fn drop(&mut self) {
+        self.0.state().reading = false;
+        self.0.ended.notify_all();
+    }
+}
+
+/// Ends a check, also after a panic.
+struct Checking<'a>(&'a AtomicUsize);
+
+impl Drop for Checking<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
 impl Live {
     /// Reads a scene; errors are shown in the page.
     pub fn new(source: Source, check: Check) -> Live {
-        let latest = Mutex::new(Arc::new(Latest::of(&source, &[])));
-        Live { source, check, latest }
+        let latest = Arc::new(Latest::of(&source, &[]));
+        let state = Mutex::new(State { latest, reading: false });
+        let shared = Arc::new(Shared { source, state, ended: Condvar::new() });
+        Live { shared, check, checks: AtomicUsize::new(0) }
     }
 
     fn latest(&self) -> Arc<Latest> {
-        self.latest.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.shared.state().latest.clone()
     }
 
-    /// Returns the version of the files.
+    /// Returns the version of the files; while they are being read, of the last state.
     pub fn version(&self) -> String {
-        version(&self.latest().files)
+        let (latest, reading) = {
+            let state = self.shared.state();
+            (state.latest.clone(), state.reading)
+        };
+        if reading { latest.version.clone() } else { version(&latest.files) }
     }
 
     /// Returns the title of the page.
     pub fn title(&self) -> String {
-        self.source.file.display().to_string()
+        self.shared.source.file.display().to_string()
     }
 
-    fn renewed(&self) -> Arc<Latest> {
-        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        if version(&latest.files) != latest.version {
-            *latest = Arc::new(Latest::of(&self.source, &latest.files));
+    /// State of the files, or the last one with `true` while one thread reads them.
+    fn renewed(&self) -> (Arc<Latest>, bool) {
+        let latest = self.latest();
+        if version(&latest.files) == latest.version {
+            return (latest, false);
         }
-        latest.clone()
+        if !std::mem::replace(&mut self.shared.state().reading, true) {
+            let reading = Reading(self.shared.clone());
+            // Without a thread the last state stays.
+            let _ = std::thread::Builder::new().name("scene".into()).spawn(move || {
+                let latest = Arc::new(Latest::of(&reading.0.source, &latest.files));
+                reading.0.state().latest = latest;
+            });
+        }
+        let ended = self.shared.ended.wait_timeout_while(self.shared.state(), WAIT, |state| state.reading);
+        let (state, _) = ended.unwrap_or_else(PoisonError::into_inner);
+        (state.latest.clone(), state.reading)
+    }
+
+    fn checked(&self) -> Vec<u8> {
+        let mut chunk = Chunk::new(Coding::Exact);
+        let before = self.checks.fetch_add(1, Ordering::Relaxed);
+        let _checking = Checking(&self.checks);
+        if before >= CHECKS {
+            chunk.meta(
+                "text",
+                json!("note: other checks of this scene are under way; reload the page later."),
+            );
+            return chunk.finish();
+        }
+        match (self.check)(&self.shared.source) {
+            Ok(text) => chunk.meta("text", json!(text)),
+            Err(failure) => chunk.meta("errors", json!(failure.sentences())),
+        }
+        chunk.finish()
     }
 }
 
@@ -92,19 +171,12 @@ impl Blocks for Live {
         let title = self.title();
         Ok(match name {
             "scene" => {
-                let latest = self.renewed();
+                let (latest, reading) = self.renewed();
                 let loaded = latest.loaded.as_ref().map_err(|errors| &errors[..]);
-                Some(scene(loaded, &latest.version, &title))
+                Some(scene(loaded, &latest.version, &title, reading))
             }
             "model" => self.latest().loaded.as_ref().ok().map(|preview| model(preview, Coding::Exact)),
-            "check" => {
-                let mut chunk = Chunk::new(Coding::Exact);
-                match (self.check)(&self.source) {
-                    Ok(text) => chunk.meta("text", json!(text)),
-                    Err(failure) => chunk.meta("errors", json!(failure.sentences())),
-                }
-                Some(chunk.finish())
-            }
+            "check" => Some(self.checked()),
             _ => None,
         })
     }
@@ -118,7 +190,7 @@ fn origin(preview: &Preview) -> [f64; 3] {
     [0, 1, 2].map(|k| 0.5 * (preview.bounds[0][k] + preview.bounds[1][k]))
 }
 
-fn scene(loaded: Result<&Preview, &[String]>, version: &str, title: &str) -> Vec<u8> {
+fn scene(loaded: Result<&Preview, &[String]>, version: &str, title: &str, reading: bool) -> Vec<u8> {
     let mut chunk = Chunk::new(Coding::Exact);
     let none: [Value; 0] = [];
     for (key, value) in [
@@ -133,6 +205,7 @@ fn scene(loaded: Result<&Preview, &[String]>, version: &str, title: &str) -> Vec
         ("solidFields", json!(none)),
         ("tables", json!(none)),
         ("errors", json!(loaded.err())),
+        ("reading", json!(reading)),
         ("model", json!(loaded.ok().map(about))),
     ] {
         chunk.meta(key, value);
@@ -169,4 +242,38 @@ fn model(preview: &Preview, coding: Coding) -> Vec<u8> {
         chunk.indices(&format!("ids/{k}"), &shape.ids, 1);
     }
     chunk.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::write::sample::folder;
+
+    fn errors(live: &Live) -> (Vec<String>, bool) {
+        let (latest, reading) = live.renewed();
+        (latest.loaded.as_ref().err().cloned().unwrap_or_default(), reading)
+    }
+
+    #[test]
+    fn last_state_serves_while_scene_is_read() {
+        let dir = folder("live");
+        let file = dir.join("scene.toml");
+        std::fs::write(&file, "x = \n").unwrap();
+        let live = Live::new(Source { file: file.clone(), set: Vec::new() }, |_| Ok(String::new()));
+        let version = live.version();
+        let (first, reading) = errors(&live);
+        assert!(first[0].contains("scene.toml:1: syntax") && !reading, "{first:?}");
+        // Another thread reads.
+        live.shared.state().reading = true;
+        std::fs::write(&file, "\n\nx = \n").unwrap();
+        let begun = std::time::Instant::now();
+        assert_eq!(errors(&live), (first, true));
+        assert!(begun.elapsed() >= WAIT);
+        assert_eq!(live.version(), version);
+        drop(Reading(live.shared.clone()));
+        assert_ne!(live.version(), version);
+        let (second, reading) = errors(&live);
+        assert!(second[0].contains("scene.toml:3: syntax") && !reading, "{second:?}");
+        std::fs::remove_dir_all(&dir).unwrap();
+    }
 }

@@ -33,7 +33,7 @@ def meshes(bench, rng):
     good = sorted(p for p in (ROOT / "tests/data/mesh").iterdir() if p.suffix in (".msh", ".vtu", ".vtk"))
     for ending in ("cdb", "inp", "msh"):
         made = bench.work / f"good.{ending}"
-        bench.attempt("mesh", "convert", good[0], made, codes={0})
+        bench.attempt("mesh", "convert", good[0], made, "--force", codes={0})
         good.append(made)
     while True:
         source = rng.choice(good)
@@ -42,7 +42,7 @@ def meshes(bench, rng):
         out.write_text("kept")
         for words in (["info", file], ["check", file]):
             bench.attempt("mesh", *words, untouched=[file, out], codes={0, 2}, faults=20, env={"RAYON_NUM_THREADS": "2"})
-        bench.attempt("mesh", "convert", file, out, untouched=[file], codes={0, 2}, faults=20, out=out)
+        bench.attempt("mesh", "convert", file, out, "--force", untouched=[file], codes={0, 2}, faults=20, out=out)
         yield
 
 

@@ -335,8 +335,8 @@ fn mesh_check_detects_bad_elements() {
     let folder = Folder::new("loose");
     write_lists(&small_block(), folder.path());
     fs::remove_file(folder.join("DOF.DAT")).unwrap();
-    let outcome = check(folder.path());
-    assert!(outcome.code == 2 && outcome.stderr.contains("no constraint in"), "{outcome:?}");
+    let outcome = check(folder.path()).good();
+    assert!(outcome.stdout.contains("the mesh contains no constraints"), "{outcome:?}");
     let outcome = check(&folder.join("nowhere"));
     assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{outcome:?}");
 }
@@ -354,6 +354,15 @@ fn mesh_convert_rejects_unknown_extensions() {
     };
     let piece = pieces.remove(0).into_loaded_piece_data(None).unwrap();
     assert_eq!((piece.points.len(), piece.cells.types.len()), (3 * 3834, 684));
+
+    let kept = folder.write("lists/DOF.DAT", "mine");
+    for output in [&file, &folder.join("lists")] {
+        let outcome = convert(output);
+        let sentence = "found an existing file, expected a new file, or --force to overwrite it\n";
+        assert!(outcome.code == 2 && outcome.stderr.ends_with(sentence), "{outcome:?}");
+    }
+    assert_eq!(std::fs::read_to_string(kept).unwrap(), "mine");
+    trackbed([Path::new("mesh"), Path::new("convert"), &lists, &file, Path::new("--force")]).good();
 
     let outcome = convert(&folder.join("mesh.stl"));
     assert_eq!(outcome.code, 2, "{outcome:?}");

@@ -209,11 +209,7 @@ fn hostile_files_are_refused() {
             "a.csv",
             "a:2: number: found \"nan\", expected a finite number",
         ),
-        (
-            "3D: 0 1e99\n".into(),
-            "a.csv",
-            "a:1: number of rows: found 1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000, expected a whole number",
-        ),
+        ("3D: 0 1e99\n".into(), "a.csv", "a:1: number of rows: found 1e99, expected a whole number"),
         ("3DF: 0\n".into(), "a.csv", "a:1: 3DF:: found 1 numbers, expected time and number of rows"),
         (
             "3DF: 0 1\n1 -2 3 4\n".into(),

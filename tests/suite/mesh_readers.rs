@@ -433,7 +433,13 @@ fn gmsh_comments_and_unconstrained_checks() {
     let foreign = "# vtk DataFile Version 3.0\nb\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
     let vtk = format!("{foreign}{}CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n", points(" ", false));
     trackbed([Path::new("mesh"), Path::new("check"), &folder.write("b.vtk", &vtk)]).good();
-    let outcome = trackbed([Path::new("mesh"), Path::new("check"), &folder.write("b.inp", &inp(""))]);
+    let bare = folder.write("b.inp", &inp(""));
+    let outcome = trackbed([Path::new("mesh"), Path::new("check"), &bare]).good();
+    let note = "warning: the mesh contains no constraints; add [[solid.support]] to the scene";
+    assert!(outcome.stdout.contains(note), "{outcome:?}");
+    let material = "[[solid.material]]\nid = 1\nyoung = \"50 MPa\"\npoisson = 0.3\ndensity = 1900\n";
+    let scene = folder.write("scene.toml", &format!("[solid]\nmesh = \"b.inp\"\n{material}"));
+    let outcome = trackbed([Path::new("mesh"), Path::new("check"), &scene]);
     assert!(outcome.code == 2 && outcome.stderr.contains("no constraint in"), "{outcome:?}");
 }
 
@@ -510,6 +516,11 @@ fn time_history_uses_header_units() {
         "\u{feff}0,0\n1,2\n",
         "Time (s),load factor [-]\n0,0\n1,2\n",
         "t/ms,percent [%]\n0,0\n1000,200\n",
+        "factor,time\n0,0\n2,1\n",
+        "time,load_case,factor\n0,1,0\n1,1,2\n",
+        "Zeit;Faktor\n0,0;0,0\n0,5;1,0\n1,0;2,0\n",
+        "\u{feff}# measured\r\n\"time [ms]\";\"factor [-]\"\r\n\r\n\"0\";\"0\"\r\n1.0E+03 ; 2\r\n",
+        "time\tfactor\n0\t0\n1\t2\n",
     ] {
         run(course).good();
         let history = super::support::Table::read(&folder.join("out/history.csv"));
@@ -521,7 +532,16 @@ fn time_history_uses_header_units() {
             "time [ms],pressure [kPa]\n0,0\n1,2\n",
             "course.csv:1: factor: found \"pressure [kPa]\", expected a number without a unit",
         ),
-        ("factor,time\n0,0\n1,2\n", "course.csv:1: heading: found \"factor\", expected a column of time"),
+        ("factor,place\n0,0\n1,2\n", "course.csv:1: heading: found \"place\", expected a column of time"),
+        (
+            "time,load_case,settlement\n0,1,0\n1,1,2\n",
+            "course.csv:1: heading: found columns time, load_case, settlement, expected a column of factor",
+        ),
+        ("time factor\n0 0\n1 2\n", "course.csv:1: heading: found \"time factor\", separated by blanks"),
+        (
+            "# time in milliseconds\n0,0\n1000,2\n",
+            "course.csv:1: unit of the comment: found \"time in milliseconds\"",
+        ),
         (
             "time [parsec],factor\n0,0\n1,2\n",
             "course.csv:1: time: found \"time [parsec]\", expected one of the units s",
@@ -531,6 +551,43 @@ fn time_history_uses_header_units() {
     ] {
         let outcome = run(course);
         assert!(outcome.code == 2 && outcome.stderr.contains(part), "{part}: {outcome:?}");
+    }
+}
+
+/// Millimetres in a comment, a title or /UNITS: an error without `solid.scale`.
+#[test]
+fn stated_units_need_a_scale() {
+    let folder = Folder::new("stated_units");
+    let bare = folder.write("bare.inp", &inp("*BOUNDARY\n1,1,3\n2,1,3\n3,1,3\n4,1,3\n"));
+    for name in ["a.cdb", "a.msh", "a.vtk", "lists"] {
+        trackbed([Path::new("mesh"), Path::new("convert"), &bare, &folder.join(name)]).good();
+    }
+    let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    folder.write("a.inp", &format!("** UNITS: MM, N\n{}", text("bare.inp")));
+    folder.write("a.cdb", &format!("/UNITS,MPA\n{}", text("a.cdb")));
+    folder.write("a.msh", &format!("$Comments\nunits: mm\n$EndComments\n{}", text("a.msh")));
+    folder.write("a.vtk", &text("a.vtk").replacen("\nmesh\n", "\nunits: mm\n", 1));
+    folder.write("lists/NODECOORD.DAT", &format!("! NODE X [mm] Y [mm]\n{}", text("lists/NODECOORD.DAT")));
+    let material = "[[solid.material]]\nid = 1\nyoung = \"50 MPa\"\npoisson = 0.3\ndensity = 1900\n";
+    for (name, sentence) in [
+        ("a.inp", "a.inp:1: unit of the comment: found mm in \"** UNITS: MM, N\", expected metres"),
+        ("a.cdb", "a.cdb:1: /UNITS: found MPA (mm), expected SI or MKS (m)"),
+        ("a.msh", "a.msh:2: unit of the comment: found mm in \"units: mm\", expected metres"),
+        ("a.vtk", "a.vtk:2: unit of the comment: found mm in \"units: mm\", expected metres"),
+        (
+            "lists",
+            "NODECOORD.DAT:1: unit of the comment: found mm in \"! NODE X [mm] Y [mm]\", expected metres",
+        ),
+    ] {
+        let sentence = format!("{sentence}. Set solid.scale = 0.001, or convert the file.");
+        let info = trackbed([Path::new("mesh"), Path::new("info"), &folder.join(name)]).good().stdout;
+        assert!(info.contains(&sentence) && info.contains("0.2500 m³"), "{info}");
+        let solid = format!("[solid]\nmesh = \"{name}\"\n");
+        let scene = folder.write("scene.toml", &format!("{solid}{material}"));
+        let outcome = trackbed([Path::new("mesh"), Path::new("info"), &scene]);
+        assert!(outcome.code == 2 && outcome.stderr.contains(&sentence), "{outcome:?}");
+        folder.write("scene.toml", &format!("{solid}scale = 0.001\n{material}"));
+        trackbed([Path::new("mesh"), Path::new("info"), &scene]).good();
     }
 }
 

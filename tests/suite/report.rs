@@ -335,6 +335,16 @@ fn modes_and_several_runs() {
     run(&scene, &two, &["track.load.maximum=\"8 kN\""]).good();
     let page = folder.join("both.html");
     report(&[&one, &two, Path::new("--out"), &page, Path::new("--title"), Path::new("Two loads")]).good();
+    report(&[&one, Path::new("--out"), &page]).good();
+    let notes = folder.write("notes.html", "<p>mine</p>\n");
+    let outcome = report(&[&one, Path::new("--out"), &notes]);
+    assert!(
+        outcome.code == 2 && outcome.stderr.contains("notes.html: found an existing file"),
+        "{outcome:?}"
+    );
+    assert_eq!(fs::read_to_string(&notes).unwrap(), "<p>mine</p>\n");
+    report(&[&one, Path::new("--out"), &notes, Path::new("--force")]).good();
+    report(&[&one, &two, Path::new("--out"), &page, Path::new("--title"), Path::new("Two loads")]).good();
     let both = Page::read(&page);
     both.has(&["compare", "settlement", "overview", "reproduce"]);
     both.contains("Two loads");

@@ -178,6 +178,14 @@ fn manual_has_a_page_for_every_command() {
         }
     }
     assert_eq!(std::fs::read_dir(&pages).unwrap().count(), commands.len());
+    trackbed(["manual", pages.to_str().unwrap()]).good();
+    let kept = folder.write("man/man1/trackbed-run.1", "mine");
+    let outcome = trackbed(["manual", pages.to_str().unwrap()]);
+    assert!(
+        outcome.code == 2 && outcome.stderr.contains("trackbed-run.1: found an existing file"),
+        "{outcome:?}"
+    );
+    assert_eq!(std::fs::read_to_string(kept).unwrap(), "mine");
     let file = folder.write("file", "");
     let outcome = trackbed(["manual", file.to_str().unwrap()]);
     assert_eq!((outcome.code, outcome.stderr.lines().count()), (1, 1), "{outcome:?}");

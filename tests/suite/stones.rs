@@ -49,6 +49,31 @@ fn library_from_surface_runs() {
 }
 
 #[test]
+fn rejects_stone_in_two_pieces() {
+    let folder = Folder::new("stone_pieces");
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut text = String::new();
+    for shift in [0.0, 5.0] {
+        text += "solid tetrahedron\n";
+        for face in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in face.map(|k: usize| corners[k]) {
+                text += &format!("vertex {} {y} {z}\n", x + shift);
+            }
+            text += "endloop\nendfacet\n";
+        }
+        text += "endsolid\n";
+    }
+    folder.write("two.stl", &text);
+    let info = trackbed_in(folder.path(), ["stone", "info", "two.stl"]).good().stdout;
+    assert!(info.contains("note: 2 separate pieces"), "{info}");
+    let outcome = trackbed_in(folder.path(), ["stone", "make", "two.stl", "--spheres", "3"]);
+    let sentence = "error: two.stl: surface: found 2 separate pieces, expected one, as a stone is in one piece. \
+                    Write each stone into its own file\n";
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (2, sentence));
+}
+
+#[test]
 fn random_stones_and_their_surfaces() {
     let folder = Folder::new("stone_random");
     fs::create_dir(folder.join("stl")).unwrap();

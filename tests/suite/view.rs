@@ -64,7 +64,17 @@ pub struct Server {
 
 impl Server {
     pub fn start(dir: &Path) -> Server {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_trackbed"))
+        Server::of(&mut Command::new(env!("CARGO_BIN_EXE_trackbed")), dir)
+    }
+
+    /// With at most `handles` open files.
+    pub fn limited(dir: &Path, handles: usize) -> Server {
+        let limit = format!("ulimit -n {handles}; exec \"$0\" \"$@\"");
+        Server::of(Command::new("sh").args(["-c", &limit, env!("CARGO_BIN_EXE_trackbed")]), dir)
+    }
+
+    fn of(command: &mut Command, dir: &Path) -> Server {
+        let mut program = command
             .args(["view", &dir.display().to_string(), "--no-open"])
             .stdout(Stdio::piped())
             .stderr(Stdio::inherit())

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Server memory limit [kB]: four responses, hyper, system.
 const MEMORY: u64 = 120_000;
@@ -111,4 +111,20 @@ fn hostile_clients_do_not_block_server() {
         assert!(server.get("/data/grains/0").1.len() > 3600, "after {}", client.name);
         assert!(server.program.try_wait().unwrap().is_none(), "{} has ended the server", client.name);
     }
+}
+
+/// Idle clients of more handles than the limit; the oldest are closed.
+#[test]
+fn idle_clients_leave_handles() {
+    let folder = Folder::new("view_idle");
+    let out = folder.join("results");
+    let set = ["grains.0.count=30", "time.end=0.001", "output.frames=1"];
+    run(&repository().join("inputs/grains/box.toml"), &out, &set).good();
+    let server = Server::limited(&out, 24);
+    let idle: Vec<TcpStream> =
+        (0..60).map(|_| TcpStream::connect(("127.0.0.1", server.port)).unwrap()).collect();
+    let begun = Instant::now();
+    assert_eq!(server.get("/folders").0, 200);
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    drop(idle);
 }

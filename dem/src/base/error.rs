@@ -191,6 +191,16 @@ impl fmt::Display for Partner {
     }
 }
 
+/// Plain or exponent form, without `inf` and `NaN`.
+fn size(value: f64) -> String {
+    match value {
+        _ if value.is_nan() => "no number".into(),
+        _ if value.is_infinite() => "more than 1e308".into(),
+        _ if value >= 1e15 => format!("{value:e}"),
+        _ => value.to_string(),
+    }
+}
+
 /// Error of a step. The state is invalid afterwards: return to an earlier copy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
@@ -212,7 +222,8 @@ pub enum StepError {
     },
     /// Body too fast for contact detection, or its velocity is not a number.
     #[error(
-        "at t = {time:.6e} s: speed of body {body}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
+        "at t = {time:.6e} s: speed of body {body}: {} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step.",
+        size(*speed)
     )]
     Speed {
         /// Time [s].
@@ -226,7 +237,8 @@ pub enum StepError {
     },
     /// Rigid triangle body too fast for contact detection, or its velocity is not a number.
     #[error(
-        "at t = {time:.6e} s: speed of wall {wall}: {speed} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step."
+        "at t = {time:.6e} s: speed of wall {wall}: {} m/s (limit {bound} m/s, half the smallest radius per time step). Reduce the time step.",
+        size(*speed)
     )]
     WallSpeed {
         /// Time [s].

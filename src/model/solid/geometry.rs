@@ -1,7 +1,7 @@
 //! Mesh of a solid: from files, or generated.
 
 use crate::failure::Failure;
-use crate::read::{self, MeshFile};
+use crate::read::{self, MeshFile, ReadError};
 use crate::scene::solid::{Axis, Block, Order, Solid};
 use crate::scene::{SceneError, Table};
 use crate::system;
@@ -42,6 +42,7 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
             solid.reject_without(of_lists, lists)?;
             let path = solid.locate(file);
             let read = read::read_mesh_file(&path)?;
+            check_unit(solid, &read)?;
             from_file(read, path.clone(), path)
         }
         (None, Some(nodes), Some(elements), None) => {
@@ -51,7 +52,9 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
             let lists =
                 read::read_lists(&solid.locate(nodes), &element_file, constraints.as_deref(), &layout)?;
             let constraint_file = constraints.unwrap_or_else(|| element_file.clone());
-            from_file(MeshFile::from(lists), element_file, constraint_file)
+            let read = MeshFile::from(lists);
+            check_unit(solid, &read)?;
+            from_file(read, element_file, constraint_file)
         }
         (None, None, None, Some(b)) => {
             solid.reject_without(of_lists, lists)?;
@@ -102,6 +105,14 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
         None => {}
     }
     Ok(geometry)
+}
+
+/// Lengths in another stated unit need `scale`.
+fn check_unit(solid: &Table<Solid>, read: &MeshFile) -> Result<(), ReadError> {
+    match &read.unit {
+        Some(error) if solid.scale.is_none() => Err(ReadError::clone(error)),
+        _ => Ok(()),
+    }
 }
 
 fn from_file(read: MeshFile, element_file: PathBuf, constraint_file: PathBuf) -> Geometry {

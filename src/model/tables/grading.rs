@@ -1,6 +1,7 @@
 //! Sieve limits of a grade, from CSV.
 
-use super::{fault, rows, text};
+use super::separator::Separators;
+use super::{fault, text};
 use crate::read::ReadError;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -28,43 +29,56 @@ fn plain(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric() || *c == '.').flat_map(char::to_lowercase).collect()
 }
 
+const NAMES: [&str; 5] = ["standard", "grade", "sieve_mm", "passing_lo_pct", "passing_hi_pct"];
+
+fn find_columns(file: &Path, line: usize, fields: &[&str]) -> Result<[usize; 5], ReadError> {
+    let mut found = [0; 5];
+    for (at, name) in found.iter_mut().zip(NAMES) {
+        let place = fields.iter().position(|field| field.eq_ignore_ascii_case(name));
+        *at = place.ok_or_else(|| {
+            let of_file = format!("columns {}", fields.join(", "));
+            fault(file, Some(line), name, of_file, format!("columns {}", NAMES.join(", ")))
+        })?;
+    }
+    Ok(found)
+}
+
 /// Reads the limits of a grade.
 ///
 /// # Errors
 /// Missing file or grade, or invalid limits.
 pub fn gradation(file: &Path, standard: &str, grade: &str) -> Result<Grading, ReadError> {
     let content = text(file, "gradation")?;
-    let mut columns: Option<[usize; 5]> = None;
+    let mut columns: Option<([usize; 5], usize)> = None;
+    let mut separators: Option<Separators> = None;
     let mut table: Vec<[f64; 3]> = Vec::new();
     let mut others = BTreeSet::new();
-    for (line, fields) in rows(&content) {
-        let Some([s, g, size, low, high]) = columns else {
-            let names = ["standard", "grade", "sieve_mm", "passing_lo_pct", "passing_hi_pct"];
-            let mut found = [0; 5];
-            for (k, name) in names.into_iter().enumerate() {
-                found[k] = fields.iter().position(|f| *f == name).ok_or_else(|| {
-                    fault(file, Some(line), name, "no such column", format!("columns {}", names.join(", ")))
-                })?;
-            }
-            columns = Some(found);
+    let lines = (1..).zip(content.lines().map(str::trim));
+    for (line, body) in lines.filter(|(_, body)| !body.is_empty() && !body.starts_with('#')) {
+        let separators = separators.get_or_insert_with(|| Separators::of(body));
+        let fields = separators.fields(body);
+        let Some(([s, g, size, low, high], width)) = columns else {
+            columns = Some((find_columns(file, line, &fields)?, fields.len()));
             continue;
         };
-        let field = |k: usize| fields.get(k).copied().unwrap_or_default();
-        if plain(field(s)) != plain(standard) || plain(field(g)) != plain(grade) {
-            others.insert(format!("{} {}", field(s), field(g)));
+        if fields.len() != width {
+            let expected =
+                format!("{width}, as in the heading{}", separators.hint(body, fields.len() > width));
+            return Err(fault(file, Some(line), "columns", fields.len().to_string(), expected));
+        }
+        if plain(fields[s]) != plain(standard) || plain(fields[g]) != plain(grade) {
+            others.insert(format!("{} {}", fields[s], fields[g]));
             continue;
         }
-        let number = |k: usize, name: &str| {
-            field(k)
-                .parse::<f64>()
-                .ok()
-                .filter(|v| v.is_finite())
-                .ok_or_else(|| fault(file, Some(line), name, format!("\"{}\"", field(k)), "a number"))
+        let mut number = |k: usize, name: &str| {
+            let number = separators.number(fields[k]);
+            let number = number.and_then(|v| if v.is_finite() { Ok(v) } else { Err("a number") });
+            number.map_err(|expected| fault(file, Some(line), name, format!("\"{}\"", fields[k]), expected))
         };
         table.push([
-            1e-3 * number(size, "sieve_mm")?,
-            1e-2 * number(low, "passing_lo_pct")?,
-            1e-2 * number(high, "passing_hi_pct")?,
+            1e-3 * number(size, NAMES[2])?,
+            1e-2 * number(low, NAMES[3])?,
+            1e-2 * number(high, NAMES[4])?,
         ]);
     }
     if table.is_empty() {

@@ -10,8 +10,9 @@ export class Outline {
   }
 
   /** Lists the scene of `meta`. */
-  take({ model, errors }) {
+  take({ model, errors, reading }) {
     this.inputs = [];
+    $('reading').hidden = !reading;
     $('errors').hidden = !errors;
     $('error-list').replaceChildren(...(errors ?? []).map((text) => element('li', { textContent: text })));
     document.body.classList.toggle('scene', Boolean(model || errors));

@@ -1,6 +1,7 @@
 //! `region` of `[[grains]]` resolved.
 
 use crate::model::grains::check::region as box_region;
+use crate::read::{read_surface, surface_unit};
 use crate::scene::grains::Region;
 use crate::scene::units::vector;
 use crate::scene::{SceneError, Table};
@@ -42,7 +43,11 @@ pub(super) fn container(region: &Table<Region>) -> Result<Container, SceneError>
 }
 
 fn surface(region: &Table<Region>, file: &std::path::Path) -> Result<Container, SceneError> {
-    let surface = crate::read::read_surface(&region.locate(file))?;
+    let path = region.locate(file);
+    if let Some(error) = surface_unit(&path).filter(|_| region.scale.is_none()) {
+        return Err(error);
+    }
+    let surface = read_surface(&path)?;
     let scale = region.check("scale", region.scale.unwrap_or(1.0), |s| s > 0.0, "above 0")?;
     let shift = region.shift.map_or(Vec3::zeros(), |v| Vec3::from(vector(&v)));
     let vertices: Vec<Vec3> = surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();

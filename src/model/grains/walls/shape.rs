@@ -1,7 +1,7 @@
 //! Shapes of walls.
 
 use crate::failure::Failure;
-use crate::read::read_surface;
+use crate::read::{read_surface, surface_unit};
 use crate::scene::units::vector;
 use crate::scene::walls::{Wall, WallKind};
 use crate::scene::{SceneError, Table};
@@ -72,7 +72,11 @@ fn mesh(wall: &Table<Wall>) -> Result<WallShape, Failure> {
     let scale = wall.scale.unwrap_or(1.0);
     wall.check("scale", scale, |s| s > 0.0, "above 0")?;
     let shift = wall.translation.map_or(Vec3::zeros(), |t| Vec3::from(vector(&t)));
-    let surface = read_surface(&wall.locate(file))?;
+    let path = wall.locate(file);
+    if let Some(error) = surface_unit(&path).filter(|_| wall.scale.is_none()) {
+        return Err(error.into());
+    }
+    let surface = read_surface(&path)?;
     let vertices: Vec<Vec3> = surface.vertices.iter().map(|v| Vec3::from(*v) * scale + shift).collect();
     let triangles = with_area(&vertices, surface.triangles);
     if triangles.is_empty() {
