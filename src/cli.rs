@@ -242,15 +242,12 @@ pub struct ReportArgs {
     /// Title of the report [default: title of the scene].
     #[arg(long)]
     pub title: Option<String>,
-<<<<<<< HEAD
     /// Axle load of a cycle in tonnes: settlement against traffic (MGT), extrapolated.
     #[arg(long, value_name = "TONNES")]
     pub axle_load: Option<f64>,
-=======
     /// Overwrite an existing file that is no report.
     #[arg(long)]
     pub force: bool,
->>>>>>> h-files
 }
 
 /// Arguments of `modal`.

@@ -10,12 +10,8 @@ use crate::report::{self, Options};
 /// # Errors
 /// Input and I/O errors.
 pub fn report(args: ReportArgs) -> Result<(), Failure> {
-<<<<<<< HEAD
-    let options =
-        Options { folders: args.folders, out: args.out, title: args.title, axle_load: args.axle_load };
-=======
-    let options = Options { folders: args.folders, out: args.out, title: args.title, force: args.force };
->>>>>>> h-files
+    let ReportArgs { folders, out, title, axle_load, force } = args;
+    let options = Options { folders, out, title, axle_load, force };
     let page = report::write(&options)?;
     print(&format!("{} written\n", page.display()))
 }

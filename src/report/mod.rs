@@ -24,13 +24,10 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Page title; default: scene title.
     pub title: Option<String>,
-<<<<<<< HEAD
     /// Axle load of a cycle [t], for settlement against traffic.
     pub axle_load: Option<f64>,
-=======
     /// Overwrite files other than reports.
     pub force: bool,
->>>>>>> h-files
 }
 
 /// Text of every report.
@@ -58,15 +55,13 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         let found = out.display();
         return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
-<<<<<<< HEAD
     if let Some(load) = options.axle_load.filter(|t| !(*t > 0.0 && *t <= 100.0)) {
         return Err(Failure::Input(format!("--axle-load: found {load}, expected above 0, at most 100 t")));
-=======
+    }
     if out.exists() && !options.force && !is_report(&out) {
         let found = out.display();
         let expected = "a new file, a report, or --force to overwrite it";
         return Err(Failure::Input(format!("{found}: found an existing file, expected {expected}")));
->>>>>>> h-files
     }
     let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
     data::distinguish(&mut runs);
