@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn rejects_overflowing_magnitudes() {
-        #[derive(Debug, Deserialize)]
+        #[derive(Debug, serde::Deserialize)]
         struct Keys {
             x: Option<Quantity<Length>>,
             v: Option<Quantity<Velocity>>,
