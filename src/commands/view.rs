@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::check;
-use super::output::print;
+use super::output::{print, refuse_existing};
 use crate::cli::ViewArgs;
 use crate::failure::Failure;
 use crate::message;

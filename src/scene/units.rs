@@ -121,8 +121,10 @@ impl<'de, D: Dimension> Deserialize<'de> for Quantity<D> {
                 self.visit_f64(v as f64)
             }
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
-                let value = parse::<D>(text).filter(|v| v.is_finite());
-                self.visit_f64(value.ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))?)
+                match parse::<D>(text).filter(|v| v.is_finite()) {
+                    Some(value) => self.visit_f64(value),
+                    None => Err(E::invalid_value(Unexpected::Str(text), &self)),
+                }
             }
         }
         deserializer.deserialize_any(QuantityVisitor(PhantomData))
@@ -155,7 +157,7 @@ mod tests {
 
     #[test]
     fn rejects_overflowing_magnitudes() {
-        #[derive(Debug, Deserialize)]
+        #[derive(Debug, serde::Deserialize)]
         struct Keys {
             x: Option<Quantity<Length>>,
             v: Option<Quantity<Velocity>>,
