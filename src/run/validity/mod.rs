@@ -1,5 +1,6 @@
 //! Validity checks: limits of the theory. Balances may close although the equations do not apply.
 
+mod bed_extent;
 mod bed_surface;
 mod below_walls;
 mod bond_rotation;
@@ -11,6 +12,7 @@ mod scaled_inertia;
 mod small_strain;
 mod stiffness_drift;
 
+pub use bed_extent::BedExtent;
 pub use below_walls::grains_below_walls;
 pub use bond_rotation::bond_rotation;
 pub use free_sleeper::free_sleeper;
