@@ -47,6 +47,6 @@ pub use law::scarring::Scarring;
 pub use model::Model;
 pub use shape::Shape;
 pub use state::State;
-pub use step::{find_contacts, step};
+pub use step::{find_contacts, find_deep_contacts, step};
 pub use wall::{Motion, Mount, Oscillation, RigidBody, Servo, TriangleSurface, WallInput, WallShape};
 pub use work::Work;

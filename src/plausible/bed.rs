@@ -3,11 +3,20 @@
 use super::findings::{Findings, Usual, shown};
 use super::grains::length;
 use crate::model::Job;
+use crate::model::grains::{inside_of, is_plain};
 use crate::scene::Scene;
 use crate::scene::walls::{Wall, WallKind};
+use trackbed_dem::{Vec3, WallShape};
 
 /// Tolerated fraction of misplaced grains.
 const SHARE: f64 = 0.2;
+
+/// Acceleration of gravity on the Earth [m/s²].
+const EARTH: f64 = 9.81;
+/// Usual acceleration of a centrifuge over that of the Earth: centimetres give 100, millimetres 1000.
+const CENTRIFUGE: f64 = 50.0;
+/// Implausible acceleration over that of the Earth.
+const FAR: f64 = 500.0;
 
 /// Highest plausible over expected height of a bed.
 const ABOVE: f64 = 1.1;
@@ -76,7 +85,13 @@ fn gravity(findings: &mut Findings, scene: &Scene) {
             "downwards: z is negative",
         );
     }
-    findings.weigh("gravity", size, Usual::or_zero(0.5, 2000.0, "m/s2"));
+    if size > CENTRIFUGE * EARTH {
+        let found = format!("{} m/s2, {:.0} times that of the Earth", shown(size, ""), size / EARTH);
+        let usual = format!("{EARTH} m/s2, in a centrifuge up to {CENTRIFUGE} times as much");
+        findings.add(size > FAR * EARTH, "gravity", found, usual);
+        return;
+    }
+    findings.weigh("gravity", size, Usual::or_zero(0.5, CENTRIFUGE * EARTH, "m/s2"));
 }
 
 /// `down`: unit vector.
@@ -140,27 +155,11 @@ fn behind_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
 fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(part) = &job.grains else { return };
     let present = || part.groups.bodies.iter().filter(|b| !b.absent).map(place);
-    for (k, wall) in scene.walls.iter().enumerate() {
-        let (Some(base), Some(radius)) = (&wall.base, &wall.radius) else { continue };
-        let closed = match wall.kind {
-            WallKind::Sphere => true,
-            WallKind::Cylinder => wall.caps == Some([true, true]),
-            _ => false,
-        };
-        if !closed {
-            continue;
-        }
-        let axis = wall.axis.unwrap_or([0.0, 0.0, 1.0]);
-        let length = dot(axis, axis).sqrt();
-        let height = wall.height.map_or(0.0, |h| h.si);
-        let inside = |x: &[f64; 3]| {
-            let r = [0, 1, 2].map(|d| x[d] - base[d].si);
-            if wall.kind == WallKind::Sphere {
-                return dot(r, r) < radius.si * radius.si;
-            }
-            let along = dot(r, axis) / length;
-            dot(r, r) - along * along < radius.si * radius.si && (0.0..=height).contains(&along)
-        };
+    let solid = scene.walls.iter().enumerate().filter(|(_, wall)| !is_plain(wall));
+    for ((k, _), wall) in solid.zip(&part.walls.others) {
+        let open = matches!(wall.shape, WallShape::Frustum { caps, .. } if caps != [true, true]);
+        let Some(side) = inside_of(&wall.shape).filter(|_| !open) else { continue };
+        let inside = |x: &[f64; 3]| side(&Vec3::from(*x)) == Some(true);
         let (all, held) = (present().count(), present().filter(inside).count());
         if held > 0 && held < all {
             let found = format!("{} of {all} grains outside it, the others inside", all - held);

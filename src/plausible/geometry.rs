@@ -4,8 +4,11 @@ use super::bed::of_solid;
 use super::findings::{Findings, shown};
 use super::grains::length;
 use crate::model::Job;
+use crate::model::grains::{Footprint, is_plain};
 use crate::scene::Scene;
+use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
+use trackbed_dem::Vec3;
 
 /// Element edge [m].
 const ELEMENT: f64 = 30.0;
@@ -15,15 +18,15 @@ const SOLID: f64 = 3000.0;
 const STRAIN: f64 = 0.1;
 /// Young's modulus of ground [Pa].
 const SOFT: f64 = 1e6;
-/// Sleeper depth behind a wall [m].
-const BEHIND: f64 = 1e-3;
+/// Lowest plausible over expected height of a bed.
+const BED: f64 = 0.8;
 /// Gravity fraction along z.
 const ACROSS: f64 = 0.5;
 
 /// Checks the geometry.
 pub fn weigh(findings: &mut Findings, scene: &Scene, job: &Job) {
     millimetres(findings, scene, job);
-    sleepers_through_walls(findings, scene);
+    sleepers_through_walls(findings, scene, job);
     gravity_across(findings, scene);
 }
 
@@ -55,38 +58,50 @@ fn millimetres(findings: &mut Findings, scene: &Scene, job: &Job) {
     findings.add(true, "solid", found, remedy);
 }
 
-fn sleepers_through_walls(findings: &mut Findings, scene: &Scene) {
+fn sleepers_through_walls(findings: &mut Findings, scene: &Scene, job: &Job) {
     let Some(track) = &scene.track else { return };
     let sleeper = &track.sleeper;
     let step = sleeper.spacing.map_or(0.0, |s| s.si);
-    let (mut deepest, mut through) = (0.0, None);
+    let (mut deepest, mut through, mut cutting) = (0.0, None, None);
+    let bottom = bed_height(job);
     for number in 0..sleeper.count {
         let mut centre = [sleeper.centre[0].si, sleeper.centre[1].si];
         centre[sleeper.along.axis()] += f64::from(number) * step;
+        let half = [0, 1].map(|d| 0.5 * sleeper.size[d].si);
+        let sleeper = Footprint { centre, half, bottom };
         for (k, wall) in scene.walls.iter().enumerate() {
             let moves = wall.velocity.is_some() || wall.servo.is_some() || wall.oscillation.is_some();
             let (WallKind::Plane, Some(point), Some(n), false) = (wall.kind, &wall.point, wall.normal, moves)
             else {
                 continue;
             };
-            let size = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-            // Sleeper height is unknown: only vertical walls are compared.
-            if size == 0.0 || n[2].abs() > 1e-6 * size {
-                continue;
-            }
-            let offset: f64 = (0..2).map(|d| (centre[d] - point[d].si) * n[d]).sum::<f64>() / size;
-            let reach: f64 = (0..2).map(|d| 0.5 * sleeper.size[d].si * n[d].abs()).sum::<f64>() / size;
-            let behind = reach - offset;
-            if behind > deepest && behind > BEHIND {
+            let (point, normal) = (Vec3::from(vector(point)), Vec3::from(n));
+            if let Some(behind) = sleeper.behind(&point, &normal).filter(|b| *b > deepest) {
                 (deepest, through) = (behind, Some((k, number)));
             }
         }
+        let walls = job.grains.iter().flat_map(|g| &g.walls.others);
+        let others = scene.walls.iter().enumerate().filter(|(_, wall)| !is_plain(wall)).zip(walls);
+        let mut cut = others.filter(|((_, w), _)| w.velocity.is_none() && w.body.is_none());
+        let cut = cut.find(|(_, wall)| sleeper.is_cut_by(&wall.shape));
+        cutting = cutting.or(cut.map(|((k, _), _)| (k, number)));
     }
-    if let Some((wall, number)) = through {
-        let which = if sleeper.count > 1 { format!("sleeper {}", number + 1) } else { "the sleeper".into() };
-        let found = format!("{which} {} through walls.{wall}", shown(deepest, "m"));
+    let which = |number: u32| match sleeper.count {
+        1 => "the sleeper".into(),
+        _ => format!("sleeper {}", number + 1),
+    };
+    let depth = through.map(|(wall, number)| (wall, number, format!("{} ", shown(deepest, "m"))));
+    let found = depth.or(cutting.map(|(wall, number)| (wall, number, String::new())));
+    if let Some((wall, number, depth)) = found {
+        let found = format!("{} {depth}through walls.{wall}", which(number));
         findings.add(true, "track.sleeper.centre", found, "sleepers between the walls");
     }
+}
+
+/// Lowest expected height of the bed; −∞ if unknown [m].
+fn bed_height(job: &Job) -> f64 {
+    let filled = job.grains.iter().flat_map(|g| &g.groups.filled);
+    filled.map(|bed| bed.floor + BED * bed.height).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Grains are stacked and sleepers set down along z.

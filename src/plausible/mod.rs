@@ -5,6 +5,7 @@
 
 mod bed;
 mod borders;
+mod contacts;
 mod findings;
 mod geometry;
 mod grains;
@@ -31,6 +32,7 @@ pub fn weigh(scene: &Scene, job: &Job) -> Vec<Finding> {
     bed::weigh(&mut findings, scene, job);
     geometry::weigh(&mut findings, scene, job);
     borders::weigh(&mut findings, scene, job);
+    contacts::weigh(&mut findings, job);
     track::weigh(&mut findings, scene, job);
     run::weigh(&mut findings, scene, job);
     inertia::weigh(&mut findings, scene, job);

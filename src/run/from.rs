@@ -202,7 +202,8 @@ fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<Strin
     let last = key.rsplit('.').next().unwrap_or(key);
     let material = key.starts_with("material.") && last == "name" && before.is_some();
     let file = FILES.contains(&last) && before.is_some() && now.is_some();
-    before == now || file || !(material || BED.iter().any(|table| is_in(key, table)))
+    let accepted = key.starts_with("grains.") && last == "accept_overlap";
+    before == now || file || accepted || !(material || BED.iter().any(|table| is_in(key, table)))
 }
 
 fn is_in(key: &str, table: &str) -> bool {
@@ -277,6 +278,7 @@ mod tests {
             ("walls", "[]", true),
             ("coupling.scheme", "\"predicted\"", true),
             ("grains.0.count", "4", false),
+            ("grains.0.accept_overlap", "true", true),
             ("material.0.name", "\"rock\"", false),
         ] {
             let mut new = old.clone();

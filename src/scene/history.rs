@@ -166,6 +166,13 @@ impl TimeFunction {
         Ok(function)
     }
 
+    /// Returns the frequency [Hz] of a sine or haversine with at least `cycles` until `end` [s].
+    pub fn frequency(&self, cycles: f64, end: f64) -> Option<f64> {
+        let periodic = matches!(self.kind, HistoryKind::Sine | HistoryKind::Haversine);
+        let count = (self.end.min(end) - self.start) * self.frequency;
+        (periodic && count >= cycles).then_some(self.frequency)
+    }
+
     /// Returns the factor at time `t` [s].
     pub fn factor(&self, t: f64) -> f64 {
         if t < self.start || t > self.end {

@@ -239,6 +239,8 @@ fn rejects_deep_start_overlap() {
         ("pair", pair("[0.015, 0, 0, 0.01]", "")),
         ("small", pair("[0.0105, 0, 0, 0.001]", "")),
         ("just", pair("[0.0189, 0, 0, 0.01]", "")),
+        ("beyond", pair("[0.005, 0, 0, 0.01]", "")),
+        ("beyond-settling", pair("[0.005, 0, 0, 0.01]", "[deposition]\nmax_time = 0.1\n")),
     ];
     for (name, text) in &deep {
         let (folder, outcome) = scene(&format!("balance-overlap-{name}"), text, &[]);
@@ -248,11 +250,17 @@ fn rejects_deep_start_overlap() {
             "{}",
             outcome.stderr
         );
+        let both = ["grain 0 of \"g\"", "grain 1 of \"g\""];
+        assert!(both.iter().all(|name| outcome.stderr.contains(name)), "{}", outcome.stderr);
         assert!(!folder.join("out/summary.json").exists());
     }
     let floor = "[[walls]]\nkind = \"plane\"\npoint = [0, 0, -0.008]\nnormal = [0, 0, 1]\nmaterial = \"w\"\n";
     let (_, outcome) = scene("balance-overlap-plane", &pair("[0.5, 0, 0.5, 0.01]", floor), &[]);
     assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+    let (_, outcome) =
+        scene("balance-overlap-behind", &pair("[0.5, 0, 0.5, 0.01]", &floor.replace("-0.008", "0.004")), &[]);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("grain 0 of \"g\" and plane 0"), "{}", outcome.stderr);
     let (_, outcome) =
         scene("balance-overlap-accepted", &pair("[0.015, 0, 0, 0.01]", "accept_overlap = true\n"), &[]);
     outcome.good();

@@ -251,3 +251,30 @@ fn bed_import_onto_solid() {
     let text = std::fs::read_to_string(bed.join("run.json")).unwrap();
     assert!(text.contains("\"bed\": true"), "{text}");
 }
+
+/// Walls 20 mm closer, two thirds of a radius: refused with the grain, unless its overlaps are accepted.
+#[test]
+fn bed_import_into_narrower_walls() {
+    let folder = Folder::new("from_narrow");
+    let (_, grains) = kinds().into_iter().next().unwrap();
+    let settle = "[deposition]\nmax_time = \"0.6 s\"\nsettled_speed = \"20 mm/s\"\nlocal_damping = 0.3\n[time]\nend = 0.01\n[output]\nframes = 1\n";
+    let rest = "[time]\nend = 1e-4\n[output]\nframes = 1\n";
+    let scene = folder.write("scene.toml", &shaft(&grains, settle, true));
+    let first = folder.join("first");
+    run(&scene, &first, &[]).good();
+    let moved = |text: &str| text.replace("[0.3, 0.0, 0.0]", "[0.28, 0.0, 0.0]");
+    let narrow = folder.write("narrow.toml", &moved(&shaft(&grains, rest, true)));
+    let refused = trackbed(words_of(&narrow, &folder.join("narrow"), &first));
+    assert_eq!(refused.code, 2, "{refused:?}");
+    let words = [
+        "of \"stones\" and plane 1 with an overlap of",
+        "% of the smaller radius, expected at most 10 % at the start",
+    ];
+    assert!(words.iter().all(|w| refused.stderr.contains(w)), "{refused:?}");
+    assert!(!folder.join("narrow/summary.json").exists());
+    let accepted = grains.replace("name = \"stones\"\n", "name = \"stones\"\naccept_overlap = true\n");
+    let accepted = folder.write("accepted.toml", &moved(&shaft(&accepted, rest, true)));
+    trackbed(words_of(&accepted, &folder.join("accepted"), &first)).good();
+    let same = folder.write("same.toml", &shaft(&grains, rest, true));
+    trackbed(words_of(&same, &folder.join("same"), &first)).good();
+}

@@ -66,7 +66,8 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (BOX, "walls.1.normal=[-1.0, 0.0, 0.0]", "walls.1", true),
     (DRUM, "grains.0.fill.low=[-0.05, 0.005, -0.06]", "walls.0", true),
     (BOX, "gravity=[0.0, 0.0, 9.81]", "gravity", true),
-    (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", false),
+    (BOX, "gravity=[0.0, 0.0, -9810.0]", "gravity", true),
+    (BOX, "gravity=[0.0, 0.0, -981.0]", "gravity", false),
     (BOX, "gravity=[0.0, -9.81, 0.0]", "gravity", true),
     (CYCLIC, "gravity=[9.81, 0.0, 0.0]", "gravity", true),
     (CYCLIC, "gravity=[0.0, -9.0, -3.0]", "gravity", true),
@@ -91,6 +92,7 @@ const CASES: &[(&str, &str, &str, bool)] = &[
     (BOX, "track.sleeper.size=[780.0, 290.0, 150.0]", "track.sleeper.size", true),
     (BOX, "track.load.maximum=\"40 MN\"", "track.load.maximum", false),
     (BOX, "track.load.frequency=\"30 kHz\"", "track.load.frequency", true),
+    (BOX, "track.sleeper.mass=\"4.5 t\"", "track.load.maximum", false),
     // Fourth ground mode: 33.1 Hz, 44 % of the mass vertical.
     (CYCLIC, "track.load.frequency=\"33 Hz\"", "track.load", false),
     (BOX, "track.load.ramp=\"100 h\"", "track.load.ramp", true),
@@ -139,6 +141,110 @@ fn weight_reveals_millimetre_mesh() {
     assert!(solid.serious && solid.found.contains("under its own weight"), "{solid}");
     for more in ["solid.material.0.young=\"2 GPa\"", "solid.gravity=false"] {
         assert!(found(more).iter().all(|f| f.key != "solid"), "{more}");
+    }
+}
+
+/// Ball on a rigid floor; walls and sleeper to be added.
+const BALL: &str = r#"
+[[material]]
+name = "s"
+density = 2650
+stiffness = "50 MN/m"
+friction = 0.5
+restitution = 0.5
+[[material]]
+name = "w"
+friction = 0.5
+restitution = 0.5
+[[walls]]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+material = "w"
+[[grains]]
+name = "g"
+shape = "sphere"
+material = "s"
+spheres = [[0, 0, 0.02, 0.02]]
+[time]
+end = 0.1
+"#;
+
+fn found_in(name: &str, text: &str) -> Vec<Finding> {
+    let folder = Folder::new(name);
+    let file = folder.write("scene.toml", text);
+    found(file.to_str().unwrap(), &[])
+}
+
+/// 2 % of the radius release 8 J, where a rise by the radius takes 0.02 J; its weight sinks a ball in by 9 nm.
+#[test]
+fn start_overlap_that_throws_is_found() {
+    let at = |z: &str| BALL.replace("[[0, 0, 0.02, 0.02]]", &format!("[[0, 0, {z}, 0.02]]"));
+    let thrown = |text: &str| {
+        let all = found_in("implausible-thrown", text);
+        all.into_iter().find(|f| f.found.contains("at the start, which throws it at"))
+    };
+    let deep = thrown(&at("0.0196")).expect("a finding");
+    assert_eq!(deep.key, "grains.0");
+    assert!(deep.found.starts_with("grain 0 of \"g\" with an overlap of 4.000e-4 m with plane 0"), "{deep}");
+    assert!(thrown(&at("0.019999991")).is_none());
+    assert!(thrown(&at("0.02")).is_none());
+    let accepted =
+        at("0.0196").replace("material = \"s\"\nspheres", "material = \"s\"\naccept_overlap = true\nspheres");
+    assert!(accepted.contains("accept_overlap") && thrown(&accepted).is_none());
+}
+
+/// One of two balls inside a closed block of triangles.
+#[test]
+fn grain_in_closed_triangles_is_found() {
+    let block = r#"
+[[walls]]
+kind = "triangles"
+material = "w"
+vertices = [[-0.1, -0.1, 0], [0.1, -0.1, 0], [0.1, 0.1, 0], [-0.1, 0.1, 0], [-0.1, -0.1, 0.3], [0.1, -0.1, 0.3], [0.1, 0.1, 0.3], [-0.1, 0.1, 0.3]]
+triangles = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7], [0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6], [3, 0, 4], [3, 4, 7]]
+"#;
+    let two = BALL.replace("[[0, 0, 0.02, 0.02]]", "[[0, 0, 0.15, 0.02], [0.4, 0, 0.15, 0.02]]");
+    let all = found_in("implausible-block", &(two.clone() + block));
+    let closed = all.iter().find(|f| f.key == "walls.1").unwrap_or_else(|| panic!("{all:?}"));
+    assert!(closed.serious && closed.found == "1 of 2 grains outside it, the others inside", "{closed}");
+    let outside = two.replace("[[0, 0, 0.15", "[[0.3, 0, 0.15") + block;
+    assert!(found_in("implausible-outside", &outside).iter().all(|f| f.key != "walls.1"));
+}
+
+#[test]
+fn sleeper_through_round_wall_is_found() {
+    let scene = |radius: f64| {
+        format!(
+            "{BALL}\n[[walls]]\nkind = \"cylinder\"\nmaterial = \"w\"\nbase = [0, 0, 0]\nheight = 1\nradius = {radius}\n\
+             [track.sleeper]\nsize = [0.6, 0.2, 0.1]\nmass = \"40 kg\"\nmaterial = \"s\"\ncentre = [0, 0]\n"
+        )
+    };
+    let found = |radius: f64| {
+        let all = found_in("implausible-cylinder", &scene(radius));
+        all.into_iter().find(|f| f.key == "track.sleeper.centre").map(|f| f.found)
+    };
+    assert_eq!(found(0.25).as_deref(), Some("the sleeper through walls.1"));
+    assert_eq!(found(0.4), None);
+}
+
+/// First vertical mode of a column, c/4H = 7.9 Hz.
+#[test]
+fn solid_load_near_mode_is_found() {
+    let column = |kind: &str, frequency: f64| {
+        format!(
+            "[solid]\nintegration = \"full\"\ndynamics = {{}}\ngravity = false\n[solid.block]\nx = {{ lines = [0, 1], counts = [1] }}\n\
+             y = {{ lines = [0, 1], counts = [1] }}\nz = {{ lines = [0, 5], counts = [10] }}\n[[solid.material]]\nid = 1\n\
+             young = \"50 MPa\"\npoisson = 0\ndensity = 2000\n[[solid.support]]\nside = \"z-\"\ndirections = [\"x\", \"y\", \"z\"]\n\
+             [[solid.load]]\nkind = \"pressure\"\nside = \"z+\"\npressure = \"10 kPa\"\n\
+             history = {{ kind = \"{kind}\", frequency = \"{frequency} Hz\" }}\n[time]\nend = 2\nsolid_step = \"2 ms\"\n"
+        )
+    };
+    for kind in ["sine", "haversine"] {
+        let all = found_in("implausible-mode", &column(kind, 7.9));
+        let near = all.iter().find(|f| f.key == "solid.load.0").unwrap_or_else(|| panic!("{all:?}"));
+        assert!(near.found.contains("near the vertical mode of the solid at 7.9"), "{near}");
+        assert!(found_in("implausible-far", &column(kind, 2.0)).iter().all(|f| f.key != "solid.load.0"));
     }
 }
 

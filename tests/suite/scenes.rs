@@ -412,7 +412,7 @@ fn coupled_step_above_limit_diverges() {
 }
 
 fn one_in_the_other() -> String {
-    GRAINS.replace("[0.01, 0.0, 0.152, 0.05]", "[0.001, 0.0, 0.06, 0.05]")
+    GRAINS.replace("[0.01, 0.0, 0.152, 0.05]]", "[0.001, 0.0, 0.06, 0.05]]\naccept_overlap = true")
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Validity checks: balances close, but the theory does not apply.
 
-use super::support::{Folder, json, repository, run, trackbed};
+use super::support::{Folder, Table, json, repository, run, trackbed};
 use serde_json::Value;
 use std::fs;
 
@@ -187,6 +187,38 @@ fn measurement_box_above_bed_warns() {
     assert_eq!(status(&none, "measure core"), "warned");
 }
 
+/// Half outside the wall, half below the floor: their porosity includes space outside the bed.
+#[test]
+fn measurement_box_beside_bed_warns() {
+    for (corners, at) in [
+        (
+            "[[0.1, 0.02, 0.02], [0.3, 0.18, 0.05]]",
+            "side at x = 0.3000 m, beyond the bed that ends at 0.2000 m",
+        ),
+        ("[[0.02, 0.02, -0.05], [0.18, 0.18, 0.05]]", "side at z = -0.0500 m, beyond the bed"),
+    ] {
+        let (found, _) = summary("validity-box-beside", BED, &[&format!("measure.0.box={corners}")]);
+        assert_eq!(status(&found, "fraction of measure core beside the bed"), "warned", "{found:#}");
+        assert!(warned(&found, &format!("measure core: {at}")), "{found:#}");
+    }
+    let whole = "measure.0.box=[[0, 0, 0], [0.2, 0.2, 0.05]]";
+    let (whole, _) = summary("validity-box-whole", BED, &[whole]);
+    assert_eq!(status(&whole, "fraction of measure core beside the bed"), "passed", "{whole:#}");
+}
+
+/// Rows within the longest window shorten it, but not the run.
+#[test]
+fn run_ends_at_its_end() {
+    for interval in ["1 ms", "0.1 ms", "0.07 ms"] {
+        let folder = Folder::new("validity-end");
+        let file = folder.write("scene.toml", DROP);
+        let set = format!("output.history_interval={interval}");
+        run(&file, &folder.join("out"), &[&set, "time.end=0.3"]).good();
+        let times = Table::read(&folder.join("out/history.csv")).column("time");
+        assert!((times[times.len() - 1] - 0.3).abs() < 1e-9, "{interval}: {:?}", times.last());
+    }
+}
+
 #[test]
 fn open_borders_are_named() {
     let folder = Folder::new("validity-border");
@@ -263,6 +295,7 @@ frames = 0
     let (soft, _) = summary("validity-bond", chain, &[]);
     assert_ne!(status(&soft, "largest rotation of a bond"), "passed", "{soft:#}");
     assert!(warned(&soft, ": rotation "), "{soft:#}");
+    assert!(!warned(&soft, "lost below all walls"), "{soft:#}");
     let (stiff, _) = summary("validity-bond-stiff", chain, &["bond.0.parallel.young=1e7", "time.end=0.05"]);
     assert_eq!(status(&stiff, "largest rotation of a bond"), "passed", "{stiff:#}");
     assert_eq!(stiff["verdict"]["outcome"], "passed");

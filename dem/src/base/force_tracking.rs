@@ -113,9 +113,9 @@ impl ForceTracking {
         let bias = (applied.mean - target.mean).abs();
         match self.transfer(target.mean) {
             Some((in_phase, quadrature)) => {
-                load.amplitude_ratio = Some(in_phase.hypot(quadrature));
+                load.amplitude_ratio = Some(libm::hypot(in_phase, quadrature));
                 load.phase = Some(libm::atan2(quadrature, in_phase).to_degrees());
-                load.error = (bias / (target.max - target.min)).max((in_phase - 1.0).hypot(quadrature));
+                load.error = (bias / (target.max - target.min)).max(libm::hypot(in_phase - 1.0, quadrature));
             }
             None => {
                 let rms = (self.deviation / self.sums[0]).sqrt();
@@ -176,7 +176,7 @@ mod tests {
         assert!((load.phase.unwrap() + 60.0).abs() < 0.5, "{load:?}");
         assert!((load.applied.mean - load.target.mean - 10.0).abs() < 0.5, "{load:?}");
         // |0.8 exp(−iπ/3) − 1|.
-        let expected = (0.4_f64 - 1.0).hypot(0.8 * FRAC_PI_3.sin());
+        let expected = ((0.4_f64 - 1.0).powi(2) + (0.8 * FRAC_PI_3.sin()).powi(2)).sqrt();
         assert!((load.error - expected).abs() < 0.02, "{load:?} {expected}");
     }
 

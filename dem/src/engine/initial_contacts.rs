@@ -20,6 +20,30 @@ pub fn find_contacts<S: Surface>(
 ) -> Result<(), StepError> {
     let mut probe = state.clone();
     step(model, &mut probe, work, surface, &[])?;
+    keep(model, state, work, probe);
+    Ok(())
+}
+
+/// As [`find_contacts`], also with overlaps and speeds above the limits of a step, to report them.
+///
+/// # Errors
+/// As [`step`], without overlaps and speeds.
+pub fn find_deep_contacts<S: Surface>(
+    model: &Model,
+    state: &mut State,
+    work: &mut Work,
+    surface: &S,
+) -> Result<(), StepError> {
+    let mut probe = state.clone();
+    match step(model, &mut probe, work, surface, &[]) {
+        Err(StepError::Overlap { .. } | StepError::Speed { .. }) => {}
+        other => other?,
+    }
+    keep(model, state, work, probe);
+    Ok(())
+}
+
+fn keep(model: &Model, state: &mut State, work: &mut Work, probe: State) {
     for (lists, seen) in state.lists.iter_mut().zip(probe.lists) {
         *lists = BlockLists { bonds: std::mem::take(&mut lists.bonds), ..seen };
     }
@@ -36,5 +60,4 @@ pub fn find_contacts<S: Surface>(
         members.arrange(&model.bodies, &model.shapes, block);
     }
     bonds::arrange(model, state, work);
-    Ok(())
 }

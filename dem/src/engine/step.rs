@@ -32,7 +32,7 @@ use crate::pairs::patches::PatchList;
 use crate::spatial::surface::Surface;
 use crate::wall::set::PlacedWalls;
 
-pub use super::initial_contacts::find_contacts;
+pub use super::initial_contacts::{find_contacts, find_deep_contacts};
 
 /// Advances `state` by one step of [`State::dt`].
 ///

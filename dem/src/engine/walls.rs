@@ -13,6 +13,7 @@ use crate::bodies::sums::WallSum;
 use crate::integrate::rotation;
 use crate::shape::plane::PlaneMotion;
 use crate::wall::body::{self, Ground};
+use crate::wall::servo::Servo;
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
 
@@ -55,15 +56,7 @@ pub(crate) fn advance(
                 let mut speed = own.drive;
                 if let Some(servo) = wall.servo.as_ref().filter(|_| !own.open) {
                     let impedance = sum.stiffness * kick + 2.0 * wall.damping * 2.0 * sum.damping;
-                    let d = servo.direction;
-                    let (target, force) = (servo.target(state.time), sum.force.dot(&d));
-                    speed = d * match servo.driven_speed(state.time) {
-                        Some(driven) => driven,
-                        None => {
-                            own.tracking.add(kick, target, force);
-                            servo.speed(target - force, impedance, own.velocity.dot(&d), &mut own.integral)
-                        }
-                    };
+                    speed = servo_velocity(servo, own, state.time, kick, sum.force, impedance);
                 }
                 let before = own.velocity;
                 own.steady += speed * dt;
@@ -109,6 +102,26 @@ pub(crate) fn advance(
         fastest = fastest.max(speed);
     }
     (fastest, failure.or_else(|| meeting(model, state)))
+}
+
+/// Velocity of a servo-controlled wall [m/s]; follows its force [N] against the target.
+fn servo_velocity(
+    servo: &Servo,
+    own: &mut WallState,
+    time: f64,
+    kick: f64,
+    force: Vec3,
+    impedance: f64,
+) -> Vec3 {
+    let d = servo.direction;
+    let (target, force) = (servo.target(time), force.dot(&d));
+    d * match servo.driven_speed(time) {
+        Some(driven) => driven,
+        None => {
+            own.tracking.add(kick, target, force);
+            servo.speed(target - force, impedance, own.velocity.dot(&d), &mut own.integral)
+        }
+    }
 }
 
 /// Finds two non-interacting bodies with overlapping bounds.

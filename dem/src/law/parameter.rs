@@ -145,8 +145,8 @@ pub const MATERIAL: [Parameter<Material>; 15] = parameters! { Material:
     "tangential_ratio" [""] Range::closed(0.0, 1.0), typical_or_zero(0.05, 2.0), |m| Some(m.tangential_ratio);
     "tangential_damping_ratio" [""] Range::closed(0.0, 1.0), typical_or_zero(0.0, 1.0), |m| Some(m.tangential_damping_ratio);
     "friction" [""] Range::NOT_NEGATIVE, FRICTION, |m| Some(m.friction);
-    // Joints of rough rock reach 70 degrees at small stress.
-    "asperity_friction" [""] Range::NOT_NEGATIVE, typical_or_zero(0.05, 3.0), |m| Some(m.asperity_friction);
+    // Joints of rough rock reach 75 degrees at small stress.
+    "asperity_friction" [""] Range::NOT_NEGATIVE, typical_or_zero(0.05, 4.0), |m| Some(m.asperity_friction);
     "asperity_pressure" ["Pa"] Range::POSITIVE, typical(1e4, 1e9), |m| limited(m.asperity_pressure);
     "restitution" [""] RESTITUTION_RANGE, RESTITUTION, |m| Some(m.restitution);
     "rolling_friction" [""] Range::NOT_NEGATIVE, RESISTANCE, |m| Some(m.rolling_friction);

@@ -137,10 +137,10 @@ mod tests {
     fn constant_force_is_reached_for_any_gain() {
         for gain in [0.25, 1.0] {
             for damping in [0.0, 0.3, 0.45] {
-                for softness in [1.0, 0.1, 1e-2] {
-                    let stiffness = (1.0 - 2.0 * damping) * softness;
+                for compliance in [1.0, 0.1, 1e-2] {
+                    let stiffness = (1.0 - 2.0 * damping) * compliance;
                     let worst = follow(gain, [stiffness, damping], |_| 1.0, 400_000);
-                    assert!(worst < 1e-6, "{gain} {damping} {softness}: {worst:e}");
+                    assert!(worst < 1e-6, "{gain} {damping} {compliance}: {worst:e}");
                 }
             }
         }

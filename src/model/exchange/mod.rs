@@ -13,8 +13,8 @@ use crate::scene::{Document, SceneError};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
-    EffectiveMasses, effective_masses, effective_masses_in_window, largest_accurate_w, largest_quiet_w,
-    largest_stable_d, largest_stable_w, theta_for_phase,
+    EffectiveMasses, effective_masses, effective_masses_in_window, largest_accurate_w, largest_phase,
+    largest_quiet_w, largest_stable_d, largest_stable_w, theta_for_phase,
 };
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -40,6 +40,8 @@ pub struct CouplingPart {
     /// Load transfer to the solid.
     pub transfer: TransferPlan,
     theta: Option<f64>,
+    /// Whether θ is given and automatic without.
+    removable: bool,
     /// Contact faces: ground, then meshed sleepers in order.
     pub faces: Vec<Face>,
     /// Number of ground faces.
@@ -187,6 +189,34 @@ impl CouplingPart {
         Err(document.error("coupling.substeps", found, &expected))
     }
 
+    /// Returns remedies for undamped contacts with a `phase` per window of `substeps` and θ.
+    pub fn phase_remedies(&self, phase: f64, theta: f64, substeps: u32) -> String {
+        let mut ways = Vec::new();
+        if self.removable {
+            ways.push("remove coupling.theta".to_string());
+        }
+        let fitting = theta_for_phase(phase);
+        if fitting > theta && fitting <= 1.0 {
+            ways.push(format!("set coupling.theta to {fitting:.3}"));
+        } else {
+            let least = theta_for_phase(LARGEST_PHASE);
+            let part = 0.9 * largest_phase(theta.max(least)) / phase;
+            let fewer = (part * f64::from(substeps)) as u32;
+            let shorter = match self.window {
+                WindowPlan::Seconds(window) => Some(format!("coupling.window to {:.2e} s", part * window)),
+                _ if fewer > 0 => Some(format!("coupling.substeps to {fewer}")),
+                _ => None,
+            };
+            let given =
+                self.theta.filter(|t| *t < least).map(|_| format!("coupling.theta to {least:.3} and "));
+            ways.extend(shorter.map(|shorter| format!("set {}{shorter}", given.unwrap_or_default())));
+        }
+        ways.push("set tangential_damping_ratio".into());
+        let last = ways.pop().unwrap_or_default();
+        let text = if ways.is_empty() { last } else { format!("{}, or {last}", ways.join(", ")) };
+        text[..1].to_uppercase() + &text[1..]
+    }
+
     /// Whether the number of sub-steps is chosen automatically.
     pub fn automatic(&self) -> bool {
         self.window == WindowPlan::Auto
@@ -292,4 +322,35 @@ fn reached(model: &dem::Model, surface: &SolidSurface, face: u32) -> bool {
         .iter()
         .filter(|p| p.velocity == dem::Vec3::zeros())
         .all(|plane| nodes.iter().any(|&x| (dem::Vec3::from(x) - plane.point).dot(&plane.normal) > 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(window: WindowPlan, theta: Option<f64>, removable: bool) -> CouplingPart {
+        let (scheme, transfer) = (Scheme::Stiffened, TransferPlan::Point);
+        CouplingPart { window, scheme, transfer, theta, removable, faces: Vec::new(), ground_faces: 0 }
+    }
+
+    /// θ is at most 1; a key that is not set cannot be removed.
+    #[test]
+    fn remedies_are_possible() {
+        let auto = plan(WindowPlan::Auto, None, false).phase_remedies(2.5, 0.6325, 105);
+        assert_eq!(auto, "Set coupling.substeps to 33, or set tangential_damping_ratio");
+        let seconds = plan(WindowPlan::Seconds(1e-3), None, false).phase_remedies(2.5, 0.6325, 105);
+        assert_eq!(seconds, "Set coupling.window to 3.21e-4 s, or set tangential_damping_ratio");
+        let given = plan(WindowPlan::Steps(10), Some(0.5), true).phase_remedies(2.5, 0.5, 10);
+        assert_eq!(
+            given,
+            "Remove coupling.theta, set coupling.theta to 0.633 and coupling.substeps to 3, or set tangential_damping_ratio"
+        );
+        let small = plan(WindowPlan::Steps(10), Some(0.5), true).phase_remedies(0.6, 0.5, 10);
+        assert_eq!(
+            small,
+            "Remove coupling.theta, set coupling.theta to 0.566, or set tangential_damping_ratio"
+        );
+        let one = plan(WindowPlan::Steps(1), None, false).phase_remedies(2.5, 0.6325, 1);
+        assert_eq!(one, "Set tangential_damping_ratio");
+    }
 }

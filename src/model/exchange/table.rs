@@ -48,7 +48,9 @@ pub fn build(c: &Table<Coupling>, solid: &SolidPart, polyhedra: bool) -> Result<
         // In element order, hence sleeper by sleeper.
         faces.extend(mesh.boundary_faces().into_iter().filter(|f| f.element as usize >= ground));
     }
-    Ok(CouplingPart { window, scheme, transfer, theta, faces, ground_faces })
+    // Meshed sleepers have no automatic θ.
+    let removable = c.theta.is_some() && solid.sleepers.is_none();
+    Ok(CouplingPart { window, scheme, transfer, theta, removable, faces, ground_faces })
 }
 
 fn beside_polyhedra(c: &Table<Coupling>, solid: &SolidPart) -> Result<(), SceneError> {

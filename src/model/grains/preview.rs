@@ -1,12 +1,14 @@
 //! Grain models before the first step, to report errors before deposition.
 
 use super::bonds::{check_gaps, check_joinable, check_joined};
-use super::overlap::check_overlaps;
+use super::growth::check_growth;
+use super::overlap::{check_overlaps, first_input};
 use super::part::GrainsPart;
+use super::plates::check_plates;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::surface::SolidSurface;
-use trackbed_dem::{Model, ModelInput};
+use trackbed_dem::{Model, ModelInput, State};
 
 /// A day at ten million steps per second.
 const MOST_STEPS: f64 = 1e12;
@@ -37,7 +39,13 @@ pub fn preview(
         check_joined(document, &grains.bonds, &input.bonds)?;
     }
     let alone = Model::new(input).map_err(|e| refused(document, &e))?;
-    check_overlaps(document, grains, &alone, ground)?;
+    let first = first_input(grains);
+    let first = (first.walls.len() < alone.wall_count()).then(|| Model::new(first)).transpose();
+    let first = first.map_err(|e| refused(document, &e))?;
+    let first = first.as_ref().unwrap_or(&alone);
+    check_overlaps(document, grains, (first, State::new(first)), ground, 0)?;
+    check_growth(document, grains)?;
+    check_plates(document, grains)?;
     let whole = Model::new(with_sleepers(grains)).map_err(|e| refused(document, &e))?;
     let dt = whole.dt();
     grains.track.check_pads(document, dt)?;

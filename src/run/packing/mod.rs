@@ -8,12 +8,14 @@ mod sieves;
 mod stage_energy;
 
 pub use bed_stage::BedStage;
-pub use records::{CompactionRecord, FoulingRecord, GrowthRecord, MeasureRecord, PackingRecord};
+pub use records::{
+    CompactionRecord, FoulingRecord, GrownOverlap, GrowthRecord, MeasureRecord, PackingRecord,
+};
 pub(super) use report::report;
 pub use stage_energy::StageEnergy;
 
 use super::system::GrainsView;
-use super::validity::{Check, measure_box};
+use super::validity::{BedExtent, Check, measure_box};
 use crate::failure::Failure;
 use crate::model::Job;
 use crate::model::grains::{GrainsPart, MeasurePlan};
@@ -120,9 +122,15 @@ fn grain_of<'a>(view: GrainsView<'a>, grains: &GrainsPart) -> impl Fn(usize) -> 
 
 /// Checks that the bed fills the measurement boxes.
 pub fn checks(view: GrainsView<'_>, grains: &GrainsPart) -> Vec<Check> {
+    if grains.measures.is_empty() {
+        return Vec::new();
+    }
     let is_grain = grain_of(view, grains);
     let boxes = grains.measures.iter();
-    boxes.filter_map(|m| measure_box(&m.name, view, &m.region, is_grain)).collect()
+    let above = boxes.clone().filter_map(|m| measure_box(&m.name, view, &m.region, is_grain));
+    let bed = BedExtent::of(view, grains, is_grain);
+    let sides = boxes.filter_map(|m| Some(bed?.check(&m.name, &m.region)));
+    above.chain(sides).collect()
 }
 
 fn fouling(

@@ -1,5 +1,7 @@
 //! Summary records of the final packing.
 
+use crate::model::grains::LARGEST_OVERLAP;
+use crate::run::validity::{Check, Limits};
 use serde::{Deserialize, Serialize};
 
 /// Group after growth.
@@ -13,6 +15,33 @@ pub struct GrowthRecord {
     pub largest_overlap: f64,
     /// Mean unbalanced over mean contact force.
     pub unbalanced_ratio: f64,
+}
+
+/// Overlap after growth: large ones eject grains.
+const GROWN: Limits = Limits { warn: LARGEST_OVERLAP, fail: Some(0.5) };
+
+/// Deepest contact of the grown grains in the walls of the scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct GrownOverlap {
+    /// Both partners.
+    pub between: String,
+    /// Overlap over the smaller radius.
+    pub share: f64,
+    /// Energy of all contact springs [J].
+    pub springs: f64,
+}
+
+impl GrownOverlap {
+    /// Compares the overlap with the limit of given grains.
+    pub fn check(&self) -> Check {
+        let GrownOverlap { between, share, springs } = self;
+        Check::new("largest overlap after growth over the smaller radius", *share, GROWN, || {
+            format!(
+                "{between}: overlap {:.0} % of the smaller radius after growth, {springs:.3e} J in contact springs. Grow within the walls, or to a higher porosity.",
+                100.0 * share
+            )
+        })
+    }
 }
 
 /// Compaction stage.
@@ -104,4 +133,29 @@ pub struct GradationRecord {
     pub achieved: Vec<f64>,
     /// Largest |achieved − target| over all sizes.
     pub largest_deviation: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::validity::Outcome;
+
+    #[test]
+    fn deep_growth_is_not_passed() {
+        let check = |share: f64| {
+            let between = "grain 3 of \"g\" and plane 1".to_string();
+            GrownOverlap { between, share, springs: 36_331.0 }.check()
+        };
+        assert_eq!(
+            [0.01, 0.2, 0.7].map(|s| check(s).status),
+            [Outcome::Passed, Outcome::Warned, Outcome::Failed]
+        );
+        let message = check(0.67).message;
+        assert!(
+            message.starts_with(
+                "grain 3 of \"g\" and plane 1: overlap 67 % of the smaller radius after growth, 3.633e4 J"
+            ),
+            "{message}"
+        );
+    }
 }

@@ -43,6 +43,11 @@ impl Carried {
         bodies
     }
 
+    /// Returns the number of imported grains.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
     /// Restores contact history after contact detection.
     pub fn restore_history(&self, model: &dem::Model, state: &mut dem::State) {
         state.restore_history(model, &self.state, self.count);

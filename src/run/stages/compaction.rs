@@ -11,7 +11,7 @@ use crate::run::context::Run;
 use crate::run::packing::{BedStage, CompactionRecord};
 use crate::run::summary::StageRecord;
 use crate::run::system::GrainsView;
-use crate::run::validity::region_not_filled;
+use crate::run::validity::{BedExtent, region_not_filled};
 use std::f64::consts::TAU;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -71,10 +71,12 @@ impl Stage for Compaction {
     }
 }
 
-fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, index: usize) {
+fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, (grains, index): (&GrainsPart, usize)) {
     let view = GrainsView { model: &done.bed.model, state: &done.bed.state };
-    let key = format!("compaction.{index}.region");
-    settled.warnings.extend(region_not_filled(&key, view, &done.region, |b| b < settled.bodies.len()));
+    let (key, count) = (format!("compaction.{index}.region"), settled.bodies.len());
+    settled.warnings.extend(region_not_filled(&key, view, &done.region, |b| b < count));
+    let bed = BedExtent::of(view, grains, |b| b < count);
+    settled.warnings.extend(bed.and_then(|bed| bed.warning(&key, &done.region)));
     if !done.rested {
         settled.warnings.push(format!(
             "grains not at rest: root mean square speed {:.2e} m/s after compaction {}",
@@ -142,7 +144,7 @@ fn compact(
         }
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
-    warn_of_bed(settled, &done, index);
+    warn_of_bed(settled, &done, (grains, index));
     let stage = (name.as_str(), &plan.press);
     settled.beds.extend(bed_after(stage, &done.bed, grains, surface, settled.bodies.len()));
     if let Press::Pouring { parts, level, .. } = &plan.press {

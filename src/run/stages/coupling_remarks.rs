@@ -1,11 +1,12 @@
 //! Final coupling warnings.
 
+use crate::model::exchange::CouplingPart;
 use crate::run::summary::CouplingRecord;
 use crate::run::system::CoupledSystem;
 use trackbed_coupling::energy_balance::WorkAndDissipation;
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::IterationStats;
-use trackbed_coupling::stability::{INTERFACE_LIMITS, interface_excess, largest_phase, theta_for_phase};
+use trackbed_coupling::stability::{INTERFACE_LIMITS, interface_excess, largest_phase};
 
 /// Warns about unconverged windows of the iterated scheme.
 pub fn unconverged(passes: &IterationStats) -> Option<String> {
@@ -37,7 +38,11 @@ pub fn late(spent: &WorkAndDissipation) -> Option<String> {
 const GROWTH: f64 = 1.0;
 
 /// Warns about an interface beyond its stability limit.
-pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -> Option<String> {
+pub fn unstable_interface(
+    system: &CoupledSystem<'_>,
+    record: &CouplingRecord,
+    plan: &CouplingPart,
+) -> Option<String> {
     let (model, check) = (&system.model, &system.state.interface_check);
     let InterfaceStabilityNumbers { stiffness, damping, phase } = check.largest;
     let numbers = InterfaceStabilityNumbers { phase: 0.0, ..check.largest };
@@ -56,11 +61,11 @@ pub fn unstable_interface(system: &CoupledSystem<'_>, record: &CouplingRecord) -
     }
     (check.growth > GROWTH).then(|| {
         format!(
-            "coupling.theta: undamped contacts at rest: phase {phase:.2} per window (limit {1:.2} for theta = {0:.4}). Amplitudes may have grown by a factor of {2:.1e}. Remove coupling.theta, set it to {3:.3}, or set tangential_damping_ratio.",
+            "coupling.theta: undamped contacts at rest: phase {phase:.2} per window (limit {1:.2} for theta = {0:.4}). Amplitudes may have grown by a factor of {2:.1e}. {3}.",
             model.theta,
             largest_phase(model.theta),
             libm::exp(check.growth.min(700.0)),
-            theta_for_phase(phase)
+            plan.phase_remedies(phase, model.theta, record.substeps)
         )
     })
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::model::Job;
 use crate::run::checkpoint::Moment;
 use crate::run::context::Run;
-use crate::run::packing::StageEnergy;
+use crate::run::packing::{GrownOverlap, StageEnergy};
 
 /// Saves the bed with wall positions.
 pub struct FinishedBed;
@@ -36,6 +36,7 @@ impl Stage for FinishedBed {
         summary.bed.beds.clone_from(&bed.beds);
         summary.bed.stage_energy.clone_from(&bed.energy);
         summary.validity.extend(StageEnergy::checks(&bed.energy));
+        summary.validity.extend(bed.grown.as_ref().map(GrownOverlap::check));
         grains.bodies.clone_from(&bed.bodies);
         bed.planes.iter().enumerate().for_each(|(k, point)| grains.part.place_plane(k, *point));
         Ok(())

@@ -3,10 +3,10 @@
 use super::stage::{Packed, RunState, Settled, Stage};
 use crate::failure::Failure;
 use crate::model::Job;
-use crate::model::grains::{GrainsPart, refused};
+use crate::model::grains::{GrainsPart, deepest_overlap, refused};
 use crate::progress::Progress;
 use crate::run::context::Run;
-use crate::run::packing::GrowthRecord;
+use crate::run::packing::{GrownOverlap, GrowthRecord};
 use crate::run::summary::StageRecord;
 use trackbed_dem::insert::radius_expansion::{GrowError, grow};
 
@@ -59,5 +59,10 @@ fn grow_groups(run: &Run<'_>, grains: &mut GrainsPart, bed: &mut Settled) -> Res
         });
         grains.groups.bodies.splice(plan.bodies, grown.bodies);
     }
+    bed.grown = deepest_overlap(grains).map(|(deepest, between, springs)| GrownOverlap {
+        between,
+        share: deepest.share,
+        springs,
+    });
     Ok(())
 }

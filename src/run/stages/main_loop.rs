@@ -112,7 +112,8 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
         record.interface_work_error = system.spent().interface();
         record.interface = system.state.interface_check.largest;
         record.division = system.model.division;
-        summary.warnings.extend(unstable_interface(&system, record));
+        let plan = run.job.coupling.as_ref();
+        summary.warnings.extend(plan.and_then(|plan| unstable_interface(&system, record, plan)));
     }
     summary.warnings.extend(unconverged(&system.state.passes));
     summary.warnings.extend(late(&system.spent()));

@@ -8,7 +8,7 @@ use crate::run::checkpoint::Loaded;
 use crate::run::context::Run;
 use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
 use crate::run::system::{SolidKind, SolidSystem, System};
-use crate::run::validity::{quasi_static_strain, small_strain};
+use crate::run::validity::{load_near_mode, quasi_static_strain, small_strain};
 
 /// Runs a solid-only model.
 ///
@@ -51,6 +51,7 @@ fn march(
         _ => small_strain,
     };
     summary.validity.extend(check(view.model, &view.state.u));
+    summary.validity.extend(load_near_mode(run.job));
     let reactions = system.reactions().unwrap_or_default();
     summary.solid.reactions = solid
         .named_sums(&reactions)

@@ -8,7 +8,7 @@ use crate::run::bed::Bed;
 use crate::run::checkpoint::{self, Loaded, Moment};
 use crate::run::context::Run;
 use crate::run::from::END;
-use crate::run::packing::{BedStage, CompactionRecord, GrowthRecord, StageEnergy};
+use crate::run::packing::{BedStage, CompactionRecord, GrownOverlap, GrowthRecord, StageEnergy};
 use crate::run::sources;
 use crate::run::summary::{StageRecord, Summary};
 use crate::run::system::CoupledSystem;
@@ -97,6 +97,8 @@ pub struct Settled {
     pub warnings: Vec<String>,
     /// Results of growth.
     pub growth: Vec<GrowthRecord>,
+    /// Deepest contact after growth.
+    pub grown: Option<GrownOverlap>,
     /// Results of compaction.
     pub compaction: Vec<CompactionRecord>,
     /// Energy balances of the stages.
@@ -289,8 +291,11 @@ impl RunState<'_> {
             summary.sources.extend(sources::BONDS);
         }
         let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
-        if !part.is_packed() {
-            check_overlaps(run.document, part, &model, grains.ground.as_ref())?;
+        // Checked before packing; an imported bed meets other walls.
+        if self.loaded.is_none() && (!part.is_packed() || grains.carried.is_some()) {
+            let (start, ground) = (grains.start(&model)?, grains.ground.as_ref());
+            let imported = grains.carried.as_ref().map_or(0, Carried::count);
+            check_overlaps(run.document, part, (&model, start), ground, imported)?;
         }
         check_steps(run.document, "time.end", run.job.end, model.dt())?;
         part.track.check_ram(run.document, model.dt())?;

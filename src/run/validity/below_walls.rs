@@ -3,6 +3,7 @@
 use super::{Check, Limits};
 use crate::model::grains::GrainsPart;
 use trackbed_coupling::track::GrainsView;
+use trackbed_dem::measure::{Fragments, fragments};
 use trackbed_dem::{State, Vec3, WallShape};
 
 /// No failure: runs may lose grains intentionally.
@@ -43,12 +44,14 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
     if lowest == f64::INFINITY {
         return None;
     }
+    let hangs = hanging(&fragments(model, state), (0..model.body_count()).filter(prescribed));
     let present: Vec<usize> = (0..model.body_count()).filter(|&b| state.present(b)).collect();
     let below = |x: &Vec3, b: usize| x.dot(&up) < lowest - model.radius(b);
     let lost: Vec<usize> = present
         .iter()
         .copied()
-        .filter(|&b| below(&state.position(b), b) && !(start.present(b) && below(&start.position(b), b)))
+        .filter(|&b| !hangs[b] && below(&state.position(b), b))
+        .filter(|&b| !(start.present(b) && below(&start.position(b), b)))
         .collect();
     let value = lost.len() as f64 / present.len().max(1) as f64;
     Some(Check::new("grains below all walls over all grains", value, LOST, || {
@@ -62,4 +65,24 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
             x.z
         )
     }))
+}
+
+/// Whether each body is bonded to one of the `held` bodies.
+fn hanging(fragments: &Fragments, held: impl Iterator<Item = usize>) -> Vec<bool> {
+    let mut hangs = vec![false; fragments.sizes.len()];
+    held.for_each(|b| hangs[fragments.of[b] as usize] = true);
+    fragments.of.iter().map(|&k| hangs[k as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bonded_to_a_held_grain_is_not_lost() {
+        // Body 0 is held, 1 and 2 hang from it, 3 and 4 are a broken end.
+        let broken = Fragments { of: vec![0, 0, 0, 1, 1], sizes: vec![3, 2] };
+        assert_eq!(hanging(&broken, [0].into_iter()), [true, true, true, false, false]);
+        assert_eq!(hanging(&broken, [].into_iter()), [false; 5]);
+    }
 }

@@ -1,6 +1,7 @@
 //! Validity checks: limits of the theory. Balances may close although the equations do not apply.
 
 mod applied_loads;
+mod bed_extent;
 mod bed_surface;
 mod below_walls;
 mod bond_rotation;
@@ -13,6 +14,7 @@ mod small_strain;
 mod stiffness_drift;
 
 pub use applied_loads::{LoadCheck, applied_loads, load_error};
+pub use bed_extent::BedExtent;
 pub use below_walls::grains_below_walls;
 pub use bond_rotation::bond_rotation;
 pub use free_sleeper::free_sleeper;

@@ -7,13 +7,10 @@ use crate::plausible::{AMPLIFICATION, resonance};
 /// Undamped dynamic over static deflection.
 const AMPLIFIED: Limits = Limits { warn: AMPLIFICATION, fail: None };
 
-/// Checks the track load; none without a frequency or modes.
+/// Checks harmonic loads; none without a frequency or modes.
 pub fn load_near_mode(job: &Job) -> Option<Check> {
     let found = resonance(job)?;
-    Some(Check::new(
-        "amplification by the vertical mode nearest to the load",
-        found.amplification,
-        AMPLIFIED,
-        || found.message(),
-    ))
+    Some(Check::new("amplification by the mode nearest to the load", found.amplification, AMPLIFIED, || {
+        found.message()
+    }))
 }

@@ -404,3 +404,51 @@ fn replaced_laws_of_sizes() {
             .refused(&format!("scene.toml:15: grains.0.sizes.law: found \"{old}\", expected \"{new}\""));
     }
 }
+
+#[test]
+fn growth_through_a_wall() {
+    let region = "count = 20\nsize = [0.03, 0.04]\nregion = { box = [[-0.1, -0.1, -0.02], [0.1, 0.1, 0.2]] }\n\
+                  growth = { porosity = 0.5 }";
+    grains_scene().scene(SPHERES, region).refused(
+        "scene.toml:16: grains.0.region: found a region 2.000e-2 m behind plane 0, expected a region within the walls: grains \
+         grow up to its sides",
+    );
+}
+
+#[test]
+fn growth_across_a_sphere() {
+    let region = "count = 20\nsize = [0.03, 0.04]\nregion = { box = [[0, 0, 0], [0.3, 0.3, 0.3]] }\ngrowth = { porosity = 0.5 }";
+    grains_scene()
+        .scene(SPHERES, region)
+        .scene("[time]", "[[walls]]\nname = \"shell\"\nkind = \"sphere\"\nbase = [0.15, 0.15, 0.15]\nradius = 0.15\nmaterial = \"stone\"\n\n[time]")
+        .refused(
+            "scene.toml:16: grains.0.region: found a region across wall \"shell\", expected a region within the walls: grains \
+             grow up to its sides",
+        );
+}
+
+const TAMPING: &str = "[[compaction]]\nkind = \"tamping\"\nregion = [[-0.1, -0.1, 0.01], [0.1, 0.1, 0.05]]\n\
+    plate = { size = [0.2, 0.2, 0.05], mass = 20, material = \"stone\" }\nforce = 100\nfrequency = 20\ncycles = 1\n\
+    at = [[0, 0]]\n\n[time]";
+
+#[test]
+fn plate_through_a_wall() {
+    let beside = "[[walls]]\nkind = \"plane\"\npoint = [-0.06, 0, 0]\nnormal = [1, 0, 0]\nmaterial = \"stone\"\n\n[[walls]]\n";
+    grains_scene().scene("[[walls]]\n", beside).scene("[time]", TAMPING).refused(
+        "scene.toml:35: compaction.0.at: found the plate at (0, 0) m 4.000e-2 m through plane 0, expected plates between the \
+         walls",
+    );
+}
+
+#[test]
+fn rigid_plate_on_rigid_wall() {
+    let rigid = "[[material]]\nname = \"rigid\"\nfriction = 0.4\nrestitution = 0.5\n\n[[grains]]";
+    grains_scene()
+        .scene("[[grains]]", rigid)
+        .scene("normal = [0, 0, 1]\nmaterial = \"stone\"", "normal = [0, 0, 1]\nmaterial = \"rigid\"")
+        .scene("[time]", &TAMPING.replace("\"stone\"", "\"rigid\""))
+        .refused(
+            "scene.toml:30: compaction.0.plate.material: found no stiffness for the plate against plane 0, which can be in \
+             contact, expected `stiffness` for one of their materials, or for the pair",
+        );
+}

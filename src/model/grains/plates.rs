@@ -1,0 +1,68 @@
+//! Plates of compaction against walls, before the first step.
+
+use super::compaction::{CompactionPlan, Press};
+use super::footprint::Footprint;
+use super::part::GrainsPart;
+use super::refused::refused;
+use crate::scene::{Document, SceneError};
+use trackbed_dem::{BodyInput, Model, ModelError, ModelInput, Vec3, WallShape};
+
+/// Rejects plates that reach through walls, and plates without stiffness against a wall or the grains.
+///
+/// # Errors
+/// First plate.
+pub fn check_plates(document: &Document, grains: &GrainsPart) -> Result<(), SceneError> {
+    for (k, plan) in grains.packing.compaction.iter().enumerate() {
+        let Press::Tamping { plate, half, at, .. } = &plan.press else { continue };
+        for centre in at {
+            let plan = Footprint { centre: *centre, half: [half[0], half[1]], bottom: f64::NEG_INFINITY };
+            if let Some(found) = through(grains, &plan) {
+                let at = format!("the plate at ({}, {}) m {found}", centre[0], centre[1]);
+                return Err(document.error(&format!("compaction.{k}.at"), at, "plates between the walls"));
+            }
+        }
+        stiffness(document, grains, (k, plan), plate)?;
+    }
+    Ok(())
+}
+
+/// Walls that are there while the bed is packed.
+fn through(grains: &GrainsPart, plate: &Footprint) -> Option<String> {
+    let planes = grains.walls.planes.iter().enumerate();
+    let mut planes = planes.filter_map(|(k, p)| {
+        plate.behind(&p.point, &p.normal).map(|depth| format!("{depth:.3e} m through plane {k}"))
+    });
+    let walls = grains.walls.others.iter().zip(&grains.walls.names);
+    let mut walls =
+        walls.filter(|(w, _)| w.servo.is_none() && w.body.is_none()).filter_map(|(w, name)| match &w.shape {
+            WallShape::Plane { point, normal } => {
+                plate.behind(point, normal).map(|depth| format!("{depth:.3e} m through wall \"{name}\""))
+            }
+            shape => plate.is_cut_by(shape).then(|| format!("through wall \"{name}\"")),
+        });
+    planes.next().or_else(|| walls.next())
+}
+
+fn stiffness(
+    document: &Document,
+    grains: &GrainsPart,
+    (k, plan): (usize, &CompactionPlan),
+    plate: &BodyInput,
+) -> Result<(), SceneError> {
+    let mut bodies = grains.groups.bodies.clone();
+    let top = bodies.iter().map(|b| b.position.z).fold(0.0, f64::max);
+    let number = bodies.len();
+    bodies.push(BodyInput { position: Vec3::new(0.0, 0.0, top), ..plate.clone() });
+    let input = ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
+    match Model::new(input) {
+        Ok(_) => Ok(()),
+        Err(ModelError::RigidPair { a, b }) => {
+            let name = format!("body {number}");
+            let [a, b] = [a, b].map(|end| if end == name { "the plate".into() } else { end });
+            let found = format!("no stiffness for {a} against {b}, which can be in contact");
+            let expected = "`stiffness` for one of their materials, or for the pair";
+            Err(document.error(&format!("compaction.{k}.plate.material"), found, expected))
+        }
+        Err(error) => Err(refused(document, &error)),
+    }
+}
