@@ -61,7 +61,7 @@ impl Page {
             }
         }
         assert_eq!(depth, 0);
-        for word in ["NaN", "undefined", "null", " inf", "\"inf"] {
+        for word in ["NaN", "undefined", "null", " inf ", " inf<", "\"inf"] {
             assert!(!source.contains(word), "{word}: {}", around(&source, word));
         }
         assert!(!source.replace("http://www.w3.org/2000/svg", "").contains("://"), "something from outside");

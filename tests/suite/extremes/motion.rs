@@ -124,12 +124,12 @@ fn servo_walls() -> Row {
     let beyond = [pressed(100.0, 1.0, ""), pressed(1000.0, 1.0, ""), pressed(100.0, 1e-3, "")].map(|case| {
         let case = case.good();
         let summary = case.summary();
-        assert_eq!(summary["verdict"]["outcome"], "failed", "{summary}");
+        assert_ne!(summary["verdict"]["outcome"], "passed", "{summary}");
         let checks = summary["validity"].as_array().unwrap();
         let check =
             checks.iter().find(|c| c["name"] == "error of an applied load over its amplitude").unwrap();
         assert!(
-            check["status"] == "failed"
+            check["status"] != "passed"
                 && check["message"].as_str().unwrap().starts_with("wall plate: force")
         );
         case.value("/loads/0/error")
@@ -137,7 +137,7 @@ fn servo_walls() -> Row {
     Row::new(
         "plate that pulses a ball at 1, 10 Hz, K = 1e4, 1e8 N/m; at 100, 1000 Hz; max_speed a sixth of the one needed",
         format!(
-            "right: error of the force {}, {}; verdict failed: {}",
+            "right: error of the force {}, {}; warned, failed, failed: {}",
             figures(&followed),
             figures(&stiff),
             figures(&beyond)
