@@ -56,8 +56,6 @@ struct TimeLoop<'a> {
     recorder: Results<'a>,
     place: Place,
     progress: Progress,
-    /// Time cut off the last window [s].
-    cut: f64,
 }
 
 /// Runs the main loop with grains.
@@ -141,8 +139,7 @@ impl<'a> TimeLoop<'a> {
     ) -> Result<TimeLoop<'a>, Failure> {
         let job = run.job;
         let window = system.window();
-        // Tolerates rounding of a whole number of windows.
-        let windows = ((job.end / window * (1.0 - 1e-12)).ceil() as u64).max(1);
+        let windows = ((job.end / window).ceil() as u64).max(1);
         let part = grains.map(|(part, _)| part);
         let input = part.map_or_else(TrackInput::default, |part| part.track.input());
         let mut track = Track::new(input, system.grains());
@@ -170,20 +167,12 @@ impl<'a> TimeLoop<'a> {
         let (begun, whole) = share(&cadence, &recorder, &place);
         let progress =
             Progress::start("running", whole as f64, run.verbosity).resumed(begun as f64, place.seconds);
-        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress, cut: 0.0 })
-    }
-
-    /// Time after `done` windows [s].
-    fn time(&self, done: u64) -> f64 {
-        done as f64 * self.cadence.window - if done == self.place.windows { self.cut } else { 0.0 }
+        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
     }
 
     fn window<S: System>(&mut self, system: &mut S) -> Result<(), Failure> {
-        let k = self.place.done + 1;
-        if k == self.place.windows {
-            self.cut = system.shorten(self.run.job.end - self.time(k - 1));
-        }
-        let (time, track) = (self.time(k), &mut self.track);
+        let (k, track) = (self.place.done + 1, &mut self.track);
+        let time = k as f64 * self.cadence.window;
         track.begin_window();
         let companion = self.run.accompanied.0.as_deref();
         let mut apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
@@ -193,7 +182,7 @@ impl<'a> TimeLoop<'a> {
         match system.advance(&mut apply) {
             // An aborted step leaves the previous state.
             Err(Failure::Interrupted(_)) => {
-                return self.keep(self.time(self.place.done), system);
+                return self.keep(self.place.done as f64 * self.cadence.window, system);
             }
             outcome => outcome?,
         }
@@ -234,7 +223,7 @@ impl<'a> TimeLoop<'a> {
         let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
         let Place { done, windows, .. } = self.place;
         companion.follow(&Shown {
-            time: self.time(done),
+            time: done as f64 * self.cadence.window,
             done,
             windows,
             grains: system.grains(),
@@ -287,7 +276,7 @@ impl<'a> TimeLoop<'a> {
             return Ok(());
         }
         let done = self.place.done;
-        let moment = Moment { stage: END.into(), step: done, time: self.time(done) };
+        let moment = Moment { stage: END.into(), step: done, time: done as f64 * self.cadence.window };
         self.run.checkpoints.save_file(&self.run.dir.join(from::FILE), moment, |body| {
             body.put(&self.settled.map(Settled::places))?;
             system.save_end(body)
@@ -316,7 +305,7 @@ impl<'a> TimeLoop<'a> {
         summary.structures = self.recorder.loads().to_vec();
         let done = self.place.done;
         let (grain_steps, solid_steps) = system.steps_done(done);
-        let end = self.time(done);
+        let end = done as f64 * self.cadence.window;
         let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
         summary.stages.push(StageRecord {
             name: "run".into(),

@@ -130,11 +130,6 @@ fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
 
 const MISFIT: f64 = 0.05;
 
-/// Part of a window beyond the `rest` of the run [s], apart from rounding.
-fn cut(window: f64, rest: f64) -> f64 {
-    if rest > 1e-9 * window && rest < window * (1.0 - 1e-9) { window - rest } else { 0.0 }
-}
-
 impl TrackSystem for GrainsSystem {
     fn window(&self) -> f64 {
         self.window
@@ -168,12 +163,6 @@ impl System for GrainsSystem {
             self.work.step(&self.model, &mut self.state, none, &self.applied).map_err(failed)?;
         }
         self.work.download(&self.model, &mut self.state).map_err(failed)
-    }
-
-    fn shorten(&mut self, rest: f64) -> f64 {
-        let cut = if self.model.measured().is_some() { cut(self.window, rest) } else { 0.0 };
-        self.window -= cut;
-        cut
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
@@ -222,18 +211,5 @@ mod tests {
         assert_eq!(window(1.47e-4, 1e-4), 1e-4);
         assert_eq!(window(6.4e-3, 1.7e-3), 17.0 * 1e-4);
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);
-    }
-
-    /// Windows of close rows are multiples of the first step, which do not divide the run.
-    #[test]
-    fn last_window_ends_with_the_run() {
-        let (end, window) = (0.3_f64, round_window([1.0197e-4, 64.0 * 1.0197e-4], 1e-4));
-        let whole = (end / window).ceil();
-        assert!(whole * window > end + 1e-6, "{window}");
-        let rest = end - (whole - 1.0) * window;
-        assert!((whole * window - cut(window, rest) - end).abs() < 1e-15);
-        for rest in [window, window * (1.0 - 1e-12), 2.0 * window, 1e-14 * window] {
-            assert_eq!(cut(window, rest), 0.0, "{rest}");
-        }
     }
 }

@@ -35,10 +35,6 @@ pub trait System: TrackSystem {
     fn steps_done(&self, windows: u64) -> (u64, u64);
     /// Advances one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
-    /// Shortens the last window to end at `rest` [s] if possible; returns the time cut off [s].
-    fn shorten(&mut self, _rest: f64) -> f64 {
-        0.0
-    }
     /// Saves the state to a checkpoint.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
     /// Saves the final state for `--from`, without solver history.
