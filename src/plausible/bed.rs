@@ -13,9 +13,9 @@ const SHARE: f64 = 0.2;
 
 /// Acceleration of gravity on the Earth [m/s²].
 const EARTH: f64 = 9.81;
-/// Usual acceleration of a centrifuge over that of the Earth: centimetres give 100, millimetres 1000.
+/// Usual acceleration of a centrifuge over gravity: centimetres give 100, millimetres 1000.
 const CENTRIFUGE: f64 = 50.0;
-/// Implausible acceleration over that of the Earth.
+/// Implausible acceleration over gravity.
 const FAR: f64 = 500.0;
 
 /// Highest plausible over expected height of a bed.
@@ -86,7 +86,7 @@ fn gravity(findings: &mut Findings, scene: &Scene) {
         );
     }
     if size > CENTRIFUGE * EARTH {
-        let found = format!("{} m/s2, {:.0} times that of the Earth", shown(size, ""), size / EARTH);
+        let found = format!("{} m/s2, {:.0} times the gravity of the Earth", shown(size, ""), size / EARTH);
         let usual = format!("{EARTH} m/s2, in a centrifuge up to {CENTRIFUGE} times as much");
         findings.add(size > FAR * EARTH, "gravity", found, usual);
         return;

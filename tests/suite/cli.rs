@@ -269,12 +269,12 @@ fn overrides_change_the_scene() {
 }
 
 #[test]
-fn write_error_is_no_bad_input() {
+fn output_at_a_file_is_bad_input() {
     let folder = scene_folder("unwritable", SOLID);
     folder.write("taken", "a file");
     let outcome = run(&folder.join("scene.toml"), &folder.join("taken"), &[]);
-    assert_eq!((outcome.code, outcome.stderr.lines().count()), (1, 1), "{outcome:?}");
-    assert!(outcome.stderr.starts_with("error: ") && outcome.stderr.contains("taken"), "{outcome:?}");
+    assert_eq!((outcome.code, outcome.stderr.lines().count()), (2, 1), "{outcome:?}");
+    assert!(outcome.stderr.contains("taken: found a file, expected a directory"), "{outcome:?}");
     assert_eq!(fs::read_to_string(folder.join("taken")).unwrap(), "a file");
 }
 

@@ -1,5 +1,6 @@
 //! Initial overlaps by true shapes, and the speeds at which they throw grains.
 
+use super::bonds::wide_gap;
 use super::part::GrainsPart;
 use crate::scene::{Document, SceneError};
 use trackbed_coupling::surface::SolidSurface;
@@ -131,6 +132,10 @@ pub fn deepest_overlap(grains: &GrainsPart) -> Option<(Deepest, String, f64)> {
 /// Returns the grain thrown farthest beyond plausible speeds by its start contacts: v = √(|F| δ/m), resultant
 /// F of contacts and weight, largest overlap δ. Exact for a linear contact; zero in equilibrium.
 pub fn thrown(grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<Thrown> {
+    // Rejected later; the bonds of all pairs would fill the memory.
+    if wide_gap(&grains.bonds, &grains.groups.bodies, &grains.groups.shapes).is_some() {
+        return None;
+    }
     let model = Model::new(first_input(grains)).ok()?;
     let exempt = Exemptions { grains, model: &model };
     let (state, all) = contacts(&model, State::new(&model), ground)?;

@@ -58,14 +58,15 @@ pub fn check_gaps(
     bodies: &[BodyInput],
     shapes: &[Shape],
 ) -> Result<(), SceneError> {
-    for kind in 0..part.names.len() {
-        let Some((gap, radius)) = part.gap(kind, bodies, shapes) else { continue };
-        if gap > WIDEST_GAP * radius {
-            let expected = format!("at most {WIDEST_GAP} times the largest radius, which is {radius:.3e} m");
-            return Err(document.error(&format!("bond.{kind}.gap"), format!("{gap} m"), expected));
-        }
-    }
-    Ok(())
+    let Some((kind, gap, radius)) = wide_gap(part, bodies, shapes) else { return Ok(()) };
+    let expected = format!("at most {WIDEST_GAP} times the largest radius, which is {radius:.3e} m");
+    Err(document.error(&format!("bond.{kind}.gap"), format!("{gap} m"), expected))
+}
+
+/// Returns a kind of bonds with too wide a gap, the gap and the largest radius [m].
+pub(super) fn wide_gap(part: &BondPart, bodies: &[BodyInput], shapes: &[Shape]) -> Option<(usize, f64, f64)> {
+    let gap = |kind| part.gap(kind, bodies, shapes).map(|(gap, radius)| (kind, gap, radius));
+    (0..part.names.len()).filter_map(gap).find(|(_, gap, radius)| *gap > WIDEST_GAP * radius)
 }
 
 /// Rejects rules that cannot bond any pair at any positions.
