@@ -144,7 +144,7 @@ fn compact(
         }
     };
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
-    warn_of_bed(settled, &done, (grains, index));
+    warn_of_bed(settled, &done, (&*grains, index));
     let stage = (name.as_str(), &plan.press);
     settled.beds.extend(bed_after(stage, &done.bed, grains, surface, settled.bodies.len()));
     if let Press::Pouring { parts, level, .. } = &plan.press {
