@@ -103,6 +103,7 @@ export async function onStart(view, browser, address, faults) {
     const side = () => view.run(() => Number(/\d+/.exec(getComputedStyle(document.getElementById('side')).backgroundColor)[0]));
     const light = await side();
     await page.emulateMedia({ colorScheme: 'dark' });
+    await page.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
     const dark = await side();
     expect(light > 200 && dark < 60, `${light}, dark ${dark}`);
     await view.click('button-theme');
