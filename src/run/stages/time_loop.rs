@@ -56,6 +56,8 @@ struct TimeLoop<'a> {
     recorder: Results<'a>,
     place: Place,
     progress: Progress,
+    /// Whether the last window was shortened to end with the run.
+    shortened: bool,
 }
 
 /// Runs the main loop with grains.
@@ -139,7 +141,8 @@ impl<'a> TimeLoop<'a> {
     ) -> Result<TimeLoop<'a>, Failure> {
         let job = run.job;
         let window = system.window();
-        let windows = ((job.end / window).ceil() as u64).max(1);
+        // Tolerates rounding of a whole number of windows.
+        let windows = ((job.end / window * (1.0 - 1e-12)).ceil() as u64).max(1);
         let part = grains.map(|(part, _)| part);
         let input = part.map_or_else(TrackInput::default, |part| part.track.input());
         let mut track = Track::new(input, system.grains());
@@ -167,12 +170,22 @@ impl<'a> TimeLoop<'a> {
         let (begun, whole) = share(&cadence, &recorder, &place);
         let progress =
             Progress::start("running", whole as f64, run.verbosity).resumed(begun as f64, place.seconds);
-        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress })
+        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress, shortened: false })
+    }
+
+    /// Time after `done` windows [s].
+    fn time(&self, done: u64) -> f64 {
+        let (time, end) = (done as f64 * self.cadence.window, self.run.job.end);
+        let ends = done == self.place.windows && (self.shortened || (time - end).abs() < 1e-9 * end);
+        if ends { end } else { time }
     }
 
     fn window<S: System>(&mut self, system: &mut S) -> Result<(), Failure> {
-        let (k, track) = (self.place.done + 1, &mut self.track);
-        let time = k as f64 * self.cadence.window;
+        let k = self.place.done + 1;
+        if k == self.place.windows {
+            self.shortened = system.shorten(self.run.job.end - self.time(k - 1));
+        }
+        let (time, track) = (self.time(k), &mut self.track);
         track.begin_window();
         let companion = self.run.accompanied.0.as_deref();
         let mut apply = |t: f64, model: &dem::Model, state: &dem::State, out: &mut Vec<dem::AppliedForce>| {
@@ -182,7 +195,7 @@ impl<'a> TimeLoop<'a> {
         match system.advance(&mut apply) {
             // An aborted step leaves the previous state.
             Err(Failure::Interrupted(_)) => {
-                return self.keep(self.place.done as f64 * self.cadence.window, system);
+                return self.keep(self.time(self.place.done), system);
             }
             outcome => outcome?,
         }
@@ -223,7 +236,7 @@ impl<'a> TimeLoop<'a> {
         let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
         let Place { done, windows, .. } = self.place;
         companion.follow(&Shown {
-            time: done as f64 * self.cadence.window,
+            time: self.time(done),
             done,
             windows,
             grains: system.grains(),
@@ -276,7 +289,7 @@ impl<'a> TimeLoop<'a> {
             return Ok(());
         }
         let done = self.place.done;
-        let moment = Moment { stage: END.into(), step: done, time: done as f64 * self.cadence.window };
+        let moment = Moment { stage: END.into(), step: done, time: self.time(done) };
         self.run.checkpoints.save_file(&self.run.dir.join(from::FILE), moment, |body| {
             body.put(&self.settled.map(Settled::places))?;
             system.save_end(body)
@@ -305,7 +318,7 @@ impl<'a> TimeLoop<'a> {
         summary.structures = self.recorder.loads().to_vec();
         let done = self.place.done;
         let (grain_steps, solid_steps) = system.steps_done(done);
-        let end = done as f64 * self.cadence.window;
+        let end = self.time(done);
         let seconds = self.progress.finish(&format!("{end:.3} s simulated"));
         summary.stages.push(StageRecord {
             name: "run".into(),

@@ -130,6 +130,11 @@ fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
 
 const MISFIT: f64 = 0.05;
 
+/// Whether the `rest` of the run [s] is shorter than a window, apart from rounding.
+fn is_short(rest: f64, window: f64) -> bool {
+    rest > 1e-9 * window && rest < window * (1.0 - 1e-9)
+}
+
 impl TrackSystem for GrainsSystem {
     fn window(&self) -> f64 {
         self.window
@@ -163,6 +168,14 @@ impl System for GrainsSystem {
             self.work.step(&self.model, &mut self.state, none, &self.applied).map_err(failed)?;
         }
         self.work.download(&self.model, &mut self.state).map_err(failed)
+    }
+
+    fn shorten(&mut self, rest: f64) -> bool {
+        let short = self.model.measured().is_some() && is_short(rest, self.window);
+        if short {
+            self.window = rest;
+        }
+        short
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
@@ -211,5 +224,18 @@ mod tests {
         assert_eq!(window(1.47e-4, 1e-4), 1e-4);
         assert_eq!(window(6.4e-3, 1.7e-3), 17.0 * 1e-4);
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);
+    }
+
+    /// Windows of close rows are multiples of the first step, which do not divide the run.
+    #[test]
+    fn last_window_ends_with_the_run() {
+        let (end, window) = (0.3_f64, round_window([1.0197e-4, 64.0 * 1.0197e-4], 1e-4));
+        let whole = (end / window).ceil();
+        assert!(whole * window > end + 1e-6, "{window}");
+        let rest = end - (whole - 1.0) * window;
+        assert!(is_short(rest, window));
+        for rest in [window, window * (1.0 - 1e-12), 2.0 * window, 1e-14 * window] {
+            assert!(!is_short(rest, window), "{rest}");
+        }
     }
 }

@@ -35,6 +35,10 @@ pub trait System: TrackSystem {
     fn steps_done(&self, windows: u64) -> (u64, u64);
     /// Advances one window.
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure>;
+    /// Shortens the last window to `rest` [s] if that is possible and differs from it; returns whether it did.
+    fn shorten(&mut self, _rest: f64) -> bool {
+        false
+    }
     /// Saves the state to a checkpoint.
     fn save(&self, body: &mut Body<'_>) -> io::Result<()>;
     /// Saves the final state for `--from`, without solver history.
