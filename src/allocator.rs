@@ -1,7 +1,7 @@
 //! Allocator that exits with one line when memory is exhausted.
 
-use crate::system;
 use std::alloc::{GlobalAlloc, Layout, System};
+use trackbed_io::system;
 
 /// System allocator; failed requests exit with code 3.
 ///

@@ -3,14 +3,14 @@
 mod convert;
 mod render;
 
-use crate::failure::Failure;
-use crate::progress::Verbosity;
-use crate::replaced;
-use crate::run::Place;
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Verbosity;
+use trackbed_io::replaced;
+use trackbed_run::Place;
 
 pub use convert::ConvertArgs;
 pub use render::RenderArgs;

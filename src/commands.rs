@@ -16,10 +16,11 @@ mod study;
 mod view;
 
 use crate::cli::{Command, MeshCommand, NewArgs, RunArgs};
-use crate::columns;
-use crate::failure::Failure;
-use crate::message;
-use crate::run;
+use trackbed_io::columns;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_run as run;
+
 use crate::start;
 use output::print;
 

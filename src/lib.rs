@@ -8,28 +8,13 @@
 
 pub mod allocator;
 pub mod cli;
-pub mod columns;
 pub mod commands;
-pub mod convert;
-pub mod failure;
-pub mod guard;
-pub mod mesh_tools;
-pub mod message;
-pub mod model;
-pub mod plausible;
-pub mod preview;
 pub mod program;
-mod progress;
-pub mod read;
-pub mod render;
-mod replaced;
-pub mod report;
-pub mod results;
-pub mod run;
-pub mod scene;
 pub mod start;
 pub mod stone_tools;
 pub mod study;
-mod system;
-pub mod view;
-pub mod write;
+
+pub use trackbed_input::{model, plausible, scene};
+pub use trackbed_io::{columns, failure, guard, mesh_tools, message, read, results, write};
+pub use trackbed_post::{convert, preview, render, report, view};
+pub use trackbed_run as run;

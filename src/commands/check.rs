@@ -1,18 +1,18 @@
 //! `trackbed check`: resolves and reports a scene.
 
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::exchange::{self, CouplingPart, Windows};
-use crate::model::grains::{FilledGroup, GrainsPart, Preview};
-use crate::model::solid::SolidPart;
-use crate::plausible;
-use crate::preview::Source;
-use crate::run::estimate::Estimate;
-use crate::run::{self, stages};
-use crate::scene::Document;
 use serde_json::{Value, json};
 use std::path::Path;
 use trackbed_dem as dem;
+use trackbed_input::model::Job;
+use trackbed_input::model::exchange::{self, CouplingPart, Windows};
+use trackbed_input::model::grains::{FilledGroup, GrainsPart, Preview};
+use trackbed_input::model::solid::SolidPart;
+use trackbed_input::plausible;
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
+use trackbed_post::preview::Source;
+use trackbed_run::estimate::Estimate;
+use trackbed_run::{self as run, stages};
 
 /// Report of a scene: lines, and numbers by name.
 pub struct Report {

@@ -2,8 +2,8 @@
 
 use super::output::print;
 use crate::cli::ConvertArgs;
-use crate::convert::{self, Options};
-use crate::failure::Failure;
+use trackbed_io::failure::Failure;
+use trackbed_post::convert::{self, Options};
 
 pub(super) fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let region = match args.region.as_deref() {

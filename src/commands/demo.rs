@@ -1,10 +1,10 @@
 //! `trackbed demo`: a small track from template to viewer.
 
 use crate::cli::{DemoArgs, RunArgs, ViewArgs};
-use crate::failure::Failure;
-use crate::message;
 use crate::start;
 use std::num::NonZeroUsize;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
 
 /// Template.
 const TEMPLATE: &str = "track";

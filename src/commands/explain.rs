@@ -1,15 +1,15 @@
 //! `trackbed explain`: `check` with kernels, memory and run time.
 
 use super::check::{self, Report};
-use crate::failure::Failure;
-use crate::model::grains::{GrainsPart, refused};
-use crate::run::estimate::Estimate;
-use crate::run::stages::{self, Stage};
-use crate::run::{self, size};
 use std::error::Error;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use trackbed_dem as dem;
+use trackbed_input::model::grains::{GrainsPart, refused};
+use trackbed_io::failure::Failure;
+use trackbed_run::estimate::Estimate;
+use trackbed_run::stages::{self, Stage};
+use trackbed_run::{self as run, size};
 
 const SIDE: usize = 16;
 const STEPS: u32 = 200;

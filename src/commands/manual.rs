@@ -2,11 +2,11 @@
 
 use super::output::print;
 use crate::cli::Cli;
-use crate::failure::Failure;
-use crate::read::source;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::{Path, PathBuf};
+use trackbed_io::failure::Failure;
+use trackbed_io::read::source;
 
 /// Prints a completion script.
 ///
@@ -47,7 +47,7 @@ pub fn manual(folder: &Path) -> Result<(), Failure> {
     let written =
         std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
     written.map_err(|e| {
-        let found = crate::system::words(&e);
+        let found = trackbed_io::system::words(&e);
         Failure::Other(format!("{}: found {found}, expected a writable directory", folder.display()))
     })
 }

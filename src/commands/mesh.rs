@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::output::{print, refuse_existing};
 use crate::cli::{MeshArgs, MeshFormat};
-use crate::failure::Failure;
-use crate::mesh_tools::{self, Problem};
-use crate::model::solid::mesh_file;
-use crate::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_file};
-use crate::scene::{Document, Scene};
-use crate::write::{MeshOptions, write_mesh_file};
+use trackbed_input::model::solid::mesh_file;
+use trackbed_input::scene::{Document, Scene};
+use trackbed_io::failure::Failure;
+use trackbed_io::mesh_tools::{self, Problem};
+use trackbed_io::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_file};
+use trackbed_io::write::{MeshOptions, write_mesh_file};
 
 pub(super) fn info(args: &MeshArgs) -> Result<(), Failure> {
     let file = read(args)?;

@@ -1,19 +1,20 @@
 //! `trackbed modal`: natural frequencies and modes of the solid.
 
 use crate::cli::ModalArgs;
-use crate::columns::modes;
-use crate::failure::Failure;
-use crate::model::{read_scene, solid};
-use crate::run;
-use crate::scene::Document;
-use crate::scene::units::vector;
-use crate::write;
-use crate::write::csv::{Field, write_table};
-use crate::write::pvd;
+use trackbed_input::model::{read_scene, solid};
+use trackbed_io::columns::modes;
+use trackbed_io::failure::Failure;
+use trackbed_run as run;
+
 use std::fmt::Write;
 use std::path::Path;
 use trackbed_fem as fem;
 use trackbed_fem::modal::{ModalError, Modes};
+use trackbed_input::scene::Document;
+use trackbed_input::scene::units::vector;
+use trackbed_io::write;
+use trackbed_io::write::csv::{Field, write_table};
+use trackbed_io::write::pvd;
 
 /// Masses whose squares are accurate [kg].
 const MASS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;

@@ -1,8 +1,8 @@
 //! Standard output of commands.
 
-use crate::failure::Failure;
 use std::io::Write;
 use std::path::Path;
+use trackbed_io::failure::Failure;
 
 /// Rejects an existing file without `--force`.
 ///

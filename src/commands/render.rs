@@ -3,10 +3,10 @@
 use super::output::print;
 use super::view;
 use crate::cli::RenderArgs;
-use crate::failure::Failure;
-use crate::preview::Preview;
-use crate::render::options::{self, Options, Part, refuse};
-use crate::render::{self, Written};
+use trackbed_io::failure::Failure;
+use trackbed_post::preview::Preview;
+use trackbed_post::render::options::{self, Options, Part, refuse};
+use trackbed_post::render::{self, Written};
 
 /// Writes an image of a scene, or an image or video of results.
 ///

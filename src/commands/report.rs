@@ -2,8 +2,8 @@
 
 use super::output::print;
 use crate::cli::ReportArgs;
-use crate::failure::Failure;
-use crate::report::{self, Options};
+use trackbed_io::failure::Failure;
+use trackbed_post::report::{self, Options};
 
 /// Writes a report and prints its path.
 ///

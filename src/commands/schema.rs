@@ -1,11 +1,11 @@
 //! `trackbed schema`: scene keys.
 
 use super::output::print;
-use crate::failure::Failure;
-use crate::read::source;
-use crate::scene::{reference, schema as scene_schema};
-use crate::write::{WriteError, atomic};
 use std::path::{Path, PathBuf};
+use trackbed_input::scene::{reference, schema as scene_schema};
+use trackbed_io::failure::Failure;
+use trackbed_io::read::source;
+use trackbed_io::write::{WriteError, atomic};
 
 /// Prints the JSON schema, or key tables with `markdown`; updates a given page.
 ///

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use super::output::print;
 use crate::cli::{RoughArgs, StoneArgs, StoneCommand, StoneKind};
-use crate::failure::Failure;
-use crate::read::{Problem, read_surface};
-use crate::scene::Document;
 use crate::stone_tools::{Kind, Source, fill, grow, library_file, make, measure, random, rough};
-use crate::write::{atomic, stl::stl_bytes};
 use trackbed_dem::insert::library::Stone;
 use trackbed_dem::insert::library::StoneLibrary;
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::shape::dilated::Dilated;
 use trackbed_dem::shape::polyhedron::{self, Polyhedron};
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
+use trackbed_io::read::{Problem, read_surface};
+use trackbed_io::write::{atomic, stl::stl_bytes};
 
 /// Moments of the union take n³ operations.
 const MOST_CLUMP: usize = 200;
@@ -109,7 +109,7 @@ fn rough_stones(args: &RoughArgs) -> Result<(), Failure> {
 fn write_library(out: &Path, source: &str, note: &str, rows: &[(&Stone, String)]) -> Result<(), Failure> {
     let name = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let text = library_file::text(&name, source, note, rows);
-    atomic::write(out, |w| w.write_all(text.as_bytes()).map_err(crate::write::WriteError::io(out)))?;
+    atomic::write(out, |w| w.write_all(text.as_bytes()).map_err(trackbed_io::write::WriteError::io(out)))?;
     Ok(())
 }
 
@@ -125,7 +125,7 @@ fn write_surfaces(dir: &Path, sources: &[Source], force: bool) -> Result<(), Fai
     for (i, source) in sources.iter().enumerate() {
         let file = file(i);
         let bytes = stl_bytes(source.body.surface());
-        atomic::write(&file, |w| w.write_all(&bytes).map_err(crate::write::WriteError::io(&file)))?;
+        atomic::write(&file, |w| w.write_all(&bytes).map_err(trackbed_io::write::WriteError::io(&file)))?;
     }
     Ok(())
 }

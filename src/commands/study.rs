@@ -2,11 +2,11 @@
 
 use super::{check, output};
 use crate::cli::StudyArgs;
-use crate::failure::Failure;
-use crate::message;
-use crate::run::Interrupt;
 use crate::study;
 use std::path::Path;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_run::Interrupt;
 
 /// Runs a study and prints its table.
 ///

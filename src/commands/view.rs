@@ -5,13 +5,13 @@ use std::path::Path;
 use super::check;
 use super::output::{print, refuse_existing};
 use crate::cli::ViewArgs;
-use crate::failure::Failure;
-use crate::message;
-use crate::preview::{self, Preview, Source};
-use crate::results::series;
-use crate::run::size;
-use crate::system;
-use crate::view::{self, Coding, Live, Results, Still};
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::results::series;
+use trackbed_io::system;
+use trackbed_post::preview::{self, Preview, Source};
+use trackbed_post::view::{self, Coding, Live, Results, Still};
+use trackbed_run::size;
 
 /// Serves results or a scene, or writes them as one HTML file.
 ///

@@ -2,11 +2,11 @@
 
 use super::checkpoint_store::CheckpointStore;
 use super::packing::StageEnergy;
-use crate::failure::Failure;
-use crate::model::grains::DepositionPlan;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
+use trackbed_input::model::grains::DepositionPlan;
+use trackbed_io::failure::Failure;
 
 /// Acceleration time before low speed means rest [s].
 const START: f64 = 0.02;

@@ -3,12 +3,12 @@
 use super::recorder::{Now, Recorder};
 use super::summary::{BondSummary, BreakageRecord};
 use super::system::{GrainsView, System};
-use crate::columns::{breaks, history};
-use crate::failure::Failure;
-use crate::write::csv::{Field, Row, write_table};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::bond::{Break, BreakMode};
+use trackbed_io::columns::{breaks, history};
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Field, Row, write_table};
 
 /// Bond count, breaks and energies.
 pub struct Bonds;

@@ -1,15 +1,15 @@
 //! Checkpoints at wall-time intervals and on interrupts.
 
 use super::checkpoint::{Body, Moment, Slots};
-use crate::failure::Failure;
-use crate::message;
-use crate::system;
 use std::cell::{Cell, RefCell};
 use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::system;
 
 const WATCH: Duration = Duration::from_millis(50);
 
@@ -25,7 +25,7 @@ pub struct Interrupt {
 }
 
 /// About 20 ms apart.
-pub(crate) type Trace = Arc<Mutex<Vec<(Instant, Moment)>>>;
+pub type Trace = Arc<Mutex<Vec<(Instant, Moment)>>>;
 
 const TRACE: Duration = Duration::from_millis(20);
 
@@ -67,17 +67,19 @@ impl Interrupt {
     }
 
     /// Whether a signal exits at once or waits for a save.
-    pub(crate) fn end_at_once(&self, at_once: bool) {
+    pub fn end_at_once(&self, at_once: bool) {
         // Pending requests belong to the ending stage.
         self.seen.fetch_or(self.stopped(), Ordering::Relaxed);
         self.keeps.store(!at_once, Ordering::Relaxed);
     }
 
-    pub(crate) fn stopped(&self) -> bool {
+    /// Whether the run should stop.
+    pub fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn traced() -> (Interrupt, Trace) {
+    /// Creates a request that records the time of each checkpoint.
+    pub fn traced() -> (Interrupt, Trace) {
         let trace = Trace::default();
         (Interrupt { trace: Some(trace.clone()), ..Interrupt::default() }, trace)
     }

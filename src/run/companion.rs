@@ -1,11 +1,11 @@
 //! In-process observer of a run, which may apply grain forces.
 
 use super::system::{GrainsView, SolidView};
-use crate::failure::Failure;
 use std::fmt;
 use std::sync::Arc;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_dem as dem;
+use trackbed_io::failure::Failure;
 
 /// State at the main loop start or after a window.
 pub struct Shown<'a> {

@@ -7,15 +7,15 @@ use super::folder;
 use super::origin::quoted;
 use super::ranks::Ranked;
 use super::run_file::{self, RunFile, Source};
-use crate::failure::Failure;
-use crate::message;
-use crate::model::Job;
-use crate::plausible::Finding;
-use crate::progress::Verbosity;
-use crate::scene::Document;
 use std::cell::{Cell, OnceCell};
 use std::path::Path;
 use trackbed_fem as fem;
+use trackbed_input::model::Job;
+use trackbed_input::plausible::Finding;
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::progress::Verbosity;
 
 /// Run in progress.
 pub struct Run<'a> {

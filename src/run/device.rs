@@ -1,13 +1,13 @@
 //! Device of the DEM steps.
 
-use crate::failure::Failure;
-use crate::message;
-use crate::model::Job;
 use trackbed_dem as dem;
 use trackbed_dem::device::{self, Cuda, Device};
 use trackbed_dem::ranks::{Link, MessageCounters, Ranks};
 use trackbed_dem::surface::{Surface, SurfaceContact};
 use trackbed_dem::{AppliedForce, BackEnd, StepError};
+use trackbed_input::model::Job;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
 
 /// Compute device of the main stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]

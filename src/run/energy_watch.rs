@@ -1,8 +1,8 @@
 //! Energy check during a run.
 
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::energy_balance::EnergyBalance;
+use trackbed_io::failure::Failure;
 
 /// Relative energy error for a warning, and for a stop.
 pub const ENERGY: (f64, f64) = (0.01, 0.2);

@@ -7,15 +7,15 @@
 //!
 //! Theory manual: equation (6.41) of `docs/theory/track.md`.
 
-use crate::columns::events;
-use crate::failure::Failure;
-use crate::model::grains::EventPlan;
-use crate::write::csv::{Field, write_table};
 use serde::Serialize;
 use std::f64::consts::LOG10_E;
 use std::path::Path;
 use trackbed_dem::Vec3;
 use trackbed_dem::bond::{Break, BreakMode};
+use trackbed_input::model::grains::EventPlan;
+use trackbed_io::columns::events;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Field, write_table};
 
 const BIN: f64 = 0.1;
 const FEWEST: usize = 50;

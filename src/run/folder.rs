@@ -1,10 +1,10 @@
 //! Results directory: created, and cleared of earlier results.
 
-use crate::failure::Failure;
-use crate::model::OutputPlan;
-use crate::write::{FORMATS, Format};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
+use trackbed_input::model::OutputPlan;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::{FORMATS, Format};
 
 const FILES: [&str; 25] = [
     "push.csv",

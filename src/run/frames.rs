@@ -3,18 +3,18 @@
 use super::runout;
 use super::system::{GrainsView, SolidView};
 use super::wall_output;
-use crate::failure::Failure;
-use crate::model::OutputPlan;
-use crate::model::grains::GrainsPart;
-use crate::write::{
-    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
-    WallKind, Writers, Written,
-};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::bond::{Break, BreakMode};
 use trackbed_dem::shape::Shape;
 use trackbed_fem::stress;
+use trackbed_input::model::OutputPlan;
+use trackbed_input::model::grains::GrainsPart;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::{
+    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
+    WallKind, Writers, Written,
+};
 
 /// Elastic material: inside by definition.
 const NO_YIELD_SURFACE: f64 = -1.0;

@@ -7,11 +7,11 @@
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;
 use super::run_file::{RunFile, Source};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::scene::Document;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use trackbed_input::model::Job;
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
 
 /// File name.
 pub const FILE: &str = "end.state";

@@ -1,10 +1,10 @@
 //! Initial state of a plastic solid.
 
-use crate::failure::Failure;
-use crate::model::solid::{InitialStressKind, InitialStressPlan, SolidPart};
 use trackbed_fem::nonlinear::initial_stress::{self, Overburden};
 use trackbed_fem::nonlinear::{QuasiStatic, StepControl};
 use trackbed_fem::{Model, State, TimeIntegrator};
+use trackbed_input::model::solid::{InitialStressKind, InitialStressPlan, SolidPart};
+use trackbed_io::failure::Failure;
 
 /// Returns the initial stress state, and the fraction of weight that it balances.
 ///

@@ -3,11 +3,11 @@
 //! `run.lock` contains process id and scene, under an advisory lock that ends with the process. A file left
 //! by a killed run blocks nothing.
 
-use crate::failure::Failure;
-use crate::{message, system};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use trackbed_io::failure::Failure;
+use trackbed_io::{message, system};
 
 /// File name.
 pub const FILE: &str = "run.lock";
@@ -150,7 +150,7 @@ impl Drop for Lock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::write::sample::folder;
+    use trackbed_io::scratch::folder;
 
     #[test]
     fn locks_once_and_ignores_dead_processes() {

@@ -3,11 +3,11 @@
 //! The model is measured, the factorization follows from the equation structure, results are a few nodal
 //! vectors.
 
-use crate::failure::Failure;
-use crate::model::solid::{Analysis, SolidPart};
-use crate::system::{available, resident};
 use serde_json::{Value, json};
 use trackbed_fem::{Method, Regime};
+use trackbed_input::model::solid::{Analysis, SolidPart};
+use trackbed_io::failure::Failure;
+use trackbed_io::system::{available, resident};
 
 /// State, stresses, frame text.
 const RESULT_BYTES_PER_NODE: u64 = 1200;

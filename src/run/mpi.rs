@@ -4,9 +4,6 @@
 //! (OpenMPI 4.1: about 0.1 s), so the loss is reported at once.
 
 use super::origin::quoted;
-use crate::failure::Failure;
-use crate::message;
-use crate::system;
 use ::mpi::environment::Universe;
 use ::mpi::request::{Request, StaticScope};
 use ::mpi::topology::SimpleCommunicator;
@@ -18,6 +15,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use trackbed_dem::ranks::{Link, Lost};
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::system;
 
 /// MPI counts have 31 bits [bytes].
 const PIECE: usize = 1 << 30;

@@ -4,10 +4,10 @@ use super::checkpoint::{Origin, Slots};
 use super::folder;
 use super::lock::Lock;
 use super::run_file;
-use crate::failure::Failure;
-use crate::message::shown;
-use crate::read::source;
 use std::path::Path;
+use trackbed_io::failure::Failure;
+use trackbed_io::message::shown;
+use trackbed_io::read::source;
 
 const LONGEST: usize = 80;
 

@@ -4,11 +4,11 @@ use super::checkpoint::{self, Origin};
 use super::hash::Hash;
 use super::lock;
 use super::run_file::{RunFile, Source};
-use crate::failure::Failure;
-use crate::read::{mesh_files, source};
-use crate::scene::{Document, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
+use trackbed_input::scene::{Document, Scene};
+use trackbed_io::failure::Failure;
+use trackbed_io::read::{mesh_files, source};
 
 /// Whether `dir` contains final results of the scene, without a later checkpoint.
 ///

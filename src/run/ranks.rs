@@ -2,14 +2,14 @@
 
 use super::device::Place;
 use super::threads::thread_pool;
-use crate::failure::Failure;
-use crate::model::{self, Job};
-use crate::scene::Document;
 use std::fmt;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use trackbed_dem as dem;
 use trackbed_dem::ranks::{self, Link, Lost};
+use trackbed_input::model::{self, Job};
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
 
 /// Other ranks of a run, if any.
 #[derive(Clone, Default)]

@@ -1,10 +1,10 @@
 //! Recorders of history columns.
 
 use super::flow::Flow;
-use crate::model::Job;
-use crate::write::csv::Row;
 use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::track::Track;
+use trackbed_input::model::Job;
+use trackbed_io::write::csv::Row;
 
 /// State of a run passed to recorders.
 pub struct Now<'a, S> {

@@ -1,11 +1,11 @@
 //! `run.json`: origin of a run.
 
-use crate::failure::Failure;
-use crate::read::source;
-use crate::scene::{Document, IncludedText};
-use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use trackbed_input::scene::{Document, IncludedText};
+use trackbed_io::failure::Failure;
+use trackbed_io::read::source;
+use trackbed_io::write::{WriteError, atomic};
 
 /// File name.
 pub const FILE: &str = "run.json";

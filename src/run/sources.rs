@@ -1,7 +1,7 @@
 //! Literature sources of a run.
 
-use crate::model::solid::{Analysis, SolidPart, TimeMethod};
 use trackbed_fem::{Method, Regime};
+use trackbed_input::model::solid::{Analysis, SolidPart, TimeMethod};
 
 /// Returns the sources of a solid.
 pub fn solid(part: &SolidPart, coupled: bool) -> Vec<&'static str> {

@@ -3,11 +3,11 @@
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
 use super::system::{GrainsView, System};
-use crate::columns::history;
-use crate::model::grains::StructurePlan;
-use crate::write::csv::{Column, Row};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
+use trackbed_input::model::grains::StructurePlan;
+use trackbed_io::columns::history;
+use trackbed_io::write::csv::{Column, Row};
 
 /// Motion, total load, moment, loads by sector and height.
 pub struct Structures;
@@ -99,7 +99,7 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::summary::MotionRecord;
+    use crate::summary::MotionRecord;
 
     /// Checkpoint fields are unnamed and must be read in writing order.
     #[test]

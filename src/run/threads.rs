@@ -1,6 +1,6 @@
 //! Thread pool of a run.
 
-use crate::failure::Failure;
+use trackbed_io::failure::Failure;
 
 /// Waiting threads spin.
 const MOST_PER_CPU: usize = 8;
@@ -12,7 +12,7 @@ fn most_threads() -> usize {
 }
 
 /// With stacks for recursive elimination.
-pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     let most = most_threads();
     if let Some(threads) = threads.filter(|n| !(1..=most).contains(n)) {
         return Err(Failure::Input(format!(

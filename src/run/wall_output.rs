@@ -2,11 +2,11 @@
 
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
-use crate::columns::history;
-use crate::model::grains::GrainsPart;
-use crate::write::csv::Row;
-use crate::write::{WallFrame, WallKind};
 use trackbed_dem::{Vec3, WallShape};
+use trackbed_input::model::grains::GrainsPart;
+use trackbed_io::columns::history;
+use trackbed_io::write::csv::Row;
+use trackbed_io::write::{WallFrame, WallKind};
 
 const AROUND: u32 = 48;
 

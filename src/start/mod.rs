@@ -2,10 +2,10 @@
 //!
 //! Templates ([`TEMPLATES`]) are scenes of `inputs/` with their files, embedded in the program.
 
-use crate::failure::Failure;
-use crate::write::WriteError;
-use crate::write::atomic;
 use std::path::{Path, PathBuf};
+use trackbed_io::failure::Failure;
+use trackbed_io::write::WriteError;
+use trackbed_io::write::atomic;
 
 /// Template of a scene.
 pub struct Template {

@@ -1,7 +1,7 @@
 //! Parameter sets of a study.
 
 use super::file::{AxisTable, Combine, StudyFile};
-use crate::scene::{Document, SceneError};
+use trackbed_input::scene::{Document, SceneError};
 
 /// Most runs.
 pub const MOST_RUNS: usize = 100_000;

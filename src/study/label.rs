@@ -1,6 +1,6 @@
 //! Directory names from labels.
 
-use crate::run::Hash;
+use trackbed_run::Hash;
 
 /// Longest name [bytes]; most file systems allow 255 with extension.
 const LONGEST: usize = 100;

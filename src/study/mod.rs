@@ -18,17 +18,17 @@ mod store;
 mod table;
 mod text;
 
-use crate::failure::Failure;
-use crate::message;
-use crate::model::read_scene;
-use crate::run::{self, Interrupt, Lock};
-use crate::scene::Document;
 use file::StudyFile;
 use outcome::Outcome;
 use plan::{Plan, Run};
 use schedule::{Schedule, Task};
 use std::path::{Path, PathBuf};
 use store::{Found, Store};
+use trackbed_input::model::read_scene;
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_run::{self as run, Interrupt, Lock};
 
 const PRINTED: usize = 20;
 const SPELLED_OUT: usize = 3;

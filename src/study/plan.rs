@@ -4,10 +4,10 @@ use super::axis::{Axis, MOST_RUNS, Setting, combine};
 use super::file::StudyFile;
 use super::label::folder_name;
 use super::quantity::{self, Quantity};
-use crate::failure::Failure;
-use crate::scene::{Document, Problem, Scene, SceneError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use trackbed_input::scene::{Document, Problem, Scene, SceneError};
+use trackbed_io::failure::Failure;
 
 const REFERENCE: &str = "reference";
 

@@ -1,8 +1,8 @@
 //! Tests of counts, labels and overrides.
 
 use super::*;
-use crate::write::sample::folder;
 use std::fs;
+use trackbed_io::scratch::folder;
 
 const SCENE: &str =
     "[[grains]]\nname = \"a\"\n[[grains]]\nname = \"b\"\nseed = 4\n[[bond]]\nspread = { seed = 3 }\n";

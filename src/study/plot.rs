@@ -3,7 +3,7 @@
 use super::file::Norm;
 use super::outcome::{Outcome, cpu};
 use super::plan::Plan;
-use crate::write::scatter::{Group, Mark, ScatterPlot};
+use trackbed_io::write::scatter::{Group, Mark, ScatterPlot};
 
 /// Draws the plot; points are numbered like table rows.
 pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {

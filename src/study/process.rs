@@ -1,13 +1,13 @@
 //! Runs as separate processes.
 
-use crate::message::shown;
 use crate::program;
-use crate::read::source;
-use crate::system;
 use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::process::{Child, ExitStatus, Stdio};
+use trackbed_io::message::shown;
+use trackbed_io::read::source;
+use trackbed_io::system;
 
 const LONGEST: usize = 400;
 

@@ -1,9 +1,9 @@
 //! Compared quantities of runs.
 
 use super::file::{Norm, QuantityTable, Take};
-use crate::columns::{Definition, cycles};
-use crate::replaced;
-use crate::scene::{Document, Problem, SceneError};
+use trackbed_input::scene::{Document, Problem, SceneError};
+use trackbed_io::columns::{Definition, cycles};
+use trackbed_io::replaced;
 
 /// Resolved quantity.
 #[derive(Clone, Debug)]

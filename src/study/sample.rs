@@ -3,9 +3,9 @@
 use super::curve::Sample;
 use super::file::Take;
 use super::quantity::{Quantity, Source};
-use crate::read::source;
-use crate::replaced;
 use std::path::Path;
+use trackbed_io::read::source;
+use trackbed_io::replaced;
 
 /// Reads a quantity and its unit.
 ///

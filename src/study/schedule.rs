@@ -3,14 +3,14 @@
 use super::plan::Run;
 use super::process::{self, Beginning};
 use super::store::{Found, NUMERICAL, Record, Store};
-use crate::failure::Failure;
-use crate::message;
-use crate::progress::{Progress, Verbosity};
-use crate::run::Interrupt;
 use std::io::IsTerminal;
 use std::path::Path;
 use std::process::{Child, ExitStatus};
 use std::time::{Duration, Instant};
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::progress::{Progress, Verbosity};
+use trackbed_run::Interrupt;
 
 const LOOK: Duration = Duration::from_millis(5);
 const INTERRUPTED: i32 = 130;

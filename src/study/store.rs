@@ -8,11 +8,11 @@
 //! ```
 
 use super::plan::Run;
-use crate::failure::Failure;
-use crate::read::source;
-use crate::write::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use trackbed_io::failure::Failure;
+use trackbed_io::read::source;
+use trackbed_io::write::{WriteError, atomic};
 
 /// Exit code of a numerical failure.
 pub const NUMERICAL: i32 = 3;

@@ -1,4 +1,4 @@
-//! Result columns: files match `src/columns.rs` and its documentation.
+//! Result columns: files match `src/io/columns.rs` and its documentation.
 
 use super::support::{Folder, Table, repository, run, trackbed};
 use std::collections::BTreeSet;
@@ -20,7 +20,7 @@ fn is_defined(table: &Defined, head: &str) -> bool {
 pub fn expect_defined(file: &Path, header: &str) {
     let Some(table) = TABLES.iter().find(|table| file.ends_with(table.file)) else { return };
     for head in header.split(',') {
-        assert!(is_defined(table, head), "{}: {head} is not defined in src/columns.rs", file.display());
+        assert!(is_defined(table, head), "{}: {head} is not defined in src/io/columns.rs", file.display());
     }
 }
 

@@ -11,11 +11,11 @@
 //! defines them. Fields are unnamed, so no type may skip a field (`skip_serializing_if`).
 
 use super::origin::Origin;
-use crate::failure::Failure;
-use crate::run::hash::Hash;
+use crate::hash::Hash;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
+use trackbed_io::failure::Failure;
 
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
 /// Supported format version.

@@ -9,15 +9,15 @@ mod origin;
 pub use form::{Body, Loaded, Moment};
 pub use origin::{Origin, processor};
 
-use crate::failure::Failure;
-use crate::read::source::{self, Refusal};
-use crate::run::hash::Hash;
-use crate::scene::Document;
-use crate::write::{WriteError, atomic};
+use crate::hash::Hash;
 use form::{Header, Unfit};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use trackbed_input::scene::Document;
+use trackbed_io::failure::Failure;
+use trackbed_io::read::source::{self, Refusal};
+use trackbed_io::write::{WriteError, atomic};
 
 /// Reads a state file: origin, state, hash.
 ///

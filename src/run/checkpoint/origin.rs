@@ -1,9 +1,9 @@
 //! Identity of a checkpoint: program, scene, files, CPU.
 
-use crate::scene::Document;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use trackbed_input::scene::Document;
 
 /// Origin of a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

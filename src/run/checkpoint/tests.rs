@@ -1,8 +1,8 @@
 use super::form::{CHECKSUM, FORM, MAGIC, read};
 use super::*;
-use crate::run::hash::Hash;
-use crate::write::sample::folder;
+use crate::hash::Hash;
 use trackbed_dem as dem;
+use trackbed_io::scratch::folder;
 
 const SCENE: &str = "title = \"a\"\n[time]\nend = 1.0\n[[probe]]\nnode = 1\n";
 

@@ -1,7 +1,7 @@
 //! CPU time on one thread, unaffected by other programs; wall time on several.
 
-use crate::system;
 use std::time::Instant;
+use trackbed_io::system;
 
 /// Running clock.
 #[derive(Clone, Copy, Debug)]

@@ -2,14 +2,14 @@
 //! step size and cost.
 
 use super::clock::Clock;
-use crate::model::grains::{DepositionPlan, GrainsPart};
-use crate::run::bed::rms_speed;
+use crate::bed::rms_speed;
 use std::error::Error;
 use std::time::{Duration, Instant};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::bond::BondInput;
 use trackbed_dem::{BackEnd, BodyInput, ModelInput, Plane, Shape, Vec3};
+use trackbed_input::model::grains::{DepositionPlan, GrainsPart};
 
 const SPHERES: usize = 2000;
 /// Small beds mix large and small grains, and are used as a whole.

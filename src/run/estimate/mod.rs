@@ -5,13 +5,7 @@ mod column;
 mod rehearsal;
 mod solid;
 
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::exchange::Windows;
-use crate::model::grains::{GrainsPart, with_sleepers};
-use crate::model::solid::Analysis;
-use crate::run;
-use crate::run::stages::{RUN, SETTLING, longest};
+use crate::stages::{RUN, SETTLING, longest};
 use column::Column;
 use rehearsal::{Rehearsal, rehearse};
 use serde::Serialize;
@@ -19,6 +13,11 @@ use std::path::Path;
 use std::time::Duration;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
+use trackbed_input::model::Job;
+use trackbed_input::model::exchange::Windows;
+use trackbed_input::model::grains::{GrainsPart, with_sleepers};
+use trackbed_input::model::solid::Analysis;
+use trackbed_io::failure::Failure;
 
 const SETTLE: u32 = 15;
 /// Parallel efficiency of additional cores.
@@ -143,7 +142,7 @@ fn left(
     let deposition = grains.packing.deposition.as_ref().filter(|_| !is_done(SETTLING));
     // A column is too small to parallelise.
     let settle = || Column::settle(grains, deposition, ground.as_ref(), SETTLE * budget).ok();
-    let Some(column) = run::thread_pool(Some(1))?.install(settle) else {
+    let Some(column) = crate::thread_pool(Some(1))?.install(settle) else {
         // Some grains behave differently from the rest.
         return Ok(vec![unknown(RUN.into(), rehearsed.seconds)]);
     };

@@ -1,18 +1,18 @@
 //! Trial run in a temporary directory.
 
 use super::clock::Clock;
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::run::checkpoint::Moment;
-use crate::run::checkpoint_store::Trace;
-use crate::run::stages::{self, COMPACTED, RUN, SETTLING};
-use crate::run::{self, Interrupt, Options, Outcome, Verbosity};
+use crate::checkpoint::Moment;
+use crate::checkpoint_store::Trace;
+use crate::stages::{self, COMPACTED, RUN, SETTLING};
+use crate::{Interrupt, Options, Outcome, Verbosity};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
+use trackbed_input::model::Job;
+use trackbed_io::failure::Failure;
 
 /// Budgets up to the main loop with growth.
 const GROWTH: u32 = 8;
@@ -101,7 +101,7 @@ pub fn rehearse(
         verbosity: Verbosity::Quiet,
         ..Options::default()
     };
-    let outcome = run::run(scene, &options);
+    let outcome = crate::run(scene, &options);
     // Wall time includes other programs.
     let (elapsed, share) = (clock.seconds(), clock.share());
     drop(ended);

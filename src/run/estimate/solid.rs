@@ -2,14 +2,14 @@
 
 use super::clock::Clock;
 use super::{Known, StageTime};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::solid::{Analysis, SolidPart};
-use crate::run::{Prediction, initial};
+use crate::{Prediction, initial};
 use nalgebra::DMatrix;
 use std::time::{Duration, Instant};
 use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{Method, Model, SolveError, State};
+use trackbed_input::model::Job;
+use trackbed_input::model::solid::{Analysis, SolidPart};
+use trackbed_io::failure::Failure;
 
 const ENOUGH: Duration = Duration::from_millis(500);
 

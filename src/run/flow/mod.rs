@@ -9,8 +9,6 @@ pub use record::{Amount, FlowRecord, InletRecord, OutletRecord};
 
 use super::checkpoint::{Body, Loaded};
 use super::system::{GrainsView, System};
-use crate::failure::Failure;
-use crate::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::io;
@@ -18,6 +16,8 @@ use trackbed_dem as dem;
 use trackbed_dem::flow::Arrival;
 use trackbed_dem::insert::free_space::{FreePositions, FreeSpace};
 use trackbed_dem::measure::BoxRegion;
+use trackbed_input::model::grains::{FlowPlan, GrainsPart, InletPlan, OutletPlan, OutletRegion};
+use trackbed_io::failure::Failure;
 
 /// Insertion rate over requested rate during a backlog.
 const CATCH_UP: f64 = 2.0;

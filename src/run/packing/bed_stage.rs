@@ -3,12 +3,12 @@
 //! The height is the mean of the highest points over a grid of vertical lines that meet a grain, above the
 //! floor: the highest level plane or solid below the middle of the bed, else its lowest grain.
 
-use crate::model::grains::GrainsPart;
-use crate::run::system::GrainsView;
+use crate::system::GrainsView;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::Vec3;
 use trackbed_dem::measure::highest_over;
+use trackbed_input::model::grains::GrainsPart;
 
 /// Lines per mean grain diameter and direction.
 const LINES: f64 = 4.0;

@@ -1,15 +1,15 @@
 //! Final grain files: `radial.csv`, `packing.csv`.
 
-use crate::columns::radial;
-use crate::failure::Failure;
-use crate::model::grains::{GrainsPart, MeasurePlan, RadialPlan};
-use crate::run::system::GrainsView;
-use crate::write::csv::{Field, write_table};
-use crate::write::{WriteError, atomic};
+use crate::system::GrainsView;
 use std::fmt::Write as _;
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::measure;
+use trackbed_input::model::grains::{GrainsPart, MeasurePlan, RadialPlan};
+use trackbed_io::columns::radial;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Field, write_table};
+use trackbed_io::write::{WriteError, atomic};
 
 /// At shell centres.
 pub(super) fn write_radial(

@@ -16,12 +16,12 @@ pub use stage_energy::StageEnergy;
 
 use super::system::GrainsView;
 use super::validity::{BedExtent, Check, measure_box};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::{GrainsPart, MeasurePlan};
 use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{self, BoxRegion, ContactRecord};
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{GrainsPart, MeasurePlan};
+use trackbed_io::failure::Failure;
 
 /// Measures the final grains.
 ///

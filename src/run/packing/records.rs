@@ -1,8 +1,8 @@
 //! Summary records of the final packing.
 
-use crate::model::grains::LARGEST_OVERLAP;
-use crate::run::validity::{Check, Limits};
+use crate::validity::{Check, Limits};
 use serde::{Deserialize, Serialize};
+use trackbed_input::model::grains::LARGEST_OVERLAP;
 
 /// Group after growth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -138,7 +138,7 @@ pub struct GradationRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     #[test]
     fn deep_growth_is_not_passed() {

@@ -1,15 +1,15 @@
 //! Target and achieved sieve curves: `gradation.csv`, `gradation.svg`.
 
 use super::records::GradationRecord;
-use crate::columns::gradation;
-use crate::failure::Failure;
-use crate::model::grains::GradedGroup;
-use crate::run::system::GrainsView;
-use crate::write::csv::{Field, write_table};
-use crate::write::svg::{LinePlot, Series};
+use crate::system::GrainsView;
 use std::path::Path;
 use trackbed_dem::insert::gradation::achieved_passing;
 use trackbed_dem::measure;
+use trackbed_input::model::grains::GradedGroup;
+use trackbed_io::columns::gradation;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Field, write_table};
+use trackbed_io::write::svg::{LinePlot, Series};
 
 const CURVE_POINTS: usize = 120;
 

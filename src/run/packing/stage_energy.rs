@@ -1,13 +1,13 @@
 //! Energy balance of a packing stage.
 
-use crate::failure::Failure;
-use crate::run::validity::{Check, Limits};
+use crate::validity::{Check, Limits};
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::energy_balance::{EnergyBalance, StoredEnergy};
 use trackbed_coupling::step::grain_work_and_dissipation;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
+use trackbed_io::failure::Failure;
 
 const GAIN: Limits = Limits { warn: 0.01, fail: Some(0.2) };
 /// Long steps overestimate dashpots by up to 8 %.
@@ -170,7 +170,7 @@ fn stored(model: &dem::Model, state: &dem::State) -> StoredEnergy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     fn stage(name: &str, springs: [f64; 2], [error, gain]: [f64; 2]) -> StageEnergy {
         let reference_energy = 10.0;

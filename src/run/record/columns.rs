@@ -1,15 +1,15 @@
 //! Columns of `history.csv`.
 
 use super::histories::{Energies, Interface, Inventory, Measures, Probes, Rails, Sleepers, Supports};
-use crate::columns::history;
-use crate::run::bond_output::{Bonds, Groups};
-use crate::run::recorder::{Now, Recorder};
-use crate::run::runout::Slides;
-use crate::run::specimen::Specimens;
-use crate::run::structures::Structures;
-use crate::run::system::System;
-use crate::run::wall_output::Walls;
-use crate::write::csv::{Column, Row};
+use crate::bond_output::{Bonds, Groups};
+use crate::recorder::{Now, Recorder};
+use crate::runout::Slides;
+use crate::specimen::Specimens;
+use crate::structures::Structures;
+use crate::system::System;
+use crate::wall_output::Walls;
+use trackbed_io::columns::history;
+use trackbed_io::write::csv::{Column, Row};
 
 /// In column order after time.
 fn recorders<'a, S: System + 'a>() -> [&'a dyn Recorder<S>; 14] {

@@ -1,13 +1,13 @@
 //! Columns of `cycles.csv`.
 
 use super::solid_probes::CycleStresses;
-use crate::columns::cycles;
-use crate::model::Job;
-use crate::run::system::System;
-use crate::write::csv::{Column, Row};
+use crate::system::System;
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
 use trackbed_dem as dem;
+use trackbed_input::model::Job;
+use trackbed_io::columns::cycles;
+use trackbed_io::write::csv::{Column, Row};
 
 /// Creates the recorder of load cycles.
 pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {

@@ -1,13 +1,13 @@
 //! Recorders of `history.csv`.
 
 use super::solid_probes;
-use crate::columns::history;
-use crate::model::Observed;
-use crate::run::packing;
-use crate::run::recorder::{Now, Recorder};
-use crate::run::system::{GrainsView, System};
-use crate::write::csv::Row;
+use crate::packing;
+use crate::recorder::{Now, Recorder};
+use crate::system::{GrainsView, System};
 use trackbed_dem as dem;
+use trackbed_input::model::Observed;
+use trackbed_io::columns::history;
+use trackbed_io::write::csv::Row;
 
 /// Position, load and shape of sleepers.
 pub struct Sleepers;

@@ -17,10 +17,6 @@ use super::structures;
 use super::summary::LoadRecord;
 use super::system::System;
 use super::track_output;
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::write::csv::{Column, History, Mark, Row};
-use crate::write::{self, WallFrame, WriteError, Writers};
 use serde::{Deserialize, Serialize};
 use solid_probes::CycleStresses;
 use std::io;
@@ -29,6 +25,10 @@ use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_coupling::track::cycle_jump::{CycleJumper, JumpSummary};
 use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
 use trackbed_coupling::track::{Track, settlement};
+use trackbed_input::model::Job;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Column, History, Mark, Row};
+use trackbed_io::write::{self, WallFrame, WriteError, Writers};
 
 /// Output files of a run.
 pub struct Results<'a> {

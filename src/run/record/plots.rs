@@ -1,10 +1,10 @@
 //! Final settlement plots.
 
 use super::Results;
-use crate::failure::Failure;
-use crate::run::specimen::Point;
-use crate::write::svg::{LinePlot, Series};
+use crate::specimen::Point;
 use trackbed_coupling::track::cycles::Cycle;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::svg::{LinePlot, Series};
 
 impl Results<'_> {
     /// Draws settlement curves.

@@ -1,11 +1,11 @@
 //! Probes of the solid: columns of `history.csv`, peaks and means of their stresses in `cycles.csv`.
 
-use crate::columns::{cycles, history};
-use crate::model::{Job, Observed, PointProbe};
-use crate::run::system::SolidView;
-use crate::scene::ProbeField;
-use crate::write::csv::{Column, Row};
+use crate::system::SolidView;
 use serde::{Deserialize, Serialize};
+use trackbed_input::model::{Job, Observed, PointProbe};
+use trackbed_input::scene::ProbeField;
+use trackbed_io::columns::{cycles, history};
+use trackbed_io::write::csv::{Column, Row};
 
 /// Position of zz in a tensor.
 const VERTICAL: usize = 2;

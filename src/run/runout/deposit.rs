@@ -1,9 +1,9 @@
 //! Deposit of a slide: depth grid, extent, outline.
 
 use super::ground::{self, Plan};
-use crate::model::grains::{GrainsPart, MOST_CELLS, RunoutPlan};
-use crate::run::system::GrainsView;
+use crate::system::GrainsView;
 use std::collections::BTreeMap;
+use trackbed_input::model::grains::{GrainsPart, MOST_CELLS, RunoutPlan};
 
 /// Depth grid of a deposit.
 pub struct Deposit {

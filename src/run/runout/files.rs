@@ -2,13 +2,13 @@
 
 use super::deposit::Deposit;
 use super::records::FragmentRecord;
-use crate::columns::{fragments, origins, outline};
-use crate::failure::Failure;
-use crate::run::system::GrainsView;
-use crate::write::csv::{Field, write_table};
-use crate::write::depth_map::{self, DepthMap};
+use crate::system::GrainsView;
 use std::path::Path;
 use trackbed_dem::{self as dem, Vec3};
+use trackbed_io::columns::{fragments, origins, outline};
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Field, write_table};
+use trackbed_io::write::depth_map::{self, DepthMap};
 
 /// Line index, position.
 type Corner = (usize, [f64; 2]);

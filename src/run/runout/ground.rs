@@ -1,8 +1,8 @@
 //! Ground height from fixed planes and triangles.
 
-use crate::model::grains::GrainsPart;
-use crate::run::system::GrainsView;
+use crate::system::GrainsView;
 use trackbed_dem::{Motion, Vec3, WallInput, WallShape};
+use trackbed_input::model::grains::GrainsPart;
 
 /// Smallest vertical component of a ground normal.
 const UPRIGHT: f64 = 1e-3;

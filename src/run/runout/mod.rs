@@ -16,12 +16,12 @@ pub use records::RunoutRecord;
 
 use super::recorder::{Now, Recorder};
 use super::system::{GrainsView, System};
-use crate::columns::history;
-use crate::failure::Failure;
-use crate::model::grains::{GrainsPart, RunoutPlan};
-use crate::write::csv::Row;
 use std::path::Path;
 use trackbed_dem::{self as dem, Vec3};
+use trackbed_input::model::grains::{GrainsPart, RunoutPlan};
+use trackbed_io::columns::history;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::Row;
 
 const LISTED: usize = 10;
 

@@ -1,6 +1,6 @@
 //! Runout records of the summary, and report lines.
 
-use crate::run::system::GrainsView;
+use crate::system::GrainsView;
 use serde::Serialize;
 use trackbed_dem::{self as dem, Vec3};
 

@@ -13,11 +13,11 @@ pub use record::{SpecimenRecord, record};
 use super::recorder::{Now, Recorder};
 use super::runout;
 use super::system::{GrainsView, System};
-use crate::columns::history;
-use crate::model::grains::{Platen, SpecimenPlan};
-use crate::write::csv::Row;
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
+use trackbed_input::model::grains::{Platen, SpecimenPlan};
+use trackbed_io::columns::history;
+use trackbed_io::write::csv::Row;
 
 /// Specimen state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

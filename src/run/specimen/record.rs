@@ -1,11 +1,11 @@
 //! Evaluation of a specimen curve.
 
 use super::Point;
-use crate::model::grains::SpecimenPlan;
-use crate::run::runout;
-use crate::run::system::GrainsView;
+use crate::runout;
+use crate::system::GrainsView;
 use serde::Serialize;
 use trackbed_dem::bond::{Break, BreakMode};
+use trackbed_input::model::grains::SpecimenPlan;
 
 /// Test results.
 #[derive(Debug, Serialize)]

@@ -4,12 +4,12 @@
 //! main stage avoids this.
 
 use super::stage::Settled;
-use crate::failure::Failure;
-use crate::model::grains::{DepositionPlan, GrainsPart};
-use crate::run::bed::{Bed, top_below};
+use crate::bed::{Bed, top_below};
 use std::f64::consts::PI;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem::{AppliedForce, BodyInput, Vec3};
+use trackbed_input::model::grains::{DepositionPlan, GrainsPart};
+use trackbed_io::failure::Failure;
 
 /// Drop gap over the largest grain radius.
 const GAP: f64 = 1e-3;

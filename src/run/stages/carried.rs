@@ -3,13 +3,13 @@
 //! Grains keep positions, velocities, contact and bond history. Walls, sleepers, solid and loads are new.
 
 use super::stage::Settled;
-use crate::failure::Failure;
-use crate::model::grains::GrainsPart;
-use crate::run::checkpoint::Loaded;
+use crate::checkpoint::Loaded;
 use trackbed_coupling as coupling;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 use trackbed_fem as fem;
+use trackbed_input::model::grains::GrainsPart;
+use trackbed_io::failure::Failure;
 
 /// Imported bed.
 pub struct Carried {

@@ -2,21 +2,21 @@
 
 use super::bedding::{self, Poured};
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::{CompactionPlan, GrainsPart, Press, refused};
-use crate::progress::Progress;
-use crate::run::bed::{Bed, rms_speed, top_below};
-use crate::run::context::Run;
-use crate::run::packing::{BedStage, CompactionRecord};
-use crate::run::summary::StageRecord;
-use crate::run::system::GrainsView;
-use crate::run::validity::{BedExtent, region_not_filled};
+use crate::bed::{Bed, rms_speed, top_below};
+use crate::context::Run;
+use crate::packing::{BedStage, CompactionRecord};
+use crate::summary::StageRecord;
+use crate::system::GrainsView;
+use crate::validity::{BedExtent, region_not_filled};
 use std::f64::consts::TAU;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{BoxRegion, body_volume_in};
 use trackbed_dem::{BodyInput, Vec3};
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{CompactionPlan, GrainsPart, Press, refused};
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 struct Pressed<'a> {
     bed: Bed<'a>,

@@ -1,12 +1,12 @@
 //! Final coupling warnings.
 
-use crate::model::exchange::CouplingPart;
-use crate::run::summary::CouplingRecord;
-use crate::run::system::CoupledSystem;
+use crate::summary::CouplingRecord;
+use crate::system::CoupledSystem;
 use trackbed_coupling::energy_balance::WorkAndDissipation;
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::IterationStats;
 use trackbed_coupling::stability::{INTERFACE_LIMITS, interface_excess, largest_phase};
+use trackbed_input::model::exchange::CouplingPart;
 
 /// Warns about unconverged windows of the iterated scheme.
 pub fn unconverged(passes: &IterationStats) -> Option<String> {

@@ -2,19 +2,13 @@
 
 use super::carried::Carried;
 use super::stage::{CoupledRun, RunState, Stage};
-use crate::failure::Failure;
-use crate::message;
-use crate::model::Job;
-use crate::model::exchange::{self, CouplingPart, Windows};
-use crate::model::solid::SolidPart;
-use crate::progress::{Progress, Verbosity};
-use crate::run::checkpoint::Loaded;
-use crate::run::context::Run;
-use crate::run::device::{Place, Steps};
-use crate::run::from::END;
-use crate::run::initial;
-use crate::run::summary::{CouplingRecord, Summary};
-use crate::run::system::{CoupledSystem, Meshed};
+use crate::checkpoint::Loaded;
+use crate::context::Run;
+use crate::device::{Place, Steps};
+use crate::from::END;
+use crate::initial;
+use crate::summary::{CouplingRecord, Summary};
+use crate::system::{CoupledSystem, Meshed};
 use std::sync::Arc;
 use trackbed_coupling as coupling;
 use trackbed_coupling::scheme::Scheme;
@@ -22,6 +16,12 @@ use trackbed_coupling::surface::SolidSurface;
 use trackbed_coupling::track::CyclicLoad;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
+use trackbed_input::model::Job;
+use trackbed_input::model::exchange::{self, CouplingPart, Windows};
+use trackbed_input::model::solid::SolidPart;
+use trackbed_io::failure::Failure;
+use trackbed_io::message;
+use trackbed_io::progress::{Progress, Verbosity};
 
 /// Static equilibrium with grains at rest.
 pub struct Equilibrium;

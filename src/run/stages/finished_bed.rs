@@ -1,11 +1,11 @@
 //! Finished bed: checkpoint and summary.
 
 use super::stage::{Packed, RunState, SETTLED, Stage, is_packed, planes};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::run::checkpoint::Moment;
-use crate::run::context::Run;
-use crate::run::packing::{GrownOverlap, StageEnergy};
+use crate::checkpoint::Moment;
+use crate::context::Run;
+use crate::packing::{GrownOverlap, StageEnergy};
+use trackbed_input::model::Job;
+use trackbed_io::failure::Failure;
 
 /// Saves the bed with wall positions.
 pub struct FinishedBed;

@@ -1,14 +1,14 @@
 //! Growth of groups by radius expansion.
 
 use super::stage::{Packed, RunState, Settled, Stage};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::{GrainsPart, deepest_overlap, refused};
-use crate::progress::Progress;
-use crate::run::context::Run;
-use crate::run::packing::{GrownOverlap, GrowthRecord};
-use crate::run::summary::StageRecord;
+use crate::context::Run;
+use crate::packing::{GrownOverlap, GrowthRecord};
+use crate::summary::StageRecord;
 use trackbed_dem::insert::radius_expansion::{GrowError, grow};
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{GrainsPart, deepest_overlap, refused};
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 /// Growth stage.
 pub struct Growth;

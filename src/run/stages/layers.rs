@@ -1,15 +1,15 @@
 //! Deposition in layers.
 
 use super::stage::Settled;
-use crate::failure::Failure;
-use crate::model::grains::{DepositionPlan, GrainsPart, GroupsPart, refused};
-use crate::progress::Progress;
-use crate::run::bed::{Bed, rms_speed};
-use crate::run::context::Run;
-use crate::run::summary::StageRecord;
+use crate::bed::{Bed, rms_speed};
+use crate::context::Run;
+use crate::summary::StageRecord;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
+use trackbed_input::model::grains::{DepositionPlan, GrainsPart, GroupsPart, refused};
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 /// Drop gap over the largest grain radius.
 const GAP: f64 = 1e-3;

@@ -23,9 +23,9 @@ pub use carried::Carried;
 pub use compaction::{COMPACTED, longest};
 pub use stage::{GrainTime, RUN, RunState, SETTLING, Stage, reached};
 
-use crate::model::Job;
-use crate::model::grains::{self, GrainsPart, Preview};
-use crate::scene::{Document, SceneError};
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{self, GrainsPart, Preview};
+use trackbed_input::scene::{Document, SceneError};
 
 static STAGES: [&dyn Stage; 9] = [
     &growth::Growth,

@@ -1,12 +1,12 @@
 //! Placement of sleepers on the bed.
 
 use super::stage::{RunState, Stage};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::refused;
-use crate::run::bed;
-use crate::run::context::Run;
+use crate::bed;
+use crate::context::Run;
 use trackbed_dem as dem;
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::refused;
+use trackbed_io::failure::Failure;
 
 /// Places unseated sleepers on the highest grain; meshed sleepers only get base heights.
 pub struct SetDown;

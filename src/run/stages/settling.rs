@@ -2,19 +2,19 @@
 
 use super::layers::drop_layers;
 use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage, Steps};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::{DepositionPlan, GrainsPart, refused};
-use crate::progress::Progress;
-use crate::run::bed;
-use crate::run::checkpoint::{Loaded, Moment};
-use crate::run::context::Run;
-use crate::run::packing::{BedStage, StageEnergy};
-use crate::run::summary::StageRecord;
-use crate::run::system::GrainsView;
+use crate::bed;
+use crate::checkpoint::{Loaded, Moment};
+use crate::context::Run;
+use crate::packing::{BedStage, StageEnergy};
+use crate::summary::StageRecord;
+use crate::system::GrainsView;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{DepositionPlan, GrainsPart, refused};
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 const LOOK: f64 = 1e-3;
 

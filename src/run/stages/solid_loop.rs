@@ -2,13 +2,13 @@
 
 use super::stage::RunState;
 use super::{statics, time_loop};
-use crate::failure::Failure;
-use crate::model::solid::{Analysis, SolidPart};
-use crate::run::checkpoint::Loaded;
-use crate::run::context::Run;
-use crate::run::summary::{NewtonRecord, ReactionRecord, Summary};
-use crate::run::system::{SolidKind, SolidSystem, System};
-use crate::run::validity::{load_near_mode, quasi_static_strain, small_strain};
+use crate::checkpoint::Loaded;
+use crate::context::Run;
+use crate::summary::{NewtonRecord, ReactionRecord, Summary};
+use crate::system::{SolidKind, SolidSystem, System};
+use crate::validity::{load_near_mode, quasi_static_strain, small_strain};
+use trackbed_input::model::solid::{Analysis, SolidPart};
+use trackbed_io::failure::Failure;
 
 /// Runs a solid-only model.
 ///

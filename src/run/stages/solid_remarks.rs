@@ -1,6 +1,6 @@
 //! Warnings about loads missed by solid steps.
 
-use crate::model::Job;
+use trackbed_input::model::Job;
 
 /// Warns about loads that act only between solid steps or history rows.
 pub fn missed(job: &Job) -> Vec<String> {

@@ -1,23 +1,25 @@
 //! Stage interface, and state passed between stages.
 
 use super::carried::Carried;
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::grains::{GrainsPart, check_gaps, check_joined, check_overlaps, check_steps, refused};
-use crate::run::bed::Bed;
-use crate::run::checkpoint::{self, Loaded, Moment};
-use crate::run::context::Run;
-use crate::run::from::END;
-use crate::run::packing::{BedStage, CompactionRecord, GrownOverlap, GrowthRecord, StageEnergy};
-use crate::run::sources;
-use crate::run::summary::{StageRecord, Summary};
-use crate::run::system::CoupledSystem;
+use crate::bed::Bed;
+use crate::checkpoint::{self, Loaded, Moment};
+use crate::context::Run;
+use crate::from::END;
+use crate::packing::{BedStage, CompactionRecord, GrownOverlap, GrowthRecord, StageEnergy};
+use crate::sources;
+use crate::summary::{StageRecord, Summary};
+use crate::system::CoupledSystem;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
 use trackbed_fem as fem;
+use trackbed_input::model::Job;
+use trackbed_input::model::grains::{
+    GrainsPart, check_gaps, check_joined, check_overlaps, check_steps, refused,
+};
+use trackbed_io::failure::Failure;
 
 /// Checkpoint stage: within the main loop.
 pub const RUN: &str = "run";

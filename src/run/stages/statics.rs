@@ -1,22 +1,22 @@
 //! Static solve of a solid.
 
 use super::stage::{RunState, Stage, Steps};
-use crate::columns::{gauss, nodes};
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::solid::{Analysis, SolidPart};
-use crate::run::context::Run;
-use crate::run::frames;
-use crate::run::summary::{StageRecord, StaticsRecord, Summary};
-use crate::run::system::SolidView;
-use crate::run::validity::small_strain;
-use crate::write::csv::{Column, Field, History, write_table};
+use crate::context::Run;
+use crate::frames;
+use crate::summary::{StageRecord, StaticsRecord, Summary};
+use crate::system::SolidView;
+use crate::validity::small_strain;
 use std::path::Path;
 use std::time::Instant;
 use trackbed_fem as fem;
 use trackbed_fem::State;
 use trackbed_fem::element::stiffness_points;
 use trackbed_fem::model::Model;
+use trackbed_input::model::Job;
+use trackbed_input::model::solid::{Analysis, SolidPart};
+use trackbed_io::columns::{gauss, nodes};
+use trackbed_io::failure::Failure;
+use trackbed_io::write::csv::{Column, Field, History, write_table};
 
 /// Static solve.
 pub struct Statics;

@@ -1,18 +1,18 @@
 //! Factor of safety by strength reduction.
 
 use super::stage::{RunState, Stage, Steps};
-use crate::columns::safety;
-use crate::failure::Failure;
-use crate::model::Job;
-use crate::model::solid::{Analysis, SolidPart, StrengthReductionPlan};
-use crate::progress::Progress;
-use crate::run::context::Run;
-use crate::run::summary::{SafetyRecord, StageRecord, Summary, TrialRecord};
-use crate::run::system::SolidView;
-use crate::run::{frames, initial};
-use crate::write::csv::{Field, write_table};
+use crate::context::Run;
+use crate::summary::{SafetyRecord, StageRecord, Summary, TrialRecord};
+use crate::system::SolidView;
+use crate::{frames, initial};
 use std::time::Instant;
 use trackbed_fem::nonlinear::strength_reduction::{self, Trial};
+use trackbed_input::model::Job;
+use trackbed_input::model::solid::{Analysis, SolidPart, StrengthReductionPlan};
+use trackbed_io::columns::safety;
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
+use trackbed_io::write::csv::{Field, write_table};
 
 const TRIALS: [Field<Trial>; 5] = [
     (safety::FACTOR, |t| t.factor),

@@ -2,31 +2,31 @@
 
 use super::cadence::Cadence;
 use super::stage::{GrainsState, Packed, RUN, Settled};
-use crate::failure::Failure;
-use crate::model::grains::GrainsPart;
-use crate::progress::Progress;
-use crate::run::bond_output;
-use crate::run::checkpoint::{Loaded, Moment};
-use crate::run::companion::Shown;
-use crate::run::context::Run;
-use crate::run::events;
-use crate::run::flow::Flow;
-use crate::run::from::{self, END};
-use crate::run::packing::StageEnergy;
-use crate::run::record::Results;
-use crate::run::summary::{
+use crate::bond_output;
+use crate::checkpoint::{Loaded, Moment};
+use crate::companion::Shown;
+use crate::context::Run;
+use crate::events;
+use crate::flow::Flow;
+use crate::from::{self, END};
+use crate::packing::StageEnergy;
+use crate::record::Results;
+use crate::summary::{
     BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord,
     Summary,
 };
-use crate::run::system::System;
-use crate::run::track_output;
-use crate::run::validity::{
+use crate::system::System;
+use crate::track_output;
+use crate::validity::{
     Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift,
 };
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::track::cycles::Cycle;
 use trackbed_coupling::track::{Track, TrackInput};
 use trackbed_dem as dem;
+use trackbed_input::model::grains::GrainsPart;
+use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 /// Initial state of the grains.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -170,7 +170,18 @@ impl<'a> TimeLoop<'a> {
         let (begun, whole) = share(&cadence, &recorder, &place);
         let progress =
             Progress::start("running", whole as f64, run.verbosity).resumed(begun as f64, place.seconds);
-        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress, shortened: false })
+        Ok(TimeLoop {
+            run,
+            grains,
+            settled,
+            cadence,
+            track,
+            flow,
+            recorder,
+            place,
+            progress,
+            shortened: false,
+        })
     }
 
     /// Time after `done` windows [s].
@@ -206,8 +217,8 @@ impl<'a> TimeLoop<'a> {
         if let Some(cycle) = self.recorder.follow(time, system, &self.track)? {
             self.after_cycle(&cycle, k, time);
         }
-        let [row, check] =
-            [self.cadence.every, self.cadence.checked].map(|n| k % n == 0 || k == self.place.windows);
+        let [row, check] = [self.cadence.every, self.cadence.checked]
+            .map(|n| k.is_multiple_of(n) || k == self.place.windows);
         if row || check {
             self.recorder.measure(system, &self.track);
         }

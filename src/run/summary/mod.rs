@@ -12,12 +12,12 @@ use super::packing::{BedStage, CompactionRecord, GrowthRecord, PackingRecord, St
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
 use super::validity::{Check, LoadCheck};
-use crate::failure::Failure;
-use crate::write::WriteError;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::track::extremes::TrackRecord;
 use trackbed_coupling::track::push_test::PushTestSummary;
+use trackbed_io::failure::Failure;
+use trackbed_io::write::WriteError;
 
 /// Content of `summary.json`, in this order.
 #[derive(Debug, Default, Serialize)]
@@ -162,7 +162,7 @@ impl Summary {
     pub fn write(&self, dir: &Path) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(self).map_err(|e| Failure::Other(e.to_string()))?;
         let file = dir.join("summary.json");
-        crate::write::atomic::write(&file, |out| {
+        trackbed_io::write::atomic::write(&file, |out| {
             writeln!(out, "{text}").map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;
         Ok(())
@@ -174,7 +174,7 @@ impl Summary {
     /// I/O errors.
     pub fn write_log(&self, dir: &Path) -> Result<(), Failure> {
         let file = dir.join("log.txt");
-        crate::write::atomic::write(&file, |out| {
+        trackbed_io::write::atomic::write(&file, |out| {
             let sources: String = self.sources.iter().map(|s| format!("source: {s}\n")).collect();
             write!(out, "{}\nstatus: {}\n{}{sources}", self.run.title, self.run.status, self.report(true))
                 .map_err(|source| WriteError::Io { file: file.clone(), source })
@@ -185,5 +185,5 @@ impl Summary {
 
 /// Returns the peak resident memory [bytes].
 pub fn peak_memory() -> Option<u64> {
-    crate::system::peak_memory()
+    trackbed_io::system::peak_memory()
 }

@@ -1,8 +1,7 @@
 //! Parts of `summary.json`.
 
-use crate::model::exchange::ContactClass;
-use crate::run::events::EventRecord;
-use crate::run::system::SolidView;
+use crate::events::EventRecord;
+use crate::system::SolidView;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
@@ -12,6 +11,7 @@ use trackbed_coupling::track::cycle_jump::JumpSummary;
 use trackbed_coupling::track::settlement::Fit;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
+use trackbed_input::model::exchange::ContactClass;
 
 /// Stage of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]

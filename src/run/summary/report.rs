@@ -1,12 +1,12 @@
 //! Final report, also in `log.txt`.
 
 use super::{CouplingRecord, Summary};
-use crate::run::events::EventRecord;
-use crate::run::flow::FlowRecord;
-use crate::run::packing;
-use crate::run::runout::RunoutRecord;
-use crate::run::specimen::SpecimenRecord;
-use crate::run::validity;
+use crate::events::EventRecord;
+use crate::flow::FlowRecord;
+use crate::packing;
+use crate::runout::RunoutRecord;
+use crate::specimen::SpecimenRecord;
+use crate::validity;
 use trackbed_coupling::scheme::Scheme;
 
 impl Summary {

@@ -1,10 +1,10 @@
 //! Balance checks of a run.
 
 use super::Summary;
-use crate::failure::Failure;
-use crate::run::energy_watch::ENERGY;
-use crate::run::validity::{self, Outcome};
+use crate::energy_watch::ENERGY;
+use crate::validity::{self, Outcome};
 use serde::Serialize;
+use trackbed_io::failure::Failure;
 
 /// Static imbalance: warning, failure.
 const EQUILIBRIUM: (f64, f64) = (1e-3, 0.05);
@@ -133,7 +133,7 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::summary::{CouplingRecord, MomentumRecord};
+    use crate::summary::{CouplingRecord, MomentumRecord};
     use trackbed_coupling::scheme::{IterationStats, Scheme};
     use trackbed_coupling::stability::ContactStabilityNumbers;
     use trackbed_coupling::transfer::TransferAudit;

@@ -1,10 +1,8 @@
 //! Grains on a solid.
 
 use super::{Applied, GrainsView, SolidView, System};
-use crate::failure::Failure;
-use crate::model::solid::SleeperBodies;
-use crate::run::checkpoint::Body;
-use crate::run::device::{Steps, failed};
+use crate::checkpoint::Body;
+use crate::device::{Steps, failed};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
@@ -12,6 +10,8 @@ use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
 use trackbed_fem as fem;
+use trackbed_input::model::solid::SleeperBodies;
+use trackbed_io::failure::Failure;
 
 /// Meshed sleepers in a running system.
 pub struct Meshed<'a> {
@@ -55,7 +55,7 @@ pub struct CoupledSystem<'a> {
     /// Whether windows may be divided.
     pub automatic: bool,
     /// Loads on the solid.
-    pub loads: &'a [crate::model::solid::NodalLoad],
+    pub loads: &'a [trackbed_input::model::solid::NodalLoad],
     /// Ground faces.
     pub ground_faces: usize,
     /// Meshed sleepers.

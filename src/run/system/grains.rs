@@ -1,16 +1,16 @@
 //! DEM-only system.
 
 use super::{Applied, GrainsView, System};
-use crate::failure::Failure;
-use crate::run::checkpoint::{Body, Loaded};
-use crate::run::device::{Place, Steps, failed};
-use crate::run::ranks::Sharing;
+use crate::checkpoint::{Body, Loaded};
+use crate::device::{Place, Steps, failed};
+use crate::ranks::Sharing;
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
+use trackbed_io::failure::Failure;
 
 /// DEM-only system.
 pub struct GrainsSystem {

@@ -10,12 +10,12 @@ pub use solid::{SolidKind, SolidSystem};
 pub use trackbed_coupling::track::GrainsView;
 
 use super::checkpoint::Body;
-use crate::failure::Failure;
 use std::io;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
+use trackbed_io::failure::Failure;
 
 /// Forces on bodies at a time.
 pub type Applied<'a> = &'a mut dyn FnMut(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);

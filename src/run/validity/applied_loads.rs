@@ -1,11 +1,11 @@
 //! Check of loads and motions against those asked for: servo walls, driven walls, sleepers.
 
 use super::{Check, Limits};
-use crate::model::grains::GrainsPart;
-use crate::run::system::GrainsView;
+use crate::system::GrainsView;
 use serde::Serialize;
 use trackbed_coupling::track::Track;
 use trackbed_dem::{AppliedLoad, LoadRange, Vec3};
+use trackbed_input::model::grains::GrainsPart;
 
 /// Error over the amplitude of the target.
 const ERROR: Limits = Limits { warn: 0.02, fail: Some(0.1) };
@@ -77,7 +77,7 @@ fn shown(range: &LoadRange) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     #[test]
     fn travel_is_compared_along_its_direction() {

@@ -1,10 +1,10 @@
 //! Box around a bed, and measurement boxes that reach beyond it.
 
 use super::{Check, Limits};
-use crate::model::grains::GrainsPart;
 use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::{Vec3, WallInput, WallShape};
+use trackbed_input::model::grains::GrainsPart;
 
 /// Volume beyond the bed over box volume.
 const BEYOND: Limits = Limits { warn: 0.02, fail: None };
@@ -157,7 +157,7 @@ fn walls(view: GrainsView<'_>, grains: &GrainsPart) -> Vec<(usize, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     fn region(low: [f64; 3], high: [f64; 3]) -> BoxRegion {
         BoxRegion { low: Vec3::from(low), high: Vec3::from(high) }

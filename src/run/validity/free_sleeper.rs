@@ -22,7 +22,7 @@ pub fn free_sleeper(track: &TrackRecord, duration: f64) -> Option<Check> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
     use trackbed_coupling::track::extremes::{ContactLoss, SleeperRecord};
 
     #[test]

@@ -1,8 +1,8 @@
 //! Check for loads near a natural frequency.
 
 use super::{Check, Limits};
-use crate::model::Job;
-use crate::plausible::{AMPLIFICATION, resonance};
+use trackbed_input::model::Job;
+use trackbed_input::plausible::{AMPLIFICATION, resonance};
 
 /// Undamped dynamic over static deflection.
 const AMPLIFIED: Limits = Limits { warn: AMPLIFICATION, fail: None };

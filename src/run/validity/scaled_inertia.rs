@@ -46,7 +46,7 @@ pub fn scaled_inertia(factor: f64, kinetic: f64, reference: f64, fall: Fall) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     const FALL: Fall = Fall { weight: 0.109, radius: 0.01 };
 

@@ -63,7 +63,7 @@ fn displacement(found: &SmallStrainMeasures) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     #[test]
     fn classifies_strains() {

@@ -25,7 +25,7 @@ pub fn stiffness_drift(secants: &[f64]) -> Option<Check> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::validity::Outcome;
+    use crate::validity::Outcome;
 
     #[test]
     fn warns_about_softening_only() {

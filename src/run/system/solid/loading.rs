@@ -1,9 +1,9 @@
 //! Loads and supports over time.
 
 use super::SolidKind;
-use crate::model::solid::SolidPart;
-use crate::run::checkpoint_store::Interrupt;
+use crate::checkpoint_store::Interrupt;
 use trackbed_fem::nonlinear::Loading;
+use trackbed_input::model::solid::SolidPart;
 
 /// Loads and supports, ramped from zero before time 0.
 pub struct SolidLoading<'a> {

@@ -3,11 +3,9 @@
 mod loading;
 
 use super::{Applied, SolidView, System, stored_at_rest};
-use crate::failure::Failure;
-use crate::model::solid::{Analysis, QuasiStaticPlan, SolidPart, TimeMethod};
-use crate::run::checkpoint::{Body, Loaded};
-use crate::run::checkpoint_store::Interrupt;
-use crate::run::initial;
+use crate::checkpoint::{Body, Loaded};
+use crate::checkpoint_store::Interrupt;
+use crate::initial;
 use loading::SolidLoading;
 use std::io;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
@@ -17,6 +15,8 @@ use trackbed_fem::newmark::{self, NewmarkSolver};
 use trackbed_fem::nonlinear::dynamics::{self, NonlinearNewmark};
 use trackbed_fem::nonlinear::{QuasiStatic, SolverState, Statistics, StepControl, energy};
 use trackbed_fem::{SolveError, State, TimeIntegrator};
+use trackbed_input::model::solid::{Analysis, QuasiStaticPlan, SolidPart, TimeMethod};
+use trackbed_io::failure::Failure;
 
 const SMALLEST_PART: f64 = 1.0 / 256.0;
 

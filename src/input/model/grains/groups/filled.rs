@@ -1,0 +1,71 @@
+//! Grains of random sizes, stacked in a box.
+
+use super::part::{GroupsPart, bounding_radius};
+use super::shapes::{Sampled, drawn, shapes, unit_volumes};
+use super::sizes::SizeSource;
+use super::target::{Amount, HIGHEST, Site, amount, bed};
+use crate::scene::grains::{FillBox, Grains};
+use crate::scene::units::vector;
+use crate::scene::{Scene, Table};
+use trackbed_dem::BodyInput;
+use trackbed_dem::insert::place;
+use trackbed_io::failure::Failure;
+
+/// Fill ratio of bounding spheres in a loose heap (`trackbed_dem::insert::place`).
+const LOOSE: f64 = 0.3;
+
+pub(super) fn filled(
+    (scene, group): (&Table<Scene>, &Table<Grains>),
+    fill: &FillBox,
+    (model, density): (&BodyInput, f64),
+    part: &mut GroupsPart,
+) -> Result<(), Failure> {
+    let key = amount(group)?;
+    let (first, site) = (part.shapes.len(), Site::of(scene, fill, part));
+    let unit_scale = shapes(group, part)?;
+    let units = unit_volumes(group, part, first, &unit_scale)?;
+    let source = SizeSource::of(group)?;
+    let how_much = Amount::of(group, &site, (&source, &units), density)?;
+    let grains: Vec<Sampled> = drawn(group, part, source, how_much.count, (first, &unit_scale));
+    let radii: Vec<f64> = grains.iter().map(|b| b.scale * bounding_radius(&part.shapes[b.shape])).collect();
+
+    let mut low = vector(&fill.low);
+    let high = [fill.high[0].si, fill.high[1].si];
+    check_height((group, key), &radii, (high[0] - low[0]) * (high[1] - low[1]))?;
+    low[2] = low[2].max(top_of(part, low, high));
+    let placed = place::place_loose(low, high, &radii, group.seed)
+        .map_err(|e| group.error("fill", e.to_string(), "a box that holds the grains"))?;
+    part.bodies.extend(placed.iter().zip(&grains).map(|(place, grain)| BodyInput {
+        shape: grain.shape,
+        scale: grain.scale,
+        position: place.position,
+        orientation: place.orientation,
+        ..model.clone()
+    }));
+    let volume = |g: &Sampled| units[g.shape - first] * (g.scale / unit_scale[g.shape - first]).powi(3);
+    let solid = grains.iter().map(volume).sum();
+    part.filled.extend(bed(group, &site, (&how_much, solid), (density, model.part)));
+    Ok(())
+}
+
+fn check_height((group, key): (&Table<Grains>, &str), radii: &[f64], area: f64) -> Result<(), Failure> {
+    let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+    let height = volume / (LOOSE * area);
+    if height <= HIGHEST || !height.is_finite() {
+        return Ok(());
+    }
+    let found = format!("{} grains, a heap of about {height:.0} m on the plan of `fill`", radii.len());
+    Err(group.error(key, found, format!("a heap of at most {HIGHEST:.0} m")).into())
+}
+
+fn top_of(part: &GroupsPart, low: [f64; 3], high: [f64; 2]) -> f64 {
+    let mut top = f64::NEG_INFINITY;
+    for body in part.bodies.iter().filter(|b| !b.absent) {
+        let r = part.reach(body);
+        let over = (0..2).all(|d| body.position[d] + r > low[d] && body.position[d] - r < high[d]);
+        if over && body.position.z + r > low[2] {
+            top = top.max(body.position.z + r);
+        }
+    }
+    top
+}

@@ -1,0 +1,118 @@
+//! `[[walls]]` resolved.
+
+mod motion;
+mod scarring;
+mod shape;
+
+use super::check::find;
+use crate::scene::walls::{Wall, WallKind};
+use crate::scene::{Scene, Table, kinds};
+use motion::{body, motion, servo};
+use scarring::scarring;
+use shape::shape;
+use trackbed_dem::{Plane, WallInput, WallShape};
+use trackbed_io::failure::Failure;
+
+/// The walls of a scene.
+#[derive(Clone, Default)]
+pub struct WallsPart {
+    /// Planes at constant velocity.
+    pub planes: Vec<Plane>,
+    /// Other walls.
+    pub others: Vec<WallInput>,
+    /// Names of the other walls.
+    pub names: Vec<String>,
+    /// Walls with recorded force.
+    pub recorded: Vec<Recorded>,
+}
+
+/// Wall with recorded force.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// Wall name.
+    pub name: String,
+    /// Index among non-planar walls.
+    pub wall: usize,
+}
+
+const SPECIAL: [(&str, &[WallKind]); 13] = [
+    ("point", &[WallKind::Plane]),
+    ("normal", &[WallKind::Plane]),
+    ("vertices", &[WallKind::Triangles]),
+    ("triangles", &[WallKind::Triangles]),
+    ("file", &[WallKind::Mesh]),
+    ("scale", &[WallKind::Mesh]),
+    ("translation", &[WallKind::Mesh]),
+    ("base", &[WallKind::Cylinder, WallKind::Cone, WallKind::Sphere]),
+    ("axis", &[WallKind::Cylinder, WallKind::Cone]),
+    ("height", &[WallKind::Cylinder, WallKind::Cone]),
+    ("radius", &[WallKind::Cylinder, WallKind::Sphere]),
+    ("radii", &[WallKind::Cone]),
+    ("caps", &[WallKind::Cylinder, WallKind::Cone]),
+];
+
+pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
+    let mut part = WallsPart::default();
+    for (i, wall) in scene.rows("walls", &scene.walls).enumerate() {
+        let material = find(scene, &wall, "material", &wall.material)?;
+        let before = part.others.len();
+        add(&wall, i, material, &mut part)?;
+        let new = part.others.get(before).map(|w| &w.shape);
+        if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
+            let expected = "a plane with no key but `velocity`: sleepers contact only such planes";
+            return Err(wall.here("a plane with other keys", expected).into());
+        }
+    }
+    Ok(part)
+}
+
+/// Planes at rest or constant velocity: indexed separately, because sleepers contact them and compaction
+/// moves them.
+pub fn is_plain(wall: &Wall) -> bool {
+    wall.kind == WallKind::Plane
+        && wall.angular_velocity.is_none_or(|turn| turn.iter().all(|w| w.si == 0.0))
+        && wall.oscillation.is_none()
+        && wall.servo.is_none()
+        && wall.body.is_none()
+        && wall.scarring.is_none()
+        && !wall.record
+}
+
+fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
+    let present = |k: &str| match k {
+        "point" => wall.point.is_some(),
+        "normal" => wall.normal.is_some(),
+        "vertices" => wall.vertices.is_some(),
+        "triangles" => wall.triangles.is_some(),
+        "file" => wall.file.is_some(),
+        "scale" => wall.scale.is_some(),
+        "translation" => wall.translation.is_some(),
+        "base" => wall.base.is_some(),
+        "axis" => wall.axis.is_some(),
+        "height" => wall.height.is_some(),
+        "radius" => wall.radius.is_some(),
+        "radii" => wall.radii.is_some(),
+        _ => wall.caps.is_some(),
+    };
+    if let Some((k, of)) = SPECIAL.iter().find(|(k, of)| present(k) && !of.contains(&wall.kind)) {
+        return Err(wall.no_effect(k, kinds(of)).into());
+    }
+    let shape = shape(wall)?;
+    let motion = motion(wall)?;
+    let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));
+    if wall.record && part.recorded.iter().any(|r| r.name == name) {
+        return Err(wall.error("name", format!("\"{name}\""), "a name of its own").into());
+    }
+    if let (WallShape::Plane { point, normal }, true) = (&shape, is_plain(wall)) {
+        part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
+        return Ok(());
+    }
+    let servo = servo(wall)?;
+    let (body, scarring) = (body(wall)?, scarring(wall)?);
+    part.names.push(name.clone());
+    if wall.record {
+        part.recorded.push(Recorded { name, wall: part.others.len() });
+    }
+    part.others.push(WallInput { shape, material, motion, servo, body, scarring });
+    Ok(())
+}

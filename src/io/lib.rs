@@ -1,0 +1,18 @@
+//! Readers and writers of meshes, tables, frames and results; messages and errors; what differs between operating systems.
+
+// Closed or full output must not stop a run.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
+pub mod columns;
+pub mod failure;
+pub mod guard;
+pub mod mesh_tools;
+pub mod message;
+pub mod progress;
+pub mod read;
+pub mod replaced;
+pub mod results;
+#[doc(hidden)]
+pub mod scratch;
+pub mod system;
+pub mod write;

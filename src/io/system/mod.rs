@@ -1,0 +1,33 @@
+//! Functions of the operating system; other modules are the same on all systems.
+//!
+//! Functions that a system lacks return nothing, or do nothing.
+
+#[cfg(target_os = "linux")]
+mod linux;
+#[cfg(target_os = "macos")]
+mod macos;
+#[cfg(all(unix, not(any(target_os = "linux", target_os = "macos"))))]
+mod other;
+#[cfg(unix)]
+mod unix;
+#[cfg(windows)]
+mod windows;
+
+#[cfg(target_os = "linux")]
+pub use linux::*;
+#[cfg(target_os = "macos")]
+pub use macos::*;
+#[cfg(all(unix, not(any(target_os = "linux", target_os = "macos"))))]
+pub use other::*;
+#[cfg(unix)]
+pub use unix::*;
+#[cfg(windows)]
+pub use windows::*;
+
+use std::io;
+
+/// I/O error with a remedy.
+pub fn words(error: &io::Error) -> String {
+    let remedy = if lacks_files(error) { "; raise the limit of open files (ulimit -n)" } else { "" };
+    format!("{error}{remedy}")
+}

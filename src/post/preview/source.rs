@@ -1,0 +1,84 @@
+//! Scene file of a preview, read again when it or a file that it names changes.
+
+use std::path::{Path, PathBuf};
+
+use trackbed_input::model::{self, Job};
+use trackbed_input::scene::{Document, Scene};
+use trackbed_io::failure::Failure;
+use trackbed_io::results::series;
+use trackbed_run::{Hash, named_files};
+
+const FILE: &str = "scene.toml";
+/// Files of a results directory.
+const RESULTS: [&str; 3] = [series::SERIES, "run.json", "summary.json"];
+
+/// Whether a file is a scene.
+pub fn is_scene(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+}
+
+/// Returns the scene of a path: the file, or `scene.toml` in a directory without results.
+pub fn scene_file(path: &Path) -> Option<PathBuf> {
+    if !path.is_dir() {
+        return is_scene(path).then(|| path.to_path_buf());
+    }
+    let results = RESULTS.iter().any(|name| path.join(name).exists());
+    Some(path.join(FILE)).filter(|file| !results && file.is_file())
+}
+
+/// Scene file with overrides.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Scene file.
+    pub file: PathBuf,
+    /// Overrides.
+    pub set: Vec<String>,
+}
+
+impl Source {
+    /// Opens the file with overrides.
+    ///
+    /// # Errors
+    /// Input errors.
+    pub fn document(&self) -> Result<Document, Failure> {
+        let mut document = Document::open(&self.file)?;
+        for assignment in &self.set {
+            document.set(assignment)?;
+        }
+        Ok(document)
+    }
+
+    /// Resolves the scene.
+    ///
+    /// # Errors
+    /// Input errors.
+    pub fn resolve(&self) -> Result<(Document, Job), Failure> {
+        let document = self.document()?;
+        let scene = model::read_scene(&document)?;
+        let job = model::resolve(&document, &scene)?;
+        Ok((document, job))
+    }
+
+    /// Returns the file and those that it names, as far as it can be read.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = vec![self.file.clone()];
+        if let Ok(document) = self.document() {
+            files.extend(document.included().map(|file| document.resolve(file)));
+            if let Ok(scene) = document.read::<Scene>() {
+                files.extend(named_files(&document, &scene).iter().map(|file| document.resolve(file)));
+            }
+        }
+        files
+    }
+}
+
+/// Returns a number that changes with sizes and times of files.
+pub fn version(files: &[PathBuf]) -> String {
+    let mut hash = Hash::default();
+    for file in files {
+        let about = std::fs::metadata(file).ok();
+        let time = about.as_ref().and_then(|m| m.modified().ok());
+        hash.add(format!("{:?} {:?}", about.map(|m| m.len()), time).as_bytes());
+    }
+    hash.hex()
+}

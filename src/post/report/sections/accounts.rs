@@ -1,0 +1,120 @@
+//! Balances of energy, momentum and interface.
+
+use super::overlay::{facts, one, overlay};
+use crate::report::data::RunData;
+use crate::report::page::{Cell, Section, columns, joined, plots};
+use crate::report::plot::{Plot, Side};
+use maud::{Markup, html};
+use serde_json::Value;
+use trackbed_io::columns::{Definition, history};
+
+const STORED: [(&Definition, &str); 9] = [
+    (history::GRAINS_KINETIC, "kinetic energy of grains"),
+    (history::CONTACT_SPRINGS, "contact springs"),
+    (history::BOND_ENERGY, "bonds"),
+    (history::MOUNT_ENERGY, "mounts"),
+    (history::GRAINS_GRAVITY, "potential energy of grains"),
+    (history::SOLID_KINETIC, "kinetic energy of solid"),
+    (history::SOLID_STRAIN, "strain energy of solid"),
+    (history::SOLID_GRAVITY, "potential energy of solid"),
+    (history::RAIL_ENERGY, "rails"),
+];
+
+const SPENT: [(&Definition, &str); 7] = [
+    (history::WORK, "work"),
+    (history::DISSIPATED_DASHPOT, "dashpots of contacts"),
+    (history::DISSIPATED_FRICTION, "friction"),
+    (history::DISSIPATED_SOLID, "dissipation in solid"),
+    (history::DISSIPATED_BONDS, "dashpots of bonds"),
+    (history::DISSIPATED_MOUNTS, "dashpots of mounts"),
+    (history::DISSIPATED_TRACK, "rail pads and track outside the model"),
+];
+
+/// Formats energy, momentum, interface.
+pub fn energy(runs: &[RunData]) -> Option<Section> {
+    let time = || Side::new("time", "s");
+    let curves = |columns: &'static [(&'static Definition, &'static str)], change: bool| {
+        overlay(runs, move |run| {
+            let Some(table) = run.table("history") else { return Vec::new() };
+            let of = |&(column, name): &(&'static Definition, &str)| {
+                let mut points = table.points(history::TIME, column)?;
+                let first = if change { points.first()?[1] } else { 0.0 };
+                points.iter_mut().for_each(|p| p[1] -= first);
+                points.iter().any(|p| p[1] != 0.0).then(|| (name.to_string(), points))
+            };
+            columns.iter().filter_map(of).collect()
+        })
+    };
+    let error = one(runs, |r| r.table("history")?.points(history::TIME, history::ENERGY_ERROR));
+    // Several runs would give too many curves.
+    let single = runs.len() == 1;
+    let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };
+    let figures = plots([
+        part(Plot::new("Work and dissipation", time(), Side::new("energy", "J"), curves(&SPENT, false))),
+        part(Plot::new(
+            "Stored energy since the start",
+            time(),
+            Side::new("change", "J"),
+            curves(&STORED, true),
+        )),
+        if single {
+            Markup::default()
+        } else {
+            Plot::new("Work", time(), Side::new("work", "J"), curves(&SPENT[..1], false)).figure()
+        },
+        Plot::new("Energy error", time(), Side::new("error", "J"), error).figure(),
+    ]);
+    let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
+    let sums = facts(
+        runs,
+        &[
+            ("external work", &path("energy.work", "J")),
+            ("reference energy", &path("energy.reference_energy", "J")),
+            ("energy error at the end", &path("energy.error", "J")),
+            ("energy error over reference energy", &path("energy.relative_error", "")),
+            ("largest energy error", &path("energy.largest_error", "J")),
+            ("largest energy error over reference energy", &path("energy.largest_relative_error", "")),
+            ("momentum error over impulses", &path("momentum.linear", "")),
+            ("angular momentum error over impulses", &path("momentum.angular", "")),
+            ("interface: largest force error", &path("coupling.transfer.force", "")),
+            ("interface: largest moment error", &path("coupling.transfer.moment", "")),
+            ("interface: difference of work on both sides", &path("coupling.interface_work_error", "J")),
+        ],
+    );
+    Section::new("energy", "Energy and momentum balances", joined([figures, sums, parts(runs)]))
+}
+
+fn parts(runs: &[RunData]) -> Markup {
+    joined(runs.iter().map(|run| {
+        let object = |path: &str| run.value(path).as_object().cloned().unwrap_or_default();
+        let (start, end, spent) = (object("energy.start"), object("energy.end"), object("energy.flows"));
+        let whose = match runs.len() {
+            1 => String::new(),
+            _ => format!(": {}", run.label),
+        };
+        let number = |v: Option<&Value>| v.and_then(Value::as_f64);
+        let stored: Vec<&String> = start
+            .keys()
+            .filter(|k| [start.get(*k), end.get(*k)].into_iter().any(|v| number(v).is_some_and(|v| v != 0.0)))
+            .collect();
+        let names: Vec<String> = stored.iter().map(|k| k.replace('_', " ")).collect();
+        let both = [
+            ("at the start", "J", stored.iter().map(|k| number(start.get(*k))).collect::<Vec<_>>()),
+            ("at the end", "J", stored.iter().map(|k| number(end.get(*k))).collect()),
+        ];
+        let lost: Vec<(&String, f64)> =
+            spent.iter().filter_map(|(k, v)| Some((k, v.as_f64().filter(|v| *v != 0.0)?))).collect();
+        let spent_names: Vec<String> = lost.iter().map(|(k, _)| k.replace('_', " ")).collect();
+        let spent_values = [("energy", "J", lost.iter().map(|(_, v)| Some(*v)).collect::<Vec<_>>())];
+        html! {
+            @if !names.is_empty() || !spent_names.is_empty() {
+                details {
+                    "\n" summary { "Terms of the energy balance" (whose) } "\n"
+                    (columns("stored", &names, &both))
+                    (columns("work and dissipation", &spent_names, &spent_values))
+                }
+                "\n"
+            }
+        }
+    }))
+}
