@@ -18,11 +18,15 @@ pub(crate) struct StepSize {
     /// Next stability check and its interval, in steps.
     pub look: u64,
     pub interval: u64,
+    /// Time [s] and dissipated energy [J] at the last window.
+    pub before: [f64; 2],
+    /// Dissipation rate at the last stability check [W].
+    pub rate: f64,
 }
 
 impl StepSize {
     pub fn new(dt: f64) -> StepSize {
-        StepSize { dt, last: dt, wanted: dt, limit: 0.0, look: 0, interval: 0 }
+        StepSize { dt, last: dt, wanted: dt, limit: 0.0, look: 0, interval: 0, before: [0.0; 2], rate: 0.0 }
     }
 
     /// Time increment of velocities [s].

@@ -1,7 +1,8 @@
 //! DEM time step from current contacts and bonds ([`limit`]), usually 2 to 10 times the a-priori bound
 //! ([`crate::timestep`]). [`follow`] adjusts the step:
 //!
-//! * the limit is evaluated every [`LEAST`] to [`MOST`] steps, more often if it changes;
+//! * the limit is evaluated every [`LEAST`] to [`MOST`] steps, more often if it changes, and at once if the
+//!   dissipation rate rises [`SURGE`] times: loads that rise within the interval, or a growing oscillation;
 //! * the step is a fraction of it ([`TimeStep::Measured`](crate::TimeStep::Measured)), smaller while it
 //!   changes, and grows by at most 25 % per evaluation;
 //! * a fraction of the collision time (`engine/collision.rs`) bounds it for accurate restitution, by default
@@ -23,6 +24,9 @@ use operator::Operator;
 pub const LEAST: u64 = 64;
 /// Most steps between evaluations.
 pub const MOST: u64 = 1024;
+
+/// Rise of the dissipation rate since the last evaluation that calls for the next one.
+const SURGE: f64 = 10.0;
 
 /// Contacts per body of a packing.
 const LASTING: f64 = 1.5;
@@ -74,9 +78,12 @@ const ROUNDS: usize = 6;
 /// Evaluates the limit if due and sets the step of `state`, unless fixed. Returns whether it was evaluated.
 pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
-    if state.steps < state.step_size.look || state.steps == 0 {
+    let rate = dissipation_rate(state);
+    let surges = rate > SURGE * state.step_size.rate;
+    if state.steps == 0 || state.steps < state.step_size.look && !surges {
         return false;
     }
+    state.step_size.rate = rate;
     let mut operator = Operator::new(model, state);
     let (found, before) = (largest_step(&mut operator, state), state.step_size.limit);
     let packed = operator.links() as f64 > LASTING * state.present_count() as f64;
@@ -97,6 +104,18 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
     step_size.wanted = rung(model.dt(), wanted);
     step_size.dt = step_size.wanted;
     true
+}
+
+/// Dissipation rate since the last call [W].
+fn dissipation_rate(state: &mut State) -> f64 {
+    let balance = &state.balance;
+    let now = [
+        state.time,
+        balance.dissipated_dashpot + balance.dissipated_friction + balance.dissipated_bonds,
+    ];
+    let [elapsed, dissipated] = [now[0] - state.step_size.before[0], now[1] - state.step_size.before[1]];
+    state.step_size.before = now;
+    if elapsed > 0.0 { (dissipated / elapsed).max(0.0) } else { 0.0 }
 }
 
 fn rung(first: f64, wanted: f64) -> f64 {

@@ -171,7 +171,9 @@ impl System for GrainsSystem {
     }
 
     fn shorten(&mut self, rest: f64) -> bool {
-        let short = self.model.measured().is_some() && is_short(rest, self.window);
+        // A first step far below the others starts the leapfrog scheme with an error.
+        let first = self.state.steps_done() == 0 && rest < self.model.dt();
+        let short = self.model.measured().is_some() && is_short(rest, self.window) && !first;
         if short {
             self.window = rest;
         }
