@@ -4,9 +4,12 @@
 //! DIR/runs/NAME/        results of a run
 //! DIR/runs/NAME.json    its record
 //! DIR/runs/NAME.log     its standard error
-//! DIR/study.csv, study.md, study.json, pareto.svg
+//! DIR/samples.csv, study.csv, study.md, study.json, sensitivity.csv, targets.csv, pareto.svg
+//! DIR/plots/            response plots, tornado charts
 //! ```
 
+use super::figure::Figure;
+use super::label::file_names;
 use super::plan::Run;
 use crate::failure::Failure;
 use crate::read::source;
@@ -87,6 +90,18 @@ impl Store {
     pub fn make(&self) -> Result<(), Failure> {
         let runs = self.dir.join("runs");
         std::fs::create_dir_all(&runs).map_err(|e| Failure::Other(format!("{}: {e}", runs.display())))
+    }
+
+    /// Writes figures to files with their titles as names.
+    ///
+    /// # Errors
+    /// I/O errors.
+    pub fn write_figures(&self, figures: &[Figure]) -> Result<(), Failure> {
+        let plots = self.dir.join("plots");
+        std::fs::create_dir_all(&plots).map_err(|e| Failure::Other(format!("{}: {e}", plots.display())))?;
+        let names = file_names(figures.iter().map(|f| f.title.as_str()));
+        let files = figures.iter().zip(names);
+        files.into_iter().try_for_each(|(f, name)| write(&plots.join(format!("{name}.svg")), &f.file()))
     }
 
     /// Whether anything exists for a run.
