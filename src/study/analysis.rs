@@ -123,7 +123,9 @@ impl Analysis {
         let sensitivities =
             (0..results.len()).map(|q| sensitivity(&plan.factors, plan.combine, &points, q)).collect();
         let mut best: Vec<usize> = (0..points.len()).filter(|k| points[*k].misfit.is_some()).collect();
-        best.sort_by(|a, b| points[*a].misfit.partial_cmp(&points[*b].misfit).unwrap_or(std::cmp::Ordering::Equal));
+        best.sort_by(|a, b| {
+            points[*a].misfit.partial_cmp(&points[*b].misfit).unwrap_or(std::cmp::Ordering::Equal)
+        });
         Analysis {
             factors: plan.factors.clone(),
             targets: plan.targets.clone(),

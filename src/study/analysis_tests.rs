@@ -67,7 +67,8 @@ fn categories_have_extreme_results() {
 fn incomplete_points_are_left_out() {
     let factors = [factor("a", [0.0, 3.0], false)];
     let mut points: Vec<Point> = (0..4).map(|k| point(&[f64::from(k)], f64::from(2 * k))).collect();
-    points.insert(0, Point { values: vec![None], results: vec![[Some(1e9), None, None]], ..Point::default() });
+    points
+        .insert(0, Point { values: vec![None], results: vec![[Some(1e9), None, None]], ..Point::default() });
     points.push(Point { values: vec![Some(9.0)], results: vec![[None; 3]], ..Point::default() });
     let found = sensitivity(&factors, None, &points, 0);
     assert_relative_eq!(found.regression.unwrap().slopes[0], 2.0, max_relative = 1e-12);

@@ -107,7 +107,8 @@ pub fn response(analysis: &Analysis, q: usize, j: usize) -> Option<Figure> {
             Ruler::linear(ends, 7, 2.0 * margin, false)
         }
     };
-    let widest = y.ticks.iter().filter_map(|t| t.label.as_ref()).map(|l| text_width(l, FONT)).fold(0.0, f64::max);
+    let widest =
+        y.ticks.iter().filter_map(|t| t.label.as_ref()).map(|l| text_width(l, FONT)).fold(0.0, f64::max);
     let area = Area { left: widest + 38.0, right: WIDTH - 24.0, bottom: RESPONSE - BOTTOM, x: &x, y: &y };
     let body = html! {
         (frame(&area, factor, &result.head()))
@@ -186,7 +187,7 @@ fn curve(area: &Area<'_>, line: &[[f64; 2]], dashed: bool) -> Markup {
 }
 
 fn key(area: &Area<'_>, analysis: &Analysis, line: bool, target: bool) -> Markup {
-    let curve = if analysis.sampled { "regression, other parameters at mid-range" } else { "mean over other parameters" };
+    let curve = if analysis.sampled { "regression" } else { "mean" };
     let entries = [
         ("case ± standard error", COLOURS[0], true),
         (curve, COLOURS[1], line),
@@ -196,7 +197,7 @@ fn key(area: &Area<'_>, analysis: &Analysis, line: bool, target: bool) -> Markup
     let mut placed = Vec::new();
     for (name, colour, _) in entries.iter().filter(|e| e.2) {
         placed.push((at, *name, *colour));
-        at += 16.0 + 0.52 * SMALL * name.chars().count() as f64;
+        at += 26.0 + text_width(name, SMALL);
     }
     html! {
         @for (at, name, colour) in placed {
@@ -269,7 +270,7 @@ fn bar(area: &Area<'_>, row: usize, factor: &Factor, ends: &[[f64; 2]; 2], centr
 }
 
 fn number(factor: &Factor, value: f64) -> String {
-    if factor.categories.is_empty() { minus(&super::layout::four_digits(value)) } else { factor.text(value) }
+    if factor.categories.is_empty() { minus(&factor.text(value)) } else { factor.text(value) }
 }
 
 fn fitted(label: &str, font: f64, space: f64) -> f64 {

@@ -117,10 +117,8 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finis
     if !options.merge {
         carry_out(file, &plan, &store, &hashes, options)?;
         if let Some((k, n)) = options.part {
-            let text = format!(
-                "{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n",
-                dir.display()
-            );
+            let text =
+                format!("{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n", dir.display());
             return Ok(Finished { text, failure: None });
         }
     }
@@ -354,5 +352,7 @@ fn failed_runs(plan: &Plan, store: &Store, found: &[Found]) -> Option<Failure> {
     let more = if reasons.len() > SPELLED_OUT { "; …" } else { "" };
     let (count, all) = (reasons.len(), plan.runs.len());
     let dir = store.dir().display();
-    Some(Failure::Numerical(format!("{count} of {all} runs failed, not in the tables of {dir}: {first}{more}")))
+    Some(Failure::Numerical(format!(
+        "{count} of {all} runs failed, not in the tables of {dir}: {first}{more}"
+    )))
 }

@@ -104,14 +104,20 @@ impl Outcome {
         let mut rows: Vec<Row> = gathered.into_iter().map(|g| g.row).collect();
         for (row, cells) in rows.iter_mut().zip(cells) {
             let own = row.cost.as_ref().and_then(|c| c.cpu_seconds);
-            row.speed_up = base.filter(|_| plan.has_reference()).zip(own).filter(|(_, own)| *own > 0.0).map(|(base, own)| base / own);
+            row.speed_up = base
+                .filter(|_| plan.has_reference())
+                .zip(own)
+                .filter(|(_, own)| *own > 0.0)
+                .map(|(base, own)| base / own);
             let over = cells.iter().zip(&plan.quantities).map(|(c, q)| Some(c.error? / q.tolerance));
             row.error_over_tolerance =
                 over.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max));
-            let good =
-                |c: &Cell, q: &Quantity| c.error.is_some_and(|e| e + c.error_standard_error.unwrap_or(0.0) <= q.tolerance);
+            let good = |c: &Cell, q: &Quantity| {
+                c.error.is_some_and(|e| e + c.error_standard_error.unwrap_or(0.0) <= q.tolerance)
+            };
             row.within = plan.has_reference()
-                && row.done == row.runs && cells.iter().zip(&plan.quantities).all(|(c, q)| good(c, q));
+                && row.done == row.runs
+                && cells.iter().zip(&plan.quantities).all(|(c, q)| good(c, q));
             row.quantities = cells;
         }
         let recommended = cheapest(&rows);

@@ -27,11 +27,14 @@ pub fn is_study(dir: &Path) -> bool {
 pub fn write(options: &Options) -> Result<PathBuf, Failure> {
     let dir = &options.folders[0];
     if let Some(load) = options.axle_load {
-        return Err(Failure::Input(format!("--axle-load: found {load} with a study, expected a directory of a run")));
+        return Err(Failure::Input(format!(
+            "--axle-load: found {load} with a study, expected a directory of a run"
+        )));
     }
     let out = report::output_file(options)?;
     let (study, analysis) = read(&dir.join("study.json"))?;
-    let title = options.title.clone().or_else(|| study["title"].as_str().map(String::from)).unwrap_or_default();
+    let title =
+        options.title.clone().or_else(|| study["title"].as_str().map(String::from)).unwrap_or_default();
     let sections = [
         overview(&study, &analysis),
         failed(&analysis),
@@ -41,7 +44,12 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         cases(&analysis),
         errors(&study),
     ];
-    report::save(&out, &title, &report::results_in(dir), &sections.into_iter().flatten().collect::<Vec<_>>())?;
+    report::save(
+        &out,
+        &title,
+        &report::results_in(dir),
+        &sections.into_iter().flatten().collect::<Vec<_>>(),
+    )?;
     Ok(out)
 }
 
@@ -61,7 +69,9 @@ fn read(file: &Path) -> Result<(Value, Analysis), Failure> {
     let fits = analysis.sensitivities.len() == q
         && analysis.sensitivities.iter().all(|s| {
             let coefficients = s.regression.as_ref().map(|r| [r.coefficients.len(), r.standard_errors.len()]);
-            s.responses.len() == p && s.rank_correlations.len() == p && coefficients.is_none_or(|c| c == [p, p])
+            s.responses.len() == p
+                && s.rank_correlations.len() == p
+                && coefficients.is_none_or(|c| c == [p, p])
         })
         && analysis.points.iter().all(|point| point.results.len() == q && point.values.len() == p)
         && analysis.targets.iter().all(|t| t.quantity < q)
@@ -89,7 +99,10 @@ fn html_of(Table { heads, rows }: &Table) -> Markup {
 fn overview(study: &Value, analysis: &Analysis) -> Option<Section> {
     let sum = |of: fn(&super::analysis::Point) -> usize| analysis.points.iter().map(of).sum::<usize>();
     let mut rows = vec![
-        ("scene", study["scene"].as_str().map(|s| report::page::shown_path(Path::new(s)).display().to_string())),
+        (
+            "scene",
+            study["scene"].as_str().map(|s| report::page::shown_path(Path::new(s)).display().to_string()),
+        ),
         ("cases", Some(analysis.points.len().to_string())),
         ("completed runs", Some(format!("{} of {}", sum(|p| p.done), sum(|p| p.runs)))),
         ("parameters", Some(joined_names(analysis.factors.iter().map(|f| f.head())))),
@@ -121,7 +134,9 @@ fn targets(analysis: &Analysis) -> Option<Section> {
         return None;
     }
     let best = headed("Cases of smallest misfit", html_of(&summary::best(analysis, BEST)));
-    let note = paragraph("Misfit: root mean square of the deviations in tolerances. ±: standard error over the seeds.");
+    let note = paragraph(
+        "Misfit: root mean square of the deviations in tolerances. ±: standard error over the seeds.",
+    );
     Section::new("targets", "Targets", joined([html_of(&summary::targets(analysis)), best, note]))
 }
 

@@ -80,7 +80,7 @@ fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<F
         return fault("unit", format!("{unit:?}"), "a unit such as \"GPa\"");
     }
     let [low, high] = table.range;
-    let found = || format!("[{low}, {high}]");
+    let found = || format!("[{low:?}, {high:?}]");
     if !(low.is_finite() && high.is_finite() && low < high) {
         return fault("range", found(), "two finite numbers, ascending");
     }
@@ -94,11 +94,7 @@ fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<F
     Ok(Factor { name, unit, log, range: table.range, categories: Vec::new() })
 }
 
-fn points(
-    document: &Document,
-    sampling: &Sampling,
-    dimensions: usize,
-) -> Result<Vec<Vec<f64>>, SceneError> {
+fn points(document: &Document, sampling: &Sampling, dimensions: usize) -> Result<Vec<Vec<f64>>, SceneError> {
     let samples = sampling.samples;
     if !(2..=MOST_RUNS).contains(&samples) {
         let expected = format!("2 to {MOST_RUNS}");

@@ -134,9 +134,8 @@ fn cases(document: &Document, file: &StudyFile) -> Result<Cases, SceneError> {
             combine: None,
         });
     }
-    let axes: Vec<Axis> = (0..file.axis.len())
-        .map(|k| Axis::new(document, k, &file.axis[k]))
-        .collect::<Result<Vec<_>, _>>()?;
+    let axes: Vec<Axis> =
+        (0..file.axis.len()).map(|k| Axis::new(document, k, &file.axis[k])).collect::<Result<Vec<_>, _>>()?;
     if axes.is_empty() && file.seeds.is_none() {
         let expected = "at least one [[axis]] or [[parameter]], or [seeds]";
         return Err(document.error("axis", "nothing", expected));

@@ -114,10 +114,7 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     let row = &outcome.rows[k];
     let others = outcome.rows.iter().enumerate().any(|(k, row)| k != outcome.reference && row.within);
     if k == outcome.reference && !others && outcome.rows.len() > 1 {
-        return format!(
-            "No case but the reference \"{}\" is {within} for all quantities.",
-            reference.case
-        );
+        return format!("No case but the reference \"{}\" is {within} for all quantities.", reference.case);
     }
     let largest = row.quantities.iter().zip(&plan.quantities).max_by(|a, b| {
         let over = |(cell, quantity): &(&Cell, &Quantity)| cell.error.unwrap_or(0.0) / quantity.tolerance;

@@ -170,7 +170,18 @@ impl<'a> TimeLoop<'a> {
         let (begun, whole) = share(&cadence, &recorder, &place);
         let progress =
             Progress::start("running", whole as f64, run.verbosity).resumed(begun as f64, place.seconds);
-        Ok(TimeLoop { run, grains, settled, cadence, track, flow, recorder, place, progress, shortened: false })
+        Ok(TimeLoop {
+            run,
+            grains,
+            settled,
+            cadence,
+            track,
+            flow,
+            recorder,
+            place,
+            progress,
+            shortened: false,
+        })
     }
 
     /// Time after `done` windows [s].
