@@ -84,7 +84,8 @@ pub struct Sensitivity {
 impl Sensitivity {
     /// Returns value and result at both ends of parameter `index`; extreme results of categories.
     pub fn ends(&self, index: usize, factor: &Factor) -> Option<[[f64; 2]; 2]> {
-        let line = self.responses.get(index).filter(|line| line.len() > 1)?;
+        let is_finite = |line: &[[f64; 2]]| line.as_flattened().iter().all(|v| v.is_finite());
+        let line = self.responses.get(index).filter(|line| line.len() > 1 && is_finite(line))?;
         let by = |p: &&[f64; 2], q: &&[f64; 2]| {
             let axis = usize::from(!factor.categories.is_empty());
             p[axis].total_cmp(&q[axis])

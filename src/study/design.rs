@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn sobol_is_a_net_in_ten_dimensions() {
+    fn sobol_is_net_in_ten_dimensions() {
         for seed in [None, Some(3)] {
             let points = sobol(256, SOBOL_DIMENSIONS, seed);
             assert!((0..SOBOL_DIMENSIONS).all(|d| occupied(&points, d, 256) == 256), "{seed:?}");

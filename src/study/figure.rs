@@ -94,7 +94,8 @@ pub fn response(analysis: &Analysis, q: usize, j: usize) -> Option<Figure> {
     if points.len() < 2 {
         return None;
     }
-    let line = &analysis.sensitivities[q].responses[j];
+    let line: Vec<[f64; 2]> =
+        analysis.sensitivities[q].responses[j].iter().copied().filter(|p| p[1].is_finite()).collect();
     let target = analysis.targets.iter().find(|t| t.quantity == q);
     let bars = points.iter().flat_map(|p| [p[1] - p[2], p[1] + p[2]]);
     let band = target.iter().flat_map(|t| [t.value - t.tolerance, t.value + t.tolerance]);
@@ -114,7 +115,7 @@ pub fn response(analysis: &Analysis, q: usize, j: usize) -> Option<Figure> {
         (frame(&area, factor, &result.head()))
         @if let Some(target) = target { (target_band(&area, target)) }
         @for p in &points { (estimate(&area, p)) }
-        @if line.len() > 1 { (curve(&area, line, analysis.sampled)) }
+        @if line.len() > 1 { (curve(&area, &line, analysis.sampled)) }
         (key(&area, analysis, line.len() > 1, target.is_some()))
     };
     Some(Figure { title: format!("{} against {}", result.name, factor.name), height: RESPONSE, body })
@@ -210,7 +211,7 @@ fn key(area: &Area<'_>, analysis: &Analysis, line: bool, target: bool) -> Markup
 /// Draws the effects on quantity `q`, largest first; none without effects.
 pub fn tornado(analysis: &Analysis, q: usize) -> Option<Figure> {
     let (sensitivity, result) = (&analysis.sensitivities[q], &analysis.results[q]);
-    let centre = sensitivity.centre?;
+    let centre = sensitivity.centre.filter(|c| c.is_finite())?;
     let bars = bars(analysis, sensitivity);
     if bars.is_empty() {
         return None;

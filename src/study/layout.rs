@@ -28,7 +28,9 @@ impl Cell {
             Cell::Nothing => "–".into(),
             Cell::Text(text) => text.clone(),
             Cell::Number(value, None) => four_digits(*value),
-            Cell::Number(value, Some(error)) => format!("{} ± {}", four_digits(*value), four_digits(*error)),
+            Cell::Number(value, Some(error)) => {
+                format!("{} ± {}", four_digits(*value), significant(*error, 2))
+            }
         }
     }
 }
@@ -91,13 +93,35 @@ pub fn aligned(rows: &[Vec<String>], is_left: impl Fn(usize) -> bool) -> String 
 
 /// Formats four significant digits.
 pub fn four_digits(value: f64) -> String {
+    significant(value, 4)
+}
+
+/// Formats with `digits` significant digits.
+fn significant(value: f64, digits: usize) -> String {
     let size = value.abs();
     if value == 0.0 {
         return "0".into();
     }
     if !(1e-3..1e6).contains(&size) {
-        return format!("{value:.3e}");
+        return format!("{value:.*e}", digits - 1);
     }
-    let decimals = (3 - libm::log10(size).floor() as i32).max(0) as usize;
+    let decimals = (digits as i32 - 1 - libm::log10(size).floor() as i32).max(0) as usize;
     format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_have_significant_digits() {
+        let shown = |value, error| Cell::Number(value, error).shown();
+        assert_eq!(shown(0.40812, Some(0.005278)), "0.4081 ± 0.0053");
+        assert_eq!(shown(-12345.6, Some(123.4)), "-12346 ± 123");
+        assert_eq!([shown(1.5e-7, None), shown(0.0, None)], ["1.500e-7", "0"]);
+        let table =
+            Table { heads: vec!["a".into(), "b".into()], rows: vec![vec![Cell::text("x|y"), Cell::Nothing]] };
+        assert_eq!(table.markdown(), "| a | b |\n|---|---|\n| x\\|y | – |\n");
+        assert_eq!(table.aligned(1), "  a    b\n  x|y  –\n");
+    }
 }

@@ -332,7 +332,8 @@ fn write_files(plan: &Plan, store: &Store, outcome: &Outcome, analysis: &Analysi
         return Ok(());
     }
     store::write(&dir.join("sensitivity.csv"), &csv(table::sensitivities(analysis))?)?;
-    store.write_figures(&figure::all(analysis))
+    let plots: Vec<_> = figure::all(analysis).iter().map(|f| (f.title.clone(), f.file())).collect();
+    store.write_plots(&plots)
 }
 
 /// Runs that ended with an error, for the exit code.

@@ -105,8 +105,8 @@ fn overview(study: &Value, analysis: &Analysis) -> Option<Section> {
         ),
         ("cases", Some(analysis.points.len().to_string())),
         ("completed runs", Some(format!("{} of {}", sum(|p| p.done), sum(|p| p.runs)))),
-        ("parameters", Some(joined_names(analysis.factors.iter().map(|f| f.head())))),
-        ("quantities", Some(joined_names(analysis.results.iter().map(|r| r.head())))),
+        ("parameters", joined_names(analysis.factors.iter().map(|f| f.head()))),
+        ("quantities", joined_names(analysis.results.iter().map(|r| r.head()))),
     ];
     rows.extend(["reference", "recommended"].map(|key| (key, study[key].as_str().map(String::from))));
     let rows: Vec<(String, Vec<PageCell>)> = rows
@@ -116,8 +116,8 @@ fn overview(study: &Value, analysis: &Analysis) -> Option<Section> {
     Section::new("overview", "Overview", facts_table(&["study", "value"], &rows))
 }
 
-fn joined_names(names: impl Iterator<Item = String>) -> String {
-    names.collect::<Vec<_>>().join(", ")
+fn joined_names(names: impl Iterator<Item = String>) -> Option<String> {
+    Some(names.collect::<Vec<_>>().join(", ")).filter(|names| !names.is_empty())
 }
 
 fn failed(analysis: &Analysis) -> Option<Section> {

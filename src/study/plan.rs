@@ -87,6 +87,12 @@ impl Plan {
         let quantities = quantity::resolve(document, &file.quantity, cycles, tolerance)?;
         if combine.is_none() {
             quantity::reject_errors(document, &file.quantity)?;
+            let named = |factor: &Factor| quantities.iter().any(|q| q.name == factor.name);
+            if let Some(k) = factors.iter().position(named) {
+                let found = format!("{:?}, the name of a quantity", factors[k].name);
+                let place = format!("parameter.{k}.name");
+                return Err(document.error(&place, found, "distinct names").into());
+            }
         }
         let targets = target::resolve(document, &file.target, &quantities)?;
         let jobs = file.jobs;

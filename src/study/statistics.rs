@@ -41,8 +41,8 @@ impl Regression {
         let inverse = matrix.cholesky()?.inverse();
         let coefficients: Vec<f64> = (&inverse * &right).iter().copied().collect();
         let r_squared = dot(&coefficients, right.as_slice()).clamp(0.0, 1.0);
-        let unexplained = (1.0 - r_squared) / (n - p - 1) as f64;
-        let standard_errors = (0..p).map(|j| (unexplained * inverse[(j, j)]).sqrt()).collect();
+        let residual = (1.0 - r_squared) / (n - p - 1) as f64;
+        let standard_errors = (0..p).map(|j| (residual * inverse[(j, j)]).sqrt()).collect();
         let slopes: Vec<f64> =
             coefficients.iter().zip(&columns).map(|(b, c)| b * result.deviation / c.deviation).collect();
         let means: Vec<f64> = columns.iter().map(|c| c.mean).collect();

@@ -8,7 +8,6 @@
 //! DIR/plots/            response plots, tornado charts
 //! ```
 
-use super::figure::Figure;
 use super::label::file_names;
 use super::plan::Run;
 use crate::failure::Failure;
@@ -92,16 +91,15 @@ impl Store {
         std::fs::create_dir_all(&runs).map_err(|e| Failure::Other(format!("{}: {e}", runs.display())))
     }
 
-    /// Writes figures to files with their titles as names.
+    /// Writes plots (title, SVG) to files with their titles as names.
     ///
     /// # Errors
     /// I/O errors.
-    pub fn write_figures(&self, figures: &[Figure]) -> Result<(), Failure> {
-        let plots = self.dir.join("plots");
-        std::fs::create_dir_all(&plots).map_err(|e| Failure::Other(format!("{}: {e}", plots.display())))?;
-        let names = file_names(figures.iter().map(|f| f.title.as_str()));
-        let files = figures.iter().zip(names);
-        files.into_iter().try_for_each(|(f, name)| write(&plots.join(format!("{name}.svg")), &f.file()))
+    pub fn write_plots(&self, plots: &[(String, String)]) -> Result<(), Failure> {
+        let dir = self.dir.join("plots");
+        std::fs::create_dir_all(&dir).map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
+        let names = file_names(plots.iter().map(|(title, _)| title.as_str()));
+        plots.iter().zip(names).try_for_each(|((_, svg), name)| write(&dir.join(format!("{name}.svg")), svg))
     }
 
     /// Whether anything exists for a run.

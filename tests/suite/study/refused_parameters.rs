@@ -39,12 +39,13 @@ fn refused(old: &str, new: &str, line: &str) {
 
 #[test]
 fn rejects_bad_samples() {
-    let line = "study.toml:4: sampling.method: found \"monte-carlo\", expected one of \"latin-hypercube\", \"sobol\"";
+    let line =
+        "study.toml:4: sampling.method: found \"monte-carlo\", expected \"latin-hypercube\" or \"sobol\"";
     refused("\"sobol\"", "\"monte-carlo\"", line);
     refused("samples = 4", "samples = 1", "study.toml:5: sampling.samples: found 1, expected 2 to 100000");
     let line = "study.toml:5: sampling.sample: found the unknown key `sample`, expected `samples`";
     refused("samples = 4", "sample = 4", line);
-    let line = "study.toml:3: parameter: found without `sampling`, expected both";
+    let line = "study.toml:4: parameter: found without `sampling`, expected both";
     refused("[sampling]\nmethod = \"sobol\"\nsamples = 4\n\n", "\n", line);
     let more = "[[axis]]\nkey = \"time.grain_step\"\nvalues = [1e-4]\n\n[sampling]";
     refused(
@@ -76,6 +77,9 @@ fn rejects_bad_parameters() {
     refused("\"time.end\"", "\"a=b\"", line);
     let line = "study.toml:8: parameter.0.name: found \"a,b\", expected a name without = , | or quotes";
     refused("\"duration\"", "\"a,b\"", line);
+    let line =
+        "study.toml:8: parameter.0.name: found \"height\", the name of a quantity, expected distinct names";
+    refused("\"duration\"", "\"height\"", line);
     let line = "study.toml:11: parameter.0.unit: found \"\\\"\", expected a unit such as \"GPa\"";
     refused("\"ms\"", "'\"'", line);
     let twice = "unit = \"ms\"\n[[parameter]]\nname = \"duration\"\nkey = \"x\"\nrange = [0, 1]\n";
@@ -109,7 +113,7 @@ fn rejects_samples_of_invalid_scenes() {
     let folder = folder("study_invalid_samples", &STUDY.replace("[0.2, 2.0]", "[-1.0, 2.0]"));
     let outcome = trackbed(arguments(&folder, "out", &[]));
     assert_eq!(outcome.code, 2);
-    let words = "study.toml: \"sample=001\": --set: time.end: found -0.001, expected";
+    let words = "study.toml: 2 runs rejected: \"sample=001\": --set: time.end: found -0.001, expected";
     assert!(outcome.stderr.contains(words) && outcome.stderr.lines().count() == 1, "{}", outcome.stderr);
     folder.edit("study.toml", "\"time.end\"", "\"time.stop\"");
     let outcome = trackbed(arguments(&folder, "out", &[]));
