@@ -217,8 +217,8 @@ impl<'a> TimeLoop<'a> {
         if let Some(cycle) = self.recorder.follow(time, system, &self.track)? {
             self.after_cycle(&cycle, k, time);
         }
-        let [row, check] =
-            [self.cadence.every, self.cadence.checked].map(|n| k % n == 0 || k == self.place.windows);
+        let [row, check] = [self.cadence.every, self.cadence.checked]
+            .map(|n| k.is_multiple_of(n) || k == self.place.windows);
         if row || check {
             self.recorder.measure(system, &self.track);
         }

@@ -55,7 +55,7 @@ fn rejects_bad_samples() {
     );
     let line = "study.toml:2: tolerance: found together with `parameter`, expected only one of them";
     refused("\"scene.toml\"\n", "\"scene.toml\"\ntolerance = 0.1", line);
-    let line = "study.toml:16: quantity.0.exact: found together with `parameter`, expected only one of them";
+    let line = "study.toml:17: quantity.0.exact: found together with `parameter`, expected only one of them";
     refused("\"ball_z\"\n", "\"ball_z\"\nexact = 1.0", line);
     let ten: String =
         (0..10).map(|k| format!("[[parameter]]\nname = \"p{k}\"\nkey = \"x\"\nrange = [0, 1]\n")).collect();
