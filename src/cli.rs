@@ -73,9 +73,9 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Run variants of a scene and compare their errors and costs (speed–accuracy trade-off).
+    /// Run variants of a scene: sensitivity to parameters, calibration, errors and costs.
     Study(StudyArgs),
-    /// Write an HTML report with tables and plots of one run, or a comparison of several.
+    /// Write an HTML report of one run or study, or a comparison of several runs.
     Report(ReportArgs),
     /// Run a small track, about one minute, and show it in a browser.
     Demo(DemoArgs),

@@ -26,12 +26,12 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
-    let text = study::execute(&args.study, &options, &check)?;
+    let study::Finished { text, failure } = study::execute(&args.study, &options, &check)?;
     // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {
         message::note(&format!("standard output: {failure}"));
     }
-    Ok(())
+    failure.map_or(Ok(()), Err)
 }
 
 fn part(text: &str) -> Result<(usize, usize), Failure> {

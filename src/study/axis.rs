@@ -109,11 +109,12 @@ fn found(value: Option<&toml::Value>) -> String {
 /// Incompatible axes.
 pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<Vec<Setting>, SceneError> {
     let counts: Vec<usize> = axes.iter().map(|a| a.values.len()).collect();
-    let picks: Vec<Vec<usize>> = match file.combine {
+    let rule = file.combine.unwrap_or_default();
+    let picks: Vec<Vec<usize>> = match rule {
         Combine::Grid => {
             let all = counts.iter().try_fold(1_usize, |n, c| n.checked_mul(*c)).filter(|n| *n <= MOST_RUNS);
             let Some(all) = all else {
-                return Err(document.error("axis", "too many settings", format!("at most {MOST_RUNS} runs")));
+                return Err(document.error("axis", "too many cases", format!("at most {MOST_RUNS} runs")));
             };
             (0..all).map(|k| mixed_radix(k, &counts)).collect()
         }
@@ -136,7 +137,7 @@ pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<V
     };
     let setting = |pick: &Vec<usize>| {
         let chosen = || axes.iter().zip(pick.iter().copied());
-        let alone = file.combine == Combine::OneAtATime;
+        let alone = rule == Combine::OneAtATime;
         let parts: Vec<String> =
             chosen().filter(|(_, v)| !alone || *v > 0).map(|(axis, v)| axis.label(v)).collect();
         let label = if parts.is_empty() { BASE.to_string() } else { parts.join(", ") };

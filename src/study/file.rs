@@ -15,12 +15,16 @@ pub struct StudyFile {
     /// Overrides of all runs.
     #[serde(default)]
     pub base: Base,
-    /// Varied parameters.
+    /// Varied parameters with listed values.
     #[serde(default)]
     pub axis: Vec<AxisTable>,
-    /// Combination of axes.
+    /// Combination of axes; default: grid.
+    pub combine: Option<Combine>,
+    /// Varied parameters with a range.
     #[serde(default)]
-    pub combine: Combine,
+    pub parameter: Vec<ParameterTable>,
+    /// Samples of the parameters.
+    pub sampling: Option<Sampling>,
     /// Repetitions with other seeds.
     pub seeds: Option<Seeds>,
     /// Reference; default: the first set.
@@ -28,15 +32,13 @@ pub struct StudyFile {
     /// Compared quantities; default: results of load cycles.
     #[serde(default)]
     pub quantity: Vec<QuantityTable>,
+    /// Measured values of quantities.
+    #[serde(default)]
+    pub target: Vec<TargetTable>,
     /// Largest error of the recommended set [-]; default 0.05.
-    #[serde(default = "five_percent")]
-    pub tolerance: f64,
+    pub tolerance: Option<f64>,
     /// Concurrent runs; default: number of cores.
     pub jobs: Option<usize>,
-}
-
-fn five_percent() -> f64 {
-    0.05
 }
 
 fn one() -> f64 {
@@ -75,6 +77,68 @@ pub enum Combine {
     List,
     /// First values, then each axis varied alone.
     OneAtATime,
+}
+
+/// Varied key with a range.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterTable {
+    /// Name; default: last part of `key`.
+    pub name: Option<String>,
+    /// Varied scene key.
+    pub key: String,
+    /// Smallest and largest value, in `unit`.
+    pub range: [f64; 2],
+    /// Unit of the range; default: SI.
+    pub unit: Option<String>,
+    /// Distribution over the range; default linear.
+    #[serde(default)]
+    pub scale: Scale,
+}
+
+/// Distribution over a range.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Uniform in the value.
+    #[default]
+    Linear,
+    /// Uniform in its logarithm.
+    Log,
+}
+
+/// Samples of all parameters.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sampling {
+    /// Method.
+    pub method: Method,
+    /// Number of samples.
+    pub samples: usize,
+    /// Seed; default: 1, or the Sobol sequence without shift.
+    pub seed: Option<u64>,
+}
+
+/// Sampling method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Random Latin hypercube.
+    LatinHypercube,
+    /// Sobol sequence, with a seed under a random digital shift.
+    Sobol,
+}
+
+/// Measured value of a quantity.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TargetTable {
+    /// Name of the quantity.
+    pub quantity: String,
+    /// Value, in the unit of the quantity.
+    pub value: f64,
+    /// Standard deviation, in the unit of the quantity.
+    pub tolerance: f64,
 }
 
 /// Repetitions with other seeds.
@@ -121,8 +185,7 @@ pub struct QuantityTable {
     /// Logarithmic abscissa; default false.
     pub log: Option<bool>,
     /// Error norm; default relative.
-    #[serde(default)]
-    pub norm: Norm,
+    pub norm: Option<Norm>,
     /// Scale of relative errors, above 0; default: the reference.
     pub scale: Option<f64>,
     /// Exact value instead of the reference.

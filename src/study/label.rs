@@ -1,45 +1,58 @@
-//! Directory names from labels.
+//! File names from labels.
 
+use std::collections::BTreeMap;
 use trackbed_run::Hash;
 
 /// Longest name [bytes]; most file systems allow 255 with extension.
 const LONGEST: usize = 100;
 
-/// Returns the directory name of a run.
-///
-/// Plain labels are kept, with `_` between parts; others get a hash.
-pub fn folder_name(label: &str) -> String {
-    let joined = label.replace(", ", "_");
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._-=+".contains(c);
-    let safe: String = joined.chars().map(|c| if plain(c) { c } else { '-' }).collect();
-    // Not hidden, no parent, distinct on case-insensitive file systems.
-    let kept = safe == joined && safe.len() <= LONGEST && !safe.starts_with('.') && !safe.is_empty();
-    if kept && !joined.chars().any(|c| c.is_ascii_uppercase()) && !label.contains('_') {
-        return safe;
-    }
-    let mut hash = Hash::default();
-    hash.add(label.as_bytes());
-    let start: String = safe.trim_start_matches('.').chars().take(LONGEST).collect();
-    format!("{start}-{:.8}", hash.hex())
+/// Returns distinct file names: `_` between the parts of a label, `-` for characters other than letters, digits and
+/// `._=+`. Only equal and cut names end in a hash.
+pub fn file_names<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let labels: Vec<&str> = labels.collect();
+    let plain: Vec<String> = labels.iter().map(|label| file_name(label)).collect();
+    // Case-insensitive file systems.
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    plain.iter().for_each(|name| *counts.entry(name.to_lowercase()).or_default() += 1);
+    let distinct = |(name, label): (&String, &&str)| {
+        if counts[&name.to_lowercase()] == 1 && name.len() < LONGEST && !name.is_empty() {
+            return name.clone();
+        }
+        let mut hash = Hash::default();
+        hash.add(label.as_bytes());
+        format!("{name}-{:.8}", hash.hex())
+    };
+    plain.iter().zip(&labels).map(distinct).collect()
+}
+
+fn file_name(label: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "._-=+".contains(c) { c } else { '-' };
+    let name: String = label.replace(", ", "_").chars().map(plain).collect();
+    // Not hidden, no parent.
+    name.trim_start_matches('.').chars().take(LONGEST).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn names(labels: &[&str]) -> Vec<String> {
+        file_names(labels.iter().copied())
+    }
+
     #[test]
     fn names_are_plain_and_distinct() {
-        assert_eq!(folder_name("step=0.4, count=300"), "step=0.4_count=300");
-        assert_eq!(folder_name("base"), "base");
+        let plain = ["step=0.4_count=300", "base", "pressure=60-kPa_seed=1", "law=A_B"];
+        assert_eq!(names(&["step=0.4, count=300", "base", "pressure=60 kPa, seed=1", "law=A_B"]), plain);
         let labels =
             ["a=b c", "a=b/c", "a=b-c", "a=../c", "a=B", "a=b", "a=b, c", "a=b_c", "..", "", "ü=1", "ä=1"];
-        let mut names: Vec<String> = labels.iter().map(|l| folder_name(l).to_lowercase()).collect();
-        assert!(names.iter().all(|n| !n.starts_with('.') && !n.contains('/') && n.is_ascii()), "{names:?}");
-        names.sort();
-        names.dedup();
-        assert_eq!(names.len(), labels.len());
+        let mut all: Vec<String> = names(&labels).iter().map(|name| name.to_lowercase()).collect();
+        assert!(all.iter().all(|n| !n.starts_with('.') && !n.contains('/') && n.is_ascii()), "{all:?}");
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), labels.len());
         let long = "x".repeat(400);
-        assert!(folder_name(&long).len() <= LONGEST + 9);
-        assert_ne!(folder_name(&long), folder_name(&long[1..]));
+        let cut = names(&[&long, &long[1..]]);
+        assert!(cut[0].len() <= LONGEST + 9 && cut[0] != cut[1]);
     }
 }

@@ -1,23 +1,36 @@
-//! Studies: variations of a scene, compared in error and cost.
+//! Studies: variations of a scene, compared in error and cost, or in their response to parameters.
 //!
 //! A `file` is resolved to a `plan`, run as separate processes (`schedule`) in a directory (`store`). Tables
-//! (`outcome`) depend only on that directory, so several machines may share a study.
+//! (`outcome`, `analysis`) depend only on that directory, so several machines may share a study.
 
+mod analysis;
 mod axis;
 mod curve;
+mod design;
+mod factor;
+mod figure;
 mod file;
 mod label;
+mod layout;
 mod outcome;
+mod page;
+mod parameter;
 mod plan;
 mod plot;
 mod process;
 mod quantity;
 mod sample;
 mod schedule;
+mod statistics;
 mod store;
+mod summary;
 mod table;
+mod target;
 mod text;
 
+pub use page::{is_study, write as report};
+
+use analysis::Analysis;
 use file::StudyFile;
 use outcome::Outcome;
 use plan::{Plan, Run};
@@ -57,6 +70,15 @@ pub struct Options {
     pub interrupt: Interrupt,
 }
 
+/// Result of a study.
+#[derive(Debug)]
+pub struct Finished {
+    /// Tables for the terminal.
+    pub text: String,
+    /// Failed runs that the exit code reports.
+    pub failure: Option<Failure>,
+}
+
 /// Validates a scene with overrides, like `check`.
 pub type Check<'a> = &'a dyn Fn(&Path, &[String]) -> Result<(), Failure>;
 
@@ -69,11 +91,11 @@ pub fn count_runs(file: &Path) -> Result<usize, Failure> {
     Ok(Plan::new(&document, &document.read::<StudyFile>()?)?.runs.len())
 }
 
-/// Runs a study and returns its report.
+/// Runs a study and returns its tables.
 ///
 /// # Errors
 /// Input errors, interrupts, a failed reference.
-pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<String, Failure> {
+pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finished, Failure> {
     let document = Document::open(file)?;
     let parsed: StudyFile = document.read()?;
     let plan = Plan::new(&document, &parsed)?;
@@ -95,10 +117,9 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Strin
     if !options.merge {
         carry_out(file, &plan, &store, &hashes, options)?;
         if let Some((k, n)) = options.part {
-            return Ok(format!(
-                "{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n",
-                dir.display()
-            ));
+            let text =
+                format!("{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n", dir.display());
+            return Ok(Finished { text, failure: None });
         }
     }
     let found = plan.runs.iter().zip(&hashes).map(|(run, hash)| store.look(run, hash));
@@ -196,6 +217,9 @@ fn carry_out(
         message::say(&format!("{kept} of {total} runs exist"));
     }
     store.make()?;
+    if !plan.has_reference() {
+        store::write(&store.dir().join("samples.csv"), &csv(table::samples(plan))?)?;
+    }
     options.interrupt.end_at_once(false);
     let (scene, interrupt, quiet) = (plan.scene.as_path(), &options.interrupt, options.quiet);
     let schedule = Schedule { scene, store, jobs, threads, interrupt, quiet };
@@ -247,15 +271,19 @@ fn shares(plan: &Plan, options: &Options, runs: usize) -> Result<(usize, usize),
     Ok((jobs, threads))
 }
 
-fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure> {
+fn csv(text: Result<String, csv::Error>) -> Result<String, Failure> {
+    text.map_err(|e| Failure::Other(e.to_string()))
+}
+
+fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<Finished, Failure> {
     let outcome = Outcome::of(plan, store, found);
-    let dir = store.dir();
-    let csv = table::csv(plan, &outcome).map_err(|e| Failure::Other(e.to_string()))?;
-    store::write(&dir.join("study.csv"), &csv)?;
-    store::write(&dir.join("study.json"), &table::json(plan, &outcome))?;
-    store::write(&dir.join("study.md"), &text::markdown(plan, &outcome))?;
-    plot::pareto(plan, &outcome).write(&dir.join("pareto.svg"))?;
-    let mut lines = format!("{}\n{}", plan.title, text::printed(plan, &outcome, PRINTED));
+    let analysis = Analysis::of(plan, &outcome);
+    write_files(plan, store, &outcome, &analysis)?;
+    let table = match plan.has_reference() {
+        true => text::printed(plan, &outcome, PRINTED) + &summary::printed_best(&analysis),
+        false => summary::printed(&analysis, PRINTED),
+    };
+    let mut lines = format!("{}\n{table}", plan.title);
     for remark in text::remarks(plan, &outcome) {
         lines += &format!("warning: {remark}\n");
     }
@@ -265,19 +293,67 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<String, Failure
         lines +=
             &format!("{} of {} runs are missing: {}\n", labels.len(), plan.runs.len(), labels.join(", "));
     }
-    lines +=
-        &format!("{}\nTable: {}\n", text::recommendation(plan, &outcome), dir.join("study.md").display());
+    if plan.has_reference() {
+        lines += &format!("{}\n", text::recommendation(plan, &outcome));
+    }
+    lines += &format!("Table: {}\n", store.dir().join("study.md").display());
+    let failure = if plan.has_reference() { None } else { failed_runs(plan, store, found) };
     let reference = &outcome.rows[outcome.reference];
     let failed = plan
         .runs
         .iter()
         .zip(found)
         .any(|(run, found)| run.setting == outcome.reference && matches!(found, Found::Failed(_)));
-    if failed && reference.done == 0 {
-        let (dir, reasons) = (dir.display(), reference.reasons.join("; "));
+    if plan.has_reference() && failed && reference.done == 0 {
+        let (dir, reasons) = (store.dir().display(), reference.reasons.join("; "));
         return Err(Failure::Numerical(format!(
             "reference run failed, no errors in the table of {dir}: {reasons}"
         )));
     }
-    Ok(lines)
+    Ok(Finished { text: lines, failure })
+}
+
+fn write_files(plan: &Plan, store: &Store, outcome: &Outcome, analysis: &Analysis) -> Result<(), Failure> {
+    let dir = store.dir();
+    store::write(&dir.join("study.csv"), &csv(table::cases(plan, outcome, analysis))?)?;
+    store::write(&dir.join("study.json"), &table::json(plan, outcome, analysis))?;
+    let page = match plan.has_reference() {
+        true => text::markdown(plan, outcome) + &summary::sections(analysis),
+        false => summary::markdown(&plan.title, &plan.scene.display().to_string(), analysis),
+    };
+    store::write(&dir.join("study.md"), &page)?;
+    if plan.has_reference() {
+        plot::pareto(plan, outcome).write(&dir.join("pareto.svg"))?;
+    }
+    if !analysis.targets.is_empty() {
+        store::write(&dir.join("targets.csv"), &csv(table::targets(analysis))?)?;
+    }
+    if analysis.factors.is_empty() {
+        return Ok(());
+    }
+    store::write(&dir.join("sensitivity.csv"), &csv(table::sensitivities(analysis))?)?;
+    let plots: Vec<_> = figure::all(analysis).iter().map(|f| (f.title.clone(), f.file())).collect();
+    store.write_plots(&plots)
+}
+
+/// Runs that ended with an error, for the exit code.
+fn failed_runs(plan: &Plan, store: &Store, found: &[Found]) -> Option<Failure> {
+    let failed = |found: &Found| match found {
+        Found::Failed(_) => true,
+        Found::Unfinished(record, _) => record.exit_code.is_some_and(|code| code != 130),
+        _ => false,
+    };
+    let runs = plan.runs.iter().zip(found).filter(|(_, found)| failed(found));
+    let reasons: Vec<String> =
+        runs.map(|(run, found)| format!("\"{}\": {}", run.label, outcome::why(found))).collect();
+    if reasons.is_empty() {
+        return None;
+    }
+    let first = reasons.iter().take(SPELLED_OUT).cloned().collect::<Vec<_>>().join("; ");
+    let more = if reasons.len() > SPELLED_OUT { "; …" } else { "" };
+    let (count, all) = (reasons.len(), plan.runs.len());
+    let dir = store.dir().display();
+    Some(Failure::Numerical(format!(
+        "{count} of {all} runs failed, not in the tables of {dir}: {first}{more}"
+    )))
 }

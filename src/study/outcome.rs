@@ -28,13 +28,15 @@ pub struct Cell {
     /// Mean over seeds; RMS of a curve.
     pub value: Option<f64>,
     /// Standard deviation over seeds.
-    pub deviation: Option<f64>,
+    pub standard_deviation: Option<f64>,
+    /// Standard error of the value over seeds.
+    pub standard_error: Option<f64>,
     /// Error against reference or exact value.
     pub error: Option<f64>,
-    /// Standard error over seeds.
-    pub scatter: Option<f64>,
-    /// Whether the error is within the standard error.
-    pub below_scatter: bool,
+    /// Standard error of the error over seeds.
+    pub error_standard_error: Option<f64>,
+    /// Whether the error exceeds its standard error.
+    pub significant: bool,
     /// Reason for missing data.
     pub remark: Option<String>,
 }
@@ -43,7 +45,7 @@ pub struct Cell {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Label.
-    pub setting: String,
+    pub case: String,
     /// Axis value labels.
     pub levels: Vec<String>,
     /// Overrides.
@@ -96,19 +98,26 @@ impl Outcome {
         let reference = &gathered[plan.reference];
         let cells: Vec<Vec<Cell>> = gathered
             .iter()
-            .map(|g| (0..plan.quantities.len()).map(|q| cell(&plan.quantities[q], q, g, reference)).collect())
+            .map(|g| (0..plan.quantities.len()).map(|q| cell(plan, q, g, reference)).collect())
             .collect();
         let base = reference.row.cost.as_ref().and_then(|c| c.cpu_seconds);
         let mut rows: Vec<Row> = gathered.into_iter().map(|g| g.row).collect();
         for (row, cells) in rows.iter_mut().zip(cells) {
             let own = row.cost.as_ref().and_then(|c| c.cpu_seconds);
-            row.speed_up = base.zip(own).filter(|(_, own)| *own > 0.0).map(|(base, own)| base / own);
+            row.speed_up = base
+                .filter(|_| plan.has_reference())
+                .zip(own)
+                .filter(|(_, own)| *own > 0.0)
+                .map(|(base, own)| base / own);
             let over = cells.iter().zip(&plan.quantities).map(|(c, q)| Some(c.error? / q.tolerance));
             row.error_over_tolerance =
                 over.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max));
-            let good =
-                |c: &Cell, q: &Quantity| c.error.is_some_and(|e| e + c.scatter.unwrap_or(0.0) <= q.tolerance);
-            row.within = row.done == row.runs && cells.iter().zip(&plan.quantities).all(|(c, q)| good(c, q));
+            let good = |c: &Cell, q: &Quantity| {
+                c.error.is_some_and(|e| e + c.error_standard_error.unwrap_or(0.0) <= q.tolerance)
+            };
+            row.within = plan.has_reference()
+                && row.done == row.runs
+                && cells.iter().zip(&plan.quantities).all(|(c, q)| good(c, q));
             row.quantities = cells;
         }
         let recommended = cheapest(&rows);
@@ -172,7 +181,7 @@ fn gather(plan: &Plan, store: &Store, found: &[Found], setting: usize, units: &m
     let means = samples.iter().zip(&remarks).map(mean).collect();
     let Setting { label, levels, set } = plan.settings[setting].clone();
     let row = Row {
-        setting: label,
+        case: label,
         levels,
         set,
         runs: count,
@@ -223,11 +232,17 @@ fn mean_cost(costs: &[Cost]) -> Option<Cost> {
     })
 }
 
-fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered) -> Cell {
+fn cell(plan: &Plan, index: usize, own: &Gathered, reference: &Gathered) -> Cell {
+    let quantity = &plan.quantities[index];
     let remark = own.row.quantities[index].remark.clone();
     let Some(mean) = &own.means[index] else { return Cell { remark, ..Cell::default() } };
-    let deviation = curve::deviation(&own.samples[index], mean);
-    let cell = Cell { value: Some(mean.shown()), deviation, remark, ..Cell::default() };
+    let standard_deviation = curve::deviation(&own.samples[index], mean);
+    let standard_error = standard_deviation.map(|d| d / (own.samples[index].len() as f64).sqrt());
+    let cell =
+        Cell { value: Some(mean.shown()), standard_deviation, standard_error, remark, ..Cell::default() };
+    if !plan.has_reference() {
+        return cell;
+    }
     let is_reference = std::ptr::eq(own, reference);
     let variance = |of: &Gathered| {
         let deviation = of.means[index].as_ref().and_then(|mean| curve::deviation(&of.samples[index], mean));
@@ -253,9 +268,9 @@ fn cell(quantity: &Quantity, index: usize, own: &Gathered, reference: &Gathered)
         return Cell { remark: Some(remark.into()), ..cell };
     }
     let error = difference / unit;
-    let scatter = variance(own).zip(theirs).map(|(own, theirs)| (own + theirs).sqrt() / unit);
-    let below_scatter = !is_reference && scatter.is_some_and(|s| error < s);
-    Cell { error: Some(error), scatter, below_scatter, ..cell }
+    let error_standard_error = variance(own).zip(theirs).map(|(own, theirs)| (own + theirs).sqrt() / unit);
+    let significant = is_reference || error_standard_error.is_none_or(|s| error >= s);
+    Cell { error: Some(error), error_standard_error, significant, ..cell }
 }
 
 /// Returns runs not yet completed.

@@ -1,15 +1,20 @@
 //! Runs of a study: parameter sets times seeds.
 
 use super::axis::{Axis, MOST_RUNS, Setting, combine};
-use super::file::StudyFile;
-use super::label::folder_name;
+use super::factor::Factor;
+use super::file::{Combine, StudyFile};
+use super::label::file_names;
+use super::parameter;
 use super::quantity::{self, Quantity};
+use super::target::{self, Target};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use trackbed_input::scene::{Document, Problem, Scene, SceneError};
 use trackbed_io::failure::Failure;
 
 const REFERENCE: &str = "reference";
+/// Default tolerance of the recommended set [-].
+const TOLERANCE: f64 = 0.05;
 
 /// Run: set and seed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,8 +36,16 @@ pub struct Plan {
     pub title: String,
     /// Scene.
     pub scene: PathBuf,
-    /// Axis names.
+    /// Column headers of the varied parameters.
     pub axes: Vec<String>,
+    /// Varied parameters.
+    pub factors: Vec<Factor>,
+    /// Parameter values of each set; none of a separate reference.
+    pub coordinates: Vec<Vec<Option<f64>>>,
+    /// Combination of axes; none for sampled parameters.
+    pub combine: Option<Combine>,
+    /// Measured values.
+    pub targets: Vec<Target>,
     /// Parameter sets.
     pub settings: Vec<Setting>,
     /// Reference index.
@@ -53,8 +66,9 @@ impl Plan {
     /// # Errors
     /// Input errors.
     pub fn new(document: &Document, file: &StudyFile) -> Result<Plan, Failure> {
-        if !(file.tolerance > 0.0 && file.tolerance <= 1.0) {
-            return Err(document.error("tolerance", file.tolerance.to_string(), "above 0, at most 1").into());
+        let tolerance = file.tolerance.unwrap_or(TOLERANCE);
+        if !(tolerance > 0.0 && tolerance <= 1.0) {
+            return Err(document.error("tolerance", tolerance.to_string(), "above 0, at most 1").into());
         }
         if let Some(jobs) = file.jobs.filter(|n| *n == 0) {
             return Err(document.error("jobs", jobs.to_string(), "at least 1").into());
@@ -65,27 +79,86 @@ impl Plan {
         }
         let title =
             if file.title.is_empty() { format!("{}", file.scene.display()) } else { file.title.clone() };
-        let axes = (0..file.axis.len())
-            .map(|k| Axis::new(document, k, &file.axis[k]))
-            .collect::<Result<Vec<_>, _>>()?;
-        if axes.is_empty() && file.seeds.is_none() {
-            return Err(document.error("axis", "nothing", "at least one [[axis]], or [seeds]").into());
-        }
-        let mut settings = combine(document, file, &axes)?;
-        let reference = reference(document, file, &mut settings)?;
-        let mut labels = BTreeSet::new();
-        if let Some(twice) = settings.iter().find(|s| !labels.insert(s.label.as_str())) {
-            let found = format!("the setting \"{}\" twice", twice.label);
-            return Err(document.error("axis", found, "settings with distinct labels").into());
-        }
+        let cases = cases(document, file)?;
+        let Cases { axes, factors, coordinates, settings, reference, combine } = cases;
         let runs = runs(document, file, &scene, &settings)?;
         let cycles =
             scene_has_cycles(&scene, &file.base.set).map_err(|e| of_setting(document, "base", &e))?;
-        let quantities = quantity::resolve(document, &file.quantity, cycles, file.tolerance)?;
-        let axes = axes.into_iter().map(|a| a.name).collect();
-        let (tolerance, jobs) = (file.tolerance, file.jobs);
-        Ok(Plan { title, scene, axes, settings, reference, runs, quantities, tolerance, jobs })
+        let quantities = quantity::resolve(document, &file.quantity, cycles, tolerance)?;
+        if combine.is_none() {
+            quantity::reject_errors(document, &file.quantity)?;
+            let named = |factor: &Factor| quantities.iter().any(|q| q.name == factor.name);
+            if let Some(k) = factors.iter().position(named) {
+                let found = format!("{:?}, the name of a quantity", factors[k].name);
+                let place = format!("parameter.{k}.name");
+                return Err(document.error(&place, found, "distinct names").into());
+            }
+        }
+        let targets = target::resolve(document, &file.target, &quantities)?;
+        let jobs = file.jobs;
+        Ok(Plan {
+            title,
+            scene,
+            axes,
+            factors,
+            coordinates,
+            combine,
+            targets,
+            settings,
+            reference,
+            runs,
+            quantities,
+            tolerance,
+            jobs,
+        })
     }
+
+    /// Whether cases are compared with a reference.
+    pub fn has_reference(&self) -> bool {
+        self.combine.is_some()
+    }
+}
+
+struct Cases {
+    axes: Vec<String>,
+    factors: Vec<Factor>,
+    coordinates: Vec<Vec<Option<f64>>>,
+    settings: Vec<Setting>,
+    reference: usize,
+    combine: Option<Combine>,
+}
+
+fn cases(document: &Document, file: &StudyFile) -> Result<Cases, SceneError> {
+    if let Some(samples) = parameter::resolve(document, file)? {
+        let coordinates = samples.values.iter().map(|row| row.iter().copied().map(Some).collect()).collect();
+        return Ok(Cases {
+            axes: samples.factors.iter().map(Factor::head).collect(),
+            factors: samples.factors,
+            coordinates,
+            settings: samples.settings,
+            reference: 0,
+            combine: None,
+        });
+    }
+    let axes: Vec<Axis> =
+        (0..file.axis.len()).map(|k| Axis::new(document, k, &file.axis[k])).collect::<Result<Vec<_>, _>>()?;
+    if axes.is_empty() && file.seeds.is_none() {
+        let expected = "at least one [[axis]] or [[parameter]], or [seeds]";
+        return Err(document.error("axis", "nothing", expected));
+    }
+    let mut settings = combine(document, file, &axes)?;
+    let reference = reference(document, file, &mut settings)?;
+    let mut labels = BTreeSet::new();
+    if let Some(twice) = settings.iter().find(|s| !labels.insert(s.label.as_str())) {
+        let found = format!("the case \"{}\" twice", twice.label);
+        return Err(document.error("axis", found, "cases with distinct labels"));
+    }
+    let (factors, columns): (Vec<Factor>, Vec<Vec<Option<f64>>>) =
+        axes.iter().enumerate().map(|(k, axis)| Factor::of_axis(&axis.name, k, &settings)).unzip();
+    let coordinates = (0..settings.len()).map(|row| columns.iter().map(|c| c[row]).collect()).collect();
+    let axes = axes.into_iter().map(|a| a.name).collect();
+    let combine = Some(file.combine.unwrap_or_default());
+    Ok(Cases { axes, factors, coordinates, settings, reference, combine })
 }
 
 /// A separate reference is inserted first.
@@ -133,7 +206,7 @@ fn runs(
     let mut runs = Vec::new();
     for (k, setting) in settings.iter().enumerate() {
         let mut add = |label: String, set| {
-            runs.push(Run { folder: folder_name(&label), label, setting: k, set });
+            runs.push(Run { folder: String::new(), label, setting: k, set });
         };
         if seeds.is_empty() {
             add(setting.label.clone(), setting.set.clone());
@@ -153,6 +226,8 @@ fn runs(
             add(label, setting.set.iter().cloned().chain(own).collect());
         }
     }
+    let folders = file_names(runs.iter().map(|run| run.label.as_str()));
+    runs.iter_mut().zip(folders).for_each(|(run, folder)| run.folder = folder);
     Ok(runs)
 }
 

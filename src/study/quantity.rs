@@ -78,6 +78,25 @@ pub fn resolve(
     Ok(all)
 }
 
+/// Rejects keys of the comparison with a reference.
+///
+/// # Errors
+/// Input errors.
+pub fn reject_errors(document: &Document, tables: &[QuantityTable]) -> Result<(), SceneError> {
+    for (k, table) in tables.iter().enumerate() {
+        let keys = [
+            ("norm", table.norm.is_some()),
+            ("scale", table.scale.is_some()),
+            ("exact", table.exact.is_some()),
+            ("tolerance", table.tolerance.is_some()),
+        ];
+        if let Some((key, _)) = keys.iter().find(|(_, given)| *given) {
+            return Err(document.problem(&format!("quantity.{k}.{key}"), Problem::conflict("`parameter`")));
+        }
+    }
+    Ok(())
+}
+
 fn of_cycles(tolerance: f64) -> Vec<Quantity> {
     let file = "cycles.csv".to_string();
     let of = |name: &str, unit: &str, factor: f64, source: Source| Quantity {
@@ -120,7 +139,8 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
     if !table.factor.is_finite() || table.factor == 0.0 {
         return fault("factor", table.factor.to_string(), "a finite number that is not 0");
     }
-    let relative = table.norm == Norm::Relative;
+    let norm = table.norm.unwrap_or_default();
+    let relative = norm == Norm::Relative;
     if let Some(scale) = table.scale.filter(|s| !(s.is_finite() && *s > 0.0 && relative)) {
         return fault("scale", scale.to_string(), "a number above 0, with norm = \"relative\"");
     }
@@ -137,7 +157,7 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
         None if relative => study,
         None => return fault("tolerance", "nothing".into(), "a value with norm = \"absolute\""),
     };
-    let (unit, factor, norm) = (table.unit.clone(), table.factor, table.norm);
+    let (unit, factor) = (table.unit.clone(), table.factor);
     Ok(Quantity { name, unit, factor, source, norm, scale: table.scale, exact: table.exact, tolerance })
 }
 

@@ -66,7 +66,7 @@ impl Schedule<'_> {
         }
         let mut waiting = tasks.into_iter();
         let mut active: Vec<Active<'_>> = Vec::new();
-        let (mut ended, mut seen) = (0, false);
+        let (mut ended, mut failed, mut seen) = (0, 0, false);
         let mut failure = None;
         let verbosity = if self.quiet { Verbosity::Quiet } else { Verbosity::Normal };
         let mut bar = Progress::start("study", total as f64, verbosity);
@@ -92,6 +92,7 @@ impl Schedule<'_> {
                 let run = a.run;
                 let record = self.end(a, status)?;
                 ended += 1;
+                failed += usize::from(!matches!(record.exit_code, Some(0 | INTERRUPTED)));
                 self.report(&record, ended, total);
                 if record.exit_code == Some(0) && !seen && failure.is_none() {
                     seen = true;
@@ -102,11 +103,14 @@ impl Schedule<'_> {
                 }
             }
             bar.at(ended as f64, String::new);
-            bar.message(active.iter().map(|a| a.run.label.as_str()).collect::<Vec<_>>().join(" | "));
+            let failures = (failed > 0).then(|| format!("{failed} failed"));
+            let labels = active.iter().map(|a| a.run.label.clone());
+            bar.message(failures.into_iter().chain(labels).collect::<Vec<_>>().join(" | "));
             std::thread::sleep(LOOK);
         }
         if failure.is_none() {
-            bar.finish(&format!("{total} runs"));
+            let failures = if failed > 0 { format!(", {failed} failed") } else { String::new() };
+            bar.finish(&format!("{total} runs{failures}"));
         }
         failure.map_or(Ok(()), Err)
     }

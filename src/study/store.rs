@@ -4,9 +4,11 @@
 //! DIR/runs/NAME/        results of a run
 //! DIR/runs/NAME.json    its record
 //! DIR/runs/NAME.log     its standard error
-//! DIR/study.csv, study.md, study.json, pareto.svg
+//! DIR/samples.csv, study.csv, study.md, study.json, sensitivity.csv, targets.csv, pareto.svg
+//! DIR/plots/            response plots, tornado charts
 //! ```
 
+use super::label::file_names;
 use super::plan::Run;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -87,6 +89,17 @@ impl Store {
     pub fn make(&self) -> Result<(), Failure> {
         let runs = self.dir.join("runs");
         std::fs::create_dir_all(&runs).map_err(|e| Failure::Other(format!("{}: {e}", runs.display())))
+    }
+
+    /// Writes plots (title, SVG) to files with their titles as names.
+    ///
+    /// # Errors
+    /// I/O errors.
+    pub fn write_plots(&self, plots: &[(String, String)]) -> Result<(), Failure> {
+        let dir = self.dir.join("plots");
+        std::fs::create_dir_all(&dir).map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
+        let names = file_names(plots.iter().map(|(title, _)| title.as_str()));
+        plots.iter().zip(names).try_for_each(|((_, svg), name)| write(&dir.join(format!("{name}.svg")), svg))
     }
 
     /// Whether anything exists for a run.

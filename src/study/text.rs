@@ -1,6 +1,7 @@
-//! Readable tables: `study.md`, terminal.
+//! Readable tables of errors and costs.
 
 use super::file::Norm;
+use super::layout::{self, four_digits};
 use super::outcome::{Cell, Outcome, Row, cpu};
 use super::plan::Plan;
 use super::quantity::Quantity;
@@ -10,23 +11,17 @@ use super::table::head;
 pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     let mut text = format!("# {}\n\n", plan.title.replace('\n', " "));
     text += &format!(
-        "Scene `{}`, {} settings, {} runs. Errors are against `{}`{}; CPU time is user and system time of one run, on all its threads.\n\n",
+        "Scene `{}`, {} cases, {} runs. Errors are against `{}`{}; CPU time is user and system time of one run, on all its threads.\n\n",
         plan.scene.display(),
         outcome.rows.len(),
         plan.runs.len(),
-        outcome.rows[outcome.reference].setting,
+        outcome.rows[outcome.reference].case,
         exact_words(plan),
     );
     let rows = cells(plan, outcome, usize::MAX);
-    let line = |cells: &Vec<String>| {
-        let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
-        format!("| {} |\n", cells.join(" | "))
-    };
-    text += &line(&rows[0]);
-    text += &format!("|{}\n", "---|".repeat(rows[0].len()));
-    rows[1..].iter().for_each(|row| text += &line(row));
+    text += &layout::markdown(&rows);
     text += &format!("\n{}\n", recommendation(plan, outcome));
-    if outcome.rows.iter().any(|row| row.quantities.iter().any(|c| c.scatter.is_some())) {
+    if outcome.rows.iter().any(|row| row.quantities.iter().any(|c| c.error_standard_error.is_some())) {
         text += "\n± is the standard error over the seeds. An error below it is not significant.\n";
     }
     let remarks = remarks(plan, outcome);
@@ -46,19 +41,7 @@ fn exact_words(plan: &Plan) -> String {
 /// Formats the first rows for a terminal.
 pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
     let rows = cells(plan, outcome, most);
-    let columns = rows[0].len();
-    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for row in &rows {
-        let cells: Vec<String> = (0..columns)
-            .map(|k| match k {
-                1 => format!("{:<w$}", row[k], w = widths[k]),
-                _ => format!("{:>w$}", row[k], w = widths[k]),
-            })
-            .collect();
-        text += &format!("  {}\n", cells.join("  ").trim_end());
-    }
+    let mut text = layout::aligned(&rows, |k| k == 1);
     if outcome.rows.len() > most {
         text += &format!("  … {} more in study.md\n", outcome.rows.len() - most);
     }
@@ -66,14 +49,14 @@ pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
 }
 
 fn cells(plan: &Plan, outcome: &Outcome, most: usize) -> Vec<Vec<String>> {
-    let mut heads = vec!["#".to_string(), "setting".to_string()];
+    let mut heads = vec!["#".to_string(), "case".to_string()];
     for (quantity, unit) in plan.quantities.iter().zip(&outcome.units) {
         heads.extend([head(quantity, unit), "error".into()]);
     }
     heads.extend(["steps", "CPU [s]", "speed-up"].map(String::from));
     let row = |(k, row): (usize, &Row)| {
         let mark = if outcome.recommended == Some(k) { "*" } else { "" };
-        let mut cells = vec![format!("{}{mark}", k + 1), row.setting.clone()];
+        let mut cells = vec![format!("{}{mark}", k + 1), row.case.clone()];
         for (cell, quantity) in row.quantities.iter().zip(&plan.quantities) {
             cells.push(cell.value.map_or("–".into(), four_digits));
             cells.push(error_text(cell, quantity));
@@ -91,12 +74,12 @@ fn error_text(cell: &Cell, quantity: &Quantity) -> String {
         Norm::Relative => percent(value),
         Norm::Absolute => four_digits(value),
     };
-    match (cell.error, cell.scatter) {
+    match (cell.error, cell.error_standard_error) {
         (None, _) => "–".into(),
         (Some(error), None) => text(error),
-        (Some(error), Some(scatter)) => {
-            let below = if cell.below_scatter { ", not significant" } else { "" };
-            format!("{} ± {}{below}", text(error), text(scatter))
+        (Some(error), Some(own)) => {
+            let mark = if cell.significant { "" } else { ", not significant" };
+            format!("{} ± {}{mark}", text(error), text(own))
         }
     }
 }
@@ -116,18 +99,6 @@ fn plain_percent(share: f64) -> String {
     format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
 }
 
-fn four_digits(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        return "0".into();
-    }
-    if !(1e-3..1e6).contains(&size) {
-        return format!("{value:.3e}");
-    }
-    let decimals = (3 - libm::log10(size).floor() as i32).max(0) as usize;
-    format!("{value:.decimals$}")
-}
-
 /// Formats the recommendation.
 pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     let uniform = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
@@ -138,15 +109,12 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     };
     let reference = &outcome.rows[outcome.reference];
     let Some(k) = outcome.recommended else {
-        return format!("No setting is {within} for all quantities.");
+        return format!("No case is {within} for all quantities.");
     };
     let row = &outcome.rows[k];
     let others = outcome.rows.iter().enumerate().any(|(k, row)| k != outcome.reference && row.within);
     if k == outcome.reference && !others && outcome.rows.len() > 1 {
-        return format!(
-            "No setting but the reference \"{}\" is {within} for all quantities.",
-            reference.setting
-        );
+        return format!("No case but the reference \"{}\" is {within} for all quantities.", reference.case);
     }
     let largest = row.quantities.iter().zip(&plan.quantities).max_by(|a, b| {
         let over = |(cell, quantity): &(&Cell, &Quantity)| cell.error.unwrap_or(0.0) / quantity.tolerance;
@@ -160,7 +128,7 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
         None => String::new(),
     };
     let cost = cpu(row).map_or(String::new(), |s| format!(": CPU time {s:.2} s{speed}"));
-    format!("Cheapest setting {within}: \"{}\"{cost}{largest}.", row.setting)
+    format!("Cheapest case {within}: \"{}\"{cost}{largest}.", row.case)
 }
 
 /// Returns notes on the rows.
@@ -170,7 +138,7 @@ pub fn remarks(plan: &Plan, outcome: &Outcome) -> Vec<String> {
         remarks.extend(row.reasons.iter().map(|reason| format!("not in the table: {reason}")));
         for (cell, quantity) in row.quantities.iter().zip(&plan.quantities) {
             if let Some(remark) = cell.remark.as_ref().filter(|_| row.done > 0) {
-                remarks.push(format!("{}, {}: {remark}", row.setting, quantity.name));
+                remarks.push(format!("{}, {}: {remark}", row.case, quantity.name));
             }
         }
     }

@@ -8,19 +8,19 @@ use std::fs;
 use std::path::Path;
 use trackbed_coupling::track::settlement::settlement_after;
 
-struct Page {
-    sections: Vec<String>,
-    text: String,
+pub(super) struct Page {
+    pub(super) sections: Vec<String>,
+    pub(super) text: String,
     /// Full-precision numbers of tooltips.
-    numbers: Vec<f64>,
-    figures: usize,
+    pub(super) numbers: Vec<f64>,
+    pub(super) figures: usize,
     source: String,
 }
 
 impl Page {
     /// Reads a page; requires well-formed, self-contained, finite content.
     #[track_caller]
-    fn read(file: &Path) -> Page {
+    pub(super) fn read(file: &Path) -> Page {
         let source = fs::read_to_string(file).unwrap();
         let mut page = Page {
             sections: vec![],

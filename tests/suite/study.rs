@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+mod parameters;
 mod parts;
 mod refused;
+mod refused_parameters;
 mod shipped;
 
 /// Sphere against a wall at 1 m/s: half a period of a mass on a spring, stopped midway.
@@ -118,11 +120,11 @@ fn without_times(dir: &Path) -> (Vec<BTreeMap<String, String>>, serde_json::Valu
         }
     }
     let mut all = json(&dir.join("study.json"));
-    for setting in all["settings"].as_array_mut().unwrap() {
+    for case in all["cases"].as_array_mut().unwrap() {
         for key in ["cpu_seconds", "wall_seconds", "peak_memory"] {
-            setting["cost"][key].take();
+            case["cost"][key].take();
         }
-        setting["speed_up"].take();
+        case["speed_up"].take();
     }
     all["recommended"].take();
     all["front"].take();
@@ -135,7 +137,7 @@ fn errors_are_those_of_the_method() {
     let folder = folder("study_order", &steps());
     let said = trackbed(arguments(&folder, "out", &[])).good();
     let rows = table(&folder.join("out/study.csv"));
-    let labels: Vec<&str> = rows.iter().map(|r| r["setting"].as_str()).collect();
+    let labels: Vec<&str> = rows.iter().map(|r| r["case"].as_str()).collect();
     assert_eq!(labels, ["reference", "step=0.1 ms", "step=0.05 ms", "step=0.025 ms"]);
     for head in ["height error", "path error"] {
         let errors = numbers(&rows, head);
@@ -154,12 +156,12 @@ fn errors_are_those_of_the_method() {
     assert_eq!(numbers(&rows, "steps")[1..], [10.0, 20.0, 40.0]);
     assert!(numbers(&rows, "cpu [s]").iter().all(|s| *s > 0.0));
     let page = fs::read_to_string(folder.join("out/study.md")).unwrap();
-    let line = page.lines().find(|l| l.starts_with("Cheapest setting within 0.05 %")).expect("one is within");
+    let line = page.lines().find(|l| l.starts_with("Cheapest case within 0.05 %")).expect("one is within");
     assert!(said.stdout.contains(line), "{}", said.stdout);
     let all = json(&folder.join("out/study.json"));
     let recommended = all["recommended"].as_str().unwrap();
     assert!(line.contains(&format!("\"{recommended}\"")), "{line}");
-    let row = rows.iter().find(|r| r["setting"] == recommended).unwrap();
+    let row = rows.iter().find(|r| r["case"] == recommended).unwrap();
     assert_eq!(row["within"], "yes");
     let cheaper = rows.iter().filter(|r| r["within"] == "yes").map(|r| r["cpu [s]"].parse::<f64>().unwrap());
     assert!(cheaper.fold(f64::INFINITY, f64::min) == row["cpu [s]"].parse::<f64>().unwrap());
@@ -174,12 +176,12 @@ fn no_recommendation_beyond_tolerance() {
     let folder = folder("study_none", &steps().replace("tolerance = 0.0005", "tolerance = 0.00002"));
     let said = trackbed(arguments(&folder, "out", &[])).good().stdout;
     assert!(
-        said.contains("No setting but the reference \"reference\" is within 0.002 % for all quantities."),
+        said.contains("No case but the reference \"reference\" is within 0.002 % for all quantities."),
         "{said}"
     );
     folder.edit("study.toml", &format!("exact = {:?}", height()), "exact = 100");
     let said = trackbed(arguments(&folder, "out", &["--merge"])).good().stdout;
-    assert!(said.contains("No setting is within 0.002 % for all quantities."), "{said}");
+    assert!(said.contains("No case is within 0.002 % for all quantities."), "{said}");
 }
 
 #[test]
@@ -240,11 +242,11 @@ fn a_failed_run_is_a_row() {
     let folder = folder("study_failed", &text);
     let said = trackbed(arguments(&folder, "out", &["--jobs", "1"])).good();
     let rows = table(&folder.join("out/study.csv"));
-    let failed = rows.iter().find(|r| r["setting"] == "step=unstable").unwrap();
+    let failed = rows.iter().find(|r| r["case"] == "step=unstable").unwrap();
     assert_eq!((failed["done"].as_str(), failed["within"].as_str()), ("0", "no"));
     assert!(failed["reasons"].starts_with("step=unstable: failed, exit code 3: "), "{}", failed["reasons"]);
     assert!(failed["height error"].is_empty());
-    assert!(rows.iter().all(|r| r["setting"] == "step=unstable" || r["done"] == "1"));
+    assert!(rows.iter().all(|r| r["case"] == "step=unstable" || r["done"] == "1"));
     assert!(said.stdout.contains("failed, exit code 3"), "{}", said.stdout);
     let record = fs::read(folder.join("out/runs/step=unstable.json")).unwrap();
     trackbed(arguments(&folder, "out", &["--resume"])).good();
@@ -297,10 +299,10 @@ column = "grains_kinetic"
     assert!(deviation > 1e-6 * mean, "other seeds, other places: {values:?}");
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
     assert!(close(numbers(&rows, "energy [J]")[1], mean));
-    assert!(close(numbers(&rows, "energy deviation")[1], deviation));
-    let deviations = numbers(&rows, "energy deviation");
+    assert!(close(numbers(&rows, "energy standard deviation [J]")[1], deviation));
+    let deviations = numbers(&rows, "energy standard deviation [J]");
     let scatter =
         (deviations.iter().map(|d| d * d / 3.0).sum::<f64>()).sqrt() / numbers(&rows, "energy [J]")[0];
-    assert!(close(numbers(&rows, "energy scatter")[1], scatter));
+    assert!(close(numbers(&rows, "energy error standard error")[1], scatter));
     assert!(said.contains("not significant"), "{said}");
 }

@@ -109,10 +109,8 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
 /// Dissipation rate since the last call [W].
 fn dissipation_rate(state: &mut State) -> f64 {
     let balance = &state.balance;
-    let now = [
-        state.time,
-        balance.dissipated_dashpot + balance.dissipated_friction + balance.dissipated_bonds,
-    ];
+    let now =
+        [state.time, balance.dissipated_dashpot + balance.dissipated_friction + balance.dissipated_bonds];
     let [elapsed, dissipated] = [now[0] - state.step_size.before[0], now[1] - state.step_size.before[1]];
     state.step_size.before = now;
     if elapsed > 0.0 { (dissipated / elapsed).max(0.0) } else { 0.0 }

@@ -3,8 +3,8 @@
 //! Each of the `sections` is omitted without data, so incomplete runs are reported.
 
 mod data;
-mod page;
-mod plot;
+pub mod page;
+pub mod plot;
 mod quantity;
 mod sections;
 
@@ -38,6 +38,26 @@ const MARK: &str = "; report by trackbed ";
 /// # Errors
 /// Input and I/O errors.
 pub fn write(options: &Options) -> Result<PathBuf, Failure> {
+    if let Some(load) = options.axle_load.filter(|t| !(*t > 0.0 && *t <= 100.0)) {
+        return Err(Failure::Input(format!("--axle-load: found {load}, expected above 0, at most 100 t")));
+    }
+    let out = output_file(options)?;
+    let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
+    data::distinguish(&mut runs);
+    let title = options.title.clone().unwrap_or_else(|| title(&runs));
+    let whose = match runs.as_slice() {
+        [run] => results_in(&run.dir),
+        _ => "Results of several runs".into(),
+    };
+    save(&out, &title, &whose, &sections::all(&runs, options.axle_load))?;
+    Ok(out)
+}
+
+/// Returns the output file, if it may be written.
+///
+/// # Errors
+/// Missing or invalid `--out`, an existing file that is no report.
+pub fn output_file(options: &Options) -> Result<PathBuf, Failure> {
     let out = match (&options.out, options.folders.as_slice()) {
         (Some(out), _) => out.clone(),
         (None, [dir]) => dir.join("report.html"),
@@ -55,20 +75,25 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         let found = out.display();
         return Err(Failure::Input(format!("--out: found the directory {found}, expected a file")));
     }
-    if let Some(load) = options.axle_load.filter(|t| !(*t > 0.0 && *t <= 100.0)) {
-        return Err(Failure::Input(format!("--axle-load: found {load}, expected above 0, at most 100 t")));
-    }
     if out.exists() && !options.force && !is_report(&out) {
         let found = out.display();
         let expected = "a new file, a report, or --force to overwrite it";
         return Err(Failure::Input(format!("{found}: found an existing file, expected {expected}")));
     }
-    let mut runs = options.folders.iter().map(|dir| RunData::read(dir)).collect::<Result<Vec<_>, _>>()?;
-    data::distinguish(&mut runs);
-    let title = options.title.clone().unwrap_or_else(|| title(&runs));
-    let text = page::page(&title, &head(&runs), &sections::all(&runs, options.axle_load));
-    put(&out, &text)?;
     Ok(out)
+}
+
+/// Returns the origin of the results of a directory.
+pub fn results_in(dir: &Path) -> String {
+    format!("Results in {}", page::shown_path(dir).display())
+}
+
+/// Writes a page of `sections`; `whose`: origin of the results.
+///
+/// # Errors
+/// I/O errors.
+pub fn save(out: &Path, title: &str, whose: &str, sections: &[page::Section]) -> Result<(), Failure> {
+    put(out, &page::page(title, &head(whose), sections))
 }
 
 fn is_report(file: &Path) -> bool {
@@ -90,11 +115,7 @@ fn title(runs: &[RunData]) -> String {
     }
 }
 
-fn head(runs: &[RunData]) -> Markup {
-    let whose = match runs {
-        [run] => format!("Results in {}", page::shown_path(&run.dir).display()),
-        _ => "Results of several runs".into(),
-    };
+fn head(whose: &str) -> Markup {
     let version = env!("CARGO_PKG_VERSION");
     page::paragraph(&format!(
         "{whose}{MARK}{version}. Hover over a value to see it in SI units, as in the files."

@@ -4,7 +4,7 @@
 //! and markers.
 
 mod draw;
-mod ruler;
+pub mod ruler;
 
 use super::quantity::{Scale, scale};
 use maud::{Markup, html};

@@ -1,0 +1,125 @@
+//! Parameters with a range, and their samples.
+
+use super::axis::{MOST_RUNS, Setting};
+use super::design::{SOBOL_DIMENSIONS, latin_hypercube, sobol};
+use super::factor::Factor;
+use super::file::{Method, ParameterTable, Sampling, Scale, StudyFile};
+use trackbed_input::scene::{Document, Problem, SceneError};
+
+/// Samples of the parameters.
+#[derive(Debug)]
+pub struct Samples {
+    /// Parameters.
+    pub factors: Vec<Factor>,
+    /// Values by sample.
+    pub values: Vec<Vec<f64>>,
+    /// Cases.
+    pub settings: Vec<Setting>,
+}
+
+/// Resolves parameters and samples; none without parameters.
+///
+/// # Errors
+/// Input errors.
+pub fn resolve(document: &Document, file: &StudyFile) -> Result<Option<Samples>, SceneError> {
+    let Some(sampling) = &file.sampling else {
+        return match file.parameter.is_empty() {
+            true => Ok(None),
+            false => Err(document.problem("parameter", Problem::requirement("`sampling`"))),
+        };
+    };
+    if file.parameter.is_empty() {
+        return Err(document.problem("sampling", Problem::requirement("`parameter`")));
+    }
+    let others = [
+        ("axis", !file.axis.is_empty()),
+        ("combine", file.combine.is_some()),
+        ("reference", file.reference.is_some()),
+        ("tolerance", file.tolerance.is_some()),
+    ];
+    if let Some((key, _)) = others.iter().find(|(_, given)| *given) {
+        return Err(document.problem(key, Problem::conflict("`parameter`")));
+    }
+    let tables = file.parameter.iter().enumerate();
+    let factors = tables.map(|(k, table)| factor(document, k, table)).collect::<Result<Vec<_>, _>>()?;
+    for (k, factor) in factors.iter().enumerate() {
+        if factors[..k].iter().any(|earlier| earlier.name == factor.name) {
+            let found = format!("\"{}\" twice", factor.name);
+            return Err(document.error(&format!("parameter.{k}.name"), found, "distinct names"));
+        }
+    }
+    let points = points(document, sampling, factors.len())?;
+    let value = |factor: &Factor, u: f64| {
+        let [low, high] = factor.range;
+        let value = match factor.log {
+            true => low * libm::pow(high / low, u),
+            false => low + u * (high - low),
+        };
+        value.clamp(low, high)
+    };
+    let values: Vec<Vec<f64>> =
+        points.iter().map(|p| factors.iter().zip(p).map(|(f, u)| value(f, *u)).collect()).collect();
+    let settings = values.iter().enumerate().map(|(k, row)| setting(file, &factors, k, row)).collect();
+    Ok(Some(Samples { factors, values, settings }))
+}
+
+fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<Factor, SceneError> {
+    let fault = |key: &str, found: String, expected: &str| {
+        Err(document.error(&format!("parameter.{index}.{key}"), found, expected))
+    };
+    if table.key.trim().is_empty() || table.key.contains('=') {
+        return fault("key", format!("{:?}", table.key), "a key of the scene");
+    }
+    let last = table.key.rsplit('.').next().unwrap_or(&table.key);
+    let name = table.name.clone().unwrap_or_else(|| last.into());
+    if name.trim().is_empty() || name.contains(['=', ',', '|', '"', '\n']) {
+        return fault("name", format!("{name:?}"), "a name without = , | or quotes");
+    }
+    let unit = table.unit.clone().unwrap_or_default();
+    if unit.chars().any(|c| c.is_control() || "\"\\[]".contains(c)) {
+        return fault("unit", format!("{unit:?}"), "a unit such as \"GPa\"");
+    }
+    let [low, high] = table.range;
+    let found = || format!("[{low:?}, {high:?}]");
+    if !(low.is_finite() && high.is_finite() && low < high) {
+        return fault("range", found(), "two finite numbers, ascending");
+    }
+    if !(high - low).is_finite() {
+        return fault("range", found(), "a smaller range");
+    }
+    let log = table.scale == Scale::Log;
+    if log && !(low > 0.0 && (high / low).is_finite()) {
+        return fault("range", found(), "two numbers above 0 with scale = \"log\"");
+    }
+    Ok(Factor { name, unit, log, range: table.range, categories: Vec::new() })
+}
+
+fn points(document: &Document, sampling: &Sampling, dimensions: usize) -> Result<Vec<Vec<f64>>, SceneError> {
+    let samples = sampling.samples;
+    if !(2..=MOST_RUNS).contains(&samples) {
+        let expected = format!("2 to {MOST_RUNS}");
+        return Err(document.error("sampling.samples", samples.to_string(), expected));
+    }
+    match sampling.method {
+        Method::LatinHypercube => Ok(latin_hypercube(samples, dimensions, sampling.seed.unwrap_or(1))),
+        Method::Sobol if dimensions > SOBOL_DIMENSIONS => {
+            let expected = format!("at most {SOBOL_DIMENSIONS} with method = \"sobol\"");
+            Err(document.error("parameter", format!("{dimensions} parameters"), expected))
+        }
+        Method::Sobol => Ok(sobol(samples, dimensions, sampling.seed)),
+    }
+}
+
+fn setting(file: &StudyFile, factors: &[Factor], index: usize, values: &[f64]) -> Setting {
+    let assignment = |(table, (factor, value)): (&ParameterTable, (&Factor, &f64))| {
+        let quote = if factor.unit.is_empty() { "" } else { "\"" };
+        let text = format!("{value:?} {}", factor.unit);
+        format!("{}={quote}{}{quote}", table.key, text.trim_end())
+    };
+    let own = file.parameter.iter().zip(factors.iter().zip(values)).map(assignment);
+    Setting {
+        label: format!("sample={:03}", index + 1),
+        levels: values.iter().map(ToString::to_string).collect(),
+        set: file.base.set.iter().cloned().chain(own).collect(),
+    }
+}
