@@ -174,7 +174,6 @@ fn settlement_laws_of_many_cycles() {
         "deposition.max_time=0.3",
         "deposition.level=0.15",
         "track.load.cycles=24",
-        "time.grain_step_fraction=0.6",
         "track.load.frequency=\"80 Hz\"",
         "track.load.rest=0.02",
         "track.load.ramp=0.02",
