@@ -118,7 +118,9 @@ impl Maker<'_> {
             self.used("nstep", "time.end = nstep x step of the deck");
             self.used(
                 "icont",
-                &format!("that step: contact time {contact:.3e} s / icont; that of trackbed follows the contacts"),
+                &format!(
+                    "that step: contact time {contact:.3e} s / icont; that of trackbed follows the contacts"
+                ),
             );
             self.left("Tstrain", "CTime selects nstep as the end of the run");
         }
