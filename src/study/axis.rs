@@ -113,7 +113,7 @@ pub fn combine(document: &Document, file: &StudyFile, axes: &[Axis]) -> Result<V
         Combine::Grid => {
             let all = counts.iter().try_fold(1_usize, |n, c| n.checked_mul(*c)).filter(|n| *n <= MOST_RUNS);
             let Some(all) = all else {
-                return Err(document.error("axis", "too many settings", format!("at most {MOST_RUNS} runs")));
+                return Err(document.error("axis", "too many cases", format!("at most {MOST_RUNS} runs")));
             };
             (0..all).map(|k| mixed_radix(k, &counts)).collect()
         }

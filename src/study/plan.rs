@@ -75,8 +75,8 @@ impl Plan {
         let reference = reference(document, file, &mut settings)?;
         let mut labels = BTreeSet::new();
         if let Some(twice) = settings.iter().find(|s| !labels.insert(s.label.as_str())) {
-            let found = format!("the setting \"{}\" twice", twice.label);
-            return Err(document.error("axis", found, "settings with distinct labels").into());
+            let found = format!("the case \"{}\" twice", twice.label);
+            return Err(document.error("axis", found, "cases with distinct labels").into());
         }
         let runs = runs(document, file, &scene, &settings)?;
         let cycles =

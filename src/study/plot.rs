@@ -33,7 +33,7 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
     let zero = place(reference).is_some_and(|p| p[1] == 0.0);
     let groups = vec![
         group("front", Mark::Circle, true, front.iter().map(shown).collect()),
-        group("other settings", Mark::Square, false, of(&|k| k != reference && !outcome.front.contains(&k))),
+        group("other cases", Mark::Square, false, of(&|k| k != reference && !outcome.front.contains(&k))),
         group(
             if zero { "reference (error 0)" } else { "reference" },
             Mark::Diamond,

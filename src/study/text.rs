@@ -10,7 +10,7 @@ use super::table::head;
 pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     let mut text = format!("# {}\n\n", plan.title.replace('\n', " "));
     text += &format!(
-        "Scene `{}`, {} settings, {} runs. Errors are against `{}`{}; CPU time is user and system time of one run, on all its threads.\n\n",
+        "Scene `{}`, {} cases, {} runs. Errors are against `{}`{}; CPU time is user and system time of one run, on all its threads.\n\n",
         plan.scene.display(),
         outcome.rows.len(),
         plan.runs.len(),
@@ -66,7 +66,7 @@ pub fn printed(plan: &Plan, outcome: &Outcome, most: usize) -> String {
 }
 
 fn cells(plan: &Plan, outcome: &Outcome, most: usize) -> Vec<Vec<String>> {
-    let mut heads = vec!["#".to_string(), "setting".to_string()];
+    let mut heads = vec!["#".to_string(), "case".to_string()];
     for (quantity, unit) in plan.quantities.iter().zip(&outcome.units) {
         heads.extend([head(quantity, unit), "error".into()]);
     }
@@ -138,13 +138,13 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
     };
     let reference = &outcome.rows[outcome.reference];
     let Some(k) = outcome.recommended else {
-        return format!("No setting is {within} for all quantities.");
+        return format!("No case is {within} for all quantities.");
     };
     let row = &outcome.rows[k];
     let others = outcome.rows.iter().enumerate().any(|(k, row)| k != outcome.reference && row.within);
     if k == outcome.reference && !others && outcome.rows.len() > 1 {
         return format!(
-            "No setting but the reference \"{}\" is {within} for all quantities.",
+            "No case but the reference \"{}\" is {within} for all quantities.",
             reference.setting
         );
     }
@@ -160,7 +160,7 @@ pub fn recommendation(plan: &Plan, outcome: &Outcome) -> String {
         None => String::new(),
     };
     let cost = cpu(row).map_or(String::new(), |s| format!(": CPU time {s:.2} s{speed}"));
-    format!("Cheapest setting {within}: \"{}\"{cost}{largest}.", row.setting)
+    format!("Cheapest case {within}: \"{}\"{cost}{largest}.", row.setting)
 }
 
 /// Returns notes on the rows.

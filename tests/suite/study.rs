@@ -154,7 +154,7 @@ fn errors_are_those_of_the_method() {
     assert_eq!(numbers(&rows, "steps")[1..], [10.0, 20.0, 40.0]);
     assert!(numbers(&rows, "cpu [s]").iter().all(|s| *s > 0.0));
     let page = fs::read_to_string(folder.join("out/study.md")).unwrap();
-    let line = page.lines().find(|l| l.starts_with("Cheapest setting within 0.05 %")).expect("one is within");
+    let line = page.lines().find(|l| l.starts_with("Cheapest case within 0.05 %")).expect("one is within");
     assert!(said.stdout.contains(line), "{}", said.stdout);
     let all = json(&folder.join("out/study.json"));
     let recommended = all["recommended"].as_str().unwrap();
@@ -174,12 +174,12 @@ fn no_recommendation_beyond_tolerance() {
     let folder = folder("study_none", &steps().replace("tolerance = 0.0005", "tolerance = 0.00002"));
     let said = trackbed(arguments(&folder, "out", &[])).good().stdout;
     assert!(
-        said.contains("No setting but the reference \"reference\" is within 0.002 % for all quantities."),
+        said.contains("No case but the reference \"reference\" is within 0.002 % for all quantities."),
         "{said}"
     );
     folder.edit("study.toml", &format!("exact = {:?}", height()), "exact = 100");
     let said = trackbed(arguments(&folder, "out", &["--merge"])).good().stdout;
-    assert!(said.contains("No setting is within 0.002 % for all quantities."), "{said}");
+    assert!(said.contains("No case is within 0.002 % for all quantities."), "{said}");
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn keys_and_values_of_a_study() {
     let line = "study.toml:8: axis.0.values: found no value, expected at least one";
     refused("[\"0.1 ms\", \"0.05 ms\", \"0.025 ms\"]", "[]", line);
     let line =
-        "study.toml:5: axis: found the setting \"step=0.1 ms\" twice, expected settings with distinct labels";
+        "study.toml:5: axis: found the case \"step=0.1 ms\" twice, expected cases with distinct labels";
     refused("\"0.05 ms\"", "\"0.1 ms\"", line);
     let line = "study.toml:13: quantity.0.colum: found the unknown key `colum`, expected `column`";
     refused("column = \"ball_z\"\nscale", "colum = \"ball_z\"\nscale", line);
