@@ -237,7 +237,7 @@ fn k0_of_gravity() {
 #[test]
 fn k0_missing() {
     plastic().set("solid.initial_stress={method=\"k0\"}").refused(
-        "--set: solid.initial_stress.k0: found nothing, expected a value, or one of its own for base",
+        "--set: solid.initial_stress.k0: found nothing, expected a value, or a separate one for base",
     );
 }
 
