@@ -391,7 +391,7 @@ pub enum StoneCommand {
     },
 }
 
-/// What rough stones are like, and where they go.
+/// Shape, number and library of rough stones.
 #[derive(Debug, Args)]
 pub struct RoughArgs {
     /// Number of stones.
@@ -423,7 +423,7 @@ pub struct RoughArgs {
     pub force: bool,
 }
 
-/// What stones are made of.
+/// Kind of stones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum StoneKind {
     /// Overlapping spheres, rigid.

@@ -33,7 +33,7 @@ pub enum DampingError {
     },
     /// Ratios that need a negative constant, which would add energy.
     #[error(
-        "ratios {ratios:?} at {frequencies:?} Hz ask for a negative damping constant (alpha_m = {alpha_m} 1/s, \
+        "ratios {ratios:?} at {frequencies:?} Hz require a negative damping constant (alpha_m = {alpha_m} 1/s, \
          beta_k = {beta_k} s)"
     )]
     Negative {

@@ -43,7 +43,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "[PART=]NAME")]
     pub colour_map: Vec<String>,
     /// Opacity from 0 to 1 [default: 1; boundary: 0.25].
-    #[arg(long, value_name = "[PART=]SHARE")]
+    #[arg(long, value_name = "[PART=]FRACTION")]
     pub opacity: Vec<String>,
     /// Range to keep [m], as x=-1:1, or of one part as grains:y=0:.
     #[arg(long, value_name = "[PART:]AXIS=LOW:HIGH", allow_hyphen_values = true)]

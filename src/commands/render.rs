@@ -30,8 +30,8 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     })?;
     let what = match (&frames[..], &times[..]) {
         ([], _) => "before the run".to_string(),
-        ([frame], [time]) => format!("frame {frame}, t = {time} s"),
-        _ => format!("{} frames, t = {} to {} s", frames.len(), times[0], times[times.len() - 1]),
+        ([frame], [time]) => format!("frame {frame}, t = {time:.4} s"),
+        _ => format!("{} frames, t = {:.4} to {:.4} s", frames.len(), times[0], times[times.len() - 1]),
     };
     print(&format!("{}: {} x {} pixels, {what}\n", file.display(), size[0], size[1]))
 }

@@ -360,7 +360,7 @@ pub mod fragments {
 /// Columns of `origins.csv`.
 pub mod origins {
     columns! { "origins.csv";
-        ID: Scalar "id" "" "number of the grain";
+        ID: Scalar "id" "" "index of the grain";
         X0: Scalar "x0" "m" "position at the start";
         Y0: Scalar "y0" "m" "position at the start";
         Z0: Scalar "z0" "m" "position at the start";

@@ -9,7 +9,7 @@ use trackbed_io::failure::Failure;
 /// Returns the initial stress state, and the fraction of weight that it balances.
 ///
 /// # Errors
-/// No equilibrium.
+/// Equilibrium not converged.
 pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State, f64), Failure> {
     let mut state = undeformed(model);
     let Some(InitialStressPlan { kind, steps, loads }) = &part.initial_stress else {
@@ -36,7 +36,7 @@ pub fn state(part: &SolidPart, model: &Model, gravity: &[f64]) -> Result<(State,
 /// Returns the initial state in equilibrium with `load` [N], shape `[3·nodes]`, applied in steps.
 ///
 /// # Errors
-/// No equilibrium.
+/// Equilibrium not converged.
 pub fn under_load(part: &SolidPart, model: &Model, gravity: &[f64], load: &[f64]) -> Result<State, Failure> {
     let (mut state, carried) = state(part, model, gravity)?;
     let control = StepControl { initial: 0.25, min: 1.0 / 1024.0, max: 1.0, target_iterations: 40 };

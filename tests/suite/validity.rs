@@ -198,12 +198,12 @@ fn measurement_box_beside_bed_warns() {
         ("[[0.02, 0.02, -0.05], [0.18, 0.18, 0.05]]", "side at z = -0.0500 m, beyond the bed"),
     ] {
         let (found, _) = summary("validity-box-beside", BED, &[&format!("measure.0.box={corners}")]);
-        assert_eq!(status(&found, "fraction of measure core beside the bed"), "warned", "{found:#}");
+        assert_eq!(status(&found, "fraction of measure core outside the bed"), "warned", "{found:#}");
         assert!(warned(&found, &format!("measure core: {at}")), "{found:#}");
     }
     let whole = "measure.0.box=[[0, 0, 0], [0.2, 0.2, 0.05]]";
     let (whole, _) = summary("validity-box-whole", BED, &[whole]);
-    assert_eq!(status(&whole, "fraction of measure core beside the bed"), "passed", "{whole:#}");
+    assert_eq!(status(&whole, "fraction of measure core outside the bed"), "passed", "{whole:#}");
 }
 
 /// Rows within the longest window shorten it, but not the run.

@@ -75,7 +75,7 @@ impl ConicalDamage {
 
 impl NormalLaw for ConicalDamage {
     const NAME: &'static str = "conical_damage";
-    const SOURCE: &'static str = "contact: elastic spheres whose corners crush, Harkness and others, Granular Matter 18:65, 2016; Suhr & Six, \
+    const SOURCE: &'static str = "contact: conical damage of elastic spheres, Harkness and others, Granular Matter 18:65, 2016; Suhr & Six, \
                                   Granular Matter 19:64, 2017";
     const KEYS: &'static [&'static str] = &["young", "poisson", "corner_strength", "corner_angle"];
     const DASHPOT: bool = true;

@@ -46,7 +46,7 @@ pub(super) const NAME: LawName = LawName("rough");
 
 impl<N: ConstantStiffness> TangentialLaw<N> for Rough {
     const NAME: &'static str = NAME.0;
-    const SOURCE: &'static str = "contact, tangential: friction that falls with the pressure, after Suhr & Six, Powder Technol. 294, 2016, \
+    const SOURCE: &'static str = "contact, tangential: pressure-dependent friction, after Suhr & Six, Powder Technol. 294, 2016, \
                                   and Barton & Kjaernsli, J. Geotech. Eng. Div. ASCE 107, 1981";
     const KEYS: &'static [&'static str] = &["tangential_ratio", "asperity_friction"];
 

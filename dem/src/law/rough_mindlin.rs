@@ -34,7 +34,7 @@ const NAME: LawName = LawName("mindlin");
 
 impl TangentialLaw<ConicalDamage> for RoughMindlin {
     const NAME: &'static str = NAME.0;
-    const SOURCE: &'static str = "contact, tangential: Mindlin, J. Appl. Mech. 16, 1949; friction that falls with the pressure, Suhr & Six, \
+    const SOURCE: &'static str = "contact, tangential: Mindlin, J. Appl. Mech. 16, 1949; pressure-dependent friction, Suhr & Six, \
                                   Powder Technol. 294, 2016";
     const KEYS: &'static [&'static str] = &["young", "poisson", "asperity_friction"];
 

@@ -72,7 +72,7 @@ impl LawInfo {
 
 pub(super) fn title([normal, tangential]: [&str; 2]) -> &'static str {
     let row = COMBINATIONS.iter().find(|c| c.normal == normal && c.tangential == tangential);
-    row.map_or("a law of its own", |c| c.title)
+    row.map_or("a separate law", |c| c.title)
 }
 
 /// Returns a normal law by name.

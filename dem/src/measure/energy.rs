@@ -40,8 +40,9 @@ impl Energies {
         self.elastic_normal + self.elastic_tangential + self.elastic_bonds + self.elastic_mounts
     }
 
-    /// Total energy [J]. Minus [`Ledger::work`](crate::base::balance_terms::Ledger::work) plus
-    /// [`Ledger::dissipated`](crate::base::balance_terms::Ledger::dissipated) it is constant to second order in dt.
+    /// Total energy [J]. Minus [`BalanceTerms::work`](crate::base::balance_terms::BalanceTerms::work) plus
+    /// [`BalanceTerms::dissipated`](crate::base::balance_terms::BalanceTerms::dissipated) it is
+    /// constant to second order in dt.
     pub fn total(&self) -> f64 {
         self.kinetic() + self.elastic() + self.gravity
     }
@@ -140,7 +141,7 @@ fn springs(model: &Model, c: &ContactView<'_>, back: f64, e: &mut Energies) {
 }
 
 /// Momentum [kg m/s], and angular momentum about the origin [kg m²/s], at the last half step. Balanced by
-/// [`Ledger::impulse`](crate::base::balance_terms::Ledger::impulse) to rounding.
+/// [`BalanceTerms::impulse`](crate::base::balance_terms::BalanceTerms::impulse) to rounding.
 pub fn momentum(model: &Model, state: &State) -> Impulse {
     let mut sum = momentum_of(model, state, |_| true);
     for (wall, own) in model.walls.walls.iter().zip(&state.walls) {

@@ -36,7 +36,7 @@ fn write_balance(out: &mut Vec<u8>, balance: &BalanceTerms) {
 
 /// Returns the number of eight-byte words.
 fn words(balance: &BalanceTerms, room: &mut [u8]) -> usize {
-    postcard::to_slice(balance, room).expect("a ledger is so many numbers").len().div_ceil(8)
+    postcard::to_slice(balance, room).expect("balance terms have a fixed number of values").len().div_ceil(8)
 }
 
 fn read_balance(rest: &mut &[u8]) -> Option<BalanceTerms> {

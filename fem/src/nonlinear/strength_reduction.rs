@@ -69,7 +69,7 @@ pub struct FactorOfSafety {
 /// Brackets the factor of safety under `load` [N] (shape `[3 * nodes]`, including gravity), from `state`.
 ///
 /// # Errors
-/// Options out of range; no plasticity; no failure at the largest or no equilibrium at the smallest factor.
+/// Options out of range; no plasticity; no failure at the largest factor, or not converged at the smallest.
 pub fn factor_of_safety(
     model: &Model,
     state: &State,

@@ -100,7 +100,7 @@ pub fn solid_step(scene: &Table<Scene>, end: f64) -> Result<Option<f64>, SceneEr
             Err(time.conflict("solid_step", "[[grains]]").remedy(remedy))
         }
         (Some(_), false) => Err(time.no_effect("solid_step", TIME_INTEGRATION)),
-        (None, true) => Err(time.missing("solid_step", "the step of the solid")),
+        (None, true) => Err(time.missing("solid_step", "the FEM time step")),
         (None, false) => Ok(None),
     }
 }

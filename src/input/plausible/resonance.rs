@@ -143,7 +143,7 @@ pub fn near_mode(job: &Job) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// First vertical mode of a column, c/4H = 7.9 Hz; sideways modes do not answer a vertical load.
+    /// First vertical mode of a column, c/4H = 7.9 Hz; lateral modes do not respond to vertical load.
     #[test]
     fn axis_and_frequency_decide() {
         let modes = Modes {

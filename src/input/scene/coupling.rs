@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 use std::fmt;
 
-/// Exchange between grains and solid.
+/// DEM–FEM coupling.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Coupling {
@@ -92,7 +92,7 @@ impl<'de> Deserialize<'de> for Substeps {
     }
 }
 
-/// Order of the exchange.
+/// Coupling scheme.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum SchemeName {

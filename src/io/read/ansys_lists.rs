@@ -45,7 +45,7 @@ pub enum ElementColumns {
     Nodes,
 }
 
-/// What a scene tells about the lists.
+/// Keys of a scene for the lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ListLayout {

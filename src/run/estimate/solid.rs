@@ -19,7 +19,7 @@ const RESTLESS: f64 = 0.01;
 /// Returns seconds per step of `dt` [s] under gravity, without a shared factorization.
 ///
 /// # Errors
-/// Failed factorization; no equilibrium.
+/// Failed factorization; equilibrium not converged.
 pub fn step(part: &SolidPart, theta: f64, dt: f64) -> Result<f64, Failure> {
     let (model, gravity) = (&part.model, part.model.gravity_load());
     let failure = |e: SolveError| part.failure(&e);

@@ -45,7 +45,7 @@ impl Summary {
     fn report_solid(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(s) = &self.solid.statics {
             let (u, node) = s.largest_displacement;
-            lines.push(format!("largest displacement {u:.6e} m at node {node}"));
+            lines.push(format!("largest displacement {u:.3e} m at node {node}"));
             lines.push(format!(
                 "equilibrium error of loads and reactions: {:.1e} (relative)",
                 s.equilibrium_error
@@ -70,7 +70,7 @@ impl Summary {
         if let Some(p) = &self.solid.plastic {
             let [x, y, z] = p.place;
             lines.push(format!(
-                "solid: {:.2} % of the integration points have yielded, largest plastic strain {:.3e} in element {} at ({x:.3}, \
+                "solid: {:.1} % of the integration points have yielded, largest plastic strain {:.3e} in element {} at ({x:.3}, \
                  {y:.3}, {z:.3}) m",
                 100.0 * p.yielded_share,
                 p.largest_plastic_strain,
@@ -79,7 +79,7 @@ impl Summary {
         }
         for r in &self.solid.reactions {
             let [x, y, z] = r.force;
-            lines.push(format!("reaction of {}: ({x:.6e}, {y:.6e}, {z:.6e}) N", r.name));
+            lines.push(format!("reaction of {}: ({x:.3e}, {y:.3e}, {z:.3e}) N", r.name));
         }
         if let Some(s) = &self.solid.safety {
             lines.push(format!(
@@ -94,7 +94,7 @@ impl Summary {
     fn report_accounts(&self, lines: &mut Vec<String>) {
         if let Some(e) = &self.energy {
             lines.push(format!(
-                "external work {:.6} J, energy error {:.2e} J ({:.4} % of the reference energy)",
+                "external work {:.4} J, energy error {:.2e} J ({:.3} % of the reference energy)",
                 e.work,
                 e.error,
                 100.0 * e.relative_error
@@ -184,7 +184,7 @@ impl Summary {
             if let Some(b) = &s.bed_stiffness {
                 let [low, high] = b.between.map(|f| 1e-3 * f);
                 lines.push(format!(
-                    "bed stiffness between {low:.1} and {high:.1} kN: {:.3} kN/mm",
+                    "bed stiffness between {low:.1} and {high:.1} kN: {:.1} kN/mm",
                     1e-6 * b.mean_of_last_ten
                 ));
             }
@@ -221,7 +221,7 @@ impl Summary {
                 format!(", ends {:.4} to {:.4} mm above the middle", 1e3 * low, 1e3 * high)
             });
             lines.push(format!(
-                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, settlement {:.3} mm{bend}",
+                "sleeper {}: force {:.2} to {:.2} kN{share}{factor}, largest downward displacement {:.3} mm{bend}",
                 k + 1,
                 1e-3 * s.smallest_force,
                 1e-3 * s.largest_force,

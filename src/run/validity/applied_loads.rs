@@ -1,4 +1,4 @@
-//! Check of loads and motions against those asked for: servo walls, driven walls, sleepers.
+//! Check of loads and motions against their targets: servo walls, driven walls, sleepers.
 
 use super::{Check, Limits};
 use crate::system::GrainsView;
@@ -63,7 +63,7 @@ pub fn load_error(loads: &[LoadCheck]) -> Option<Check> {
         let LoadCheck { name, quantity, load } = worst;
         let phase = load.phase.map_or(String::new(), |phase| format!(", phase {phase:.1} degrees"));
         format!(
-            "{name}: {quantity} {} of {} asked for{phase}. Raise gain or max_speed of a servo, lower the frequency, or give its contacts restitution = 1.",
+            "{name}: {quantity} found {}, expected {}{phase}. Raise gain or max_speed of a servo, lower the frequency, or give its contacts restitution = 1.",
             shown(&load.applied),
             shown(&load.target),
         )

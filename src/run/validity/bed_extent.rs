@@ -95,7 +95,7 @@ impl BedExtent {
         let found = self.beyond(region);
         let name = format!("measure {name}");
         let value = found.as_ref().map_or(0.0, |b| b.fraction);
-        Check::new(format!("fraction of {name} beside the bed"), value, BEYOND, || {
+        Check::new(format!("fraction of {name} outside the bed"), value, BEYOND, || {
             found.map_or(String::new(), |b| b.text(&name))
         })
     }

@@ -153,7 +153,7 @@ fn set_missing_in_mesh() {
 #[test]
 fn two_courses_for_one_node() {
     plastic().scene("side = \"z-\"", "nodes_in = [[0, 0, 0], [1, 1, 1]]").refused(
-        "scene.toml:35: solid.support.1: found node 39 in z, which solid.support.0 holds already, expected one course for \
+        "scene.toml:35: solid.support.1: found node 39 in z, which solid.support.0 holds already, expected one time history for \
          each direction of a node",
     );
 }
@@ -237,7 +237,7 @@ fn k0_of_gravity() {
 #[test]
 fn k0_missing() {
     plastic().set("solid.initial_stress={method=\"k0\"}").refused(
-        "--set: solid.initial_stress.k0: found nothing, expected a value, or one of its own for base",
+        "--set: solid.initial_stress.k0: found nothing, expected a value, or a separate one for base",
     );
 }
 

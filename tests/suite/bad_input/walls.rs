@@ -182,7 +182,7 @@ fn recorded_names_twice() {
             "material = \"stone\"\nrecord = true\nname = \"a\"\n\n[[walls]]\nkind = \"sphere\"\nbase = [0, 0, 0]\nradius = \
              9\nmaterial = \"stone\"\nname = \"a\"\nrecord = true\n\n[time]",
         )
-        .refused("scene.toml:29: walls.1.name: found \"a\", expected a name of its own");
+        .refused("scene.toml:29: walls.1.name: found \"a\", expected a unique name");
 }
 
 #[test]

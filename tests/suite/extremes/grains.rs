@@ -5,7 +5,7 @@ use super::scenes::{ball, floor, mass, plane, stone, time};
 use super::table::{Row, figure, figures, rows};
 
 rows! {
-    step: "step of the grains at its limit";
+    step: "DEM time step at its limit";
     stiffnesses: "stiffnesses far apart";
     masses: "masses and radii far apart";
     friction: "friction 0 and beyond all need";

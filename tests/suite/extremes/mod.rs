@@ -19,5 +19,5 @@ use table::Entry;
 const PARTS: [(&str, &[&[Entry]]); 3] = [
     ("Grains", &[grains::ROWS, motion::ROWS, laws::ROWS, shapes::ROWS]),
     ("Solid", &[solid::ROWS, elements::ROWS, plastic::ROWS]),
-    ("Exchange", &[exchange::ROWS]),
+    ("Coupling", &[exchange::ROWS]),
 ];

@@ -9,7 +9,7 @@ rows! {
     gravities: "gravity of any size";
     moving_walls: "walls that move fast";
     skipping_walls: "walls that skip a grain in one step";
-    servo_walls: "servo walls asked for more than they can follow";
+    servo_walls: "servo walls beyond their largest speed";
 }
 
 fn far() -> Row {

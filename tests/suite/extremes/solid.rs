@@ -9,7 +9,7 @@ use trackbed_fem::mesh::{Constraint, Mesh};
 rows! {
     poisson: "Poisson's ratio to 0.5";
     contrast: "moduli far apart";
-    unsupported: "body that is not held";
+    unsupported: "body with rigid-body motion";
     units: "units huge and tiny";
     far: "solid far from the origin";
     time_steps: "steps from 1e-9 to 1e3 of the period";

@@ -50,9 +50,9 @@ impl ContactClass {
         // A mesh may lack corner or mid-side nodes.
         let mass = |v: f64| if v.is_finite() { format!("{v:.3e}") } else { "none".into() };
         format!(
-            "{} on {}: K = {:.3e} N/m, zeta = {:.2}; mass of a point {} kg at a corner, {} at a side, {} in the \
-             middle, {} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = {:.3}{}; dense \
-             layer: W = {:.3}, D = {:.3}; phase of undamped contacts {:.3}",
+            "{} on {}: K = {:.3e} N/m, zeta = {:.2}; effective nodal mass {} kg at a corner, {} at a \
+             side, {} in the middle, {} at the border; stones {:.3e} to {:.3e} kg{}; W = {:.3} (at most {}), D = \
+             {:.3}{}; dense layer: W = {:.3}, D = {:.3}; phase of undamped contacts {:.3}",
             self.grains,
             self.solid,
             self.stiffness,

@@ -53,7 +53,7 @@ pub fn supports(solid: &Table<Solid>, geometry: &Geometry) -> Result<Supports, S
                         let first =
                             by.map_or("the mesh file".into(), |k| solid.path(&format!("support.{k}")));
                         let found = format!("node {id} in {axis}, which {first} holds already");
-                        return Err(s.here(found, "one course for each direction of a node"));
+                        return Err(s.here(found, "one time history for each direction of a node"));
                     }
                 } else {
                     given.insert(dof, (value, Some(i)));

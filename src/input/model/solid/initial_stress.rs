@@ -62,7 +62,7 @@ pub(super) fn initial_stress(
             let mut all = BTreeMap::new();
             for (&id, name) in &materials.names {
                 let k0 = materials.k0.get(&id).copied().or(i.k0);
-                let expected = format!("a value, or one of its own for {name}");
+                let expected = format!("a value, or a separate one for {name}");
                 all.insert(id, i.need("k0", k0, &expected)?);
             }
             InitialStressKind::K0 { k0: all, overburden: overburden(i)? }

@@ -65,7 +65,7 @@ pub struct Support {
     pub history: Option<History>,
 }
 
-/// `[[solid.absorbing]]`: dashpots that take up waves at normal incidence. Exactly one of `side`, `faces_in` and `set`
+/// `[[solid.absorbing]]`: dashpots that absorb waves at normal incidence. Exactly one of `side`, `faces_in` and `set`
 /// chooses the faces.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

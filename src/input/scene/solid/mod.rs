@@ -109,7 +109,7 @@ pub enum Integration {
     Full,
 }
 
-/// How quadratic elements take their volume strain.
+/// Volumetric strain of quadratic elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Dilatation {

@@ -34,7 +34,7 @@ impl Maker<'_> {
         self.used("BOND_MODEL", "parallel or contact_point");
         self.used(strength(d), "tensile and shear strength");
         for (key, how) in [
-            ("RPBN", "normal stiffness ratio of bond to contact (its text says strength: wrong)"),
+            ("RPBN", "normal stiffness ratio of bond to contact (the deck calls it strength: wrong)"),
             ("RPBS", "shear stiffness ratio of bond to contact"),
             ("BONDNS", "shear over tensile strength"),
         ] {
@@ -112,15 +112,17 @@ impl Maker<'_> {
         self.used("CTime", "which of the two ends the run");
         if by_time && d.has("Tstrain") {
             self.used("Tstrain", "time.end");
-            self.left("nstep", "CTime says that Tstrain ends the run");
+            self.left("nstep", "CTime selects Tstrain as the end of the run");
             self.left("icont", "the step follows the contacts");
         } else {
             self.used("nstep", "time.end = nstep x step of the deck");
             self.used(
                 "icont",
-                &format!("that step: contact time {contact:.3e} s / icont; ours follows the contacts"),
+                &format!(
+                    "that step: contact time {contact:.3e} s / icont; that of trackbed follows the contacts"
+                ),
             );
-            self.left("Tstrain", "CTime says that nstep ends the run");
+            self.left("Tstrain", "CTime selects nstep as the end of the run");
         }
         self.used(last, "output.last: as many frames in the last of the equal intervals");
         Ok(())
@@ -128,7 +130,7 @@ impl Maker<'_> {
 
     pub(super) fn rest(&mut self) -> Result<(), Failure> {
         let growth =
-            "the packing is not grown anew: give it by --packing, or use region and growth of [[grains]]";
+            "the packing is not grown again: give it by --packing, or use region and growth of [[grains]]";
         let inner = "lists grow as needed";
         let search = "the search is made when a grain may have moved too far";
         for (key, why) in [
@@ -140,12 +142,12 @@ impl Maker<'_> {
             ("MAXNB_W", inner),
             (
                 "skin",
-                "a matter of the search; as the size of a grid over the diameter, as its text says, 0.6 would be odd: doubtful",
+                "parameter of the search; the deck calls it grid size over diameter, for which 0.6 is unusual: doubtful",
             ),
             ("temperature", "not explained: doubtful"),
             (
                 "BRATIO",
-                "the stiffness ratio of a part of the key block to the remainder; which part is not said: add [[bond.region]]",
+                "the stiffness ratio of a part of the key block to the remainder; the deck does not name the part: add [[bond.region]]",
             ),
             ("Form drag coefficient", "for water, whose level the deck has not: add [water]"),
             ("wave height", "for water, whose level the deck has not: add [water]"),

@@ -185,11 +185,11 @@ impl Maker<'_> {
             for key in ["X0", "Y0", "Z0"] {
                 self.used(key, "lattice.low");
             }
-            self.left("restart", "no --packing was given: the lattice that the deck begins with");
+            self.left("restart", "no --packing was given: initial lattice of the deck");
             for key in ["IPATTERN", "DMAX/D", "DMIN/D"] {
                 self.left(key, "grains of a lattice are equal; give the grown packing by --packing");
             }
-            self.left("cc", "a lattice has its own");
+            self.left("cc", "set by the lattice");
         } else {
             self.scattered(options, [x, y, z])?;
         }

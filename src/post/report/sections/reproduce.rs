@@ -33,8 +33,8 @@ fn one(run: &RunData) -> Markup {
     file.source().iter().for_each(|source| command += &source.words());
     let hash = match run.text("scene_hash") {
         Some(hash) => format!(
-            "Version {} of the program; hash of the scene, its overrides and its files {hash}. The same scene gives the same bits \
-             on any number of threads.",
+            "Version {} of the program; hash of the scene, its overrides and its files {hash}. Results are bitwise identical \
+             for any number of threads.",
             file.version
         ),
         None => format!("Program version {}.", file.version),

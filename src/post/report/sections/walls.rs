@@ -75,7 +75,7 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
     let note = match strained {
         true => paragraph(
             "Component with the largest variation for each wall. Stress of a servo wall: force of the grains along its normal over its \
-             area; strain: its way towards the plane that faces it since the stress first passed 1 % of its largest, over their distance then.",
+             area; strain: its displacement towards the plane that faces it since the stress first passed 1 % of its largest, over their distance then.",
         ),
         false => paragraph("Component with the largest variation for each wall."),
     };

@@ -83,7 +83,7 @@ impl<'a> SolidSystem<'a> {
     /// Creates the solid at time 0, accelerated by its loads or in equilibrium; `step` [s].
     ///
     /// # Errors
-    /// Insufficient constraints, no equilibrium, or failed factorization.
+    /// Insufficient constraints, equilibrium not converged, or failed factorization.
     pub fn new(
         part: &'a SolidPart,
         kind: SolidKind,

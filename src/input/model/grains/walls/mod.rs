@@ -101,7 +101,7 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
     let motion = motion(wall)?;
     let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));
     if wall.record && part.recorded.iter().any(|r| r.name == name) {
-        return Err(wall.error("name", format!("\"{name}\""), "a name of its own").into());
+        return Err(wall.error("name", format!("\"{name}\""), "a unique name").into());
     }
     if let (WallShape::Plane { point, normal }, true) = (&shape, is_plain(wall)) {
         part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
