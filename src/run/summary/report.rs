@@ -13,17 +13,18 @@ impl Summary {
     /// Formats the results; `details`: with stability numbers and factorizations.
     pub fn report(&self, details: bool) -> String {
         let mut lines = Vec::new();
-        self.report_stages(&mut lines);
-        self.report_solid(&mut lines, details);
-        self.report_accounts(&mut lines);
-        self.report_coupling(&mut lines, details);
         self.report_settlement(&mut lines);
         self.report_track(&mut lines);
+        self.report_solid(&mut lines, details);
+        self.report_loads(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
         let bed = &self.bed;
         lines.extend(packing::report(&bed.beds, &bed.growth, &bed.compaction, bed.packing.as_ref()));
         lines.extend(self.bed.runout.iter().flat_map(RunoutRecord::report));
         lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
+        self.report_stages(&mut lines);
+        self.report_accounts(&mut lines, details);
+        self.report_coupling(&mut lines, details);
         lines.extend(self.verdict.report());
         lines.extend(validity::report(&self.validity));
         lines.extend(self.warnings.iter().map(|warning| format!("warning: {warning}")));
@@ -35,10 +36,10 @@ impl Summary {
             lines.push(format!("solid reduced: {r}"));
         }
         for stage in &self.stages {
-            lines.push(format!(
-                "{}: {:.1} s, {} DEM steps, {} FEM steps",
-                stage.name, stage.seconds, stage.grain_steps, stage.solid_steps
-            ));
+            let counts = [(stage.grain_steps, "DEM"), (stage.solid_steps, "FEM")];
+            let counts = counts.iter().filter(|(count, _)| *count > 0);
+            let steps: String = counts.map(|(count, kind)| format!(", {count} {kind} steps")).collect();
+            lines.push(format!("{}: {:.1} s{steps}", stage.name, stage.seconds));
         }
     }
 
@@ -51,21 +52,19 @@ impl Summary {
                 s.equilibrium_error
             ));
         }
-        if let Some(n) = &self.solid.newton {
+        if let Some(n) = self.solid.newton.as_ref().filter(|_| details) {
             lines.push(format!(
                 "Newton: {} steps ({} halved), {} iterations",
                 n.steps, n.halvings, n.iterations
             ));
-            if details {
-                lines.push(format!(
-                    "  factorizations: {} symmetric, {} unsymmetric; time: assembly {:.1} s, factorization {:.1} s, solves {:.1} s",
-                    n.factorizations_symmetric,
-                    n.factorizations_unsymmetric,
-                    n.assembly_seconds,
-                    n.factor_seconds,
-                    n.solve_seconds
-                ));
-            }
+            lines.push(format!(
+                "  factorizations: {} symmetric, {} unsymmetric; time: assembly {:.1} s, factorization {:.1} s, solves {:.1} s",
+                n.factorizations_symmetric,
+                n.factorizations_unsymmetric,
+                n.assembly_seconds,
+                n.factor_seconds,
+                n.solve_seconds
+            ));
         }
         if let Some(p) = &self.solid.plastic {
             let [x, y, z] = p.place;
@@ -78,8 +77,8 @@ impl Summary {
             ));
         }
         for r in &self.solid.reactions {
-            let [x, y, z] = r.force;
-            lines.push(format!("reaction of {}: ({x:.3e}, {y:.3e}, {z:.3e}) N", r.name));
+            let [x, y, z] = r.force.map(|f| 1e-3 * f);
+            lines.push(format!("reaction of {}: ({x:.3}, {y:.3}, {z:.3}) kN", r.name));
         }
         if let Some(s) = &self.solid.safety {
             lines.push(format!(
@@ -91,7 +90,7 @@ impl Summary {
         }
     }
 
-    fn report_accounts(&self, lines: &mut Vec<String>) {
+    fn report_accounts(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(e) = &self.energy {
             lines.push(format!(
                 "external work {:.4} J, energy error {:.2e} J ({:.3} % of the reference energy)",
@@ -100,12 +99,15 @@ impl Summary {
                 100.0 * e.relative_error
             ));
         }
-        if let Some(m) = &self.momentum {
+        if let Some(m) = self.momentum.as_ref().filter(|_| details) {
             lines.push(format!(
                 "momentum error {:.1e}, angular {:.1e} (relative to the impulses)",
                 m.linear, m.angular
             ));
         }
+    }
+
+    fn report_loads(&self, lines: &mut Vec<String>) {
         for s in &self.structures {
             lines.push(format!(
                 "load on {}: maximum {:.3e} N at {:.3} s, mean {:.3e} N along x, {:.3e} N along y",
