@@ -76,8 +76,10 @@ impl BedStage {
     /// Formats the log lines.
     pub fn lines(&self) -> Vec<String> {
         let BedStage { stage, height, mass, porosity, targets } = self;
-        let bed =
-            format!("bed after {stage}: height {height:.3} m, mass {mass:.4} kg, porosity {porosity:.3}");
+        let decimals = if *mass >= 10.0 { 1 } else { 4 };
+        let bed = format!(
+            "bed after {stage}: height {height:.3} m, mass {mass:.decimals$} kg, porosity {porosity:.3}"
+        );
         let target = |t: &HeightTarget| {
             let HeightTarget { group, target, reached, .. } = t;
             format!(

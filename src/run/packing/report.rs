@@ -41,8 +41,12 @@ pub fn report(
     for m in &p.measures {
         let pressure = -(m.stress[0] + m.stress[1] + m.stress[2]) / 3.0;
         lines.push(format!(
-            "{}: porosity {:.4}, {} grains, {:.2} neighbours, mean pressure {pressure:.3e} Pa",
-            m.name, m.porosity, m.grains, m.coordination
+            "{}: porosity {:.4}, {} grains, {:.2} neighbours, mean pressure {:.3} kPa",
+            m.name,
+            m.porosity,
+            m.grains,
+            m.coordination,
+            1e-3 * pressure
         ));
     }
     if let Some(f) = &p.fouling {

@@ -79,9 +79,10 @@ fn warn_of_bed(settled: &mut Settled, done: &Pressed<'_>, (grains, index): (&Gra
     settled.warnings.extend(bed.and_then(|bed| bed.warning(&key, &done.region)));
     if !done.rested {
         settled.warnings.push(format!(
-            "grains not at rest: root mean square speed {:.2e} m/s after compaction {}",
-            rms_speed(&done.bed.model, &done.bed.state),
-            index + 1
+            "grains not at rest: root mean square speed {:.1} mm/s after compaction {} ({})",
+            1e3 * rms_speed(&done.bed.model, &done.bed.state),
+            index + 1,
+            grains.packing.compaction[index].press.name()
         ));
     }
 }

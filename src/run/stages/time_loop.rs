@@ -438,7 +438,7 @@ fn settlement(
 
 fn details<S: System>(system: &S, time: f64, k: u64) -> String {
     let (grain_steps, solid_steps) = system.steps_done(k);
-    let mut parts = vec![format!("{time:.4e} s")];
+    let mut parts = vec![if time < 1e-3 { format!("{time:.4e} s") } else { format!("{time:.4} s") }];
     if let Some(grains) = system.grains() {
         parts.push(format!("{grain_steps} DEM steps"));
         parts.push(format!("{} contacts", dem::measure::contacts(grains.model, grains.state).len()));

@@ -13,7 +13,7 @@ impl Summary {
     /// Formats the results; `details`: with stability numbers and factorizations.
     pub fn report(&self, details: bool) -> String {
         let mut lines = Vec::new();
-        self.report_settlement(&mut lines);
+        self.report_settlement(&mut lines, details);
         self.report_track(&mut lines);
         self.report_solid(&mut lines, details);
         self.report_loads(&mut lines);
@@ -77,8 +77,10 @@ impl Summary {
             ));
         }
         for r in &self.solid.reactions {
-            let [x, y, z] = r.force.map(|f| 1e-3 * f);
-            lines.push(format!("reaction of {}: ({x:.3}, {y:.3}, {z:.3}) kN", r.name));
+            let (factor, unit) =
+                if r.force.iter().any(|f| f.abs() >= 1e3) { (1e-3, "kN") } else { (1.0, "N") };
+            let [x, y, z] = r.force.map(|f| factor * f);
+            lines.push(format!("reaction of {}: ({x:.3}, {y:.3}, {z:.3}) {unit}", r.name));
         }
         if let Some(s) = &self.solid.safety {
             lines.push(format!(
@@ -148,10 +150,14 @@ impl Summary {
     fn report_coupling(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(c) = &self.coupling {
             lines.push(format!(
-                "interface: force error {:.1e}, moment error {:.1e} (relative); scheme {}, {} DEM sub-steps, transfer {}",
-                c.transfer.force, c.transfer.moment, c.scheme, c.substeps, c.transfer_kind
+                "interface: force error {:.1e}, moment error {:.1e} (relative)",
+                c.transfer.force, c.transfer.moment
             ));
             if details {
+                lines.push(format!(
+                    "  scheme {}, {} DEM sub-steps, transfer {}",
+                    c.scheme, c.substeps, c.transfer_kind
+                ));
                 lines.extend(c.stability_lines());
             }
             if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
@@ -164,7 +170,7 @@ impl Summary {
         }
     }
 
-    fn report_settlement(&self, lines: &mut Vec<String>) {
+    fn report_settlement(&self, lines: &mut Vec<String>, details: bool) {
         if let Some(s) = &self.track.settlement {
             if let Some(seating) = s.seating {
                 lines.push(format!("settlement during seating, not counted [mm]: {:.3}", 1e3 * seating));
@@ -179,16 +185,18 @@ impl Summary {
                     list[0], list[last]
                 ));
             }
-            for fit in &s.fits {
-                let p: Vec<String> = fit.parameters.iter().map(|(n, v)| format!("{n} = {v:.4e}")).collect();
-                lines.push(format!("{}: s = {}, {}, R2 = {:.4}", fit.law, fit.form, p.join(", "), fit.r2));
-            }
             if let Some(b) = &s.bed_stiffness {
                 let [low, high] = b.between.map(|f| 1e-3 * f);
                 lines.push(format!(
                     "bed stiffness between {low:.1} and {high:.1} kN: {:.1} kN/mm",
                     1e-6 * b.mean_of_last_ten
                 ));
+            }
+            let best = s.fits.iter().max_by(|a, b| a.r2.total_cmp(&b.r2));
+            for fit in s.fits.iter().filter(|fit| details || best.is_some_and(|best| best.law == fit.law)) {
+                let p: Vec<String> = fit.parameters.iter().map(|(n, v)| format!("{n} = {v:.3e}")).collect();
+                let (law, form) = (&fit.law, &fit.form);
+                lines.push(format!("{law}: s [m] = {form}, {}, R2 = {:.3}", p.join(", "), fit.r2));
             }
             if let Some(j) = &s.jump {
                 lines.push(format!(
