@@ -31,13 +31,13 @@ pub fn was_done(dir: &Path, scene_hash: &str) -> Result<bool, Failure> {
 pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<Source<'_>>) -> String {
     let mut command = format!("trackbed run {} --resume --out {}", quoted(scene), quoted(dir));
     set.iter().for_each(|s| command += &format!(" --set {}", quoted(Path::new(s))));
-    from.iter().for_each(|source| command += &source.words());
+    from.iter().for_each(|source| command += &source.arguments());
     command
 }
 
 impl Source<'_> {
     /// Formats as command-line options.
-    pub fn words(&self) -> String {
+    pub fn arguments(&self) -> String {
         format!(" --from {}{}", quoted(self.dir), if self.bed { " --bed" } else { "" })
     }
 }
