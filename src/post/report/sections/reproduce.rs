@@ -30,7 +30,7 @@ fn one(run: &RunData) -> Markup {
     let [scene, dir] = [Path::new(&file.scene), &run.dir].map(page::shown_path);
     let mut command = format!("trackbed run {} --out {}", quoted(&scene), quoted(&dir));
     file.overrides.iter().for_each(|o| command += &format!(" --set {}", quoted(Path::new(o))));
-    file.source().iter().for_each(|source| command += &source.words());
+    file.source().iter().for_each(|source| command += &source.arguments());
     let hash = match run.text("scene_hash") {
         Some(hash) => format!(
             "Version {} of the program; hash of the scene, its overrides and its files {hash}. Results are bitwise identical \
