@@ -308,6 +308,9 @@ pub struct CheckArgs {
     /// Memory limit of the solid, such as 8GB; larger ones are rejected [default: free memory].
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<String>,
+    /// Print stability numbers, contact pairs and solver figures too.
+    #[arg(long)]
+    pub verbose: bool,
 }
 
 /// The commands of `mesh`.

@@ -35,11 +35,11 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             let memory = memory(args.memory.as_deref())?;
             let how = explain::How { memory, strict: args.strict, threads, trial };
             let report = explain::explain(&args.scene, &args.set, &how)?;
-            print(&if json { report.json() } else { report.text() })
+            print(&if json { report.json() } else { report.text(args.verbose) })
         }
         Command::Check { args, json } => {
             let report = check::check(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?;
-            print(&if json { report.json() } else { report.text() })
+            print(&if json { report.json() } else { report.text(args.verbose) })
         }
         Command::New(args) => new(&args),
         Command::Schema { columns: true, .. } => print(&columns::list()),

@@ -17,30 +17,49 @@ use trackbed_run::{self as run, stages};
 /// Report of a scene: lines, and numbers by name.
 pub struct Report {
     title: String,
-    lines: Vec<String>,
+    lines: Vec<Line>,
     numbers: Value,
 }
 
+/// Line of a report.
+struct Line {
+    text: String,
+    /// Printed with `--verbose` only.
+    detail: bool,
+}
+
+impl From<String> for Line {
+    fn from(text: String) -> Line {
+        Line { text, detail: false }
+    }
+}
+
+fn detail(text: String) -> Line {
+    Line { text, detail: true }
+}
+
 impl Report {
-    /// Formats as text.
-    pub fn text(&self) -> String {
-        self.lines.iter().fold(format!("{}\n", self.title), |text, line| text + "  " + line + "\n")
+    /// Formats as text; `details`: with stability and solver lines.
+    pub fn text(&self, details: bool) -> String {
+        let lines = self.lines.iter().filter(|line| details || !line.detail);
+        lines.fold(format!("{}\n", self.title), |text, line| text + "  " + &line.text + "\n")
     }
 
     /// Formats as JSON: `title`, `findings`, `solid`, `grains`, `coupling`, `lines`.
     pub fn json(&self) -> String {
         let mut all = self.numbers.clone();
         all["title"] = json!(self.title);
-        all["lines"] = json!(self.lines);
+        let lines: Vec<&str> = self.lines.iter().map(|line| line.text.as_str()).collect();
+        all["lines"] = json!(lines);
         format!("{all:#}\n")
     }
 
     pub(super) fn add(&mut self, line: String) {
-        self.lines.push(line);
+        self.lines.push(line.into());
     }
 
     pub(super) fn estimate(&mut self, estimate: &Estimate) {
-        self.lines.push(estimate.line());
+        self.lines.push(estimate.line().into());
         self.numbers["time"] = json!({
             "threads": estimate.threads,
             "seconds": estimate.seconds(),
@@ -76,7 +95,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
     if strict {
         plausible::refuse(document, &findings)?;
     }
-    let mut lines: Vec<String> = findings.iter().map(|f| format!("warning: {f}")).collect();
+    let mut lines: Vec<Line> = findings.iter().map(|f| format!("warning: {f}").into()).collect();
     let mut numbers = json!({ "findings": findings, "solid": null, "grains": null, "coupling": null });
     if let Some(solid) = &job.solid {
         let (own, values) = solid_lines(solid, memory)?;
@@ -87,7 +106,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
         Some(grains) => {
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
-            numbers["grains"] = grain_numbers(&model);
+            numbers["grains"] = grain_numbers(&model, &grains.describe(model.dt_limit()));
             numbers["grains"]["beds"] = bed_numbers(grains);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
                 let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
@@ -95,9 +114,12 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
                 numbers["coupling"] = values;
             }
         }
-        None => lines.extend(stages::of(job).flat_map(|s| s.report(job, &|_| String::new()))),
+        None => {
+            let stages = stages::of(job).flat_map(|s| s.report(job, &|_| String::new()));
+            lines.extend(stages.map(Line::from));
+        }
     }
-    if let Some(line) = lines.iter().find(|line| has_no_number(line)) {
+    if let Some(line) = lines.iter().map(|line| line.text.as_str()).find(|line| has_no_number(line)) {
         return Err(document.beyond_range(&format!("a value of the report ({})", quantity(line))).into());
     }
     Ok(Report { title: job.title.clone(), lines, numbers })
@@ -115,32 +137,35 @@ fn quantity(line: &str) -> String {
         .join(" ")
 }
 
-fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, Value), Failure> {
+fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<Line>, Value), Failure> {
     let prediction = run::Prediction::of(solid)?;
     prediction.check(memory)?;
     let mesh = solid.model.mesh();
-    let mut lines = vec![format!(
-        "solid: {} nodes, {} elements, {} unknowns, {:?} rule, {:.3e} kg",
+    let total = format!(
+        "solid: {} nodes, {} elements, {} unknowns, {}",
         mesh.node_count(),
         mesh.element_count(),
         solid.model.free_dof_count(),
-        solid.model.quadrature(),
-        solid.model.total_mass(),
-    )];
-    lines.extend(solid.material_names.iter().map(|(id, name)| format!("  material {id}: {name}")));
+        mass(solid.model.total_mass()),
+    );
+    let mut lines: Vec<Line> =
+        vec![total.into(), detail(format!("  integration rule: {:?}", solid.model.quadrature()))];
+    let names = solid.material_names.iter().map(|(id, name)| format!("  material {id}: {name}"));
+    lines.extend(names.map(Line::from));
     if let Some(s) = &solid.sleepers {
         let elements = (mesh.element_count() - s.ground_elements()) / s.count();
-        lines.push(format!("  sleepers: {} of {elements} elements, {:.3e} kg each", s.count(), s.mass()));
+        lines.push(
+            format!("  sleepers: {} of {elements} elements, {} each", s.count(), mass(s.mass())).into(),
+        );
     }
     let (all, solver) = (run::size(prediction.total()), run::size(prediction.solver));
-    let factorization = match prediction.flops {
-        0.0 => String::new(),
-        flops => format!("; one factorization {:.2} Gflop", 1e-9 * flops),
-    };
-    lines.push(format!("  memory: {all}, of which {solver} for the equations{factorization}"));
+    lines.push(format!("  memory: {all}, of which {solver} for the equations").into());
+    if prediction.flops > 0.0 {
+        lines.push(detail(format!("  one factorization: {:.2} Gflop", 1e-9 * prediction.flops)));
+    }
     let (methods, equations): (Vec<_>, Vec<_>) = run::methods(solid)?.into_iter().unzip();
-    lines.extend(methods.iter().map(|line| format!("  {line}")));
-    lines.extend(solid.warnings.iter().map(|warning| format!("  warning: {warning}")));
+    lines.extend(methods.iter().map(|line| detail(format!("  {line}"))));
+    lines.extend(solid.warnings.iter().map(|warning| format!("  warning: {warning}").into()));
     let numbers = json!({
         "nodes": mesh.node_count(),
         "elements": mesh.element_count(),
@@ -155,6 +180,10 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<String>, V
     Ok((lines, numbers))
 }
 
+fn mass(kg: f64) -> String {
+    if kg < 1e4 { format!("{kg:.4} kg") } else { format!("{:.1} t", 1e-3 * kg) }
+}
+
 /// Then no step limit exists.
 fn all_prescribed(grains: &GrainsPart) -> bool {
     let groups = &grains.groups;
@@ -166,26 +195,26 @@ fn grain_lines(
     document: &Document,
     job: &Job,
     grains: &GrainsPart,
-) -> Result<(dem::Model, Vec<String>), Failure> {
+) -> Result<(dem::Model, Vec<Line>), Failure> {
     let Preview { alone, whole: model } = stages::preview(document, job, grains)?;
-    let mut lines = vec![
-        match alone.sphere_count() {
-            0 => format!("grains: {} bodies", alone.body_count()),
-            spheres => format!("grains: {} bodies with {spheres} spheres", alone.body_count()),
-        },
-        match model.measured() {
-            _ if all_prescribed(grains) => {
-                format!("  DEM time step {:.4e} s; the motion of all bodies is prescribed", model.dt())
-            }
-            None => format!("  DEM time step {:.4e} s; {}", model.dt(), model.dt_limit()),
-            Some(share) => format!(
-                "  DEM time step {:.4e} s initially, then {share} of the critical time step, at most {:.4e} s; {}",
-                model.dt(),
-                model.longest(true),
-                model.dt_limit()
-            ),
-        },
-    ];
+    let bodies = match alone.sphere_count() {
+        0 => format!("grains: {} bodies", alone.body_count()),
+        spheres => format!("grains: {} bodies with {spheres} spheres", alone.body_count()),
+    };
+    let step = match model.measured() {
+        None => format!("  DEM time step {:.4e} s", model.dt()),
+        Some(share) => format!(
+            "  DEM time step {:.4e} s initially, then {share} of the critical time step, at most {:.4e} s",
+            model.dt(),
+            model.longest(true)
+        ),
+    };
+    let governed = match all_prescribed(grains) {
+        true => "the motion of all bodies is prescribed".into(),
+        false => grains.describe(model.dt_limit()),
+    };
+    let mut lines: Vec<Line> =
+        vec![bodies.into(), step.into(), format!("  critical for the initial step: {governed}").into()];
     let steps = |time: f64| {
         let most = time / model.dt();
         match model.measured() {
@@ -194,20 +223,20 @@ fn grain_lines(
         }
     };
     let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
-    lines.extend(stages.map(|line| format!("  {line}")));
-    lines.extend(grains.groups.filled.iter().map(|bed| format!("  {}", bed.line())));
-    lines.extend(grains.groups.remarks.iter().map(|remark| format!("  warning: {remark}")));
+    lines.extend(stages.map(|line| format!("  {line}").into()));
+    lines.extend(grains.groups.filled.iter().map(|bed| format!("  {}", bed.line()).into()));
+    lines.extend(grains.groups.remarks.iter().map(|remark| format!("  warning: {remark}").into()));
     Ok((model, lines))
 }
 
-fn grain_numbers(model: &dem::Model) -> Value {
+fn grain_numbers(model: &dem::Model, limit: &str) -> Value {
     let longest = model.measured().map_or(model.dt(), |_| model.longest(true));
     json!({
         "bodies": model.body_count(),
         "spheres": model.sphere_count(),
         "first_step": model.dt(),
         "longest_step": longest,
-        "step_limit": model.dt_limit().to_string(),
+        "step_limit": limit,
     })
 }
 
@@ -231,25 +260,28 @@ fn coupling_lines(
     solid: &SolidPart,
     grains: &GrainsPart,
     model: &dem::Model,
-) -> Result<(Vec<String>, Value), Failure> {
+) -> Result<(Vec<Line>, Value), Failure> {
     let surface = coupling.ground(solid, grains);
     let Windows { classes, substeps, theta } = coupling.windows(grains, model, solid, &surface);
     coupling.refuse(document, &classes, substeps, model.dt())?;
     let window = model.dt() * f64::from(substeps);
     let s = exchange::stability(&classes);
-    let mut lines = vec![format!(
-        "coupling: {} faces, {} DEM steps per window of {window:.4e} s{}; stability W = {:.3}, D = {:.3} (largest of all contacts); scheme {}, transfer: {}",
-        coupling.faces.len(),
-        substeps,
-        if coupling.automatic() { " (automatic)" } else { "" },
+    let automatic = if coupling.automatic() { " (automatic)" } else { "" };
+    let windows = format!(
+        "coupling: {} faces, {substeps} DEM steps per window of {window:.4e} s{automatic}",
+        coupling.faces.len()
+    );
+    let stability = format!(
+        "  stability W = {:.3}, D = {:.3} (largest of all contacts); scheme {}, transfer: {}",
         s.stiffness,
         s.damping,
         coupling.scheme,
         coupling.transfer_kind(&surface),
-    )];
-    lines.extend(classes.iter().map(|c| format!("  {}", c.line())));
+    );
+    let mut lines: Vec<Line> = vec![windows.into(), detail(stability)];
+    lines.extend(classes.iter().map(|c| detail(format!("  {}", c.line()))));
     let remarks = exchange::remarks(&classes, coupling.scheme, substeps);
-    lines.extend(remarks.iter().map(|remark| format!("  warning: {remark}")));
+    lines.extend(remarks.iter().map(|remark| format!("  warning: {remark}").into()));
     let numbers = json!({
         "faces": coupling.faces.len(),
         "substeps": substeps,

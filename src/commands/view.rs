@@ -83,7 +83,8 @@ fn serve_scene(args: &ViewArgs, source: Source) -> Result<(), Failure> {
     if !source.file.is_file() {
         source.document()?;
     }
-    let live = Live::new(source, |source| Ok(check::check(&source.file, &source.set, None, false)?.text()));
+    let live =
+        Live::new(source, |source| Ok(check::check(&source.file, &source.set, None, false)?.text(false)));
     let (listener, port) = begin(args)?;
     view::server::serve_scene(listener, port, live)
 }

@@ -203,7 +203,10 @@ fn check_accepts_every_shipped_scene() {
 #[test]
 fn check_tells_sizes_steps_and_stability() {
     let folder = scene_folder("check", COUPLED);
-    let text = trackbed([Path::new("check"), &folder.join("scene.toml")]).good().stdout;
+    let scene = folder.join("scene.toml");
+    let brief = trackbed([Path::new("check"), &scene]).good().stdout;
+    assert!(!brief.contains("stability W") && !brief.contains("Gauss2"), "{brief}");
+    let text = trackbed([Path::new("check"), &scene, Path::new("--verbose")]).good().stdout;
     let parts = [
         "spheres on a block\n",
         "81 nodes, 8 elements, 180 unknowns",

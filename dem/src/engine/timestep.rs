@@ -77,31 +77,33 @@ impl DtLimit {
     };
 }
 
+impl DtLimit {
+    /// Formats with the names of governing body, partner's material and wall.
+    pub fn with_names(&self, body: &str, material: &str, wall: &str) -> String {
+        let contact = match self.stiffness > 0.0 {
+            true => format!(" in contact with {material} (stiffness {:.3e} N/m)", self.stiffness),
+            false => String::new(),
+        };
+        if self.wall.is_some() {
+            let mount = match self.mount > 0.0 {
+                true => format!(" on its mount ({:.3e} rad/s)", self.mount.sqrt()),
+                false => String::new(),
+            };
+            return format!("the rigid body of wall {wall}{contact}{mount}");
+        }
+        let bonds = match self.bonds > 0.0 {
+            true => format!(" and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt()),
+            false => String::new(),
+        };
+        format!("{body} (effective mass {:.3e} kg){contact}{bonds}", self.mass)
+    }
+}
+
 impl fmt::Display for DtLimit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(wall) = self.wall {
-            write!(f, "the rigid body of wall {wall}")?;
-            if self.stiffness > 0.0 {
-                write!(
-                    f,
-                    " in contact with material {} (stiffness {:.3e} N/m)",
-                    self.partner, self.stiffness
-                )?;
-            }
-            if self.mount > 0.0 {
-                write!(f, " on its mount ({:.3e} rad/s)", self.mount.sqrt())?;
-            }
-            return Ok(());
-        }
-        write!(
-            f,
-            "body {} (effective mass {:.3e} kg) in contact with material {} (stiffness {:.3e} N/m)",
-            self.body, self.mass, self.partner, self.stiffness
-        )?;
-        if self.bonds > 0.0 {
-            write!(f, " and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt())?;
-        }
-        Ok(())
+        let wall = self.wall.map_or_else(String::new, |wall| wall.to_string());
+        let (body, material) = (format!("body {}", self.body), format!("material {}", self.partner));
+        f.write_str(&self.with_names(&body, &material, &wall))
     }
 }
 

@@ -2,7 +2,7 @@
 //! ([`crate::timestep`]). [`follow`] adjusts the step:
 //!
 //! * the limit is evaluated every [`LEAST`] to [`MOST`] steps, more often if it changes, and at once if the
-//!   dissipation rate rises [`SURGE`] times: loads that rise within the interval, or a growing oscillation;
+//!   dissipation rate rises tenfold: loads that rise within the interval, or a growing oscillation;
 //! * the step is a fraction of it ([`TimeStep::Measured`](crate::TimeStep::Measured)), smaller while it
 //!   changes, and grows by at most 25 % per evaluation;
 //! * a fraction of the collision time (`engine/collision.rs`) bounds it for accurate restitution, by default

@@ -31,6 +31,11 @@ impl MaterialsPart {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
     }
 
+    /// Returns the name of a material.
+    pub fn name(&self, material: usize) -> &str {
+        self.names.get(material).map_or("", String::as_str)
+    }
+
     /// Returns sources of contact laws and time integration.
     pub fn sources(&self) -> Vec<&'static str> {
         sources::of(&self.all, &self.pairs)

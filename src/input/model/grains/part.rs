@@ -16,6 +16,7 @@ use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use std::sync::Arc;
 use trackbed_dem::sheet::SurfaceMesh;
+use trackbed_dem::timestep::DtLimit;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
 /// Resolved grains.
@@ -95,6 +96,17 @@ impl GrainsPart {
     /// Returns the body forces of the main stage.
     pub fn body_forces(&self) -> impl Iterator<Item = BodyForce> {
         self.wind.into_iter().chain(self.water)
+    }
+
+    /// Formats a step limit of a model with the grains first and rigid sleepers last.
+    pub fn describe(&self, limit: &DtLimit) -> String {
+        let group = self.groups.bodies.get(limit.body).and_then(|b| self.groups.names.get(b.part as usize));
+        let body = match group {
+            Some(group) => format!("body {} of {group}", limit.body),
+            None => "sleeper".into(),
+        };
+        let wall = limit.wall.and_then(|wall| self.walls.names.get(wall));
+        limit.with_names(&body, self.materials.name(limit.partner), wall.map_or("", String::as_str))
     }
 
     /// Whether grains scar a wall.
