@@ -1,4 +1,4 @@
-//! Stages of a run in order: [`STAGES`].
+//! Stages of a run in order (`STAGES`).
 
 mod bedding;
 mod cadence;
