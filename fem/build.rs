@@ -1,5 +1,5 @@
-//! With the feature `mumps`: compiles the C part of the binding to MUMPS against the installed header, and links its library. Without
-//! it there is nothing to do.
+//! With the feature `mumps`: compiles the C part of the binding to MUMPS against the installed header, and
+//! links its library.
 //!
 //! | variable | what | default |
 //! |---|---|---|

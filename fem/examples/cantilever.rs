@@ -1,6 +1,4 @@
 //! Cantilever under a transverse tip load: deflection against Timoshenko beam theory.
-//!
-//! `cargo run --release -p trackbed-fem --example cantilever`
 
 use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, loads, statics};
 

@@ -1,6 +1,4 @@
 //! Column released from a stretched state: period and energy of three time integrators.
-//!
-//! `cargo run --release -p trackbed-fem --example free_vibration`
 
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};
 use trackbed_fem::theta::ThetaSolver;

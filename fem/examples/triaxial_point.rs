@@ -1,7 +1,5 @@
 //! Drained triaxial compression of one Mohr–Coulomb point at 100 kPa cell pressure: strength against the
 //! closed form.
-//!
-//! `cargo run --release -p trackbed-fem --example triaxial_point`
 
 use trackbed_fem::material::{regularise, update};
 use trackbed_fem::{Elastic, Material, MohrCoulomb, PointState};

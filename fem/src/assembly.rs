@@ -1,9 +1,9 @@
 //! Assembles the global stiffness and mass matrices.
 //!
 //! Upper halves over node pairs (p, q), q >= p, by rows with one pattern: 3×3 stiffness blocks, scalar
-//! masses, all dofs. Boundary springs are part of the stiffness; dashpots D are stored separately.
+//! masses, all dofs.
 //!
-//! Chunks of fixed size are added in element order: results are bitwise independent of the number of threads.
+//! Chunks of fixed size are added in element order, for bitwise reproducibility.
 
 use crate::assumed::modes::{self, HEX8_TERMS};
 use crate::assumed::{AssumedStrain, Dilatation, ElementStrains};
@@ -263,7 +263,7 @@ impl Matrices {
         }
     }
 
-    /// `x·K x`, twice the strain energy [J], at half the cost of a product. Shape `[3 * nodes]`.
+    /// `x·K x` [J], shape of x `[3 * nodes]`, at half the cost of a product.
     pub fn stiffness_form(&self, x: &[f64]) -> f64 {
         self.form(x, |row, columns, x, sum| {
             for (k, &q) in self.stiffness[row].iter().zip(columns) {
@@ -272,7 +272,7 @@ impl Matrices {
         })
     }
 
-    /// `x·M x`, twice the kinetic energy [J], at half the cost of a product. Shape `[3 * nodes]`.
+    /// `x·M x` [J], shape of x `[3 * nodes]`, at half the cost of a product.
     pub fn mass_form(&self, x: &[f64]) -> f64 {
         if let Some(lumped) = &self.lumped {
             let square = |x: &[f64; 3]| x[0] * x[0] + x[1] * x[1] + x[2] * x[2];

@@ -1,7 +1,7 @@
 //! Distributed springs and dashpots on faces: absorbing boundaries and elastic supports.
 //!
-//! Traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 - n n^T)) v`, outward normal n;
-//! consistent matrices `∫ N_a N_b (…) dA`. Springs join the stiffness (also in Rayleigh damping).
+//! Traction `t = -(k_n n n^T + k_t (1 - n n^T)) u - (c_n n n^T + c_t (1 - n n^T)) v`, outward normal n.
+//! Springs join the stiffness (also in Rayleigh damping).
 //!
 //! `c_n = rho c_p`, `c_t = rho c_s` absorb plane waves at normal incidence (Lysmer and Kuhlemeyer 1969).
 //! Springs of order G/R, R being the source distance, prevent static drift (Deeks and Randolph 1994,

@@ -40,7 +40,6 @@ fn springs_constrain_but_dashpots_do_not() {
     };
     let base = faces(&mesh, 0);
     assert_eq!(free(&[], &[BoundaryLayer::springs(base.clone(), 1.0, 1e-3)]), None);
-    // Normal springs leave two slides and a rotation; a front wall leaves sideways sliding.
     assert!(free(&[], &[BoundaryLayer::springs(base.clone(), 1.0, 0.0)]).is_some());
     let wall = |side| BoundaryLayer::springs(faces(&mesh, side), 1.0, 0.0);
     assert_eq!(free(&[], &[wall(0), wall(4)]).unwrap().1, 1);

@@ -90,7 +90,7 @@ pub fn momentum(model: &Model, state: &State) -> ([f64; 3], [f64; 3]) {
 
 /// Support reactions [N], `M a + C v + K u - F` at constrained dofs, 0 elsewhere. Shape `[3 * nodes]`.
 ///
-/// Stresses replace `K u` if present. For window steps see [`crate::theta::ThetaSolver::mean_reactions`].
+/// Stresses replace `K u` if present.
 pub fn reactions(model: &Model, state: &State, load: &[f64]) -> Vec<f64> {
     let n = model.dof_count();
     let (mut inner, mut scratch) = (vec![0.0; n], vec![0.0; 2 * n]);

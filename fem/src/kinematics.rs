@@ -1,8 +1,7 @@
 //! Small-strain kinematics and elastic matrices of isoparametric elements.
 //!
 //! `K_ab = ∫ lambda g_a⊗g_b + mu g_b⊗g_a + mu (g_a·g_b) 1 dV` with `g_a = dN_a/dx`,
-//! `M_ab = ∫ rho N_a N_b dV`. Source: Zienkiewicz and Taylor (2000), vol. 1, chapters 4 and 9. Gradient
-//! products are summed over the points first: an order of magnitude less work than B^T D B.
+//! `M_ab = ∫ rho N_a N_b dV`. Source: Zienkiewicz and Taylor (2000), vol. 1, chapters 4 and 9.
 //!
 //! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 

@@ -1,9 +1,8 @@
 //! Implicit finite elements for ballasted track: statics and dynamics, elastic and elastoplastic
 //! ([`nonlinear`]).
 //!
-//! A [`model::Model`] is immutable; a [`state::State`] is sufficient for a restart; solvers
-//! ([`statics::StaticSolver`], [`newmark::NewmarkSolver`], [`theta::ThetaSolver`]) own factor and scratch. SI
-//! units. Nodal vectors have the index `3 * node + direction`. Full references: `docs/theory/references.md`.
+//! A [`model::Model`] is immutable; a [`state::State`] is sufficient for a restart. SI units. Nodal vectors
+//! have the index `3 * node + direction`.
 //!
 //! ```
 //! use trackbed_fem::{Constraint, Elastic, Mesh, Model, ModelInput, Quadrature, Rayleigh, loads, statics};

@@ -1,8 +1,7 @@
 //! Consistent nodal forces: `F_a = ∫ N_a t dA` on faces, `F_a = N_a(xi) F` at points.
 //!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, section 2.3. All functions add to `load`, shape
-//! `[3 * nodes]` [N]. Uniform pressure on a rectangular hex20 face gives -1/12 per corner and +1/3 per
-//! mid-side. Limits: no follower loads.
+//! `[3 * nodes]` [N]. Limits: no follower loads.
 
 use crate::mesh::{Face, Mesh};
 

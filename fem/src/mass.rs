@@ -1,8 +1,8 @@
 //! Consistent and lumped mass.
 //!
-//! Lumped (HRZ): diagonal of the consistent matrix, scaled to the element mass, `m_a = M_aa m / sum_b M_bb`;
-//! always positive, unlike row sums. Source: Hinton, Rock and Zienkiewicz (1976). Limits: frequency errors of
-//! quadratic elements are of second order instead of fourth. Gravity loads stay consistent.
+//! Lumped (HRZ): diagonal of the consistent matrix, scaled to the element mass,
+//! `m_a = M_aa m / sum_b M_bb`; always positive, unlike row sums. Source: Hinton, Rock and Zienkiewicz
+//! (1976). Limits: frequency errors of quadratic elements are of second order instead of fourth.
 //!
 //! Theory manual: equation (4.5) of `docs/theory/solid.md`.
 
@@ -64,11 +64,8 @@ mod tests {
         assert!((masses[8] / 24.0 - side / sum).abs() < 1e-14, "{}", masses[8] / 24.0);
     }
 
-    /// `∫ ((1+x)(1+y)(1+z)(x+y+z-2)/8)²`: moments of (1+x)² x^k over [-1, 1] are 8/3, 4/3, 16/15 for k = 0,
-    /// 1, 2.
     fn exact_corner() -> f64 {
         let (m0, m1, m2) = (8.0 / 3.0, 4.0 / 3.0, 16.0 / 15.0);
-        // (s - 2)² with s = x + y + z: s² - 4 s + 4.
         let square = 3.0 * m2 * m0 * m0 + 6.0 * m1 * m1 * m0;
         (square - 4.0 * 3.0 * m1 * m0 * m0 + 4.0 * m0 * m0 * m0) / 64.0
     }

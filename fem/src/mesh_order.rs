@@ -1,7 +1,6 @@
 //! Conversion between linear and quadratic elements.
 //!
-//! Linear meshes have about a quarter of the nodes. Limits: added mid-sides are straight, dropped ones lose
-//! curvature.
+//! Linear meshes have about a quarter of the nodes; added mid-sides are straight.
 
 use crate::mesh::Mesh;
 use std::collections::{HashMap, HashSet};
@@ -49,8 +48,7 @@ impl Mesh {
 
     /// Converts hex8 → hex20, wedge6 → wedge15, pyramid5 → pyramid13, tet4 → tet10, with one node per edge.
     ///
-    /// Nodes keep indices and numbers; new ones follow by element and edge, numbered above, then from the
-    /// lowest free.
+    /// Nodes keep indices and numbers.
     ///
     /// # Panics
     /// If an element refers to a missing node.

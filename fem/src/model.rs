@@ -183,7 +183,7 @@ impl Model {
         Ok(Model { materials, ..self.clone() })
     }
 
-    /// Moves the bodies of `nodes` by `way` [m]; matrices and factors stay valid.
+    /// Moves the bodies of `nodes` by `way` [m].
     ///
     /// # Panics
     /// If an element joins these nodes to others.
@@ -198,8 +198,7 @@ impl Model {
         moved
     }
 
-    /// First Gauss point of an element in [`crate::State::points`], ordered as [`stiffness_points`]; the
-    /// element count gives the total.
+    /// First Gauss point of an element in [`crate::State::points`], ordered as [`stiffness_points`].
     pub fn point_start(&self, element: usize) -> usize {
         self.point_start[element] as usize
     }

@@ -1,7 +1,4 @@
 //! Fields at points of a mesh, and stress at the integration points of a box.
-//!
-//! Points interpolate the averaged nodal values of [`crate::stress`] by shape functions, from the elements
-//! around them only.
 
 use crate::element::{MAX_NODES, stiffness_points};
 use crate::kinematics::jacobian;

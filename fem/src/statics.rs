@@ -1,8 +1,7 @@
 //! Statics: `K u = F`, reactions `R = K u - F`.
 //!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, section 1.6. Rigid-body motion is detected from geometry,
-//! mechanisms from pivots. Limits: relative pivots below 1e-11 are rejected, also for very slender bodies
-//! (some thousand elements in a row) or extreme stiffness contrast.
+//! mechanisms from pivots. Limits: relative pivots below 1e-11 are rejected, also for very slender bodies.
 
 use crate::assembly::Combination;
 use crate::boundary::spring_points;

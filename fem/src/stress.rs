@@ -65,7 +65,7 @@ pub(crate) fn elastic_at_nodes(model: &Model, u: &[f64], element: usize) -> [[f6
 
 /// Averaged nodal values of `of_point(element, index in State::points)`. Shape `[nodes][C]`.
 ///
-/// Least squares per element, as plastic stresses are not smooth; exact for the 2×2×2 rule.
+/// Least squares per element, exact for the 2×2×2 rule.
 pub fn nodal_from_points<const C: usize>(
     model: &Model,
     of_point: impl Fn(usize, usize) -> [f64; C] + Send + Sync,

@@ -7,8 +7,6 @@ use crate::mesh::Mesh;
 
 impl Mesh {
     /// Block with one corner at the origin, `counts` elements and `size` [m] along x, y, z, of material 1.
-    ///
-    /// Numbered along x, then y, then z. A count of 0 gives an empty mesh.
     pub fn block(counts: [usize; 3], size: [f64; 3]) -> Mesh {
         let lines: [Vec<f64>; 3] = std::array::from_fn(|d| {
             (0..=counts[d]).map(|i| size[d] * i as f64 / counts[d].max(1) as f64).collect()
@@ -17,8 +15,6 @@ impl Mesh {
     }
 
     /// Hex20 block of material 1 between ascending grid planes [m] along x, y, z.
-    ///
-    /// Numbered as [`Mesh::block`]. Fewer than two planes along an axis give an empty mesh.
     pub fn grid(planes: &[Vec<f64>; 3]) -> Mesh {
         let mut mesh = Mesh::default();
         if planes.iter().any(|p| p.len() < 2) {

@@ -1,7 +1,7 @@
 //! Mass matrix near a surface.
 //!
-//! M⁻¹ of a consistent mass decays exponentially with element distance (Demko, Moss and Smith, Math. Comp. 43
-//! (1984) 491), so surface elements suffice for instantaneous accelerations.
+//! M⁻¹ of a consistent mass decays exponentially with distance (Demko, Moss and Smith, Math. Comp. 43
+//! (1984) 491).
 
 use crate::model::Model;
 

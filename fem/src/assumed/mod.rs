@@ -1,8 +1,7 @@
 //! Assumed strains against volumetric and shear locking.
 //!
 //! Strain `B̄ u`, force `∫ B̄^T s dV`, stiffness `∫ B̄^T D B̄ dV`; B̄ depends only on element shape and
-//! Poisson's ratio. It combines projected volumetric strain ([`Dilatation`]) and incompatible modes
-//! ([`modes`]).
+//! Poisson's ratio.
 
 pub mod dilatation;
 pub mod modes;

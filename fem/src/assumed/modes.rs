@@ -1,8 +1,8 @@
 //! Incompatible modes of the hex8 against parasitic shear in bending.
 //!
-//! Three displacements, zero at the nodes, add nine strain terms. Their gradients use the central Jacobian,
-//! scaled to zero mean: the patch test is passed by any shape. Amplitudes `α = A u` minimise the elastic
-//! energy (enhanced assumed strain, nine terms); yielding materials keep A of constant volume, without state.
+//! Gradients use the central Jacobian, scaled to zero mean: the patch test is passed by any shape.
+//! Amplitudes `α = A u` minimise the elastic energy (enhanced assumed strain, nine terms); yielding
+//! materials keep A of constant volume, without state.
 //!
 //! Source: Taylor, Beresford and Wilson (1976); Simo and Rifai (1990). Limits: trapezoidal elements stay
 //! stiff in bending (MacNeal 1987); elastic regions of a yielding material bend as if Poisson's ratio were

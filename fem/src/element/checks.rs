@@ -55,7 +55,7 @@ pub fn differences<const D: usize, const N: usize>(
     }
 }
 
-/// On an affine element, monomials up to `degree` are interpolated exactly, some of the next degree not.
+/// Monomials up to `degree` are interpolated exactly on an affine element, some of the next not.
 pub fn complete<const D: usize, const N: usize>(
     natural: &[[f64; D]; N],
     shape: fn([f64; D]) -> [f64; N],

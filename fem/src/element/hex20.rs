@@ -14,8 +14,7 @@
 //! Corner a: `N = (1 + x_a x)(1 + y_a y)(1 + z_a z)(x_a x + y_a y + z_a z - 2) / 8`
 //! Mid-side a: `N = (1 - x²)(1 + y_a y)(1 + z_a z) / 4` for a side along x, and cyclically.
 //!
-//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 8.9. Order h³ in L2 if mid-side nodes are near the
-//! middle of straight sides.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, section 8.9.
 //!
 //! Theory manual: equation (4.1) of `docs/theory/solid.md`.
 

@@ -156,8 +156,7 @@ impl ElementKind {
         on_kind!(self, element => &element::NATURAL)
     }
 
-    /// Points at which the Jacobian of local node `node` is checked. For an apex, four points just below:
-    /// there the determinant is bilinear in direction, hence positive around the apex.
+    /// Points at which the Jacobian of local node `node` is checked. For an apex, four points just below.
     pub fn limits_at_node(self, node: usize) -> &'static [[f64; 3]] {
         if matches!(self.linear(), ElementKind::Pyramid5) && node == 4 {
             &pyramid13::APEX_LIMITS

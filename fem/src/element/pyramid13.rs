@@ -87,8 +87,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
 
 /// Derivatives by (x, y, t); at the apex the limit along the axis. Shape `[13][3]`.
 ///
-/// Chain rule: `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`. The factor u of F,p and F,q is
-/// cancelled analytically.
+/// Chain rule: `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID13_NODES] {
     let (u, p, q) = section(xi);
     let t = xi[2];
@@ -128,8 +127,6 @@ mod tests {
         checks::mid_sides(&NATURAL, 5, &sides);
     }
 
-    /// In (p, q, t) the determinant is a polynomial of degree 5 in p and q and 3 in t: 18 points are exact, 8
-    /// nearly.
     #[test]
     fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);

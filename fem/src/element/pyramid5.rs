@@ -8,9 +8,6 @@
 //!       0───────1
 //! ```
 //!
-//! With `u = 1 - t`, `p = x / u`, `q = y / u` (section coordinates, in [-1, 1]):
-//! base `N = u (1 + x_a p)(1 + y_a q) / 4`, apex `N = t`.
-//!
 //! Source: Bedrosian, Int. J. Numer. Methods Eng. 35 (1992) 95-108.
 //! Limits: at the apex the limit along the axis (p = q = 0) is used, exact for linear fields. Meshes of
 //! pyramids only lock slightly near incompressibility.
@@ -39,7 +36,7 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID5_NODES] {
     n
 }
 
-/// Derivatives by (x, y, t); at the apex the limit along the axis. Shape `[5][3]`.
+/// Derivatives by (x, y, t). Shape `[5][3]`.
 pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID5_NODES] {
     let (_, p, q) = section(xi);
     let mut d = [[0.0; 3]; PYRAMID5_NODES];

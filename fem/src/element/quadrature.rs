@@ -3,10 +3,10 @@
 //! Gauss: Zienkiewicz and Taylor (2000), vol. 1, table 9.1; exact to degree 2n - 1 per axis. 14 points: Irons
 //! (1971), table I; exact to total degree 5.
 //!
-//! Limits for the hex20: 27 points have full rank and pass the curved patch test. 8 points ("reduced") are
-//! usually more accurate, but leave zero-energy modes in a single element or a row one element wide and deep,
-//! even if clamped. Two elements across with a clamped side suppress them. 14 points have full rank at half
-//! the cost; the curved patch test error is about 1e-3.
+//! Limits for the hex20: 8 points ("reduced") are usually more accurate, but leave zero-energy modes in a
+//! single element or a row one element wide and deep, even if clamped. Two elements across with a clamped
+//! side suppress them. 14 points have full rank at half the cost; the curved patch test error is about
+//! 1e-3.
 //!
 //! Triangle: Hammer, Marlowe and Stroud, Math. Tables Aids Comput. 10 (1956) 130-137 (3 points); Dunavant,
 //! Int. J. Numer. Methods Eng. 21 (1985) 1129-1148 (6, 7). Tetrahedron: Hammer, Marlowe and Stroud (1956)
@@ -117,8 +117,7 @@ const CONE3: [(f64, f64); 3] = [
     (0.705_002_209_888_498_312_24, 0.029_950_703_008_580_698_01),
 ];
 
-/// Triangle rule from centroid weight and orbits (a, w) with area coordinates (a, a, 1 - 2a). Input weights
-/// sum to 1, rule weights to 1/2.
+/// Triangle rule from centroid weight and orbits (a, w) with area coordinates (a, a, 1 - 2a).
 const fn triangle_rule<const P: usize>(centroid: f64, orbits: &[(f64, f64)]) -> [FacePoint; P] {
     let mut points = [([1.0 / 3.0; 2], centroid / 2.0); P];
     let mut p = 0;
@@ -202,7 +201,7 @@ const fn pyramid_rule<const N: usize, const L: usize, const P: usize>(
     points
 }
 
-/// 2×2 points of a face; second coordinate fastest. Exact to degree 3 per axis.
+/// 2×2 points of a face. Exact to degree 3 per axis.
 pub static FACE2: [FacePoint; 4] = face_rule(LINE2);
 /// Triangle, 3 points; weights sum to 1/2. Exact to degree 2.
 pub static TRIANGLE3: [FacePoint; 3] = triangle_rule(0.0, &[(1.0 / 6.0, 1.0 / 3.0)]);

@@ -1,5 +1,4 @@
-//! Exactness of integration rules against closed-form monomial integrals (simplices: Zienkiewicz and Taylor
-//! (2000), vol. 1, chapter 8).
+//! Exactness of integration rules against closed-form monomial integrals.
 
 use super::*;
 use crate::element::checks::monomials;
@@ -24,7 +23,6 @@ fn wedge(powers: [i32; 3]) -> f64 {
     triangle(powers) * line(powers[2])
 }
 
-/// Scaling of x and y by 1 - t leaves a beta function of t.
 fn pyramid([i, j, k]: [i32; 3]) -> f64 {
     line(i) * line(j) * factorial(k) * factorial(i + j + 2) / factorial(i + j + k + 3)
 }

@@ -11,8 +11,7 @@
 //! With the volume coordinates `L = (1 - r - s - t, r, s, t)`: corner `N = L (2 L - 1)`, mid-side
 //! `N = 4 L_i L_j`.
 //!
-//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. With straight sides, 4 points integrate the
-//! stiffness exactly; the mass needs degree 4.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
 use super::tet4;
 

@@ -7,8 +7,6 @@
 //!      0──1      so that dx/dr × dx/ds points outward
 //! ```
 //!
-//! `N = 1 - r - s, r, s`.
-//!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
 /// Node count.

@@ -107,7 +107,6 @@ mod tests {
         checks::mid_sides(&NATURAL, 6, &sides);
     }
 
-    /// Determinant of degree 4 in (r, s) and 5 in t: 21 points are exact, 9 points nearly.
     #[test]
     fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);

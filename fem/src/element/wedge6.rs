@@ -10,11 +10,8 @@
 //!       0─────1
 //! ```
 //!
-//! With the area coordinates `L = (1 - r - s, r, s)`: `N = L (1 + t_a t) / 2`.
-//!
-//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: too stiff in bending; locks near
-//! incompressibility in spite of mean dilatation, as the triangle's in-plane strain is constant. Use wedge15
-//! for accuracy.
+//! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: too stiff in bending. Locks near
+//! incompressibility in spite of mean dilatation.
 
 use super::tri3;
 

@@ -1,7 +1,7 @@
 //! Solves the mass matrix by conjugate gradients with diagonal preconditioner.
 //!
 //! The condition depends on the element shape only (Wathen, IMA J. Numer. Anal. 7 (1987) 449-457): a few
-//! dozen products reach rounding, cheaper than a factor.
+//! dozen products reach rounding.
 
 use crate::assembly::Matrices;
 use crate::error::SolveError;

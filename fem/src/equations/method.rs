@@ -112,8 +112,7 @@ impl Method {
         })
     }
 
-    /// Predicted memory [bytes]. CG in statics: from embankments (2.5 to 2.75 kB per node at 7,500 to 100,000
-    /// nodes).
+    /// Predicted memory [bytes].
     ///
     /// # Errors
     /// Failed analysis; [`SolveError::Library`].

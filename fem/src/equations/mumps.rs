@@ -1,7 +1,6 @@
 //! MUMPS factor of `S A S`, A = k K + m M + d D, in the elimination order of the mesh.
 //!
-//! S scales the diagonal to 1, so null pivots are relative. Limits: no reuse of the analysis; negative pivots
-//! are reported without node.
+//! Limits: no reuse of the analysis; negative pivots are reported without node.
 
 use super::method::MumpsMethod;
 use super::pattern::order;

@@ -1,10 +1,8 @@
 //! Orders the nodes by geometric nested dissection.
 //!
-//! A plane splits the elements; shared nodes form the separator, numbered last. Cuts between elements
-//! separate whole sheets of nodes. Of several cuts per axis, the smallest separator for its balance wins;
-//! layered meshes are cut between layers.
+//! A plane splits the elements; shared nodes form the separator, numbered last.
 //!
-//! Source: George (1973). On cubes the factor has O(n^(4/3)) entries, about half of minimum degree.
+//! Source: George (1973).
 
 use crate::mesh::Mesh;
 

@@ -11,8 +11,7 @@ use std::sync::{Arc, OnceLock};
 
 /// Relative pivot without stiffness.
 ///
-/// Rounding leaves 1e-16 to 1e-13 on a mechanism, growing with the mesh; a column a thousand times as high as
-/// its elements has 4e-9.
+/// Rounding leaves 1e-16 to 1e-13 on a mechanism; a slender column has 4e-9.
 pub(crate) const NO_STIFFNESS: f64 = 1e-11;
 const ITERATIONS: u32 = 100;
 
@@ -88,8 +87,7 @@ pub trait SystemSolver: Send + Sync {
     /// Solves `(A + factor C) x = b` in place from zero to `tolerance` [-]; returns the iterations. Shape
     /// `[equations]`.
     ///
-    /// With a factor as CG preconditioner, no product with A is needed. Residuals after the last iteration
-    /// are accepted.
+    /// With a factor as CG preconditioner, no product with A is needed.
     ///
     /// # Errors
     /// [`SolveError::NotConverged`] of an iteration without a factor, [`SolveError::Library`].

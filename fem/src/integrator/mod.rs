@@ -76,7 +76,7 @@ pub type OnStep<'a> = &'a mut dyn FnMut(&State, &StepReport, Option<&StepAudit>)
 
 /// Time integration method.
 pub trait TimeIntegrator: Send + Sync {
-    /// Advances `state` to the time `to` exactly; after errors, to the last accepted step.
+    /// Advances `state` to the time `to` exactly.
     ///
     /// Dynamic methods require the initial acceleration of the equations of motion.
     ///

@@ -62,8 +62,6 @@ impl StepLength {
     }
 
     /// Length and end time of the step from `time`, up to `end`. The last two steps share the remainder.
-    ///
-    /// Remainders equal within rounding give the length itself, so that its factor is reused.
     pub fn next(&self, time: f64, end: f64) -> (f64, f64) {
         let left = end - time;
         let dt = self.unrounded(left);

@@ -15,7 +15,7 @@ pub struct UpperBlocks<'a, T> {
 }
 
 impl<T: Copy + Into<f64>> UpperBlocks<'_, T> {
-    /// `y += A x` with the rows and their transpose. Fourth lane: 0 in x, undefined in y.
+    /// `y += A x` with the rows and their transpose.
     pub fn times<const MASS: bool>(&self, x: &[[f64; 4]], y: &mut [[f64; 4]]) {
         #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
         {

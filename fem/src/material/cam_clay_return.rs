@@ -167,8 +167,7 @@ impl Step<'_> {
         }
     }
 
-    /// Solves `x + multiplier (2 p - pc) = volume` for x, increasing on the left. Root: between total strain
-    /// (no flow) and the strain at half the old `pc`, where `2 p - pc` changes sign.
+    /// Solves `x + multiplier (2 p - pc) = volume` for x, increasing on the left.
     fn balance(&self, multiplier: f64, start: f64) -> Result<Trial, ReturnError> {
         let enough = |x: f64| 1e-16 * self.clay.swelling + 2.0 * f64::EPSILON * x.abs();
         let rest = |t: &Trial| self.volume - t.x - multiplier * (2.0 * t.bulk.p - t.pc);

@@ -1,9 +1,9 @@
 //! Drucker–Prager plasticity with exact return to cone and apex, optional mean-stress cap, non-associated
 //! flow and hardening. Zero friction: von Mises.
 //!
-//! `sqrt(J2) + eta p - xi c <= 0`, `p <= tension`, `p = tr(sigma)/3`; flow by `sqrt(J2) + eta_bar p`. Source:
-//! de Souza Neto, Peric and Owen (2008), section 8.3, equations 6.122 to 6.126. Limits:
-//! `0 <= psi <= phi < 90°`; a cap beyond the apex is inactive.
+//! `sqrt(J2) + eta p - xi c <= 0`, `p <= tension`, `p = tr(sigma)/3`; flow by `sqrt(J2) + eta_bar p`.
+//! Source: de Souza Neto, Peric and Owen (2008), section 8.3, equations 6.122 to 6.126. Limits:
+//! `0 <= psi <= phi < 90°`.
 //!
 //! Theory manual: equation (4.12) of `docs/theory/solid.md`.
 

@@ -33,7 +33,7 @@ impl From<f64> for Hardening {
 }
 
 impl Hardening {
-    /// Value and slope at `kappa`; at a kink the slope of the larger side.
+    /// Value and slope at `kappa`.
     pub fn at(&self, kappa: f64) -> (f64, f64) {
         match self {
             Hardening::Constant(value) => (*value, 0.0),
@@ -91,7 +91,7 @@ impl Hardening {
         }
     }
 
-    /// Maps values by `change`, keeping `kappa`; a line without limit uses its initial slope.
+    /// Maps values by `change`, keeping `kappa`.
     pub fn map(&self, change: impl Fn(f64) -> f64) -> Hardening {
         match self {
             Hardening::Constant(value) => Hardening::Constant(change(*value)),

@@ -50,8 +50,7 @@ pub enum ReturnError {
 /// Constitutive law: stress and history of an integration point.
 ///
 /// [`Elastic`] is the reference elasticity of constant matrices (first iteration, Rayleigh damping,
-/// boundaries). Tension is positive; order xx, yy, zz, xy, yz, zx, engineering shear. The conformance suite
-/// tests these rules for every law.
+/// boundaries). Tension is positive; order xx, yy, zz, xy, yz, zx, engineering shear.
 pub trait ConstitutiveLaw {
     /// Reference of the equations.
     fn source(&self) -> &'static str;

@@ -4,8 +4,7 @@
 //! and Owen (2008), chapters 7 and 8. Limits: small strain, isotropy.
 //!
 //! The consistent tangent of [`update`] is singular at apexes, corners and Mohr–Coulomb edges (triaxial
-//! compression under load control). [`regularise`] mixes in the elastic matrix; this changes the Newton path,
-//! not the solution.
+//! compression under load control). [`regularise`] mixes in the elastic matrix.
 mod cam_clay_return;
 pub mod drucker_prager;
 pub mod elastic;
@@ -168,8 +167,7 @@ pub fn yield_function(material: &Material, state: &PointState) -> f64 {
     material.law.yield_function(state.into())
 }
 
-/// Sets `tangent` to `(1 - fraction) tangent + fraction D` [Pa]. With [`REGULARISATION`], Newton converges
-/// linearly at a rate of that order.
+/// Sets `tangent` to `(1 - fraction) tangent + fraction D` [Pa].
 pub fn regularise(tangent: &mut [[f64; 6]; 6], elastic: &Elastic, fraction: f64) {
     let matrix = elastic.matrix();
     for (row, elastic_row) in tangent.iter_mut().zip(&matrix) {

@@ -2,8 +2,7 @@
 //! non-associated flow and hardening. Zero friction: Tresca.
 //!
 //! `(s1 - s3)/2 + (s1 + s3)/2 sin(phi) - c cos(phi) <= 0`, `s1 <= tension`; flow with psi instead of phi.
-//! Source: de Souza Neto, Peric and Owen (2008), section 8.2. Limits: `0 <= psi <= phi < 90°`; a cut-off
-//! beyond the apex is inactive.
+//! Source: de Souza Neto, Peric and Owen (2008), section 8.2. Limits: `0 <= psi <= phi < 90°`.
 //!
 //! Theory manual: equation (4.13) of `docs/theory/solid.md`.
 

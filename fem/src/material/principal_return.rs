@@ -1,9 +1,7 @@
 //! Return to the Mohr–Coulomb surface with Rankine cut-off, in principal stresses at fixed strength.
 //!
-//! Each region is an affine piece of the surface with a cone of flow directions. With `L` in the piece and
-//! `W` orthogonal to its flow, `W^T D^-1 (s_trial - s) = 0` and `A = L (W^T D^-1 L)^-1 W^T`. Admissible:
-//! principal order, multipliers not negative. Regions are disjoint for `0 <= psi <= phi`; at `psi = 0` the
-//! apex region is a half-space.
+//! Each region is an affine piece of the surface with a cone of flow directions. Regions are disjoint for
+//! `0 <= psi <= phi`; at `psi = 0` the apex region is a half-space.
 //!
 //! Source: Clausen, Damkilde and Andersen (2006, 2007) (lines, points); de Souza Neto, Peric and Owen (2008),
 //! section 8.2.
@@ -102,8 +100,7 @@ impl ReturnCandidate {
     }
 }
 
-/// Returned stress and region of a sorted trial stress. If rounding rejects all regions, the least violated
-/// is selected; hence conditions repeat.
+/// Returned stress and region of a sorted trial stress.
 pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], ReturnRegion) {
     let mut choice =
         ReturnCandidate { stress: *trial, region: ReturnRegion::Elastic, margin: f64::NEG_INFINITY };
@@ -135,7 +132,6 @@ fn plane_and_edges(trial: &[f64; 3], q: &Strength, moduli: &Moduli, choice: &mut
     if choice.offer(ReturnRegion::Plane, s, [f, s[0] - s[1], s[1] - s[2], cut - s[0]]) {
         return true;
     }
-    // Edges: s = start + s3 * line, on one side of the apex if s1 >= s3.
     let (start, slope) = (q.k / q.a, q.b / q.a);
     let u = moduli.scaled_strain(&[q.flow_b, q.flow_b, q.flow_a]);
     let s3 = (dot(&u, trial) - (u[0] + u[1]) * start) / ((u[0] + u[1]) * slope + u[2]);

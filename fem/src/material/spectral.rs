@@ -96,7 +96,6 @@ pub(super) fn stiffness(axes: &[[f64; 3]; 3], a: &[[f64; 3]; 3], shear: &[f64; 3
         std::array::from_fn(|k| a[i][0] * m[0][k] + a[i][1] * m[1][k] + a[i][2] * m[2][k])
     });
     let d: [Voigt; 3] = std::array::from_fn(|i| dyad(&axes[i], &axes[(i + 1) % 3]));
-    // d sigma = 2 d * shear * gamma_ij and gamma_ij = 2 d : d eps.
     let sd: [Voigt; 3] = std::array::from_fn(|i| d[i].map(|x| 4.0 * shear[i] * x));
     std::array::from_fn(|r| {
         std::array::from_fn(|c| {

@@ -1,8 +1,7 @@
 //! Largest eigenvalues of `A^-1 M` by block Krylov iteration with thick restarts.
 //!
-//! M-orthonormal basis V with full reorthogonalisation, `T = V·M A^-1 M V`. Multiple eigenvalues beyond the
-//! block size appear by rounding or in the caller's check. Sequential sums and fixed start vectors make
-//! results bitwise reproducible. Memory: about `2 modes + 8 blocks` nodal vectors.
+//! M-orthonormal basis V with full reorthogonalisation, `T = V·M A^-1 M V`. Sequential sums and fixed start
+//! vectors make results bitwise reproducible. Memory: about `2 modes + 8 blocks` nodal vectors.
 
 use super::ModalError;
 use crate::equations::cholesky::Cholesky;

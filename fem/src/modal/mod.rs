@@ -1,7 +1,6 @@
 //! Natural frequencies and mode shapes: `K phi = w² M phi` on the free dofs, with boundary springs.
 //!
-//! Shift and invert, `(K + s M)^-1 M`, s = 0 without rigid-body motion. Further runs in the orthogonal
-//! complement check completeness.
+//! Shift and invert, `(K + s M)^-1 M`, s = 0 without rigid-body motion.
 //!
 //! Source: Ericsson and Ruhe (1980) (shift and invert); Stewart (2001), and Wu and Simon, SIAM J. Matrix
 //! Anal. Appl. 22 (2000) 602-616 (restarts); Clough and Penzien (1993), chapter 13 (participation, effective

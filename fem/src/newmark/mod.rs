@@ -6,14 +6,12 @@
 //! M a1 + C vw + K uw = Fw,  C = alpha_m M + beta_k K + D,  xw = (1 + a) x1 - a x0 for x = u, v, F
 //! ```
 //!
-//! a = 0 is Newmark; HHT-α has a in [-1/3, 0], beta = (1 - a)²/4, gamma = 1/2 - a. System matrix:
-//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a. Prescribed
-//! displacements determine acceleration and velocity.
+//! HHT-α has a in [-1/3, 0], beta = (1 - a)²/4, gamma = 1/2 - a. System matrix:
+//! `(1 + w gamma dt alpha_m) M + w (beta dt² + gamma dt beta_k) K + w gamma dt D`, w = 1 + a.
 //!
 //! Source: Newmark (1959); Hughes (1987), sections 9.1 and 9.3 (loads); Hilber, Hughes and Taylor (1977).
-//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. 1/4, 1/2 conserves energy; period
-//! error (w dt)²/12. Limits: for gamma = 1/2, jumps of prescribed displacement leave oscillating
-//! accelerations.
+//! Unconditionally stable for gamma >= 1/2 and beta >= (gamma + 1/2)²/4. 1/4, 1/2 conserves energy. Limits:
+//! for gamma = 1/2, jumps of prescribed displacement leave oscillating accelerations.
 //!
 //! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 
@@ -70,7 +68,7 @@ impl NewmarkSolver {
         NewmarkSolver::conditionally_stable(model, method, dt)
     }
 
-    /// Like [`NewmarkSolver::new`], for conditionally stable methods.
+    /// Like [`NewmarkSolver::new`], also for conditionally stable methods.
     ///
     /// # Errors
     /// Parameters below 0, step not above 0, material without density or with plasticity.
@@ -137,8 +135,6 @@ impl NewmarkSolver {
 
     /// Advances `state` by `dt` under the final load [N], shape `[3 * nodes]`, with fixed supports.
     ///
-    /// The audit uses mean loads: with 1/4, 1/2 numerical dissipation is zero to rounding.
-    ///
     /// # Errors
     /// Load or result not finite (state unchanged); HHT-α needs [`NewmarkSolver::advance`].
     pub fn step(
@@ -184,7 +180,6 @@ impl NewmarkSolver {
                 accelerated = true;
             }
         }
-        // Residual at the weighted time, C v = alpha_m M v + beta_k K v.
         for d in 0..state.u.len() {
             let (u, v) = (new * next.u[d] + old * state.u[d], new * next.v[d] + old * state.v[d]);
             self.work[d] = u + c.beta_k * v;

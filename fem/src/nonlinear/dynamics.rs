@@ -5,10 +5,8 @@
 //! C = alpha_m M + beta_k K + D
 //! ```
 //!
-//! Unknown: displacement increment; h is HHT's α in [-1/3, 0], 0 for Newmark. Damping uses the elastic K.
-//!
 //! Source: Newmark (1959); Hilber, Hughes and Taylor (1977); Simo and Hughes (1998), section 1.6
-//! (plasticity). Limits: halved steps evaluate loads at their own end.
+//! (plasticity).
 //!
 //! Theory manual: equation (4.6) of `docs/theory/solid.md`.
 

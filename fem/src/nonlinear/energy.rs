@@ -1,7 +1,4 @@
 //! Plastic work at the Gauss points, `∫ (sigma_0 + sigma_1)/2 : d eps_p dV`.
-//!
-//! With mean stresses and linear elasticity, internal work splits exactly into elastic energy
-//! ([`crate::energy::of_points`]) and plastic work.
 
 use crate::element::stiffness_points;
 use crate::kinematics::jacobian;

@@ -1,8 +1,6 @@
 //! Initial ground stress: uniform, K0, or gravity in steps.
 //!
-//! K0 and gravity states are equilibrated; displacements are then zeroed (kept on boundary springs).
-//!
-//! Source: Potts and Zdravković (1999), section 10.3. Limits: K0 is exact for level ground only.
+//! Source: Potts and Zdravković (1999), section 10.3.
 //!
 //! Theory manual: equation (4.15) of `docs/theory/solid.md`.
 

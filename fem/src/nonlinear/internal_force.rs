@@ -1,6 +1,6 @@
 //! Internal force `f_a = ∫ sigma·g_a dV` with return mapping and assumed strains ([`crate::assumed`]).
 //!
-//! Fixed chunks are added in element order: bitwise independent of the number of threads.
+//! Fixed chunks are added in element order, for bitwise reproducibility.
 
 use super::points::{Moved, PointTable};
 use crate::element::MAX_NODES;

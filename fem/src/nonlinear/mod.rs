@@ -1,8 +1,7 @@
 //! Elastoplastic bodies: internal force, tangent, Newton iteration and drivers.
 //!
-//! Steps start from committed Gauss point states, so failed steps leave no trace. Source: Simo and Hughes
-//! (1998), chapters 1 and 4; de Souza Neto, Peric and Owen (2008), chapter 4. Limits: small strain and
-//! rotation.
+//! Source: Simo and Hughes (1998), chapters 1 and 4; de Souza Neto, Peric and Owen (2008), chapter 4.
+//! Limits: small strain and rotation.
 pub(crate) mod conditions;
 pub mod dynamics;
 pub mod energy;

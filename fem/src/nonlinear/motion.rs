@@ -1,7 +1,6 @@
 //! Inner forces and energy terms shared by the time integrators.
 //!
-//! With mean stresses, `(s0 + s1)/2 : d eps = d(s : C^-1 s)/2 + (s0 + s1)/2 : d eps_p` exactly; the energy
-//! residual is due to time integration only.
+//! With mean stresses, `(s0 + s1)/2 : d eps = d(s : C^-1 s)/2 + (s0 + s1)/2 : d eps_p` exactly.
 
 use super::internal_force::InternalForce;
 use super::points::PointTable;

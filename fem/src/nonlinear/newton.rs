@@ -4,13 +4,11 @@
 //! r(w) = rhs - f(w) - S w - (stiffness K + mass M + dashpots D) w = 0 on the free dofs
 //! ```
 //!
-//! w is the displacement increment, f the internal force, S the boundary springs, K the elastic stiffness
-//! with springs. The first iteration uses the elastic matrix, as yielding exactly on the surface would depend
-//! on rounding.
+//! The first iteration uses the elastic matrix, as yielding exactly on the surface would depend on
+//! rounding.
 //!
 //! Convergence: residual at most `force_tolerance` of the forces (larger of |rhs| and |f|, all dofs), *and*
-//! residual work on the last correction at most `energy_tolerance` of its maximum in the step. A residual
-//! below a tenth suffices.
+//! residual work on the last correction at most `energy_tolerance` of its maximum in the step.
 //!
 //! Line search: the residual work is halved (Crisfield 1991, vol. 1, section 9.2), or, for corrections
 //! without positive work, the residual norm is reduced.
@@ -91,7 +89,7 @@ const MAX_LINE_SEARCHES: u32 = 5;
 /// Relative residual of an aborted iteration.
 const DIVERGENCE_LIMIT: f64 = 1e6;
 
-/// Inertia fraction in the force norm: velocity rounding stays below 1e-8 at a tolerance of 1e-6.
+/// Inertia fraction in the force norm, against velocity rounding.
 pub(crate) const INERTIA: f64 = 1e-3;
 
 pub(crate) struct Newton {

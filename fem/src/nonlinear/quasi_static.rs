@@ -1,7 +1,6 @@
 //! Quasi-static loading with automatic step lengths.
 //!
-//! Residuals refer to total equilibrium, so tolerances do not accumulate. Limits: no path following beyond a
-//! limit load.
+//! Limits: no path following beyond a limit load.
 
 use super::conditions::{prescribe, subtract_springs};
 use super::newton::{Failure, Newton, Problem};

@@ -1,10 +1,8 @@
 //! Global tangent: elastic matrix plus `∫ B^T (D_ep - D) B dV` at yielding Gauss points.
 //!
-//! Unsymmetric tangents also store the transpose of block (q, p), so that both halves share a layout.
-//!
 //! Source: Zienkiewicz and Taylor (2000), vol. 2, chapter 3. An elastic fraction removes singularity:
 //! [`REGULARISATION`], or [`STABILISATION`] for stalled unsymmetric tangents, which cycle between sets of
-//! yielding points. The solution is unaffected.
+//! yielding points.
 
 use super::internal_force::{InternalForce, element_increment};
 use crate::assembly::Combination;
@@ -14,7 +12,7 @@ use crate::material::{Points, REGULARISATION, ReturnRegion};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
-/// Elastic fraction of a stalled unsymmetric tangent; on footings, less stalls and more converges slowly.
+/// Elastic fraction of a stalled unsymmetric tangent.
 const STABILISATION: f64 = 1e-2;
 
 const ROWS: usize = 3 * MAX_NODES;

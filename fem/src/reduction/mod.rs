@@ -1,15 +1,13 @@
 //! Galerkin reduction of a linear elastic solid: `du = V dq` with `VᵀM V`, `VᵀC V`, `VᵀK V`.
 //!
-//! * [`Reduction::Surface`]: static condensation to the contact surface (Guyan 1965), optionally with natural
-//!   modes (MacNeal 1971; Rubin 1975). Exact for slow surface loads.
-//! * [`Reduction::Modes`]: lowest modes with static corrections for surface traction and pressure (Craig and
-//!   Bampton 1968; Craig and Chang 1977). Point loads are smoothed.
+//! * [`Reduction::Surface`]: static condensation to the contact surface (Guyan 1965), optionally with
+//!   natural modes (MacNeal 1971; Rubin 1975).
+//! * [`Reduction::Modes`]: lowest modes with static corrections for surface traction and pressure (Craig
+//!   and Bampton 1968; Craig and Chang 1977).
 //!
-//! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps all nodes. A Galerkin basis is never
-//! too soft: the deflection errors of [`Estimate`] are in 0 to 1.
+//! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps all nodes.
 //!
-//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors;
-//! approximate stresses near point forces.
+//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors.
 
 mod basis;
 mod estimate;

@@ -1,7 +1,7 @@
 //! Ordering, pattern and symbolic factorisation of an equation system.
 //!
-//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, relaxed amalgamation) on a postordered
-//! elimination tree. Limits: fewer than 2^31 entries.
+//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, relaxed amalgamation) on a
+//! postordered elimination tree.
 
 use super::AnalysisError;
 use super::pattern::{MIRRORED, UpperPattern, postorder};
@@ -105,7 +105,6 @@ impl Analysis {
         let places = structure.work_len + structure.exported_len + threads * structure.branch_len;
         let second = if symmetric { 0 } else { structure.second[structure.count()] };
         let rows = if symmetric { 0 } else { 4 * self.size() };
-        // Kernel scratch per pivot column: at most 8 bytes for faer, 20 for row exchanges.
         let scratch = 28 * (threads * structure.branch_width + structure.max_width);
         let vectors = self.size() + structure.rows.len();
         8 * (self.factor_len() + second + triangles * places + vectors) + rows + scratch

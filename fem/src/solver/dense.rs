@@ -1,6 +1,4 @@
 //! Dense kernels of a front on tiles of fixed size, bitwise independent of the number of threads.
-//!
-//! Updates are stored in block columns of [`TILE`] columns from the diagonal down, column-major.
 
 use faer::dyn_stack::MemStack;
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place};

@@ -1,6 +1,4 @@
 //! Assembly, elimination and update of one front.
-//!
-//! Fixed summation order: children in tree order, then the matrix.
 
 use super::dense::{self, Exchange, TILE, block_start, column, for_columns, for_update_tiles};
 use super::pattern::MIRRORED;

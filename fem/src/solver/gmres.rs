@@ -1,8 +1,7 @@
 //! Restarted GMRES with right preconditioner, which keeps the true residual norm.
 //!
-//! Modified Gram-Schmidt, repeated on cancellation; Givens rotations. Source: Saad and Schultz (1986); Saad
-//! (2003), algorithm 9.5; reorthogonalisation: Daniel, Gragg, Kaufman and Stewart, Math. Comp. 30 (1976)
-//! 772-795. Limits: may stagnate far from the factored matrix, which is reported.
+//! Source: Saad and Schultz (1986); Saad (2003), algorithm 9.5; reorthogonalisation: Daniel, Gragg, Kaufman
+//! and Stewart, Math. Comp. 30 (1976) 772-795.
 
 /// Work space; solves allocate nothing.
 pub struct Gmres {
@@ -249,8 +248,7 @@ mod tests {
         assert!(error < 1e-12);
     }
 
-    /// Unrestarted, the iterations equal the distinct eigenvalues (Saad and Schultz 1986, proposition 2 and
-    /// corollary 3).
+    /// Unrestarted iterations equal the distinct eigenvalues (Saad and Schultz 1986, corollary 3).
     #[test]
     fn ends_at_minimal_polynomial_degree() {
         let n = 60;
@@ -262,7 +260,7 @@ mod tests {
         assert!(x.iter().enumerate().all(|(i, x)| (x - 1.0 / (1 + i % 3) as f64).abs() < 1e-14));
     }
 
-    /// Cyclic shift: no progress before iteration n (Saad 2003, section 6.5.9), so earlier restarts stagnate.
+    /// Cyclic shift: no progress before iteration n (Saad 2003, section 6.5.9).
     #[test]
     fn stagnation_and_the_limit_are_reported() {
         let n = 12;

@@ -2,8 +2,7 @@
 //!
 //! Results are bitwise identical for any number of threads and repeated factorisations.
 //!
-//! Source: Duff and Reid (1983); Liu (1992). Limits: rows are exchanged within pivot blocks only, so a
-//! singular pivot block gives [`PivotError`]; see [`DirectSolver::weakest_pivot`].
+//! Source: Duff and Reid (1983); Liu (1992).
 
 use super::PivotError;
 use super::analysis::Analysis;
@@ -129,8 +128,8 @@ impl DirectSolver {
         Ok(())
     }
 
-    /// Smallest pivot over its diagonal (symmetric) or largest column entry (unsymmetric), and its equation;
-    /// (1, last equation) without either.
+    /// Smallest pivot over its diagonal (symmetric) or largest column entry (unsymmetric), and its
+    /// equation.
     pub fn weakest_pivot(&self) -> (f64, usize) {
         self.weakest
     }

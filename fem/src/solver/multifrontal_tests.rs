@@ -347,7 +347,6 @@ fn multiple_solves_match_single_solves() {
     }
 }
 
-/// diag(4, 9, 1, 16), coupled by (3, 2): pivot 2 loses most of its diagonal.
 #[test]
 fn the_weakest_pivot_is_named() {
     let (start, row) = (vec![0, 1, 2, 4, 5], vec![0, 1, 2, 3, 3]);
@@ -360,7 +359,6 @@ fn the_weakest_pivot_is_named() {
     // Equation 3 is eliminated first, then 2: 1 - 3.999²/16.
     assert_eq!(equation, 2);
     assert!((ratio - (1.0 - 3.999 * 3.999 / 16.0)).abs() < 1e-15);
-    // Unsymmetric: 1 - 3.999 · 2 / 16 over the largest entry of column 2, which is 3.999 · 2.
     solver.factor_unsymmetric(&[4.0, 9.0, 1.0, 3.999, 16.0], &[0.0, 0.0, 0.0, 2.0, 0.0]).unwrap();
     assert_eq!(solver.weakest_pivot().1, 2);
 }

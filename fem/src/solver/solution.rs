@@ -1,8 +1,5 @@
 //! Forward and backward substitution for 1, 2, 4 or 8 interleaved right-hand sides.
 //!
-//! Forward, fronts sum contributions of children; backward, they read the parent's solution. Branches are
-//! tasks; large upper fronts are split.
-//!
 //! Source: Liu (1992), section 6.
 
 use super::analysis::Analysis;

@@ -4,9 +4,8 @@
 //! added to the parent's front. Cheap subtrees are *branches*, run as independent tasks; the *upper fronts*
 //! above them follow sequentially, in tiles.
 //!
-//! The layout follows from the pattern, so peak memory is known. Branch updates use two opposed stacks per
-//! thread (even depth left, odd right): a front reads children from one and writes to the other. Updates
-//! passed to upper fronts are limited by *rounds*: branches of a large subtree, then its upper fronts.
+//! The layout follows from the pattern, so peak memory is known. Updates passed to upper fronts are limited
+//! by *rounds*: branches of a large subtree, then its upper fronts.
 //!
 //! Source: Duff and Reid (1983); Liu (1992).
 

@@ -12,8 +12,8 @@
 //! C = alpha_m M + beta_k K + D. theta = 1/2 conserves energy (Newmark 1/4, 1/2); theta = 1 is backward
 //! Euler.
 //!
-//! Source: Simo and Tarnow (1992) (mid-point form and energy). Limits: second order for theta = 1/2 only;
-//! moved supports have `vt = du/dt` and `v1 = v0 + (vt - v0)/theta`.
+//! Source: Simo and Tarnow (1992) (mid-point form and energy). Moved supports have `vt = du/dt` and
+//! `v1 = v0 + (vt - v0)/theta`.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;
@@ -184,7 +184,6 @@ impl ThetaMethod for ThetaSolver {
         let (theta, dt, c) = (self.theta, self.dt, model.rayleigh());
         let (n, supports) = (state.u.len(), model.supports());
         let next = &mut self.next;
-        // Residual with vt = v0 on free dofs; `a` holds w = vt - v0.
         next.a.fill(0.0);
         let mut accelerated = false;
         for (i, &(dof, _)) in supports.fixed().iter().enumerate() {

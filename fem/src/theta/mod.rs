@@ -1,6 +1,4 @@
 //! θ-methods: one implicit step under the mean load of a coupling window.
-//!
-//! The window's impulse is applied exactly.
 
 mod linear;
 mod nonlinear;
@@ -45,8 +43,7 @@ pub trait ThetaMethod: TimeIntegrator {
         self.step_prescribed(model, state, mean_load, None)
     }
 
-    /// Predicts the mean velocity [m/s] with linearised contact: load reduced by `contacts(w)` for a velocity
-    /// change w.
+    /// Predicts the mean velocity [m/s] with linearised contact:
     ///
     /// `contacts` adds a symmetric positive semidefinite product; shapes `[3 * nodes]`. Returns the
     /// iterations.

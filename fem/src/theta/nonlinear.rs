@@ -5,10 +5,10 @@
 //! vt = (u1 - u0)/dt = (1 - theta) v0 + theta v1
 //! ```
 //!
-//! Equals [`super::ThetaSolver`] for elastic bodies. After divergence, the window is split into 2, 4, … parts
-//! under the same mean load, which keeps the impulse.
+//! After divergence, the window is split into 2, 4, … parts under the same mean load, which keeps the
+//! impulse.
 //!
-//! Source: as the linear method; backward Euler stresses. Limits: second order for theta = 1/2 only.
+//! Source: as the linear method; backward Euler stresses.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;

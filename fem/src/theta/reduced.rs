@@ -6,8 +6,7 @@
 //!     = θ dt (Vᵀ F - Vᵀ K (u0 + θ dt v0) - (α + β s_k) p_k - (D p)_k)
 //! ```
 //!
-//! s_k squared frequencies, p = Vᵀ M v0, α and β Rayleigh coefficients, D dashpots. The state keeps all
-//! nodes.
+//! s_k squared frequencies, p = Vᵀ M v0, α and β Rayleigh coefficients, D dashpots.
 
 use super::{ThetaMethod, check_theta};
 use crate::error::SolveError;

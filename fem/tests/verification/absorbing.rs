@@ -72,8 +72,7 @@ fn reflected(direction: u8, absorbing: bool, mass: Mass) -> f64 {
     end / start
 }
 
-/// Lysmer and Kuhlemeyer (1969): no reflection at normal incidence; limit 1 % of the energy. A fixed base
-/// reflects everything.
+/// Lysmer and Kuhlemeyer (1969): no reflection at normal incidence; limit 1 % of the energy.
 #[test]
 fn plane_waves_leave_absorbing_base() {
     for (name, direction) in [("P", 2), ("S", 0)] {
@@ -133,8 +132,8 @@ fn column_on_springs_matches_closed_form() {
     }
 }
 
-/// Pressurised hole in an infinite medium, plane strain: `u(a) = p a/(2 G)` (Timoshenko and Goodier, section
-/// 28). Error with a free outer boundary 25 %, fixed 16 %.
+/// Pressurised hole in an infinite medium, plane strain: `u(a) = p a/(2 G)` (Timoshenko and Goodier,
+/// section 28).
 #[test]
 fn viscous_springs_represent_infinite_medium() {
     let (inner, outer, pressure) = (1.0, 3.0, 50e3);

@@ -3,10 +3,6 @@
 //! Yu and Houlsby, Géotechnique 41 (1991), 173–183, small strain, free outer surface; structure of Hill
 //! (1950). Tension positive, `al = (1 + sin phi)/(1 - sin phi)`, `Y = 2 c cos phi/(1 - sin phi)`, yield
 //! `al s_t - s_r = Y`.
-//!
-//! * r > R: `s_r = S (1/b³ - 1/r³)`, `s_t = S (1/b³ + 1/(2 r³))`, `S = Y/((al - 1)/b³ + (al/2 + 1)/R³)`.
-//! * r < R: `s_r = Y/(al - 1) + A r^{-2 (al - 1)/al}`; flow `be e_r + 2 e_t = 0`, integrated inwards from R
-//!   (Simpson).
 
 use crate::collapse_common::{Builder, between, graded, mohr_coulomb};
 use std::collections::BTreeMap;
@@ -83,7 +79,6 @@ impl Exact {
     }
 }
 
-/// Three blocks, `across` elements per side and about `along` radially, with the load of unit pressure.
 fn octant(psi: f64, across: usize, first: f64, ratio: f64) -> (Model, Vec<f64>) {
     let radii: Vec<f64> = graded(OUTER - INNER, first, ratio).iter().map(|r| INNER + r).collect();
     let mut builder = Builder::default();

@@ -170,8 +170,7 @@ impl Loading for &Footing {
     }
 }
 
-/// Without dilation a tighter tolerance stalls or costs many iterations, at equal load: 15.604 c at 1e-4 and
-/// at 1e-6 (phi = 20°, psi = 0, coarse mesh).
+/// Without dilation a tighter tolerance stalls or costs many iterations, at equal load.
 pub fn loose() -> NewtonOptions {
     NewtonOptions {
         force_tolerance: 1e-4,

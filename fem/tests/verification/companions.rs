@@ -70,7 +70,6 @@ fn straight_patches_pass() {
     }
 }
 
-/// Products of determinant and gradient are exact only in full integration and the pyramid's reduced rule.
 #[test]
 fn curved_patches_need_full_integration() {
     for (name, mut mesh) in meshes(true) {
@@ -152,8 +151,6 @@ fn resultants(mesh: &Mesh, load: &[f64]) -> ([f64; 3], [f64; 3]) {
     (force, moment)
 }
 
-/// Affine image of the natural element. Nodal fractions: Tri6 0 and 1/3; Quad8 of a parallelogram -1/12 and
-/// 1/3; linear faces equal.
 #[test]
 fn face_loads_are_consistent() {
     let traction = [3.0, -7.0, 11.0];
@@ -267,8 +264,7 @@ fn reports_inverted_elements() {
     }
 }
 
-/// A mid-side node closer to the apex than a quarter of its edge inverts the pyramid beyond the interior
-/// points.
+/// A mid-side node close to the apex inverts the pyramid beyond the interior points.
 #[test]
 fn rejects_pyramid_inverted_at_apex() {
     for (along, sound) in [(0.5, true), (0.70, true), (0.80, false)] {

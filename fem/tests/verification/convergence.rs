@@ -1,7 +1,6 @@
 //! Orders of convergence of hex20 on a smooth manufactured solution.
 //!
-//! L2 norm of displacement third order, energy norm second order. One smooth map distorts all meshes:
-//! serendipity elements that stay skewed lose order (Arnold, Boffi and Falk, Math. Comp. 71 (2002) 909-922).
+//! Third order in L2, second in energy; one smooth map distorts all meshes.
 
 use crate::common::model;
 use trackbed_fem::element::hex20;

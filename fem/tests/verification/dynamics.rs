@@ -229,9 +229,7 @@ fn extreme_steps_stay_bounded() {
     }
 }
 
-/// Layered column, pressure pulse on a quarter of its top, 400 steps. Table of two independent programs, of
-/// second order against the modal solution. Tolerances, of the largest value: 1e-6 (displacement), 1e-5
-/// (velocity, acceleration).
+/// Tolerances, of the largest value: 1e-6 (displacement), 1e-5 (velocity, acceleration).
 #[test]
 fn layered_column_follows_the_tabled_history() {
     let (mesh, constraints) = read_mesh("E5_column_pulse");

@@ -43,8 +43,6 @@ fn principal(matrix: &Matrix3<f64>) -> (f64, f64) {
     (pair.norm(), pair.im.atan2(pair.re))
 }
 
-/// From the solver: after decay of the third root `u[n+2] = t u[n+1] - d u[n]`, trace t and determinant d of
-/// the principal pair.
 fn shown(solver: &mut NewmarkSolver, model: &Model, dof: usize) -> (f64, f64) {
     let load = vec![0.0; 60];
     let mut state = State::new(model);
@@ -104,7 +102,6 @@ fn decay_and_period_match_theory() {
             assert!(hht == 0.0 || modulus < 1.0);
         }
     }
-    // Spectral radius at infinite steps: (1 + α)/(1 - α), 1/2 for -1/3 (Hughes 1987, section 9.3).
     for hht in [-0.1, -0.2, -1.0 / 3.0] {
         let matrix = amplification(Newmark::of_hht(hht), hht, 1e4);
         let radius = matrix.complex_eigenvalues().iter().map(|l| l.norm()).fold(0.0, f64::max);
@@ -132,8 +129,7 @@ fn after_pulse(model: &Model, mut solver: NewmarkSolver, steps: usize) -> State 
     state
 }
 
-/// Hilber, Hughes and Taylor (1977): second order for every α; Newmark with equal numerical damping only
-/// first.
+/// Hilber, Hughes and Taylor (1977): second order for every α.
 #[test]
 fn hht_converges_at_second_order() {
     let mesh = Mesh::block([2, 1, 4], [1.0, 0.5, 2.0]);

@@ -1,7 +1,6 @@
 //! All time integrators through one trait: column under a harmonic load.
 //!
-//! Reference: linear Newmark with a step sixteen times shorter. Tolerance 1 %: second order, 160 steps per
-//! load period.
+//! Tolerance 1 %: second order, 160 steps per load period.
 
 use std::sync::Arc;
 use trackbed_fem::newmark::{Newmark, NewmarkSolver, initial_acceleration};

@@ -112,8 +112,6 @@ fn newmark_and_hht_match_direct_solver() {
     assert_eq!(counts.map(|c| c.solves), Some(10));
 }
 
-/// Equal element size, 4 to 256 times as many. Finer elements need more iterations: waves cross more of them
-/// per window.
 #[test]
 fn iteration_count_independent_of_model_size() {
     let sizes = [[4, 4, 2], [8, 8, 4], [16, 8, 8]];

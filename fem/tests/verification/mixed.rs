@@ -10,7 +10,7 @@ pub enum Cell {
     Hex,
     /// Two wedges along z, split by the diagonal of the bottom.
     Wedge,
-    /// Six tetrahedra around the cell diagonal (Kuhn 1960); face diagonals start at their lowest corner.
+    /// Six tetrahedra around the cell diagonal (Kuhn 1960).
     Tet,
     /// Central node joined to each face by a pyramid, or by two tetrahedra next to triangles.
     Pyramid,
@@ -30,7 +30,7 @@ pub fn block(kind: ElementKind, counts: [usize; 3], size: [f64; 3]) -> Mesh {
     if kind.is_linear() { mesh } else { mesh.to_quadratic() }
 }
 
-/// 4 × 2 × 2 cells; along x hexahedra, wedges, pyramids (and tetrahedra), tetrahedra.
+/// 4 × 2 × 2 cells.
 pub fn mixed(quadratic: bool) -> Mesh {
     let along = [Cell::Hex, Cell::Wedge, Cell::Pyramid, Cell::Tet];
     let mesh = cells([4, 2, 2], [2.0, 1.0, 1.0], |[i, _, _]| along[i]);

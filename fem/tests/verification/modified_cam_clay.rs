@@ -2,10 +2,6 @@
 //!
 //! `eta = q/p`, `Lambda = (lambda - kappa)/lambda`, `R` the overconsolidation ratio, `v = 1 + e0`:
 //!
-//! * undrained: `p/p0 = (R M²/(M² + eta²))^Lambda` after yield;
-//! * drained: `eps_v = kappa/v ln(p/p0) + (lambda - kappa)/v ln(pc/pc0)`, `pc = p (1 + eta²/M²)`;
-//! * flow `d eps_s^p = 2 eta/(M² - eta²) d eps_v^p`, by partial fractions.
-//!
 //! Wood, Soil Behaviour and Critical State Soil Mechanics (1990), chapters 4 and 5. Pressures and volumes are
 //! exact: 1e-9. Shear strain is first order in the step: 0.5 %.
 
@@ -126,7 +122,7 @@ fn undrained_stress_path_matches_closed_form() {
             let miss = sample.p() / P0 / expected - 1.0;
             assert!(miss.abs() < 1e-9, "R = {ratio}, eta = {eta}: {miss:e}");
         }
-        // Critical state: M, and p0 (R/2)^Lambda, approached exponentially; 20 % of strain leave 1e-3.
+        // Critical state: M, and p0 (R/2)^Lambda, approached exponentially.
         let end = P0 * (0.5 * ratio).powf(LAMBDA);
         assert!(
             (sample.eta() / M - 1.0).abs() < 1e-3 && (sample.p() / end - 1.0).abs() < 1e-3,
@@ -217,7 +213,6 @@ fn extreme_strains_return() {
     }
 }
 
-/// Equivalent plastic strain √(2/3 ε:ε) = √2/3 εᵥ with εᵥ = (λ − κ)/v ln(p/p₀).
 #[test]
 fn equivalent_strain_of_isotropic_compression() {
     let mut sample = Sample::new(1.0);
@@ -227,7 +222,7 @@ fn equivalent_strain_of_isotropic_compression() {
     assert!((sample.state.kappa / exact - 1.0).abs() < 1e-9, "{} against {exact}", sample.state.kappa);
 }
 
-/// pc = R (p + q²/(M² p)): the ratio refers to the yield surface through the initial stress.
+/// pc = R (p + q²/(M² p)).
 #[test]
 fn overconsolidation_counts_the_shear_of_the_initial_stress() {
     let (p, q) = (100e3, 60e3);
@@ -257,7 +252,6 @@ fn a_small_preconsolidation_pressure_is_not_lifted() {
     assert!((pc[0] / (400.0 * (plastic / slope).exp()) - 1.0).abs() < 1e-9, "{}", pc[0]);
 }
 
-/// tan of the friction angle, sin(phi) = 3 M/(6 + M), is divided by the factor.
 #[test]
 fn reduced_strength_divides_the_tangent_of_the_friction_angle() {
     use trackbed_fem::ConstitutiveLaw;

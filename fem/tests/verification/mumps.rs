@@ -98,7 +98,6 @@ mod library {
         });
     }
 
-    /// The estimate, which limits a run, is an upper bound close to the peak.
     #[test]
     fn the_memory_is_known_before() {
         for method in [MumpsMethod::default(), OUT_OF_CORE] {

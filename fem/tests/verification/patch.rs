@@ -1,6 +1,4 @@
 //! Patch test on a distorted 2×2×2 block, tables `E1_*` of two independent programs.
-//!
-//! On curved elements only the 3×3×3 rule passes; the 2×2×2 rule is compared with its known error.
 
 use crate::common::{difference, model, read_mesh, table};
 use trackbed_fem::element::quadrature::Quadrature;

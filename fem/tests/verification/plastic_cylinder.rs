@@ -1,8 +1,7 @@
 //! Thick Mohr–Coulomb cylinder under internal pressure, plane strain.
 //!
 //! Closed form with the flow rule by quadrature (Hill 1950; Yu, Int. J. Numer. Anal. Methods Geomech. 16
-//! (1992)); see case.json. Tolerance of the inner displacement: 0.5 % (independent program on this mesh:
-//! 0.006 to 0.14 %).
+//! (1992)); see case.json.
 
 use crate::common::difference;
 use crate::common::{model, read_mesh, table};

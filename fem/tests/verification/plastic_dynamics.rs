@@ -191,9 +191,7 @@ fn elastic_response_matches_linear_window() {
     }
 }
 
-/// A cube in simple shear, stiffness G, friction tau_y. Initial speed beyond yield gives
-/// `u_max = u_y + (m v0² - F u_y)/(2 F)` after `asin(u_y w/v0)/w + m v1/F`, then oscillation about
-/// `u_max - u_y`.
+/// A cube in simple shear, stiffness G, friction tau_y.
 #[test]
 fn an_oscillator_with_friction() {
     let (shear, yield_shear) = (SOIL.lame().1, 20e3);

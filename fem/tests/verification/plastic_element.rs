@@ -1,8 +1,6 @@
 //! One element under triaxial histories of an independent program.
 //!
-//! Closed-form plateaus `s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin phi)/(1 - sin phi)` in compression and
-//! so on (case.json). Equal lateral stresses return to an edge with a singular consistent tangent. Tolerance:
-//! 1e-6 of the largest stress; 1e-8 of strain.
+//! Tolerance: 1e-6 of the largest stress; 1e-8 of strain.
 
 use crate::common::{model, read_mesh, table};
 use crate::plastic_common::{drucker_prager, mohr_coulomb, tight};

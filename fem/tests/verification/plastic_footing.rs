@@ -1,4 +1,4 @@
-//! Strip footing on weightless soil, with the cost of the Newton variants (P2).
+//! Strip footing on weightless soil, with the cost of the Newton variants.
 //!
 //! `Nc = (tan²(45° + phi/2) exp(pi tan phi) - 1) cot phi`, `2 + pi` for phi = 0 (Prandtl 1920).
 
@@ -72,7 +72,6 @@ fn table_of_costs() {
     }
 }
 
-/// Plateau some per cent above the limit load, as the mesh is stiff at the edge.
 #[test]
 fn footing_on_clay_reaches_its_plateau() {
     let footing = footing(mohr_coulomb(SOIL, COHESION, 0.0, 0.0), [5, 8, 9]);

@@ -135,8 +135,7 @@ fn gravity_does_not_move_k0_state() {
 }
 
 /// Griffiths and Lane (1999), example 1: slope 2:1, phi = 20°, c = 0.05 gamma H, psi = 0, no foundation
-/// layer, gravity in one step. Factor 1.4 (Bishop and Morgenstern: 1.380); an independent program brackets it
-/// by 1.35 and 1.40.
+/// layer, gravity in one step. Factor 1.4 (Bishop and Morgenstern: 1.380).
 #[test]
 fn slope_of_griffiths_and_lane() {
     let (height, density): (f64, f64) = (10.0, 2000.0);

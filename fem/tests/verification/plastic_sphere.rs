@@ -1,9 +1,7 @@
 //! Expansion of a spherical cavity in a thick Mohr–Coulomb shell.
 //!
 //! Yu, Cavity Expansion Methods in Geomechanics (2000), chapter 3 (finite shell; Yu, J. Geotech. Eng. 119
-//! (1993)), small strain, compression positive. `s_r = -Y/(al - 1) + A r^(-2 (al - 1)/al)` for r < c, Lamé
-//! outside; displacement from `be eps_r^p + 2 eps_t^p = 0` by quadrature. Equal hoop stresses return to an
-//! edge. Tolerance 1 %.
+//! (1993)), small strain, compression positive. Tolerance 1 %.
 
 use crate::common::model;
 use crate::plastic_common::{mohr_coulomb, tight};

@@ -51,8 +51,7 @@ pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m, x| x.abs().max(m))
 }
 
-/// Deviatoric part of size `shear`, volumetric in +-`volume`; every fifth without shear strains, every
-/// seventh with two equal normal strains.
+/// Deviatoric part of size `shear`, volumetric in +-`volume`.
 pub fn random_strain(random: &mut Random, shear: f64, volume: f64) -> [f64; 6] {
     let mut e: [f64; 6] = std::array::from_fn(|_| shear * random.next());
     let volume = volume * random.next() / 3.0;

@@ -82,8 +82,6 @@ fn harmonic_base_motion_matches_standing_wave() {
     }
 }
 
-/// `M a + beta K v + K u = -M r a_g` on fixed supports, with the base acceleration of the method: equal to
-/// rounding.
 #[test]
 fn base_motion_matches_relative_motion() {
     let model = shear_column(Rayleigh { alpha_m: 0.0, beta_k: 5e-4 });
@@ -203,8 +201,7 @@ fn block() -> Model {
     .unwrap()
 }
 
-/// Momentum change equals the impulse of loads, reactions, springs, dashpots and mass damping: exact with the
-/// weights of the method.
+/// Momentum change equals the impulse of loads, reactions, springs, dashpots and mass damping.
 #[test]
 fn momentum_balances_with_the_reactions() {
     let model = block();

@@ -47,7 +47,6 @@ fn hinged(size: f64) -> Mesh {
     mesh
 }
 
-/// Only the pivots show the hinge. Rounding makes the last pivot tiny, zero or negative.
 #[test]
 fn rejects_hinge() {
     let (mut tiny, mut negative) = (0, 0);

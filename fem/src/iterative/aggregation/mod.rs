@@ -1,8 +1,5 @@
 //! Smoothed aggregation: a preconditioner for elastic stiffness, nearly independent of mesh size.
 //!
-//! Aggregates move as rigid bodies; the coarsest level has a dense factor. The V-cycle is symmetric positive
-//! definite.
-//!
 //! Source: Vaněk, Mandel and Brezina (1996). Limits: near incompressibility and very flat elements take more
 //! iterations.
 

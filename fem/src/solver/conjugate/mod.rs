@@ -1,10 +1,8 @@
 //! Preconditioned conjugate gradients.
 //!
-//! Convergence: `sqrt(r·B r)` relative to the right-hand side, B the preconditioner. A guess worse than zero
-//! is ignored.
+//! Convergence: `sqrt(r·B r)` relative to the right-hand side, B the preconditioner.
 //!
-//! Source: Saad (2003), algorithm 9.1. Limits: the recursive residual deviates near rounding, about 1e-16
-//! times the condition of A.
+//! Source: Saad (2003), algorithm 9.1.
 
 pub mod vectors;
 

@@ -1,11 +1,11 @@
 //! Symmetric factorisation `L D Lᵀ` by MUMPS in a given order, optionally out of core.
 //!
-//! Without the feature `mumps`, every function returns [`MumpsError::Missing`]. Calls are serialised. Results
-//! are bitwise reproducible only for fixed machine, library and thread count.
+//! Without the feature `mumps`, every function returns [`MumpsError::Missing`]. Results are bitwise
+//! reproducible only for fixed machine, library and thread count.
 //!
-//! Source: Amestoy, Duff, L'Excellent and Koster (2001). Limits: positive definite matrices, fewer than 2^31
-//! equations. No block compression (ICNTL(35)): MUMPS 5.5.1 with SCOTCH 7.0.3 (Debian 12) reads uninitialised
-//! memory in its grouping and crashes.
+//! Source: Amestoy, Duff, L'Excellent and Koster (2001). Limits: positive definite matrices, fewer than
+//! 2^31 equations. No block compression (ICNTL(35)): MUMPS 5.5.1 with SCOTCH 7.0.3 (Debian 12) reads
+//! uninitialised memory in its grouping and crashes.
 
 #[cfg(feature = "mumps")]
 mod library;

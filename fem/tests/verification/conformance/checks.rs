@@ -6,8 +6,7 @@ use trackbed_fem::{PointState, Points, ReturnRegion};
 const SEEDS: [u64; 3] = [1, 7, 42];
 const STEPS: usize = 60;
 
-/// Tolerance 1e-5 of the stiffness: truncation and rounding. Steps across a kink are skipped; most must
-/// remain.
+/// Tolerance 1e-5 of the stiffness: truncation and rounding.
 pub fn tangent(case: &Case) {
     let (mut compared, mut plastic, mut worst) = (0, 0, 0.0_f64);
     let h = 1e-6 * case.walk;
@@ -70,8 +69,7 @@ pub fn objectivity(case: &Case) {
     });
 }
 
-/// Closed triangles of elastic strain. A conservative law recovers all work to 1e-5; any other law must not,
-/// or its declaration would be wrong.
+/// Closed triangles of elastic strain.
 pub fn elastic_cycles(case: &Case) {
     let (mut random, mut largest) = (Random(11), 0.0_f64);
     for _ in 0..4 {
@@ -89,7 +87,6 @@ pub fn elastic_cycles(case: &Case) {
                 let mean: [f64; 6] =
                     std::array::from_fn(|k| 0.5 * (at.state.stress[k] + new.state.stress[k]));
                 done += work(&mean, &increment);
-                // The initial pressure does most of the work; the stiffness is the relevant scale.
                 moved = moved.max(case.stiffness(&at) * case.elastic * case.elastic);
                 at = new;
                 if case.material.law.is_conservative() {
@@ -109,7 +106,6 @@ pub fn elastic_cycles(case: &Case) {
     }
 }
 
-/// `sigma : d eps_p >= 0` for associated flow, since the yield surface contains zero stress.
 pub fn dissipation(case: &Case) {
     let mut yielded = 0;
     for seed in SEEDS {

@@ -36,8 +36,7 @@ fn faults_of_strength_constants() {
     );
 }
 
-/// Slower softening always has a return. On the plane the limit is exact:
-/// `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)`.
+/// On the plane the limit is exact: `-n.D.m / (2 cos(phi) sqrt(2/3) |m|)`.
 #[test]
 fn softening_limit() {
     let soft = |slope: f64| Hardening::Linear { initial: 20e3, modulus: slope, limit: Some(1e3) };

@@ -111,8 +111,7 @@ fn multipliers_are_not_negative() {
     assert!(checked > 4000);
 }
 
-/// `(tau - sigma) : d eps_p <= 0` for every admissible `tau` (Simo and Hughes 1998, section 2.6.3): 300
-/// random stresses per state, and corners and rays of the pyramid.
+/// `(tau - sigma) : d eps_p <= 0` for every admissible `tau` (Simo and Hughes 1998, section 2.6.3).
 #[test]
 fn associated_returns_are_closest_points() {
     let c = COHESION;

@@ -61,8 +61,7 @@ fn point_returns_of_the_table() {
 }
 
 /// Closed-form plateaus `s_a = -(k p0 + 2 c sqrt(k))`, `k = (1 + sin)/(1 - sin)`; dilatancy `k_psi - 1`,
-/// `1 - 1/k_psi`; cones from `case.json`. Stress to 1e-8 max(|s|, c) (10 digits), volumetric strain to 1e-9
-/// of the axial strain.
+/// `1 - 1/k_psi`; cones from `case.json`.
 #[test]
 fn triaxial_histories_plateaus_and_dilatancies() {
     let outer = "drucker_prager_outer";

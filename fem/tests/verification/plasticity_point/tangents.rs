@@ -3,7 +3,7 @@
 use super::*;
 use std::collections::BTreeMap;
 
-/// Error over `lambda + 2 mu`, best of three step widths; `None` if no width stays in one region.
+/// Error over `lambda + 2 mu`, best of three step widths.
 fn tangent_error(
     material: &Material,
     old: &PointState,
@@ -36,7 +36,6 @@ fn tangent_error(
     best
 }
 
-/// At least 20 returns per region and law, error below 1e-6 of the elastic modulus.
 #[test]
 fn tangents_equal_central_differences_in_every_region() {
     for (name, material, regions) in laws() {

@@ -70,7 +70,6 @@ fn walks_of_all_laws() {
     );
 }
 
-/// phi = 60 and 85 degrees, phi -> 0, psi = 0, limits of Poisson's ratio, units from 1e-9 to 1e15.
 #[test]
 fn walks_at_the_extremes() {
     let (mut outside, mut work, mut count) = (f64::NEG_INFINITY, f64::INFINITY, 0);
@@ -108,7 +107,6 @@ fn rejects_non_finite_numbers() {
     }
 }
 
-/// A sudden fall by 10 degrees snaps back; a smaller one has a solution.
 #[test]
 fn rejects_steep_friction_softening() {
     let law = |until: f64| MohrCoulomb {
