@@ -1,8 +1,7 @@
 //! Energy and momentum totals since the start.
 //!
-//! A step at time t moves bodies from t − dt/2 to t + dt/2: totals belong to half steps. Work is force × mean
-//! velocity, exactly the change of kinetic energy in a leapfrog scheme; contact dissipation uses the speed
-//! extrapolated to t (second order).
+//! A step at time t moves bodies from t − dt/2 to t + dt/2: totals belong to half steps. Contact dissipation
+//! uses the speed extrapolated to t (second order).
 
 use crate::base::Vec3;
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,7 @@
-//! Comparison of an applied load with its target, from the time when it first reaches the target.
+//! Comparison of an applied load with its target, once reached.
 //!
-//! With target a and applied load b, b − b̄ is fitted by α (a − ā) + β ȧ (least squares over time). With
-//! ω² = var(ȧ)/var(a) the transfer factor is H = α + iβω: amplitude ratio |H|, phase arg H. For a sine this is
-//! the first harmonic. Smallest and largest values are of an average over about 200 steps.
+//! With target a and applied load b, b − b̄ is fitted by α (a − ā) + β ȧ (least squares). With ω² =
+//! var(ȧ)/var(a) the transfer factor is H = α + iβω.
 
 use serde::{Deserialize, Serialize};
 
@@ -180,7 +179,6 @@ mod tests {
         assert!((load.error - expected).abs() < 0.02, "{load:?} {expected}");
     }
 
-    /// A cell of 10 kPa that stands at 20 kPa after its target was reached once.
     #[test]
     fn constant_target_is_judged_by_its_mean() {
         let load = follow(|_| 10.0, |t| if t < 0.1 { 10.0 } else { 20.0 }, 1.0);

@@ -1,7 +1,6 @@
 //! Part of a dilated disk below a plane, at any tilt.
 //!
-//! Slices across the axis are circular segments. Gauss's rule runs between slices tangent to the plane, in a
-//! variable that keeps the integrand smooth.
+//! Slices across the axis are circular segments; Gauss's rule runs between slices tangent to the plane.
 
 use super::skin::Wet;
 use crate::base::Vec3;

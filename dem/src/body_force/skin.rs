@@ -1,7 +1,7 @@
 //! Triangulated surface of a shape, and its part below a plane.
 //!
 //! Edges of dilated polyhedra become strips of at most 30°, vertices fans, moved outwards to the exact
-//! volume. Disks use closed forms (`disk.rs`).
+//! volume.
 
 use super::disk;
 use crate::base::Vec3;
@@ -287,8 +287,7 @@ impl Part {
         self.seen += facet.area.dot(along).abs() * share;
     }
 
-    /// Adds the part below the plane, and its waterplane as a fan about `foot`. The first vertex is alone on
-    /// its side.
+    /// Adds the part below the plane, and its waterplane as a fan about `foot`.
     #[inline(always)]
     fn cut(&mut self, facet: &Facet, p: &[Vec3; 3], h: &[f64; 3], foot: &Vec3, along: &Vec3) {
         let alone = h[0] <= 0.0;
@@ -312,14 +311,12 @@ impl Part {
     }
 }
 
-/// Directions between two normals in equal angles up to [`STRIP`]; inner ones are lengthened to the sector's
-/// area.
+/// Directions between two normals in equal angles up to [`STRIP`].
 fn strip(n: &Vec3, m: &Vec3) -> Vec<Vec3> {
     let angle = libm::atan2(n.cross(m).norm(), n.dot(m));
     let count = ((angle / STRIP).ceil() as usize).max(if angle > 0.035 { 2 } else { 1 });
     let step = angle / count as f64;
     let (sin, inner) = (libm::sin(step), (count - 2.min(count)) as f64);
-    // longer sin + inner/2 longer² sin = angle/2: two triangles have one such side, the others two.
     let longer =
         if inner == 0.0 { 0.5 * angle / sin } else { (-1.0 + (1.0 + inner * angle / sin).sqrt()) / inner };
     let side = (m - n * n.dot(m)).normalize();

@@ -1,8 +1,7 @@
 //! Debonded pairs, until they separate.
 //!
-//! The contact acts on the overlap beyond a reference d₀: it takes over the bond's compression but stores at
-//! most its energy. The pressure is continuous if the contact is at least as stiff; breakage never adds
-//! energy. After tensile breakage d₀ is the overlap, or 0.
+//! The contact acts on the overlap beyond a reference d₀, so that it takes over the bond's compression but
+//! stores at most its energy.
 //!
 //! Separated pairs become ordinary contacts, at fixed steps for reproducible restarts.
 //!

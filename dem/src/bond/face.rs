@@ -1,17 +1,15 @@
-//! Face bond: rectangle of ice or cement between bodies of any shape, such as ice floes.
+//! Face bond: rectangle of ice or cement between bodies of any shape.
 //!
-//! Beam from centre to centre, length L, width w (along the sheet), thickness t, Young's modulus E, ratio
-//! kₙ/kₛ: tension E wt/L, shear E wt/(L kₙ/kₛ), bending E wt³/12L, twisting E J/(L kₙ/kₛ). Saint-Venant's
-//! J = ab³ (1/3 − 0.21 b/a (1 − b⁴/12a⁴)), a the longer, b the shorter side (Roark's formulas, 8th ed., table
-//! 10.7). Largest stresses, tension positive:
+//! Beam from centre to centre of width w (along the sheet), thickness t; Saint-Venant's J = ab³ (1/3 − 0.21
+//! b/a (1 − b⁴/12a⁴)), a the longer, b the shorter side (Roark's formulas, 8th ed., table 10.7). Largest
+//! stresses, tension positive:
 //!
 //! σ = T/wt + 6|M_b|/wt²,  τ = |F_s|/wt + |M_t| b/J.
 //!
-//! Failure: σ at tensile (flexural) strength, or τ at constant or Mohr–Coulomb strength c + (−T/wt) tan φ.
-//! Forces act in the face; contacts act in parallel.
+//! Shear strength constant, or Mohr–Coulomb: c + (−T/wt) tan φ. Forces act in the face; contacts act in
+//! parallel.
 //!
-//! Limits: bending about both axes uses the thickness; in a sheet, neighbouring faces resist rotation about
-//! the vertical.
+//! Limits: bending about both axes uses the thickness.
 
 use super::parallel::ShearStrength;
 use super::springs::{

@@ -5,8 +5,7 @@
 //! * line of centres: rotated by the Rodrigues vector s = tan(α/2) about d′ × d, tan α = |d′ × d|/d′·d,
 //!   d′ = d − v dt;
 //! * stored vectors rotate with it, and about n by the mean angular velocity ω̄, tan(ω̄dt/2)·n;
-//! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, n̄ the mid-step normal; zero in rigid rotation,
-//!   as n − n′ = 2 tan(ω̄dt/2) × ½(n + n′);
+//! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, n̄ the mid-step normal;
 //! * rotation: θ += (ωₐ − ω_b) dt;
 //! * force on a: −n kₙ(L − L₀) − kₛ u, moment on a: −k_t (θ·n) n − k_b θ⊥, plus dashpots;
 //! * opposite forces share a point: (angular) momentum is conserved to rounding.
@@ -88,7 +87,7 @@ pub(crate) fn update_frame<R: Real>(
     let normal = d * inverse;
     let along = v.dot(d);
 
-    // e = d′ × d / (2 d′·d); 1/d′·d as series in the strain increment.
+    // e = d′ × d / (2 d′·d).
     let strain = along * inverse_square * dt;
     let inverse_dot = inverse_square * (one + strain * (one + strain));
     let e = d.cross(v) * (half * dt * inverse_dot);

@@ -1,18 +1,12 @@
 //! Bonds between bodies, carrying force and moment until failure.
 //!
-//! Types ([`Bond`]): [`ParallelBond`], [`ContactPoint`], [`DirectBond`], [`FaceBond`]. A [`BondInput`]
-//! resolves to sixteen constants of one kernel (`kernel.rs`):
+//! Types: [`Bond`]. A [`BondInput`] resolves to sixteen constants of one kernel (`kernel.rs`):
 //!
 //! * tension from total length, kₙ (L − L₀), without drift;
 //! * shear, bending, twisting by increments in a frame rotating with the line of centres and the mean angular
-//!   velocity about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004); rigid motion stores
-//!   nothing.
+//!   velocity about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004).
 //!
-//! Breakage releases elastic energy ([`Break`]); the pair stays a `DebondedPair` (`debonded.rs`) until
-//! separation.
-//!
-//! Limits: all but face bonds join single spheres; small rotations between bonded spheres (linear springs);
-//! vector rotation errors of sixth order in the angle per step.
+//! Limits: all but face bonds join single spheres; small rotations between bonded spheres (linear springs).
 
 mod contact_point;
 pub(crate) mod debonded;
@@ -200,7 +194,6 @@ fn constants(kind: &Bond, b: &BondInput, p: &Body, q: &Body, length: f64) -> Con
     values[kernel::OFFSET] = springs.offset;
     values[kernel::STIFFNESS..kernel::STIFFNESS + 4].copy_from_slice(&stiffness);
     values[kernel::DAMPING..kernel::DAMPING + 4].copy_from_slice(&dashpots);
-    // Per tension, bending angle, shear displacement, twist; per tension.
     let limit = [
         tension / b.tension,
         bending / b.tension * stiffness[2],

@@ -1,11 +1,9 @@
 //! Parallel bond: cement disk between two spheres.
 //!
-//! R disk radius, A = πR², I = πR⁴/4, J = πR⁴/2, stiffness per area kₙ, kₛ [Pa/m]: tension kₙA, shear kₛA,
-//! bending kₙI, twisting kₛJ. Rim stresses, tension positive:
+//! R disk radius, A = πR², I = πR⁴/4, J = πR⁴/2, stiffness per area kₙ, kₛ [Pa/m]. Rim stresses, tension
+//! positive:
 //!
 //! σ = T/A + β|M_b|R/I,  τ = |F_s|/A + |M_t|R/J.
-//!
-//! Failure: σ at tensile strength, or τ at constant or Mohr–Coulomb strength τ_max = c + (−T/A) tan φ.
 //!
 //! Source: Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004, eq. 6–11; β: Potyondy (Proc. 45th US
 //! Rock Mech. Symp., 2011).

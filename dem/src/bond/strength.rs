@@ -1,7 +1,7 @@
 //! Random bond strengths.
 //!
 //! * normal: mean 1, truncated at zero by redrawing;
-//! * Weibull: P(f < x) = 1 − exp(−x^m), scale from the bond type (63.2 % fractile), mean Γ(1 + 1/m).
+//! * Weibull: scale from the bond type (63.2 % fractile), mean Γ(1 + 1/m).
 //!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
 //!
@@ -27,8 +27,7 @@ pub enum Spread {
     },
 }
 
-/// Strength factors of `count` bonds, in order; `purpose` separates tension and shear. Leading factors do not
-/// depend on `count`.
+/// Strength factors of `count` bonds, in order; `purpose` separates tension and shear.
 pub fn factors(spread: Spread, seed: u64, purpose: u64, count: usize) -> Vec<f64> {
     let mut random = Random::new(seed, 0x0b00 + purpose);
     // 1 − u in (0, 1]: finite logarithm.
@@ -71,7 +70,6 @@ mod tests {
             assert!((share_below(&weibull, x) - expected).abs() < 0.005, "Weibull at {x}");
         }
         let normal = factors(Spread::Normal { deviation: 0.3 }, 7, 0, N);
-        // Φ(−1), Φ(0), Φ(1), Φ(2), given x > 0: Φ(−3.33) = 4.3e-4 is cut off.
         for (x, expected) in [(0.7, 0.15866), (1.0, 0.5), (1.3, 0.84134), (1.6, 0.97725)] {
             assert!((share_below(&normal, x) - expected).abs() < 0.005, "normal at {x}");
         }

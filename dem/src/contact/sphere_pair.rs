@@ -1,5 +1,4 @@
-//! Sphere–sphere contacts in lanes. Separated pairs add zeros, which leave sums bitwise unchanged. `CLUMPS`:
-//! clumps; `ROLLING`: rolling resistance.
+//! Sphere–sphere contacts in lanes. Separated pairs add zeros, which leave sums bitwise unchanged.
 //!
 //! Theory manual: eq. (1.1), `docs/theory/contacts.md`.
 

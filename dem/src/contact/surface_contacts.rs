@@ -1,16 +1,14 @@
 //! Contacts of spheres with patch surfaces, without double counting.
 //!
-//! Contacts are local minima of the distance to the *union* of patches. A closest point on an edge or vertex
+//! Contacts are local minima of the distance to the *union* of patches: a closest point on an edge or vertex
 //! counts only if no patch through it is closer. Shared points count once: face before edge before vertex,
-//! then the lowest patch. The test uses points, so patches need not share vertex indices.
+//! then the lowest patch. Points are compared, so patches need not share vertices.
 //!
-//! A contact that changes patch keeps its history: same patch first, else the nearest ending contact with a
-//! similar normal.
+//! A contact that changes patch keeps its history.
 //!
-//! At concave seams both patches count, unless their normals differ by less than ten degrees. Such a seam
-//! approximates a smooth surface (faces of a solid are C0), where two contacts would double the stiffness and
-//! add spurious energy. The deepest counts: its overlap is continuous, so the force has a potential.
-//! Descending overlap makes the result independent of patch order.
+//! At concave seams both patches count, unless their normals differ by less than ten degrees (smooth
+//! surface): then the deepest counts, whose force has a potential. Descending overlap makes the result
+//! independent of patch order.
 
 use super::dispatch;
 use super::patch_forces::PatchForce;
@@ -131,7 +129,6 @@ impl<R: Real> Gap<R> {
     }
 }
 
-/// Appends the valid contacts of a sphere at `x`. `travel_since_search`: motion bound since the neighbour list was built.
 #[inline]
 fn overlapping<S: Surface>(
     surface: &S,
@@ -175,7 +172,6 @@ fn overlapping<S: Surface>(
         out.push(PatchTouch { patch: pair.patch, closest, geometry, behind, counts: true });
     }
     if out.len() < 2 {
-        // Excludes only the region next to a one-sided surface.
         for t in out.iter_mut() {
             t.counts = !(t.behind && t.closest.feature != Feature::Face);
         }
@@ -223,7 +219,7 @@ pub(crate) struct InteriorContact<R: Real> {
     pub stays: R::Mask,
 }
 
-/// Sphere on a patch interior, centre at `offset` from its foot; motion per step is too small to cross.
+/// Sphere on a patch interior.
 #[inline(always)]
 pub(crate) fn rest<R: Real>(offset: V3<R>, outward: V3<R>, r: R) -> InteriorContact<R> {
     let along = offset.dot(outward);
@@ -263,8 +259,7 @@ fn count_once<S: Surface>(surface: &S, r: f64, out: &mut [PatchTouch]) {
     }
 }
 
-/// Interior contact with only coplanar patches nearby: at this small overlap, other contacts differ by less
-/// than [`SMOOTH`]. Typical on a triangulated floor.
+/// Interior contact with only coplanar patches nearby; other contacts then differ by less than [`SMOOTH`].
 #[inline(always)]
 fn resting<S: Surface>(
     surface: &S,

@@ -227,7 +227,7 @@ impl Lists {
         self.ranges[block][list as usize]
     }
 
-    /// Offsets of each sphere: cross-block, in-block, planes, then space for as many again.
+    /// Offsets of each sphere: cross-block, in-block, planes.
     pub fn offsets(&self, work: &Work, spheres: &Spheres) -> Vec<u32> {
         let count = spheres.count;
         let mut out = vec![0; 4 * count + 1];
@@ -332,7 +332,6 @@ impl Lists {
     fn enter_across(&mut self, state: &State, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         // As the engine with any clump.
         let across = if spheres.clumps { EntryKind::Members } else { EntryKind::Spheres };
-        // The CPU sums forces on solid bodies.
         let here = |b: &usize| !work.members[*b].solid();
         for (b, w) in work.blocks.iter().enumerate().filter(|(b, _)| here(b)) {
             for share in &w.shares.list {

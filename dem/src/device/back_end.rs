@@ -21,7 +21,7 @@ use crate::engine::work::Work;
 use crate::engine::{bonds, cpu_part, neighbour_list, reordering, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
-/// Returns the source of the kernels for a model, valid as C and CUDA.
+/// Source of the kernels for a model, valid as C and CUDA.
 ///
 /// # Errors
 /// [`Unsupported`] for the first unsupported feature.
@@ -168,7 +168,6 @@ impl<M: Machine> Device<M> {
             self.reserve(slot, 4 * n)?;
         }
         self.reserve(Slot::Speed2, n)?;
-        // The last value is the failure flag.
         let booked = self.features.quantities() * state.blocks.len() + 1;
         self.reserve(Slot::Books, booked)?;
         self.books.resize(booked, 0.0);
@@ -358,7 +357,6 @@ impl<M: Machine> Device<M> {
         applied: &[AppliedForce],
     ) -> Result<(), StepError> {
         let new_order = state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY);
-        // Forces on bodies that the CPU moves do not affect the device.
         let solid = |k: usize| k < model.body_count() && model.body(k).kind == BodyKind::Solid;
         if new_order || !applied.iter().all(|a| solid(a.body)) {
             return self.by_processor(model, state, surface, applied);
@@ -380,11 +378,10 @@ impl<M: Machine> Device<M> {
         }
         let failed_there = self.launch(model, state).map_err(|e| failed(state, e))?;
         if failed_there {
-            // The device still has the previous step: a repeat on the CPU identifies the failure.
+            // The device still has the previous step.
             self.ahead = true;
             let as_before = !beside || self.handed.restore(state);
             self.by_processor(model, state, surface, applied)?;
-            // CPU contacts have advanced twice: invalid state.
             let again = || failed(state, "a step failed on the GPU but not when repeated on the CPU".into());
             return if as_before { Ok(()) } else { Err(again()) };
         }

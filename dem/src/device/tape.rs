@@ -1,7 +1,6 @@
 //! Records formulas over [`Real`] as C source.
 //!
-//! Guards `any` record as true, `all` as false: both branches are written and selected by mask. Nothing is
-//! rearranged, so results are bitwise identical without contraction.
+//! Guards `any` record as true, `all` as false: both branches are written and selected by mask.
 
 use crate::lanes::{Real, V3};
 use std::cell::RefCell;

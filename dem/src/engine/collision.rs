@@ -1,8 +1,7 @@
 //! Time step bound from collision duration.
 //!
-//! At ω dt = x, ω = √(K/m*), leapfrog errors over all contact instants are: restitution e = 0.5 becomes
-//! 0.4993 to 0.5027 at x = 0.2, up to 0.51 at x = 0.3. Without dashpot the kinetic energy grows by about
-//! 0.0063 x³ per collision. So x ≤ 0.2, less if growth exceeds 0.01 of the loss 1 − e²; at least 0.08.
+//! Leapfrog errors at ω dt = x, ω = √(K/m*): restitution e = 0.5 becomes 0.4993 to 0.5027 at x = 0.2, up to
+//! 0.51 at x = 0.3; without dashpot the kinetic energy grows by about 0.0063 x³ per collision.
 //!
 //! Theory manual: equation (3.8) of `docs/theory/motion.md`.
 
@@ -36,7 +35,6 @@ pub(crate) fn longest(
     expected: f64,
     largest: f64,
 ) -> f64 {
-    // Mass and radius of the lightest free body, by material.
     let mut lightest = vec![(f64::INFINITY, 0.0); input.materials.len()];
     for body in bodies.iter().filter(|b| b.inverse_mass > 0.0) {
         let least = &mut lightest[body.material as usize];

@@ -58,8 +58,7 @@ impl TimeStep {
     /// Default fraction of the critical step.
     pub const SHARE: f64 = 0.8;
 
-    /// Local damping scales decelerating forces by 1 + α, like a stiffer contact. At 0.8 of the limit and
-    /// α = 0.8, light grains below a boulder never came to rest.
+    /// Local damping scales decelerating forces by 1 + α, like a stiffer contact.
     pub(crate) fn damped(self, damping: Option<LocalDamping>) -> TimeStep {
         let most = DAMPED / (1.0 + damping.map_or(0.0, |d| d.factor)).sqrt();
         match self {
@@ -71,8 +70,7 @@ impl TimeStep {
     }
 }
 
-/// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4): accelerating components
-/// are reduced, decelerating ones increased. For deposition only.
+/// Damping proportional to the unbalanced force (Cundall & Strack 1979, sec. 2.4). For deposition only.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocalDamping {
     /// Fraction in [0, 1).

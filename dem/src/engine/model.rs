@@ -64,7 +64,6 @@ pub struct Model {
 }
 
 struct Sizes {
-    /// Smallest and largest radius [m]; for boxes only, a length scale of search and speed bound.
     radii: (f64, f64),
     spheres: usize,
     /// Most spheres of a body.
@@ -202,8 +201,8 @@ impl Model {
         self.steps.longest.min(if packed { self.steps.lasting } else { self.steps.collision })
     }
 
-    /// Discards the initial positions (24 bytes per body); [`State::new`](crate::engine::state::State::new)
-    /// cannot be called afterwards.
+    /// Discards the initial positions (24 bytes per body), which
+    /// [`State::new`](crate::engine::state::State::new) needs.
     pub fn forget_start(&mut self) {
         self.bodies.forget_positions();
     }
@@ -328,7 +327,7 @@ impl Model {
     }
 
     /// Normal stiffness K [N/m] and damping ratio of a material pair, at the expected overlap of the largest
-    /// sphere ([`crate::engine::timestep`]) or the longest edge, whichever is stiffer.
+    /// sphere or the longest edge, whichever is stiffer.
     pub fn contact_stiffness(&self, a: usize, b: usize) -> (f64, f64) {
         let (a, b) = (a as u32, b as u32);
         let radius = self.radii.1;
@@ -349,7 +348,7 @@ impl Model {
     }
 
     /// Springs and dashpots of a new contact at an overlap and effective radius [m]; `mass`: effective mass
-    /// [kg]. No tangential part without friction.
+    /// [kg].
     pub fn linearised(&self, a: usize, b: usize, mass: f64, radius: f64, overlap: f64) -> Linearised {
         let materials = [a as u32, b as u32];
         // The stored rate is a radius, or a speed, which springs do not depend on.

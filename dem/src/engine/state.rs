@@ -1,7 +1,7 @@
 //! State of a run; checkpoints resume bitwise identically.
 //!
 //! Bodies are stored in spatial blocks (`reordering.rs`); public methods use input indices. Positions are at
-//! `time`, velocities half a step earlier (leapfrog). Contact history is stored with the neighbour list.
+//! `time`, velocities half a step earlier (leapfrog).
 
 use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
@@ -150,7 +150,7 @@ impl State {
     }
 
     /// Sets velocity [m/s] and angular velocity [rad/s] half a step before `time`, without a balance entry.
-    /// Fixed rotations of clumps and boxes are kept.
+    /// Fixed rotations are kept.
     pub fn set_velocity(&mut self, model: &Model, body: usize, velocity: Vec3, spin: Vec3) {
         let [b, k] = self.places[body];
         let block = &mut self.blocks[b as usize];
@@ -163,9 +163,9 @@ impl State {
         }
     }
 
-    /// Translates [m] and rotates a body about world axes; velocity, angular momentum and contact history are
-    /// kept. Fixed motions are skipped (all rotations if one is fixed); single spheres do not rotate. Angular
-    /// momentum is balanced, energy is not. Call [`State::request_search`] afterwards.
+    /// Translates [m] and rotates a body about world axes; motion and contact history are kept. Fixed motions
+    /// are skipped; single spheres do not rotate. Energy is not balanced. Call [`State::request_search`]
+    /// afterwards.
     pub fn shift(&mut self, model: &Model, body: usize, shift: &Vec3, turn: &UnitQuaternion<f64>) {
         let [b, k] = self.places[body];
         let (block, k) = (&mut self.blocks[b as usize], k as usize);

@@ -37,8 +37,7 @@ pub use super::initial_contacts::{find_contacts, find_deep_contacts};
 /// Advances `state` by one step of [`State::dt`].
 ///
 /// `surface` is at the state's time ([`NoSurface`](crate::spatial::surface::NoSurface) for none). Results are
-/// bitwise identical for any number of threads and for new `work`. Calls from inside a rayon pool
-/// (`ThreadPool::install`) save two thread switches. `applied` forces act for this step.
+/// bitwise identical for any number of threads. `applied` forces act for this step.
 ///
 /// # Errors
 /// [`StepError`] for overlaps or speeds out of range; the state is then invalid.
@@ -138,7 +137,6 @@ fn contacts_and_motion<S: Surface>(model: &Model, state: &mut State, work: &mut 
     let motions = &planes[..];
     let Work { members, blocks: works, cross: slots, beyond, applied, buffers, bonds: bonded, .. } = work;
     let standing = (&work.walls[..], &work.sheet[..]);
-    // Reads own and later blocks, writes slots.
     let between = |b: usize, (blocks, members): Bodies<'_>, pairs: &mut Cross, out: &mut CrossForces| {
         out.clear_totals();
         dispatch::between(setting, model.clumps, (blocks, members), material, b, pairs, out);

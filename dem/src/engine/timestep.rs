@@ -1,30 +1,20 @@
 //! Stability limit of the time step.
 //!
-//! A body of mass m in contacts of stiffness K, its neighbours moving against it, oscillates at most at
-//! ω² = s K (1/m + r²/I). Here s is twice the number of contacts acting in one direction (Gershgorin's
-//! bound), r the lever arm. With dashpots on velocities half a step old the leapfrog is stable for
-//! (ω dt)² + 4 ζ' ω dt < 4, ζ' = ζ √(s/2). Twice the damping is used,
+//! A body of mass m in contacts of stiffness K, lever arm r, oscillates at most at ω² = s K (1/m + r²/I), s
+//! twice the number of contacts in one direction (Gershgorin's bound). Twice the damping is used to resolve
+//! the restitution of single collisions:
 //!
-//! (ω dt)² + 8 ζ' ω dt < 4,  so  ω dt < √(4 + 16 ζ'²) − 4 ζ',
+//! ω dt < √(4 + 16 ζ'²) − 4 ζ', ζ' = ζ √(s/2).
 //!
-//! to resolve the restitution of single collisions. Actual contacts usually allow several times more
-//! (`stability`).
-//!
-//! - sphere: s = 12, six contacts with a component in one direction;
-//! - clump: s = 24, or twice the members touching a plane if more; largest r² (contacts may all lie far out);
+//! - sphere: s = 12;
+//! - clump: s = 24, or twice the members touching a plane if more; largest r²;
 //! - box: s twice the neighbours of smallest bounding radius on its largest side, two contacts each (at least
-//!   16 with other boxes); mean r² of the side.
+//!   16 with other boxes); mean r².
 //!
-//! A rolling or twisting spring counts as a second tangential spring: its lever arm is at most the radius.
+//! A rolling or twisting spring counts as a second tangential spring.
 //!
-//! If stiffness grows with overlap, the limit holds up to the expected overlap (`law/hertz.rs`) of the
-//! densest body. The impact speed is [`ModelInput::impact_speed`], or the largest initial speed plus
-//! √(2 g H), H the height of all bodies. Hertz: dt ∝ d^(-1/4), so 16 times the overlap halves the limit,
-//! within the usual fraction (0.1 to 0.2). Large external loads need an explicit impact speed. Bonds add
-//! their own bound (`bond/limit.rs`).
-//!
-//! Limits: one large body among small ones may exceed s, but its mass grows faster. Flat clump sides oblique
-//! to principal axes are not detected.
+//! If stiffness grows with overlap, the limit holds up to the expected overlap (3.7) of the densest body;
+//! large external loads need [`ModelInput::impact_speed`]. Bonds add their own bound (`bond/limit.rs`).
 //!
 //! Theory manual: equation (3.6) of `docs/theory/motion.md`.
 
@@ -136,7 +126,6 @@ pub(crate) fn limit(
         let radius = contact_radius(&body, shape, r_max);
         for &partner in &partners {
             let (a, b) = (body.material, partner as u32);
-            // Largest effective radius: contact with a plane.
             let stiffness = laws.stiffness(a, b, expected * radius, radius);
             let tangential = stiffness * laws.tangential_ratio(a, b);
             if !stiffness.is_finite() {
@@ -189,8 +178,7 @@ pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     }
 }
 
-/// Returns s. `smallest`: neighbour radius [m]; `several`: other boxes exist; `corner`: corner stiffness
-/// [N/m].
+/// s. `smallest`: neighbour radius [m]; `several`: other boxes exist; `corner`: corner stiffness [N/m].
 fn sides(
     shape: &Shape,
     body: &Body,
@@ -222,7 +210,7 @@ fn faces(it: &Dilated, body: &Body, laws: &Laws, b: u32, corner: f64) -> f64 {
 #[derive(Clone, Copy)]
 struct Face {
     corners: f64,
-    /// Circumference [m]; the same over the edge length equivalent to one corner (linear law).
+    /// Circumference [m], then in edge lengths equivalent to one corner (linear law).
     around: f64,
     lengths: f64,
 }
@@ -251,8 +239,7 @@ impl Face {
     }
 }
 
-/// Longest step [s] for polyhedra landing on a face: stiffness rises many-fold, possibly between two
-/// stability checks. `expected`: overlap over radius.
+/// Longest step [s] for polyhedra landing on a face, where stiffness rises many-fold between two checks.
 pub(crate) fn landing(bodies: &Bodies, input: &ModelInput, laws: &Laws, expected: f64) -> f64 {
     let partners = partners(bodies, input);
     let mut longest = f64::INFINITY;
@@ -386,7 +373,7 @@ fn touching(bodies: &Bodies, input: &ModelInput, radius: f64) -> Vec<Partner> {
 }
 
 /// Sets servo damping and rigid-body step limits; returns the longest step [s] stable for contacts arising
-/// between stability checks. `radii`: smallest, largest sphere [m]; `expected`: overlap over radius.
+/// between checks.
 pub(crate) fn walls(
     walls: &mut Walls,
     limit: &mut DtLimit,
@@ -420,7 +407,6 @@ pub(crate) fn walls(
         }
         for &Partner { material, radius, face } in &partners {
             let point = laws.stiffness(wall.material, material, expected * radii.1, radii.1);
-            // Points for spheres and planes, up to a full face for polyhedra.
             let times = face.map_or(1.0, |f| f.worth(laws, [wall.material, material], point));
             let stiffness = times * point;
             if !stiffness.is_finite() {

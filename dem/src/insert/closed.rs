@@ -1,12 +1,10 @@
 //! Closed triangle surfaces: point-in-solid test, surface proximity, enclosed volume.
 //!
-//! A point is inside if a ray along +z crosses the surface an odd number of times. Triangles are projected
-//! along z; an edge counts if exactly one end is above the point's y (half-open rule). Edges are evaluated
-//! from the lower vertex index, so neighbours agree bitwise and no tolerance is needed. Orientation is
-//! arbitrary; every edge must join an even number of triangles.
+//! A point is inside if a ray along +z crosses the surface an odd number of times. Edges are evaluated from
+//! the lower vertex index, so neighbours agree bitwise and no tolerance is needed. Orientation is arbitrary;
+//! every edge must join an even number of triangles.
 //!
 //! Source: crossing number with consistent edges (Haines, Graphics Gems IV, 1994; own form for triangles).
-//! Limits: no self-intersection; surface points count as either side.
 
 use crate::base::Vec3;
 use crate::shape::polyhedron::Surface;

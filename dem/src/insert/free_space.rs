@@ -154,7 +154,7 @@ fn images(model: &Model) -> Vec<Vec3> {
     ways
 }
 
-/// Random streams, one per grain: values depend on seed and request count only, also after a restart.
+/// Random streams, one per grain: values depend on seed and request count only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct FreePositions {
     seed: u64,

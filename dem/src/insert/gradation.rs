@@ -1,13 +1,11 @@
 //! Grading curve and grain sizes drawn from it.
 //!
-//! Between sieves a < b with mass fraction M, mass is uniform over ln d. With mass ∝ d³ the number per size
-//! is
-//!
 //! ```text
 //! dn = M / ln(b/a) · d⁻⁴ dd,    n(d) − n(a) = M / (3 ln(b/a)) · (a⁻³ − d⁻³),
 //! ```
 //!
-//! inverted in closed form. Stratified quantiles of n have a passing error of about 1/n instead of 1/√n.
+//! Mass is uniform over ln d between sieves a < b with mass fraction M. Stratified quantiles of n grains have
+//! a passing error of about 1/n instead of 1/√n.
 //!
 //! Limits: grain size is sieve size; shapes must not depend on size.
 //!
@@ -105,8 +103,7 @@ impl Gradation {
     }
 
     /// Mean of a standard's limits: ascending sieve sizes [m], lower and upper mass fractions passing. Grains
-    /// below the first sieve extend to `finest` [m], or are cut (`None`), as small grains govern the time
-    /// step.
+    /// below the first sieve extend to `finest` [m], or are cut (`None`).
     ///
     /// # Errors
     /// [`GradationError`] with the row of the extended table.

@@ -6,8 +6,7 @@
 //! | hexagonal close packed | ABAB…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
 //! | face-centred cubic | ABCABC…, d √(2/3) apart | 1 − π/(3√2) = 0.2595 |
 //!
-//! Close-packed rows run along x, d √3/2 apart in y. Bulk porosities; a gap of [`GAP`] diameters prevents
-//! contacts by rounding.
+//! Bulk porosities; a gap of [`GAP`] diameters prevents contacts by rounding.
 
 use crate::base::Vec3;
 
@@ -46,8 +45,7 @@ impl Lattice {
         }
     }
 
-    /// Centres [m] of `counts` columns, rows and layers (slowest) of spheres of `radius` [m]; `low`: bounding
-    /// box corner [m].
+    /// Sphere centres [m] of `counts` columns, rows and layers (slowest); `low`: bounding box corner [m].
     pub fn block(self, low: Vec3, radius: f64, counts: [usize; 3]) -> Vec<Vec3> {
         let d = 2.0 * radius * (1.0 + GAP);
         let mut sites = Vec::with_capacity(counts.iter().product());
@@ -64,9 +62,7 @@ impl Lattice {
     /// As [`Lattice::block`], all spheres between `low` and `high` [m].
     pub fn fill(self, low: Vec3, high: Vec3, radius: f64) -> Vec<Vec3> {
         let d = 2.0 * radius * (1.0 + GAP);
-        // One spare row and layer; protruding spheres are dropped.
         let most = (high - low).map(|l| ((l.max(0.0) / (0.8 * d)) as usize).saturating_add(2));
-        // Gaps of a full row may protrude.
         let slack = 2.0 * GAP * (high - low).max();
         let mut sites = self.block(low, radius, [most.x, most.y, most.z]);
         sites.retain(|c| (0..3).all(|k| c[k] + radius <= high[k] + slack));
@@ -87,8 +83,7 @@ mod tests {
 
     const ALL: [Lattice; 3] = [Lattice::Simple, Lattice::Hexagonal, Lattice::FaceCentred];
 
-    /// 6 or 12 neighbours at d. Both close packings have second-shell squared distance 2 (in d²); only hcp
-    /// has √(8/3) d.
+    /// Both close packings have second-shell squared distance 2 (in d²); only hcp has √(8/3) d.
     #[test]
     fn neighbours_are_those_of_the_lattice() {
         for lattice in ALL {
@@ -146,7 +141,6 @@ mod tests {
                 assert!((0..3).all(|k| c[k] - 0.02 > low[k] - 1e-9 && c[k] + 0.02 < high[k] + 2e-9));
                 assert!(sites[..i].iter().all(|q| (q - c).norm() > 0.04));
             }
-            // The simple lattice has 10 × 10 × 10.
             let least = 1000;
             assert!(sites.len() >= least, "{lattice:?}: {}", sites.len());
         }

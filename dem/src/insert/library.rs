@@ -1,4 +1,4 @@
-//! Stone library: shapes at unit scale as clumps, bonded spheres or dilated polyhedra.
+//! Stone library at unit scale: clumps, bonded spheres or dilated polyhedra.
 //!
 //! TOML, lengths in metres; stones of sieve size 1 m scale by the target size.
 //!
@@ -12,8 +12,8 @@
 //! ]
 //! ```
 //!
-//! Dilated polyhedron: `corners = [[x, y, z], …]`, all on the convex hull, and `radius`. Breakable stone:
-//! `bonds = [[0, 1], …]` (sphere indices); `density_factor` compensates its pores.
+//! Dilated polyhedron: `corners = [[x, y, z], …]` and `radius`. Breakable stone: `bonds = [[0, 1], …]`
+//! (sphere indices); `density_factor` compensates its pores.
 
 use crate::base::Vec3;
 use crate::shape::clump::{Clump, ShapeError};
@@ -196,7 +196,6 @@ mod tests {
     fn shipped_stones_have_unit_sieve_size() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../inputs/track/cyclic/stones.toml");
         let text = std::fs::read_to_string(file).unwrap();
-        // Number rows only; scenes parse the full format.
         let row = |line: &str| {
             let numbers =
                 line.trim().strip_prefix('[')?.strip_suffix("],")?.split(',').map(|x| x.trim().parse());

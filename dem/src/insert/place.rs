@@ -1,8 +1,7 @@
 //! Overlap-free initial positions for gravity deposition.
 //!
 //! Bounding spheres are dropped in random order at several random plan points; the lowest position is
-//! selected. The packing is denser than a lattice of the largest sphere. Rest height of a sphere of radius r
-//! at (x, y) on (xⱼ, yⱼ, zⱼ, rⱼ):
+//! selected. Rest height of a sphere of radius r at (x, y) on (xⱼ, yⱼ, zⱼ, rⱼ):
 //!
 //! ```text
 //! z₁ = zⱼ + √((r + rⱼ)² − (x − xⱼ)² − (y − yⱼ)²)
@@ -110,7 +109,6 @@ pub fn place_loose(
     Ok(placed)
 }
 
-/// Relative to the box corner; largest centre height of the column so far.
 struct Entry {
     centre: [f64; 3],
     radius: f64,
@@ -219,7 +217,7 @@ mod tests {
         let placed = place_loose([0.0; 3], [10.0, 10.0], &vec![0.05; n], 1).unwrap();
         let rotations: Vec<Matrix3<f64>> =
             placed.iter().map(|p| p.orientation.to_rotation_matrix().into_inner()).collect();
-        // Each entry: mean 0, mean square 1/3; standard errors 0.009 and 0.005.
+        // Each entry: mean 0, mean square 1/3.
         let mean = rotations.iter().sum::<Matrix3<f64>>() / n as f64;
         let square = rotations.iter().map(|m| m.component_mul(m)).sum::<Matrix3<f64>>() / n as f64;
         assert!(mean.iter().all(|x| x.abs() < 0.04), "{mean}");

@@ -1,13 +1,9 @@
-//! Radius expansion: grains start small at random positions and expand to full size.
+//! Radius expansion: small grains at random positions grow to full size.
 //!
 //! Each round scales all lengths by one step from `start` to 1, then relaxes without gravity, with local
-//! damping (Cundall & Strack 1979). Lubachevsky & Stillinger (1990) expand at a rate instead.
+//! damping (Cundall & Strack 1979).
 //!
-//! Grain sizes set the porosity: (1 − n) V = Σ V_i. [`Grown::porosity`] subtracts overlaps by the leading
-//! lens term π δ² R, R the reduced radius (sphere radius at a wall).
-//!
-//! Limits: frictionless equal spheres jam near n = 0.36, bidisperse ones lower; below, the porosity stays
-//! above the target. Cone sides are 96 strips (volume + 0.04 %).
+//! Limits: frictionless equal spheres jam near n = 0.36, bidisperse ones lower.
 //!
 //! Theory manual: equation (3.13) of `docs/theory/motion.md`.
 
@@ -162,7 +158,7 @@ pub fn grow(
     Ok(grown)
 }
 
-/// Linear springs, because initial overlaps are deep; stiffness does not affect the rest position.
+/// Linear springs: initial overlaps are deep, and stiffness does not affect the rest position.
 fn springs(material: &Material, friction: f64) -> Material {
     let one = material.with_friction(friction);
     match material.young {

@@ -1,7 +1,6 @@
 //! Size distributions: monodisperse, bidisperse, uniform, truncated normal and log-normal.
 //!
-//! Stratified quantiles have errors of about 1/n. Newton's method; Φ(x) = ½ + φ(x) (x + x³/3 + x⁵/15 + …)
-//! (Abramowitz & Stegun 1964, 26.2.11) near 0, 1 − Φ(x) = φ(x) / (x + 1/(x + 2/(x + …))) (26.2.14) beyond 3.
+//! Newton's method on the quantiles. Φ near 0: Abramowitz & Stegun 1964, 26.2.11; beyond 3: 26.2.14.
 
 use crate::base::random::Random;
 use std::f64::consts::TAU;
@@ -138,7 +137,6 @@ impl SizeLaw {
                 if q * (s + l) < s { small } else { large }
             }
             SizeLaw::ByNumber { low, high } => low + q * (high - low),
-            // dn ∝ d⁻³ dd: n(d) ∝ low⁻² − d⁻².
             SizeLaw::ByVolume { low, high } => {
                 libm::pow(low.powi(-2) + q * (high.powi(-2) - low.powi(-2)), -0.5).clamp(low, high)
             }
@@ -240,8 +238,7 @@ mod tests {
         let (mean, deviation) = moments(&wide.sample(n, 2));
         assert_relative_eq!(mean, 0.04, max_relative = 1e-3);
         assert_relative_eq!(deviation, 0.005, max_relative = 5e-3);
-        // Truncated at ±1 deviation: variance 1 − 2 φ(1)/(2Φ(1) − 1) = 0.291125 of the total (Johnson et al.
-        // 1994).
+        // Truncated at ±1 deviation (Johnson et al. 1994).
         let cut = SizeLaw::Normal { mean: 0.04, deviation: 0.005, low: 0.035, high: 0.045 };
         let d = cut.sample(n, 3);
         assert_relative_eq!(moments(&d).1, 0.005 * 0.291_125_f64.sqrt(), max_relative = 2e-3);

@@ -2,11 +2,7 @@
 //!
 //! v(n+½) = v(n−½) + dt F(n)/m,  x(n+1) = x(n) + dt v(n+½),
 //!
-//! likewise for rotation. Momentum and angular momentum (x(n+1), v(n+½)) balance to rounding; the change of
-//! kinetic energy is exactly dt F(n)·(v(n−½) + v(n+½))/2.
-//!
-//! Local damping (Cundall) scales each component of total force (with gravity) and torque by 1 − α if it
-//! drives the motion, by 1 + α if it brakes. Fixed motions keep their velocity; constraints do work.
+//! Local damping scales each component of total force and torque by 1 − α or 1 + α.
 //!
 //! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 
@@ -94,7 +90,6 @@ impl<const CLUMPS: bool, const PLAIN: bool> Advance<'_, CLUMPS, PLAIN> {
         let n = block.bodies.len();
         let mut sums = Sums::<P::Quad>::new();
         let (mut moment, mut fastest2) = (Vec3::zeros(), 0.0_f64);
-        // NaN does not show in a maximum.
         let wild = |v2: f64| v2.is_nan() || v2 > bound * bound;
         let mut too_fast = false;
         let quick = if PLAIN { n - n % 4 } else { 0 };
@@ -108,7 +103,6 @@ impl<const CLUMPS: bool, const PLAIN: bool> Advance<'_, CLUMPS, PLAIN> {
             }
         }
         if CLUMPS {
-            // Separate loop: rotations overlap in the pipeline.
             for k in (0..quick).step_by(4) {
                 place_four::<P>(block, members, k);
             }
@@ -275,8 +269,6 @@ fn four<R: Simd4, const CLUMPS: bool, const DAMPED: bool>(
     sums.fastest2 = sums.fastest2.max(speed2);
 }
 
-/// Kicks and rotates free bodies k to k + 3. Returns the largest squared speeds of their points, from the
-/// centres'.
 #[inline(always)]
 fn turn_four<R: Simd4, const DAMPED: bool>(
     block: &mut Block,
@@ -506,7 +498,6 @@ pub(crate) fn hold(r: &Rotation, inertia: &Vec3, spin: &Vec3, target: &Vec3, fix
             }
         }
     }
-    // Always solvable: principal minors of a positive definite matrix are positive.
     let impulse = system.lu().solve(&rhs).unwrap_or_else(Vec3::zeros);
     spin + inverse * impulse
 }

@@ -1,13 +1,11 @@
 //! Rotation of bodies with different principal moments.
 //!
 //! The global angular momentum L is stored. The orientation follows the implicit midpoint rule for Euler's
-//! equations, with body-frame momentum Π and ω = I⁻¹ (Π₀ + Π₁)/2:
+//! equations.
 //!
-//! q₁ = q₀ ∘ (1, ω dt/2)/norm,  Π₁ = L in the frame of q₁,
-//!
-//! so that Π₁ − Π₀ = −dt ω × (Π₀ + Π₁)/2. Second order; conserves kinetic energy and |L| to rounding for any
-//! step (Simo & Wong, Int. J. Numer. Meth. Engng 31, 1991; Austin, Krishnaprasad & Wang, J. Comput. Phys.
-//! 107, 1993). Solved by fixed-point iteration.
+//! Second order; conserves kinetic energy and |L| to rounding for any step (Simo & Wong, Int. J. Numer. Meth.
+//! Engng 31, 1991; Austin, Krishnaprasad & Wang, J. Comput. Phys. 107, 1993). Solved by fixed-point
+//! iteration.
 //!
 //! Theory manual: equation (3.4) of `docs/theory/motion.md`.
 
@@ -42,7 +40,7 @@ impl<R: Real> Midpoint<R> {
         V3::new(start.x * half.x, start.y * half.y, start.z * half.z)
     }
 
-    /// One iteration of Π + c × Π = Π₀, and whether another is needed.
+    /// One iteration of Π + c × Π = Π₀.
     #[inline(always)]
     pub fn iterate(&self, c: V3<R>) -> (V3<R>, R::Mask) {
         let Midpoint { start, half } = *self;

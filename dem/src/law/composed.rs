@@ -1,12 +1,8 @@
 //! Composition of contact laws: normal force with dashpot, tangential spring with Coulomb friction, rolling
 //! and twisting resistance, adhesion. A pair uses the smaller friction, rolling and twisting coefficients.
 //!
-//! Dissipation is second order in spite of half-step velocities (phase of a damped oscillation: first). The
-//! dashpot uses the last half-step approach speed with a corrected coefficient (`half_step_damping.rs`), its loss the
-//! extrapolated speed. Alternatives: `docs/developer/engine.md`.
-//!
-//! The first force that jumps at contact (linear dashpot, adhesion) is weighted by θ + ½, θ = d/(ḋ dt) the
-//! fraction of the step in contact.
+//! The dashpot uses the last half-step approach speed with a corrected coefficient (`half_step_damping.rs`),
+//! its loss the extrapolated speed: second order. Alternatives: `docs/developer/engine.md`.
 //!
 //! Theory manual: eq. (3.3), `docs/theory/motion.md`.
 
@@ -156,7 +152,7 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
         let approach = -touch.velocity.dot(n);
         let slip_velocity = touch.velocity + n * approach;
         let fresh = memory.rate.equals(R::splat(NO_CONTACT));
-        // Other history: the last half-step speed serves; its errors cancel over an oscillation.
+        // Other history: the last half-step speed serves.
         let remembered_approach = if N::REMEMBERS { approach } else { memory.rate };
         let Onset { now, time, weight } =
             onset::<R>(approach, remembered_approach, overlap, fresh, on, step, N::JUMPS || ROLLING);
@@ -281,7 +277,6 @@ impl<N: NormalLaw, T: TangentialLaw<N>> ContactLaw for Composed<N, T> {
     }
 
     fn tangential_ratio(&self) -> f64 {
-        // Both depend on overlap through the contact circle, or not at all.
         let (normal, circle) = (self.normal.stiffness(1.0, 1.0), self.normal.circle(1.0, 1.0, 1.0));
         if normal > 0.0 && normal.is_finite() { self.tangential.stiffness(circle) / normal } else { 0.0 }
     }

@@ -1,20 +1,17 @@
 //! Normal law: elastic spheres with conical damage of corners.
 //!
-//! A corner is a cone of half-angle α with a spherical tip of radius R, initially the effective radius R₀. If
-//! Hertz's central pressure p = (2 E*/π) √(u/R) reaches the strength σ, the tip crushes to a larger sphere in
-//! the cone, so that p = σ. Its apex recedes by (R − R₀) k, k = (1 − sin α)/sin α. With overlap δ:
+//! Corner: cone of half-angle α with a spherical tip of radius R, initially the effective radius R₀, that
+//! crushes where Hertz's central pressure reaches the strength σ; k = (1 − sin α)/sin α, overlap δ:
 //!
 //! * elastic overlap u = δ − (R − R₀) k, force F = 4/3 E* √R u^(3/2) if u > 0, else 0;
 //! * crushing if u > h R, h = (π σ/2E*)²: R = (δ + k R₀)/(h + k), so that u = h R and F = 4/3 E* h^(3/2) R²;
 //! * unloading and reloading at constant R; permanent deformation (R − R₀) k until separation resets R.
 //!
-//! Crushing work from R to R': c (k/3 − h/15)(R'³ − R³), c = 4/3 E* h^(3/2), positive for h < 5k (required).
-//! Dashpot as in `hertz.rs` on the circle √(R u); prescribed restitution without crushing, else smaller.
-//! Initial overlaps count as crushed: R = R₀ + δ/k, zero force.
+//! h < 5k is required: crushing then dissipates. Dashpot as in `hertz.rs` on the circle √(R u). Initial
+//! overlaps count as crushed: R = R₀ + δ/k.
 //!
 //! Sources: Harkness, Zervos, Le Pen, Aingaran & Powrie, Granular Matter 18:65, 2016; this overlap: Suhr &
-//! Six, Granular Matter 19:64, 2017 (also in YADE). Mixing: smaller σ, smaller α; no crushing against a soft
-//! partner, h ≥ 5k.
+//! Six, Granular Matter 19:64, 2017.
 //!
 //! Limits: debris has no volume; contact circle small against the radii.
 //!
@@ -51,7 +48,7 @@ pub fn elastic_limit(strength: f64, modulus: f64) -> f64 {
     (0.5 * PI * strength / modulus).powi(2)
 }
 
-/// Returns the strength [Pa] above which crushing would release energy, for E* [Pa] and α [rad].
+/// Strength [Pa] above which crushing would release energy, for E* [Pa] and α [rad].
 pub fn greatest_strength(modulus: f64, angle: f64) -> f64 {
     2.0 * modulus / PI * (5.0 * slope(angle)).sqrt()
 }
@@ -167,7 +164,6 @@ impl NormalLaw for ConicalDamage {
         self.damping_ratio
     }
 
-    /// Overlap that absorbs the impact or supports the weight of all bodies; without crushing as Hertz.
     fn expected_overlap(&self, e: &Expected) -> f64 {
         let elastic = hertz::expected(self.modulus, e);
         let crushed = if self.growth > 0.0 && elastic > self.limit {

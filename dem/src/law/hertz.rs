@@ -1,16 +1,14 @@
 //! Normal law: elastic spheres after Hertz.
 //!
-//! Overlap d, R = R₁R₂/(R₁ + R₂), circle a = √(R d), 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂: F = max(0, 4/3 E* √R
-//! d^(3/2) + C ḋ) (Hertz 1882; Johnson, Contact Mechanics, 1985, sec. 4.2), C = √5 ζ √(4/3 E* √R m*) d^(1/4)
-//! (Tsuji, Tanaka & Ishida, Powder Technology 71, 1992).
+//! Sources: Hertz 1882; Johnson, Contact Mechanics, 1985, sec. 4.2; dashpot: Tsuji, Tanaka & Ishida, Powder
+//! Technology 71, 1992.
 //!
-//! Restitution: s = d^(5/4), dτ = d^(1/4) dt·5/4 turn m* d̈ = −F into the *linear* oscillator v dv/ds =
-//! −(4/5)(s + √5 ζ v). So ζ(e) is as in `restitution.rs`, and e is independent of speed.
+//! In s = d^(5/4) an impact is a *linear* oscillator, so ζ(e) is as in `restitution.rs` at any speed.
 //!
 //! Expected overlap for the time step, densest body, the larger of
 //!
-//! * impact at speed v: d/R = (5π/4 · ρ v²/E*)^(2/5), sphere on plane (Johnson, eq. 11.24, m = 4/3 π ρ R³);
-//! * rest under a column of height H: F = 4 R² ρ g H, d/R = (3 ρ g H/E*)^(2/3).
+//! * impact at speed v: Johnson, eq. 11.24, m = 4/3 π ρ R³;
+//! * rest under a column of height H: F = 4 R² ρ g H.
 //!
 //! Limits: smooth elastic spheres, contact circle small against the radii.
 //!

@@ -1,16 +1,12 @@
 //! Edge contacts of dilated bodies whose corners follow Hertz's law.
 //!
-//! An edge contributes E*/4 per unit length: F = E*/4 ∫ δ ds, linear in δ. For two edges of radius r crossing
-//! at right angles, overlap δ − s²/(4 r) at distance s, both integrals give 4/3 E* √r δ^(3/2), Hertz's force
-//! of crossing cylinders. An edge flat on a face has E* L δ/4; the half-space gives π E* L δ/Λ, Λ between 11
-//! and 17 for L = 12 r (`docs/guide/verification.md`).
+//! An edge contributes F = E*/4 ∫ δ ds. For two edges of radius r crossing at right angles this is Hertz's
+//! force of crossing cylinders, 4/3 E* √r δ^(3/2).
 //!
-//! Edges follow the linear law between added materials: stiffness E/(8(1 − ν²)) per metre, tangential over
-//! normal stiffness 2(1 − ν)/(2 − ν) as Mindlin's circle, weighted by length. [`Material::edge_factor`] π
-//! gives the line law π/4 E* L δ of Popov (Contact Mechanics and Friction, 2010, sec. 4.2).
+//! Tangential over normal stiffness 2(1 − ν)/(2 − ν) as Mindlin's circle. [`Material::edge_factor`] π gives
+//! the line law π/4 E* L δ of Popov (Contact Mechanics and Friction, 2010, sec. 4.2).
 //!
-//! Limits: points of an edge do not interact. Parallel edges are twice as stiff as an edge on a face; edges
-//! crossing at angle θ follow 1/sin θ, elastic cylinders nearly its root.
+//! Limits: points of an edge do not interact.
 //!
 //! Theory manual: eq. (2.8), `docs/theory/shapes.md`.
 

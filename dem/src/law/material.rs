@@ -5,8 +5,7 @@
 use super::damping::Damping;
 
 /// Contact material. Law of a pair: [`PairOverride::normal`], else the common [`Material::normal`], else
-/// Hertz with a Young's modulus, linear with a stiffness. A material with neither is rigid and adopts its
-/// partner's law.
+/// Hertz with a Young's modulus, linear with a stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Body density [kg/m³].

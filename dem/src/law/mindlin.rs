@@ -1,12 +1,10 @@
 //! Tangential law: Mindlin's stiffness of the contact circle.
 //!
-//! With a = √(R d) and 1/G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂, G = E/(2(1 + ν)): spring stiffness 8 G* a (Mindlin
-//! 1949), slider as in `slider.rs`.
+//! Source: Mindlin 1949; slider as in `slider.rs`.
 //!
-//! Loading keeps the force: the spring shortens by a₀/a. Unloading keeps the length: the force falls with a
-//! (Elata & Berryman, Mech. Mater. 24, 1996: constant force would create energy). Lost spring energy counts
-//! as friction (slip near the rim). Rolling and twisting springs likewise. The previous circle belongs to
-//! overlap d − ḋ dt.
+//! Loading keeps the force: the spring shortens by a₀/a. Unloading keeps the length (Elata & Berryman, Mech.
+//! Mater. 24, 1996: constant force would create energy). Lost spring energy counts as friction. The previous
+//! circle belongs to overlap d − ḋ dt.
 //!
 //! Limits: partial slip (Mindlin & Deresiewicz 1953) only by this rule.
 //!
@@ -58,7 +56,6 @@ impl TangentialLaw<Hertz> for Mindlin {
         Some(SpringTransfer { kept, loss })
     }
 
-    /// Stiffness and energy vanish with the overlap; only the last step's loss is neglected.
     #[inline(always)]
     fn at_end<R: Real>(_: &Mindlin<R>) -> Option<R> {
         None

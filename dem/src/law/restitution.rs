@@ -1,13 +1,12 @@
 //! Damping ratio of a linear spring–dashpot from restitution.
 //!
-//! F = K d + C ḋ is clipped at zero, so contact ends before the overlap. With ζ = C/(2√(m*K)) (Schwager &
-//! Pöschel, Granular Matter 9, 2007)
+//! F = K d + C ḋ is clipped at zero (Schwager & Pöschel, Granular Matter 9, 2007):
 //!
 //! * ζ < 1: e = exp[−(ζ/w)(π − atan2(2ζw, 1 − 2ζ²))], w = √(1 − ζ²);
 //! * ζ = 1: e = exp(−2);
 //! * ζ > 1: e = exp[−(2ζ/s) ln(ζ + s)], s = √(ζ² − 1).
 //!
-//! Bisection inverts e(ζ). The unclipped ζ = −ln e/√(π² + ln²e) gives 0.325 instead of 0.2.
+//! Bisection inverts e(ζ).
 //!
 //! Theory manual: eq. (1.4), `docs/theory/contacts.md`.
 

@@ -2,13 +2,10 @@
 //!
 //! μ(F) = μ + μₐ/(1 + F/(p R²)),
 //!
-//! F the normal force, R the effective radius: μ + μₐ at vanishing force, half of μₐ at F = p R², μ with
-//! sheared asperities. F/R² is size-independent at equal stress. Fs = −Ks ξ − Cs vₜ (`spring.rs`), limited to
-//! μ(F) F.
+//! F/R² is size-independent at equal stress.
 //!
-//! Friction of rock falls with stress in joints and rockfill (Barton & Kjærnsli, J. Geotech. Eng. Div. ASCE
-//! 107, 1981) and in contacts (Suhr & Six, Powder Technol. 294, 2016; Comput. Part. Mech. 4, 2017). Mixing:
-//! smaller μₐ, smaller p; `PairOverride::friction` replaces both.
+//! Sources: Barton & Kjærnsli, J. Geotech. Eng. Div. ASCE 107, 1981; contacts: Suhr & Six, Powder Technol.
+//! 294, 2016; Comput. Part. Mech. 4, 2017.
 //!
 //! Limits: no wear of asperities.
 //!

@@ -1,15 +1,13 @@
 //! Scarring: soil over rigid ground, penetrated and ploughed by falling rocks.
 //!
-//! A rock of vertical speed v penetrates d = 0.1 M^⅓ Me^−0.4 v^0.8 (mass M [kg], soil strength Me [kPa])
-//! before contact is solid. In soil, the drag ½ C ρ A |u| u acts on its centre of mass, A the submerged area
-//! projected along velocity u. Friction grows with the path s in contact, μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s);
-//! without contact ds/dt = −β s.
+//! Soil drag acts on the centre of mass; friction grows with the path in contact, and the path decays without
+//! contact.
 //!
 //! Sources: Lu, Caviezel, Christen, Demmel, Ringenbach, Bühler, Dinneen, Gerber & Bartelt, Landslides 16,
 //! 2019, 2353–2367 (eqs 9, 11 to 14); friction: Leine, Schweizer, Christen, Glover, Bartelt & Gerber,
 //! Multibody Syst. Dyn. 32, 2014, 241–271 (eqs 46, 47).
 //!
-//! Limits: no drag torque; soil as deep as the penetration; the scar vanishes with the rock.
+//! Limits: no drag torque; soil as deep as the penetration.
 //!
 //! Theory manual: eqs (6.37), (6.38), `docs/theory/track.md`.
 
@@ -102,8 +100,7 @@ mod tests {
         decay: 185.0,
     };
 
-    /// Four impacts of 780 kg by Lu and others (table 3, two digits). Table 2 gives the speed at the
-    /// simulation start, figure 8 the impact time to about 0.01 s.
+    /// Four impacts of 780 kg by Lu and others (table 3, two digits; speeds of table 2).
     #[test]
     fn depths_are_the_published_ones() {
         for (strength, speed, fall, depth) in [

@@ -1,11 +1,7 @@
 //! Slider of Coulomb friction, also for rolling and twisting (`rolling_twisting.rs`).
 //!
-//! The spring is rotated into the tangent plane at constant length, extended, limited in force together with
-//! its dashpot, and shortened to the limit. Dissipation is mean spring force × slip.
-//!
-//! Spring and dashpot are parallel, in series with the slider. Their rate u follows from −Ks (ξ + u t) − Cs u
-//! = the limit; the dashpot dissipates Cs u², the spring stores at most its work. (A dashpot at full
-//! velocity, as in LAMMPS' `gran/hooke/history`, leaves a spurious −Cs v/Ks after fast grazing.)
+//! Spring and dashpot are parallel, in series with the slider. (A dashpot at full velocity, as in LAMMPS'
+//! `gran/hooke/history`, leaves a spurious −Cs v/Ks after fast grazing.)
 //!
 //! Theory manual: eqs (1.5), (1.6), `docs/theory/contacts.md`.
 
@@ -35,8 +31,8 @@ pub(crate) fn plane<R: Real>(
     let along = spring.dot(normal);
     let flat = *spring - normal * along;
     let (along2, flat2) = (along * along, flat.norm2());
-    // Projection error is half the rotation squared: below 1e-5 rad per step it adds up to less than 5e-6 of
-    // the total rotation; root and division are saved.
+    // Projection error is half the rotation squared: below 1e-5 rad per step less than 5e-6 of the total
+    // rotation.
     let turned = along2.gt(R::splat(1e-10) * flat2);
     let mut before = flat;
     if R::any(turned & on) {
@@ -112,8 +108,7 @@ pub(crate) fn line<R: Real>(
 mod tests {
     use super::*;
 
-    /// No energy is released, however strong the dashpot; dissipation is work minus stored energy (error
-    /// vanishes with the step); the spring stays within the limit.
+    /// Dissipation is work minus stored energy; the error vanishes with the step.
     #[test]
     fn friction_dissipates_and_the_account_closes() {
         let (stiffness, limit, dt) = (1e5, 10.0, 1e-5);

@@ -5,8 +5,8 @@
 //!
 //! * Marsal (1967): sum of the decreases of mass fraction retained on the R10 sieves.
 //! * Ballast breakage index (Indraratna, Lackenby & Christie, Géotechnique 55 (2005) 325): A/(A + B) on a
-//!   linear size axis from 2.36 mm to the initial d₉₅. A: area between both curves; A + B: area from the
-//!   initial curve to maximum breakage, the line (2.36 mm, 0) to (d₉₅, 0.95). May exceed 1 for single sizes.
+//!   linear size axis, A the area between both curves, A + B from the initial curve to the line (2.36 mm, 0)
+//!   to (d₉₅, 0.95).
 //!
 //! Limits: no fines below the sphere size; initially unbonded bodies do not count.
 
@@ -131,11 +131,9 @@ fn piece(model: &Model, starts: &[crate::base::Vec3], bodies: &[u32]) -> Piece {
 mod tests {
     use super::*;
 
-    /// Manual: 10 units of 20 to 60 mm; a 50 mm stone of 3 units breaks into 40 mm (2) and 20 mm (1).
-    ///
-    /// Marsal: the 40 mm sieve retains the 50 mm stones: −3 of 10; 31.5 mm: +2; 16 mm: +1.
-    /// Index: 90 % passed 50 mm, so d₉₅ = 60 mm and A = (2 · 10 + 1 · 30)/10 = 5 mm. Initial area
-    /// (1 · 40 + 2 · 30 + 3 · 20 + 3 · 10)/10 = 19 mm, line 0.95 · 57.64/2 = 27.379 mm: 5/(27.379 − 19).
+    /// Manual: 10 units of 20 to 60 mm; a 50 mm stone of 3 units breaks into 40 mm (2) and 20 mm (1): d₉₅ =
+    /// 60 mm, A = (2 · 10 + 1 · 30)/10 = 5 mm, initial area (1 · 40 + 2 · 30 + 3 · 20 + 3 · 10)/10 = 19 mm,
+    /// line 0.95 · 57.64/2 = 27.379 mm.
     #[test]
     fn indices_match_hand_calculation() {
         let before = [(0.02, 1.0), (0.03, 2.0), (0.04, 3.0), (0.05, 3.0), (0.06, 1.0)];

@@ -352,8 +352,8 @@ pub fn contacts(model: &Model, state: &State) -> Vec<ContactRecord> {
     out
 }
 
-/// Coordination number [-]: loaded contacts per free body, two per contact between bodies. Clump pairs may
-/// count several. Zero without free bodies.
+/// Coordination number [-]: loaded contacts per free body, two per contact between bodies. Zero without free
+/// bodies.
 pub fn coordination(model: &Model, state: &State) -> f64 {
     let free = |body: usize| model.body(body).inverse_mass > 0.0;
     let count: usize = contacts(model, state)

@@ -169,7 +169,7 @@ pub(crate) fn momentum_of(model: &Model, state: &State, counted: impl Fn(usize) 
 }
 
 /// Reference of energy errors [J]: all bodies at the largest prescribed speed, and at the rounding speed of
-/// positions. A wall transfers ½mv² in an impact, with a relative error of (ω dt)²/4.
+/// positions.
 pub fn reference_energy(model: &Model, state: &State) -> f64 {
     let (mut mass, mut speed, mut far) = (0.0, state.driven_speed, 0.0_f64);
     for block in &state.blocks {

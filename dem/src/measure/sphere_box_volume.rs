@@ -11,7 +11,7 @@
 //! φ_a and the geodesic curvature a/√(1 − a²); exterior angles are γ_ab = arccos(−ab / √((1 − a²)(1 − b²))).
 //! Negative a: K(a, b, c) = K(b, c) − K(−a, b, c), with the wedge K(b, c).
 //!
-//! Source: own derivation; checked against octants, caps, wedges and a quadrature. Rounding error: 1e-15 R³.
+//! Source: own. Rounding error: 1e-15 R³.
 
 use super::BoxRegion;
 use crate::base::Vec3;
@@ -137,7 +137,6 @@ mod tests {
     }
 
     fn quadrature(region: &BoxRegion) -> f64 {
-        // x = sin t, y = √(1 − x²) sin s: smooth integrand.
         let n = 1500;
         let mut sum = 0.0;
         let (t0, t1) = (region.low.x.max(-1.0).asin(), region.high.x.min(1.0).asin());

@@ -61,9 +61,8 @@ impl Cross {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CrossForces {
-    /// Contact records. Spheres and images, `width` each: three (force on the first, both torques), or two
-    /// for single spheres (force and lever arm; moment per lever arm and second lever arm). Pair types:
-    /// three.
+    /// Contact records of spheres and images, `width` each: three (force on the first, both torques), or two
+    /// for single spheres (force and lever arm; moment per lever arm and second lever arm).
     pub slots: Vec<Vec4>,
     pub width: usize,
     /// First record of pair types, of images.

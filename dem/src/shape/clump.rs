@@ -1,4 +1,4 @@
-//! Rigid clump: a stone as overlapping spheres. Mass and inertia of their union: `clump/union.rs`.
+//! Rigid clump: a stone as overlapping spheres.
 
 mod union;
 
@@ -28,7 +28,7 @@ pub enum ShapeError {
     Disconnected(usize),
 }
 
-/// Rigid union of spheres about its centroid. Principal moments ascend: x is the long axis, z the short one.
+/// Rigid union of spheres about its centroid. Principal moments ascend: x is the long axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clump {
     /// Centre [m] and radius [m] of each sphere.
@@ -84,7 +84,7 @@ impl Clump {
         }
     }
 
-    /// Square sieve size [m]: intermediate principal extent. Diagonal passage of flat stones is neglected.
+    /// Square sieve size [m]: intermediate principal extent.
     pub fn sieve_size(&self) -> f64 {
         let mut extents = self.extents();
         extents.sort_by(f64::total_cmp);
@@ -139,7 +139,6 @@ pub(super) fn bounding_box(spheres: &[([f64; 3], f64)]) -> ([f64; 3], [f64; 3]) 
 
 /// Ascending principal moments and right-handed axes (columns).
 pub(crate) fn principal(mut inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
-    // Below quadrature noise the tensor is diagonal: a sphere keeps its axes.
     let noise = 1e-11 * inertia.trace();
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {
         if inertia[(i, j)].abs() < noise {
@@ -183,7 +182,6 @@ mod tests {
         std::array::from_fn(|k| f(h)[k] - f(-r)[k])
     }
 
-    /// Two spheres at 0 and d on x: volume, centroid, moments (axial, transverse).
     fn lens(r1: f64, r2: f64, d: f64) -> (f64, f64, [f64; 2]) {
         let h = 0.5 * (d + (r1 * r1 - r2 * r2) / d);
         let a = cut_sphere(r1, h);
@@ -252,7 +250,6 @@ mod tests {
             assert_relative_eq!(c.inertia[k], t.inertia[k], max_relative = 1e-8);
             assert!(c.inertia[k] >= c.inertia[k.saturating_sub(1)]);
         }
-        // The clump frame is a fixed point.
         let again = Clump::from_spheres(&c.spheres).unwrap();
         for (a, b) in c.spheres.iter().zip(&again.spheres) {
             assert!((0..3).all(|k| (a.0[k] - b.0[k]).abs() < 1e-9), "{a:?} {b:?}");

@@ -1,5 +1,4 @@
-//! Dilated polyhedron: a convex core dilated by a sphere (flat faces, cylindrical edges, spherical corners).
-//! The core of a dilated disk is a flat disk (`disk.rs`).
+//! Dilated polyhedron: convex core dilated by a sphere. The core of a disk is a flat disk (`disk.rs`).
 
 pub(crate) mod circle;
 pub(crate) mod disk;

@@ -1,7 +1,6 @@
 //! Bodies bounded by triangles.
 //!
-//! A [`Surface`] is a raw triangle mesh. A [`Polyhedron`] bounds a volume: each edge has two triangles, and
-//! all normals point out of the material.
+//! A [`Polyhedron`] bounds a volume: each edge has two triangles, and all normals point out of the material.
 //!
 //! Limits: self-intersection is not checked; volumes then count with the winding number.
 

@@ -1,12 +1,8 @@
 //! Surface triangles in contact with bodies with faces.
 //!
-//! A point's contact is the sum over triangles, minus shared edges, plus interior corners. For convex unions
-//! this is exact, as distances are a valuation (Hadwiger, Vorlesungen über Inhalt, Oberfläche und
-//! Isoperimetrie, 1957; Groemer 1978). Coplanar triangles thus act as their polygon, ridges count once, and
-//! the sum is smooth across seams.
-//!
-//! Bodies are indented by bent edges (fully from half a degree), boundaries, and corners with an angle
-//! defect.
+//! A point's contact is the sum over triangles, minus shared edges, plus interior corners: exact for convex
+//! unions, as distances are a valuation (Hadwiger, Vorlesungen über Inhalt, Oberfläche und Isoperimetrie,
+//! 1957; Groemer 1978), and smooth across seams.
 //!
 //! Theory manual: equation (2.9) of `docs/theory/shapes.md`.
 

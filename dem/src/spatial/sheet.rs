@@ -1,8 +1,8 @@
 //! External surface of triangles on moving nodes, for bodies with faces (`facet.rs`).
 //!
-//! A point on a triangle moves by linear shape functions; a point at height h above it also by the best-fit
-//! rotation Ω = A⁻¹ Σ rᵢ × vᵢ, A = Σ (rᵢ² − rᵢ rᵢᵀ), r from the centre. A moment M acts on the nodes as
-//! fᵢ = (A⁻¹ M) × rᵢ. Force, moment and power thus agree on both sides.
+//! A point at height h above a triangle moves by linear shape functions and the best-fit rotation Ω = A⁻¹ Σ
+//! rᵢ × vᵢ, A = Σ (rᵢ² − rᵢ rᵢᵀ), r from the centre; a moment M acts on the nodes as fᵢ = (A⁻¹ M) × rᵢ.
+//! Force, moment and power thus agree on both sides.
 
 use super::bvh::Aabb;
 use super::facet::{self, Facet};
@@ -124,7 +124,6 @@ fn levers(corners: &[Vec3; 3]) -> ([Vec3; 3], Matrix3<f64>) {
     let a = r.iter().fold(Matrix3::zeros(), |a: Matrix3<f64>, r| {
         a + Matrix3::from_diagonal_element(r.norm_squared()) - r * r.transpose()
     });
-    // Even thin triangles have three positive moments of inertia.
     (r, a.try_inverse().unwrap_or_else(Matrix3::zeros))
 }
 

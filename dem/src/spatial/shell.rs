@@ -1,10 +1,9 @@
 //! Rounded triangle surfaces in mutual contact.
 //!
-//! Triangles move inwards by the rounding radius, so that the rounded surface keeps the given faces, edges
-//! and corners. Corners move to the intersection of offset planes (least squares).
+//! Triangles move inwards by the rounding radius, so that the rounded surface keeps the given faces; corners
+//! move to the intersection of offset planes (least squares).
 //!
-//! Limits: at sharp angles a corner moves at most [`FARTHEST`] radii, and the rounded corner protrudes
-//! slightly.
+//! Limits: at sharp angles a corner moves at most [`FARTHEST`] radii.
 
 use super::bvh::{Aabb, Bvh};
 use super::facet::{self, Facet};

@@ -1,15 +1,12 @@
 //! DEM time step from current contacts and bonds ([`limit`]), usually 2 to 10 times the a-priori bound
-//! ([`crate::timestep`]). [`follow`] adjusts the step:
+//! ([`crate::timestep`]).
 //!
 //! * the limit is evaluated every [`LEAST`] to [`MOST`] steps, more often if it changes, and at once if the
-//!   dissipation rate rises tenfold: loads that rise within the interval, or a growing oscillation;
+//!   dissipation rate rises tenfold;
 //! * the step is a fraction of it ([`TimeStep::Measured`](crate::TimeStep::Measured)), smaller while it
-//!   changes, and grows by at most 25 % per evaluation;
-//! * a fraction of the collision time (`engine/collision.rs`) bounds it for accurate restitution, by default
-//!   four times as much in packings of lasting contacts;
-//! * steps are the first one times powers of 2^⅛: small changes have no effect.
-//!
-//! Steps depend on the state only: identical for any number of threads and after a restart.
+//!   changes;
+//! * a fraction of the collision time (`engine/collision.rs`) bounds it;
+//! Steps depend on the state only.
 //!
 //! Theory manual: eq. (3.5), `docs/theory/motion.md`.
 
@@ -42,9 +39,8 @@ const RUNG: f64 = 1.090_507_732_665_257_7;
 
 /// Returns the critical time step [s] of current sticking contacts and bonds; infinite without any.
 ///
-/// The leapfrog scheme is stable while the largest eigenvalue of M⁻¹(dt² K + 2 dt C) is below 4 (Lanczos
-/// method, a few per cent conservative). Dashpots use velocities of the last half step. Rigid walls move and
-/// have mounts; [`Model::longest`] covers contacts of their vertices with planes.
+/// Lanczos method, a few per cent conservative. [`Model::longest`] covers contacts of wall vertices with
+/// planes.
 pub fn limit(model: &Model, state: &State) -> f64 {
     largest_step(&mut Operator::new(model, state), state)
 }

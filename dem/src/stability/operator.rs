@@ -246,6 +246,5 @@ fn moved(
         None => local,
         Some(turn) => turn.matrix() * local * turn.matrix().transpose(),
     };
-    // Deletes rows and columns of fixed rotations; the matrix stays symmetric.
     (root, Matrix3::from_fn(|i, j| turned[(i, j)] * free(3 + i) * free(3 + j)))
 }

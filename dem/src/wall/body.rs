@@ -224,7 +224,7 @@ impl Body {
     }
 
     /// Time step limit for contact stiffness `k` [N/m] and damping ratio `zeta`: box of the body's bounds
-    /// under grains of radius `r` (see [`crate::engine::timestep`]), plus mount, whose dashpot has no delay.
+    /// under grains of radius `r`, plus mount.
     pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
         let n = self.half.map(|h| h / r + 1.0);
         let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);

@@ -1,18 +1,11 @@
 //! Servo-controlled wall with a target force on the grains.
 //!
-//! Velocity along direction d, with the force F on the grains along d, target F*, gain g and
-//! Z = Σ (K Δt + 2C) over the wall's contacts (K stiffness, C = 2ζ√(mK) dashpot bound):
-//!
-//! v = w + g (F* − F)/Z,  Δw = (g²/4) (F* − F)/Z per step.
-//!
-//! The proportional part acts as a dashpot of impedance Z/g, the integral part w in series with it as a mass
-//! of 4 Z Δt/g²: both are passive, so the plate is stable for g ≤ 1 and critically damped on its own contact
-//! springs. The integral part removes the lag of a dashpot: a ramp of the target is followed without error, a
-//! sine with (ω/ω₀)², ω₀² = k g²/(4 Z Δt) on a specimen of stiffness k. Without contact w is zero and the
-//! velocity grows 10 % per step, which avoids chatter under a light target.
+//! To the grains a dashpot Z/g in series with a mass of 4 Z Δt/g²: passive, so the plate is stable for g ≤ 1
+//! and critically damped on its own contact springs. The integral part follows ramps of the target without
+//! error.
 //!
 //! Source: gain from the sum of contact stiffnesses, P. A. Cundall and O. D. L. Strack, Géotechnique 29,
-//! 1979; dashpot term and integral part added (K. J. Åström and T. Hägglund, PID Controllers, 1995).
+//! 1979; dashpot term and integral part added.
 //!
 //! Theory manual: eq. (3.11), `docs/theory/motion.md`.
 
@@ -57,8 +50,8 @@ impl Servo {
         self.driven.filter(|[from, _]| time >= *from).map(|[_, speed]| speed)
     }
 
-    /// Velocity [m/s] for the next step; `missing` = target − force along the direction [N], impedance
-    /// Z [N s/m]. Updates the integral part w [m/s].
+    /// Velocity [m/s] for the next step; `missing` = target − force along the direction [N], impedance Z [N
+    /// s/m].
     pub(crate) fn speed(&self, missing: f64, impedance: f64, last: f64, integral: &mut f64) -> f64 {
         let speed = if impedance > 0.0 {
             let per_impedance = missing / impedance;
@@ -98,7 +91,6 @@ mod tests {
     #[test]
     fn speed_has_both_parts() {
         let mut integral = 0.0;
-        // g (F* − F)/Z = 0.5 · 10/100; w = 0.25 · 0.25 · 10/100.
         assert!((servo(0.5).speed(10.0, 100.0, 0.3, &mut integral) - 0.05625).abs() < 1e-15);
         assert!((integral - 0.00625).abs() < 1e-15);
         assert_eq!(servo(0.5).speed(-1e9, 100.0, 0.3, &mut integral), -1.0);
@@ -116,7 +108,7 @@ mod tests {
         assert!(last < 1.0 && speed(last) > last, "{last}");
     }
 
-    /// Plate on a specimen of stiffness k behind contacts of stiffness K and dashpot C, per unit impedance.
+    /// Plate on a specimen of stiffness k, per unit impedance.
     fn follow(gain: f64, [stiffness, damping]: [f64; 2], target: impl Fn(f64) -> f64, steps: usize) -> f64 {
         let servo = Servo { max_speed: 1e9, ..servo(gain) };
         let (mut x, mut v, mut w, mut worst) = (0.0, 0.0, 0.0, 0.0_f64);
@@ -132,7 +124,6 @@ mod tests {
         worst
     }
 
-    /// Z = KΔt + 2C = 1: any share of springs and dashpots, and specimens down to 1/100 of the contacts.
     #[test]
     fn constant_force_is_reached_for_any_gain() {
         for gain in [0.25, 1.0] {
@@ -146,7 +137,7 @@ mod tests {
         }
     }
 
-    /// Lag of a ramp: none; of a sine: (ω/ω₀)². A dashpot alone lags by ωZ/(gk) = 0.63.
+    /// Lag of a sine: (ω/ω₀)²; a dashpot alone lags by ωZ/(gk) = 0.63.
     #[test]
     fn ramp_and_sine_are_followed() {
         let soft = [1e-3, 0.3];

@@ -1,11 +1,7 @@
 //! Triangle patches.
 //!
 //! Coplanar triangles share one plane bitwise: from seeds in descending area, neighbours with vertices in the
-//! seed's plane (to rounding) adopt its normal. Forces then are continuous over the seams of a flat floor,
-//! slivers included.
-//!
-//! Plane and edge half-planes give a cheap lower bound of the distance, which excludes most neighbour-list
-//! patches.
+//! seed's plane (to rounding) adopt its normal. Forces are then continuous over seams.
 
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -24,7 +20,6 @@ const COPLANAR: f64 = 1e-12;
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Triangle {
-    /// Unit normal, level.
     plane: [f64; 4],
     /// Outward in-plane normal and level by edge.
     rims: [[f64; 4]; 3],

@@ -31,8 +31,7 @@ fn section(r: f64) -> (f64, f64, f64) {
     (PI * r * r, PI * r.powi(4) / 4.0, PI * r.powi(4) / 2.0)
 }
 
-/// Drives a sphere against a fixed one along a skew direction until the bond breaks. Returns the last record
-/// before the break and the mode.
+/// Drives a sphere against a fixed one along a skew direction until the bond breaks.
 fn drive(
     kind: Bond,
     motion: impl Fn(Vec3, Vec3) -> (Vec3, Vec3, Vec3),
@@ -66,7 +65,7 @@ pub fn near(found: f64, expected: f64, relative: f64) {
     assert!((found / expected - 1.0).abs() < relative, "found {found}, expected {expected}");
 }
 
-/// About 4000 steps to the break: a step is 0.025 % of the load.
+/// About 4000 steps to the break.
 #[test]
 fn single_bond_breaks_in_each_mode() {
     let (a, i, j) = section(R);
@@ -76,7 +75,6 @@ fn single_bond_breaks_in_each_mode() {
     let (r, mode) = drive(kind(), |n, _| (n * 1e-3, zero, zero));
     near(r.tension, 2e5 * a, 1e-3);
     assert_eq!(mode, BreakMode::Tension);
-    // Slip 2e-5 m; rotation 0.001, stretch 1e-8 m.
     let (r, mode) = drive(kind(), |_, t| (t * 5e-3, zero, zero));
     near(r.shear.norm(), 4e5 * a, 1e-3);
     assert_eq!(mode, BreakMode::Shear);
@@ -166,8 +164,6 @@ fn cantilever(bonds: usize, kind: ParallelBond) -> Run {
     Run::new(input)
 }
 
-/// Each of ten bonds rotates by M/(kₙI) and slips by P/(kₛA): δ = Σ P (k − ½)² l²/(kₙI) + N P/(kₛA). This is
-/// Timoshenko's P L³/3EI + P L/kₛAl, less 1/(4N²) of the first term.
 #[test]
 fn cantilever_deflects_as_a_beam() {
     let (n, load) = (10, Vec3::new(0.0, 0.3, -0.4));
@@ -193,7 +189,7 @@ fn cantilever_deflects_as_a_beam() {
     assert!((tip - load * (found / p)).norm() < 1e-3 * found);
 }
 
-/// P (N − ½) l R/I = strength.
+/// δ = Σ P (k − ½)² l²/(kₙI) + N P/(kₛA): Timoshenko's P L³/3EI + P L/kₛAl, less 1/(4N²) of the first term.
 #[test]
 fn cantilever_breaks_at_predicted_load() {
     let n = 10;
@@ -298,7 +294,6 @@ fn rejects_inputs_without_bond() {
     kind(|b| b.stiffness = ParallelStiffness::Modulus { young: 1e9, ratio: 0.0 }, "stiffness ratio is 0");
 }
 
-/// Rejected above the critical time step; stable at 0.9 of it; unstable at twice.
 #[test]
 fn step_limit_of_a_bonded_cube() {
     let cube = |time_step| {

@@ -95,7 +95,6 @@ fn slab_row_matches_beam_theory() {
     let sunk = start.z - run.state.position(tip).z;
     println!("slabs: {sunk:e} m, chain {expected:e} m");
     near(sunk, expected, 1e-4);
-    // Continuous beam from the first face: only a rough check of the coarse chain.
     let beam = p * (end - faces[0]).powi(3) / (3.0 * YOUNG * second);
     near(expected, beam, 0.5);
 }
@@ -139,7 +138,6 @@ fn floating_strip_matches_elastic_foundation() {
         run.step_under(&[AppliedForce { body: 0, force: -Vec3::z() * p, point }]);
     }
     let sunk = before - run.state.position(0).z;
-    // At the first centre, not the end.
     let at = lambda * 0.5 * length;
     let expected = 2.0 * p * lambda / k * (-at).exp() * at.cos();
     let moments: Vec<f64> = records(&run.model, &run.state).iter().map(|r| r.bending).collect();

@@ -244,8 +244,6 @@ fn skin_changes_nothing() {
     assert!(a == b, "the skin shows");
 }
 
-/// Overlapping spheres held by a bond that breaks in shear: no force jump with the stiffer contact, and never
-/// more energy than the bond stored.
 #[test]
 fn contact_takes_over_without_creating_energy() {
     // Contact over bond stiffness.
@@ -290,7 +288,6 @@ fn contact_takes_over_without_creating_energy() {
         assert!(pressure > 5.0);
         let elastic = 0.5 * ratio * k * contact.overlap * contact.overlap;
         assert!((ratio * k * contact.overlap / pressure - expected).abs() < 0.01 * expected.max(ratio * 0.1));
-        // The bond's energy is released or passes to the contact.
         assert!(elastic <= 0.5 * pressure * pressure / k * 1.02);
         assert!((event.energy + elastic - stored).abs() < 0.01 * stored && event.energy > 0.0);
         assert_eq!(event.energy, run.state.balance.released_by_breaks);
@@ -366,7 +363,6 @@ fn force_on_a_grip() {
     let expected = 1e9 * std::f64::consts::PI * 1e-4 / 0.06 * stretch;
     let top = force_on(&run.model, &run.state, |b| b == 3);
     assert!((top.z / -expected - 1.0).abs() < 0.01, "{top} {expected}");
-    // Grip work: bond energy and dashpot loss.
     let l = &run.state.balance;
     let held = measure::energies(&run.model, &run.state).elastic_bonds;
     assert!(

@@ -1,4 +1,4 @@
-//! Device kernels, compiled by the system's C compiler: bitwise identical to the engine.
+//! Device kernels, compiled by the system's C compiler, against the engine.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device_changes::assert_detected;
@@ -33,7 +33,7 @@ const PAIR: PairOverride = PairOverride {
     twisting_friction: None,
 };
 
-/// Unequal flying spheres in a box of planes with a rising floor; more than a block.
+/// Unequal flying spheres in a box with a rising floor; more than a block.
 pub(crate) fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> ModelInput {
     let mut random = Random::new(7);
     let mut input = ModelInput {
@@ -70,8 +70,8 @@ pub(crate) fn gas(materials: [Material; 2], contacts: Vec<PairOverride>) -> Mode
     input
 }
 
-/// First difference between device and engine in `steps` steps, compared completely every seventh; and the
-/// engine's state.
+/// First difference between device and engine, compared completely every seventh step; and the engine's
+/// state.
 fn compare(
     input: ModelInput,
     steps: usize,
@@ -80,7 +80,7 @@ fn compare(
     compare_events(input, steps, change, |_, _| false)
 }
 
-/// As [`compare`]; `event` may modify both states before a step and returns whether it did.
+/// As [`compare`]; `event` may modify both states before a step.
 pub(crate) fn compare_events(
     input: ModelInput,
     steps: usize,
@@ -226,7 +226,6 @@ fn local_damping_and_fixed_motions() {
     }
 }
 
-/// The gas, with clumps of two sizes for the spheres selected by `which`.
 pub(crate) fn with_clumps(mut input: ModelInput, which: impl Fn(usize) -> bool) -> ModelInput {
     let three = [([0.0, 0.0, 0.0], 0.006), ([0.0035, 0.001, 0.0], 0.005), ([-0.003, 0.002, 0.002], 0.0045)];
     let two = [([0.003, 0.0, 0.0], 0.0055), ([-0.003, 0.001, 0.0], 0.005)];
@@ -263,7 +262,6 @@ fn clumps() {
         println!("a clump has turned by {turn:.2} rad");
         assert!(turn > 0.3);
         same_bits("clumps among spheres", with_clumps(gas([stone(), smooth()], Vec::new()), |k| k % 3 == 1));
-        // Blocks without clumps: clump formulas for cross-block contacts only.
         same_bits("few clumps", with_clumps(gas([stone(), smooth()], Vec::new()), in_a_corner));
         let elastic = [turning(elastic(stone())), turning(elastic(smooth()))];
         same_bits("clumps, hertz, rolling", with_clumps(gas(elastic, Vec::new()), |k| k % 2 == 1));
@@ -310,7 +308,6 @@ pub(crate) fn mesh(n: u32, middle: Vec3, sides: [Vec3; 2], mut height: impl FnMu
     WallShape::Triangles { vertices, triangles: triangles.collect() }
 }
 
-/// Triangle walls instead of some planes: rough rising floor, flat oscillating lid, rotating side.
 pub(crate) fn between_triangles(mut input: ModelInput) -> ModelInput {
     let (far, mut random) = (0.0206 * 11.0, Random::new(3));
     let (middle, wide) = (0.5 * far, 1.6 * far);
@@ -512,8 +509,7 @@ fn bonds_that_break() {
     }
 }
 
-/// Device errors equal engine errors: step, body, partner, values. From step 40 on a body is too fast.
-/// Returns the message.
+/// Compares the errors of device and engine: step, body, partner, values; returns the message.
 pub(crate) fn fails_alike(
     input: ModelInput,
     (body, velocity): (usize, Vec3),

@@ -91,7 +91,6 @@ fn ten_disks_stand() {
     assert!((lowest / weight - 1.0).abs() < 1e-4, "{lowest} of {weight}");
 }
 
-/// Face, rim, oblique; plane or fixed disk: energy conserved. Face impact: prescribed restitution.
 #[test]
 fn bounces_on_face_and_rim() {
     let turns = [
@@ -135,8 +134,6 @@ fn stone_of(random: &mut Random, half: [f64; 3], radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(&corners, radius).expect("a convex body").0))
 }
 
-/// With disks, stones, boxes, spheres: momentum to rounding, energy to the step's error. With friction and
-/// dashpots, dissipation balances.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let springs = [(elastic(), 160, 2e-3), (material(), 60, 0.01)];
@@ -412,7 +409,6 @@ fn pancakes_float_heave_and_roll() {
     let period = TAU * ((1.0 + added) * displaced / stiffness).sqrt();
     println!("draft {:.5} m, heave {found:.4} s for {period:.4} s", draft - mean);
     assert!((found / period - 1.0).abs() < 0.01, "{found} for {period}");
-    // No added mass; metacentric height from waterplane and centre of buoyancy.
     let n = 20_000;
     let at = |k: i32| -SMALL + draft * (f64::from(k) + 0.5) / f64::from(n);
     let moment: f64 = (0..n).map(at).map(|z| z * PI * slice(z).powi(2)).sum::<f64>() * draft / f64::from(n);

@@ -17,8 +17,7 @@ fn finite(model: &Model, state: &State) -> bool {
     })
 }
 
-/// Face-centred cubic crystal of 5³ cells, compressed by 1 %: twelve contacts per sphere, the stiffest
-/// packing.
+/// Face-centred cubic crystal, compressed by 1 %: twelve contacts per sphere, the stiffest packing.
 fn crystal(time_step: TimeStep) -> ModelInput {
     let mut input = weightless(Material { tangential_ratio: 2.0 / 7.0, restitution: 0.9, ..stone() });
     input.time_step = time_step;
@@ -59,7 +58,6 @@ fn crystal_is_stable_below_limit() {
     }
 }
 
-/// Rejected by the model, or stopped by an error naming a body before any NaN.
 #[test]
 fn crystal_fails_above_limit() {
     let limit = step_limit();
@@ -89,7 +87,6 @@ fn crystal_fails_above_limit() {
     }
 }
 
-/// 45°: sliding without friction; 5/7 of that acceleration by rolling with μ = 10.
 #[test]
 fn friction_of_nought_and_of_ten() {
     for (friction, share) in [(0.0, 1.0), (10.0, 5.0 / 7.0)] {
@@ -118,7 +115,6 @@ fn restitution_near_zero_and_one() {
         input.planes.push(plane(Vec3::new(0.0, 0.0, 0.03), -Vec3::z()));
         input.bodies.push(sphere(Vec3::new(0.0, 0.0, 0.0105), Vec3::new(0.0, 0.0, -1.0)));
         let mut run = Run::new(input);
-        // One soft impact, or about sixty between two planes.
         while run.state.time < if restitution < 0.5 { 0.005 } else { 1.0 } {
             run.step();
         }
@@ -152,8 +148,7 @@ fn plate() -> TriangleSurface {
     }
 }
 
-/// Plane, and plate without thickness. Sufficient stiffness (overlap v √(m/K), a tenth of the radius):
-/// rebound e v. Too soft: error. No penetration.
+/// Sufficient stiffness (overlap v √(m/K), a tenth of the radius): rebound e v. Too soft: error.
 #[test]
 fn impact_at_extreme_speed() {
     let impact = |stiffness: f64, thin: bool, offset: f64| {
@@ -270,7 +265,6 @@ fn finds_all_grains_on_boulder() {
     let tilt = nalgebra::UnitQuaternion::from_scaled_axis(Vec3::new(0.3, 0.5, 0.7));
     for k in 0..600_u32 {
         let gap = if k % 3 == 0 { 1e-4 } else { -1e-4 };
-        // Golden-angle spiral: spacing of a tenth of the boulder's radius.
         let (z, turn) = (1.0 - (2.0 * f64::from(k) + 1.0) / 600.0, 2.399_963_229_728_653 * f64::from(k));
         let direction =
             tilt * Vec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z);
@@ -286,7 +280,6 @@ fn finds_all_grains_on_boulder() {
     assert_eq!(found, 400);
 }
 
-/// Drops a tilted clump and checks its energy balance relative to the fall.
 fn drop_clump(spheres: &[([f64; 3], f64)], restitution: f64, tilt: f64, time: f64) -> (Model, State) {
     let clump = Clump::from_spheres(spheres).unwrap();
     let material = Material { stiffness: 1e4, restitution, ..stone() };
@@ -318,7 +311,6 @@ fn drop_clump(spheres: &[([f64; 3], f64)], restitution: f64, tilt: f64, time: f6
     (run.model, run.state)
 }
 
-/// 50 spheres, 1 % overlap: moment of inertia of 50 balls; rests on all of them.
 #[test]
 fn needle_of_one_to_fifty() {
     let (r, pitch) = (0.002, 0.99 * 0.004);
@@ -333,7 +325,7 @@ fn needle_of_one_to_fifty() {
     assert_eq!(measure::contacts(&model, &state).len(), 50);
 }
 
-/// Lands tilted on an edge, then on all 2,500 spheres: a step for 24 contacts would be too long.
+/// A step for 24 contacts would be too long for 2,500.
 #[test]
 fn plate_of_one_to_fifty() {
     let (r, pitch) = (0.002, 0.99 * 0.004);

@@ -1,5 +1,5 @@
-//! Moving blocks against external tables (`tests/data/kinetics`, each row by two methods): rotation, impacts,
-//! sliding, stacks, rocking; tower on a shaking floor (Housner, Bull. Seism. Soc. Am. 53, 1963, 403-417).
+//! Blocks against external tables (`tests/data/kinetics`, each row by two methods); tower: Housner, Bull.
+//! Seism. Soc. Am. 53, 1963, 403-417.
 
 use crate::scene::{FOLLOWED, Run, block, plane, stone, weightless};
 use crate::tables::read;
@@ -31,7 +31,6 @@ fn vector(row: &[f64]) -> Vec3 {
     Vec3::new(row[0], row[1], row[2])
 }
 
-/// Jacobi's elliptic functions for 20 s, also about the middle axis; second-order error.
 #[test]
 fn boxes_turn_freely() {
     for (name, bound) in
@@ -75,13 +74,11 @@ fn lowest(orientation: &UnitQuaternion<f64>) -> Vec3 {
 /// Table cube just above the plane.
 fn cube(material: Material, orientation: UnitQuaternion<f64>, velocity: Vec3, spin: Vec3) -> Run {
     let mut input = scene(material, block([0.05; 3], 0.005));
-    // The dashpot velocity is half a step old: first-order restitution error.
     input.time_step = TimeStep::Auto { fraction: 0.01 };
     let position = Vec3::z() * (0.005 - lowest(&orientation).z + 1e-9);
     input.bodies.push(BodyInput { position, orientation, velocity, spin, ..BodyInput::default() });
     let mut run = Run::new(input);
     assert!((run.model.mass(0) - 2.58369630788706).abs() < 1e-9);
-    // Longer than any contact, too short for a second.
     run.until(8.0 / material.stiffness.sqrt());
     run
 }
@@ -115,7 +112,6 @@ fn a_corner_on_a_plane() {
                 ..material()
             };
             let run = cube(smooth, turn(&row[2..6]), velocity, spin);
-            // Normal impulse from the contact point speed.
             let lever = lowest(&turn(&row[2..6])) - Vec3::z() * 0.005;
             let (mut low, mut high) = (0.0, 0.7);
             for _ in 0..60 {
@@ -261,16 +257,15 @@ fn blocks_rock() {
                 assert!((spin / row[6] - 1.0).abs() < 0.01, "{spin} {}", row[6]);
                 break;
             }
-            // Largest just before the other edge touches.
             (before, spin) = (now, spin.max(run.state.spin(0).norm()));
             run.follow();
         }
     }
 }
 
-/// Floor acceleration a for a time t: falls if cosh(pt) > 1 + 1/(2β(β − 1)) (Housner 1963, equation 8),
-/// β = a/(gα), α the static tipping angle. With rounded edges, centre h/2 above the floor and b from
-/// the flat's end: β = a h/(2gb), p² = g(h/2 − r)/(i² + b² + h²/4). Falls between 0.97 and 1.03 of that time.
+/// Falls after a floor acceleration a for a time t if cosh(pt) > 1 + 1/(2β(β − 1)) (Housner 1963, equation
+/// 8); with rounded edges, centre h/2 above the floor and b from the flat's end: β = a h/(2gb), p² = g(h/2 −
+/// r)/(i² + b² + h²/4).
 #[test]
 fn a_tower_on_a_shaking_floor() {
     let (width, height, radius): (f64, f64, f64) = (0.1, 1.0, 0.01);
@@ -283,7 +278,6 @@ fn a_tower_on_a_shaking_floor() {
         let limit = (1.0 + 0.5 / (beta * (beta - 1.0))).acosh() / p;
         let largest = |share: f64| {
             let mut run = Run::new(leaning([width, height, 0.2], radius, 0.0, 1e8));
-            // First to equilibrium: released spring energy would start rocking.
             run.follow_until(0.05);
             let begun = run.state.time;
             let (mut leans, mut before) = (0.0_f64, 0.0);

@@ -1,8 +1,8 @@
 //! Sphere–mesh contacts in 20,000 random cases, against an independent oracle.
 //!
 //! The oracle keeps critical points of the distance to faces, edges and vertices that are local minima for
-//! the union: the distance falls along no direction on a triangle there. Coincident points count once. Of
-//! contacts with normals within ten degrees (smooth seams) the deepest counts.
+//! the union. Coincident points count once. Of contacts with normals within ten degrees (smooth seams) the
+//! deepest counts.
 
 use crate::scene::{Random, Run, sphere, stone, weightless};
 use trackbed_dem::{Material, TriangleSurface, Vec3};
@@ -120,7 +120,6 @@ fn mesh(kind: usize, random: &mut Random) -> Mesh {
             .collect()
     };
     match kind {
-        // Triangle; edge of any angle; flat fan; peak, pit, saddle.
         0 => Mesh { vertices: (0..3).map(|_| random.vector() * size).collect(), triangles: vec![[0, 1, 2]] },
         1 => Mesh {
             vertices: (0..4).map(|_| random.vector() * size).collect(),
@@ -170,7 +169,6 @@ fn twenty_thousand_spheres_against_meshes() {
         if flat {
             continue;
         }
-        // Mostly close to the mesh, every third above a vertex or edge.
         let t = m.triangles[(random.unit() * m.triangles.len() as f64) as usize].map(|v| m.vertices[v]);
         let weights = match cases % 3 {
             0 => [random.unit(), random.unit(), random.unit()],

@@ -49,7 +49,6 @@ fn account(run: &Run) -> f64 {
         - run.state.balance.work()
 }
 
-/// Central differences to rounding; frequency, decay and energy converge to the closed form at second order.
 #[test]
 fn free_vibration() {
     let (mass, stiffness, speed) = (2.0, 800.0, 0.3);
@@ -124,8 +123,6 @@ fn targets() -> [(&'static str, WallShape); 4] {
     ]
 }
 
-/// Elastic impacts of all shapes: momentum to 1e-12 of the transferred, energy to the step's error; fixed
-/// rotations included.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let shapes = [

@@ -18,7 +18,6 @@ fn grains() -> ModelInput {
     input
 }
 
-/// Adds loose layers of grains with centres `inside`, x, y in ± `half`.
 fn pour(input: &mut ModelInput, half: f64, layers: u32, inside: impl Fn(f64, f64) -> bool) {
     let mut random = Random::new(5);
     let pitch = 1.13 * D;
@@ -85,7 +84,6 @@ fn corner(k: u32, n: u32, r: f64) -> Vec3 {
 /// Height of bumps of [`rough_floor`] for a grain between three of them.
 const BUMP: f64 = 0.3 * D;
 
-/// Fixed grains, centres `BUMP` below z = 0: on a smooth floor spheres roll on.
 fn rough_floor(input: &mut ModelInput, radius: f64) {
     let pitch = 1.01 * D;
     let n = (radius / pitch).ceil() as i32 + 1;
@@ -109,8 +107,8 @@ fn rough_floor(input: &mut ModelInput, radius: f64) {
 
 /// Aspect ratio h₀/r₀ and run-out (r∞ − r₀)/r₀ of a column.
 ///
-/// The deposit edge r∞ extrapolates the outer slope to the floor, where coverage (disc area per ring of one
-/// diameter) is 0.5 to 2: single grains roll beyond it.
+/// The deposit edge r∞ extrapolates the outer slope, coverage 0.5 to 2, to the floor: single grains roll
+/// beyond it.
 fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
     let mut input = grains();
     let top = Vec3::new(0.0, 0.0, f64::from(layers + 2) * 1.2 * D);
@@ -157,8 +155,7 @@ fn collapse(r0: f64, layers: u32, floor: f64) -> (f64, f64) {
 }
 
 /// Run-out 1.24 a for a < 1.7, 1.6 √a above (Lube, Huppert, Sparks & Hallworth 2004, J. Fluid Mech. 508,
-/// 175); Lajeunesse, Mangeney-Castelnau & Vilotte 2004 (Phys. Fluids 16, 2371): same powers. Tolerance 25 %:
-/// scatter between the experiments, and r₀ of ten grains.
+/// 175); Lajeunesse, Mangeney-Castelnau & Vilotte 2004 (Phys. Fluids 16, 2371): same powers.
 #[test]
 #[ignore = "three columns of up to 11,000 grains: 60 s"]
 fn columns_run_out_as_published() {
@@ -177,7 +174,6 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
     for (point, normal) in [(-half, Vec3::x()), (-half, Vec3::y()), (half, -Vec3::x()), (half, -Vec3::y())] {
         input.planes.push(plane(Vec3::repeat(point), normal));
     }
-    // Surface 0: smallest lid; 1..: widening rings; last: floor.
     let smallest = 0.5 * diameters[0];
     let mut lid = ring(N, |_| Vec3::zeros(), |k| corner(k, N, smallest));
     lid.vertices = std::iter::once(Vec3::zeros()).chain((0..N).map(|k| corner(k, N, smallest))).collect();
@@ -226,9 +222,8 @@ fn discharge(diameters: &[f64], half: f64, layers: u32) -> (Vec<f64>, f64) {
 }
 
 /// Beverloo's law, flat bottom: W = C ρ √g (D − k d)^(5/2), C = 0.55 to 0.65, k = 1.2 to 1.8 (Beverloo,
-/// Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260: C = 0.58, k = 1.4; ranges: Nedderman 1992, sec.
-/// 10.2, and Mankoc et al. 2007, Granular Matter 9, 407). W^(2/5) is linear in D; exponent of
-/// W over D − 1.4 d on log axes.
+/// Leniger & van de Velde 1961, Chem. Eng. Sci. 15, 260; ranges: Nedderman 1992, sec. 10.2, and Mankoc et al.
+/// 2007, Granular Matter 9, 407).
 #[test]
 #[ignore = "11,000 grains, four orifices: 150 s"]
 fn orifices_discharge_by_beverloos_law() {

@@ -88,8 +88,7 @@ fn a_cube_at_rest() {
     assert!((carried / weight - 1.0).abs() < 1e-9, "{carried}");
 }
 
-/// Offset and rotated cubes for ten seconds; stiff contacts barely damp the swaying. The lowest joint bears
-/// all.
+/// Offset and rotated cubes for ten seconds; stiff contacts barely damp the swaying.
 #[test]
 fn ten_cubes_stand() {
     let half = 0.05;
@@ -142,7 +141,6 @@ fn round_plates_on_a_slope() {
     for joint in 0..3 {
         let there = |z: f64| (z - 0.03 * f64::from(joint)).abs() < 0.01;
         let forces: Vec<Vec3> = contacts.iter().filter(|c| there(c.point.z)).map(|c| c.force).collect();
-        // Pairs may be listed either way: compression counts by magnitude.
         let carried =
             forces.iter().map(|f| f.z.abs()).sum::<f64>() / (f64::from(3 - joint) * weight * slope.cos());
         let held =
@@ -192,7 +190,6 @@ fn a_block_on_an_incline() {
     }
 }
 
-/// Face, edge, corner, oblique: elastic; with e = 0.5 on a face, half the speed.
 #[test]
 fn bounces_on_face_edge_and_corner() {
     let half = 0.05;
@@ -235,7 +232,6 @@ fn bounces_on_face_edge_and_corner() {
     }
 }
 
-/// 200 elastic collisions with stones, blocks, boxes: momentum to rounding, energy to the step's error.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     for (name, elastic) in laws() {
@@ -380,7 +376,6 @@ fn about(axis: nalgebra::Unit<Vec3>, angle: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&axis, angle.to_radians())
 }
 
-/// Vertical contact force on the first body of cubes at given positions [N].
 fn lift(material: Material, change: impl Fn(&mut ModelInput)) -> f64 {
     let mut input = scene(material, vec![block([0.5 * LENGTH + RADIUS; 3], RADIUS)]);
     input.time_step = TimeStep::FixedAboveLimit(1e-12);
@@ -390,7 +385,6 @@ fn lift(material: Material, change: impl Fn(&mut ModelInput)) -> f64 {
     measure::contacts(&run.model, &run.state).iter().filter(|c| c.a == 0).map(|c| c.force.z).sum()
 }
 
-/// As `lift`, for a cube with its lowest corner or edge at `low` from the centre, pressed into a plane.
 fn pressed(edge_factor: f64, orientation: UnitQuaternion<f64>, low: f64, overlap: f64) -> f64 {
     lift(Material { edge_factor, ..hertz() }, |input| {
         input.planes.push(plane(Vec3::zeros(), Vec3::z()));
@@ -404,7 +398,6 @@ fn sphere_on_plane(overlap: f64) -> f64 {
 }
 
 /// Hertz: corner as a sphere; edge a quarter of the modulus per unit length, or π/4 with that factor.
-/// Relative to the half-space table an edge is 0.9 to 1.4 times as stiff.
 #[test]
 fn corner_and_edge_forces_match_hertz() {
     let diagonal = UnitQuaternion::rotation_between(&Vec3::repeat(1.0), &Vec3::z()).expect("not opposite");
@@ -420,7 +413,6 @@ fn corner_and_edge_forces_match_hertz() {
         println!(
             "overlap {overlap:.0e}: corner over sphere {corner:.4}, edge {share:.4}; over half-space {beside:.3}"
         );
-        // Adjacent edges or ends bear a little.
         assert!(corner > 1.0 && corner < 1.0 + 0.6 * (overlap / RADIUS).sqrt(), "{corner}");
         assert!(share > 1.0 && share < 1.0 + 4.0 * overlap / LENGTH + 0.2 * overlap / RADIUS, "{share}");
         let share = edge(PI) / popov;
@@ -480,7 +472,6 @@ fn refusals() {
     assert!(refused(&absent).contains("it is a box"));
 }
 
-/// An inserted stone falls by 0.1 m at 1 m/s next to another and bounces; one is removed. Balances close.
 #[test]
 fn stones_come_and_go() {
     let mut input = scene(elastic(), vec![block([0.05; 3], 0.01)]);
@@ -514,8 +505,7 @@ fn stones_come_and_go() {
     assert!(error.abs() < 1e-3 * brought, "{error:e}");
 }
 
-/// Blocks tip from an edge (few springs) to a face between two stability checks; without an impact limit they
-/// fly off at 16 m/s.
+/// Faces land between two stability checks; without an impact limit blocks fly off at 16 m/s.
 #[test]
 fn blocks_that_fall_flat() {
     let mut input = scene(Material { restitution: 0.9, ..material() }, vec![block([0.1, 0.05, 0.02], 0.003)]);

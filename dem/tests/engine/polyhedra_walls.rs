@@ -35,7 +35,6 @@ fn total(run: &Run) -> f64 {
     measure::energies(&run.model, &run.state).total()
 }
 
-/// Floor of `n` × `n` squares about the origin, cut along alternating diagonals.
 fn floor(n: u32, side: f64) -> TriangleSurface {
     let at = |i: u32| side * (f64::from(i) - 0.5 * f64::from(n));
     let corners = (0..=n).flat_map(|j| (0..=n).map(move |i| [i, j]));
@@ -147,8 +146,8 @@ fn bounces(throws: u32, least: i32) {
     }
 }
 
-/// Friction springs are per facet and restart at seams. Measured: 1.1e-3 of the distance and 4.2e-3 rad on
-/// triangles larger than the block; 1.8e-2 and 3.1e-2 rad at 0.4 of its length.
+/// Friction springs restart at seams. Measured: 1.1e-3 of the distance on triangles larger than the block;
+/// 1.8e-2 at 0.4 of its length.
 #[test]
 fn block_slides_smoothly_over_seams() {
     let slide = |triangles: Option<TriangleSurface>| {
@@ -319,7 +318,6 @@ fn a_border_does_not_show() {
     assert!((up / weight - 1.0).abs() < 0.1, "{up} {weight}");
 }
 
-/// Bodies in contact with two images of one body; spheres with walls between borders.
 #[test]
 fn what_cannot_be_periodic_is_named() {
     let problem = |input: ModelInput| match Model::new(input) {
@@ -333,7 +331,6 @@ fn what_cannot_be_periodic_is_named() {
     spheres.shapes.push(Shape::Sphere { radius: 0.01 });
     spheres.bodies.push(body(4, Vec3::repeat(0.4)));
     assert!(problem(spheres).contains("spheres with walls"));
-    // Waves along the border, or two per period; not one and a half.
     let waves = |length: f64, direction: f64| {
         let mut input = column();
         let measured = Measured::Length(length);

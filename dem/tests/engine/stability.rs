@@ -1,8 +1,7 @@
 //! Critical time step by contacts (`trackbed_dem::stability`) against the engine's own stability limit.
 //!
-//! Two copies of a settled bed, one with velocities disturbed by 1e-13 of gravity in a millisecond, take 100
-//! steps. Below the limit the difference does not grow, 2 % above it grows a thousandfold; bisection gives
-//! the true limit. The estimate assumes sticking contacts, so it must be slightly lower.
+//! A settled bed and a copy disturbed by 1e-13 take 100 steps: below the limit the difference does not grow,
+//! 2 % above it grows a thousandfold. The estimate assumes sticking contacts, so it must be slightly lower.
 
 use crate::scene::{Random, clump, plane, rigid, stone};
 use nalgebra::UnitQuaternion;
@@ -46,7 +45,6 @@ impl Surface for Level {
 
 const WIDTH: f64 = 0.2;
 
-/// Bodies on a grid with small random shifts and rotations, in a box of planes.
 fn bed(shapes: Vec<Shape>, sizes: impl Fn(f64) -> f64, material: Material, reach: f64) -> ModelInput {
     let mut random = Random::new(7);
     let mut input = ModelInput {
@@ -316,7 +314,6 @@ fn steps_of_changing_length() {
     assert!(errors[1] < 3.0 * errors[0] + 1e-4, "{errors:?}");
 }
 
-/// 64 heights each, automatic step: 1 % in the mean, 2.5 % for any phase of impact in a step.
 #[test]
 fn restitution_at_automatic_step() {
     for given in [0.3, 0.5, 0.7, 0.9] {
@@ -365,9 +362,8 @@ fn an_elastic_gas_does_not_heat() {
     assert!(change.abs() < 1e-3, "{change}");
 }
 
-/// Frequencies with K = Kₜ and 1/I = 5/(2 m r²), in K/m: 1 normal; 1 + 5/2 tangential; 5/2 rotation only;
-/// with a rolling spring Kₜ r² the larger root of λ² − 6 λ + 5/2; twisting adds a separate 5/2. Limit 2/ω,
-/// with a safety of 1 % of ω².
+/// With K = Kₜ and 1/I = 5/(2 m r²), ω² in K/m: 1 normal; 1 + 5/2 tangential; 5/2 rotation; with a rolling
+/// spring Kₜ r² the larger root of λ² − 6 λ + 5/2; twisting 5/2.
 #[test]
 fn one_sphere_on_a_plane_has_its_closed_form() {
     let (free, held) = (false, true);
@@ -399,8 +395,7 @@ fn one_sphere_on_a_plane_has_its_closed_form() {
     }
 }
 
-/// Two planes (Hertz) double the overlap and reduce the limit by a sixth per check. While it changes by more
-/// than a tenth, the step is 0.7 of its usual fraction.
+/// Two planes (Hertz) double the overlap and reduce the limit by a sixth per check.
 #[test]
 fn a_changing_limit_is_used_with_care() {
     let material =
@@ -464,8 +459,7 @@ fn a_window_has_as_few_steps_as_the_limit_allows() {
     }
 }
 
-/// Six contacts per side, each the stiffer of K normal and Kₜ (1 + 5/2) tangential, plus 5/2 with rolling
-/// resistance: ω² = 12 K/m · max(1, 7/2 α or 6 α).
+/// ω² = 12 K/m · max(1, 7/2 α or 6 α).
 #[test]
 fn the_bound_of_a_sphere_has_its_closed_form() {
     for (alpha, rolling, expected) in [(0.1, 0.0, 1.0), (0.5, 0.0, 1.75), (1.0, 0.0, 3.5), (0.5, 0.1, 3.0)] {
@@ -483,8 +477,7 @@ fn the_bound_of_a_sphere_has_its_closed_form() {
     }
 }
 
-/// Spheres of radius r at ±a, lever arm up to a + r about the transverse axes: ω² = 24 K (1/m + (a + r)²/I)
-/// if larger.
+/// ω² = 24 K (1/m + (a + r)²/I), spheres of radius r at ±a.
 #[test]
 fn the_bound_of_a_dumbbell_has_its_closed_form() {
     let (a, r) = (0.006, 0.008);
@@ -560,7 +553,6 @@ fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
         let input = ModelInput { impact_speed, ..input.clone() };
         Model::new(input).expect("a good input").dt_limit().dt
     };
-    // Top of the upper sphere to the bottom of the lower.
     let height = 0.48 + 2.0 * 0.01;
     let (found, exact) = (limit(None), limit(Some(f64::sqrt(2.0 * 9.81 * height))));
     assert!((found / exact - 1.0).abs() < 1e-12, "{found} against {exact}");

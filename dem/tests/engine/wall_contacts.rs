@@ -222,7 +222,6 @@ fn an_angle_hangs_in_another() {
     input.gravity = Vec3::new(0.0, 0.0, -G);
     input.time_step = FOLLOWED;
     let half_turn = UnitQuaternion::from_axis_angle(&Vec3::y_axis(), std::f64::consts::PI);
-    // Legs point up and right, the other's down and left, resting on the first's foot.
     let held = RigidBody { fixed: [true; 6], ..free(3.0) };
     input.walls.push(rigid(angle(&UnitQuaternion::identity(), Vec3::zeros()), held));
     let hung = angle(&half_turn, Vec3::new(0.1, 0.0, 0.151));
@@ -401,7 +400,6 @@ fn refusals_and_failures() {
     assert!(error.to_string().contains("or `rounding`"), "{error}");
     let (error, _) = fails(on_floor(Material { stiffness: 1e3, ..material() }, thrown(400.0), 0.02));
     assert!(matches!(error, StepError::WallSpeed { wall: 1, .. }), "{error}");
-    // Edges through an edge or pile, away from corners.
     let turned = |axis: Vec3, at: Vec3| {
         let WallShape::Triangles { vertices, triangles } = cuboid(Vec3::zeros(), Vec3::new(0.1, 0.1, 0.1))
         else {
@@ -418,7 +416,6 @@ fn refusals_and_failures() {
         radii: [0.04; 2],
         caps: [false; 2],
     };
-    // The 4 mm rounding shortens the edge by √2 of it.
     let edge = 0.3 - 2.0_f64.sqrt() * (0.1 - 0.004);
     for (below, top) in [(low, 2.0_f64.sqrt() * 0.1), (pile, 0.14)] {
         let mut input = scene(soft);

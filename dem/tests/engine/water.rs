@@ -21,8 +21,8 @@ pub fn still(density: f64) -> Water {
     }
 }
 
-/// One body in water. Other forces act with their first full kick (see `State::new`): it starts with `lift`
-/// [m/s²] less.
+/// One body in water; it starts with `lift` [m/s²] less, as other forces act with their first full kick (see
+/// `State::new`).
 fn one(shape: Shape, density: f64, body: BodyInput, water: Water, (dt, lift): (f64, f64)) -> Run {
     let mut material = stone();
     material.density = density;
@@ -56,7 +56,6 @@ fn terminal_velocity_matches_closed_form() {
         let mut run = one(Shape::Sphere { radius: 0.5 * d }, density, body, water, (dt, lift));
         let steps = (t / dt).round();
         run.steps(steps as usize);
-        // Velocities are half a step old; the table's time is not a multiple of the step.
         let late = t - (steps - 0.5) * dt;
         let slope = start * (1.0 - (speed / end).powi(2));
         let found = run.state.velocity(0).z.abs() + slope * late;
@@ -81,12 +80,11 @@ fn a_current_takes_floes_along() {
         let body = BodyInput {
             position: Vec3::new(0.0, 0.0, 0.5 * thickness - draft),
             velocity: Vec3::new(v0, 0.0, 0.0),
-            // The table excludes pitching by the drag's lever arm, which would increase the projected area.
+            // The table excludes pitching by the drag's lever arm.
             fixed: [false, false, false, true, true, false],
             ..BodyInput::default()
         };
         let dt = 5e-4;
-        // Drag also acts with its first full kick.
         let past = current - v0;
         let drawn = 0.5 * drag * row[9] * past.abs() * past / (draft * length * width * (1.0 + added));
         let body = BodyInput { velocity: Vec3::new(v0 - 0.5 * dt * drawn, 0.0, 0.0), ..body };
@@ -159,7 +157,7 @@ fn floes_have_expected_periods() {
     }
 }
 
-/// Stable tilts (Gilbert 1991; Erdős, Schibler & Herndon 1992), within half a degree.
+/// Gilbert 1991; Erdős, Schibler & Herndon 1992; within half a degree.
 #[test]
 fn boxes_float_at_their_stable_tilts() {
     let text = include_str!("../data/water/box_stability.csv");
@@ -184,7 +182,7 @@ fn boxes_float_at_their_stable_tilts() {
     }
 }
 
-/// 0.44587 m for the source's floe, 0.44634 without rounding; to 1e-4 of the thickness.
+/// 0.44587 m for the source's floe, 0.44634 without rounding.
 #[test]
 fn rounded_floes_have_expected_draught() {
     let prisms = read("tests/data/water/draft_corners.csv");
@@ -238,7 +236,6 @@ fn small_floes_follow_the_waves() {
     let drift = (run.state.position(0).x - from) / (20.0 * period);
     println!("drift {drift:.5} m/s, highest {highest:.4} m");
     assert!((drift / 0.00888941 - 1.0).abs() < 0.2, "{drift}");
-    // Centre 30.4 mm below the surface: a cap of a tenth of the volume is dry.
     assert!((highest - (0.15 - 0.0304)).abs() < 0.003, "{highest}");
 }
 

@@ -1,12 +1,8 @@
 //! Water: buoyancy and drag at any depth and tilt, current, waves, added mass.
 //!
-//! On the wet volume V below the local water level: −ρ V g + ρ V Du/Dt at its centre, u the water velocity
-//! (total force of undisturbed waves). Drag ½ ρ C A |v| v, v the relative velocity, and moment −½ ρ C_M r³
-//! A_wet |ω| ω about the centre (Liu, Long & Ji 2015, eq. 26, 27). Added mass C_m ρ V:
-//! (m + C_m ρ V) a = F + C_m ρ V Du/Dt.
+//! Drag moment −½ ρ C_M r³ A_wet |ω| ω about the centre: Liu, Long & Ji 2015, eq. 26, 27.
 //!
-//! Limits: no lift, shelter, added moment of inertia or diffraction. Area `Wetted`, as in the source,
-//! overestimates the drag of a flat floe tenfold.
+//! Limits: no lift, shelter, added moment of inertia or diffraction.
 //!
 //! Theory manual: equations (6.29), (6.30), (6.31) of `docs/theory/track.md`.
 
@@ -127,7 +123,6 @@ impl BodyForceModel for Water {
     }
 }
 
-/// Part below `level` above the centre [m]; length of the drag moment [m].
 fn wet_part(seen: &ForceInput<'_>, k: usize, level: f64, past: &Vec3, work: &mut ForceWork) -> (Wet, f64) {
     let members = seen.members;
     let radius = work.radius[k];
@@ -170,7 +165,6 @@ fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     }
     let low = 2.0 * r - h;
     let arm = -0.75 * low * low / (3.0 * r - h);
-    // Side view: segment; from below: circle or less.
     let s = (h - r) / r;
     let side = r * r * (0.5 * PI + libm::asin(s) + s * (1.0 - s * s).max(0.0).sqrt());
     let below = PI * if h < r { h * low } else { r * r };

@@ -1,7 +1,7 @@
-//! Linear (Airy) waves on water of finite depth with a current (Dean & Dalrymple 1991, ch. 3).
+//! Linear (Airy) waves on water of finite depth with a current (Dean & Dalrymple 1991, ch. 3): (ω − k U)² = g
+//! k tanh(k h).
 //!
-//! η = H/2 cos θ, θ = k (x·d) − ω t + φ; (ω − k U)² = g k tanh(k h), U the current along the wave. The linear
-//! field extends up to the crests: small floes drift (Stokes).
+//! The linear field extends up to the crests: small floes drift (Stokes).
 //!
 //! Theory manual: equations (6.32), (6.33) of `docs/theory/track.md`.
 
@@ -149,7 +149,7 @@ impl Wave {
 
 /// Smallest wave number of a frequency; `None` if blocked.
 fn number(frequency: f64, with: f64, depth: f64, gravity: f64) -> Option<f64> {
-    // Convex, decreasing from k = 0: Newton converges from the left.
+    // Convex, decreasing from k = 0.
     let left = |k: f64| {
         let t = libm::tanh(k * depth);
         let root = (gravity * k * t).sqrt();

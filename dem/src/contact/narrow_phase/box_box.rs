@@ -2,11 +2,10 @@
 //! on a face, or closest edge points.
 //!
 //! Axes: Gottschalk, Lin & Manocha (SIGGRAPH 1996); clipping: Sutherland & Hodgman. Polygon corners below the
-//! face are contact points, weighted by adjacent side lengths. The weights sum to four, as for a box on a
-//! plane; the force stays continuous when corners split.
+//! face are weighted by adjacent side lengths; the weights sum to four, so the force is continuous when
+//! corners split.
 //!
-//! Limits: the force may jump between face and edge contact (`dem/tests/engine/boxes.rs`); tangential springs
-//! restart with new features.
+//! Limits: the force may jump between face and edge contact; tangential springs restart with new features.
 
 use super::pair::{Manifold, PairContactPoint, ShapePair};
 use super::scene::PosedBody;
@@ -182,7 +181,6 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
     let around: f64 = (0..count).map(length).sum();
     for (k, corner) in polygon.iter().enumerate().filter(|(_, c)| c.height < 0.0) {
         let before = (k + count - 1) % count;
-        // Half of adjacent sides over perimeter, times four.
         let weight =
             if around > 0.0 { 2.0 * (length(k) + length(before)) / around } else { 4.0 / count as f64 };
         let mut point = Vec3::zeros();
@@ -226,8 +224,6 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// Random pairs, both orders: equal points, opposite normals; no contact after separation; points lie in
-    /// both boxes within half the overlap.
     #[test]
     fn random_pairs_from_both_sides() {
         let mut rng = Pcg64Mcg::new(11);
@@ -257,7 +253,6 @@ mod tests {
             };
             overlapping += 1;
             several += usize::from(one.len() > 2);
-            // Within 2 %, the two orders may choose different faces.
             let other = Two::new(&b, &a).unwrap().separation().1;
             assert!((separation - other).abs() < 0.12 * separation.abs(), "{separation} {other}");
             if separation == other && one.len() == two.len() {

@@ -1,13 +1,10 @@
 //! Dilated polyhedra against each other, boxes, planes and spheres.
 //!
 //! Rounded corners and edges indent the other body (`shape/dilated/edge_contact.rs`): corners with the law's
-//! stiffness k, edges with k over [`LENGTH`] times the sum of radii, per unit length, at their centre of
-//! pressure. With a linear law the force has a potential and is continuous. Where corners match spheres,
-//! crossing edges match Hertz's cylinders within a factor of four. History belongs to features; springs are
-//! weighted as their points.
+//! stiffness k, edges with k over [`LENGTH`] times the sum of radii, per unit length. With a linear law the
+//! force has a potential. History belongs to features.
 //!
-//! Limits: of laws with overlap-dependent stiffness only Hertz's, by edge laws (`law/line_contact.rs`); contact of
-//! cores ends the run.
+//! Limits: of laws with overlap-dependent stiffness only Hertz's, by edge laws (`law/line_contact.rs`).
 
 use super::pair::{Manifold, PairContactPoint, ShapePair};
 use super::scene::{PlaneView, Pose, PosedBody};
@@ -197,8 +194,7 @@ fn around(a: &PosedBody<'_>, b: &PosedBody<'_>, reach: f64) -> bool {
     (a.centre - b.centre).norm_squared() < most * most
 }
 
-/// Calls `put` with feature (from 1), indentation and weight, in the target's frame. Features without a
-/// corner in `near` are out of reach.
+/// Calls `put` with feature (from 1), indentation and weight, in the target's frame.
 pub(super) fn skeleton(
     core: &Core,
     frame: &Frame,
@@ -318,7 +314,6 @@ impl ShapePair for DilatedDilated {
                 return found.push(lost((a.centre + b.centre) * 0.5, way, sum));
             }
         }
-        // Points closer than `reach` are so along any direction.
         let most = reach * (1.0 + ROUNDING);
         let (n, level, floor) = (heights.n, heights.high + most, heights.low - most);
         let near_a = set(heights.first.iter().copied(), |h| h < level);
@@ -414,7 +409,6 @@ impl ShapePair for SphereDilated {
         };
         let own = sphere[3] / body.scale;
         let radius = sphere[3];
-        // A sphere may penetrate a face as deep as a sphere, but not cross a disk.
         let bound = if body.core.rim.is_some() { DEEPEST * sum } else { sum };
         found.push(PairContactPoint {
             bound,

@@ -38,8 +38,6 @@ pub(super) fn stones(random: &mut Random, count: usize, radius: f64) -> Shape {
     Shape::Polyhedron(Box::new(Dilated::new(&points, radius).unwrap().0))
 }
 
-/// The force is the energy gradient in six directions: random bodies; cubes and hexagons on faces, edges and
-/// corners.
 #[test]
 fn forces_have_a_potential() {
     let mut random = Random::new(3, 1);
@@ -50,7 +48,6 @@ fn forces_have_a_potential() {
     shapes.push(Shape::Polyhedron(Box::new(Dilated::new(&cube, 0.06).unwrap().0)));
     shapes.push(box_);
     let cores: Vec<Core> = shapes.iter().map(Shape::core).collect();
-    // Shallow as with stiff springs, and deep.
     let (mut tried, mut worst) = (0, [[0.0_f64; 2]; 2]);
     while tried < 2000 {
         let [i, j] = [0, 1].map(|_| (random.uniform() * shapes.len() as f64) as usize);
@@ -90,7 +87,6 @@ fn forces_have_a_potential() {
             let e = Vec3::ith(d, 1.0);
             let by_shift = slope(&|x| contact_points(e * x, Vec3::zeros()));
             let by_spin = slope(&|x| contact_points(Vec3::zeros(), e * x));
-            // The error bound, second differences, is a few hundred springs at most.
             let unit = force.norm() + 1e-4;
             worst[0] = worst[0].max((force[d] + by_shift).abs() / unit);
             worst[1] = worst[1].max((torque[d] + by_spin).abs() / unit);
@@ -130,8 +126,7 @@ fn pairs_match_from_both_sides() {
     }
 }
 
-/// 350 pairs against a table confirmed by two other methods to 3e-13: corners to rounding, edge means below
-/// the deepest point.
+/// 350 pairs against a table confirmed by two other methods to 3e-13.
 #[test]
 fn overlaps_are_those_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/pairs_corners.csv"));
@@ -176,7 +171,6 @@ fn overlaps_are_those_of_the_table() {
         let deepest =
             found.iter().max_by(|s, t| s.geometry.overlap.total_cmp(&t.geometry.overlap)).expect(line);
         if !["VV", "VE", "VF"].contains(&kind) {
-            // Edge mean, or corner that is not deepest.
             let share = deepest.geometry.overlap / -gap;
             assert!((0.3..1.05).contains(&share), "{share}: {line}");
             crossing += 1;
@@ -189,7 +183,6 @@ fn overlaps_are_those_of_the_table() {
     assert!(compared > 80 && crossing > 100, "{compared} {crossing}");
 }
 
-/// Cube on a plane: four corners and four edges; on its edge two and one; energy slope equals weight.
 #[test]
 fn a_cube_on_a_plane() {
     let cube: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::repeat(0.4), k)).collect();
@@ -233,8 +226,7 @@ type Pose = (Vec3, UnitQuaternion<f64>);
 
 type Sweep<'a> = &'a dyn Fn(f64) -> [Pose; 2];
 
-/// Sweeps in 1,000 steps: edge rotates to parallel, block tilts from edge to face, face slides off an edge,
-/// corner passes a corner. Half steps halve the largest force change. Within a degree of parallel, edges
+/// Sweeps in 1,000 steps; half steps halve the largest force change. Within a degree of parallel, edges
 /// stiffen steeply.
 #[test]
 fn forces_are_continuous() {

@@ -78,8 +78,7 @@ fn pressing(body: &PosedBody<'_>, reach: f64, at: &dyn Fn(&Vec3) -> (f64, [usize
     along(around, 256, reach, &|s| at(&rim_point(body, TAU * s)))
 }
 
-/// Distances, overlaps and directions against a table confirmed by a conic programme to 2e-11. Force along
-/// the shortest direction, no deeper than stated.
+/// Table confirmed by a conic programme to 2e-11.
 #[test]
 fn disks_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/pairs_corners.csv"));
@@ -182,8 +181,7 @@ fn close(apart: &dyn Fn(f64) -> Option<f64>, distance: f64) -> f64 {
     high
 }
 
-/// Random pairs against brute-force rim integrals on planes, disks and polyhedra: flat, crossing or barely
-/// touching; both orders agree to rounding.
+/// Random pairs against brute-force rim integrals.
 fn energies(count: usize) {
     let mut random = Random::new(17, 1);
     let stone = stones(&mut random, 14, 0.06);
@@ -281,7 +279,6 @@ fn energies_of_many_disks() {
     energies(100_000);
 }
 
-/// The force is the energy gradient in six directions, for disks, polyhedra and boxes.
 #[test]
 fn forces_of_disks_have_a_potential() {
     let mut random = Random::new(5, 1);
@@ -380,7 +377,6 @@ fn disks_match_from_both_sides() {
     assert!(points > 3000, "{points}");
 }
 
-/// Disk flat on a plane: eight arcs of equal depth with the rim's stiffness; tilting stiffness of a ring.
 #[test]
 fn a_disk_flat_on_a_plane() {
     let shape = disk(0.5, 0.1);

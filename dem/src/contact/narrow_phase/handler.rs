@@ -191,7 +191,6 @@ impl<K: ShapePair> PairHandler for Handler<K> {
             let deep = K::First::body(now, b, i).and_then(scar).map_or(0.0, |s| s.sunk.norm());
             let bounds = grown(K::First::bounds(&first), reach + deep);
             K::Second::around(search, b, bounds, row, |other, j| {
-                // Of two possible first partners, the earlier is first.
                 let turned = K::Second::body(now, other as usize, j).is_some() && [other, j] <= [b as u32, i];
                 if turned || still && K::Second::still(now, other as usize, j) {
                     return;
@@ -506,8 +505,7 @@ impl<K: ShapePair> Handler<K> {
     }
 }
 
-/// Changes a weight at constant spring force: gains carry no tension, losses take their share. Returns the
-/// energy lost [J].
+/// Changes a weight at constant spring force; returns the energy lost [J].
 pub(super) fn combine(
     laws: &Laws,
     [a, b]: [u32; 2],

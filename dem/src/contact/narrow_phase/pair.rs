@@ -12,7 +12,7 @@ pub(crate) trait ShapePair: Sync {
     /// Second partner.
     type Second: Second;
 
-    /// Whether points share the pair's mass, for the law's damping ratio with any number of points.
+    /// Whether points share the pair's mass, for the law's damping ratio.
     const SHARED: bool = false;
 
     /// Whether all pairs of one body with one wall share it too.

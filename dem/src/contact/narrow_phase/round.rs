@@ -1,12 +1,11 @@
 //! Dilated polyhedra and triangulated bodies on round walls: frusta (cylinders), discs, spheres, moving
 //! planes.
 //!
-//! Features indent by radius minus distance. Edges are integrated between wall ends and points at contact
-//! distance, roots of quadratic equations on a frustum. A rim shared by side and disc counts once. Rims
-//! indent the body at [`POINTS`] points, spheres with their centre.
+//! Features indent by radius minus distance. A rim shared by side and disc counts once. Rims indent the body
+//! at [`POINTS`] points, spheres with their centre.
 //!
 //! Limits: sides and spheres do not indent face interiors; inside a frustum only the nearest generator acts
-//! (body smaller than the wall). Rims without a disc, or shared by two walls, do not indent.
+//! (body smaller than the wall).
 
 use super::dilated::{Frame, LENGTH, lost};
 use super::pair::Manifold;
@@ -152,7 +151,7 @@ pub(super) fn on(form: &Round, presser: &mut impl Indenter) {
     }
 }
 
-/// Whether a segment pierces a patch; planes and spheres are checked by overlap.
+/// Whether a segment pierces a patch.
 pub(super) fn pierced(form: &Round, segment: &Segment) -> bool {
     let within = |s: f64| segment.range[0] < s && s < segment.range[1];
     match form {

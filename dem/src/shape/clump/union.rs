@@ -4,10 +4,9 @@
 //! V = ∫ A(z) dz,   A = ½ ∮ (x dy − y dx),   ∫x² dA = ⅓ ∮ x³ dy,   ∫xy dA = ½ ∮ x² y dy, …
 //! ```
 //!
-//! Green's theorem gives the slice integrals per uncovered arc. Along z they are analytic between events:
-//! ends of spheres and of intersection circles, triple points. There they behave like √|z − z₀|;
-//! z = m + ½ h (3t − t³) removes the root, so Gauss–Legendre converges exponentially. Relative error about
-//! 1e-9 (1e-13 for one sphere), limited by events just beyond an interval.
+//! Along z slice integrals are analytic between events: ends of spheres and of intersection circles, triple
+//! points. There they behave like √|z − z₀|; z = m + ½ h (3t − t³) removes the root, so Gauss–Legendre
+//! converges exponentially (relative error 1e-9).
 //!
 //! Source: own derivation, checked against two spheres (lens) and voxels.
 //!
@@ -99,7 +98,6 @@ fn events(balls: &[Ball]) -> Vec<f64> {
                 [centre - steepest, centre + steepest].iter().filter(|p| visible(**p, &[i, j])).map(|p| p.z),
             );
             for (k, ball) in balls.iter().enumerate().skip(j + 1) {
-                // Points of the circle at distance r_k from c_k: q·e = s.
                 let to = Vector3::from(ball.c) - centre;
                 let flat = to - normal * to.dot(&normal);
                 let length = flat.norm();
@@ -171,7 +169,6 @@ fn slice_moments(
     sum
 }
 
-/// Arc x = p + r cos θ, y = q + r sin θ, θ from `a` to `b`.
 fn add_arc(sum: &mut [f64; 6], (p, q, r): (f64, f64, f64), a: f64, b: f64) {
     let ((sa, ca), (sb, cb)) = (libm::sincos(a), libm::sincos(b));
     let t = b - a;

@@ -1,8 +1,7 @@
 //! Contact of rounded corners and edges with another body.
 //!
 //! Each point has overlap R − d: R the sum of radii, d the distance from the other core. Edges are integrated
-//! piecewise by nearest face, edge or corner. The distance from a convex body has a unique gradient, so sums
-//! stay smooth across contact types and forces have a potential.
+//! piecewise by nearest face, edge or corner.
 //!
 //! Theory manual: equation (2.7) of `docs/theory/shapes.md`.
 
@@ -87,7 +86,7 @@ pub(crate) enum Nearest<'a> {
 /// Contact of a corner or edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Indentation {
-    /// (R − d) n at a corner, integrated along an edge; away from the target.
+    /// (R − d) n at a corner, integrated along an edge.
     pub force: Vec3,
     /// R − d; for an edge, energy-equivalent spring overlap.
     pub overlap: f64,
@@ -156,7 +155,6 @@ impl Sum {
         }
         let (root, h2) = (a.sqrt(), h2.max(1e-300));
         let [du, dv] = [u, v].map(|u| (a * u * u + h2).sqrt());
-        // ∫ 1, u, u² du and ∫ 1/d, u/d, u²/d du, d² = a u² + h².
         let (one, first, second) = (v - u, 0.5 * (v * v - u * u), (v * v * v - u * u * u) / 3.0);
         // asinh difference as one logarithm, without cancellation.
         let (ru, rv) = (root * u, root * v);
@@ -256,7 +254,6 @@ impl Stretch {
 
     /// Keeps `at` + s `slope` ≤ 0.
     pub fn cut(&mut self, at: f64, slope: f64) {
-        // Branch-free: branches are unpredictable here.
         let end = -at / slope;
         let none = if at > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
         let high = if slope > 0.0 {
@@ -271,7 +268,7 @@ impl Stretch {
         self.0 = [if low > from { low } else { from }, if high < to { high } else { to }];
     }
 
-    /// As `cut`, but a piece entirely in a shared boundary belongs to the other feature and counts once.
+    /// As `cut`, but a piece entirely in a shared boundary counts once, with the other feature.
     pub fn cut_beyond(&mut self, at: f64, slope: f64) {
         if slope == 0.0 && at >= 0.0 {
             self.0[1] = self.0[0];
