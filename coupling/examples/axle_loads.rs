@@ -7,7 +7,6 @@ use trackbed_coupling::track::rail::{Rail, RailInput, Wheel};
 use trackbed_coupling::track::train::CarLayout;
 
 fn main() {
-    // UIC 60 rail, sleeper spacing 0.6 m, pad and bed in series; one car at 72 km/h, 70 kN per wheel.
     let (bending, spacing, pad, bed) = (6.4e6, 0.6, 120e6, 40e6);
     let winkler = Winkler::new(bending, pad * bed / (pad + bed), spacing);
     let car = CarLayout { wheelbase: 2.5, bogie_spacing: 17.5, car_length: 25.0 };

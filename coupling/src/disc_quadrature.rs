@@ -23,9 +23,7 @@ struct Point {
 }
 
 impl SolidSurface {
-    /// Distributes each contact force over a disc of `radius` [m], see [`DistributedTransfer`]; zero disables it.
-    ///
-    /// The surface must be undeformed.
+    /// Distributes each contact force over a disc of `radius` [m]; zero disables it.
     pub fn distribute_over_discs(mut self, radius: f64) -> SolidSurface {
         self.spread = (radius > 0.0).then(|| operator(&self, radius));
         self
@@ -205,7 +203,6 @@ fn nearest_border(x: [f64; 3], normal: [f64; 3], border: &[[[f64; 3]; 2]], radiu
     (best.1.unwrap_or_else(any), if squeeze < 1e-9 { 0.0 } else { squeeze })
 }
 
-/// Σ w (|r|² − r rᵀ) about `c`; `None` for fewer than three points.
 fn inertia(points: &[Point], c: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     let mut j = [[0.0; 3]; 3];
     for p in points {

@@ -1,12 +1,10 @@
 //! Distributed load transfer over discs about the surface nodes.
 //!
-//! The surface follows the best-fitting rigid motion of each disc; forces use the transpose. Force and moment
-//! are exact, and no energy is added. Theory manual: eqs. (5.4), (5.5); RBE3 (MSC/NASTRAN Quick Reference
-//! Guide).
+//! The surface follows the best-fitting rigid motion of each disc; forces use the transpose. Theory manual:
+//! eqs. (5.4), (5.5); RBE3 (MSC/NASTRAN Quick Reference Guide).
 //!
-//! Compliance ripple on 20-node hexahedra of edge h: 17, 9, 6, 4 % for radii 0.4, 0.6, 0.75, 1 h. Discs
-//! shrink to ellipses at borders and to the node at corners. Limits: one radius, small rotations; discs wrap
-//! around sharp edges.
+//! Compliance ripple on 20-node hexahedra of edge h: 17, 9, 6, 4 % for radii 0.4, 0.6, 0.75, 1 h. Limits:
+//! one radius, small rotations.
 
 use crate::face::{cross, dot};
 

@@ -70,7 +70,7 @@ pub struct WorkAndDissipation {
     pub solid_load_work: f64,
     /// Contact dashpots.
     pub dashpot: f64,
-    /// Interface dashpot error: surface dashpots at the predicted velocity minus the law. Usually negative.
+    /// Interface dashpot error: surface dashpots at the predicted velocity minus the law.
     #[serde(default)]
     pub interface_dashpot_error: f64,
     /// Friction.
@@ -188,7 +188,7 @@ impl EnergyBalance {
         self.now.kinetic_and_spring_energy()
     }
 
-    /// Energy error plus numerical gain of the solid [J], which absorbs any error of a solid without grains.
+    /// Energy error plus numerical gain of the solid [J].
     pub fn error_with_numerical_gain(&self) -> f64 {
         self.error().abs() + (-self.spent.numerical).max(0.0)
     }
@@ -198,8 +198,7 @@ impl EnergyBalance {
         self.spent.sum_of_magnitudes().max(self.now.sum_of_changes(&self.start))
     }
 
-    /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
-    /// smallest reference.
+    /// Limit of insignificant errors [J].
     pub fn negligible_energy(&self) -> f64 {
         let gravity = |s: &StoredEnergy| s.grains_gravity.abs() + s.solid_gravity.abs();
         let held = 1e-3 * self.start.kinetic_and_spring_energy().max(self.now.kinetic_and_spring_energy());

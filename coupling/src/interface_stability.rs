@@ -191,7 +191,6 @@ impl InterfaceStability {
                 .zip(inverse.iter())
                 .for_each(|(y, i)| (0..3).for_each(|d| y[d] *= f64::from(i[d] > 0.0)));
         };
-        // Bases x, residual direction w, last direction p, each with its products by B and M.
         let zero = || vec![[0.0; 3]; n];
         let mut basis: [[Vec<[f64; 3]>; 3]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| zero()));
         let first = pseudo_random(n);

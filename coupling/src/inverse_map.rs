@@ -1,7 +1,6 @@
 //! Natural coordinates of a point in an element, by Newton's method.
 //!
-//! RailwayFEM-DEM manual (2015), eq. 21; Theory manual: eq. (5.1). Points off the element have no useful
-//! solution: use [`crate::face::closest_point`].
+//! RailwayFEM-DEM manual (2015), eq. 21; Theory manual: eq. (5.1).
 
 use nalgebra::{Matrix3, Vector3};
 use trackbed_fem::ElementKind;
@@ -61,7 +60,7 @@ mod tests {
     use trackbed_fem::element::hex20 as element;
 
     /// Reference study: Newton from ξ = 0 to 10⁻¹³ half-edges, the same 300 random elements, nodes moved by
-    /// ±a half-edges. Means 3.9, 4.0, 4.2, 4.4, 4.6 for a = 0.05 … 0.25, at most 7.
+    /// ±a half-edges.
     #[test]
     fn distorted_elements_are_inverted_in_about_four_iterations() {
         let mut random = Random::numpy_seed_3();
@@ -92,8 +91,6 @@ mod tests {
         }
     }
 
-    /// The tolerance scales with the element: large ones know points to 1e-12 m only, small ones are of size
-    /// 1e-13 m.
     #[test]
     fn elements_of_any_size_are_inverted_alike() {
         let mut random = Random::new(7);

@@ -1,7 +1,7 @@
 //! Quasi-Newton acceleration of the interface fixed-point iteration x = g(x).
 //!
 //! Degroote, Bathe & Vierendeels, Comput. Struct. 87 (2009) 793 (IQN-ILS); Anderson, J. ACM 12 (1965) 547.
-//! Theory manual: eq. (5.9). Linearly dependent columns are dropped.
+//! Theory manual: eq. (5.9).
 
 /// Maximum number of stored differences.
 const DEPTH: usize = 8;
@@ -76,7 +76,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Plain iteration diverges (factors −3, 2, −0.5). Four passes collect differences, the fifth solves.
+    /// Plain iteration diverges (factors −3, 2, −0.5).
     #[test]
     fn solves_linear_map_in_five_passes() {
         let map = |x: &[f64]| {

@@ -8,7 +8,7 @@
 //! | iterated | x₀ + v̄ τ, v̄ the computed mean | as predicted | both, repeated |
 //!
 //! All but lagged conserve momentum. Felippa, Park & Farhat, Comput. Methods Appl. Mech. Eng. 190 (2001)
-//! 3247; stability: Theory manual, section 5.5. Stiffened requires a constant FEM matrix.
+//! 3247; stability: Theory manual, section 5.5.
 
 use serde::{Deserialize, Serialize};
 

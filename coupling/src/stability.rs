@@ -1,7 +1,7 @@
 //! A-priori limits of the coupling window: W = Δt √(Kₙ/m) and D = C Δt/m per contact class.
 //!
-//! m is the effective nodal mass 1/(Nᵀ M⁻¹ N). It is smaller at the border, which walls usually keep grains
-//! away from. Limits depend on the damping ratio of the mass pair, ζ' = ζ √((m + M_s)/m), grain mass M_s.
+//! m is the effective nodal mass 1/(Nᵀ M⁻¹ N). Limits depend on the damping ratio of the mass pair, ζ' = ζ
+//! √((m + M_s)/m), grain mass M_s.
 //!
 //! Theory manual: eqs. (5.10), (5.12), limits in section 5.5. Not included: several grains per face,
 //! radiation.
@@ -76,8 +76,7 @@ fn places(surface: &SolidSurface, patch: u32) -> impl Iterator<Item = (Place, [f
     border.chain([(Place::Middle, shape.natural_centre())])
 }
 
-/// Faces whose inner corners have the smallest diagonal mass: in unstructured meshes the lightest point need
-/// not belong to the lightest element.
+/// Faces whose inner corners have the smallest diagonal mass.
 fn lightest_nodes(solid: &fem::Model, surface: &SolidSurface, own: impl Fn(&u32) -> bool) -> Vec<u32> {
     const MOST: usize = 3;
     let diagonal = solid.matrices().mass_diagonal();
@@ -203,7 +202,7 @@ pub fn interface_growth(scheme: Scheme, theta: f64, n: &InterfaceStabilityNumber
 
 /// Returns the largest ratio of interface numbers to limits, 0 for unlimited schemes.
 ///
-/// For θ = ½ undamped contacts always grow ([`interface_growth`]), so Ω is omitted.
+/// For θ = ½ undamped contacts always grow, so Ω is omitted.
 pub fn interface_excess(scheme: Scheme, theta: f64, n: &InterfaceStabilityNumbers) -> f64 {
     if !matches!(scheme, Scheme::Predicted | Scheme::Stiffened) {
         return 0.0;
@@ -226,7 +225,7 @@ pub fn theta_for_phase(phase: f64) -> f64 {
 /// Returns the effective nodal masses of a free body within a window of `window` [s].
 ///
 /// Impulse of a constant normal force over the computed velocity: rigid-body mass in long windows,
-/// [`effective_masses`] in short ones. `surface` is of that body only.
+/// [`effective_masses`] in short ones.
 ///
 /// # Errors
 /// Plastic body, or singular matrix.
@@ -347,8 +346,7 @@ mod tests {
         (solid, surface)
     }
 
-    /// Reference study (consistent mass, 4 × 4 × 2 elements, inner points), over the element mass: mid-face
-    /// 0.101, mid-edge 0.042, corner 0.018.
+    /// Reference study (consistent mass, 4 × 4 × 2 elements, inner points), over the element mass.
     #[test]
     fn nodal_masses_match_reference_study() {
         let (solid, surface) = ground(Mesh::block([4, 4, 2], [1.0, 1.0, 0.5]));

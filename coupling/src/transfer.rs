@@ -16,8 +16,8 @@ pub struct TransferAudit {
     pub exchanges: u64,
     /// Largest |Σ nodal load − Σ contact force| / Σ |contact force|.
     pub force: f64,
-    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ R |contact force|, R the farthest node's
-    /// distance from the origin.
+    /// Largest |Σ xᵢ × nodal loadᵢ − Σ p × contact force| / Σ R |contact force|, R the farthest node
+    /// distance.
     pub moment: f64,
 }
 

@@ -1,7 +1,6 @@
 //! Polynomial form of a face field.
 
-/// x(ξ, η) = c₀ + c₁ ξ + c₂ η + c₃ ξ² + c₄ η² + c₅ ξη + c₆ ξ²η + c₇ ξη²: an eighth of the work of Σ Nᵢ xᵢ.
-/// Complete for 8 nodes; no cubic terms for 6, only ξη for 4, linear for 3.
+/// x(ξ, η) = c₀ + c₁ ξ + c₂ η + c₃ ξ² + c₄ η² + c₅ ξη + c₆ ξ²η + c₇ ξη².
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Form(pub(super) [[f64; 3]; 8]);
 

@@ -1,6 +1,4 @@
 //! Closest points on curved element faces x(ξ, η) = Σ Nᵢ(ξ, η) xᵢ.
-//!
-//! A new face kind is one file and one line of `with_kind!`.
 
 mod domain;
 mod form;

@@ -1,8 +1,8 @@
 //! Closest point by Newton's method in two natural coordinates.
 //!
-//! Minimises g(ξ) = ½ |x(ξ) − c|²; an indefinite Hessian is replaced by its Gauss–Newton part. Steps stay in
-//! the domain and are halved until g decreases, so outside points end on the border. Strongly folded faces
-//! give the local minimum nearest to the start. Theory manual: eq. (5.1).
+//! Minimises g(ξ) = ½ |x(ξ) − c|²; an indefinite Hessian is replaced by its Gauss–Newton part. Steps stay
+//! in the domain and are halved until g decreases, so outside points end on the border. Theory manual: eq.
+//! (5.1).
 
 use super::domain::{Domain, Location};
 use super::form::{Form, cross, dot};

@@ -66,7 +66,6 @@ fn powers_give_the_field_of_the_shape_functions() {
     }
 }
 
-/// Points 0.02 edges off the face, some beyond its border, against a fine scan with refinement.
 #[test]
 fn closest_point_matches_a_fine_scan() {
     let mut random = Random::new(11);
@@ -168,9 +167,8 @@ fn borders_follow_nodal_order() {
     );
 }
 
-/// Corners at heights h and −h, seen from height Z. Squared distance: 2 t² + (h t² − Z)² along the diagonal,
-/// 2 + (h − Z)² at a corner. For large Z the Hessian is indefinite with a positive diagonal, so Newton steps
-/// uphill.
+/// Corners at heights h and −h, seen from height Z. For large Z the Hessian is indefinite with a positive
+/// diagonal, so Newton steps uphill.
 #[test]
 fn finds_far_corner_of_saddle() {
     let (h, z) = (1.0, 3.0);
@@ -204,8 +202,7 @@ fn corners_are_named_by_both_sides() {
     }
 }
 
-/// Corners at 0, 1, 1, 1 and side control points at 1: the field 1 − (1 − u)(1 − v)(1 − u − v) reaches 1 +
-/// 1/27 at u = v = 2/3. Only the middle control point, 5/4, bounds it.
+/// Corners at 0, 1, 1, 1 and side control points at 1.
 #[test]
 fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
     for sign in [1.0, -1.0] {

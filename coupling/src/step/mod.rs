@@ -1,11 +1,9 @@
 //! Coupled step: DEM sub-steps and one FEM time step per window, in the order of the [scheme](crate::scheme).
 //!
-//! A window begins at the computed surface. Normal springs follow from positions; tangential springs
-//! integrate velocities, so the position correction displaces them in the first sub-step. Without it they lag
-//! by θ Δt, a dashpot of −θ Δt Kₜ.
+//! A window begins at the computed surface. Tangential springs integrate velocities, so the position
+//! correction displaces them in the first sub-step.
 //!
 //! The surface is evaluated at mid-sub-step, because leapfrog velocities trail positions by half a step.
-//! Evaluated at its start, each contact K would gain ½ dt ∫ K v² dt.
 //!
 //! Theory manual, sections 5.4 and 5.5; the FEM step is [`trackbed_fem::theta`].
 

@@ -11,8 +11,7 @@ pub struct Model<'a> {
     pub solid: &'a fem::model::Model,
     /// Grains.
     pub grains: dem::Model,
-    /// DEM sub-steps per window at the initial step; variable steps ([`dem::stability`]) fill the same
-    /// window.
+    /// DEM sub-steps per window at the initial step.
     pub substeps: u32,
     /// Divisions of a window of `substeps`; above 1 only for interface stability.
     pub division: u32,

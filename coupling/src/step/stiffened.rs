@@ -1,7 +1,7 @@
 //! Predictor of the stiffened scheme: contacts of the last sub-step, linearised over the next window.
 //!
-//! Theory manual: eq. (5.8). Grains keep their velocity, sliding contacts count as sticking, tensile contacts
-//! are omitted. Sub-steps then apply the actual forces.
+//! Theory manual: eq. (5.8). Grains keep their velocity, sliding contacts count as sticking, tensile
+//! contacts are omitted.
 
 use super::model::Model;
 use crate::face::dot;

@@ -19,8 +19,7 @@ const STILL: f64 = 1e-12;
 
 /// Advances the system by one window.
 ///
-/// `applied` sets the forces on bodies at a given time, `solid_load` other solid loads at mid-window. Both
-/// may be called repeatedly for one time.
+/// `applied` sets the forces on bodies at a given time, `solid_load` other solid loads at mid-window.
 ///
 /// # Errors
 /// The grains or the solid cannot make the step; `state` is then invalid.
@@ -100,7 +99,7 @@ fn lagged<B: BackEnd>(
     Ok(())
 }
 
-/// Repeats passes until the surface velocity converges, else takes the best. Returns the passes made.
+/// Repeats passes until the surface velocity converges, else takes the best.
 fn iterated<B: BackEnd>(
     model: &Model<'_>,
     state: &mut State,
@@ -186,8 +185,7 @@ fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), 
     }
 }
 
-/// First-step displacement of tangential springs in excess of the rate: half a step with the old rate, the
-/// correction, half a step with the new rate, less a full step with the new rate.
+/// First-step displacement of tangential springs in excess of the rate.
 fn correct<B>(state: &State, work: &mut Work<B>) {
     work.correction.clear();
     let half = state.grains.kick() - 0.5 * state.grains.dt();

@@ -9,8 +9,7 @@ pub(super) struct FaceAdjacency {
     pub border: Vec<[bool; 4]>,
     /// Pairs of faces with a common side.
     pub seams: Vec<[u32; 2]>,
-    /// Whether each node ends a free side; a triangle may have only a corner on the border. Shape
-    /// `[surface nodes]`.
+    /// Whether each node ends a free side. Shape `[surface nodes]`.
     pub rim: Vec<bool>,
 }
 

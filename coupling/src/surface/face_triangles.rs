@@ -16,8 +16,7 @@ fn triangles(shape: FaceShape) -> &'static [[usize; 3]] {
 
 /// Splits a face into flat triangles between its nodes, mid-side nodes included.
 ///
-/// Force and moment stay exact. Facets of side s miss the bulge s²/8R of a face with radius of curvature R;
-/// closest points need no Newton iteration.
+/// Force and moment stay exact. Closest points need no Newton iteration.
 pub fn face_triangles(face: &Face) -> impl Iterator<Item = Face> + '_ {
     triangles(face.shape).iter().map(|corners| {
         let mut nodes = [face.nodes[corners[0]]; 8];

@@ -1,7 +1,6 @@
 //! Moving contact surface of the solid.
 //!
-//! Nodes move linearly within a window, x(τ) = x₀ + v τ, v from the coupling [scheme](crate::scheme); with a
-//! [`DistributedTransfer`] by disc means.
+//! Nodes move linearly within a window, x(τ) = x₀ + v τ, v from the coupling [scheme](crate::scheme).
 
 mod face_adjacency;
 mod face_triangles;
@@ -281,7 +280,7 @@ impl SolidSurface {
             self.correction.resize(self.nodes.len(), [0.0; 3]);
             smooth(self.spread.as_ref(), &self.scratch, &mut self.correction);
         }
-        // Absolute sum of shape functions: at most 3 (8 nodes, centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
+        // Absolute sum of shape functions.
         self.max_speed = 3.0 * speed;
         self.moving = speed > 0.0;
         (self.tau, self.duration) = (0.0, motion.duration);
@@ -318,8 +317,7 @@ impl SolidSurface {
         if self.spread.is_some() { 18.0 * way } else { 3.0 * way }
     }
 
-    /// Returns an inverted face at the start of the window: normal rotated by 90 degrees, area down to a
-    /// twentieth, or neighbours facing away from each other.
+    /// Returns an inverted face at the start of the window.
     pub fn folded(&self) -> Option<usize> {
         let bad = (0..self.faces.len()).find(|&k| {
             places(self.shapes[k]).iter().zip(&self.areas[k]).any(|(&place, before)| {

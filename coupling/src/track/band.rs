@@ -1,6 +1,4 @@
 //! Symmetric band matrices with Cholesky factorisation, without pivoting.
-//!
-//! Golub and Van Loan, Matrix Computations, 4th ed. 2013, section 4.3.5.
 
 /// Symmetric band matrix, lower half by rows.
 #[derive(Clone, Debug)]

@@ -5,12 +5,10 @@
 //!
 //! * `extrapolate`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error:
 //!   ln(N/n) times two standard errors of b plus the error of earlier predictions.
-//! * `displace`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles do
-//!   not count. Errors after each stretch are summed. Contact springs are kept; the next step rotates and
-//!   caps them.
+//! * `displace`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles
+//!   do not count. Errors after each stretch are summed.
 //!
-//! Not supported: collapsing beds, changing loads; servo-controlled walls stay. Theory manual: eqs. (6.24),
-//! (6.25), (6.26), (6.27).
+//! Not supported: collapsing beds, changing loads. Theory manual: eqs. (6.24), (6.25), (6.26), (6.27).
 
 use super::cycles::CycleRecorder;
 use super::settlement;

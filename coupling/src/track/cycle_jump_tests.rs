@@ -56,8 +56,7 @@ fn corner() -> Grains {
     Grains { model, state }
 }
 
-/// Both spheres follow a sleeper with settlement `law`. Per jump: cycles before and skipped, displacements of
-/// sphere and rattler.
+/// Both spheres follow a sleeper with settlement `law`.
 fn jumps_of(plan: &CycleJumpOptions, cycles: u32, law: impl Fn(f64) -> f64) -> (CycleJumper, Vec<[f64; 4]>) {
     let wave = Waveform::Wave { sine: false, minimum: 0.0, maximum: 1.0, frequency: 1.0 };
     let load =
@@ -83,8 +82,7 @@ fn jumps_of(plan: &CycleJumpOptions, cycles: u32, law: impl Fn(f64) -> f64) -> (
     (jumper, jumps)
 }
 
-/// For s = b ln N each jump displaces the sphere by b ln(1 + ΔN/N), not the rattler, and doubles relative to
-/// N.
+/// For s = b ln N each jump displaces the sphere by b ln(1 + ΔN/N).
 #[test]
 fn jumps_of_grains_follow_the_logarithm() {
     let b = 1e-6;

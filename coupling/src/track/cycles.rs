@@ -161,7 +161,6 @@ impl CycleRecorder {
         work: f64,
         pressure: f64,
     ) -> Option<Cycle> {
-        // A step belongs to the cycle of its middle, so rounding of t is harmless.
         if t - 0.5 * dt < self.begin {
             if t - 0.5 * dt < self.seating_begins {
                 self.unseated = height;
@@ -254,7 +253,6 @@ mod tests {
         let load = load(false);
         let column = BedColumn { area: 0.5, below: -0.8 };
         let mut recorder = CycleRecorder::new(&load, [25.0, 75.0], column);
-        // Height 1 − F/k − drift·(t − 0.2): k = 10 kN/m, drift 1 mm per cycle.
         let (dt, k, drift) = (1e-4, 1e4, 0.01);
         for step in 1..=5000 {
             let t = f64::from(step) * dt;
@@ -270,7 +268,6 @@ mod tests {
             assert!((c.secant_stiffness - 100.0 / 0.0095).abs() < 10.0, "{c:?}");
             // 200 Pa over the strain of a bed 0.2 m high.
             assert!((c.resilient_modulus - 200.0 / (0.0095 / 0.2)).abs() < 4.0, "{c:?}");
-            // 25 to 75 N takes a sixth of a cycle: 5 mm of spring, 1/6 mm of drift.
             let expected = 50.0 / (0.005 + 0.001 / 6.0);
             assert!((c.bed_stiffness / expected - 1.0).abs() < 1e-3, "{c:?} {expected}");
             assert!((c.dissipated_energy - 0.2).abs() < 1e-3, "{c:?}");

@@ -1,8 +1,7 @@
 //! Load on a row of sleepers: rest, ramp, seating pulses, cycles.
 //!
 //! A cycle is a period of a common force, or a pass of wheels or pulses. Axles act through
-//! [`influence`](super::influence) lines or a [rail with mass](super::rail); an uneven rail adds the inertia
-//! force M a w² sin wt of the unsprung mass (Newton's law, without suspension).
+//! [`influence`](super::influence) lines or a [rail with mass](super::rail).
 //!
 //! Theory manual: eqs. (6.1), (6.2), (6.4).
 

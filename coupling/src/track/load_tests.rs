@@ -96,7 +96,7 @@ fn gaussian_pulses() {
     }
 }
 
-/// M-shaped if β times half the wheelbase exceeds about 1.2; area 2 P s/v, peaks a wheelbase apart.
+/// M-shaped if β times half the wheelbase exceeds about 1.2.
 #[test]
 fn a_bogie_is_m_shaped() {
     let w = Winkler::new(6.4e6, 40e6, 0.6);
@@ -117,7 +117,6 @@ fn a_bogie_is_m_shaped() {
     );
 }
 
-/// F = P + M a w² sin wt with w = 2πv/L: 750 kg, 3.5 mm and 10 m at 200 km/h give 3.2 kN.
 #[test]
 fn an_uneven_rail_swings_the_load() {
     let (v, wave) = (200.0 / 3.6, TAU / 10.0 * 200.0 / 3.6);

@@ -1,7 +1,7 @@
 //! Lateral push test of a sleeper by an actuator of constant speed with spring and dashpot.
 //!
 //! Single-tie push test, as in Zakeri, Lateral resistance of railway track, 2012. Resistance: mean actuator
-//! force per row; inertia vanishes at constant speed. Single sleeper without rail. Theory manual: eq. (6.28).
+//! force per row; inertia vanishes at constant speed. Theory manual: eq. (6.28).
 
 use super::row::SleeperRow;
 use super::system::GrainsView;

@@ -1,7 +1,6 @@
 //! Rail on pads: a [beam](super::beam) over sleepers inside and outside the model, by Newmark's method.
 //!
-//! Pads (spring and dashpot) join the rail to prescribed seats of modelled sleepers, outside to masses on
-//! springs and dashpots. Average acceleration (Newmark 1959, α = ¼, δ = ½) conserves energy:
+//! Average acceleration (Newmark 1959, α = ¼, δ = ½) conserves energy:
 //!
 //! Δ(½ vᵀMv + ½ uᵀKu) = ½ (f₀ + f₁)ᵀ Δu − ½ (C v₀ + C v₁)ᵀ Δu.
 //!
@@ -245,8 +244,6 @@ impl Rail {
 
     /// Advances by a step to seat displacements `seats` [m], `wheels` and fraction `weight` of the rail
     /// weight.
-    ///
-    /// Pad dashpots use the seat velocity extrapolated from two steps.
     pub fn step(
         &self,
         state: &mut RailState,

@@ -165,8 +165,8 @@ fn dashpots_use_final_seat_velocity() {
     }
 }
 
-/// Limp rail on stiff pads, sudden wheel over an outside sleeper: w = P/k (1 − cos ωt), ω = √(k/m): P/k after
-/// a quarter period, twice that after a half.
+/// Limp rail on stiff pads, sudden wheel over an outside sleeper: P/k after a quarter period, twice that
+/// after a half.
 #[test]
 fn outside_sleeper_matches_frequency() {
     let limp = RailInput {

@@ -1,7 +1,4 @@
 //! [Rails](super::rail) over moving sleepers, one per seat.
-//!
-//! Rails (Newmark) are advanced to the current sleepers (leapfrog) at the start of each DEM step; pads then
-//! act during it.
 
 use super::load::{CyclicLoad, Waveform};
 use super::rail::{Rail, RailEnergy, RailInput, RailScratch, RailState, Wheel};

@@ -47,8 +47,7 @@ impl Fit {
     }
 }
 
-/// Settlement after N cycles [m] by a law with its parameters in the order of [`Fit::parameters`]; none for
-/// unknown laws and Hettler's, a reformulation of Alva-Hurtado & Selig.
+/// Settlement after N cycles [m] by a law with its parameters in the order of [`Fit::parameters`].
 pub fn settlement_after(law: &str, parameters: &[f64], n: f64) -> Option<f64> {
     let log = libm::log10(n);
     let value = match (law, parameters) {
@@ -66,7 +65,7 @@ pub fn settlement_after(law: &str, parameters: &[f64], n: f64) -> Option<f64> {
 /// Fits all laws to settlements [m] from [`FIRST`] on, in short runs from [`EARLY`] on; `load` is the largest
 /// load [N].
 ///
-/// Laws with too many parameters for the cycles are left out. Empty for constant settlement.
+/// Laws with too many parameters for the cycles are left out.
 pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     let from = |first: f64| -> Vec<[f64; 2]> { cycles.iter().copied().filter(|c| c[0] >= first).collect() };
     let late = from(FIRST);
@@ -253,8 +252,7 @@ const CORRELATED: f64 = 0.99;
 /// Grid points of [`search`].
 const GRID: usize = 120;
 
-/// Minimises the residual of a linear fit over one parameter: grid, then golden sections. `None` at a bound
-/// (undetermined).
+/// Minimises the residual of a linear fit over one parameter: grid, then golden sections.
 fn search(low: f64, high: f64, fit: impl Fn(f64) -> Option<(Vec<f64>, f64)>) -> Option<(f64, Vec<f64>, f64)> {
     let at = |k: usize| low + (high - low) * k as f64 / GRID as f64;
     let rest = |x: f64| fit(x).map_or(f64::INFINITY, |f| f.1);

@@ -36,7 +36,6 @@ fn parameters_of_curves_are_recovered() {
     assert!((fit.rms_error / deviation - 1.0).abs() < 0.1, "{} against {deviation}", fit.rms_error);
     assert!(fit.r2 > 0.98 && fit.r2 < 0.999, "{}", fit.r2);
     assert_eq!((fit.range, fit.points), ([10.0, 400.0], 391));
-    // The same in natural logarithms; r F^1.6 = 5 mm with F in kN.
     let hettler = fitted(&curve, "Hettler");
     near(&hettler, "C", 0.3 / std::f64::consts::LN_10, 0.03);
     near(&hettler, "r [mm/kN^1.6]", 5.0 / 40.0_f64.powf(1.6), 0.01);
@@ -89,7 +88,7 @@ fn insufficient_data_gives_no_fit() {
     assert!(slope(&growing[..2], 1.0).is_none());
 }
 
-/// One parameter, white noise: σ/√Σ(1 + 0.2 log N)²; three in four fits within 1.15 standard errors.
+/// One parameter, white noise: σ/√Σ(1 + 0.2 log N)².
 #[test]
 fn standard_errors_match_linear_regression() {
     let curve = noisy(|n| 0.003 * (1.0 + 0.2 * n.log10()));
@@ -101,7 +100,7 @@ fn standard_errors_match_linear_regression() {
     assert!((fit.parameter("s1").unwrap() - 0.003).abs() < 4.0 * found);
 }
 
-/// A wave of 60 cycles in the residuals: neighbours are alike, so the error is larger than of white noise.
+/// A wave of 60 cycles in the residuals.
 #[test]
 fn correlated_residuals_widen_errors() {
     let wave = |n: f64| 1e-4 * (n / 60.0 * std::f64::consts::TAU).sin();

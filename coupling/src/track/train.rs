@@ -40,7 +40,6 @@ mod tests {
         assert_eq!(car.axles(2), [0.0, 2.5, 17.5, 20.0, 25.0, 27.5, 42.5, 45.0]);
     }
 
-    /// 750 kg on waves of 3.5 mm and 10 m at 200 km/h: 750 × 0.0035 × (2π × 55.56/10)² = 3198.5 N.
     #[test]
     fn uneven_rail_excites_unsprung_mass() {
         let [force, length] = excitation(750.0, 3.5e-3, 10.0, 200.0 / 3.6);

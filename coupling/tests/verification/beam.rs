@@ -44,9 +44,6 @@ fn beam(elements: usize) -> fem::Model {
 /// Reference (Hertz contact and 60 modes of a Bernoulli beam, converged): peak force 4.967 N at 72.8 µs,
 /// contact time 156.8 µs, rebound −3.029 mm/s, largest deflection 1.125 µm at 323.9 µs. Tolerances for 60 × 2
 /// × 2 elements: 3 %, 3 %, 8 %, 3 %.
-///
-/// A point force on an element corner deflects the mesh by 2.6/(E h), about 4 % of the peak contact
-/// deflection; the deflection is therefore taken at mid-height.
 #[test]
 fn timoshenkos_sphere_on_a_beam() {
     let solid = beam(60);

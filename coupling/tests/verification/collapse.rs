@@ -1,8 +1,6 @@
 //! Rigid row of spheres pushed into weightless plastic ground, against Prandtl's collapse load.
 //!
 //! Prandtl (1920), Reissner (1924): q = Nc c, Nc = 2 + π for φ = 0 and 14.83 for φ = 20° (associated flow).
-//! Half of a strip of width B = 2 m in plane strain, elements of B/8. The row is a clump of 16 × 4 spheres,
-//! four per element and direction.
 
 use crate::support::*;
 use trackbed_coupling::step::Work;
@@ -78,7 +76,6 @@ fn drucker_prager(phi: f64, cone: Cone) -> Material {
     Material::plastic(SOIL, law)
 }
 
-/// Mean pressure over c in the last tenth of the path, and its growth.
 fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::Material) -> f64 {
     let solid = ground(extent, material);
     let spacing = HALF / ROW[0] as f64;
@@ -99,8 +96,7 @@ fn push(name: &str, extent: [f64; 2], material: Material, depth: f64, row: dem::
             bodies: vec![dem::BodyInput {
                 position: Vec3::new(0.5 * HALF, 0.5 * EDGE, radius),
                 velocity: Vec3::new(0.0, 0.0, -SPEED),
-                // Heavy, so unaffected by forces (fully constrained bodies have no contact); no dashpots,
-                // which grow with the mass.
+                // Heavy, so unaffected by forces (fully constrained bodies have no contact).
                 fixed: [true, true, false, true, true, true],
                 mass: Some(1e9),
                 ..Default::default()
@@ -157,8 +153,7 @@ fn row_reaches_collapse_load_of_clay() {
     assert!((0.98..1.08).contains(&(found / exact)));
 }
 
-/// Nc = 14.83 within 10 %. The row is rough: below a smooth row the dilating ground slides outward, and the
-/// load falls.
+/// Nc = 14.83 within 10 %.
 #[test]
 #[ignore = "4,000 windows of plastic ground, about a minute"]
 fn row_reaches_collapse_load_with_friction() {
@@ -182,8 +177,7 @@ fn prandtl(phi: f64) -> f64 {
     (half * half * (std::f64::consts::PI * tan).exp() - 1.0) / tan
 }
 
-/// A cone matched in plane strain keeps Nc. Matched in triaxial compression, it is stronger: 2/√3 = 1.155 for
-/// φ = 0, and φ = 27.5° with 1.43 c for φ = 20°, 2.4 times the load.
+/// A cone matched in plane strain keeps Nc. Matched in triaxial compression, it is stronger.
 #[test]
 fn cones_differ_in_plane_strain() {
     let degrees = |phi: f64| phi.to_radians();
@@ -205,8 +199,7 @@ fn cones_differ_in_plane_strain() {
     assert!((in_plane_strain(Cone::Compression, 0.0).1 - 2.0 / 3.0_f64.sqrt()).abs() < 1e-12);
 }
 
-/// Von Mises ground: ratio of the collapse loads 2/√3 within 2 %; plane-strain match (2 + π) c within +8/−2
-/// %.
+/// Von Mises ground: ratio of the collapse loads 2/√3 within 2 %.
 #[test]
 #[ignore = "two runs of 1,600 windows of plastic ground, about a minute"]
 fn matched_cones_collapse_in_their_ratio() {

@@ -47,8 +47,8 @@ fn deepest(solid: &fem::State) -> f64 {
     solid.u.iter().fold(0.0, |m, u| m.max(u.abs()))
 }
 
-/// Block force equals grain forces within 1e-10 per step; a restart is bitwise identical; the unloaded block
-/// returns within 1e-9 of its largest displacement.
+/// Block force equals grain forces within 1e-10 per step. The unloaded block returns within 1e-9 of its
+/// largest displacement.
 fn cycles(cycles: u32) {
     let solid = ground();
     let mut c = Coupled::new(&solid, bed(5e-5), 5);
@@ -110,7 +110,6 @@ fn four_cycles_with_restart() {
     on_one_thread(|| cycles(4));
 }
 
-/// FEM steps of 1, 10 and 100 DEM steps over one cycle: largest settlement at 10 within 1 % of that at 1.
 #[test]
 #[ignore = "2,500 solid steps at ratio 1, about 5 s"]
 fn the_ratio_of_time_steps() {

@@ -40,8 +40,6 @@ fn soft() -> fem::Model {
     )
 }
 
-/// Each iterated window ends like a single step from its start under the final load, in displacement and
-/// stress.
 #[test]
 fn iterated_windows_restore_plastic_stresses() {
     let law = fem::MohrCoulomb { cohesion: 500.0.into(), friction: 0.3.into(), dilation: 0.1, tension: None };
@@ -81,7 +79,7 @@ fn iterated_windows_restore_plastic_stresses() {
 }
 
 /// Pulled with three times its weight for 30 ms: force-free flight, impact speed from the work of the pull,
-/// weight at the end; relative energy error 0.5 %.
+/// weight at the end.
 #[test]
 fn lifted_body_recovers_contact() {
     let solid = soft();
@@ -130,8 +128,6 @@ fn lifted_body_recovers_contact() {
     }
 }
 
-/// W = 2.3 at the lightest point, 40 sub-steps: iterated interface error 1e-6 of the fall energy, predicted
-/// more than a hundred times as much.
 #[test]
 fn iterated_windows_agree_on_the_interface() {
     let solid = soft();

@@ -150,10 +150,10 @@ fn central_impact_keeps_momentum_and_energy() {
     assert!(impact.energy_error() < 1e-5);
 }
 
-/// Offset d = 0.06 m: impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
+/// Impulse J = (1 + e) v/(1/m + 1/M + d²/I) within 1 %.
 ///
-/// Small strains: forces act at undeformed positions. The missing moment ∫ u × F dt is checked to 1e-8 at v =
-/// 1 m/s; at 1 µm/s the plain balance holds to 1e-8.
+/// Small strains: forces act at undeformed positions. The missing moment ∫ u × F dt is checked to 1e-8 at
+/// v = 1 m/s.
 #[test]
 fn off_centre_impact_keeps_angular_momentum() {
     let solid = cube();
@@ -243,8 +243,7 @@ fn quiet_packing_gains_no_energy() {
     assert!(largest[19] < 1e-6 * potential);
 }
 
-/// A sphere moving with the block at overlap δ has force K δ in all ten sub-steps; on a fixed surface it
-/// would separate after one.
+/// A sphere moving with the block at overlap δ has force K δ in all ten sub-steps.
 #[test]
 fn the_surface_moves_within_a_window() {
     let solid = cube();
@@ -266,7 +265,6 @@ fn the_surface_moves_within_a_window() {
     assert!((force / (STIFFNESS * overlap) - 1.0).abs() < 1e-6);
 }
 
-/// Velocity linear from v₀ to v₀ + a Δt; the last of ten sub-steps is at 0.95.
 #[test]
 fn lagged_surface_velocity_is_linear() {
     let solid = cube();
@@ -286,7 +284,6 @@ fn lagged_surface_velocity_is_linear() {
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
 }
 
-/// Contact in the first sub-step of the next window, although the prediction misses the motion.
 #[test]
 fn a_surface_that_leaps_is_touched_at_once() {
     let solid = cube();
@@ -307,7 +304,6 @@ fn a_surface_that_leaps_is_touched_at_once() {
     assert!(mean > 0.95 * all, "{mean} {all}");
 }
 
-/// Under a rotating or sliding sphere the prediction is a thousand times better than the current velocity.
 #[test]
 fn stiffened_prediction_includes_slip_and_spin() {
     let solid = cube();

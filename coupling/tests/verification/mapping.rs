@@ -8,7 +8,7 @@ use trackbed_fem::Mesh;
 const CELLS: usize = 6;
 const EDGE: f64 = 1.0 / CELLS as f64;
 
-/// Top of 6 × 6 × 3 elements: mid-side nodes moved by up to 15 % of an edge, corners by up to 10 %.
+/// Top of 6 × 6 × 3 elements.
 fn distorted_top() -> (Mesh, SolidSurface) {
     let mut mesh = Mesh::block([CELLS, CELLS, CELLS / 2], [1.0, 1.0, 0.5]);
     let mut random = Scatter::new(7);
@@ -43,8 +43,6 @@ fn nearest(
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// 10,000 random points: residual below 1e-12 of the edge, original natural coordinates, element as by
-/// exhaustive search.
 #[test]
 fn finds_points_on_distorted_surface() {
     let (_, surface) = distorted_top();
@@ -76,8 +74,6 @@ fn finds_points_on_distorted_surface() {
     assert!(worst < 1e-12 && apart < 1e-10);
 }
 
-/// Points at X + u − u₀ + v τ, speed within the bound, candidates complete, clearance never above the
-/// distance.
 #[test]
 fn a_window_shows_the_surface_where_it_is() {
     let (mesh, mut surface) = distorted_top();

@@ -1,8 +1,7 @@
 //! Zener's sphere on an infinite plate.
 //!
-//! Zener (1941): σ'' + (1 + λ d/dτ) σ^(3/2) = 0, λ = α m/T, α = 1/(8 √(D ρ h)), T = (m/(K √v))^(2/5). Quarter
-//! symmetry. The plate is 1.25 flexural waves wide (no significant reflection) and thin (T = 230 h/c; mesh
-//! compliance is negligible).
+//! Zener (1941): σ'' + (1 + λ d/dτ) σ^(3/2) = 0, λ = α m/T, α = 1/(8 √(D ρ h)), T = (m/(K √v))^(2/5).
+//! Quarter symmetry.
 
 use crate::support::*;
 use trackbed_dem as dem;

@@ -96,8 +96,7 @@ impl Patch {
     }
 }
 
-/// Consistent load, m = 8 and 12, to the printed digits. n × n equal point forces, m = 8: patch mean over
-/// consistent 1.0331, 1.0083, 1.0037, 1.0009, 1.0002 for n = 4, 8, 12, 24, 48. Tolerance 0.2 %.
+/// Consistent load, m = 8 and 12, to the printed digits. Tolerance 0.2 %.
 #[test]
 fn patch_settlement_meets_the_reference() {
     for (m, mean, centre, corner) in
@@ -128,8 +127,7 @@ fn patch_settlement_meets_the_reference() {
     }
 }
 
-/// Coupled: patch mean over consistent 1.0331 for n = 4 and 1.0083 for n = 8 within 0.2 %; static solution
-/// within 1e-9.
+/// Coupled: patch mean over consistent 1.0331 for n = 4 and 1.0083 for n = 8 within 0.2 %.
 #[test]
 fn spheres_settle_as_point_forces() {
     let patch = Patch::new(8);

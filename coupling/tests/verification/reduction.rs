@@ -9,7 +9,6 @@ use trackbed_fem::reduction::{ReducedModel, Reduction};
 const PULSE: f64 = 0.05;
 const SETTLING: f64 = 0.3;
 
-/// Largest settlement of block and sleeper under a pulse of 5 kN, and relative energy error.
 fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
     let mut c = Coupled::new(solid, sleeper_on_a_bed(2, 5e-5), 5);
     if let Some(reduction) = reduction {
@@ -46,8 +45,7 @@ fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
     (ground, sleeper, error.abs() / (start.grains_gravity - now.grains_gravity + spent.work()))
 }
 
-/// Condensed to the surface with 20 modes: within 1 %. With 60 modes and face pressures: within 10 %, since
-/// by the estimate two thirds of the local point deflection are lost.
+/// Condensed to the surface with 20 modes: within 1 %.
 #[test]
 fn a_reduced_block_matches_full() {
     let solid = block_b(4, Held::Base, fem::Rayleigh { alpha_m: 20.0, beta_k: 2e-4 });

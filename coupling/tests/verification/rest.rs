@@ -10,7 +10,7 @@ const DENSITY: f64 = 2650.0;
 const STIFFNESS: f64 = 1e5;
 
 /// Contact force and base reaction equal the weight within 1e-6, nodal loads the contact force within 1e-12
-/// per step; the gap is overlap plus block deflection. R = 0.05 m, ρ = 2650 kg/m³: W = 13.6117 N.
+/// per step; the gap is overlap plus block deflection.
 #[test]
 fn sphere_rests_with_its_weight() {
     // The block corner is the lightest point and needs the shortest window.

@@ -1,7 +1,6 @@
 //! Balls at rest on undamped elastic ground: undamped sticking contacts must stay stable.
 //!
-//! Limit: Ω² ≤ 24 (θ − ½) (`docs/interface.py`), Ω = Δt √(Kₜ (1/m + R²/I)) = Δt √(3.5 Kₜ/m) of a ball. At θ =
-//! ½ growth per window is at most W² Ω²/48.
+//! Limit: Ω² ≤ 24 (θ − ½) (`docs/interface.py`), Ω = Δt √(Kₜ (1/m + R²/I)) = Δt √(3.5 Kₜ/m) of a ball.
 
 use crate::support::*;
 use std::f64::consts::FRAC_PI_8;
@@ -18,7 +17,6 @@ const RADIUS: f64 = 0.05;
 const DT: f64 = 1e-5;
 const SUBSTEPS: u32 = 26;
 
-/// 4 × 2 × 1 elements, nodes moved by up to `bend` of an element height.
 fn ground(young: f64, bend: f64) -> fem::Model {
     let mut mesh = Mesh::block([4, 2, 1], [1.6, 0.4, 0.3]);
     for x in &mut mesh.coordinates {
@@ -110,7 +108,7 @@ fn swings(
 }
 
 /// Light and heavy balls at corners, sides and random points, three stiffnesses, flat and curved: kinetic
-/// energy falls over 2,500 windows with the default θ, and there with θ = ½ too.
+/// energy falls over 2,500 windows with the default θ.
 #[test]
 fn undamped_ball_stays_at_rest() {
     let mut random = Scatter::new(11);
@@ -207,7 +205,7 @@ fn period(numbers: &InterfaceStabilityNumbers) -> u64 {
     (2.0 * std::f64::consts::PI / swing).ceil().clamp(4.0, 60.0) as u64
 }
 
-/// Growth per window over the second half; minus infinity at rest, 1 beyond the effect of weight and start.
+/// Growth per window over the second half.
 fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
     c.model.theta = theta;
     let surface = c.work.surface;
@@ -234,8 +232,7 @@ fn growth(mut c: Coupled<'_>, theta: f64, windows: u64) -> f64 {
     }
 }
 
-/// Windows of 0.7 to 3 times the limit (W = 1, D = 1, Ω = 0.85) with its θ, over 100 contact periods, at the
-/// limit also 10 and 1,000.
+/// Windows of 0.7 to 3 times the limit (W = 1, D = 1, Ω = 0.85), over 100 contact periods.
 fn border(cases: std::ops::Range<usize>, periods: [u64; 2]) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     for case in cases {
@@ -304,7 +301,7 @@ fn border_from_both_sides_in_full() {
     assert!(grow(2.5, 9.0) > 0);
 }
 
-/// W = Δt √(K/m) for one contact; n contacts at one point multiply W² and D by n; Ω = √(3.5 Kₜ/m).
+/// W = Δt √(K/m) for one contact.
 #[test]
 fn numbers_of_known_interfaces() {
     use trackbed_coupling::interface_stability::SurfacePoint;

@@ -108,8 +108,6 @@ fn shared_edges_give_equal_loads() {
     assert!(shared > 100 && worst < 1e-14);
 }
 
-/// 100 N and 60 N on one face of 0.0625 m², 150 N on the next, half a window each; tangential forces do not
-/// count.
 #[test]
 fn face_pressure_is_impulse_per_area() {
     let solid = block_b(4, Held::Base, Rayleigh::default());
