@@ -1,8 +1,7 @@
 //! Bad input: exit code 2, one line with file, line, key, found and expected; nothing is written.
 //!
-//! Each test breaks one thing of a valid scene and runs it into a new and into a used directory; nothing may
-//! be created or changed. `check` prints the same line, except for errors found only by a solution or a
-//! deposition.
+//! Each test breaks one thing of a valid scene and runs it into a new and into a used directory. `check`
+//! prints the same line, except for errors found only by a solution or a deposition.
 
 use super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, run, scene_folder, snapshot, trackbed};
 use std::fs;

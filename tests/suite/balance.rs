@@ -26,7 +26,6 @@ fn energy(folder: &Folder, key: &str) -> f64 {
     json(&folder.join("out/summary.json"))["energy"][key].as_f64().unwrap()
 }
 
-/// Balls in contact to rounding, late platen: 1683 N, as with gaps of 1e-7 m.
 #[test]
 fn rounding_stops_no_run() {
     let text = format!(
@@ -66,7 +65,6 @@ history_interval = \"1 ms\"
     assert!((last("plate_force_x") - 1683.0).abs() < 20.0, "{}", last("plate_force_x"));
 }
 
-/// Contact to rounding at rest, also with Hertz's law and far from the origin.
 #[test]
 fn rounding_at_rest_stops_no_run() {
     let two = "spheres = [[0.05, 0, 0, 0.05], [0.15, 0, 0, 0.05]]";
@@ -131,8 +129,6 @@ end = 0.02
 frames = 0
 "#;
 
-/// Force ramp: results are independent of the history interval, whether close to, a multiple of, or unrelated
-/// to the windows.
 #[test]
 fn outcome_does_not_depend_on_rows() {
     let errors = ["1e-3", "2e-3", "3.7e-3"].map(|interval| {
@@ -268,8 +264,8 @@ fn rejects_deep_start_overlap() {
     outcome.good();
 }
 
-/// Boulder on grains a hundredth of its size, strong local damping. Without damping in the step, the spurious
-/// energy is 0.68 J at a reference energy of 0.001 J.
+/// Boulder on grains a hundredth of its size, strong local damping. Without damping in the step, the
+/// spurious energy is 0.68 J at a reference energy of 0.001 J.
 #[test]
 fn local_damping_keeps_grains_at_rest() {
     let text = r#"

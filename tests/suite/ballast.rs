@@ -170,8 +170,7 @@ fn block_resists_by_coulomb_friction() {
     }
 }
 
-/// Slope 1:10: horizontal actuator force W tan(θ + φ), uplift a tenth of the displacement. Pitch: couple of
-/// actuator and friction, F (h + half the height) over 4 K a².
+/// Slope 1:10: horizontal actuator force W tan(θ + φ), uplift a tenth of the displacement.
 #[test]
 fn push_on_slope_above_base() {
     let folder = Folder::new("slope");
@@ -266,8 +265,7 @@ fn jumps(summary: &Path) -> (serde_json::Value, f64) {
     (summary["settlement"]["jump"].clone(), summary["energy"]["relative_error"].as_f64().unwrap())
 }
 
-/// Grains are moved; at most 3/4 of the cycles are simulated (eight seeds: 124 to 180 of 200; six: 139 to 297
-/// of 400).
+/// Eight seeds: 124 to 180 of 200 cycles simulated; six: 139 to 297 of 400.
 #[test]
 fn cycle_jumps_conserve_energy() {
     for method in ["extrapolate", "displace"] {
@@ -391,8 +389,7 @@ fn the_box_test_settles_as_measured() {
     let settlement = cycles.column("settlement");
     let (tenth, last) = (settlement[9], settlement[99]);
     assert!((5e-3..=20e-3).contains(&last), "{last}");
-    // Large cyclic triaxial tests: 0.20–0.40 for N = 10 to 100. This bed: 0.63 (docs/ballast.md), an open
-    // model defect; the test fails.
+    // 0.20–0.40 for N = 10 to 100. This bed: 0.63 (docs/ballast.md), an open model defect; the test fails.
     let exponent = (last / tenth).log10();
     assert!((0.1..=0.5).contains(&exponent), "{exponent}");
     let moduli = &cycles.column("resilient_modulus")[50..];

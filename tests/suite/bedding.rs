@@ -113,7 +113,6 @@ fn heights(folder: &Folder, out: &str, group: usize) -> Vec<f64> {
     Table::read(&file).column("z")
 }
 
-/// Preload above the service load leaves a fraction of the settlement of an unseated sleeper.
 #[test]
 fn a_bedded_sleeper_has_seated() {
     let folder = Folder::new("bedded");
@@ -152,8 +151,7 @@ fn poured_grains_lie_around_the_sleeper() {
     assert!(crib.iter().all(|&z| z < 0.17), "{crib:?}");
 }
 
-/// Crushed corners of 50 MPa grains, then a tenth of the stiffness: stages start with almost no elastic
-/// energy. Elastic corners leave 7.6e-2 J.
+/// Crushed corners of 50 MPa grains, then a tenth of the stiffness. Elastic corners leave 7.6e-2 J.
 #[test]
 fn pouring_begins_without_energy() {
     let folder = Folder::new("poured_crushed");

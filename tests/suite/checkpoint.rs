@@ -106,8 +106,6 @@ fn same(whole: &Path, broken: &Path) {
     }
 }
 
-/// Runs a scene without and with interruptions at fractions `shares` of its steps, with changing thread
-/// counts.
 pub(super) fn broken(scene: &Path, set: &[&str], shares: &[f64], expected: &[&str]) {
     let folder = Folder::new("broken");
     let (whole, out) = (folder.join("whole"), folder.join("broken"));

@@ -40,8 +40,8 @@ fn same(whole: &Path, broken: &Path) {
     }
 }
 
-/// Kills and resumes a run up to 15 ms after none to two checkpoints, and compares with an uninterrupted run.
-/// Returns the kills after progress.
+/// Kills and resumes a run up to 15 ms after none to two checkpoints, and compares with an uninterrupted
+/// run.
 fn kill(scene: &Path, set: &[String], kills: u32) -> u32 {
     let folder = Folder::new("killed");
     let (whole, out) = (folder.join("whole"), folder.join("out"));
@@ -113,8 +113,6 @@ fn kill_and_resume() {
     assert!(ahead > 0, "the run never got ahead");
 }
 
-/// Killed before its first checkpoint: the run starts from scratch with a note. An unused directory is
-/// rejected.
 #[test]
 fn run_without_checkpoint_starts_from_scratch() {
     let folder = Folder::new("killed_first");
@@ -165,7 +163,7 @@ fn ctrl_c_and_sigterm() {
     run(&scene, &whole, &set.iter().map(String::as_str).collect::<Vec<_>>()).good();
     let lines = || fs::read_to_string(out.join("history.csv")).map_or(0, |t| t.lines().count());
     for (signal, resume) in [("INT", false), ("TERM", true)] {
-        // Old rows prove nothing: before the handler is installed, a signal kills the run.
+        // Before the handler is installed, a signal kills the run.
         let rows = lines() + 4;
         let mut child = start(&scene, &out, &set, 1, resume);
         let begun = Instant::now();

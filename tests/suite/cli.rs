@@ -122,7 +122,7 @@ fn explain_reports_every_shipped_scene() {
     let scenes = inputs();
     assert!(scenes.len() >= 35, "{scenes:?}");
     for scene in scenes {
-        // A trial run completes a radius expansion and a strength reduction once begun: 15 to 40 s here.
+        // A trial run completes a radius expansion and a strength reduction once begun.
         let long = ["rock-ucs/specimen", "rock-ucs/triaxial", "rock-ucs/brazilian", "solid/slope"];
         let long = long.iter().any(|name| scene.ends_with(format!("{name}.toml")));
         let words =
@@ -150,7 +150,6 @@ fn explain_survives_materials_beyond_reason() {
     }
 }
 
-/// A run shorter than the trial is timed completely, without files; without a trial no time is printed.
 #[test]
 fn a_short_run_is_rehearsed_whole() {
     let scene = repository().join("inputs/verify/bounce.toml").display().to_string();
@@ -370,8 +369,6 @@ fn mesh_convert_rejects_unknown_extensions() {
     assert!(outcome.stderr.contains("expected a file .cdb") && !folder.join("mesh.stl").exists());
 }
 
-/// The reference coupling is stable, both numbers grow with the window; the sleeper does not contact the
-/// solid.
 #[test]
 fn check_reports_coupling_stability() {
     let scene = repository().join("inputs/track/cyclic/scene.toml");

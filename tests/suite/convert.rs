@@ -19,7 +19,6 @@ const GENERAL: &str = "restart pattern BOND_MODEL nstep Tstrain CTime NPrint MLa
      YoungM YMSIGMA PoissonR rns rzs amu eps X0 Y0 Z0 mxnb skin temperature Nwall NPOINT nu_Wall eps_Wall gz BONDNS MEANBOND \
      BSIGMA TContact";
 
-/// Every key is listed as used or with a reason; the scene agrees with the deck.
 #[test]
 fn both_decks_run() {
     let folder = Folder::new("decks");

@@ -1,4 +1,4 @@
-//! Fields at points, areas and boxes as curves: against exact stresses, frames, and summary; additional frames.
+//! Fields at points, areas and boxes as curves.
 
 use super::checkpoint::broken;
 use super::scenes::vtk;

@@ -1,4 +1,4 @@
-//! Bitwise identical files with 1, 2 and 3 threads, except threads, times and memory in the summary.
+//! Identical files with 1, 2 and 3 threads, except threads, times and memory in the summary.
 
 use super::support::{Folder, SOLID, json, repository, results, scene_folder, trackbed};
 use std::path::Path;

@@ -112,7 +112,6 @@ fn stand_in_matches_cpu_bitwise() {
     }
 }
 
-/// All coupling schemes: spheres and clumps on solid facets, under a sleeper moved by the CPU.
 #[test]
 fn coupled_stand_in_matches_cpu_bitwise() {
     let Some(libraries) = stand_in() else { return };
@@ -154,7 +153,6 @@ fn a_device_that_fails_is_named() {
     }
 }
 
-/// Resumed on a GPU or on the CPU, bitwise equal to an uninterrupted run.
 #[test]
 fn resumes_after_device_failure() {
     let Some(libraries) = stand_in() else { return };

@@ -14,8 +14,7 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
 }
 
-/// Energy error at most 0.1 % (lagged scheme 20 %), interface sums 1e-12. Iterated to 1e-6, the interface
-/// work of the two sides agrees a hundred times better than in the predicted scheme.
+/// Energy error at most 0.1 % (lagged scheme 20 %), interface sums 1e-12.
 #[test]
 fn schemes_and_transfers_close_their_accounts() {
     let mut interface = Vec::new();
@@ -86,8 +85,7 @@ fn classes(text: &str) -> (f64, f64, u32) {
     (w, limit, number(count) as u32)
 }
 
-/// E = 1 MPa, ρ = 1000 kg/m³ under K = 1e7 N/m, windows ten times too long: `check` and the run warn, but not
-/// with the suggested sub-steps or iterated windows.
+/// E = 1 MPa, ρ = 1000 kg/m³ under K = 1e7 N/m, windows ten times too long.
 #[test]
 fn unstable_window_on_soft_ground_warns() {
     let soft = [
@@ -140,7 +138,6 @@ fn unstable_window_on_soft_ground_warns() {
     assert!(number(&s, "/energy/relative_error") < 0.01, "{:#}", s["energy"]);
 }
 
-/// Two grain sizes on light ground: D = C Δt/m with C = 2 ζ √(M K) of the heavier grain limits `"auto"`.
 #[test]
 fn automatic_substeps_meet_both_limits() {
     let light = COUPLED.replace("[1.0, 1.0, 0.1, 0.1],", "[1.0, 1.0, 0.06, 0.06],");
@@ -159,7 +156,7 @@ fn automatic_substeps_meet_both_limits() {
     let heavy = 2650.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-3;
     let d = 2.0 * number(c, "/damping_ratio") * (heavy * k).sqrt() / m * dt;
     let w = (k / m).sqrt() * dt;
-    // Limit of W for a damped contact: 1; `"auto"` uses half of it, for the energy balance.
+    // Limit of W for a damped contact.
     assert_eq!(number(c, "/w_limit"), 1.0);
     let room = (1.0 / d).min(0.5 / w);
     println!("{found} sub-steps, room for {room:.2}: W {w:.4}, D {d:.4} in one");
@@ -169,8 +166,6 @@ fn automatic_substeps_meet_both_limits() {
     assert!((number(c, "/stones/0") / (heavy * 0.216) - 1.0).abs() < 1e-9);
 }
 
-/// Ground too light for one-step windows: `"auto"` is rejected with W, D and a sufficient step. Mass ratios
-/// above 200 give a warning.
 #[test]
 fn rejects_automatic_window_above_limit() {
     let folder = scene_folder("refused", COUPLED);
@@ -197,8 +192,6 @@ fn rejects_automatic_window_above_limit() {
     assert!(!heavier.contains("times the smallest effective nodal mass"), "{heavier}");
 }
 
-/// Impact at the lagged limit: energy error at most 3.5 %. At W = 0.29 it is larger, though stable, and gives
-/// a warning.
 #[test]
 fn lagged_scheme_limits_energy_error() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
@@ -317,8 +310,7 @@ fn a_surface_that_folds_is_named() {
     assert!(s.contains("failed: "));
 }
 
-/// Elastic ground with fixed base, `[lines, counts]` by axis; grains "s", material "w"; `contact`: keys of
-/// both materials.
+/// Elastic ground with fixed base, `[lines, counts]` by axis.
 fn ground(axes: [&str; 3], young: &str, stiffness: &str, contact: &str) -> String {
     let [x, y, z] = axes;
     format!(
@@ -339,7 +331,6 @@ fn at_rest(scene: &str, set: &[&str]) -> (Value, [Vec<f64>; 2]) {
     (json(&folder.join("out/summary.json")), kinetic)
 }
 
-/// Box of side `size` [m] with frictional walls and `count` grains of diameters `sizes`.
 fn box_of_grains(size: f64, count: usize, sizes: &str, seed: usize, end: &str) -> String {
     let walls: String = [([1, 0], 0.0), ([-1, 0], size), ([0, 1], 0.0), ([0, -1], size)]
         .map(|([x, y], at)| {
@@ -354,10 +345,7 @@ fn box_of_grains(size: f64, count: usize, sizes: &str, seed: usize, end: &str) -
     )
 }
 
-/// Beds on soft ground, and a ball whose smoothing disc is cut by the border: kinetic energies fall below
-/// 1e-6 J. Uncorrected, windows of one contact keep the ground oscillating (1e-4 J). On undamped ground,
-/// springs without the surface corrections lost 8e-3 J in 0.9 s. Reference: the same scenes with `substeps =
-/// 1`.
+/// Beds on soft ground, and a ball whose smoothing disc is cut by the border.
 #[test]
 fn soft_ground_beds_reach_rest() {
     let damping =
@@ -424,7 +412,6 @@ solid.rayleigh = { damping_ratio = 0.03, frequencies = [10, 200] }
     }
 }
 
-/// A ball on an undamped slab needs theta from its contact phase; theta = ½ gives a warning.
 #[test]
 fn undamped_contact_needs_theta() {
     let axes = [

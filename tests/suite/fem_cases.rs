@@ -89,8 +89,6 @@ impl Case {
         wanted.iter().map(|&(element, xi)| at_natural(&model, &u, index(element), xi)).collect()
     }
 
-    /// Stress error at centroids (middle of 27 points) and some 2 × 2 × 2 points, over the largest reference
-    /// value.
     fn check_stress(&self, tolerance: f64) {
         let centroid = Table::read(&self.data.join("reference_stress_centroid.csv"));
         let middle: HashMap<u32, [f64; 6]> =
@@ -134,8 +132,7 @@ impl Case {
         self.within("strain energy", error, 1e-9);
     }
 
-    /// Probe displacements with 2 × 2 × 2 and Irons' 14 points; where the rules differ, the full rule must
-    /// not match.
+    /// Probe displacements with 2 × 2 × 2 and Irons' 14 points.
     fn check_reduced(name: &'static str, rules_differ: bool) -> Case {
         Case::check_rule(name, rules_differ, "irons14", "irons14", 14);
         Case::check_rule(name, rules_differ, "reduced", "2x2x2", 8)
@@ -189,7 +186,6 @@ fn check_against_reference(name: &'static str) -> Case {
     case
 }
 
-/// Patch test: u = G x on the boundary gives u = G x and constant stress everywhere.
 fn patch_errors(case: &Case) -> (f64, f64) {
     let gradient: Vec<Vec<f64>> = case.case["exact"]["G"].as_array().unwrap().iter().map(numbers).collect();
     let list = fs::read_to_string(case.data.join("NODECOORD.DAT")).unwrap();

@@ -1,4 +1,4 @@
-//! Fills to a target height or mass: number of grains, bed after settling, reports, warnings, errors.
+//! Fills to a target height or mass.
 
 use super::support::{Folder, json, repository, run, shaft, trackbed};
 use serde_json::Value;
@@ -85,7 +85,6 @@ fn spheres_settle_to_the_target_height() {
     assert!((height / 0.26 - 1.0).abs() < 0.05, "{bed}");
     let mass = bed["mass"].as_f64().unwrap();
     assert!((20.5..23.0).contains(&mass), "{bed}");
-    // Porosity of the mass in the box, up to the grid at the walls.
     let porosity = 1.0 - mass / 2650.0 / (0.24 * 0.24 * height);
     assert!((bed["porosity"].as_f64().unwrap() - porosity).abs() < 0.02, "{bed} {porosity}");
     assert_eq!(bed["targets"][0]["group"], "bed");
@@ -155,7 +154,6 @@ fn rejects_contradictory_amounts() {
     refused(&text, "grains.0.target_mass: found, but it has no effect without `fill`");
 }
 
-/// Two groups in one box: the second fills up to its height above the floor.
 #[test]
 fn second_group_counts_the_first() {
     let text = scene(SPHERES, "target_height = 0.2", "");

@@ -67,8 +67,7 @@ fn floes_drift_against_a_pile() {
     assert!(fs::metadata(&picture).unwrap().len() > 5000);
 }
 
-/// Pile on springs of 2 Hz: in free vibration the acceleration is −ω² times the displacement; the energy
-/// balance includes the springs.
+/// Pile on springs of 2 Hz.
 #[test]
 fn a_pile_on_springs() {
     let folder = Folder::new("springs");
@@ -219,7 +218,6 @@ fn small_floes_are_remarked() {
     assert!(warnings.contains("of 100 floes are left out"), "{warnings}");
 }
 
-/// Blocks on a fixed cone: its force is their weight, and the packing is read back.
 #[test]
 fn a_held_frustum_carries_a_heap() {
     let folder = Folder::new("heap");
@@ -266,8 +264,6 @@ fn refused_packing(folder: &Folder, row: &str, expected: &str) {
     assert!(code == 2 && stderr.contains(expected), "{code}: {stderr}");
 }
 
-/// Ice load on a pile as cylinder and as mesh, between periodic borders: equals the wall force, acts upstream
-/// at floe height.
 #[test]
 fn loads_on_structures_are_recorded() {
     let (before, rest) = ICE.split_once("[[grains]]\nname = \"pile\"").unwrap();

@@ -1,4 +1,4 @@
-//! Inlets and outlets: balances of grains, mass and energy, flow rate, threads and restart.
+//! Inlets and outlets.
 
 use super::checkpoint::broken;
 use super::determinism::same_bits;
@@ -120,7 +120,6 @@ fn rain_in_steady_flow() {
     assert!(float(&summary["energy"]["relative_error"]) < 5e-4, "{}", summary["energy"]);
     assert!(float(&summary["momentum"]["linear"]) < 1e-11, "{}", summary["momentum"]);
     assert!(float(&summary["momentum"]["angular"]) < 1e-11, "{}", summary["momentum"]);
-    // Potential and kinetic energy of the inserted minus the removed grains, to about 1 %.
     let height = 0.95 * G + 0.5 * 1.05;
     let brought = float(&flow["inserted"]["mass"]) * height;
     let removed = float(&flow["removed"]["mass"]) * (0.3 * G + 0.5 * (1.05 + 2.0 * G * 0.65));
@@ -179,7 +178,6 @@ fn a_drop_falls_from_the_inlet() {
     assert!((0.3..0.306).contains(&place[2][last]) && place[2][first] > 0.9, "{}", place[2][last]);
 }
 
-/// Recycling: the inlet makes up its backlog at no more than twice the rate.
 #[test]
 fn recycling_limits_backlog_rate() {
     let folder = Folder::new("again");

@@ -149,7 +149,6 @@ fn shaft(grains: &str, more: &str, floor: bool) -> String {
     )
 }
 
-/// Final positions from `packing.csv`; for bonded stones, which it lacks, spheres of the last frame.
 fn places(out: &Path) -> Vec<f64> {
     match std::fs::read_to_string(out.join("packing.csv")) {
         Ok(rows) => rows.lines().skip(1).flat_map(|row| row.split(',')).map(|x| x.parse().unwrap()).collect(),
@@ -157,7 +156,6 @@ fn places(out: &Path) -> Vec<f64> {
     }
 }
 
-/// Contact histories survive, in the same scene and in one with another wall and other materials.
 #[test]
 fn grain_kinds_restart_bitwise() {
     for (name, grains) in kinds() {
@@ -206,8 +204,6 @@ fn words_of<'a>(scene: &'a Path, out: &'a Path, before: &'a Path) -> Vec<&'a str
     vec!["run", scene, "--out", out, "--bed", "--from", before]
 }
 
-/// Bed deposited on a plane, moved to an elastic block: no second deposition, sleeper placed on it, restart
-/// included.
 #[test]
 fn bed_import_onto_solid() {
     let folder = Folder::new("from_bed");
@@ -235,8 +231,6 @@ fn bed_import_onto_solid() {
     let (z, force) = (column("sleeper_z"), column("contact_force_on_solid_z"));
     let highest = places(&first).chunks(3).map(|x| x[2]).fold(f64::NEG_INFINITY, f64::max);
     assert!((z[0] - highest).abs() < 0.06 && z[z.len() - 1] < z[0], "{} {highest}", z[0]);
-    // Bed height unchanged; the ground carries about 150 N from the first window, without the sleeper's 196
-    // N.
     let heights = column("grains_gravity")[0] - 20.0 * 9.81 * z[0];
     let before = *Table::read(&first.join("history.csv")).column("grains_gravity").last().unwrap();
     assert!((heights - before).abs() < 1e-4 * before, "{heights} J, {before} J before");
@@ -252,7 +246,6 @@ fn bed_import_onto_solid() {
     assert!(text.contains("\"bed\": true"), "{text}");
 }
 
-/// Walls 20 mm closer, two thirds of a radius: refused with the grain, unless its overlaps are accepted.
 #[test]
 fn bed_import_into_narrower_walls() {
     let folder = Folder::new("from_narrow");

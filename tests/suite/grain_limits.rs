@@ -1,5 +1,4 @@
-//! Contacts at their limits: rejected with the key (exit code 2), or stopped with both partners (exit code
-//! 3).
+//! Contacts at their limits: exit code 2 with the key, or 3 with both partners.
 
 use super::support::{Folder, GRAINS, Table, json, run};
 
@@ -55,8 +54,7 @@ fn fast_impact_on_floor_stops() {
     stops("fast_floor_short", &short, "overlap of body 0 and plane 0");
 }
 
-/// Drag acceleration within 0.1 µs, contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m. Longer
-/// fixed steps are rejected.
+/// Drag acceleration within 0.1 µs, contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m.
 #[test]
 fn stiff_drag_limits_the_step() {
     let text = r#"

@@ -85,8 +85,6 @@ fn faults_name_the_file() {
     }
 }
 
-/// Overrides reach included tables; paths are relative to the included file; changes during a run are
-/// detected.
 #[test]
 fn overrides_paths_and_changes() {
     let grains =

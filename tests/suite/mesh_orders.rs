@@ -1,8 +1,7 @@
 //! Node orders of every mesh format against the manuals, on curved elements.
 //!
 //! Natural shapes are mapped by x = R + a S², y = S + b T², z = T + c R² (R, S, T: natural coordinates plus
-//! ½). Quadratic elements represent the map exactly; det J = 1 + 8abc RST gives closed-form volumes. Mid-side
-//! nodes follow the edges in the manuals, not the readers' tables.
+//! ½). Quadratic elements represent the map exactly; det J = 1 + 8abc RST gives closed-form volumes.
 
 use super::support::Folder;
 use std::fmt::Write;
@@ -41,7 +40,6 @@ pub fn volume(kind: ElementKind) -> f64 {
 pub const QUADRATIC: [ElementKind; 4] =
     [ElementKind::Hex20, ElementKind::Wedge15, ElementKind::Pyramid13, ElementKind::Tet10];
 
-/// Wrong node order: a mid-side node closer to another edge, or a wrong volume.
 fn fault(mesh: &Mesh, element: usize, volume: f64) -> Option<String> {
     let (kind, nodes) = (mesh.connectivity.kind(element), &mesh.connectivity[element]);
     let x = |n: usize| mesh.coordinates[nodes[n] as usize];
@@ -91,8 +89,7 @@ fn nodes(corners: &[[f64; 3]], edges: &[[usize; 2]]) -> (Vec<[f64; 3]>, Vec<usiz
 }
 
 /// SOLID186 edges, corners I…P as 1…8: Q = IJ, R = JK, S = KL, T = LI, U = MN, V = NO, W = OP, X = PM, Y =
-/// IM, Z = JN, A = KO, B = LP (Element Reference). Equal to nodes 9–20 of C3D20 (Abaqus Analysis User's
-/// Guide).
+/// IM, Z = JN, A = KO, B = LP (Element Reference).
 const BRICK: [[usize; 2]; 12] =
     [[1, 2], [2, 3], [3, 4], [4, 1], [5, 6], [6, 7], [7, 8], [8, 5], [1, 5], [2, 6], [3, 7], [4, 8]];
 
@@ -279,8 +276,6 @@ fn exchanged_gmsh_nodes_are_detected() {
     }
 }
 
-/// CalculiX computes the closed-form volumes from the written file.
-///
 /// Needs `ccx`; no pyramids. Its integration is exact for the cubic determinant except C3D10 (4 points,
 /// degree 2): 1e-3.
 #[test]
@@ -336,7 +331,6 @@ fn calculix_reads_what_is_written() {
     }
 }
 
-/// VTK computes the same volumes from `.vtu` and `.vtk` and detects a wrong order.
 #[test]
 fn vtk_reads_what_is_written() {
     let named = std::env::var_os("TRACKBED_PYTHON");

@@ -1,4 +1,4 @@
-//! Mesh files are read exactly or rejected. Reference values of other programs are cited in place.
+//! Mesh files are read exactly or rejected.
 
 use super::support::{Folder, trackbed};
 use std::path::Path;
@@ -254,8 +254,7 @@ fn vtk_empty_sections_and_face_ids() {
     assert!(error.unwrap_err().contains("expected a count that"));
 }
 
-/// Column of 1 m × 1 m, two elements high, sides one physical surface: top and bottom have all nodes in it
-/// but are no faces of it.
+/// Column of 1 m × 1 m, two elements high, sides one physical surface.
 fn column(binary_names: &str) -> String {
     let mut nodes = String::new();
     for (level, z) in [0.0, 1.0, 2.0].iter().enumerate() {
@@ -328,7 +327,7 @@ at = [1.0, 1.0, 2.0]
 tables = true
 "#;
 
-/// u = p L / E = 0.5 mm along x and y, zero along z (nu = 0); 1 mm downwards with pressure on top.
+/// u = p L / E = 0.5 mm along x and y, zero along z (nu = 0).
 #[test]
 fn face_sets_survive_every_format() {
     let folder = Folder::new("face_set");
@@ -355,13 +354,12 @@ fn face_sets_survive_every_format() {
                 heads.iter().position(|h| h.trim().starts_with(start)).unwrap_or_else(|| panic!("{heads:?}"));
             row[at]
         };
-        // Last row: node 12 at (0, 1, 2); before it node 11 at (1, 1, 2).
+        // Node 12 at (0, 1, 2), before it node 11 at (1, 1, 2).
         assert!((value("uz")).abs() < 1e-12, "{name}: {last}");
         assert!((value("uy") + 0.5e-3).abs() < 1e-9, "{name}: {last}");
     }
 }
 
-/// *SURFACE of Abaqus: S1 to S6 of elements and element sets, free faces; node surfaces are skipped.
 #[test]
 fn abaqus_surfaces_become_face_sets() {
     let folder = Folder::new("surface");

@@ -49,7 +49,6 @@ fn holds(name: &str) -> [bool; 4] {
     }
 }
 
-/// Lattice cells as brick, two wedges, six pyramids or six tetrahedra; linear, quadratic, or mixed.
 fn mesh(random: &mut Random) -> Mesh {
     let counts = [1 + random.below(3), 1 + random.below(2), 1 + random.below(3)];
     let place = |i: usize, j: usize, k: usize| (i + (counts[0] + 1) * (j + (counts[1] + 1) * k)) as u32;

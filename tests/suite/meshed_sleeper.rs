@@ -14,7 +14,7 @@ const MASS: f64 = 360.0;
 const BALL: f64 = 0.6e6;
 const ALONG: usize = 26;
 
-/// Long sleeper on two rows of balls on rigid ground, a Winkler bed; `more` follows the sleeper table.
+/// Long sleeper on two rows of balls on rigid ground, a Winkler bed.
 fn on_balls(mesh: &str, load: &str, more: &str) -> String {
     let mut balls = String::new();
     for i in 0..ALONG {
@@ -67,7 +67,6 @@ material = "steel"
     )
 }
 
-/// Fixed step, to compare two runs or to let a bed come to rest.
 const STEP: &str = "time.grain_step=20 us";
 
 const CONCRETE: &str = "[track.sleeper.mesh]\nelements = [16, 2, 2]\nyoung = \"30 GPa\"\npoisson = 0.2\n";
@@ -172,7 +171,6 @@ fn deflection_matches_beam_on_foundation() {
         "[track.load]\nkind = \"ramp\"\nminimum = {low}\nmaximum = {high}\nrise = 0.2\nhold = 0.5\nrest = 0.3\nramp = 0.2\n"
     );
     let mesh = format!("{CONCRETE}foot = [0.02, 0.28]\n");
-    // Base nodes on the centre line, at end and middle, after the ground nodes (6 × 1 × 1 elements).
     let ground = trackbed_fem::mesh::Mesh::block([6, 1, 1], [1.0; 3]).node_count();
     let block = trackbed_fem::mesh::Mesh::block([16, 2, 2], SIZE);
     let node = |x: f64| {
@@ -257,7 +255,6 @@ fn stiff_mesh_on_springs_is_rigid() {
     }
 }
 
-/// Spheres between walls at ±`half` in x and y on soft ground, with a track.
 fn on_ground(half: [f64; 2], grains: &str, track: &str) -> String {
     let wall = |d: usize, sign: f64| {
         let (mut point, mut normal) = ([0.0; 3], [0.0; 3]);
@@ -307,7 +304,6 @@ frames = 2
     )
 }
 
-/// Two layers of spheres, the upper in the hollows of the lower, all bearing the sleeper.
 fn on_layers(mesh: &str) -> String {
     let mut spheres = String::new();
     for (nx, ny, z) in [(7, 5, 0.05), (6, 4, 0.05 + 0.1 * 0.5_f64.sqrt())] {
@@ -354,8 +350,6 @@ fn stiff_mesh_on_grains_is_rigid() {
     assert!(rigid.1 < 1e-3 && meshed.1 < 1e-3);
 }
 
-/// Windows too long for the interface dashpots: warnings before and after the run; ten times too long, the
-/// run stops.
 #[test]
 fn late_interface_dashpots_give_warning() {
     let (folder, _) = ran(&on_layers(""), &["coupling.substeps=20"]);
@@ -395,7 +389,6 @@ fn the_same_bits_on_any_threads() {
     assert!(column(&table, "sleeper_contact_z").iter().any(|f| *f > 100.0), "stones do carry it");
 }
 
-/// Interrupted while packing and in the main stage; elastic ground with several schemes, and plastic ground.
 #[test]
 fn resumes_bitwise() {
     let folder = Folder::new("meshed_broken");
@@ -418,7 +411,6 @@ fn resumes_bitwise() {
     }
 }
 
-/// A time integration without numerical damping keeps the oscillations of a stiff body: warning.
 #[test]
 fn missing_numerical_damping_gives_warning() {
     let text = on_balls(CONCRETE, "", "[time]\nend = \"1 ms\"\n");

@@ -24,7 +24,7 @@ fn rows(file: &Path) -> Vec<Vec<f64>> {
     text.lines().skip(1).map(|l| l.split(',').map(|f| f.parse().unwrap()).collect()).collect()
 }
 
-/// Porosities 1 − π/6 and 1 − π/(3√2) over whole periods; a saved packing is read byte for byte.
+/// Porosities 1 − π/6 and 1 − π/(3√2) over whole periods.
 #[test]
 fn lattice_porosity_and_round_trip() {
     let d = 0.02;
@@ -157,8 +157,6 @@ fn shipped(name: &str, edits: &[(&str, &str)]) -> (Folder, serde_json::Value) {
     (folder, summary)
 }
 
-/// EN 13450 A: within 1 % passing at the sieves, and within the largest stone (2.5 % of the mass of 250) at
-/// every size.
 #[test]
 fn gradation_of_the_shipped_bed() {
     let (folder, summary) = shipped(
@@ -220,7 +218,6 @@ fn compaction_of_the_shipped_bed() {
     assert!(stages[3]["wall_force"].as_f64().unwrap() > 1.0);
 }
 
-/// The compacting wall is identified by its index, also after an additional recorded plane.
 #[test]
 fn walls_before_the_one_that_squeezes() {
     let fewer = [

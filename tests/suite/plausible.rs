@@ -131,7 +131,6 @@ fn implausible_values_name_their_key() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Soft ground 800 m high, compressed by a tenth; not if stiff or weightless.
 #[test]
 fn weight_reveals_millimetre_mesh() {
     let high = ["solid.block.z.lines=[-800.0, 0.0]", "solid.gravity=true"];
@@ -176,7 +175,7 @@ fn found_in(name: &str, text: &str) -> Vec<Finding> {
     found(file.to_str().unwrap(), &[])
 }
 
-/// 2 % of the radius release 8 J, where a rise by the radius takes 0.02 J; its weight sinks a ball in by 9 nm.
+/// 2 % of the radius release 8 J, where a rise by the radius takes 0.02 J.
 #[test]
 fn start_overlap_that_throws_is_found() {
     let at = |z: &str| BALL.replace("[[0, 0, 0.02, 0.02]]", &format!("[[0, 0, {z}, 0.02]]"));

@@ -253,7 +253,6 @@ fn spheres_of_clumps_rotate() {
     assert!(pairs > 2, "{} spheres, {pairs} of them apart", spheres.len());
 }
 
-/// Reference mesh, one short cycle: energy error 0.5 %, interface force and moment 1e-11.
 #[test]
 fn a_small_track_of_polyhedra() {
     let scene = repository().join("inputs/track/polyhedra/scene.toml");

@@ -34,7 +34,6 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)])
 }
 
-/// Slow wheels: rail seat loads by Winkler's formula, pad and bed in series. Loads increase at 200 km/h.
 #[test]
 fn a_bogie_on_a_beam() {
     let mut peaks = Vec::new();
@@ -281,9 +280,8 @@ fn recorded(summary: &serde_json::Value, k: usize, key: &str) -> f64 {
         .unwrap_or_else(|| panic!("{path}: {summary:#}"))
 }
 
-/// Pulled with twice and with half the weight. In the air z'' = F/m − g: second differences of height are
-/// those of parabolas to rounding, contacts store no energy. The summary gives time, duration and height of
-/// lift-off.
+/// In the air z'' = F/m − g: second differences of height are those of parabolas to rounding, contacts
+/// store no energy.
 #[test]
 fn lifted_sleeper_matches_free_flight() {
     let load = r#"
@@ -323,7 +321,7 @@ ramp = "0 s"
     }
     assert!(pulled > 30 && free > 80, "{pulled} {free}");
     let summary = json(&out.join("summary.json"));
-    // Pull equals weight after 4.9 ms; unloading needs part of the springs' period of 17 ms.
+    // Pull equals weight after 4.9 ms.
     let (first, seconds) =
         (recorded(&summary, 0, "lifted_off/first"), recorded(&summary, 0, "lifted_off/seconds"));
     assert!((0.0549..0.062).contains(&first), "{first}");
@@ -347,7 +345,6 @@ ramp = "0 s"
     assert!(!summary["warnings"].to_string().contains("without contact"));
 }
 
-/// On grains on a solid: uplift in each cycle, equal in iterated and single-pass windows.
 #[test]
 fn uplift_wave_lifts_sleeper_off_grains() {
     let folder = scene_folder("wave", COUPLED);

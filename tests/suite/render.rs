@@ -143,7 +143,7 @@ fn chain_thickness_follows_force() {
     let line = |z: f64| [0.0, 0.0, z, 1.0, 0.0, z];
     chains(&folder, 0, &[line(0.0), line(0.2)], &[40.0, 10.0]);
     series(&folder, 1);
-    // One metre across 1280 pixels less 11 at each side; without stones the size unit is 0.04 m.
+    // One metre across 1280 pixels less 11 at each side.
     let size = ["--size", "1280x360", "--thickness", "2"];
     let seen = picture(&folder, &size);
     let scale = 1280.0 - 22.0;

@@ -198,7 +198,7 @@ fn settlement_laws_of_many_cycles() {
     report(&[&out, Path::new("--axle-load"), Path::new("22.5")]).good();
     let page = Page::read(&out.join("report.html"));
     page.has(&["traffic"]);
-    // 10 MGT are 444,444 axles of 22.5 t; the band is the range of the laws.
+    // 10 MGT are 444,444 axles of 22.5 t.
     page.contains("444444");
     let at = |fit: &serde_json::Value| {
         let values: Vec<f64> =
@@ -350,7 +350,6 @@ fn modes_and_several_runs() {
     both.contains("Two loads");
     both.contains("track.load.maximum");
     assert!(!both.source.contains(&folder.path().display().to_string()), "an absolute path");
-    // Loads of 5 and 8 kN: the second run is compared with the first.
     let [first, second] =
         [&one, &two].map(|dir| Table::read(&dir.join("cycles.csv")).column("settlement").pop().unwrap());
     let percent = 100.0 * (second - first) / first.abs();

@@ -65,7 +65,7 @@ frames = 2
     )
 }
 
-/// s = g (sin a - mu cos a) t²/2 within 0.5 %; travel angle equals slope angle.
+/// s = g (sin a - mu cos a) t²/2 within 0.5 %.
 #[test]
 fn sliding_block_matches_closed_form() {
     let folder = Folder::new("slide");
@@ -86,7 +86,6 @@ fn sliding_block_matches_closed_form() {
     assert!((of("advance") / cos / way - 1.0).abs() < 5e-3, "{runout}");
     assert_eq!((of("largest_share"), of("moved_share"), of("below_ground")), (1.0, 1.0, 0.0));
     assert!(summary["energy"]["largest_relative_error"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
-    // Two layers: four radii, plus the slope across a cell at a cell edge.
     assert!(of("deepest") > 0.9 && of("deepest") < 1.0 / cos + 0.5, "{runout}");
     let front = Table::read(&folder.join("r/history.csv")).column("runout_front");
     assert!((front[front.len() - 1] - of("front")).abs() < 1e-12);
@@ -99,7 +98,6 @@ fn sliding_block_matches_closed_form() {
     assert!(frame.contains("Name=\"displacement\"") && frame.contains("Name=\"initial_position\""));
 }
 
-/// The slope as closed body with any vertex order (older programs), and as mesh.
 #[test]
 fn terrain_comes_in_every_form() {
     let folder = Folder::new("terrain");
@@ -114,7 +112,7 @@ fn terrain_comes_in_every_form() {
     for [x, y, z] in &corners {
         writeln!(list, "{x:e} {y:e} {z:e}").unwrap();
     }
-    // Ascending indices carry no orientation; two inner triangles share an edge with three others.
+    // Ascending indices carry no orientation.
     for t in [
         "1 3 5", "3 5 7", "2 4 6", "4 6 8", "1 2 3", "2 3 4", "5 6 7", "6 7 8", "1 2 5", "2 5 6", "3 4 7",
         "4 7 8", "1 2 7", "2 7 8",

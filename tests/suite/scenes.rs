@@ -1,5 +1,4 @@
-//! Result files: required fields, finite values, and numerical failures (exit code 3 with cause, place and
-//! time).
+//! Result files and numerical failures (exit code 3).
 
 use super::support::{
     COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot, trackbed,
@@ -358,8 +357,7 @@ fn earlier_results_are_removed() {
     );
 }
 
-/// Numerical failure: code 3, one line with `what` and a time, the same in the summary. Returns the results
-/// directory.
+/// Numerical failure: code 3, one line with `what` and a time, the same in the summary.
 fn fails(folder: &Folder, what: &[&str]) -> PathBuf {
     let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
     let outcome = run(&scene, &out, &[]);

@@ -80,7 +80,6 @@ fn locking_elements_name_remedy() {
     remarked(&warnings, "deep at a clamped face");
 }
 
-/// Cantilever of hex8, one element deep at the clamp (6 % too stiff at ν = 0.4999).
 #[test]
 fn deep_clamped_elements_give_warning() {
     let beam = |counts: &str, set: &[&str]| {
@@ -131,7 +130,6 @@ fn rejects_locking_keys_without_effect() {
     );
 }
 
-/// Slender cantilever, 4 linear elements over its height: default, without modes, and with the full rule.
 #[test]
 fn incompatible_modes_are_default() {
     let tip = |set: &[&str]| {
@@ -235,7 +233,6 @@ fn unlike_stiffnesses_are_named() {
     assert!(error.contains("ratio of Young's moduli 2.0e13") && !error.contains("insufficiently"), "{error}");
 }
 
-/// Plate of 8 × 8 × 2: 675 surface dofs read four times the data of the full solid, ten modes less.
 #[test]
 fn slower_reduction_gives_warning() {
     let folder = Folder::new("reduction");

@@ -61,7 +61,6 @@ fn pressed(yielding: &str, set: &[&str]) -> f64 {
     *history.column("plate_reaction_z").last().unwrap()
 }
 
-/// Linear hardening: E (Y + H ε)/(E + H), by slope and table, both criteria, also on linear elements.
 #[test]
 fn hardening_in_uniaxial_stress() {
     let exact = -20e6 * (50e3 + 2e6 * 0.01) / (20e6 + 2e6);
@@ -75,7 +74,7 @@ fn hardening_in_uniaxial_stress() {
     }
 }
 
-/// 2 c cos φ/(1 − sin φ); friction angle also by a table constant at 30 degrees, and GMRES instead of LU.
+/// 2 c cos φ/(1 − sin φ).
 #[test]
 fn strength_of_a_frictional_cube() {
     let phi = 30.0_f64.to_radians();
@@ -156,8 +155,7 @@ tecplot = false
 tables = true
 "#;
 
-/// Layered K₀ ground: γ z and K₀ γ z at every Gauss point, no motion; low cohesion would reveal any
-/// unloading. Gravity loading gives ν/(1 − ν).
+/// Layered K₀ ground: γ z and K₀ γ z at every Gauss point, no motion. Gravity loading gives ν/(1 − ν).
 #[test]
 fn initial_stress_of_level_ground() {
     let gravity = GROUND

@@ -1,9 +1,9 @@
-//! Plastic solids: energy balance, loss of equilibrium, threads, grains on plastic ground, mesh formats.
+//! Plastic solids.
 
 use super::determinism::same_bits;
 use super::support::{COUPLED, Folder, PLASTIC, Table, json, repository, run, scene_folder, trackbed_in};
 
-/// Soil column 1 m × 1 m × 4 m, strength 2 c cos φ/(1 − sin φ) = 62.787 kPa.
+/// Strength 2 c cos φ/(1 − sin φ) = 62.787 kPa.
 const COLUMN: &str = r#"title = "column"
 
 [solid]
@@ -60,8 +60,7 @@ history_interval = 0.1
 tables = true
 "#;
 
-/// Force control beyond the strength: exit code 3 with location, results up to the last equilibrium. Limit
-/// load to 0.1 % (steps are halved down to 1e-4 of the ramp).
+/// Force control beyond the strength. Limit load to 0.1 % (steps are halved down to 1e-4 of the ramp).
 #[test]
 fn limit_load_keeps_last_equilibrium() {
     let folder = Folder::new("beyond");
@@ -106,8 +105,7 @@ fn limit_load_keeps_last_equilibrium() {
 const TOP: [[f64; 2]; 8] =
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
 
-/// Pulse of more than twice the strength, average acceleration: work = stored + plastic + damping to 0.5 %;
-/// the remainder is `numerical`.
+/// Pulse of more than twice the strength, average acceleration: work = stored + plastic + damping to 0.5 %.
 #[test]
 fn dynamic_plastic_column_conserves_energy() {
     let folder = Folder::new("pulse");
@@ -193,8 +191,8 @@ fn soil(cohesion: &str) -> Vec<String> {
         .into()
 }
 
-/// Strong soil equals elastic ground: positions, forces, deflections to 1e-6 of the largest, energies to 1e-6
-/// of the strain energy, velocity to 1e-5. Lateral motion is only rounding.
+/// Strong soil equals elastic ground: positions, forces, deflections to 1e-6 of the largest, energies to
+/// 1e-6 of the strain energy, velocity to 1e-5.
 #[test]
 fn strong_soil_matches_elastic_ground() {
     let folder = scene_folder("strong", COUPLED);
@@ -228,7 +226,6 @@ fn strong_soil_matches_elastic_ground() {
     assert_eq!(summary["newton"]["factorizations_unsymmetric"], 0, "nothing yields");
 }
 
-/// Plastic ground: energy error 1 %, interface sums to rounding, more settlement than elastic ground.
 #[test]
 fn grains_press_into_weak_soil() {
     let folder = scene_folder("weak", COUPLED);

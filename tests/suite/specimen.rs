@@ -4,7 +4,6 @@ use super::support::{Folder, Table, json, run, trackbed};
 use std::f64::consts::PI;
 use std::fs;
 
-/// Column of 3 x 3 x 10 spheres, radius 1 cm, gripped end layers, bonds of E = 1 GPa.
 fn column(bond: &str) -> String {
     let layer = |name: &str, low: f64, layers: u32, motion: &str| {
         format!(

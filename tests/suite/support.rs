@@ -76,7 +76,7 @@ impl Outcome {
     }
 }
 
-/// Threads of programs run without `--threads`: tests run side by side, and more threads than cores slow each other down.
+/// Threads of programs run without `--threads`.
 pub const ONE_THREAD: (&str, &str) = ("RAYON_NUM_THREADS", "1");
 
 /// Runs the program in `dir`.
@@ -411,7 +411,6 @@ frames = 2
 tecplot = true
 "#;
 
-/// Planes of material "stone" around a square shaft, floor at z = 0 [m].
 pub fn shaft(width: f64) -> String {
     let plane = |point: [f64; 3], normal: [f64; 3]| {
         format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")

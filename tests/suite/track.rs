@@ -124,7 +124,6 @@ fn a_single_sleeper_has_no_number() {
     assert_eq!(heads[1..6], ["load", "sleeper_x", "sleeper_y", "sleeper_z", "sleeper_tilt"]);
 }
 
-/// Compares an uninterrupted run with runs interrupted at `breaks`, on up to three threads.
 pub fn goes_on_bit_for_bit(scene: &Path, folder: &Folder, breaks: &[u64]) {
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     trackbed::run::run(scene, &options(&whole, 1)).unwrap();
@@ -150,7 +149,7 @@ fn sleeper_row_resumes_bitwise() {
 }
 
 /// Walton and Braun, e = 0.5, K₂ = 4 K₁: pulses from F₀ to F₁ leave (F₁ − F₀)(1/K₁ − 1/K₂), smaller cycles
-/// nothing. 3 % for inertia, (4 Hz/58 Hz)².
+/// nothing.
 #[test]
 fn seating_removes_initial_settlement() {
     let text = springs(1, HAVERSINE).replace("cycles = 2", "cycles = 3").replace("10 Hz", "4 Hz");

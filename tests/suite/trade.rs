@@ -5,8 +5,7 @@ use super::support::{
 };
 use std::fs;
 
-/// Mass factor 4 equals density × 4 and gravity / 4, bitwise. Deposition uses true masses; main-stage steps
-/// double.
+/// Mass factor 4 equals density × 4 and gravity / 4, bitwise.
 #[test]
 fn mass_factor_keeps_weights_and_settling() {
     let folder = Folder::new("mass_factor");
@@ -76,7 +75,6 @@ fn refusals() {
     assert!(outcome.code == 2 && outcome.stderr.contains("coupling.faces"), "{}", outcome.stderr);
 }
 
-/// `check` uses the inertial number of the load: 16 is accepted on the box test, 1,000 is not.
 #[test]
 fn inertial_number_is_weighed() {
     let scene = repository().join("inputs/ballast/box.toml").display().to_string();
@@ -88,8 +86,7 @@ fn inertial_number_is_weighed() {
     assert!(text.contains("warning: time.mass_factor: found 1000, at which the inertial number"), "{text}");
 }
 
-/// Kinetic and spring energies are bitwise equal; running totals differ in last digits, since non-contacting
-/// pairs share SIMD lanes.
+/// Kinetic and spring energies are bitwise equal.
 #[test]
 fn search_skin_changes_no_motion() {
     let folder = Folder::new("search_skin");

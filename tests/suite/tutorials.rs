@@ -1,6 +1,6 @@
 //! Tutorials: commands run in order in an empty directory and print the shown output.
 //!
-//! `sh` blocks are run; each line of the following `text` block must occur in the output (`…`: any text).
+//! `sh` blocks are run.
 
 use super::support::{Folder, ONE_THREAD, repository};
 use std::path::Path;

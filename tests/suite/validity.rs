@@ -187,7 +187,6 @@ fn measurement_box_above_bed_warns() {
     assert_eq!(status(&none, "measure core"), "warned");
 }
 
-/// Half outside the wall, half below the floor: their porosity includes space outside the bed.
 #[test]
 fn measurement_box_beside_bed_warns() {
     for (corners, at) in [

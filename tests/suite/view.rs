@@ -1,4 +1,4 @@
-//! Server of `trackbed view`: data and access. The page is tested in a browser by `tests/view/check.mjs`.
+//! Server of `trackbed view`: the page is tested in a browser by `tests/view/check.mjs`.
 
 use super::scenes::vtk;
 use super::support::{Folder, repository, run, trackbed};

@@ -15,7 +15,6 @@ fn good_energy(dir: &std::path::Path, bound: f64) {
     assert!(error < bound && momentum < 1e-11, "{error:e} {momentum:e}");
 }
 
-/// Grains stay until the shutter opens; the scale finally bears less than all of them.
 #[test]
 fn hopper_discharges() {
     let out = Folder::new("hopper");
@@ -125,7 +124,6 @@ fn a_servo_follows_pulses() {
     }
 }
 
-/// A platen that holds a force, then moves at a speed; the target ends with the force.
 #[test]
 fn displacement_control_follows_force() {
     let out = Folder::new("servo_driven");

@@ -86,7 +86,7 @@ fn beam() -> Row {
 fn plate() -> Row {
     let mut errors = Vec::new();
     for (keys, count) in [("", 4), ("", 8), ("integration = \"full\"", 8), ("order = \"linear\"", 16)] {
-        // Quarter plate, 1 m × 10 mm, simply supported at mid-plane; elements 12:1 and 6:1.
+        // Quarter plate, 1 m × 10 mm, simply supported at mid-plane.
         let mut text = block([
             &format!("{{ lines = [0.0, 0.5], counts = [{count}] }}"),
             &format!("{{ lines = [0.0, 0.5], counts = [{count}] }}"),

@@ -1,4 +1,4 @@
-//! Coupling: windows, soft ground, heavy grains, element and material borders, lift-off, edge of the mesh.
+//! Coupling: windows, soft ground, heavy grains, borders, lift-off, edge of the mesh.
 
 use super::case::{Case, off};
 use super::scenes::{ball, mass, material, stone, time};
@@ -16,7 +16,6 @@ rows! {
     folding: "surface that folds";
 }
 
-/// Ground of 1 m × 1 m × 0.5 m, top at z = 0, fixed base; `counts` along and down.
 fn ground(counts: [u32; 2], keys: &str) -> String {
     let [n, layers] = counts;
     format!(
@@ -121,7 +120,6 @@ fn heavy() -> Row {
     )
 }
 
-/// Frictionless sliding on a strip of 1 m × 0.25 m, material border at x = 0.5 m.
 fn sliding() -> Row {
     let mut mesh = Mesh::block([8, 2, 1], [1.0, 0.25, 0.25]);
     mesh.coordinates.iter_mut().for_each(|x| x[2] -= 0.25);
@@ -199,7 +197,6 @@ fn seats() -> Row {
     let iterated = run(1.0, 1.0, "scheme = \"iterated\"");
     let corner = [weight_error(&run(1.0, 1.0, "substeps = 1"), 0.05), weight_error(&iterated, 0.05)];
     assert!(edge < 1e-6 && corner.iter().all(|e| *e < 1e-6), "{edge} {corner:?}");
-    // A corner node has a quarter of an inner node's mass, which limits the sub-steps.
     let chatter = run(1.0, 1.0, "substeps = \"auto\"");
     assert!(chatter.warned("coupling: interface dashpot error "));
     let account = chatter.value("/energy/largest_relative_error");

@@ -164,14 +164,12 @@ fn restitution() -> Row {
     };
     let text = |e: f64| from(0.0105, e);
     for e in [1e-2, 0.1, 0.5, 1.0] {
-        // Default steps: energy errors of 0.3 to 3 %, depending on the phase of impact.
         let shorter: &[&str] = if e < 0.5 { &["time.grain_step_fraction=0.4"] } else { &[] };
         let case = Case::run(&text(e), shorter).good();
         errors.push((case.velocity("ball", 0.1)[2] - e).abs());
         assert!(case.value("/energy/largest_relative_error") < 0.01);
     }
     assert!(errors.iter().all(|e| *e < 5e-3), "{errors:?}");
-    // The initial dashpot force exceeds the accuracy of the balance, depending on the phase of impact.
     let sticky = [0.0105, 0.010_505, 0.010_51].map(|height| Case::run(&from(height, 1e-3), &[]).good());
     assert!(sticky.iter().all(|case| case.velocity("ball", 0.1)[2].abs() < 5e-3));
     assert!(sticky.iter().any(|case| case.summary()["verdict"]["outcome"] == "warned"));

@@ -100,7 +100,6 @@ fn skipping_walls() -> Row {
     )
 }
 
-/// Plate on a ball on the floor: five pulses from 2 to 4 N.
 fn pressed(frequency: f64, max_speed: f64, keys: &str) -> Case {
     let start = 0.2;
     let text = stone(&format!("restitution = 0.5\n{keys}"))
@@ -120,7 +119,6 @@ fn servo_walls() -> Row {
     let followed = [1.0, 10.0].map(|f| error(pressed(f, 1.0, "")));
     let stiff = ["stiffness = 1e4\n", "stiffness = 1e8\n"].map(|k| error(pressed(10.0, 1.0, k)));
     assert!(followed.iter().chain(&stiff).all(|e| *e < 0.02), "{followed:?} {stiff:?}");
-    // Fifty and five steps a pulse; 20 um in 5 ms need 6 mm/s.
     let beyond = [pressed(100.0, 1.0, ""), pressed(1000.0, 1.0, ""), pressed(100.0, 1e-3, "")].map(|case| {
         let case = case.good();
         let summary = case.summary();

@@ -53,7 +53,7 @@ fn reached(case: &Case) -> f64 {
     text.split_once(':').unwrap().0.parse().unwrap()
 }
 
-/// Computed over exact limit pressure, to the smallest step (5e-5); cohesion 10 kPa, angles [degrees].
+/// Computed over exact limit pressure, to the smallest step (5e-5).
 fn strength(friction: f64, dilation: f64) -> f64 {
     let right = bursting(1e4, friction.to_radians().tan());
     1.05 * reached(&burst(&mohr_coulomb(1e4, friction, dilation), 1.05 * right, 0.05))
@@ -93,7 +93,7 @@ fn dilation() -> Row {
     )
 }
 
-/// Ground of 2 m × 1 m; a smooth wall moves by `way` [m]. Force over Rankine's.
+/// Ground of 2 m × 1 m. Force over Rankine's.
 fn rankine(friction: f64, way: f64) -> f64 {
     let text = "title = \"wall\"\n\n[solid]\n\n[solid.block]\nx = { lines = [0.0, 2.0], counts = [2] }\n\
                 y = { lines = [0.0, 1.0], counts = [1] }\nz = { lines = [0.0, 1.0], counts = [4] }\n"

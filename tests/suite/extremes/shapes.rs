@@ -42,8 +42,6 @@ fn borders() -> Row {
     )
 }
 
-/// Clump of 2 mm spheres at `places` (in diameters), rotated by `turn` from its principal axes, above a floor
-/// at `height`.
 fn dropped(places: &[[u32; 2]], height: f64, turn: [f64; 4], time: &str) -> Case {
     let list: Vec<String> = places
         .iter()
@@ -70,7 +68,6 @@ fn needle_places() -> Vec<[u32; 2]> {
     (0..50).map(|k| [k, 0]).collect()
 }
 
-/// Final floor force over the weight of `count` spheres, and height of the middle over radius.
 fn lies(case: &Case, count: usize) -> [f64; 2] {
     let forces = case.history("floor_force_z");
     let late = &forces[forces.len() * 9 / 10..];
@@ -116,7 +113,6 @@ fn flat() -> Row {
     )
 }
 
-/// Many simultaneous contacts, each damped for the whole mass, between two checks of the critical time step.
 fn slap() -> Row {
     let mut stopped = 0;
     for turn in [0.1_f64, 0.2, 0.3] {

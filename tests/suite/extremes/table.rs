@@ -1,5 +1,3 @@
-//! Rows of the table of extremes, its printout, and its page.
-//!
 //! `cargo test --workspace --release --test suite extremes::table -- --ignored --nocapture` runs and prints
 //! every row.
 

@@ -95,7 +95,6 @@ fn results_are_not_replaced_in_silence() {
     assert!(log.starts_with("two\\u{7}others\n"), "{log}");
 }
 
-/// H1: distinct, repeatable default directories for variants and equal names; the last line prints the path.
 #[test]
 fn default_folders_are_distinct() {
     let folder = Folder::new("variants");

@@ -1,5 +1,4 @@
-//! Random changes of one to three scene keys: `check` exits with 0 or 2 and a one-line reason; an accepted
-//! scene does not exit with 2 when run.
+//! Random changes of one to three scene keys.
 
 use super::super::support::{COUPLED, Folder, GRAINS, PLASTIC, SOLID, repository, small_block, write_lists};
 use super::within;

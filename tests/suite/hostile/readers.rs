@@ -1,5 +1,4 @@
-//! Random changes to files of every format: readers return a mesh or one error, within limits of time and
-//! memory. Shared with the targets of `fuzz/`.
+//! Random changes to files of every format, shared with the targets of `fuzz/`.
 
 use super::super::support::{COUPLED, Folder, PLASTIC, repository, run, small_block};
 use std::collections::BTreeMap;

@@ -129,7 +129,6 @@ fn file_size_limit_names_file() {
     assert!(text.starts_with("error: ") && text.contains("cannot be written"), "{text}");
 }
 
-/// Ctrl-C is acknowledged within a second: a stage with nothing to save ends, a long step announces its end.
 #[test]
 fn an_interrupt_is_acknowledged_at_once() {
     let folder = Folder::new("acknowledged");

@@ -57,8 +57,7 @@ fn resolve(scopes: &Scopes, from: &ModulePath, path: &[String], depth: usize) ->
     Some(Target::Module(module))
 }
 
-/// Graph of a crate. A re-export (`pub use`) ties its user to the defining file. Methods count if implemented
-/// in another file than their type.
+/// Graph of a crate.
 pub fn graph(scopes: &Scopes) -> Graph {
     let mut graph = Graph::new();
     let mut tie = |from: &str, to: String, name: &str| {
@@ -117,7 +116,6 @@ impl Circle {
     }
 }
 
-/// Entry of a directory that contains a file; `x.rs` next to `x/` counts as `x/mod.rs`.
 fn entry(folder: &str, file: &str, folders: &BTreeSet<String>) -> Option<String> {
     let rest = file.strip_prefix(folder)?;
     if rest == ".rs" {

@@ -1,5 +1,3 @@
-//! Structure of the sources: no dependency cycles, short functions, standard terms.
-//!
 //! `cargo test --release --test suite structure -- --nocapture` prints details.
 
 mod graph;
@@ -123,7 +121,6 @@ const SYSTEM: [&str; 10] = [
 
 const SYSTEM_PATHS: [&str; 4] = ["\"/proc/", "\"/dev/", "\"/sys/", "\"/tmp"];
 
-/// Lines of production code, without comments and the test modules at the end of files.
 fn production(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));
     lines.enumerate().map(|(k, line)| (k + 1, line)).filter(|(_, line)| !line.trim_start().starts_with("//"))
@@ -161,7 +158,6 @@ fn functions_are_short() {
     assert!(long.is_empty(), "{} functions of more than {LONGEST} lines", long.len());
 }
 
-/// Keys in error messages must exist in a scene or a table of trains.
 #[test]
 fn keys_in_errors_exist() {
     let sources = files(&[".rs"]);

@@ -104,9 +104,7 @@ pub fn replaced_phrases(page: &str) -> Vec<(String, bool)> {
     all
 }
 
-/// Places of replaced phrases in a file, also across the lines of a paragraph or comment.
 pub fn phrases_in(file: &str, text: &str, phrases: &[(String, bool)]) -> Vec<String> {
-    // Words in lower case with their lines; a sentence or another mark ends a phrase.
     let mut words: Vec<(usize, String)> = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let line = line.trim_start().trim_start_matches(['/', '!', '#', '|', '>', '*']);

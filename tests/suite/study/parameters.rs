@@ -5,7 +5,7 @@ use crate::suite::report::Page;
 use crate::suite::support::{Folder, json, snapshot, trackbed};
 use std::fs;
 
-/// Free motion at 1 m/s: height 0.06 m − t; friction has no effect.
+/// Free motion at 1 m/s: height 0.06 m − t.
 const LINEAR: &str = r#"title = "Height of a free sphere"
 scene = "scene.toml"
 
@@ -125,7 +125,6 @@ fn misfit_ranks_cases() {
     assert_eq!(best.unwrap()["case"], ranked[0]["case"]);
 }
 
-/// Standard error and effect of an axis with listed values; targets next to errors.
 #[test]
 fn listed_values_have_responses() {
     let text = LINEAR.split("[sampling]").next().unwrap().to_string()

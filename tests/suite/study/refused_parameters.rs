@@ -107,7 +107,6 @@ fn rejects_bad_targets() {
     refused("\"ball_z\"\n", "\"ball_z\"\ntake = \"curve\"\n", line);
 }
 
-/// Samples outside the range of a scene key are rejected before the first run.
 #[test]
 fn rejects_samples_of_invalid_scenes() {
     let folder = folder("study_invalid_samples", &STUDY.replace("[0.2, 2.0]", "[-1.0, 2.0]"));
