@@ -4,8 +4,6 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use trackbed_io::system;
 
 /// System allocator; failed requests exit with code 3.
-///
-/// The standard library prints two lines and possibly a backtrace, which may hang.
 pub struct Allocator;
 
 // SAFETY: passed to the system allocator; no null pointer is returned.

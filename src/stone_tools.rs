@@ -1,7 +1,6 @@
 //! Grains of spheres from closed surfaces.
 //!
-//! Sieve size 1 m and principal axes along x, y, z; scenes scale them. Results do not depend on threads: only
-//! different grains are computed in parallel.
+//! Sieve size 1 m and principal axes along x, y, z; scenes scale them.
 
 pub mod fill;
 pub mod grow;

@@ -78,8 +78,7 @@ impl Probe {
         )
     }
 
-    /// Simple cubic lattice of mean spheres with six contacts each, as in a packed bed. Steps are too short
-    /// to move them.
+    /// Simple cubic lattice of mean spheres with six contacts each, as in a packed bed.
     ///
     /// # Errors
     /// No stable time step.

@@ -1,4 +1,4 @@
-//! Scene files: [`scene`] has the keys, [`model`] resolves them into models, [`plausible`] checks values against usual ranges.
+//! Scene files: keys, models, and plausibility of values.
 
 // Closed or full output must not stop a run.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Prepares the process, before other threads exist; records panic locations; with `RUST_BACKTRACE`, also prints.
+/// Prepares the process, before other threads exist.
 pub fn install() {
     system::prepare();
     let usual = panic::take_hook();

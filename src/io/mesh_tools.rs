@@ -254,7 +254,6 @@ mod tests {
         let lists = crate::read::read_lists(&nodes, &elements, Some(&dof), &Default::default()).unwrap();
         let info = info(&lists.mesh, &lists.constraints);
         assert_eq!(info.bounds, [[-10.0, 0.0, -5.0], [10.0, 3.6, 1.7]]);
-        // Subgrade 20 m x 5 m; trapezoids of height 1.2 m and 0.5 m, half widths 4.75, 2.95 and 2.2 m.
         let volumes = [20.0 * 5.0, (4.75 + 2.95) * 1.2, (2.95 + 2.2) * 0.5].map(|area| 3.6 * area);
         for (material, volume) in info.materials.iter().zip(volumes) {
             assert!((material.volume - volume).abs() < 1e-9, "{material:?}, expected {volume}");

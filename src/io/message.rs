@@ -72,7 +72,7 @@ fn short_numbers(text: &str) -> Cow<'_, str> {
     if out.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(out + rest) }
 }
 
-/// Escapes control characters and shortens: numbers, and the text to `longest`, with the total length.
+/// Escapes control characters and shortens.
 pub fn shown(text: &str, longest: usize) -> String {
     let text = short_numbers(text);
     if text.len() <= longest && !text.contains(char::is_control) {

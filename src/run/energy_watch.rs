@@ -8,10 +8,10 @@ use trackbed_io::failure::Failure;
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
 
 /// Fraction of elastic and kinetic energy added to the reference energy, which is almost zero in the first
-/// steps: first contacts must not stop the run.
+/// steps.
 const HELD: f64 = 0.25;
 
-/// Checks allowed above the stop limit, because the first step from rest has almost no reference energy.
+/// Checks allowed above the stop limit: the first step from rest has almost no reference energy.
 const FIRST: u32 = 2;
 
 /// Relative energy error over a run.
@@ -113,8 +113,6 @@ mod tests {
         assert!((watch.worst() - 0.05 / 0.8).abs() < 1e-12, "{watch:?}");
     }
 
-    /// Numerical energy gain keeps the balance closed: a gain of 0.3 J of 1 J stored must stop the run like
-    /// an error.
     #[test]
     fn a_gain_of_the_time_integration_stops_a_run() {
         let closed = EnergyBalance {
@@ -131,7 +129,6 @@ mod tests {
         EnergyWatch::default().follow(&lost).unwrap();
     }
 
-    /// From rest, the first step of a ramp errs by a third of its reference energy, later steps by less.
     #[test]
     fn transient_error_continues_run() {
         let ramp = |error: f64, work: f64| {
@@ -152,7 +149,6 @@ mod tests {
         assert!((1..4).any(|k| watch[1].follow(&explodes(k)).is_err()));
     }
 
-    /// The error of a first contact is large relative to work, small relative to kinetic energy.
     #[test]
     fn the_first_steps_are_judged_by_what_moves() {
         let mut watch = EnergyWatch::default();

@@ -217,7 +217,6 @@ mod tests {
         assert_eq!(joined(&breaks, None).len(), 5);
     }
 
-    /// Samples of lg N = a − b M return b within three errors.
     #[test]
     fn b_values_of_known_laws() {
         let mut seed = 1_u64;

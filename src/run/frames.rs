@@ -329,7 +329,7 @@ fn chains(view: GrainsView<'_>, contacts: &[dem::measure::ContactRecord], strong
     frame
 }
 
-/// With the bodies of faceted grains. Infinite planes become squares as wide as the grains.
+/// With the bodies of faceted grains.
 fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
     let (mut frame, mut of) = (WallFrame::default(), Vec::new());
     let mut add = |id, points: &[dem::Vec3], polygons: &[&[u32]]| {

@@ -197,7 +197,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     })
 }
 
-/// None before the first checkpoint: `own` if existing files belong to the run.
+/// None before the first checkpoint.
 ///
 /// # Errors
 /// No run of this scene, or an unsuitable checkpoint.
@@ -281,7 +281,7 @@ fn carry_out<'a>(run: &Run<'a>, mut state: RunState<'a>, lock: &Lock) -> Result<
     if let Some(place) = lock.moved() {
         return Err(run.gone(place.as_deref()));
     }
-    // The directory may be missing, or hold old results. The run failure has priority.
+    // The directory may be missing, or hold old results.
     let cleared = if run.prepared.get() { Ok(()) } else { run.prepare() };
     let written = cleared.and_then(|()| summary.write(run.dir)).and_then(|()| summary.write_log(run.dir));
     let result = match (result, run.checkpoints.kept()) {

@@ -1,7 +1,6 @@
 //! Lock of a results directory.
 //!
-//! `run.lock` contains process id and scene, under an advisory lock that ends with the process. A file left
-//! by a killed run blocks nothing.
+//! `run.lock` contains process id and scene, under an advisory lock that ends with the process.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};

@@ -1,7 +1,4 @@
 //! Memory prediction of a solid.
-//!
-//! The model is measured, the factorization follows from the equation structure, results are a few nodal
-//! vectors.
 
 use serde_json::{Value, json};
 use trackbed_fem::{Method, Regime};

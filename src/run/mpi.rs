@@ -1,7 +1,6 @@
 //! Ranks started by `mpirun`, via rsmpi.
 //!
-//! MPI only waits, so a waiting rank checks other local processes. `mpirun` ends all ranks soon after a death
-//! (OpenMPI 4.1: about 0.1 s), so the loss is reported at once.
+//! `mpirun` ends all ranks soon after a death (OpenMPI 4.1: about 0.1 s), so the loss is reported at once.
 
 use super::origin::quoted;
 use ::mpi::environment::Universe;
@@ -107,7 +106,7 @@ impl World {
     /// Runs `lead` on the first rank, `follow` on others; `out`: results directory.
     ///
     /// # Errors
-    /// Failures of the first rank. A lost rank ends all processes.
+    /// Failures of the first rank.
     pub fn share(
         mut self,
         lead: impl FnOnce(Box<dyn Link>) -> Result<(), Failure>,

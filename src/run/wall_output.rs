@@ -34,8 +34,7 @@ impl<S: System> Recorder<S> for Walls {
     }
 }
 
-/// Adds patch walls, numbered from `id`; `extent`: grain centre and half size of plane squares. Returns the
-/// next number.
+/// Adds patch walls, numbered from `id`.
 pub fn polygons(
     view: GrainsView<'_>,
     part: &GrainsPart,

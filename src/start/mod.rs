@@ -1,6 +1,4 @@
 //! `trackbed new`: directory with a commented, runnable scene.
-//!
-//! Templates ([`TEMPLATES`]) are scenes of `inputs/` with their files, embedded in the program.
 
 use std::path::{Path, PathBuf};
 use trackbed_io::failure::Failure;

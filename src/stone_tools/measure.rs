@@ -1,7 +1,7 @@
 //! Fit of spheres to a body, with lengths over the sieve size.
 //!
 //! Distances run from surface points to the union of spheres, d = min(|p − c| − r): exact outside, else the
-//! depth below the sphere that covers most. The largest distance includes the overhang.
+//! depth below the sphere that covers most.
 
 use std::fmt;
 
@@ -94,7 +94,6 @@ pub fn union_shape(clump: &Clump) -> UnionShape {
     let hull = convex_hull(&points).ok().and_then(|s| Polyhedron::new(&s).ok());
     UnionShape {
         sphericity: sphericity(clump.volume, exposed.iter().map(|e| e.1).sum()),
-        // The hull of the points lies inside the spheres' hull by up to 1 %.
         convexity: hull.map_or(1.0, |h| (clump.volume / h.moments().volume).min(1.0)),
     }
 }

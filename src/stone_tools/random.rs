@@ -1,7 +1,7 @@
 //! Random stones: convex hulls of points near an ellipsoid.
 //!
-//! Random points on a sphere are pushed apart and moved radially by up to 10 %; their hull is stretched to
-//! the required extents. Angularity a sets their number n = 8 · 10^(1 − a), from 80 to 8.
+//! Random points on a sphere are pushed apart and moved radially by up to 10 %. Angularity a sets their
+//! number n = 8 · 10^(1 − a), from 80 to 8.
 //!
 //! Ratios after T. Zingg (1935): elongation b/a and flatness c/b of the extents a ≥ b ≥ c.
 
@@ -26,7 +26,7 @@ pub struct Form {
     pub angularity: [f64; 2],
 }
 
-/// Returns stone `index` of a seed in its principal frame, sieve size 1 m; independent of their number.
+/// Returns stone `index` of a seed in its principal frame, sieve size 1 m.
 pub fn stone(seed: u64, index: u64, form: &Form) -> Polyhedron {
     let mut random = Random::new(seed, PURPOSE + 0x1_0000 * (index + 1));
     let mut draw = |[lo, hi]: [f64; 2]| lo + (hi - lo) * random.uniform();
@@ -67,8 +67,7 @@ fn points(random: &mut Random, count: usize, axes: [f64; 3]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Stretches rotate the principal frame slightly, so a few rounds are needed. Result: principal frame, sieve
-/// size 1.
+/// Stretches rotate the principal frame slightly, so a few rounds are needed.
 fn fitted(body: Polyhedron, elongation: f64, flatness: f64) -> Polyhedron {
     let wanted = [1.0 / elongation, 1.0, flatness];
     let mut body = body.in_principal_frame();

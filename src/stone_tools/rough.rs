@@ -4,8 +4,7 @@
 //! measured compression and direct shear of ballast (B. Suhr, K. Six, Granular Matter 24:114, 2022,
 //! 10.1007/s10035-022-01274-y).
 //!
-//! Random centres are pulled to the middle and pushed apart up to the allowed overlap; stones without the
-//! required ratios are redrawn.
+//! Random centres are pulled to the middle and pushed apart up to the allowed overlap.
 
 use std::fmt;
 
@@ -74,7 +73,7 @@ impl fmt::Display for Rough {
     }
 }
 
-/// Returns `count` stones of a seed; each depends only on its index.
+/// Returns `count` stones of a seed.
 ///
 /// # Errors
 /// Number of draws without success.

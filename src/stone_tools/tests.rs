@@ -59,7 +59,6 @@ fn sphere_in_cube_matches_closed_form() {
     // 2/5 m r² over m a²/6 with the volumes as masses.
     near(report.inertia_ratio[0], 0.4 * (PI / 6.0) * 0.25 * 6.0, 1e-9);
     near(report.max_distance, 0.75_f64.sqrt() - 0.5, 5e-3);
-    // Mean distance of the surface of the cube of side 2 from its centre: 1.280789.
     near(report.mean_distance, 0.5 * 1.280_789 - 0.5, 1e-3);
     near(report.sphericity.unwrap(), 1.0, 1e-9);
     near(report.surface_sphericity, (PI / 6.0).cbrt(), 1e-9);
@@ -251,8 +250,7 @@ fn rejects_several_or_thin_bodies() {
     assert_eq!(made[0].stone.spheres.len(), 6);
 }
 
-/// Two equal spheres at centre distance d: V = 2 (4/3)πr³ − π(4r + d)(2r − d)²/12, S = 2·2πr(r + d/2); the
-/// hull is a cylinder of length d with two hemispheres.
+/// Two equal spheres at centre distance d.
 #[test]
 fn two_spheres_match_closed_form() {
     let (r, d) = (1.0, 1.5);

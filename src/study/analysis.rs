@@ -82,7 +82,7 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Returns value and result at both ends of parameter `index`; extreme results of categories.
+    /// Returns value and result at both ends of parameter `index`.
     pub fn ends(&self, index: usize, factor: &Factor) -> Option<[[f64; 2]; 2]> {
         let is_finite = |line: &[[f64; 2]]| line.as_flattened().iter().all(|v| v.is_finite());
         let line = self.responses.get(index).filter(|line| line.len() > 1 && is_finite(line))?;

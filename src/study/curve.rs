@@ -113,7 +113,7 @@ fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     Some(before[1] + share * (after[1] - before[1]))
 }
 
-/// √(∫ y² dx / length), exact if piecewise linear; |y| of a single point.
+/// √(∫ y² dx / length), exact if piecewise linear.
 fn root_mean_square(points: &[[f64; 2]]) -> f64 {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return 0.0 };
     if last[0] <= first[0] {

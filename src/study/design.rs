@@ -25,8 +25,6 @@ const POLYNOMIALS: [(u32, u32, &[u32]); SOBOL_DIMENSIONS - 1] = [
 ];
 
 /// Returns `count` points of a random Latin hypercube: one in each of `count` equal intervals of each dimension.
-///
-/// Of several hypercubes, the one with the least correlation between its dimensions.
 pub fn latin_hypercube(count: usize, dimensions: usize, seed: u64) -> Vec<Vec<f64>> {
     let hypercube = |candidate: usize| -> Vec<Vec<f64>> {
         let column = |d: usize| {
@@ -119,7 +117,6 @@ mod tests {
         let points = latin_hypercube(100, 2, 1);
         assert_eq!(points, latin_hypercube(100, 2, 1));
         assert_ne!(points, latin_hypercube(100, 2, 2));
-        // The standard deviation of a random correlation is 0.1; the least of 200 is far below.
         let r: f64 = points.iter().map(|p| 12.0 * (p[0] - 0.5) * (p[1] - 0.5)).sum::<f64>() / 100.0;
         assert!(r.abs() < 0.01, "{r}");
         // Positions within the strata vary.
@@ -179,7 +176,6 @@ mod tests {
         for seed in [None, Some(3)] {
             let points = sobol(256, SOBOL_DIMENSIONS, seed);
             assert!((0..SOBOL_DIMENSIONS).all(|d| occupied(&points, d, 256) == 256), "{seed:?}");
-            // Equal dimensions would be on a diagonal: 256 points in 256 cells of 16 by 16.
             for (a, b) in (0..SOBOL_DIMENSIONS).flat_map(|a| (0..a).map(move |b| (a, b))) {
                 let cell = |p: &Vec<f64>| 16 * (p[a] * 16.0) as usize + (p[b] * 16.0) as usize;
                 let cells: std::collections::BTreeSet<usize> = points.iter().map(cell).collect();

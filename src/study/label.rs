@@ -6,8 +6,7 @@ use trackbed_run::Hash;
 /// Longest name [bytes]; most file systems allow 255 with extension.
 const LONGEST: usize = 100;
 
-/// Returns distinct file names: `_` between the parts of a label, `-` for characters other than letters, digits and
-/// `._=+`. Only equal and cut names end in a hash.
+/// Returns distinct file names.
 pub fn file_names<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
     let labels: Vec<&str> = labels.collect();
     let plain: Vec<String> = labels.iter().map(|label| file_name(label)).collect();

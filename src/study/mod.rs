@@ -1,7 +1,6 @@
 //! Studies: variations of a scene, compared in error and cost, or in their response to parameters.
 //!
-//! A `file` is resolved to a `plan`, run as separate processes (`schedule`) in a directory (`store`). Tables
-//! (`outcome`, `analysis`) depend only on that directory, so several machines may share a study.
+//! A `file` is resolved to a `plan`, run as separate processes (`schedule`) in a directory (`store`).
 
 mod analysis;
 mod axis;

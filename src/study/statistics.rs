@@ -132,13 +132,11 @@ mod tests {
         assert_relative_eq!(fit.r_squared, 1.0, max_relative = 1e-12);
         assert!(fit.standard_errors.iter().all(|s| *s < 1e-6), "{fit:?}");
         assert_relative_eq!(fit.at(&[0.0, 0.0, 2.0]), 2005.0, max_relative = 1e-9);
-        // Standardized: slope times the deviation of the parameter over the deviation of the result.
         let deviation = |v: &[f64]| Standardized::of(v).unwrap().deviation;
         let expected = 2.0 * deviation(&columns(&points)[0]) / deviation(&y);
         assert_relative_eq!(fit.coefficients[0], expected, max_relative = 1e-6);
     }
 
-    /// Simple regression in closed form: b = r, R² = r², SE = √((1 − r²)/(n − 2)).
     #[test]
     fn regression_of_one_parameter_is_correlation() {
         let (x, y) = (vec![1.0, 2.0, 3.0, 4.0], [1.0, 3.0, 2.0, 4.0]);
@@ -160,7 +158,6 @@ mod tests {
         assert!(Regression::fit(&[x[0][..3].to_vec(), x[1][..3].to_vec()], &[1.0, 2.0, 4.0]).is_none());
     }
 
-    /// Without ties ρ = 1 − 6 Σ d² / (n (n² − 1)).
     #[test]
     fn rank_correlation_matches_closed_form() {
         let x = [1.0, 20.0, 30.0, 41.0, 500.0];

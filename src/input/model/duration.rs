@@ -8,7 +8,7 @@ use trackbed_coupling::track::CyclicLoad;
 const MOST: u64 = 1_000_000_000_000;
 pub(super) const TIME_INTEGRATION: &str = "[solid.dynamics] or [solid.quasi_static]";
 
-/// Counted time step [s]: of a solid-only model, else the constant DEM time step.
+/// Counted time step [s]: of a solid-only model, else the DEM time step.
 ///
 /// # Errors
 /// The DEM time step is not constant.

@@ -1,4 +1,4 @@
-//! Scene → models: names resolved, ranges checked, values derived. Later code reads no scene keys.
+//! Scene → models: names resolved, ranges checked, values derived.
 
 mod duration;
 pub mod exchange;

@@ -71,7 +71,6 @@ fn modulus(material: Material, size: f64, pressure: f64) -> Option<f64> {
     };
     let force = pressure * size * size;
     let effective = young / (2.0 * (1.0 - material.poisson * material.poisson));
-    // Hertz radius of spheres of half the size; corners crush until the peak pressure equals their strength.
     let circle = libm::cbrt(0.75 * force * 0.25 * size / effective);
     let circle = circle.max((1.5 * force / (PI * material.corner_strength)).sqrt());
     Some(ELASTIC_MODULUS * 2.0 * effective * circle / size)

@@ -1,7 +1,6 @@
 //! Plausibility of scene values, such as unit errors (80 Pa for 80 MPa, millimetres for metres).
 //!
-//! Beyond the typical range by a factor of 30 is *implausible*, otherwise *unusual*. Ranges are wide: false
-//! warnings are worse than missing ones.
+//! Beyond the typical range by a factor of 30 is *implausible*, otherwise *unusual*.
 
 mod bed;
 mod borders;

@@ -1,4 +1,4 @@
-//! Loads near natural frequencies: a mesh on a rigid base resonates, real ground does not.
+//! Loads near natural frequencies.
 
 use super::findings::Finding;
 use crate::model::Job;
@@ -39,7 +39,7 @@ pub struct Resonance {
     pub mode: f64,
     /// Effective over total mass [-].
     pub share: f64,
-    /// Undamped modal over static deflection, load distributed like mass: share / |1 − (f/fₙ)²| [-].
+    /// Undamped modal over static deflection, load distributed like mass.
     pub amplification: f64,
 }
 
@@ -143,7 +143,6 @@ pub fn near_mode(job: &Job) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// First vertical mode of a column, c/4H = 7.9 Hz; lateral modes do not respond to vertical load.
     #[test]
     fn axis_and_frequency_decide() {
         let modes = Modes {

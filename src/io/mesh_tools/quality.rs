@@ -1,11 +1,9 @@
 //! Shape quality of elements.
 //!
 //! Scaled Jacobian: least det J / (|g1| |g2| |g3|) over corners and Gauss points of the mass, g the columns
-//! of J = dx/dξ. Knupp 2000 uses corners only, which misses curved edges. At a pyramid's apex the limits
-//! along the four uprights count.
+//! of J = dx/dξ. At a pyramid's apex the limits along the four uprights count.
 //!
-//! Aspect ratio: longest over shortest edge, between corners. Volume: integration rule of the mass; for
-//! hexahedra 3x3x3 Gauss points, exact, since det J has degree ≤ 5.
+//! Aspect ratio: longest over shortest edge, between corners. Volume: integration rule of the mass.
 
 use trackbed_fem::Mesh;
 use trackbed_fem::element::{ElementKind, mass_points};
@@ -127,8 +125,6 @@ mod tests {
 
     #[test]
     fn curved_element_volume_is_exact() {
-        // Raising the mid-sides of all edges along x by h gives a parabolic arch of equal volume; raising
-        // only the top ones adds 2/3 h.
         let h = 0.15;
         let mut x = brick([1.0; 3]);
         for (point, [a, b]) in x[8..].iter_mut().zip(ElementKind::Hex20.edges()) {
@@ -141,7 +137,6 @@ mod tests {
 
     #[test]
     fn detects_inversion_at_corner() {
-        // A mid-side beyond a quarter of the edge makes det J negative at the corner.
         let mut x = brick([1.0; 3]);
         x[8][0] = 0.2;
         let found = quality(ElementKind::Hex20, &x);

@@ -196,7 +196,7 @@ pub(super) fn boundary(builder: &mut Builder, deck: &mut Deck, block: &Block) ->
     Ok(())
 }
 
-/// OP=NEW in the first step removes all constraints of the model; the step must then contain no others.
+/// OP=NEW in the first step removes all constraints of the model.
 fn renew(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(), ReadError> {
     if deck.renewed {
         return Ok(());

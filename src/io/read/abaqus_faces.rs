@@ -18,7 +18,7 @@ const WEDGE: &[&[usize]] = &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2
 const PYRAMID: &[&[usize]] = &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]];
 const TETRAHEDRON: &[&[usize]] = &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]];
 
-/// Corner nodes of faces S1, S2, …. 13-node pyramids and `folded` elements are bricks with repeated nodes.
+/// Corner nodes of faces S1, S2, ….
 fn faces(kind: ElementKind, nodes: &[u32], folded: bool) -> Vec<Vec<u32>> {
     let (of_kind, corners) = match kind.linear() {
         _ if folded || kind == ElementKind::Pyramid13 => {

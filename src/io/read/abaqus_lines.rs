@@ -36,7 +36,7 @@ impl Block {
         self.data.len()
     }
 
-    /// Line number and fields of data line `at`; a trailing comma leaves an empty last field.
+    /// Line number and fields of data line `at`.
     pub fn row(&self, at: usize) -> Option<(usize, Vec<&str>)> {
         self.data.get(at).map(|(line, text)| (*line, fields(text).collect()))
     }
@@ -78,7 +78,7 @@ fn unit_of_comments(file: &Path, text: &str) -> Option<Box<ReadError>> {
     comments.find_map(|(line, text)| unit::refusal(file, line, text)).map(Box::new)
 }
 
-/// Readable files among `file` and its includes; the mesh reader reports the missing ones.
+/// Readable files among `file` and its includes.
 pub(super) fn files(file: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let _ = follow(file, 0, &mut Vec::new(), &mut files, &mut None);

@@ -204,7 +204,6 @@ pub(super) fn check_sizes(builder: &Builder, deck: &Deck) -> Result<(), ReadErro
     check_count(builder, 0, nodes + elements)
 }
 
-/// Passes sets on, except those that only serve a section named like a material.
 pub(super) fn sets(builder: &mut Builder, deck: &Deck) {
     let spelled = |upper: &String| deck.names.get(upper).unwrap_or(upper).clone();
     for (upper, ids) in &deck.node_sets {

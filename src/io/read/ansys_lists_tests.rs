@@ -99,7 +99,6 @@ fn recognises_columns_by_count_and_content() {
     }
 }
 
-/// Ten columns are id, material and 8 nodes, unless two lines make an element of 20 nodes.
 #[test]
 fn reads_ambiguous_ten_columns() {
     let eight = "1 1 1 2 3 4 9 10 11 12\n2 1 9 10 11 12 17 18 19 20\n";
@@ -119,7 +118,6 @@ fn reads_ambiguous_ten_columns() {
     assert_eq!((lists.mesh.element_count(), lists.mesh.connectivity.kind(0)), (1, ElementKind::Hex20));
 }
 
-/// NWRITE leaves trailing zeros blank: a short row is a node only in its columns.
 #[test]
 fn blank_coordinates_of_nwrite_are_zero() {
     let points: Vec<[f64; 3]> =
@@ -184,7 +182,6 @@ fn the_scene_may_tell_the_columns() {
     assert_eq!(error, expected);
 }
 
-/// Formats of the macros: integers as F10.0, reals as E26.17, elements on two lines.
 #[test]
 fn lists_as_the_macros_write_them() {
     let whole = |text: &str| format!("{:>10}", format!("{text}."));

@@ -1,7 +1,7 @@
 //! Reader of ESRI ASCII grids (`.asc`): heights on a rectangular grid.
 //!
-//! `xllcorner`, `yllcorner` are the corner of the lower left cell, `xllcenter`, `yllcenter` its centre; GDAL
-//! also writes `dx` and `dy`. Heights start with the northern row; line breaks are ignored.
+//! `xllcorner`, `yllcorner` are the corner of the lower left cell, `xllcenter`, `yllcenter` its centre;
+//! GDAL also writes `dx` and `dy`. Heights start with the northern row.
 //!
 //! Source: Esri, "Esri ASCII raster format", ArcGIS Desktop help.
 

@@ -3,8 +3,8 @@
 //! Source: ANSYS Mechanical APDL Command Reference and Programmer's Reference, "Format of the coded database
 //! file".
 //!
-//! Limits: blocked archives only, no constraints in rotated nodal systems, first value of temperature tables.
-//! Other commands that affect the mechanics are counted in a warning.
+//! Limits: blocked archives only, no constraints in rotated nodal systems, first value of temperature
+//! tables.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -7,7 +7,7 @@
 //! | tetrahedron | I J K K, M M M M | S = K, U = V = W = X = M, B = A |
 //!
 //! Source: ANSYS Mechanical APDL Element Reference, SOLID186 and SOLID185. A mid-side node 0 is absent; if
-//! all are, the element is linear. Abaqus uses the same forms.
+//! all are, the element is linear.
 
 use trackbed_fem::ElementKind;
 
@@ -59,8 +59,6 @@ pub struct Fault {
     pub expected: &'static str,
 }
 
-/// Returns the element kind of 8 or 20 brick node ids, and its nodes in their order.
-///
 /// # Errors
 /// Unknown repetitions, missing corners, some but not all mid-sides missing.
 pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {

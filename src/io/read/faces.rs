@@ -33,7 +33,7 @@ impl Faces {
         Faces(all)
     }
 
-    /// Element and side of the faces with these corners; two for an inner face.
+    /// Element and side of the faces with these corners.
     pub fn find(&self, key: Key) -> impl Iterator<Item = [u32; 2]> + '_ {
         let first = self.0.partition_point(|(k, _)| *k < key);
         self.0[first..].iter().take_while(move |(k, _)| *k == key).map(|(_, face)| *face)

@@ -1,7 +1,6 @@
 //! Triangulated heights on a regular grid.
 //!
-//! Samples are vertices at cell centres. Four valid neighbours give two triangles, three give one, so cells
-//! without data leave holes.
+//! Samples are vertices at cell centres.
 
 use std::path::Path;
 

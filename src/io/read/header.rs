@@ -7,8 +7,7 @@
 //! | rule | `----------` |
 //! | other script, no digits | `节点 坐标` |
 //!
-//! Headings must have SI units and the column order of the list. Other lines are errors: they could be
-//! commands or overflowed numbers.
+//! Headings must have SI units and the column order of the list.
 
 use super::unit;
 

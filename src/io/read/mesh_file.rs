@@ -303,14 +303,13 @@ pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> 
     })
 }
 
-/// Text of a file; titles may use any 8-bit code page, data are ASCII.
+/// Text of a file.
 pub(super) fn read_text(file: &Path, what: &str) -> Result<String, ReadError> {
     let text = String::from_utf8_lossy(&read_bytes(file, what)?).into_owned();
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
 }
 
-/// Format position of each node, from the format's corner pairs of mid-side nodes. Corners keep their
-/// positions.
+/// Format position of each node, from the format's corner pairs of mid-side nodes.
 pub(crate) fn order_from_edges(kind: ElementKind, edges: &[[usize; 2]]) -> Vec<usize> {
     let corners = kind.corner_count();
     let mid = |edge: &[usize; 2]| {

@@ -1,7 +1,7 @@
 //! Numbers as printed by Fortran.
 //!
-//! Exponents may be `D` (`1.0D+03`) or have three digits (`1.0E+002`), also without letter (`7.547503+002`).
-//! The latter requires a decimal point: a range such as `1-20` stays an error. Integers may be reals (`12.`).
+//! Exponents may be `D` (`1.0D+03`) or have three digits (`1.0E+002`), also without letter
+//! (`7.547503+002`). The latter requires a decimal point: integers may be reals (`12.`).
 
 /// Reads a real; overflow gives infinity, which callers reject.
 pub fn real(text: &str) -> Option<f64> {

@@ -1,6 +1,4 @@
 //! Skin of a finite-element mesh as triangles.
-//!
-//! Mid-side nodes are dropped, so neighbouring faces match.
 
 use std::path::Path;
 

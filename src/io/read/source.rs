@@ -78,7 +78,6 @@ pub fn bytes(file: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
         return Err(too_large(size, least, why));
     }
     let mut bytes = Vec::with_capacity(size as usize);
-    // A file that reports no size, or grows meanwhile, ends at the limit too.
     source.set_limit(least + 1);
     source.read_to_end(&mut bytes)?;
     if bytes.len() as u64 > least {

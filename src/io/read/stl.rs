@@ -1,8 +1,7 @@
 //! Reader of STL, text or binary.
 //!
 //! A file is binary if its triangle count gives its length: binary titles may also begin with `solid`.
-//! Otherwise it is text if it begins with `solid` and has no zero byte. Normals are ignored, since programs
-//! agree on the vertex order.
+//! Otherwise it is text if it begins with `solid` and has no zero byte.
 //!
 //! Source: 3D Systems, StereoLithography Interface Specification, 1989.
 

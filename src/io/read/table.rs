@@ -1,7 +1,7 @@
 //! Text file as rows of fields.
 //!
-//! Fields are separated by blanks, tabs or commas. Comments start with `!`, `#`, `/` or `*`; `!` and `#` also
-//! after data. Pages of a listing may repeat the banner, up to the column heading.
+//! Fields are separated by blanks, tabs or commas. Comments start with `!`, `#`, `/` or `*`; `!` and `#`
+//! also after data.
 
 use std::path::{Path, PathBuf};
 
@@ -178,7 +178,7 @@ fn check_separators(file: &Path, line: usize, body: &str) -> Result<(), ReadErro
     }
 }
 
-/// Byte ranges of fields; the error is the number of an empty column. A trailing comma closes the last field.
+/// Byte ranges of fields; the error is the number of an empty column.
 fn split(body: &str, base: usize) -> Result<Vec<(usize, usize)>, usize> {
     let mut fields = Vec::new();
     let mut at = 0;

@@ -1,7 +1,7 @@
 //! Units that a file states outside its data.
 //!
-//! Only statements count: `units: mm`, `UNIT = mm`, a line of columns such as `NODE X [mm] Y [mm] Z [mm]`, and
-//! the command /UNITS of ANSYS. Prose with a unit is none.
+//! Only statements count: `units: mm`, `UNIT = mm`, a line of columns such as `NODE X [mm] Y [mm] Z [mm]`,
+//! and the command /UNITS of ANSYS.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Arrays of a one-piece VTK XML file, decoded on demand: a viewer shows few of many.
+//! Arrays of a one-piece VTK XML file, decoded on demand.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -170,7 +170,6 @@ impl Arrays {
 mod tests {
     use super::Arrays;
 
-    /// A field shorter than its cells, or cells other than declared, once ended the viewer.
     #[test]
     fn rejects_fields_shorter_than_cells() {
         let text = |polygons: usize, field: &str| {

@@ -21,7 +21,7 @@ struct Stream<'a> {
 }
 
 impl Stream<'_> {
-    /// Fast path for base64 without white space or padding: files of a million grains have 100 MB.
+    /// Fast path for base64 without white space or padding.
     fn whole_groups(&mut self, count: usize) -> Option<Vec<u8>> {
         let letters = count.div_ceil(3) * 4;
         if !self.pending.is_empty() || letters > self.bytes.len() {
@@ -72,8 +72,7 @@ impl Stream<'_> {
     }
 }
 
-/// Decodes at most `most` numbers of type `kind`; the error states the value found. Longer arrays are not
-/// inflated.
+/// Decodes at most `most` numbers of type `kind`; the error states the value found.
 pub(super) fn decode(
     bytes: &[u8],
     base64: bool,

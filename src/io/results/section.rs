@@ -34,8 +34,7 @@ fn eight([a, b, c, d]: [[f64; 3]; 4]) -> [[[f64; 3]; 4]; 8] {
     ]
 }
 
-/// Returns the triangles of the section normal · x = offset. `nodes` has position and value per node;
-/// `elements` overrides values. Quadratic elements are cut in eight pieces per corner tetrahedron.
+/// Returns the triangles of the section normal · x = offset. `nodes` has position and value per node.
 pub fn section(
     mesh: &Mesh,
     nodes: &[Point],
@@ -128,7 +127,6 @@ fn cut(corners: [Point; 4], side: impl Fn(&Point) -> f64, out: &mut Vec<[Point; 
 mod tests {
     use super::*;
 
-    /// Area and integral of a linear value over the section of a unit cube.
     #[test]
     fn cube_section_integrates_linear_values() {
         for kind in [ElementKind::Hex8, ElementKind::Hex20] {

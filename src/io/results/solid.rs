@@ -199,7 +199,7 @@ impl Skin {
     }
 }
 
-/// Returns the field names of a file, with components; element fields are prefixed.
+/// Returns the field names of a file. Element fields are prefixed.
 ///
 /// # Errors
 /// Not a solid file.

@@ -72,7 +72,7 @@ impl Table {
         Some(self.column(x)?.iter().zip(self.column(y)?).map(|(x, y)| [*x, *y]).collect())
     }
 
-    /// Returns items with such a column, such as `plate` of `plate_force_x` for `<wall>_force`, axis x.
+    /// Returns items with such a column.
     pub fn items<'n>(&self, name: impl Into<Name<'n>>) -> Vec<&str> {
         let name = name.into();
         self.heads.iter().filter_map(|h| name.item_in(h)).collect()

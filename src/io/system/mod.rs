@@ -1,6 +1,4 @@
 //! Functions of the operating system; other modules are the same on all systems.
-//!
-//! Functions that a system lacks return nothing, or do nothing.
 
 #[cfg(target_os = "linux")]
 mod linux;

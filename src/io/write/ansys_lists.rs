@@ -8,8 +8,8 @@ use super::atomic;
 use super::error::{WriteError, check_field};
 use crate::read::degenerate::to_brick;
 
-/// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into `dir`; they read back exactly. Other kinds are
-/// bricks with repeated nodes; linear kinds have mid-side nodes 0.
+/// Writes `NODECOORD.DAT`, `ELEMENTNUM.DAT` and `DOF.DAT` into `dir`. Other kinds are bricks with repeated
+/// nodes; linear kinds have mid-side nodes 0.
 ///
 /// # Errors
 /// Non-finite coordinates or values; I/O errors.

@@ -1,7 +1,4 @@
 //! Time histories as CSV.
-//!
-//! Numbers have the shortest form that reads back exactly. Rows are ordered by the first column (time or
-//! cycle).
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;

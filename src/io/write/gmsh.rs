@@ -1,7 +1,6 @@
 //! Writer of Gmsh meshes (`.msh`), text, formats 4.1 and 2.2.
 //!
-//! Materials are physical volumes (material 0, invalid in Gmsh, by name `read::gmsh::MATERIAL_0`). Element
-//! sets are named physical volumes, face sets physical surfaces, other node sets physical points.
+//! Materials are physical volumes (material 0, invalid in Gmsh, by name `read::gmsh::MATERIAL_0`).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;

@@ -1,7 +1,6 @@
 //! Writers of result files and meshes.
 //!
-//! Files are replaced atomically ([`atomic`]), except histories ([`csv`]), which grow by rows. Non-finite
-//! values are errors. [`writer`] describes how to add a format.
+//! Files are replaced atomically ([`atomic`]), except histories ([`csv`]), which grow by rows.
 
 mod abaqus;
 pub mod ansys_lists;

@@ -1,7 +1,6 @@
 //! Line plots as SVG.
 //!
-//! Text width is at most 0.6 of the font size per character. Colours: Okabe and Ito (2008), distinct for
-//! colour-blind readers.
+//! Colours: Okabe and Ito (2008), distinct for colour-blind readers.
 
 use std::path::Path;
 

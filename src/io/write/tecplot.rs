@@ -7,9 +7,6 @@
 //! - body centre: a quarter of the sum of the twelve mid-sides less a quarter of the sum of the eight
 //!   corners.
 //!
-//! `eps_p` is clipped at 0, since corner weights are negative. Other kinds become one brick with repeated
-//! corners.
-//!
 //! Source of the format: Tecplot 360 Data Format Guide, ASCII data, finite-element zones.
 
 use std::collections::HashMap;
@@ -144,8 +141,7 @@ fn von_mises(v: &Values) -> f64 {
     (0.5 * deviatoric + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
 }
 
-/// Small bricks (point indices from 0, nodes first) and additional points; adjacent elements share face
-/// centres.
+/// Small bricks (point indices from 0, nodes first) and additional points.
 fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
     let mesh: &Mesh = frame.mesh;
     let n = mesh.node_count();

@@ -1,7 +1,7 @@
 //! VTK XML files with checked, compressed fields, written atomically.
 //!
-//! Arrays as by VTK's own writer: zlib blocks of 32 KiB in base64 after a header of lengths. Source: VTK's
-//! User's Guide, "VTK XML formats".
+//! Zlib blocks of 32 KiB in base64 after a header of lengths. Source: VTK's User's Guide, "VTK XML
+//! formats".
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

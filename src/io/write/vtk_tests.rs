@@ -23,8 +23,7 @@ fn first_field_is_active() {
     );
 }
 
-/// Prints times of a vector field and a solid frame: `cargo test --release -p trackbed --lib write::vtk --
-/// --ignored --nocapture`.
+/// Prints times of a vector field and a solid frame.
 #[test]
 #[ignore = "prints times"]
 fn time_of_field_and_frame() {

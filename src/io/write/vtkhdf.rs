@@ -1,6 +1,6 @@
 //! VTKHDF frames: `grains.vtkhdf` (poly data) and `solid.vtkhdf` (unstructured grid), each with all times.
 //!
-//! Fields as in VTK XML. The undeformed mesh is written once, grain vertices only if their number changes.
+//! The undeformed mesh is written once, grain vertices only if their number changes.
 //!
 //! Source: VTK's documentation, "VTKHDF file format", version 2.0, and its part on transient data.
 

@@ -85,7 +85,6 @@ fn vtk_reads_changing_grain_number() {
 fn vtk_reads_index_of_three_levels() {
     let Some(python) = python() else { return };
     let dir = folder("vtkhdf_long");
-    // Vectors: 682 rows per chunk, 31 chunks per node, so three levels begin at 655,000 rows.
     let (count, steps) = (9_000, 80);
     let mut writer = begin(&dir, None).unwrap();
     (0..60).for_each(|k| write(&mut *writer, k, &grains(count, 0.5 * k as f64)));

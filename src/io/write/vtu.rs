@@ -15,8 +15,7 @@ use super::error::WriteError;
 use super::frame::SolidFrame;
 use super::vtk::{self, Array, Fields, Section};
 
-/// Writes the solid: point data `displacement`, `velocity`, `stress` (3x3), `von_mises`,
-/// `equivalent_plastic_strain`, `yield_function` if selected, `node_id`; cell data `material`, `element_id`.
+/// Writes the solid: point and cell data.
 ///
 /// # Errors
 /// Wrong field length, non-finite values; I/O errors.
@@ -46,9 +45,7 @@ pub fn write_mode(file: &Path, mesh: &Mesh, shape: &[f64]) -> Result<(), WriteEr
     write_grid(file, mesh, fields, &[])
 }
 
-/// Writes a mesh: point data `node_id`, `constraint` (1 for x, plus 2 for y, plus 4 for z),
-/// `constraint_value` [m] and `node_set:NAME`; cell data `material`, `element_id`, `element_set:NAME` (1 for
-/// members) and `face_set:NAME` (one bit per face).
+/// Writes a mesh with ids, constraints and sets.
 ///
 /// # Errors
 /// As [`write_solid`].

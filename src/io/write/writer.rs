@@ -1,6 +1,4 @@
 //! Frame formats of a run.
-//!
-//! A format is a file here with a [`Format`], its [`Writer`], and a line in [`FORMATS`](super::FORMATS).
 
 use std::path::Path;
 
@@ -33,7 +31,7 @@ pub struct Format {
     pub default: bool,
     /// Parts written.
     pub parts: &'static [Part],
-    /// Subdirectory of its frames. Their names end with an underscore and the frame index.
+    /// Subdirectory of its frames.
     pub folder: &'static str,
     /// Extensions of the frames, without dot.
     pub endings: &'static [&'static str],

@@ -1,7 +1,6 @@
 //! `ANIMATION_3D.DAT`: grain positions, radii and velocities by frame.
 //!
-//! The older programs show the format only in a figure. Assumed: header `3D: TIME COUNT`, COUNT rows `x y z r
-//! vx vy vz`, optionally a part or fragment id.
+//! Assumed: header `3D: TIME COUNT`, COUNT rows `x y z r vx vy vz`, optionally a part or fragment id.
 
 use super::rows;
 use std::path::Path;

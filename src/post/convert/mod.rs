@@ -1,4 +1,4 @@
-//! Conversion from and to files of older programs: parameter decks, packings, animations, force chains.
+//! Conversion from and to files of older programs.
 //!
 //! Formats: `docs/guide/formats.md`.
 

@@ -34,8 +34,7 @@ pub fn grains(dir: &Path) -> Result<Vec<animation::Moment>, Failure> {
     Ok(moments)
 }
 
-/// Reads the force chains of all frames; partners are sphere indices of the animation, bodies by their first
-/// sphere.
+/// Reads the force chains of all frames.
 ///
 /// # Errors
 /// Missing or damaged frames, chains without partner ids.

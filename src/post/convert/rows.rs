@@ -28,7 +28,7 @@ pub struct Block {
     pub rows: Vec<(usize, Vec<f64>)>,
 }
 
-/// Splits text into blocks below `head` lines with row counts; `widths` are the allowed row widths.
+/// Splits text into blocks below `head` lines with row counts.
 ///
 /// # Errors
 /// Damaged headers, wrong row counts or widths.

@@ -16,7 +16,7 @@ const ARROW: f64 = 0.07;
 const SUPPORT: f64 = 0.012;
 /// Size of supports over element size.
 const OF_ELEMENT: f64 = 0.3;
-/// Cell size over the model size; one support per cell and direction is drawn.
+/// Cell size over the model size.
 const CELL: f64 = 0.035;
 /// Radius of set nodes over the size of supports.
 const NODE: f64 = 0.2;
@@ -92,7 +92,7 @@ fn mark_size(c: &Context, mesh: &Mesh) -> f64 {
     (SUPPORT * c.size()).min(OF_ELEMENT * libm::cbrt(volume / count))
 }
 
-/// Constrained nodes by direction; nodes with a displacement apart. Marks: the outermost node of each cell.
+/// Constrained nodes by direction.
 pub fn supports(c: &Context) -> Vec<Item> {
     let Some(part) = &c.job.solid else { return Vec::new() };
     let (mesh, fixed) = (part.model.mesh(), part.model.supports().fixed());

@@ -45,7 +45,7 @@ pub fn group(number: usize) -> Colour {
     GROUPS.split(' ').nth(number % known).and_then(parse).unwrap_or_default()
 }
 
-/// Colour of a piece by rank: the largest (0) is red, others are shades of green.
+/// Colour of a piece by rank.
 pub fn piece(place: usize) -> Colour {
     let share = |k: usize, n: usize| ((place * k) % n) as f32 / n as f32;
     match place {

@@ -14,8 +14,7 @@ use trackbed_io::failure::Failure;
 const STONE: &str = "b9ab94";
 /// Lightness variation of grains of one colour.
 const SHADES: f32 = 0.17;
-/// Strongest chain radius over grain size, and weakest over strongest. Cross-section is proportional to
-/// force.
+/// Strongest chain radius over grain size, and weakest over strongest.
 const CHAIN: (f64, f64) = (0.2, 0.1);
 
 /// Colour limits by part.

@@ -1,6 +1,4 @@
 //! Report of runs, from results directories only.
-//!
-//! Each of the `sections` is omitted without data, so incomplete runs are reported.
 
 mod data;
 pub mod page;

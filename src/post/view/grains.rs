@@ -1,5 +1,4 @@
-//! Grains for the page: body definitions once, position and orientation per frame. Frames with other bodies
-//! have separate definitions.
+//! Grains for the page: body definitions once, position and orientation per frame.
 
 use serde_json::json;
 

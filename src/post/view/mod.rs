@@ -1,7 +1,4 @@
 //! Browser viewer of results and scenes, served locally or exported as one HTML file.
-//!
-//! The program sends blocks of numbers (`chunk`) on request ([`server`]) or all together ([`mod@export`]);
-//! `web/` draws them.
 
 mod chunk;
 mod connections;

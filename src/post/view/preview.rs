@@ -1,5 +1,4 @@
-//! Blocks of a scene before it runs: `scene` (objects, warnings and errors in `meta`), `model` (geometry) and, if served,
-//! `check` (report of `trackbed check`).
+//! Blocks of a scene before it runs.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -128,7 +127,6 @@ impl Live {
         self.shared.source.file.display().to_string()
     }
 
-    /// State of the files, or the last one with `true` while one thread reads them.
     fn renewed(&self) -> (Arc<Latest>, bool) {
         let latest = self.latest();
         if version(&latest.files) == latest.version {

@@ -1,7 +1,7 @@
 //! HTTP server of page and data, for this machine only.
 //!
 //! Other sites could send requests under a name resolved to this machine (DNS rebinding), so only its own
-//! names are accepted. Nothing is written.
+//! names are accepted.
 
 use std::collections::HashMap;
 use std::net::TcpListener;

@@ -7,8 +7,8 @@
 //! 8 bytes                        64-bit FNV-1a checksum of all before, low byte first
 //! ```
 //!
-//! The body is a sequence of `postcard` parts (little endian, varint), read in writing order; the stage
-//! defines them. Fields are unnamed, so no type may skip a field (`skip_serializing_if`).
+//! The body is a sequence of `postcard` parts (little endian, varint), read in writing order. Fields are
+//! unnamed, so no type may skip a field (`skip_serializing_if`).
 
 use super::origin::Origin;
 use crate::hash::Hash;

@@ -1,7 +1,6 @@
 //! Checkpoints from which a run resumes bitwise identically.
 //!
-//! Two slots alternate. A new file replaces the older slot once it is synced, so one valid checkpoint always
-//! exists.
+//! A new file replaces the older slot once it is synced, so one valid checkpoint always exists.
 
 mod form;
 mod origin;
@@ -65,7 +64,7 @@ pub const FOLDER: &str = "checkpoint";
 const SLOTS: [&str; 2] = ["a.checkpoint", "b.checkpoint"];
 
 impl Slots {
-    /// Creates the slots of a new run. Earlier checkpoints remain until the first save.
+    /// Creates the slots of a new run.
     pub fn new(results: &Path, origin: Origin) -> Slots {
         Slots { dir: results.join(FOLDER), origin, next: 0, own: false }
     }

@@ -238,7 +238,6 @@ fn spheres(centres: impl Iterator<Item = dem::Vec3>) -> dem::ModelInput {
     }
 }
 
-/// With and without restarts, including neighbour lists. One restart falls on a spatial re-sorting.
 #[test]
 fn grain_state_is_bitwise_after_restarts() {
     const RESTARTS: [u64; 8] = [1, 331, 700, 1234, 4999, 5000, 5001, 5390];

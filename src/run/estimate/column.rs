@@ -170,7 +170,7 @@ fn among(numbers: &[usize], bonds: &[BondInput], count: usize) -> Vec<BondInput>
     bonds.iter().filter_map(renamed).collect()
 }
 
-/// Grains in a central square, enclosing planes, and fraction of contacts kept; all grains if few.
+/// Grains in a central square, enclosing planes, and fraction of contacts kept.
 fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
     let numbers: Vec<usize> = (0..input.bodies.len()).filter(|&b| !input.bodies[b].absent).collect();
     if all <= WHOLE {
@@ -206,7 +206,6 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
         normal[d] = -sign;
         Plane { point, normal, material: 0, velocity: Vec3::zeros() }
     };
-    // Two thirds of contacts are lateral; one of n in a row becomes a cheap plane contact.
     let mean = there.iter().map(|b| 2.0 * reach(b)).sum::<f64>() / there.len() as f64;
     let full = 1.0 - 2.0 / 3.0 * (mean / side).min(1.0);
     (inside, [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(d, sign)| plane(d, sign)).to_vec(), full)

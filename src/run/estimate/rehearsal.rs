@@ -18,8 +18,7 @@ use trackbed_io::failure::Failure;
 const GROWTH: u32 = 8;
 /// Budgets up to the main loop without growth.
 const PREPARATION: u32 = 3;
-/// Fraction of the main loop to reach within [`LOOP`] budgets: a resting bed may flow once a wall has turned.
-/// With moving walls or flow, [`MOVED`] budgets: a ship enters ice gradually.
+/// Fraction of the main loop to reach within [`LOOP`] budgets.
 const SEEN: f64 = 0.2;
 /// With inlets and outlets: grains from the top arrive late and are fastest.
 const FLOWN: f64 = 2.0 / 3.0;
@@ -47,9 +46,7 @@ pub struct Rehearsal {
     pub settling: Option<([f64; 2], f64)>,
 }
 
-/// Runs a scene for about `budget`, half as long again after a stage change. Stages before the main loop may
-/// take [`PREPARATION`] budgets, or [`GROWTH`] with growth, plus another `budget`: only complete growth
-/// yields the final bed, and a flowing bed costs more.
+/// Runs a scene for about `budget`, half as long again after a stage change.
 ///
 /// # Errors
 /// Failures of the run; temporary directory not writable.
@@ -197,7 +194,6 @@ impl Drop for Folder {
 mod tests {
     use super::*;
 
-    /// The last quarter costs three times as much per simulated second; settling is excluded.
     #[test]
     fn measures_pace_of_last_samples() {
         let begun = Instant::now();

@@ -128,8 +128,7 @@ impl StageEnergy {
         ))
     }
 
-    /// Records removed grains. Warns about the fastest above all heights in `before`, impossible under
-    /// gravity.
+    /// Records removed grains.
     pub fn remove(
         &mut self,
         model: &dem::Model,

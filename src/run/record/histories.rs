@@ -123,7 +123,7 @@ impl<S: System> Recorder<S> for Probes {
     }
 }
 
-/// Position, velocity and angular velocity weighted by mass, stress by volume. Zeros if empty.
+/// Position, velocity and angular velocity weighted by mass, stress by volume.
 fn of_grains(name: &str, observed: &Observed, view: GrainsView<'_>, row: &mut Row) {
     let GrainsView { model, state } = view;
     let seen = |b: usize| match observed {

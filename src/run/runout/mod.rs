@@ -2,8 +2,7 @@
 //!
 //! *Head*: initial position of the highest grain. *Toe*: final front grain, behind which a given mass
 //! fraction lies. H and L: their vertical and horizontal distances. The reach angle atan(H/L) is Heim's
-//! Fahrböschung (Heim, Bergsturz und Menschenleben, 1932; Scheidegger, Rock Mech. 5, 1973); the travel angle
-//! connects the centres of mass.
+//! Fahrböschung (Heim, Bergsturz und Menschenleben, 1932; Scheidegger, Rock Mech. 5, 1973).
 //!
 //! Theory manual: equation (6.39) of `docs/theory/track.md`.
 

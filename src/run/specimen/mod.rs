@@ -1,8 +1,8 @@
 //! Stress and strain of a specimen between platens.
 //!
 //! Stress is the mean platen force over the section; in the Brazilian test 2 F/(π D t) at the disc centre
-//! (Carneiro 1943; ISRM 1978). Grain strains are least-squares slopes of displacement over initial position,
-//! so platen gaps do not affect Poisson's ratio. Compression is positive, laterally bulging.
+//! (Carneiro 1943; ISRM 1978). Grain strains are least-squares slopes of displacement over initial
+//! position, so platen gaps do not affect Poisson's ratio.
 //!
 //! Theory manual: equation (6.40) of `docs/theory/track.md`.
 

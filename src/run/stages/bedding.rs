@@ -136,7 +136,6 @@ mod tests {
     use nalgebra::UnitQuaternion;
     use std::f64::consts::FRAC_PI_6;
 
-    /// Half sides 1.3, 0.14, 0.1 m, rotated by 30 degrees about y: the end rises by 1.3 sin 30°.
     #[test]
     fn tilted_block_reaches_its_corner() {
         let half = [1.3, 0.14, 0.1];

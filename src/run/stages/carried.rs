@@ -1,6 +1,6 @@
 //! Bed imported from another run: `trackbed run NEXT --from DIR --bed`.
 //!
-//! Grains keep positions, velocities, contact and bond history. Walls, sleepers, solid and loads are new.
+//! Grains keep positions, velocities, contact and bond history.
 
 use super::stage::Settled;
 use crate::checkpoint::Loaded;

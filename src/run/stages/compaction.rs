@@ -252,8 +252,7 @@ fn shake(
     Ok(())
 }
 
-/// Stops at the porosity of the cut region, or the longest travel. Returns the region and whether it was
-/// reached.
+/// Stops at the porosity of the cut region, or the longest travel.
 fn squeeze(
     bed: &mut Bed<'_>,
     whole: &BoxRegion,

@@ -104,7 +104,7 @@ pub fn with_grains<S: System>(
     Ok(())
 }
 
-/// Advances a system to the end, from checkpoint `resumed` if any. `settled`: initial bed, for checkpoints.
+/// Advances a system to the end, from checkpoint `resumed` if any.
 ///
 /// # Errors
 /// Numerical failures, interrupts, I/O errors.

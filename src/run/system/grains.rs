@@ -98,8 +98,8 @@ impl GrainsSystem {
     }
 }
 
-/// One step if constant, else 1, 1.25, 2, 2.5 or 5 times a power of ten [s], limited so that few longer steps
-/// fit. Windows depend on the history only for close rows.
+/// One step if constant, else 1, 1.25, 2, 2.5 or 5 times a power of ten [s], limited so that few longer
+/// steps fit.
 fn window(model: &dem::Model, interval: f64) -> f64 {
     match model.measured() {
         None => model.dt(),
@@ -109,8 +109,7 @@ fn window(model: &dem::Model, interval: f64) -> f64 {
 
 const STEPS: f64 = 64.0;
 
-/// Longest round window [s] that nearly divides the history interval; for close rows, a multiple of the first
-/// step.
+/// Longest round window [s] that nearly divides the history interval.
 fn round_window([shortest, longest]: [f64; 2], interval: f64) -> f64 {
     let decade = libm::floor(libm::log10(longest)) as i32;
     let round = [0, -1].into_iter().flat_map(|less| {
@@ -171,7 +170,7 @@ impl System for GrainsSystem {
     }
 
     fn shorten(&mut self, rest: f64) -> bool {
-        // A first step far below the others starts the leapfrog scheme with an error.
+        // A short first step starts the leapfrog scheme with an error.
         let first = self.state.steps_done() == 0 && rest < self.model.dt();
         let short = self.model.measured().is_some() && is_short(rest, self.window) && !first;
         if short {
@@ -228,7 +227,6 @@ mod tests {
         assert_eq!(window(6.4e-3, 2e-5), 1e-4);
     }
 
-    /// Windows of close rows are multiples of the first step, which do not divide the run.
     #[test]
     fn last_window_ends_with_the_run() {
         let (end, window) = (0.3_f64, round_window([1.0197e-4, 64.0 * 1.0197e-4], 1e-4));

@@ -34,7 +34,7 @@ pub struct ContactClass {
     pub d: f64,
     /// Limit of D, if any.
     pub d_limit: Option<f64>,
-    /// W and D of a dense grain layer, Ω of its lightest grain. Zero on meshed sleepers.
+    /// W and D of a dense grain layer, Ω of its lightest grain.
     pub numbers: InterfaceStabilityNumbers,
 }
 

@@ -22,7 +22,7 @@ use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_fem as fem;
 use trackbed_fem::mesh::Face;
 
-/// Largest Ω of undamped contacts; θ is then 0.633. Beyond it windows are divided.
+/// Largest Ω of undamped contacts. Beyond it windows are divided.
 const LARGEST_PHASE: f64 = 0.85;
 
 /// Above 20 sub-steps the DEM part dominates the cost.
@@ -134,7 +134,6 @@ impl CouplingPart {
                     1.0
                 };
                 let most = (f64::from(MOST) * growth) as u32;
-                // W and D are proportional to the window; the run divides windows if needed.
                 let of_one = |c: ContactClass| c.excess().max(c.w / largest_quiet_w(self.scheme));
                 let excess = ground.iter().map(|c| of_one(c.at(dt))).fold(0.0, f64::max);
                 if excess > 0.0 { ((1.0 / excess) as u32).clamp(1, most) } else { most }
@@ -189,7 +188,7 @@ impl CouplingPart {
         Err(document.error("coupling.substeps", found, &expected))
     }
 
-    /// Returns remedies for undamped contacts with a `phase` per window of `substeps` and θ.
+    /// Returns remedies for undamped contacts with a `phase` per window.
     pub fn phase_remedies(&self, phase: f64, theta: f64, substeps: u32) -> String {
         let mut ways = Vec::new();
         if self.removable {
@@ -268,7 +267,7 @@ impl CouplingPart {
         let own = model.patch_material(self.ground_faces as u32);
         let mut classes = self.with_stones(grains, model, solid, own, &[(sleepers.material, masses)]);
         for class in &mut classes {
-            // θ leaves −(1 − θ)/θ of an unresolved motion; a dashpot that lags by one window adds −D/2θ.
+            // θ leaves −(1 − θ)/θ of an unresolved motion.
             let own = (1e6 * (4.0 * theta - 2.0)).round() / 1e6;
             class.d_limit = class.d_limit.map(|limit| limit.min(own));
             *class = class.at(window);
@@ -333,7 +332,6 @@ mod tests {
         CouplingPart { window, scheme, transfer, theta, removable, faces: Vec::new(), ground_faces: 0 }
     }
 
-    /// θ is at most 1; a key that is not set cannot be removed.
     #[test]
     fn remedies_are_possible() {
         let auto = plan(WindowPlan::Auto, None, false).phase_remedies(2.5, 0.6325, 105);

@@ -31,8 +31,7 @@ impl Footprint {
         Some(reach - offset).filter(|depth| *depth > BEHIND)
     }
 
-    /// Whether a wall that is no plane cuts the rectangle; cylinders and cones by their radii in plan, triangles
-    /// if they are upright.
+    /// Whether a wall that is no plane cuts the rectangle.
     pub fn is_cut_by(&self, shape: &WallShape) -> bool {
         match shape {
             WallShape::Plane { .. } => false,
@@ -124,7 +123,6 @@ mod tests {
     #[test]
     fn upright_triangles_cut() {
         let wall = |normal_z: f64, top: f64| {
-            // A strip along y at x = 0.25, inclined by its run along x.
             let vertices = vec![
                 Vec3::new(0.25, -1.0, 0.0),
                 Vec3::new(0.25, 1.0, 0.0),

@@ -1,4 +1,4 @@
-//! Regions of growth against walls: grains grow up to the sides of the region, across any wall within.
+//! Regions of growth against walls.
 
 use super::overlap::LARGEST_OVERLAP;
 use super::part::GrainsPart;
@@ -11,8 +11,7 @@ use trackbed_dem::{Vec3, WallShape};
 /// Points on each end of a cone.
 const RING: usize = 48;
 
-/// Rejects regions of growth that reach through walls, unless the group has `accept_overlap`. Closed walls and
-/// sides of cylinders are compared at the corners and the middle of the region.
+/// Rejects regions of growth that reach through walls, unless the group has `accept_overlap`.
 ///
 /// # Errors
 /// First region.
@@ -100,8 +99,7 @@ fn straddles(shape: &WallShape, points: &[Vec3], margin: f64) -> bool {
 /// Side of a point.
 type Side<'a> = Box<dyn Fn(&Vec3) -> Option<bool> + 'a>;
 
-/// Returns a function that decides if a point is inside a wall; open cylinders and cones decide between their
-/// ends only. None for planes and open surfaces.
+/// Returns a function that decides if a point is inside a wall. None for planes and open surfaces.
 pub fn inside_of(shape: &WallShape) -> Option<Side<'_>> {
     match shape {
         WallShape::Plane { .. } => None,

@@ -40,8 +40,7 @@ pub struct Thrown {
     pub usual: f64,
 }
 
-/// Returns the initial model of the first stage with gravity: deposition has no servo-controlled walls and no
-/// rigid bodies.
+/// Returns the initial model of the first stage with gravity.
 pub(super) fn first_input(grains: &GrainsPart) -> ModelInput {
     let mut input = grains.input(grains.groups.bodies.clone());
     if grains.packing.deposition.is_some() {
@@ -50,8 +49,7 @@ pub(super) fn first_input(grains: &GrainsPart) -> ModelInput {
     input
 }
 
-/// Rejects overlaps of `state` above a tenth of the smaller radius, unless a group has `accept_overlap`;
-/// `imported`: number of grains of an earlier run, whose contacts with each other and impacts are accepted.
+/// Rejects overlaps of `state` above a tenth of the smaller radius, unless a group has `accept_overlap`.
 ///
 /// # Errors
 /// Deepest overlap.
@@ -129,8 +127,8 @@ pub fn deepest_overlap(grains: &GrainsPart) -> Option<(Deepest, String, f64)> {
     Some((found, names, dem::measure::energies(&model, &state).elastic_normal))
 }
 
-/// Returns the grain thrown farthest beyond plausible speeds by its start contacts: v = √(|F| δ/m), resultant
-/// F of contacts and weight, largest overlap δ. Exact for a linear contact; zero in equilibrium.
+/// Returns the grain thrown farthest beyond plausible speeds by its start contacts: v = √(|F| δ/m),
+/// resultant F of contacts and weight, largest overlap δ.
 pub fn thrown(grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<Thrown> {
     // Rejected later; the bonds of all pairs would fill the memory.
     if wide_gap(&grains.bonds, &grains.groups.bodies, &grains.groups.shapes).is_some() {
@@ -289,7 +287,6 @@ fn radius(model: &Model, body: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// ½ K δ² = ½ m v²; raised by v²/(2 g) = 5 R.
     #[test]
     fn released_spring_gives_its_energy() {
         let (stiffness, overlap, mass) = (1e8_f64, 4e-4_f64, 0.0888_f64);

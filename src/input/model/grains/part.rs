@@ -130,7 +130,6 @@ impl GrainsPart {
         if let TimeStep::Measured { longest, collisions, .. } = &mut input.time_step {
             (*longest, *collisions) = (f64::INFINITY, false);
         }
-        // Walls move in the main stage; servo-controlled walls and rigid bodies are added there.
         input.planes.iter_mut().for_each(|p| p.velocity = Vec3::zeros());
         input.walls.retain(|w| w.servo.is_none() && w.body.is_none());
         input.walls.iter_mut().for_each(|w| *w = w.at_rest());

@@ -20,8 +20,7 @@ pub struct StepPlan {
     pub mass_factor: f64,
 }
 
-/// Scales masses up and gravity down: same weights and contacts, more inertia. Energy balances equal the true
-/// ones with `factor` times the kinetic energy.
+/// Scales masses up and gravity down: same weights and contacts, more inertia.
 pub(super) fn add_inertia(input: &mut ModelInput, factor: f64) {
     if factor == 1.0 {
         return;

@@ -1,7 +1,6 @@
 //! Warnings about 8-node hexahedra too deep for the boundary layer at a clamped face.
 //!
-//! A clamped face suppresses the lateral strain ν σ/E over about a third of the section width. Deeper
-//! elements carry the error through their depth, in any formulation.
+//! A clamped face suppresses the lateral strain ν σ/E over about a third of the section width.
 
 use std::collections::BTreeMap;
 use trackbed_fem::mesh::Face;

@@ -6,7 +6,7 @@ use crate::scene::{SceneError, Table};
 use trackbed_fem::solver::mumps;
 use trackbed_fem::{Method, Methods, MumpsMethod, Regime};
 
-/// Nodes above which lumped-mass steps use CG: time of a stored factor, a hundredth of its memory, no set-up
+/// Nodes above which lumped-mass steps use CG: time of a stored factor, a hundredth of its memory
 /// (`benches/README.md`, "Large solids").
 const WINDOW_NODES: usize = 100_000;
 

@@ -246,7 +246,7 @@ fn title(field: &str) -> Title<'_> {
     (name.to_lowercase(), unit)
 }
 
-/// Field of a comment that states another unit than SI: `time in ms`, `force [kN]`.
+/// Field of a comment that states another unit than SI.
 pub fn foreign_unit<'a>(fields: &[&'a str], columns: &[Column]) -> Option<&'a str> {
     let foreign = |field: &&&str| {
         let (name, unit) = title(field);

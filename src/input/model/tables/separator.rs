@@ -17,7 +17,7 @@ pub struct Separators {
 }
 
 impl Separators {
-    /// Semicolon, tab or comma of a heading or row; tabs may align columns between commas.
+    /// Semicolon, tab or comma of a heading or row.
     pub fn of(line: &str) -> Separators {
         let mut quoted = false;
         let mut marks = line.chars().filter(|c| {

@@ -1,7 +1,5 @@
 //! Dataset rows: compressed chunks with their B-tree.
 //!
-//! Written data are never changed: each commit appends the partial chunk and its path of nodes.
-//!
 //! Source: HDF5 File Format Specification Version 3.0, III.A.1, version 1 B-trees, node type 1.
 
 use super::message::{HALF_NODE, Kind, NOWHERE};
@@ -127,7 +125,7 @@ impl Chunks {
         Ok(root)
     }
 
-    /// Index node. Siblings move, so they are not linked; readers start at the root.
+    /// Index node. Siblings move, so they are not linked.
     fn node(&self, level: usize, children: &[Child]) -> Vec<u8> {
         let mut out = b"TREE\x01".to_vec();
         out.push(level as u8);

@@ -1,10 +1,10 @@
 //! Growing HDF5 files: groups, attributes and extensible datasets.
 //!
 //! The file is always valid: a commit appends data and metadata, then updates the superblock (48 bytes, one
-//! sector). Superseded indices cost about 1.5 KB per dataset and commit.
+//! sector).
 //!
-//! Pure Rust libraries lack this: `hdf5-writer` 0.12 encodes whole files only, and `rust-hdf5` 0.7.9 writes
-//! no signature until the file is closed.
+//! `hdf5-writer` 0.12 encodes whole files only, and `rust-hdf5` 0.7.9 writes no signature until the file is
+//! closed.
 
 mod checksum;
 mod chunks;

@@ -1,7 +1,5 @@
 //! Parameter decks of two older programs: one value or list per line, in fixed order, with the key in a
 //! bracketed comment.
-//!
-//! Unused keys are listed with the reason in the scene header and on the terminal.
 
 mod keys;
 mod rest;

@@ -1,7 +1,7 @@
 //! Camera, parallel or perspective.
 //!
 //! In camera coordinates x points right, y up and z away from the eye [m]. Pixel centres lie at half
-//! integers; picture y points down.
+//! integers.
 
 use nalgebra::Vector3;
 

@@ -1,8 +1,4 @@
 //! Software renderer, bitwise reproducible for any number of threads.
-//!
-//! Each tile finds the visible object of its samples ([`raster`]); ambient light follows from the depths
-//! ([`occlusion`]); each pixel is then coloured once per object, weighted by samples. No tile writes data
-//! that others read in the same step.
 
 mod bins;
 mod camera;

@@ -1,7 +1,6 @@
 //! Ambient occlusion from picture depths.
 //!
-//! Source: McGuire, Mara and Luebke, Scalable ambient obscurance, High Performance Graphics 2012, eq. 10. Its
-//! tap spiral is rotated in a 4 × 4 pixel pattern, which averaging over pixels of similar depth removes.
+//! Source: McGuire, Mara and Luebke, Scalable ambient obscurance, High Performance Graphics 2012, eq. 10.
 
 use rayon::prelude::*;
 

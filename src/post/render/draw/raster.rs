@@ -1,6 +1,6 @@
 //! Finds the visible object and depth of each sample of a tile.
 //!
-//! Spheres and tubes are intersected with each ray, exact at any size; triangles use edge functions.
+//! Spheres and tubes are intersected with each ray, exact at any size.
 
 use super::bins::{Bins, Id, Kind, thing};
 use super::camera::{Camera, V3};
@@ -162,7 +162,6 @@ fn chord(c: &V3, r: f32, sy: f32) -> Option<[f32; 2]> {
     let [cx, cy, cz, sy, r] = [c.x, c.y, c.z, sy, r].map(f64::from);
     let rest = cy * cy + cz * cz - r * r;
     let (k, m) = (cx * cx + rest, cy * sy + cz);
-    // (cx² - k) s² + 2 cx m s + m² - k (sy² + 1) = 0, with cx² - k = -rest.
     let root = cx * cx * m * m + rest * (m * m - k * (sy * sy + 1.0));
     if root <= 0.0 || rest <= 0.0 {
         return None;

@@ -1,6 +1,6 @@
 //! Motion JPEG in AVI with index (Microsoft, "AVI RIFF file reference"; one stream, one RIFF list, `idx1`).
 //!
-//! Frames are written one by one; lengths and index follow. Videos may exceed memory.
+//! Frames are written one by one; lengths and index follow.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -15,7 +15,7 @@ const MOST: u64 = (1 << 31) - (1 << 20);
 const KEY_FRAME: u32 = 0x10;
 const HAS_INDEX: u32 = 0x10;
 
-/// Writes a video of `count` equal-sized pictures atomically; `frame` creates them in order.
+/// Writes a video of `count` equal-sized pictures atomically.
 ///
 /// # Errors
 /// Errors of `frame`; too long video; I/O errors.

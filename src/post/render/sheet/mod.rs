@@ -1,5 +1,4 @@
-//! Caption, legends, axes and scale around a scene. A picture is 720 sheet units high, so sizes scale with
-//! it.
+//! Caption, legends, axes and scale around a scene.
 
 pub mod legend;
 pub mod marks;

@@ -1,7 +1,6 @@
 //! SVG plots with an HTML legend below, so that no text overlaps.
 //!
-//! Text width is estimated as in [`trackbed_io::write::svg`]. Curves differ by colour (Okabe and Ito 2008), dashes
-//! and markers.
+//! Curves differ by colour (Okabe and Ito 2008), dashes and markers.
 
 mod draw;
 pub mod ruler;

@@ -10,8 +10,7 @@ use trackbed_dem::shape::cluster::Cluster;
 use trackbed_dem::{BodyInput, Vec3};
 use trackbed_io::failure::Failure;
 
-/// Expands grains into spheres and bonds. `first`: first body; `density` [kg/m³]. Group shapes are the
-/// library shapes, in order.
+/// Expands grains into spheres and bonds. `first`: first body; `density` [kg/m³].
 pub(super) fn expand(
     group: &Table<Grains>,
     first: usize,
@@ -62,7 +61,7 @@ pub(super) fn volumes(group: &Table<Grains>) -> Result<Vec<f64>, SceneError> {
     Ok(clusters(group)?.iter().map(|c| c.volume / c.sieve_size().powi(3)).collect())
 }
 
-/// Enclosing spheres as substitutes during placement. Returns scales for a sieve size of 1 m.
+/// Enclosing spheres as substitutes during placement.
 pub(super) fn stand_ins(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec<f64>, SceneError> {
     let clusters = clusters(group)?;
     part.shapes.extend(clusters.iter().map(|c| Shape::Sphere { radius: c.bounding_radius() }));

@@ -46,8 +46,8 @@ pub(super) fn frustum(
     Ok(())
 }
 
-/// Axial position and corner radius of core ends [m]. Body faces lie `radius` outside the core; `radii` are
-/// means of inscribed and circumscribed radius at the ends.
+/// Axial position and corner radius of core ends [m]. `radii` are means of inscribed and circumscribed
+/// radius at the ends.
 fn ends(length: f64, radii: [f64; 2], radius: f64, sides: usize) -> Option<[(f64, f64); 2]> {
     let cosine = libm::cos(PI / sides as f64);
     // Inscribed radius for a mean radius of 1.
@@ -78,8 +78,6 @@ fn corners([from, to]: [Vec3; 2], ends: [(f64, f64); 2], sides: usize) -> Vec<Ve
 mod tests {
     use super::*;
 
-    /// Faces of the rounded body coincide with the prescribed frustum, whose radius is the mean of inscribed
-    /// and circumscribed radius.
     #[test]
     fn outer_faces_match_prescribed_frustum() {
         for (radii, sides) in [([2.0, 2.0], 24), ([3.0, 1.0], 6), ([1.0, 2.5], 32)] {

@@ -234,8 +234,6 @@ mod tests {
     use super::*;
     use trackbed_dem::insert::sizes::SizeLaw;
 
-    /// Uniform and mixed floes up to three quarters coverage: no overlap, inside the box, clear of the
-    /// circle, area within half a floe.
     #[test]
     fn floes_do_not_overlap() {
         let field = Field { low: [-10.0, 0.0], high: [20.0, 20.0], clear: vec![[5.0, 10.0, 2.0]] };

@@ -59,8 +59,7 @@ pub(super) fn inset(corners: &[Point], distance: f64) -> Vec<Point> {
     if left.len() < 3 { Vec::new() } else { left }
 }
 
-/// Replaces short sides by midpoints and removes nearly collinear corners. The result lies within the
-/// polygon.
+/// Replaces short sides by midpoints and removes nearly collinear corners.
 pub(super) fn simplified(corners: &[Point]) -> Vec<Point> {
     let mut left = corners.to_vec();
     let size = area(corners).0.max(0.0).sqrt();

@@ -15,7 +15,7 @@ pub(super) struct Floe {
     pub centre: Point,
 }
 
-/// Bonds floes whose cells share a side. `cells` and `floes` like `sites`; removed floes are `None`.
+/// Bonds floes whose cells share a side. `cells` and `floes` like `sites`.
 pub(super) fn join(
     sites: &[Point],
     cells: &[Vec<Point>],
@@ -90,7 +90,7 @@ mod tests {
         assert!((1350..1500).contains(&shared.len()), "{}", shared.len());
     }
 
-    /// Centres 1 m and 3 m from a face of length 2 m: lever arms differ by -2 m in any direction.
+    /// Centres 1 m and 3 m from a face of length 2 m.
     #[test]
     fn faces_lie_between_their_floes() {
         for turn in [0.0, 0.7, 2.5] {

@@ -181,7 +181,6 @@ fn number(
     Ok(nearest(room, mean, volume))
 }
 
-/// Samples are stratified: their volume grows with the number, up to scatter of a grain.
 fn nearest(room: f64, mean: f64, volume: &impl Fn(usize) -> f64) -> usize {
     let mut count = (room / mean).round().max(1.0);
     let mut best = (f64::INFINITY, count);

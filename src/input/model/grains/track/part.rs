@@ -54,7 +54,7 @@ impl TrackPart {
         pads.unwrap_or(f64::INFINITY).min(ram.unwrap_or(f64::INFINITY))
     }
 
-    /// Pad stiffness and damping, and 1/m of a seat with both rotations: a bound for all modes.
+    /// Pad stiffness and damping, and 1/m of a seat with both rotations.
     fn pads(&self) -> Option<([f64; 2], f64)> {
         let (rail, sleeper) = (self.rail.as_ref()?, &self.sleeper.as_ref()?.row);
         let [a, b, c] = sleeper.half;

@@ -1,7 +1,6 @@
 //! Meshed sleepers: separate bodies of 20-node hexahedra after the ground in the mesh.
 //!
-//! They stay above the ground until the bed is deposited; matrices do not depend on position. All have
-//! identical meshes and numbering.
+//! They stay above the ground until the bed is deposited.
 
 mod shares;
 #[cfg(test)]

@@ -10,8 +10,7 @@ use trackbed_fem::mesh::Mesh;
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// Elements along an axis on a line from `low` to `high`: number, natural coordinates and weights. A zero
-/// length is a point.
+/// Elements along an axis on a line from `low` to `high`: number, natural coordinates and weights.
 fn along_line(low: f64, high: f64, half: f64, count: usize) -> Vec<(usize, f64, f64)> {
     let step = 2.0 * half / count as f64;
     let begin = |i: usize| -half + i as f64 * step;
@@ -67,7 +66,7 @@ pub(super) fn volume(mesh: &Mesh) -> Vec<f64> {
     shares
 }
 
-/// Mean base slope along an axis: Σ w x u / Σ w x² with consistent weights w.
+/// Mean base slope along an axis.
 pub(super) fn slope(mesh: &Mesh, axis: usize) -> Vec<(u32, f64)> {
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
     for face in mesh.boundary_faces() {
