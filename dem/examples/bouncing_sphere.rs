@@ -1,4 +1,4 @@
-//! Bounce heights of a sphere on a plane, which fall with the square of the coefficient of restitution.
+//! Bounce heights of a sphere on a plane.
 //!
 //! `cargo run --release -p trackbed-dem --example bouncing_sphere`
 

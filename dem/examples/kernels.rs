@@ -1,4 +1,4 @@
-//! Writes the device kernel sources of models with each law, one file each, for `tests/nvrtc_check.py`.
+//! Writes the device kernel sources of models with each law, for `tests/nvrtc_check.py`.
 //!
 //! `cargo run --release -p trackbed-dem --example kernels -- FOLDER`
 

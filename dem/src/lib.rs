@@ -3,10 +3,9 @@
 //! A [`Model`] is constant in a run, a [`State`] evolves, a [`Work`] is scratch; [`step()`] advances the
 //! state. SI units.
 //!
-//! Modules are layers, which import only from earlier ones: `base`, `lanes` (SIMD), `shape`, `spatial`,
-//! `law`, `bodies`, `pairs` (contact storage), `contact` (contact loops), `integrate`, `body_force`, `bond`,
-//! `wall`, `engine`, `measure`, `stability` (critical time step), `insert`, `device` (GPU), `ranks` (several
-//! processes).
+//! Modules are layers, which import only from earlier ones: `base`, `lanes`, `shape`, `spatial`, `law`,
+//! `bodies`, `pairs`, `contact`, `integrate`, `body_force`, `bond`, `wall`, `engine`, `measure`, `stability`,
+//! `insert`, `device` (GPU), `ranks` (several processes).
 
 mod base;
 mod bodies;

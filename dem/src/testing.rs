@@ -18,7 +18,7 @@ pub(crate) const SOFT: Material = Material {
     ..Material::RIGID
 };
 
-/// Dumbbells (shape 0), spheres (1) and a box (2), no bodies, at half the critical time step.
+/// Dumbbells (shape 0), spheres (1) and a box (2) at half the critical time step.
 pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {
     let dumbbell = Clump::from_spheres(&[([0.0; 3], 0.01), ([0.01, 0.0, 0.0], 0.009)]).unwrap();
     ModelInput {
@@ -29,7 +29,6 @@ pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {
     }
 }
 
-/// Floor at z = 0, and walls at 0 and `side` across `axes`.
 pub(crate) fn shaft(side: f64, axes: &[Vec3]) -> Vec<Plane> {
     let wall = |point, normal| Plane { point, normal, material: 0, velocity: Vec3::zeros() };
     let walls = axes.iter().flat_map(|&d| [wall(Vec3::zeros(), d), wall(d * side, -d)]);

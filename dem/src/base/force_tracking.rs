@@ -166,7 +166,6 @@ mod tests {
         assert!((load.target.mean - 150.0).abs() < 0.1 && (load.target.max - 200.0).abs() < 0.5, "{load:?}");
     }
 
-    /// 80 % of the amplitude, 60 degrees late, mean 10 higher.
     #[test]
     fn lag_and_loss_are_measured() {
         let late = |t: f64| 160.0 - 40.0 * libm::cos(TAU * 5.0 * t - FRAC_PI_3);
@@ -193,7 +192,6 @@ mod tests {
         assert!((load.applied.max - 3.0).abs() < 0.1, "{load:?}");
     }
 
-    /// The approach is not judged.
     #[test]
     fn approach_is_left_out() {
         let load = follow(|_| 10.0, |t| (100.0 * t).min(10.0), 1.0);

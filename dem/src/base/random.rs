@@ -1,7 +1,6 @@
 //! Random number stream of the generators.
 //!
-//! PCG XSL-RR 128/64 (M. E. O'Neill, "PCG: A family of simple fast space-efficient statistically good
-//! algorithms for random number generation", HMC-CS-2014-0905, 2014).
+//! PCG XSL-RR 128/64 (M. E. O'Neill, HMC-CS-2014-0905, 2014).
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use rand_core::{Rng, SeedableRng};

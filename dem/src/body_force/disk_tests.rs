@@ -22,7 +22,6 @@ fn disks_are_cut_exactly() {
     assert!(worst[0] < 1e-8 && worst[1] < 1e-7, "{worst:?}");
 }
 
-/// Volume, moment, area; projected area of a whole disk.
 #[test]
 fn parts_add_up() {
     let (big, r) = (0.7, 0.12);
@@ -39,7 +38,6 @@ fn parts_add_up() {
         assert!((one.area + two.area - own.area).abs() < 1e-6 * own.area);
         assert!((one.arm * one.volume + two.arm * two.volume).norm() < 1e-9);
         let whole = below([big, r], &up, 10.0, &along);
-        // Shadow: an ellipse dilated by a disk (Steiner's formula).
         let tilt = along.z.abs();
         let around: f64 = (0..2000)
             .map(|k| {

@@ -42,7 +42,6 @@ impl<F: ActOnFour> Acting<'_, F> {
         let Acting { force, block, work: ForceWork { radius, acting, .. } } = self;
         let n = block.bodies.len();
         for k in (0..n).step_by(4) {
-            // Surplus lanes repeat the last body and are not read.
             let at = [k, (k + 1).min(n - 1), (k + 2).min(n - 1), (k + 3).min(n - 1)];
             let v = &block.velocity;
             let [vx, vy, vz, _] = R::transpose([

@@ -1,9 +1,6 @@
-//! Body forces: forces without a contact partner, other than gravity and local damping.
+//! Body forces: forces without a contact partner.
 //!
-//! A body force is one file with an `BodyForceModel` and one line in `body_forces!`.
-//!
-//! Added mass mₐ reacts to all other forces F with −mₐ F/(m + mₐ), stable for any mₐ. Velocities are half a
-//! step old: drag is first order in its relative change of velocity per step.
+//! Added mass mₐ reacts to all other forces F with −mₐ F/(m + mₐ), stable for any mₐ.
 
 mod disk;
 mod four;
@@ -83,7 +80,7 @@ pub(crate) fn time_constant(forces: &[BodyForce], bodies: &Bodies, gravity: &Vec
     forces.iter().map(|f| f.time_constant(bodies, gravity)).fold(f64::INFINITY, f64::min)
 }
 
-/// Largest time step over time constant: velocity error 1 %. Above 1 explicit steps diverge.
+/// Largest time step over time constant: velocity error 1 %.
 pub(crate) const RESOLVED: f64 = 0.02;
 
 /// Empty unless water or scarring needs surfaces.

@@ -2,18 +2,15 @@ use super::*;
 use crate::shape::dilated::tests::{corners, rows};
 use nalgebra::{Quaternion, UnitQuaternion};
 
-/// Part below z = 0: volume and centre.
 fn wet(skin: &Skin, row: &[f64]) -> (f64, Vec3) {
     let q = UnitQuaternion::new_unchecked(Quaternion::new(row[0], row[1], row[2], row[3]));
     let up = q.inverse_transform_vector(&Vec3::z());
     let found = skin.below(&up, -row[6], &Vec3::x(), &mut Vec::new());
-    // Undoes the shift to the centre of mass: the table refers to the triangles.
     let (volume, moment) = skin.whole;
     let arm = found.arm + moment / volume;
     (found.volume, Vec3::new(row[4], row[5], row[6]) + q * arm)
 }
 
-/// Table by clipping, checked by hulls of half-spaces.
 #[test]
 fn sharp_bodies_are_cut_exactly() {
     let shapes = rows(include_str!("../../tests/data/water/corners.csv"));
@@ -24,7 +21,6 @@ fn sharp_bodies_are_cut_exactly() {
         let (volume, centre) = wet(&skin, row);
         assert!((volume - row[7]).abs() < 1e-12, "{body}: {volume} for {}", row[7]);
         for d in 0..3 {
-            // Small volumes have fewer digits in the centre.
             assert!(
                 (centre[d] - row[8 + d]).abs() * row[7].min(1.0) < 1e-12,
                 "{body}: {centre} for {:?}",
@@ -34,7 +30,7 @@ fn sharp_bodies_are_cut_exactly() {
     }
 }
 
-/// Error: the cut of an edge at the waterplane. Plainly offset faces: 0.0023 (mean), 0.023 (largest).
+/// Error of an edge cut at the waterplane; plainly offset faces: 0.0023 (mean), 0.023 (largest).
 #[test]
 fn dilated_bodies_are_cut_accurately() {
     let shapes = rows(include_str!("../../tests/data/water/corners.csv"));
@@ -62,7 +58,6 @@ fn dilated_bodies_are_cut_accurately() {
     assert!(worst < 3e-4 && sum < 100.0 * 5e-5 && off < 3e-4);
 }
 
-/// Side, vertex, top; half submerged.
 #[test]
 fn cube_has_projected_areas() {
     let cube: Vec<Vec3> = (0..8)

@@ -1,4 +1,4 @@
-//! Soil drag on a scarring rock (`law/scarring.rs`): at its centre, quadratic in speed.
+//! Soil drag on a scarring rock (`law/scarring.rs`).
 
 use super::work::{ForceInput, ForceWork};
 use crate::base::Vec3;

@@ -1,8 +1,7 @@
 //! Drag of a fluid of uniform velocity, such as wind.
 //!
-//! F = ½ ρ C_d π r² |u| u, u the relative velocity, r the volume-equivalent radius. C_d is constant: crushed
-//! stone of sphericity 0.8 about 1.4, 0.9 about 0.9, a smooth sphere 0.45, at Reynolds numbers of 10⁴ to 10⁵
-//! (Haider & Levenspiel, Powder Technology 58, 1989, eq. 11). No lift, shelter or torque.
+//! C_d at Reynolds numbers of 10⁴ to 10⁵: crushed stone of sphericity 0.8 about 1.4, 0.9 about 0.9, a smooth
+//! sphere 0.45 (Haider & Levenspiel, Powder Technology 58, 1989, eq. 11). No lift, shelter or torque.
 //!
 //! Theory manual: equation (6.34) of `docs/theory/track.md`.
 

@@ -1,8 +1,6 @@
-//! Bond with given stiffness and strength, independent of sphere size: a beam between centres, forces at its
-//! middle.
+//! Bond with given stiffness and strength, independent of sphere size.
 //!
-//! Source: Wang, Acta Geotechnica 4, 2009 (four springs, additive criterion). For small rotations equal to
-//! models with a quaternion per bond.
+//! Source: Wang, Acta Geotechnica 4, 2009 (four springs, additive criterion).
 
 use super::springs::{
     BondDamping, BondKind, Criterion, Joint, Problem, Rules, Springs, not_negative, positive, strength,

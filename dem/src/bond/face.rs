@@ -8,8 +8,6 @@
 //!
 //! Shear strength constant, or Mohr–Coulomb: c + (−T/wt) tan φ. Forces act in the face; contacts act in
 //! parallel.
-//!
-//! Limits: bending about both axes uses the thickness.
 
 use super::parallel::ShearStrength;
 use super::springs::{

@@ -6,8 +6,7 @@ fn v3(v: Vec3) -> V3<f64> {
     V3::from_vec(&v)
 }
 
-/// Rigid rotation about a skew outside axis: ten turns of 0.01 rad steps store nothing; stored vectors
-/// rotate.
+/// Rotation about a skew outside axis: ten turns of 0.01 rad steps store nothing.
 #[test]
 fn rigid_rotation_stores_no_energy() {
     let axis = Unit::new_normalize(Vec3::new(0.3, -0.8, 0.5));
@@ -38,7 +37,7 @@ fn rigid_rotation_stores_no_energy() {
     }
 }
 
-/// Forces are energy derivatives: ½ k q² in twelve directions; work equals energy loss.
+/// ½ k q² in twelve directions; work equals energy loss.
 #[test]
 fn forces_follow_from_the_energy() {
     let mut k = [0.0; COUNT];
@@ -86,7 +85,6 @@ fn pure_motions() {
     // Tension 1e-6 m.
     let r = run(Motion { v: v3(Vec3::z()), ..still(z * (1.0 + 5e-5)) }, still(Vec3::zeros()));
     near(r.force.to_vec(), -Vec3::z() * 20.0);
-    // Shear 1e-6 m: force and balancing torques.
     let r = run(Motion { v: v3(Vec3::x()), ..still(z + Vec3::x() * 1e-6) }, still(Vec3::zeros()));
     near(r.force.to_vec(), -Vec3::x() * 10.0);
     near(r.torque_a.to_vec(), Vec3::y() * 0.1);

@@ -1,8 +1,7 @@
 //! Contribution of bonds to the time step limit.
 //!
-//! Spring energy ½ k (gₐ·qₐ − g_b·q_b)² ≤ k (gₐ·qₐ)² + k (g_b·q_b)²: no frequency exceeds the
-//! value for one body on springs of twice the stiffness, ω² ≤ max λ(M⁻¹ K), K = 2 Σ k g gᵀ (Gershgorin's
-//! bound by blocks). Dashpots with half-step-old velocities likewise; stable for λ dt² + 2 γ dt < 4.
+//! ω² ≤ max λ(M⁻¹ K), K = 2 Σ k g gᵀ (Gershgorin's bound by blocks: one body on springs of twice the
+//! stiffness). Dashpots likewise; stable for λ dt² + 2 γ dt < 4.
 
 use super::Constants;
 use super::kernel;

@@ -1,4 +1,4 @@
-//! SIMD loop over the bonds of a list, one or two groups at a time.
+//! SIMD loop over the bonds of a list.
 
 use super::kernel::{self, BondHistory, COUNT, Motion, respond, update_frame};
 use super::slot::BondSlot;
@@ -24,7 +24,6 @@ fn bonds<P: SimdPack>(
     dt: P,
     power: &mut P::Quad,
 ) -> Outcome<P> {
-    // No closures: they are not inlined into the kernel entry.
     let mut k = [P::zero(); COUNT];
     for (k, (p, q)) in k.iter_mut().zip(constants.0.iter().zip(constants.1)) {
         *k = P::join(p, q);
@@ -156,7 +155,7 @@ impl<B: Ends> Kernel for Bonds<'_, B> {
     fn run<P: SimdPack>(self) -> f64 {
         let Bonds { groups, constants, count, mut bodies, found, dt } = self;
         let Some(&spare) = groups.first() else { return 0.0 };
-        // Unused lanes repeat a real pair with zero constants, for harmless arithmetic.
+        // Unused lanes repeat a real pair with zero constants.
         let (mut spare, none) = (spare, [Vec4::default(); COUNT]);
         let constants = &constants[..groups.len()];
         let dt = P::splat(dt);

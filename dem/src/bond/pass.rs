@@ -1,4 +1,4 @@
-//! Bond passes of a step: between blocks (slots), within blocks, then breakage in a fixed order.
+//! Bond passes of a step: between blocks (slots), within blocks, then breakage.
 
 use super::kernel::{self, COUNT, Motion, respond, update_frame};
 use super::loops::{Bonds, InterBlock, IntraBlock};
@@ -114,7 +114,6 @@ fn motion(block: &Block, k: usize) -> Motion<f64> {
 fn describe(parts: &Parts<'_>, at: u32, e: &Entry, own: &Block, other: &Block) -> Broken {
     let k = &parts.bonds[e.number as usize].values;
     let (a, b) = (motion(own, e.i as usize), motion(other, e.j as usize));
-    // Zero time increment gives the current frame.
     let mut memory = e.memory;
     let frame = update_frame(k[kernel::OFFSET], &a, &b, &mut memory, 0.0);
     let r = respond(k, &a, &b, &frame, &memory);

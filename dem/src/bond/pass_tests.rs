@@ -8,7 +8,6 @@ use crate::shape::Shape;
 use crate::spatial::surface::NoSurface;
 use crate::{Model, State, Work};
 
-/// Shaken cube of 11³ spheres, gap 0.1 mm, at least two blocks.
 fn cube(strength: f64) -> ModelInput {
     let mut input = ModelInput {
         materials: vec![Material {
@@ -54,7 +53,6 @@ fn cube(strength: f64) -> ModelInput {
     input
 }
 
-/// Scalar and native SIMD, with breakage in all lanes.
 #[test]
 fn scalar_and_simd_match_bitwise() {
     let model = Model::new(cube(20.0)).unwrap();
@@ -94,7 +92,6 @@ fn bonds_survive_a_new_order() {
     };
     let (before, energy) = (forces(&state), crate::measure::energies(&model, &state).elastic_bonds);
     let places = state.places.clone();
-    // A resting cube stays sorted: permute the axes.
     let positions: Vec<Vec3> = (0..1331).map(|b| state.position(1330 - b).yzx()).collect();
     let all = crate::engine::reordering::BodyChanges::none(&state);
     crate::engine::reordering::reorder(&mut state, &model, &positions, &all);

@@ -97,7 +97,7 @@ impl BondList {
         for e in bonds {
             let at = self.count as usize;
             if at.is_multiple_of(4) {
-                // Unused lanes repeat a real pair with zero constants, for harmless arithmetic.
+                // Unused lanes repeat a real pair with zero constants.
                 let zero = [Vec4::default(); 3];
                 self.groups.push(Group {
                     number: [NONE; 4],

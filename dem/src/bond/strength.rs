@@ -1,8 +1,4 @@
 //! Random bond strengths.
-//!
-//! * normal: mean 1, truncated at zero by redrawing;
-//! * Weibull: scale from the bond type (63.2 % fractile), mean Γ(1 + 1/m).
-//!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
 //!
 //! Theory manual: equation (2.13) of `docs/theory/shapes.md`.

@@ -1,4 +1,4 @@
-//! Selects a block's contact loops. Independent of the surface type, hence compiled once, with this crate.
+//! Selects a block's contact loops. Independent of the surface type, hence compiled once.
 
 use super::gather::Gathering;
 use super::inter_block::Between;

@@ -157,7 +157,6 @@ pub(crate) struct PlaneContact<R> {
     pub wall: V3<R>,
 }
 
-/// Forces and torques on bodies; dissipation; power and moment of planes; excessive overlaps.
 pub(crate) struct Forces<R: Real> {
     pub force: V3<R>,
     pub torque: V3<R>,

@@ -1,5 +1,4 @@
-//! Prefetches the next block's inter-block contact data, which is accessed in random order, during this
-//! block's computation.
+//! Prefetches the next block's inter-block contact data.
 
 use crate::bodies::block::Block;
 use crate::bodies::block_slice::BlockSlice;

@@ -43,7 +43,6 @@ pub(crate) struct PatchWork {
     pub aside: SavedForces,
 }
 
-/// Saved contact forces.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SavedForces {
     /// In the order of spheres.
@@ -329,7 +328,6 @@ pub(crate) fn contacts<S: Surface>(
     exchange
 }
 
-/// Detects contacts and transfers history; results in `work`.
 #[inline(always)]
 fn detect<S: Surface>(
     setting: &StepContext<'_>,
@@ -502,7 +500,6 @@ fn apply<S: Surface>(
     exchange
 }
 
-/// New contact with the sphere's history of the patch.
 fn new_contact(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> PatchContact {
     let mut contact = PatchContact {
         i: sphere,
@@ -521,7 +518,6 @@ fn new_contact(t: &PatchTouch, sphere: u32, before: &mut [PatchContact]) -> Patc
     contact
 }
 
-/// Transfers history from ending contacts nearby with similar normals.
 fn transfer_history(now: &mut [PatchContact], before: &mut [PatchContact], r: f64) {
     for contact in now.iter_mut().filter(|c| c.history.is_new()) {
         let of = V3::from_vec;

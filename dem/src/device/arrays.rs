@@ -328,7 +328,6 @@ impl Lists {
         self.sort(&entered.all);
     }
 
-    /// Includes CPU forces of body pairs.
     fn enter_across(&mut self, state: &State, work: &Work, spheres: &Spheres, entered: &mut Entered) {
         // As the engine with any clump.
         let across = if spheres.clumps { EntryKind::Members } else { EntryKind::Spheres };

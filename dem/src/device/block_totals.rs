@@ -47,7 +47,6 @@ pub(super) fn reduce_blocks(
             sums.clear();
             sums.extend(q[2..].chunks_exact(WALL_TOTALS).map(sum));
         }
-        // Order of the engine's sums: contacts in the block, then cross-block.
         if f.beside {
             let BlockTotals { balance, failure: wrong, .. } = &work.blocks[b].totals;
             let aside = &work.blocks[b].patches.aside;
@@ -91,7 +90,7 @@ pub(super) fn reduce_blocks(
     all
 }
 
-/// Adds CPU pairs of a block, and the loss [J] of its cross-block sphere contacts.
+/// Adds CPU pairs of a block, and their loss [J].
 fn add_pairs(sum: &mut BalanceTerms, work: &mut Work, b: usize, [dashpot, friction]: [f64; 2]) {
     let cross = &work.cross[b];
     sum.dissipated_dashpot += dashpot + cross.dashpot;

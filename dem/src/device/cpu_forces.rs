@@ -13,7 +13,7 @@ use crate::spatial::surface::Surface;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// Body pair: index of its first record in the slots of block `from`; spheres come first.
+    /// Body pair: index of its first record in the slots of block `from`.
     Pair { from: usize, record: usize },
     /// Wall contacts of a body.
     Walls { block: usize, place: u32 },
@@ -60,7 +60,6 @@ impl CpuForces {
         let CpuForces { sources, start, forces, .. } = self;
         start.clear();
         forces.clear();
-        // Wall and surface contacts are stored in body order.
         let (mut on_walls, mut on_surface) = (BodyOrder::default(), BodyOrder::default());
         for source in &*sources {
             start.push(forces.len() as u32 / 2);
@@ -81,7 +80,7 @@ impl CpuForces {
 }
 
 impl CpuForces {
-    /// Empty. `again`: whether valid steps may have to be repeated on the CPU.
+    /// Empty. `again`: whether steps may have to be repeated on the CPU.
     pub fn new(again: bool) -> CpuForces {
         CpuForces { kept: again.then(SavedHistory::default), ..CpuForces::default() }
     }

@@ -1,9 +1,8 @@
 //! Time steps on a device, bitwise identical to the engine's.
 //!
 //! The engine's own formulas are recorded (`tape.rs`) and written as C and CUDA source (`text`). The CPU
-//! searches contacts other than sphere–sphere and sphere–plane, re-sorts bodies, repeats failed steps, and
-//! computes its part of a step (`cpu_forces.rs`): external surfaces and solid bodies. Unsupported features are
-//! rejected ([`check`]).
+//! computes the rest of a step (`cpu_forces.rs`), re-sorts bodies and repeats failed steps. Unsupported
+//! features are rejected ([`check`]).
 
 mod arrays;
 mod back_end;

@@ -1,7 +1,7 @@
 //! Neighbour search on the device (`text/search.c`).
 //!
-//! The neighbour list depends only on positions, so any search gives the engine's bits; here cells without
-//! candidate lists. The CPU lists contacts other than sphere–sphere and sphere–plane.
+//! The neighbour list depends only on positions, so any search gives the engine's bits. The CPU lists
+//! contacts other than sphere–sphere and sphere–plane.
 
 use super::arrays::{DeviceHistory, Lists};
 use super::back_end::Device;
@@ -86,7 +86,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// Rebuilds sphere and plane contacts and all entries.
     fn search(&mut self, model: &Model, state: &State) -> Result<(), String> {
         // History is copied from the previous lists.
         for (new, old) in [(Slot::Ends, Slot::OldEnds), (Slot::Offsets, Slot::OldOffsets)] {
@@ -131,7 +130,6 @@ impl<M: Machine> Device<M> {
         Ok(())
     }
 
-    /// No contacts other than sphere–sphere and sphere–plane.
     fn note_none(&mut self, contacts: usize) {
         for none in [Count::FirstDebonded, Count::FirstPatch, Count::FirstImage] {
             self.call.count(none, contacts);
@@ -207,7 +205,6 @@ impl<M: Machine> Device<M> {
 
     /// Exclusive prefix sums, in place.
     fn running_total(&mut self, slot: Slot, count: usize) -> Result<(), String> {
-        // Levels: the list, segment sums, sums of these; all sums share one buffer.
         let (mut lengths, mut from) = (vec![count], vec![0, 0]);
         while let Some(&last) = lengths.last().filter(|n| **n > STRETCH) {
             lengths.push(last.div_ceil(STRETCH));
@@ -235,7 +232,6 @@ impl<M: Machine> Device<M> {
         self.machine.reserve_counts(self.call.buffers[slot as usize], counts)
     }
 
-    /// Writes lists to a state, without history.
     pub(super) fn name_contacts(&mut self, state: &mut State) -> Result<(), String> {
         let mut ranges = vec![[0; LISTS]; state.blocks.len() + 1];
         let mut ends = vec![[0; 2]; self.among_spheres];
@@ -248,7 +244,6 @@ impl<M: Machine> Device<M> {
                 let at = |b: usize| ranges[b][list as usize] as usize;
                 ends[at(b)..at(b + 1)].iter().copied()
             };
-            // Spheres that are bodies have block-local indices.
             let first = if self.work.members[b].rigid { bases[b] } else { ranges[b][List::Bodies as usize] };
             cross.spheres.clear();
             for [i, j] in of(List::Cross) {

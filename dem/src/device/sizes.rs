@@ -18,7 +18,6 @@ pub(super) fn largest(most: f64, class: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Every radius lies within a factor of two of its class, except in the last.
     #[test]
     fn classes_halve() {
         assert_eq!([(1.0, 1.0), (0.4, 1.0), (0.25, 1.0), (0.2, 1.0)].map(classes), [1, 1, 3, 3]);

@@ -1,8 +1,7 @@
 //! Compute back ends (CPU, GPU).
 //!
-//! A back end uploads a [`State`], advances it and downloads it; meanwhile motion and contact history may
-//! live elsewhere. Time, steps, balance terms and surface contacts are current after each step. Results are
-//! bitwise identical to [`Work`], which computes on the state itself.
+//! A back end uploads a [`State`], advances it and downloads it; results are bitwise identical to [`Work`].
+//! Time, steps, balance terms and surface contacts are current after each step.
 
 use super::input::AppliedForce;
 use super::model::Model;
@@ -38,7 +37,7 @@ pub trait BackEnd {
     /// Device failure.
     fn download(&mut self, model: &Model, state: &mut State) -> Result<(), StepError>;
 
-    /// Contacts with the external surface in the last step, by block, sphere, patch.
+    /// Contacts with the external surface in the last step.
     fn surface_contacts(&self) -> &[SurfaceContact];
 }
 

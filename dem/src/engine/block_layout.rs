@@ -1,8 +1,8 @@
 //! Memory order of bodies.
 //!
 //! Recursive bisection across the longest side gives compact blocks. Within a block, cell order (z, y, x)
-//! suits hardware prefetching better than space-filling curves. Bodies not made of spheres come last, in
-//! separate blocks. The order depends on positions only and fixes rounding of sums.
+//! suits hardware prefetching better than space-filling curves. The order depends on positions only and fixes
+//! rounding of sums.
 
 use super::model::Model;
 use super::state::BlockLists;
@@ -33,7 +33,6 @@ pub(crate) fn blocks(model: &Model, positions: &[Vec3], present: impl Fn(usize) 
     if solids.len() > SOLIDS {
         sort(&mut solids, model, positions, SOLIDS, &mut out);
     } else if !solids.is_empty() {
-        // Input order: few bodies, such as sleepers.
         out.push(solids);
     }
     out
@@ -58,7 +57,6 @@ fn halve(bodies: &mut [u32], positions: &[Vec3], size: usize, cell: f64, out: &m
         });
     let axis = (hi - lo).imax();
     let middle = count / 2 * size;
-    // Ties by index: independent of input order.
     bodies.sort_unstable_by(|&a, &b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(&b)));
     let (left, right) = bodies.split_at_mut(middle);
     halve(left, positions, size, cell, out);

@@ -1,4 +1,4 @@
-//! Bond lists: distribution over blocks, update after a step, release of separated pairs.
+//! Bond lists: distribution over blocks, update after a step.
 
 use super::model::Model;
 use super::state::State;
@@ -73,7 +73,7 @@ fn distribute(model: &Model, state: &mut State, all: Vec<BondEntry>) {
             BondEntry::Bond(number, _) => *number,
             BondEntry::Debonded(r) => r.number,
         };
-        // First body by model index, independent of block order: signs never flip.
+        // First body by model index, independent of block order.
         let [[b, i], [block, j]] = model.bonds[number as usize].ends.map(|body| state.places[body as usize]);
         let across = usize::from(b != block);
         match entry {
@@ -201,7 +201,6 @@ fn part(
         let (ra, rb) = (p.centre[i][3], q.centre[j][3]);
         let dt = state.step_size.dt;
         let (x, v) = (xyz(&p.centre[i]) - xyz(&q.centre[j]), xyz(&p.velocity[i]) - xyz(&q.velocity[j]));
-        // One step and half a step ago, the latter at the new velocity.
         let half = ra + rb - (x - v * (0.5 * dt)).norm();
         let then = ra + rb - (x - v * dt).norm();
         let radius = ra * rb / (ra + rb);

@@ -1,5 +1,4 @@
-//! Broad-phase candidate pairs closer than the search skin, from cell grids and trees; `neighbour_list.rs` checks
-//! their validity.
+//! Broad-phase candidate pairs closer than the search skin, from cell grids and trees.
 
 use super::block_work::{BlockWork, Candidates};
 use super::clump_bounds::ClumpBounds;
@@ -245,7 +244,6 @@ impl<'a> All<'a> {
 
     fn nearby_clumps(&self, clump_bounds: &ClumpBounds, body: u32, me: (u32, u32), near: &mut Vec<u32>) {
         let (skin, p) = (self.model.skin, &clump_bounds.around[body as usize]);
-        // Blocks before the first local one have no later partners.
         let before = clump_bounds.of_block(self.own.start).start;
         near.clear();
         clump_bounds.cells.neighbours(p, skin, |other| {

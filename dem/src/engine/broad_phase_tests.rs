@@ -9,7 +9,6 @@ use crate::spatial::surface::NoSurface;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
-/// Clumps and spheres, some fixed, thrown into a box in dense contact.
 fn thrown(seed: u64) -> ModelInput {
     let mut rng = Pcg64Mcg::new(seed.into());
     let mut unit = || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;

@@ -1,4 +1,4 @@
-//! Bounding spheres of bodies: clumps are searched body by body first, as most pairs of bodies are apart.
+//! Bounding spheres of bodies: most pairs of clumps are apart.
 
 use crate::base::Vec3;
 use crate::lanes::vec4::{Vec4, xyz};

@@ -1,5 +1,4 @@
-//! CPU part of a step with a back end for spheres: contacts with the external surface and with round or
-//! servo-controlled walls; contacts and motion of bodies not made of spheres.
+//! CPU part of a step with a back end for spheres.
 
 use super::block_work::BlockWork;
 use super::model::Model;

@@ -1,7 +1,4 @@
 //! Neighbour list with contact history, built from broad-phase candidate pairs.
-//!
-//! It is rebuilt when a bound on speeds exceeds its cut-off, the candidates when true displacements exceed
-//! the skin. Pairs are sorted and distant pairs add nothing, so rebuild times do not affect results.
 
 use super::block_work::Candidates;
 use super::broad_phase::{self, Listed};
@@ -54,7 +51,7 @@ pub(crate) fn exceeds_skin(model: &Model, state: &State, approach: f64) -> bool 
 
 pub(crate) fn adapt(model: &Model, state: &mut State) {
     if exceeds_cutoff(state) {
-        // A list that lasts about ten steps costs least.
+        // A list that lasts about ten steps costs least; rebuild times do not affect results.
         if state.steps_since_search < 6 {
             state.near = (1.5 * state.near).min(0.5 * model.skin);
         } else if state.steps_since_search > 40 {

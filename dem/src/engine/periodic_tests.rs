@@ -21,7 +21,6 @@ fn wraps_into_the_box() {
     assert_eq!(p.turns(&Vec3::new(-9.5, 7.0, 0.0)), [-5, 2, 0]);
 }
 
-/// Bodies falling on a moving plane and crossing two periodic boundaries.
 fn drifting() -> ModelInput {
     let material = Material {
         density: 2600.0,
@@ -70,7 +69,6 @@ fn wrapping_keeps_contact_forces() {
     for _ in 0..8000 {
         crate::step(&model, &mut state, &mut work, &NoSurface, &[]).unwrap();
     }
-    // Oriented from the lower body index; counts periodic pairs.
     let forces = |state: &State| {
         let (mut across, mut swapped) = (0, 0);
         let mut list: Vec<_> = measure::contacts(&model, state)

@@ -160,7 +160,6 @@ impl Renumbering for BodyMap<'_> {
 impl PreviousLists {
     fn row(&self, model: &Model, body: usize, b: usize, k: usize) -> BodyState {
         let from = &self.blocks[b];
-        // Blocks of single spheres store no orientation.
         let unturned = || Rotation { orientation: model.bodies.orientation(body), momentum: Vec3::zeros() };
         BodyState {
             centre: from.centre[k],
@@ -173,7 +172,6 @@ impl PreviousLists {
     pub fn pairs(&self, names: &SphereMap<'_>, state: &mut State) {
         let mut file = |a: Option<(u32, u32)>, b: Option<(u32, u32)>, history: History| {
             let (Some(a), Some(b)) = (a, b) else { return };
-            // The spring acts on the first body: reverse it.
             let turned = history.turned();
             let (a, b, history) = if a <= b { (a, b, history) } else { (b, a, turned) };
             if a.0 == b.0 {

@@ -1,7 +1,6 @@
 //! Scarring of the ground by bodies (`law/scarring.rs`).
 //!
-//! The drag area is cut by the plane of the triangle beneath the centre, or of the nearest penetrated
-//! triangle.
+//! The drag area is cut by the plane of the triangle beneath the centre.
 
 use super::block_work::Ground;
 use super::broad_phase;
@@ -43,7 +42,6 @@ pub(crate) fn update(model: &Model, state: &mut State, work: &mut Work) {
             let body = Body { model, block: &blocks[b], members: &work.members[b], k, down: &down };
             let before = scar.inside;
             body.follow(scar, own, step_size.kick(), &mut heights);
-            // Sinking brings further ground within the cut-off.
             *stale |= scar.inside != before;
         }
         work.ground = ground;
@@ -89,7 +87,6 @@ impl Body<'_> {
         let law = self.model.walls.walls[ground.wall].scarring;
         let Some((law, (normal, height))) = law.zip(ground.plane).filter(|_| self.inside(scar, ground))
         else {
-            // Out of the soil, the friction increase decays.
             let law = self.model.walls.walls.iter().find_map(|w| w.scarring);
             let way = law.map_or(0.0, |law| law.update_path(scar.way, false, 0.0, dt));
             let way = if way > FORGOTTEN { way } else { 0.0 };

@@ -22,8 +22,7 @@ pub(crate) fn half_a_step_ago(model: &Model, body: usize, velocity: &Vec3, dt: f
 impl State {
     /// Creates the initial state at time 0.
     ///
-    /// Velocities at −dt/2 exclude half a step of gravity. Initial contact or applied forces act with a full
-    /// first kick, a time shift of half a step.
+    /// Initial contact or applied forces act with a full first kick, a time shift of half a step.
     pub fn new(model: &Model) -> State {
         let plane =
             |p: &crate::Plane| PlaneMotion { offset: Vec3::zeros(), velocity: p.velocity, open: false };

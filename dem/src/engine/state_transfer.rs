@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 
 impl State {
     /// Copies the first `count` bodies from the state `other` of a model with identical shapes, sizes and
-    /// bonds, with motion and mutual history. Prescribed motions stay, other contacts are reset. Call it
-    /// before creating a [`Work`](crate::Work), and [`State::restore_history`] after contact detection.
+    /// bonds, with motion and mutual history. Call it before creating a [`Work`](crate::Work), and
+    /// [`State::restore_history`] after contact detection.
     ///
     /// # Errors
     /// Index of the first missing or different body.
@@ -36,7 +36,6 @@ impl State {
         bonds::insert_bonds(model, self, bonds::extract_bonds(&mut other.clone()));
         (self.bonds.broken, self.bonds.fresh) = (other.bonds.broken, other.bonds.fresh);
         self.bonds.power = other.bonds.power;
-        // Velocities are half of the last step old.
         self.step_size.last = other.step_size.last;
         self.restore_history(model, other, count);
         Ok(())
@@ -102,7 +101,6 @@ mod tests {
     use crate::spatial::surface::NoSurface;
     use crate::testing::{SOFT, dumbbells, push, shaft};
 
-    /// An added plane and body without contact leave the motion unchanged, unless history is lost.
     #[test]
     fn bed_continues_in_another_model() {
         let mut input = dumbbells(SOFT, [0.09, 0.09, 0.01]);

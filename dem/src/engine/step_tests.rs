@@ -58,7 +58,6 @@ fn heap_input(hertz: bool, clumps: bool) -> ModelInput {
         });
     }
     if clumps && !hertz {
-        // A plate falls on top, also of the last block.
         input.shapes.push(Shape::Box { half: [0.1, 0.1, 0.01] });
         let (position, velocity) = (Vec3::new(0.15, 0.2, 0.4627), Vec3::new(0.0, 0.0, -3.0));
         input.bodies.push(BodyInput { shape: 2, position, velocity, ..BodyInput::default() });
@@ -90,7 +89,6 @@ fn threaded_blocks_match_serial_bitwise() {
     assert!(run(false) == run(true));
 }
 
-/// SIMD and scalar lanes, each law, with and without clumps.
 #[test]
 fn all_lanes_give_the_same_bits() {
     let kinds = [(false, false), (false, true), (true, false), (true, true)];
@@ -104,7 +102,7 @@ fn all_lanes_give_the_same_bits() {
     }
 }
 
-/// Applied forces, even zero, select the scalar path: with and without local damping and fixed motions.
+/// Applied forces, even zero, select the scalar path.
 #[test]
 fn four_move_as_one() {
     for (clumps, damping) in [(false, 0.0), (false, 0.3), (true, 0.0), (true, 0.3)] {
@@ -167,7 +165,6 @@ fn rejects_nan_speed() {
     }
 }
 
-/// 1, 2, 3 and 7 threads, with rolling history and rebuilt lists, or a box.
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     for hertz in [true, false] {

@@ -19,7 +19,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// `rigid`: limit of walls and polyhedra on faces [s]; `collision`: see [`collision::longest`] [s].
+    /// `rigid`: limit of walls and polyhedra on faces [s]; `collision`: of collisions [s].
     ///
     /// # Errors
     /// A fixed step above the limit; values out of floating-point range.
@@ -48,7 +48,7 @@ impl Steps {
             ("effective mass", limit.mass),
             ("contact stiffness", limit.stiffness),
         ];
-        // Mass is 0 without moving bodies, stiffness without contact partners.
+        // Mass may be 0, and so may stiffness.
         let bad = |(k, value): (usize, f64)| !value.is_finite() || (k < 2 && value <= 0.0);
         match quantities.iter().enumerate().find(|(k, (_, value))| bad((*k, *value))) {
             Some((_, &(quantity, _))) => Err(ModelError::NotFinite { quantity }),

@@ -1,8 +1,7 @@
 //! Distribution of blocks over threads.
 //!
-//! Contacts between two blocks are computed with the first, before either moves. A thread processes blocks in
-//! order: contacts with later blocks, then the block itself with its motion, in cache or prefetched. Several
-//! threads process contiguous ranges; contacts beyond a range come first, so no thread reads moving bodies.
+//! Contacts between two blocks are computed with the first, before either moves. Threads process contiguous
+//! ranges; contacts beyond a range come first, so no thread reads moving bodies.
 
 use super::block_work::BlockWork;
 use super::state::BlockLists;
@@ -17,7 +16,7 @@ use crate::pairs::cross::{Cross, CrossForces, Slots};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Large ranges first, small ones last for balance. Unit tests have small beds.
+/// Large ranges first, small ones last for balance.
 const SHARE: usize = if cfg!(test) { 1 } else { 2 };
 
 /// Blocks that exceed the caches: prefetch pays.
@@ -55,7 +54,7 @@ pub(crate) struct BlockTask<'a> {
 
 pub(crate) type Bodies<'a> = (BlockSlice<'a, Block>, BlockSlice<'a, BlockBodies>);
 
-/// `between`: contacts with later blocks; `within`: the rest; `beyond`: scratch. Earlier blocks do not move.
+/// `between`: contacts with later blocks; `within`: the rest; `beyond`: scratch.
 pub(crate) fn run_blocks(
     threads: usize,
     own: &Range<usize>,

@@ -1,7 +1,7 @@
 //! Wall motion at the end of a step.
 //!
-//! A prescribed wall does work F·v̄ + M·ω̄, with mean velocities before and after the step, consistent with
-//! the bodies' half steps. Prescribed oscillations set the displacement, so they do not drift.
+//! A prescribed wall does work F·v̄ + M·ω̄, with mean velocities before and after the step. Prescribed
+//! oscillations set the displacement, so they do not drift.
 
 use super::model::Model;
 use super::state::State;
@@ -95,7 +95,6 @@ pub(crate) fn advance(
                 speed
             }
         };
-        // A wall must not pass a grain within a step.
         if (speed.is_nan() || speed > bound) && failure.is_none() {
             failure = Some(Failure::Wall { wall: k as u32, speed, bound });
         }

@@ -1,4 +1,4 @@
-//! Scratch data of the step: never saved, rebuilt from a state with bitwise identical results.
+//! Scratch data of the step, rebuilt from a state with bitwise identical results.
 
 use super::block_work::{BlockWork, Ground};
 use super::broad_phase::Listed;

@@ -81,7 +81,6 @@ impl Work {
             w.patches.turning =
                 model.laws.rolls_among(&block_layout::materials(block), &model.patch_materials);
         }
-        // A block without bodies has no common material.
         self.material = common(self.members.iter().map(|m| m.material)).flatten();
         link(model, state, self);
         bonds::arrange(model, state, self);

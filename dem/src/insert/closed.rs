@@ -213,7 +213,6 @@ fn welded(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]
     (kept, whole)
 }
 
-/// Every edge joins an even number of triangles.
 fn closed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), SurfaceError> {
     let mut edges: BTreeMap<[u32; 2], usize> = BTreeMap::new();
     for t in triangles {

@@ -4,7 +4,6 @@ use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::PI;
 
-/// Unit cube, n × n squares per face, every second triangle flipped.
 fn cube(n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for d in 0..3 {
@@ -28,7 +27,6 @@ fn cube(n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// Unit ball by latitude and longitude.
 fn ball(centre: Vec3, n: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices = Vec::new();
     for i in 0..=n {
@@ -78,7 +76,6 @@ fn counts_rays_through_edges_and_vertices() {
     assert!(!surface.holds(&Vec3::new(3.0, 0.5, 0.5), 0.1));
 }
 
-/// Ball with a spherical cavity.
 #[test]
 fn hollow_ball_against_the_closed_form() {
     let n = 60;

@@ -82,8 +82,7 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
-    /// Monte Carlo volume; largest sphere in a funnel: radius h sin α at height h above the tip, half opening
-    /// angle α.
+    /// Largest sphere in a funnel: radius h sin α at height h above the tip, half opening angle α.
     #[test]
     fn cones_hold_what_fits() {
         let (from, to) = (Vec3::new(0.2, 0.1, -0.3), Vec3::new(0.8, -0.5, 0.9));

@@ -1,6 +1,6 @@
 //! Inlets and outlets: insertion and removal of bodies during a run.
 //!
-//! All bodies are in the model from the start; absent ones belong to no block ([`State::present`]).
+//! Absent bodies belong to no block ([`State::present`]).
 //!
 //! Limits: no boxes, no bonded bodies.
 
@@ -52,8 +52,7 @@ pub enum FlowError {
 }
 
 /// Removes the bodies `leave` and inserts `arrive`, possibly the same; remaining contacts keep their history.
-/// Leapfrog velocities of inserted bodies lag by half a step of gravity; energy and momentum of that instant
-/// are balanced.
+/// Energy and momentum of that instant are balanced.
 ///
 /// # Errors
 /// [`FlowError`] of the first invalid body; nothing is changed.

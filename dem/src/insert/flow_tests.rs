@@ -13,7 +13,6 @@ use crate::{Model, ModelError, step};
 
 const SIDE: f64 = 0.12;
 
-/// Shaft with spheres and dumbbells, optionally periodic along x; every fifth body is absent.
 fn input(periodic: bool) -> ModelInput {
     let material = Material {
         stiffness: 2e4,
@@ -63,7 +62,6 @@ impl Run {
         exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
     }
 
-    /// Conserved energy sum [J].
     fn account(&self) -> f64 {
         let balance = &self.state.balance;
         measure::energies(&self.model, &self.state).total() + balance.dissipated() - balance.work()
@@ -94,7 +92,6 @@ fn turn_over(run: &mut Run, waiting: &mut Vec<usize>, places: &mut FreePositions
     (low.len(), arrive.len())
 }
 
-/// Energy and momentum balances close as without exchange, including vanishing springs.
 #[test]
 fn balances_close_during_insertion_and_removal() {
     for periodic in [false, true] {
@@ -130,7 +127,6 @@ fn balances_close_during_insertion_and_removal() {
     }
 }
 
-/// Oriented from the lower body index or against a plane.
 fn forces(run: &Run) -> Vec<((usize, usize, usize), Vec3)> {
     let mut list: Vec<_> = contacts(&run.model, &run.state)
         .iter()
@@ -155,7 +151,6 @@ fn remaining_contacts_keep_forces() {
         let mut expected = forces(&run);
         let all = expected.len();
         expected.retain(|((a, b, plane), _)| !leave.contains(a) && (*plane > 0 || !leave.contains(b)));
-        // Reinsertion at the old position resets history.
         let position = run.state.position(leave[0]);
         let back = Arrival {
             body: leave[0],
@@ -172,7 +167,6 @@ fn remaining_contacts_keep_forces() {
         for (x, y) in expected.iter().zip(&found) {
             assert_eq!(x.0, y.0);
             same += usize::from(x.1 == y.1);
-            // Reversed orientation may change the last bit.
             assert!((x.1 - y.1).norm() <= 1e-12 * x.1.norm(), "{x:?} {y:?}");
         }
         assert!(same * 10 > found.len() * 7, "{same} of {}", found.len());
@@ -181,7 +175,6 @@ fn remaining_contacts_keep_forces() {
     }
 }
 
-/// x + v t + g t²/2 at every step, without previous history.
 #[test]
 fn inserted_body_falls_freely() {
     for body in [4, 9, 3] {
@@ -203,7 +196,7 @@ fn inserted_body_falls_freely() {
         let t = run.state.time - begun;
         assert!(t > 0.01, "{t} {}", run.model.dt());
         if matches!(run.model.shape(body), Shape::Clump(_)) {
-            // Shape and inertia axes differ: rotation stays about z only briefly.
+            // Shape and inertia axes differ.
             let angle = run.state.orientation(&run.model, body).angle();
             assert!(angle > 0.3 && (run.state.spin(body) - spin).norm() < 7.0, "{angle}");
         } else {
@@ -212,7 +205,6 @@ fn inserted_body_falls_freely() {
     }
 }
 
-/// All bodies may leave and return.
 #[test]
 fn a_run_without_any_body() {
     let mut run = Run::new(input(true));
@@ -235,7 +227,6 @@ fn a_run_without_any_body() {
     run.exchange(&[], &arrive).unwrap();
     run.steps(4000);
     assert!(run.state.present_count() == 1 && run.state.position(77).z < 0.011);
-    // In contact with the floor only.
     assert_eq!(measure::coordination(&run.model, &run.state), 1.0);
     let found = contacts(&run.model, &run.state);
     let all = measure::coordination_of(&run.model, &run.state, &found, |_| true);

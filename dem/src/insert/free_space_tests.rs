@@ -62,7 +62,6 @@ fn grains_touch_nothing() {
         let found = fill();
         assert_eq!(found, fill());
         assert!(found.len() > 200, "{}", found.len());
-        // Clearances: at least zero, some small.
         let mut gaps = [f64::INFINITY; 6];
         let turns = if periodic { vec![-2.0, 0.0, 2.0] } else { vec![0.0] };
         let centre = Vec3::new(0.8, 0.2, 0.3);
@@ -98,7 +97,6 @@ fn grains_touch_nothing() {
     }
 }
 
-/// Too large a grain finds no position; leaving bodies occupy none.
 #[test]
 fn room_for_one() {
     let model = model(false);
@@ -111,7 +109,6 @@ fn room_for_one() {
     let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     assert_eq!(room.find_position(0.11, &mut places), None);
     let first = room.find_position(0.06, &mut places).unwrap();
-    // A later request sees the same space, but draws another position.
     let mut room = FreeSpace::new(&model, &state, &NoSurface, region, 0.06, |b| b == 1);
     let second = room.find_position(0.06, &mut places).unwrap();
     assert!(first.0 != second.0 && first.1 != second.1);

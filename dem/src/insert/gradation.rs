@@ -7,8 +7,6 @@
 //! Mass is uniform over ln d between sieves a < b with mass fraction M. Stratified quantiles of n grains have
 //! a passing error of about 1/n instead of 1/√n.
 //!
-//! Limits: grain size is sieve size; shapes must not depend on size.
-//!
 //! Theory manual: equation (2.2) of `docs/theory/shapes.md`.
 
 use crate::base::random::Random;

@@ -102,7 +102,6 @@ mod tests {
         }
     }
 
-    /// Bulk porosity over whole periods: closed forms to 1e-8.
     #[test]
     fn bulk_porosity_is_the_closed_form() {
         let radius = 0.01;

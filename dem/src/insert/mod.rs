@@ -1,5 +1,4 @@
-//! Packing generation. Random numbers come from a PCG stream of the scene's seed: bitwise reproducible on all
-//! machines and thread counts.
+//! Packing generation from a PCG stream of the scene's seed: bitwise reproducible on all machines.
 
 pub mod closed;
 pub mod container;

@@ -6,8 +6,6 @@
 //! ```text
 //! z₁ = zⱼ + √((r + rⱼ)² − (x − xⱼ)² − (y − yⱼ)²)
 //! ```
-//!
-//! Orientations are uniform over all rotations.
 
 use crate::base::random::Random;
 use nalgebra::{UnitQuaternion, Vector3};

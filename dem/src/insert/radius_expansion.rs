@@ -174,7 +174,6 @@ fn springs(material: &Material, friction: f64) -> Material {
     }
 }
 
-/// Container sides as walls of material 0.
 fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
     let plane =
         |point: &Vec3, normal: Vec3| Plane { point: *point, normal, material: 0, velocity: Vec3::zeros() };
@@ -205,7 +204,6 @@ fn sides(container: &Container) -> (Vec<Plane>, Vec<TriangleSurface>) {
                     let l = (k + 1) % n;
                     [[k, l, n + l], [k, n + l, n + k]]
                 })
-                // Degenerate at the tip.
                 .filter(|t| {
                     let [a, b, c] = t.map(|v| vertices[v as usize]);
                     (b - a).cross(&(c - a)).norm() > 1e-12 * (to - from).norm_squared()

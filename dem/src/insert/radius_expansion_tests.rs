@@ -43,8 +43,7 @@ fn bodies(
     places.iter().zip(&sizes).map(body).collect()
 }
 
-/// Target porosity, from overlaps and from a region, within 0.5 %; jammed at 0.4 (small-box walls loosen it),
-/// no contacts at 0.5.
+/// Jammed at 0.4 (small-box walls loosen it), no contacts at 0.5.
 #[test]
 fn spheres_grow_to_the_porosity() {
     let container = Container::Box { low: Vec3::new(-0.1, 0.0, 0.3), high: Vec3::new(0.1, 0.2, 0.5) };

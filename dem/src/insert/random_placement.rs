@@ -1,7 +1,6 @@
 //! Random sequential addition (Widom 1966) in a container, large spheres first.
 //!
-//! Limits: equal spheres jam near a solid fraction of 0.38 (Torquato 2002). Denser: radius expansion
-//! (`radius_expansion.rs`) or deposition.
+//! Limits: equal spheres jam near a solid fraction of 0.38 (Torquato 2002).
 
 use super::container::Container;
 use crate::base::Vec3;
@@ -160,7 +159,6 @@ mod tests {
         }
     }
 
-    /// Equal spheres reach 0.3; above jamming (0.38) the error states the fraction.
     #[test]
     fn scatters_up_to_jamming() {
         let container = Container::Box { low: Vec3::zeros(), high: Vec3::repeat(1.0) };

@@ -196,7 +196,6 @@ impl<R: Simd4> Sums<R> {
     }
 }
 
-/// Of a body's points.
 fn speed2<const CLUMPS: bool>(block: &Block, members: &BlockBodies, k: usize) -> f64 {
     let v = xyz(&block.velocity[k]).norm();
     let turn = if CLUMPS { xyz(&block.spin[k]).norm() * members.reach[k] } else { 0.0 };
@@ -332,7 +331,6 @@ fn turn_four<R: Simd4, const DAMPED: bool>(
     rigid_rotation::fastest2(speed2, rate, reach)
 }
 
-/// Updates the member spheres of four bodies.
 #[inline(always)]
 fn place_four<P: SimdPack>(block: &Block, members: &mut BlockBodies, body: usize) {
     let (centre, rotation) = (&block.centre[body..body + 4], &block.rotation[body..body + 4]);

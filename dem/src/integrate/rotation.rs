@@ -163,7 +163,6 @@ mod tests {
         q * q.inverse_transform_vector(momentum).component_div(inertia)
     }
 
-    /// As in stored reference results.
     #[test]
     fn steady_rotation_matches_nalgebra_bits() {
         for k in 0..1000_i32 {
@@ -175,7 +174,6 @@ mod tests {
         }
     }
 
-    /// Asymmetric top near its unstable axis.
     #[test]
     fn asymmetric_top_conserves_energy() {
         let inertia = Vec3::new(1.0, 2.0, 3.0);

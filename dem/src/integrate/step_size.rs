@@ -1,7 +1,6 @@
 //! Step sizes.
 //!
-//! Positions advance by `dt`, velocities by the mean of present and previous step: still a leapfrog, with
-//! exact impulses. Dissipation in a step of change is first order.
+//! Positions advance by `dt`, velocities by the mean of present and previous step: exact impulses.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,10 @@
 //! SIMD lanes: one source for single numbers and four lanes.
 //!
 //! `Real` is implemented for `f64`, `Portable` and `Avx2`, with IEEE 754 rounding and no fused multiply-add:
-//! all give the same bits. `SimdPack` is one group of four lanes, or two (`Avx512`).
+//! all give the same bits. `SimdPack` is one group of four lanes, or two.
 //!
-//! A `Kernel` is a loop over `R: SimdPack`, compiled by `run` with CPU features. Its functions must be
-//! `#[inline(always)]`, as calls on `Avx2` are ten times slower; this excludes closures, `map` and `from_fn`.
+//! A `Kernel` is a loop over `R: SimdPack`. Its functions must be `#[inline(always)]`, as calls on `Avx2` are
+//! ten times slower; this excludes closures, `map` and `from_fn`.
 
 #[cfg(not(all(target_arch = "x86_64", not(feature = "portable"))))]
 mod plain;
@@ -82,7 +82,6 @@ mod tests {
         };
         let portable = bits(run(Simd::Portable, Formula(&numbers)));
         assert_eq!(portable, bits(run(Simd::best(), Formula(&numbers))));
-        // `any` depends on all lanes: four equal records.
         for (k, r) in numbers.iter().enumerate() {
             let same = [*r; 8];
             let four = bits(run(Simd::best(), Formula(&same)));

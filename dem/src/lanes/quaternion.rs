@@ -94,7 +94,6 @@ mod tests {
     use super::*;
     use crate::Vec3;
 
-    /// Bitwise identical to nalgebra, as in stored reference results.
     #[test]
     fn the_bits_are_those_of_nalgebra() {
         for k in 0..1000_i32 {

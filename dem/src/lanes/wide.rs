@@ -1,6 +1,4 @@
 //! Lanes of groups of four contacts: one, or two in AVX-512.
-//!
-//! Sums over lanes are made group by group: the bits are the same.
 
 use super::real::{Real, Simd4};
 use crate::lanes::vec4::Vec4;

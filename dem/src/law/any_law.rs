@@ -1,5 +1,4 @@
-//! Several laws in one model. Lanes evaluate every law present and select by mask: contacts are bitwise as
-//! under their law only.
+//! Several laws in one model. Lanes evaluate every law present and select by mask.
 
 macro_rules! combinations {
     ($($row:ident($normal:ty, $tangential:ty) = $title:literal),+ $(,)?) => {
@@ -63,7 +62,6 @@ macro_rules! combinations {
 
         impl ContactLaw for AnyLaw {
             fn mix(pair: &Pair<'_>) -> AnyLaw {
-                // Rigid pairs have no contacts; others are validated.
                 let number = select_law(pair).ok().flatten().unwrap_or(0);
                 [$(|pair: &Pair<'_>| AnyLaw::$row(ContactLaw::mix(pair))),+][number](pair)
             }

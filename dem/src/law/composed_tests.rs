@@ -30,7 +30,6 @@ fn moduli_of_like_pairs_and_of_rigid_partners() {
     let wall = HertzLaw::mix(&pair(&GLASS, &Material::RIGID));
     assert!((wall.normal.modulus / like.normal.modulus - 2.0).abs() < 1e-12);
     assert!((wall.tangential.shear / like.tangential.shear - 2.0).abs() < 1e-12);
-    // Mindlin: tangential over normal stiffness 2(1 − ν)/(2 − ν).
     assert!((like.tangential_ratio() - 2.0 * 0.75 / 1.75).abs() < 1e-12);
     assert_eq!(HertzLaw::mix(&pair(&Material::RIGID, &Material::RIGID)).tangential_ratio(), 0.0);
 }
@@ -49,7 +48,6 @@ fn hertz_mindlin_force_and_stiffness() {
     assert!((law.stiffness(d, RADIUS) * d / normal - 1.5).abs() < 1e-12);
 }
 
-/// Closed-form damping against integration of m d̈ = −max(0, F), at two speeds.
 #[test]
 fn damping_gives_restitution() {
     for e in [0.1, 0.5, 0.9] {

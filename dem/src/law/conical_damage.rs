@@ -1,19 +1,13 @@
 //! Normal law: elastic spheres with conical damage of corners.
 //!
 //! Corner: cone of half-angle α with a spherical tip of radius R, initially the effective radius R₀, that
-//! crushes where Hertz's central pressure reaches the strength σ; k = (1 − sin α)/sin α, overlap δ:
-//!
-//! * elastic overlap u = δ − (R − R₀) k, force F = 4/3 E* √R u^(3/2) if u > 0, else 0;
-//! * crushing if u > h R, h = (π σ/2E*)²: R = (δ + k R₀)/(h + k), so that u = h R and F = 4/3 E* h^(3/2) R²;
-//! * unloading and reloading at constant R; permanent deformation (R − R₀) k until separation resets R.
-//!
+//! crushes where Hertz's central pressure reaches the strength σ; k = (1 − sin α)/sin α. Unloading and
+//! reloading at constant R.
 //! h < 5k is required: crushing then dissipates. Dashpot as in `hertz.rs` on the circle √(R u). Initial
 //! overlaps count as crushed: R = R₀ + δ/k.
 //!
 //! Sources: Harkness, Zervos, Le Pen, Aingaran & Powrie, Granular Matter 18:65, 2016; this overlap: Suhr &
 //! Six, Granular Matter 19:64, 2017.
-//!
-//! Limits: debris has no volume; contact circle small against the radii.
 //!
 //! Theory manual: eqs (1.10), (1.11), (1.12), `docs/theory/contacts.md`.
 

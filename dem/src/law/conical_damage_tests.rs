@@ -21,7 +21,7 @@ fn law(a: &Material, b: &Material) -> ConicalDamage {
 }
 
 /// YADE's check (`checkHertzExtended.py`, after Suhr & Six 2017): overlap, force and tip radius of a 0.1 m
-/// sphere on a plane and on an equal sphere; tolerance 1e-5, the printed digits.
+/// sphere on a plane and on an equal sphere.
 #[test]
 fn figures_of_another_program() {
     let law = law(&GRANITE, &GRANITE);
@@ -34,7 +34,6 @@ fn figures_of_another_program() {
         assert!((found / force - 1.0).abs() < 1e-5, "{found} against {force}");
         let pressure = 2.0 * law.modulus / PI * (elastic / tip).sqrt();
         assert!((pressure / 6e7 - 1.0).abs() < 1e-5, "{pressure}");
-        // Tangent here, and crushing work as total minus stored.
         let (rise, n) = (1e-6 * overlap, 4000);
         let slope = (law.force(overlap + rise, radius, radius) - law.force(overlap - rise, radius, radius))
             / (2.0 * rise);
@@ -47,7 +46,6 @@ fn figures_of_another_program() {
     }
 }
 
-/// Permanent deformation; reloading on the same line; none without a strength.
 #[test]
 fn what_has_crushed_stays() {
     let law = law(&GRANITE, &GRANITE);
@@ -66,7 +64,6 @@ fn what_has_crushed_stays() {
     assert_eq!(whole.state(deep, radius, radius), (radius, deep));
 }
 
-/// Initial overlaps are crushed: no force, then elastic. First contacts are not.
 #[test]
 fn overlaps_of_the_start_have_crushed() {
     let law = law(&GRANITE, &GRANITE);
@@ -93,7 +90,6 @@ fn overlaps_of_the_start_have_crushed() {
     );
 }
 
-/// No resistance to sliding without elastic overlap; the spring restarts.
 #[test]
 fn nothing_is_held_without_pressure() {
     let law = ConicalLaw::mix(&Pair { a: &GRANITE, b: &GRANITE, exception: None });
@@ -115,7 +111,6 @@ fn nothing_is_held_without_pressure() {
     assert!(force.normal > 1.0 && force.force.x.abs() < 1e-9 * force.normal, "{force:?}");
 }
 
-/// A partner without corners adopts the other's; a soft one crushes none.
 #[test]
 fn partners_without_corners() {
     let plate = Material { corner_strength: f64::INFINITY, corner_angle: 0.5 * PI, ..GRANITE };
@@ -127,7 +122,6 @@ fn partners_without_corners() {
     assert!(greatest_strength(soft.modulus, GRANITE.corner_angle) < GRANITE.corner_strength);
 }
 
-/// Crushing impact and weight of a column, within neglected terms.
 #[test]
 fn expected_overlaps() {
     let law = law(&GRANITE, &GRANITE);

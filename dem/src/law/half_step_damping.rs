@@ -1,8 +1,7 @@
 //! Half-step correction of dashpots in a leapfrog scheme.
 //!
-//! The last half-step speed acts like an effective mass m* smaller by 1 − C dt/2m*, which raises the damping
-//! ratio. C/√(1 + x), x = C dt/2m*, corrects it. (4 + x)/(4 + 3x) approximates the root without its cost,
-//! error x³/32 (4e-5 of C at x = 0.1, above usual x).
+//! C/√(1 + x), x = C dt/2m*, corrects the coefficient; (4 + x)/(4 + 3x) approximates the root without its
+//! cost, error x³/32 (4e-5 of C at x = 0.1, above usual x).
 //!
 //! Theory manual: eq. (3.2), `docs/theory/motion.md`.
 

@@ -7,10 +7,8 @@
 //!
 //! Expected overlap for the time step, densest body, the larger of
 //!
-//! * impact at speed v: Johnson, eq. 11.24, m = 4/3 π ρ R³;
-//! * rest under a column of height H: F = 4 R² ρ g H.
-//!
-//! Limits: smooth elastic spheres, contact circle small against the radii.
+//! * impact: Johnson, eq. 11.24, m = 4/3 π ρ R³;
+//! * rest under a column.
 //!
 //! Theory manual: eqs (1.2), (1.7), (3.7), `docs/theory/contacts.md`, `docs/theory/motion.md`.
 

@@ -120,7 +120,6 @@ impl Laws {
         } else if only(&[Row::Hertz]) {
             Laws::Hertz(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz, Row::Conical]) {
-            // Bitwise Hertz for pairs without crushing corners.
             Laws::Conical(PairTable::new(materials, exceptions))
         } else {
             Laws::AnyLaw(PairTable::new(materials, exceptions))

@@ -1,10 +1,7 @@
 //! Normal law: linear spring and dashpot.
 //!
-//! Normal n from b to a, velocity v of a relative to b at the contact point, overlap d, ḋ = −v·n: F = max(0,
-//! K d + C ḋ), K = 2 k₁k₂/(k₁ + k₂), C = 2ζ√(m*K), m* = m₁m₂/(m₁ + m₂) of the *bodies*; ζ from restitution
-//! (`restitution.rs`). Source: Cundall & Strack, Géotechnique 29 (1979).
-//!
-//! Limits: overlaps small against the radii. The dashpot force jumps at first contact (`composed.rs`).
+//! C = 2ζ√(m*K), m* of the *bodies*; ζ from restitution (`restitution.rs`). Source: Cundall & Strack,
+//! Géotechnique 29 (1979).
 //!
 //! Theory manual: eq. (1.3), `docs/theory/contacts.md`.
 

@@ -6,8 +6,6 @@
 //! Mater. 24, 1996: constant force would create energy). Lost spring energy counts as friction. The previous
 //! circle belongs to overlap d − ḋ dt.
 //!
-//! Limits: partial slip (Mindlin & Deresiewicz 1953) only by this rule.
-//!
 //! Theory manual: eqs (1.2), (1.8), `docs/theory/contacts.md`.
 
 use super::constants::constants;

@@ -1,8 +1,7 @@
-//! Contact laws: force from [`ContactGeometry`], composed of parts (`composed.rs`, `table.rs`) per material
-//! pair.
+//! Contact laws, composed of parts (`composed.rs`, `table.rs`) per material pair.
 //!
-//! Laws are generic over [`Real`](crate::lanes::Real): [`ContactLaw::evaluate`] in SIMD lanes,
-//! [`ContactLaw::evaluate_one`] for single contacts, bitwise identical.
+//! Laws are generic over [`Real`](crate::lanes::Real): [`ContactLaw::evaluate`] in SIMD lanes and
+//! [`ContactLaw::evaluate_one`] are bitwise identical.
 
 pub mod adhesion;
 mod any_law;

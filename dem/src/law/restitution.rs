@@ -1,13 +1,7 @@
 //! Damping ratio of a linear spring–dashpot from restitution.
 //!
-//! F = K d + C ḋ is clipped at zero (Schwager & Pöschel, Granular Matter 9, 2007):
-//!
-//! * ζ < 1: e = exp[−(ζ/w)(π − atan2(2ζw, 1 − 2ζ²))], w = √(1 − ζ²);
-//! * ζ = 1: e = exp(−2);
-//! * ζ > 1: e = exp[−(2ζ/s) ln(ζ + s)], s = √(ζ² − 1).
-//!
-//! Bisection inverts e(ζ).
-//!
+//! F = K d + C ḋ is clipped at zero (Schwager & Pöschel, Granular Matter 9, 2007). Bisection inverts e(ζ);
+//! series near ζ = 1, where both forms lose digits.
 //! Theory manual: eq. (1.4), `docs/theory/contacts.md`.
 
 pub(super) const SOURCE: &str =
@@ -16,7 +10,7 @@ pub(super) const SOURCE: &str =
 /// Returns the restitution for damping ratio `zeta` ≥ 0.
 pub fn restitution(zeta: f64) -> f64 {
     let gap = 1.0 - zeta * zeta;
-    // Series near ζ = 1, where both forms lose digits: exp(−2 − (4/3)(ζ − 1) + …).
+    // exp(−2 − (4/3)(ζ − 1) + …).
     if gap.abs() < 1e-8 {
         libm::exp(-2.0 - 4.0 / 3.0 * (zeta - 1.0))
     } else if gap > 0.0 {
@@ -52,7 +46,6 @@ pub fn damping_ratio(e: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Clipped oscillator in small steps.
     fn bounce(zeta: f64) -> f64 {
         let (mut x, mut v, h) = (0.0_f64, 1.0_f64, 1e-5);
         let force = |x: f64, v: f64| -(x + 2.0 * zeta * v);

@@ -21,10 +21,8 @@ pub(crate) struct RollingTwisting<R> {
 
 /// Rolling and twisting moment on a, and dissipation.
 ///
-/// With effective radius R and relative angular velocity ω, the rolling velocity is R (ω − (ω·n) n), the
-/// twisting velocity R ω·n. Spring forces, limited to μᵣ F and μₜ F, times R are the moments (Luding,
-/// Granular Matter 10, 2008, sections 2.5 to 2.7; in moments and angles: stiffness Ks R², limit μ R F, as in
-/// Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C).
+/// Luding, Granular Matter 10, 2008, sections 2.5 to 2.7; in moments and angles: stiffness Ks R², limit μ R
+/// F, as in Ai, Chen, Rotter & Ooi, Powder Technology 206, 2011, model C.
 #[inline(always)]
 pub(crate) fn turning<R: Real>(
     t: &RollingTwisting<R>,

@@ -7,8 +7,6 @@
 //! Sources: Barton & Kjærnsli, J. Geotech. Eng. Div. ASCE 107, 1981; contacts: Suhr & Six, Powder Technol.
 //! 294, 2016; Comput. Part. Mech. 4, 2017.
 //!
-//! Limits: no wear of asperities.
-//!
 //! Theory manual: eq. (1.13), `docs/theory/contacts.md`.
 
 use super::constants::constants;

@@ -1,12 +1,10 @@
 //! Tangential law: Mindlin's spring with conical damage and pressure-dependent friction.
 //!
-//! Spring of `mindlin.rs` on the circle a = √(R u) of `conical_damage.rs`. With asperities (after Suhr & Six,
-//! Powder Technol. 294, 2016)
+//! Spring of `mindlin.rs` on the circle of `conical_damage.rs`; asperities after Suhr & Six, Powder Technol.
+//! 294, 2016.
 //!
-//! μ(p̄) = μ + μₐ/(1 + p̄/p), p̄ = F/(π R₀²) the nominal pressure on the uncrushed corner.
-//!
-//! The mean pressure F/(π a²) of a crushed corner is 2/3 of its strength at any force, so it cannot lower the
-//! friction with the load. Mixing as in `rough.rs`.
+//! The mean pressure of a crushed corner is constant, so the nominal pressure on the uncrushed corner is
+//! used.
 //!
 //! Theory manual: eq. (1.13), `docs/theory/contacts.md`.
 
@@ -65,7 +63,6 @@ impl TangentialLaw<ConicalDamage> for RoughMindlin {
         Some(SpringTransfer { kept: kept.only(touches), loss: R::select(touches, loss, all) })
     }
 
-    /// Stiffness and energy vanish with the elastic overlap; only the last step's loss is neglected.
     #[inline(always)]
     fn at_end<R: Real>(_: &RoughMindlin<R>) -> Option<R> {
         None

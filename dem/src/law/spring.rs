@@ -1,7 +1,6 @@
 //! Tangential law: spring of constant stiffness.
 //!
-//! Ks = α K, K the first-loading normal stiffness; Fs = −Ks ξ − Cs vₜ limited to μF, Cs = β C (`slider.rs`).
-//! Mixing: 2α₁α₂/(α₁ + α₂). Source: Cundall & Strack, Géotechnique 29 (1979).
+//! K is the first-loading normal stiffness. Source: Cundall & Strack, Géotechnique 29 (1979).
 //!
 //! Theory manual: eq. (1.6), `docs/theory/contacts.md`.
 

@@ -1,4 +1,4 @@
-//! Table of laws: combinations of normal and tangential law, all usable in one model (`any_law.rs`).
+//! Table of laws: combinations of normal and tangential law.
 
 use super::any_law::combinations;
 use super::composed::Composed;
@@ -138,7 +138,6 @@ pub(super) fn select_law(pair: &Pair<'_>) -> Result<Option<usize>, LawSelectionE
     let spring = pair.given(|e| e.stiffness).map(|_| Linear::NAME);
     let normal = match (given, a, b) {
         (Some(name), _, _) => name,
-        // Corners also crush against partners without corners.
         (None, Some(Hertz::NAME), Some(ConicalDamage::NAME)) => ConicalDamage::NAME,
         (None, Some(ConicalDamage::NAME), Some(Hertz::NAME)) => ConicalDamage::NAME,
         (None, Some(a), Some(b)) if a != b => return Err(LawSelectionError::Unlike(a, b)),

@@ -1,5 +1,4 @@
-//! Interface of tangential laws: stiffness of the friction-limited spring (`slider.rs`) and transfer to
-//! another overlap.
+//! Interface of tangential laws.
 
 use super::constants::Constants;
 use super::material::Pair;

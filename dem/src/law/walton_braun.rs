@@ -1,15 +1,8 @@
 //! Normal law: linear loading, stiffer unloading, permanent deformation (Walton & Braun).
 //!
-//! Overlap d, largest overlap D: F = k₁ d while d = D grows; below F = max(0, k₁ D − k₂ (D − d)), down to the
-//! residual overlap (1 − k₁/k₂) D, reloading on the same line. k₁ = K of the linear law; k₂ = k₁/e².
+//! Plastic work is counted as the largest overlap D grows. Separation resets D.
 //!
-//! Restitution e = √(k₁/k₂) at any speed. Plastic work ½ k₁ (1 − k₁/k₂) D² is counted as D grows. Separation
-//! resets the history D.
-//!
-//! Source: Walton & Braun, J. Rheol. 30, 949 (1986), constant stiffness ratio; tangential spring of
-//! `spring.rs` with Ks = α k₁.
-//!
-//! Limits: overlaps small against the radii; no dashpots.
+//! Source: Walton & Braun, J. Rheol. 30, 949 (1986), constant stiffness ratio.
 //!
 //! Theory manual: eq. (1.9), `docs/theory/contacts.md`.
 

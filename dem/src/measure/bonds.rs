@@ -49,7 +49,6 @@ fn ends(state: &State, b: u32, e: &Entry) -> (Motion<f64>, Motion<f64>) {
 /// At the last half step [J].
 pub(crate) fn elastic(model: &Model, state: &State) -> f64 {
     let dt = state.step_size.last;
-    // Initially, the history belongs to the start.
     let since = if state.bonds.fresh { -0.5 * dt } else { 0.5 * dt };
     let mut sum = 0.0;
     state.each_bond(|number, (b, e)| {

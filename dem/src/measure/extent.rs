@@ -69,7 +69,6 @@ pub fn highest_over(
         let (way, mut range) = (b - a, [0.0_f64, 1.0]);
         for d in 0..2 {
             for sign in [1.0, -1.0] {
-                // Within the rectangle: at + s slope ≤ 0.
                 let (at, slope) = (sign * (a[d] - middle[d]) - half[d], sign * way[d]);
                 if slope > 0.0 {
                     range[1] = range[1].min(-at / slope);
@@ -124,7 +123,6 @@ mod tests {
         near(over(0, [0.0, 0.0], [5.0, 5.0]), 4.0);
         near(over(0, [0.0, 0.0], [0.1, 0.1]), 4.0);
         near(over(1, [0.0, 0.0], [0.1, 0.1]), 3.0 + edge + 0.1);
-        // The sloping face falls 1:1, less the widening by the radius.
         near(over(1, [0.6, 0.0], [0.1, 0.1]), 3.0 + edge - 0.4 + 0.1);
         assert!(over(0, [3.0, 0.0], [0.5, 0.5]).is_none());
     }

@@ -1,8 +1,7 @@
 //! Measures of a state.
 //!
-//! Energies and momentum belong to the last half step, t − dt/2, as velocities do: bodies and springs are
-//! moved back. The energy balance is second order in dt, the momentum balance exact. Contacts have the forces
-//! of the next step.
+//! Energies and momentum belong to the last half step, t − dt/2. The energy balance is second order in dt,
+//! the momentum balance exact. Contacts have the forces of the next step.
 
 mod bonds;
 mod breakage;

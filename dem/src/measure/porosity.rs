@@ -1,8 +1,7 @@
 //! Solid volume and porosity in a box.
 //!
-//! Exact for spheres (`sphere_box_volume.rs`) and bodies inside. Other bodies on the border: midpoint rule over
-//! [`COLUMNS`] × [`COLUMNS`] columns with exact intervals, error about 1e-3. Limit: contact overlaps count
-//! for both bodies.
+//! Exact for spheres and bodies inside. Other bodies on the border: midpoint rule over [`COLUMNS`] ×
+//! [`COLUMNS`] columns, error about 1e-3.
 
 use super::{BoxRegion, sphere_box_volume};
 use crate::base::Vec3;

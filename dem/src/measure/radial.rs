@@ -1,7 +1,6 @@
 //! Radial distribution function.
 //!
-//! g(r) = n(r)/(ρ 4/3 π (r₂³ − r₁³)), n the mean number of centres between r₁ and r₂ from a centre, ρ the
-//! number density. Reference centres are farther than the cut-off from non-periodic sides.
+//! Reference centres are farther than the cut-off from non-periodic sides.
 //!
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 8.2, eq. (8.14).
 

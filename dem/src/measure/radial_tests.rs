@@ -55,7 +55,6 @@ fn shells_of_a_crystal() {
     }
 }
 
-/// g = 1 within four standard deviations; uncounted bodies have no effect.
 #[test]
 fn an_ideal_gas_has_none() {
     let mut random = rand_pcg::Pcg64Mcg::new(5);
@@ -70,7 +69,6 @@ fn an_ideal_gas_has_none() {
         let width = reach / bins as f64;
         for (k, g) in g.iter().enumerate() {
             let shell = 4.0 / 3.0 * PI * width.powi(3) * ((k + 1).pow(3) - k.pow(3)) as f64;
-            // Each pair is found twice.
             let pairs = 0.5 * centres * 8000.0 * shell;
             assert!((g - 1.0).abs() < 4.0 / pairs.sqrt(), "periodic {periodic}, shell {k}: {g}");
         }

@@ -155,7 +155,6 @@ mod tests {
         sum
     }
 
-    /// Quadrature error below 1e-5; eight parts add up.
     #[test]
     fn random_boxes_match_quadrature() {
         let mut rng = Pcg64Mcg::new(5);

@@ -1,9 +1,6 @@
-//! Mean stress of bodies from contact and bond forces (Love 1927; Weber 1966):
-//! σ = (1/V) Σ ½ (r ⊗ F + F ⊗ r), r from the body's centre to the contact, F the force on the body.
-//! Tension is positive.
+//! Mean stress of bodies from contact and bond forces (Love 1927; Weber 1966). Tension is positive.
 //!
-//! Region of volume V: Σ V_p σ_p / V over bodies centred in it; equals the wall pressure in equilibrium
-//! without weight. Limit: regions need many bodies across.
+//! Limit: regions need many bodies across.
 //!
 //! Theory manual: equation (3.14) of `docs/theory/motion.md`.
 

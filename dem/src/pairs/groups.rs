@@ -1,6 +1,6 @@
 //! Contact lists with history, in SIMD groups of four.
 //!
-//! Groups are paired for eight lanes. Unused lanes repeat the first contact's name, without history.
+//! Unused lanes repeat the first contact's name, without history.
 
 use crate::base::Vec3;
 use crate::base::capacity::capacity_bytes;

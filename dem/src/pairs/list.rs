@@ -1,10 +1,10 @@
-//! Pairs with several contact points and their history, for pair types without SIMD (`contact/narrow_phase`).
+//! Pairs with several contact points and their history, without SIMD.
 
 use crate::base::capacity::capacity_bytes;
 use crate::law::History;
 use serde::{Deserialize, Serialize};
 
-/// History of a contact point: features, law history, applied force fraction, edge law flag.
+/// History of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactHistory {
     pub feature: u32,
@@ -122,7 +122,6 @@ impl PairList {
     pub fn set(&mut self, k: usize, points: &[ContactHistory]) {
         let span = &mut self.spans[k];
         if points.len() > span.room as usize {
-            // The old range stays unused until the list is rebuilt.
             *span = room(&mut self.memory, points.len());
         }
         span.count = points.len() as u32;

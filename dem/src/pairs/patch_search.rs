@@ -19,7 +19,7 @@ impl Candidate {
     }
 }
 
-/// Patches near free spheres (all spheres, if the patch can move); one query covers blocks without any.
+/// Patches near free spheres (all spheres, if the patch can move).
 pub(crate) fn candidates<S: Surface>(
     surface: &S,
     spheres: &[Vec4],
@@ -57,8 +57,7 @@ pub(crate) fn candidates<S: Surface>(
     }
 }
 
-/// Candidates within `near` of contact; `approach`: bound on relative displacement since the search. Sorted
-/// by sphere and patch; `list` keeps patch coordinates.
+/// Candidates within `near` of contact, sorted by sphere and patch.
 pub(crate) fn refresh<S: Surface>(
     surface: &S,
     spheres: &[Vec4],

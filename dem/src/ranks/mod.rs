@@ -1,9 +1,9 @@
 //! Distributed memory: one model on several ranks, bitwise identical to a single process.
 //!
-//! Blocks are partitioned into contiguous ranges (`partition.rs`); each rank searches and moves its own.
-//! Bodies in contact range of other ranks are *ghosts*, whose motion is sent after each step. Both ranks
-//! compute a shared contact; the owner of its first block records the dissipation. The first rank ([`Ranks`])
-//! sums block totals in order and re-sorts the bodies every 5,000 steps; the others [`serve`].
+//! Blocks are partitioned into contiguous ranges (`partition.rs`). Bodies in contact range of other ranks are
+//! *ghosts*, whose motion is sent after each step. Both ranks compute a shared contact; the owner of its
+//! first block records the dissipation. The first rank ([`Ranks`]) sums block totals in order and re-sorts
+//! the bodies every 5,000 steps; the others [`serve`].
 //!
 //! Not distributed: motion (100 B per sphere) and constants of all bodies.
 

@@ -124,7 +124,7 @@ impl<L: Link> Rank<L> {
         state.blocks[self.work.own.clone()].iter().map(halo::bounds)
     }
 
-    /// Rebuilds neighbour lists, after a search if pairs approached too far. Requires all boxes.
+    /// Rebuilds neighbour lists, after a search if pairs approached too far.
     pub fn rebuild(&mut self, model: &Model, state: &mut State, approach: f64) -> Result<(), Lost> {
         let mut approach = approach;
         if neighbour_list::exceeds_skin(model, state, approach) {

@@ -29,7 +29,6 @@ pub(super) fn write(state: &State, partition: &Partition, rank: usize, out: &mut
         })
         .collect();
     encode(out, &earlier);
-    // Empty lists need the type of their contact history.
     let turning: Vec<bool> = state.cross[..own.start].iter().map(|cross| cross.spheres.turning).collect();
     encode(out, &turning);
     let bonds = state.bonds.cross.iter().enumerate();

@@ -1,5 +1,5 @@
-//! Closest point of a triangle (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5: signed products,
-//! without root or tolerance).
+//! Closest point of a triangle (Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5: without root or
+//! tolerance).
 
 use crate::base::Vec3;
 use crate::lanes::{Real, V3};
@@ -97,7 +97,6 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// The closest point matches a dense sample within its spacing; region and weights agree.
     #[test]
     fn random_triangles_against_sampling() {
         let mut rng = Pcg64Mcg::new(11);

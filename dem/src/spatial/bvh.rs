@@ -91,7 +91,7 @@ impl Bvh {
         }
     }
 
-    /// Appends boxes that may overlap `[lo, hi]`, ascending: all items of overlapping leaves.
+    /// Appends boxes that may overlap `[lo, hi]`, ascending.
     pub fn query(&self, lo: [f64; 3], hi: [f64; 3], out: &mut Vec<u32>) {
         let first = out.len();
         // A median tree of fewer than 2³² items is at most 32 deep.
@@ -115,8 +115,7 @@ impl Bvh {
         out[first..].sort_unstable();
     }
 
-    /// Visits boxes that may contain the item nearest to `p`; `visit` returns the least squared distance so
-    /// far [m²].
+    /// Visits boxes possibly nearest to `p`; `visit` returns the least squared distance so far [m²].
     pub fn nearest(&self, p: [f64; 3], mut visit: impl FnMut(u32) -> f64) {
         let apart = |k: usize| -> f64 {
             let node = &self.nodes[k];

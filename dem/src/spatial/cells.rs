@@ -1,8 +1,7 @@
 //! Cell grids by counting sort, one per size class.
 //!
-//! Each class spans a factor of two in radius with cells fitted to its largest sphere, so small spheres do
-//! not crowd large cells. Coordinates outside are clamped: far bodies do not inflate the grid, and neighbours
-//! stay in neighbouring cells.
+//! Each class spans a factor of two in radius, so small spheres do not crowd large cells. Coordinates outside
+//! are clamped: far bodies do not inflate the grid.
 
 use crate::lanes::vec4::Vec4;
 
@@ -76,7 +75,6 @@ impl Cells {
                 grid.items[*slot as usize] = k as u32;
                 *slot += 1;
             }
-            // Filling advanced every start to its end.
             grid.start.rotate_right(1);
             grid.start[0] = 0;
         }
@@ -104,7 +102,7 @@ impl Cells {
 }
 
 impl Grid {
-    /// Covers the points, or the middle 98 % per direction if outliers need too many cells.
+    /// Covers the points, or the middle 98 % per direction.
     fn lay_out<'a>(&mut self, points: impl Iterator<Item = &'a Vec4> + Clone, count: usize, cell: f64) {
         let most = 8 * count + 512;
         let bounds = |d: usize| {
@@ -142,7 +140,6 @@ mod tests {
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// All pairs are found, for similar and very different sizes, with outliers.
     #[test]
     fn finds_every_pair() {
         let mut rng = Pcg64Mcg::new(3);

@@ -43,7 +43,6 @@ impl<R: Real> Spheres<R> {
     pub fn touch(&self) -> Overlap<R> {
         let &Spheres { xa, ra, rb, between, distance2, reach } = self;
         let (distance, zero, one) = (distance2.sqrt(), R::zero(), R::splat(1.0));
-        // distance/distance² instead of 1/distance: the division need not wait for the root.
         let mut normal = between * (distance * (one / distance2));
         let apart = zero.lt(distance);
         if !R::all(apart) {

@@ -1,8 +1,7 @@
 //! Signed distance from a closed surface.
 //!
-//! The side follows from the angle-weighted normal of the closest face, edge or vertex (J. A. Bærentzen and
-//! H. Aanæs, IEEE Trans. Visualization and Computer Graphics 11, 2005: exact for closed manifolds). Near a
-//! right angle to that normal the winding number decides.
+//! The side follows from the angle-weighted normal of the closest feature (J. A. Bærentzen and H. Aanæs, IEEE
+//! Trans. Visualization and Computer Graphics 11, 2005); near a right angle to it the winding number decides.
 
 use super::bvh::{Aabb, Bvh};
 use crate::shape::polyhedron::{Polyhedron, Surface};

@@ -10,7 +10,6 @@ fn same(vertices: &[Vec3]) -> Vec<u32> {
     (0..vertices.len() as u32).collect()
 }
 
-/// On a cube edges and corners indent, diagonals do not; counts satisfy Euler's formula (2).
 #[test]
 fn a_cube() {
     let (vertices, triangles) = cube();
@@ -24,8 +23,6 @@ fn a_cube() {
     assert_eq!((all.len() as f64 + shared + corners, shared, corners), (2.0, -18.0, 8.0));
 }
 
-/// Open square: boundary indents, diagonal does not; a 0.1° fold indents in proportion, a three-triangle fin
-/// fully.
 #[test]
 fn borders_folds_and_fins() {
     let square = |height: f64| {
@@ -44,7 +41,6 @@ fn borders_folds_and_fins() {
     };
     let two = [[0, 1, 2], [0, 2, 3]];
     assert_eq!(pressed(&square(0.0), &two), (vec![1.0; 4], 4.0));
-    // The fourth corner is √½ from the diagonal.
     let bend: f64 = 0.1_f64.to_radians();
     let (mut folded, _) = pressed(&square(bend * 0.5_f64.sqrt()), &two);
     folded.sort_by(f64::total_cmp);

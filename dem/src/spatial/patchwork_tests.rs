@@ -41,7 +41,6 @@ fn trees_find_patches_of_moved_walls() {
         for (k, patch) in patches.iter().enumerate() {
             let wall = &walls[patch.wall as usize];
             let Form::Facet(facet) = &patch.form else { unreachable!() };
-            // A corner in the box is certainly found.
             let within = |p: &Vec3| (wall.origin + wall.orientation * p - at).amax() <= 0.2;
             if facet.corners.iter().any(within) {
                 there += 1;

@@ -3,10 +3,9 @@
 //! Positions are unwrapped between two sortings (`reordering.rs`). Contacts across a boundary are image pairs in a
 //! separate list.
 //!
-//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2 (minimum image convention).
+//! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2.
 //!
-//! Limits: bodies with faces at most a third of the box (nearest image); planes along periodic axes; no
-//! bonds; patch walls only with bodies with faces.
+//! Limits: bodies with faces at most a third of the box; planes along periodic axes; no bonds.
 
 use super::cells::Cells;
 use crate::base::Vec3;
@@ -93,8 +92,7 @@ impl Space {
         Space { periodic, points, turns, largest }
     }
 
-    /// Calls `f` with later spheres with an image within `skin` of contact with `i`, and the image's box
-    /// lengths.
+    /// Calls `f` with later spheres with an image within `skin`, and the image's box lengths.
     pub fn neighbours(&self, cells: &Cells, i: u32, skin: f64, mut f: impl FnMut(u32, Turns)) {
         let (p, own) = (&self.points[i as usize], &self.turns[i as usize]);
         let reach = p[3] + self.largest + skin;

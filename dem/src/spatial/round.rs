@@ -1,8 +1,7 @@
 //! Closest points of round patches (truncated cones, rings, discs, spheres) and planes.
 //!
-//! A frustum is two patches in the half plane (ρ, z): near generator, on the point's side of the axis, and
-//! far generator. A ball larger than its ring touches all around: both contacts together have a smooth
-//! potential across the axis, a single one would flip sides. The far patch is hidden from outside.
+//! A frustum is two patches: near generator, on the point's side of the axis, and far generator. A ball
+//! larger than its ring touches all around: both contacts together have a smooth potential across the axis.
 
 use super::bvh::Aabb;
 use crate::base::Vec3;
@@ -115,7 +114,6 @@ fn frustum(x: &Vec3, axis: &Vec3, height: f64, radii: &[f64; 2], far: bool) -> C
         let helper = if axis.x.abs() < 0.9 { Vec3::x() } else { Vec3::y() };
         axis.cross(&helper).normalize()
     };
-    // Generator from (r₀, 0) to (r₁, h), outward normal.
     let run = radii[1] - radii[0];
     let length2 = run * run + height * height;
     let length = length2.sqrt();

@@ -8,8 +8,6 @@ fn random() -> impl FnMut() -> f64 {
     move || (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// The closest point matches a dense sample within its spacing, and the normal to rounding, also for rings
-/// and cones.
 #[test]
 fn frustum_against_sampling() {
     let mut unit = random();
@@ -64,7 +62,6 @@ fn frustum_against_sampling() {
     assert!(parts.iter().all(|&n| n > 5), "{parts:?}");
 }
 
-/// On the axis near and far normals oppose; outside only the near one exists.
 #[test]
 fn far_side() {
     let cone =

@@ -1,5 +1,5 @@
 //! Separating direction of two convex hulls (Gilbert, Johnson & Keerthi, IEEE J. Robotics and Automation 4,
-//! 1988). Any returned bound is valid, independent of convergence.
+//! 1988).
 
 use crate::base::Vec3;
 
@@ -30,7 +30,6 @@ pub(crate) fn separation(between: impl Fn(&Vec3) -> Vec3, guess: Vec3, enough: f
             break;
         }
         simplex.push(w);
-        // Overlap, or a degenerate simplex.
         let Some(closest) = simplex.closest() else { break };
         // Rounding: no progress.
         if closest.norm_squared() >= v.norm_squared() {
@@ -116,7 +115,6 @@ fn tetrahedron(p: [Vec3; 4]) -> Option<(Vec3, Simplex)> {
     for (i, j, k, l) in [(0, 1, 2, 3), (0, 3, 1, 2), (0, 2, 3, 1), (1, 3, 2, 0)] {
         let normal = (p[j] - p[i]).cross(&(p[k] - p[i]));
         let (own, origin) = (normal.dot(&(p[l] - p[i])), -normal.dot(&p[i]));
-        // The origin is beyond this face, or the tetrahedron is flat.
         if own * origin <= 0.0 {
             let found = triangle([p[i], p[j], p[k]]);
             if best.as_ref().is_none_or(|(b, _)| found.0.norm_squared() < b.norm_squared()) {
@@ -142,7 +140,6 @@ mod tests {
         least(points, &-n)
     }
 
-    /// From a poor guess.
     fn found_apart(a: &[Vec3], b: &[Vec3]) -> Option<(Vec3, f64)> {
         let guess = Vec3::new(-0.6, 0.0, 0.8);
         let found = separation(|n| least(a, n) - most(b, n), guess, f64::INFINITY);
@@ -172,7 +169,6 @@ mod tests {
         assert!(found_apart(&cube(Vec3::new(0.9, 0.2, 0.1)), &origin).is_none());
     }
 
-    /// The bound never exceeds the distance and is close to it.
     #[test]
     fn bounds_of_random_tetrahedra() {
         let mut rng = Random::new(5, 1);
@@ -201,7 +197,6 @@ mod tests {
                 (p, q) = (p + (s - p) * x, q + (t - q) * x);
             }
             let distance = (p - q).norm();
-            // The reference does not converge for close pairs.
             assert!(bound <= distance * (1.0 + 1e-12), "{bound} {distance}");
             assert!(distance < 0.3 || bound > distance * 0.99, "{bound} {distance}");
         }

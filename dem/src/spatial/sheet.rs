@@ -145,7 +145,6 @@ mod tests {
     use super::*;
     use crate::base::random::Random;
 
-    /// Corner forces reproduce moment, zero sum and power.
     #[test]
     fn corner_forces_keep_moment_and_power() {
         let mut random = Random::new(3, 0);

@@ -1,6 +1,5 @@
 use super::*;
 
-/// Prism with outward triangles.
 fn prism(polygon: &[[f64; 2]], caps: &[[u32; 3]], height: f64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let n = polygon.len() as u32;
     let at = |z: f64| polygon.iter().map(move |p| Vec3::new(p[0], p[1], z));
@@ -18,7 +17,6 @@ fn own(count: usize) -> Vec<u32> {
     (0..count as u32).collect()
 }
 
-/// L section: outer and inner corners move exactly, and all indent.
 #[test]
 fn corners_of_an_angle() {
     let polygon = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
@@ -33,10 +31,8 @@ fn corners_of_an_angle() {
         assert!((at(k) - Vec3::from(x)).norm() < 1e-14, "{k}: {}", at(k));
     }
     assert!((Vec3::from(shell.bounds.1) - Vec3::new(1.9, 2.9, 1.4)).norm() < 1e-14);
-    // Outline edges indent, diagonals do not.
     let pressing: f64 = shell.facets.iter().flat_map(|f| f.edges).map(|e| e.share.press).sum();
     assert_eq!(pressing, 18.0);
-    // The largest face is the L: six corners and its shrunken outline.
     let [tips, length] = shell.flattest(1e-6);
     assert!(tips >= 5.0 && (length - 9.2).abs() < 1e-12, "{tips} {length}");
 }

@@ -72,7 +72,6 @@ fn top(diagonal: &[f64], beside: &[f64]) -> f64 {
     let ends = diagonal.iter().enumerate().map(|(k, a)| (a - reach(k), a + reach(k)));
     let (mut low, mut high) =
         ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (a, b)| (l.min(a), h.max(b)));
-    // Eigenvalues are below x if the sequence of x − T is positive.
     let above = |x: f64| {
         let mut q = f64::INFINITY;
         diagonal.iter().enumerate().all(|(k, a)| {

@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// Principal axes of a rotated box reproduce its tensor.
 #[test]
 fn principal_axes() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.9, -0.2).to_rotation_matrix();

@@ -1,5 +1,5 @@
-//! Solid inside a closed surface: sums over tetrahedra (e.g. Tonon, J. Math. Stat. 1, 2005). Triangles are
-//! first oriented consistently, because files need not order their vertices.
+//! Solid inside a closed surface (e.g. Tonon, J. Math. Stat. 1, 2005). Files need not order vertices:
+//! triangles are first oriented consistently.
 
 use super::triangulated::welded;
 use crate::base::Vec3;
@@ -26,7 +26,6 @@ pub(super) fn enclosed(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<Encl
     if !edges.chunk_by(|a, b| a.0 == b.0).all(|same| same.len() == 2) {
         return None;
     }
-    // Neighbours traverse their common edge in opposite directions.
     let mut faces: Vec<Option<[u32; 3]>> = vec![None; welded.len()];
     let (mut open, mut outwards) = (Vec::new(), Vec::with_capacity(welded.len()));
     let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());

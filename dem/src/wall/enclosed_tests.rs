@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// Box a × b × c at `corner`, two faces wound inwards.
 fn cuboid(corner: Vec3, size: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let vertices =
         (0..8).map(|k| corner + Vec3::from_fn(|d, _| if k >> d & 1 == 1 { size[d] } else { 0.0 })).collect();
@@ -15,7 +14,6 @@ fn cuboid(corner: Vec3, size: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, triangles)
 }
 
-/// Closed forms of a box in any position and winding; none if open.
 #[test]
 fn enclosed_box() {
     let size = Vec3::new(0.3, 0.5, 0.7);

@@ -1,8 +1,8 @@
 //! Walls: boundaries other than grains and the solid.
 //!
 //! Infinite planes of constant velocity ([`crate::Plane`]) have a separate kernel (`contact/planes.rs`). A
-//! [`WallInput`] is a set of patches in a rigid frame ([`crate::spatial::surface::Surface`],
-//! `contact/surface_contacts.rs`), which follows a [`Motion`], a [`Servo`], or the forces on a [`RigidBody`].
+//! [`WallInput`] is a set of patches in a rigid frame, which follows a [`Motion`], a [`Servo`], or the forces
+//! on a [`RigidBody`].
 
 pub mod body;
 pub(crate) mod check;

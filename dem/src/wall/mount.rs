@@ -1,15 +1,7 @@
 //! Spring–dashpot support of rigid-body walls.
 //!
-//! Force by world axis: −k u − c v, u the displacement of the centre of mass, v the mean velocity of the
-//! kick:
-//!
-//! v₊ = [(1 − a) v₋ + (F − k u) h/m]/(1 + a),  a = c h/2m,
-//!
-//! h the duration of the kick. This central difference method is second order and stable for ω h < 2 with any
-//! dashpot (e.g. T. J. R. Hughes, The Finite Element Method, 1987, ch. 9); dissipation c v̄² h is never
-//! negative.
-//!
-//! Limits: linear, world axes, translation only.
+//! The central difference method is second order and stable for ω h < 2 with any dashpot (e.g. T. J. R.
+//! Hughes, The Finite Element Method, 1987, ch. 9).
 //!
 //! Theory manual: eq. (3.12), `docs/theory/motion.md`.
 
@@ -18,7 +10,7 @@ use crate::base::Vec3;
 use crate::base::balance_terms::BalanceTerms;
 
 /// Kicks a velocity [m/s] by `kick` [s] under `force` [N] and mount, centre at `x`, displaced by `offset`
-/// [m]; adds the mount's totals.
+/// [m].
 pub(super) fn kick(
     mount: &Mount,
     mass: f64,

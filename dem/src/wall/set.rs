@@ -1,5 +1,4 @@
-//! All walls of a model as one surface of numbered patches. Static trees in wall frames; queries are
-//! transformed.
+//! All walls of a model as one surface of numbered patches.
 
 use super::body::Body;
 use super::input::{Motion, WallInput, WallShape};

@@ -77,7 +77,7 @@ impl Shells {
         }
     }
 
-    /// Corners and edge lengths [m] in contact, of ground and body, if flat within `reach` [m].
+    /// Corners and edge lengths [m] in contact, of ground and body.
     pub fn flattest(&self, [a, b]: [u32; 2], reach: f64) -> [f64; 2] {
         let own = self.shell(a).map_or([0.0; 2], |s| s.flattest(reach));
         let other = match self.forms.get(b as usize) {

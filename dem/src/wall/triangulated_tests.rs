@@ -1,7 +1,5 @@
 use super::*;
 
-/// Tilted floor of separate triangles, with slivers and rounded vertices: bitwise one plane; an adjacent roof
-/// differs.
 #[test]
 fn coplanar_triangles_share_their_plane() {
     let turn = nalgebra::UnitQuaternion::from_euler_angles(0.3, -0.7, 1.1);
@@ -31,7 +29,6 @@ fn coplanar_triangles_share_their_plane() {
     assert!(roof[0].normal().dot(&floor[0].normal()).abs() < 0.999);
 }
 
-/// Keeps everything within reach, rejects most of the rest.
 #[test]
 fn rejection_is_safe_and_sharp() {
     use rand_core::Rng;

@@ -27,8 +27,7 @@ fn ceiling() -> TriangleSurface {
     TriangleSurface { vertices, triangles: vec![[0, 1, 2]], ..TriangleSurface::default() }
 }
 
-/// Holds under 0.99 of the pull-off force 2π w R* and falls under 1.01 of it (Derjaguin, Muller & Toporov
-/// 1975). Plane, triangle: R* = R; sphere: R/2.
+/// Derjaguin, Muller & Toporov 1975. Plane, triangle: R* = R; sphere: R/2.
 #[test]
 fn holds_up_to_pull_off_force() {
     for (law, material) in [stone(), glass()].into_iter().enumerate() {
@@ -92,8 +91,8 @@ fn friction_without_a_load() {
     }
 }
 
-/// Rebound speed with spring K, dashpot C = 2ζ√(mK) and pull F; zero if it sticks. The overlap is
-/// x(t) = e^(−ζωt)(−d₀ cos pt + B sin pt) + d₀ until spring and dashpot stop pushing; then F acts alone.
+/// Rebound speed with spring K, dashpot C = 2ζ√(mK) and pull F; zero if it sticks. x(t) = e^(−ζωt)(−d₀ cos pt
+/// + B sin pt) + d₀ until spring and dashpot stop pushing.
 fn rebound(v: f64, mass: f64, stiffness: f64, zeta: f64, pull: f64) -> f64 {
     let omega = (stiffness / mass).sqrt();
     let p = omega * (1.0 - zeta * zeta).sqrt();
@@ -119,7 +118,6 @@ fn rebound(v: f64, mass: f64, stiffness: f64, zeta: f64, pull: f64) -> f64 {
     (rate * rate - 2.0 * pull * d.max(0.0) / mass).max(0.0).sqrt()
 }
 
-/// Sticking limit and rebound speed in closed form; sticking impacts dissipate their energy.
 #[test]
 fn slow_impacts_stick() {
     let material = Material { friction: 0.0, ..stone() };
@@ -164,7 +162,6 @@ fn slow_impacts_stick() {
             };
             if share < 1.0 {
                 assert!(apart < 0.0, "{pair} {share}: {apart:e}");
-                // The first force counts for its part of the step.
                 let open = (energy(&run) / before - 1.0).abs();
                 println!("{share} of it: sticks, energy open {open:.1e}");
                 assert!(open < 5e-4, "{pair} {share}: {open:e}");
@@ -180,7 +177,6 @@ fn slow_impacts_stick() {
     }
 }
 
-/// Energies include adhesion; bits are independent of threads and restart.
 #[test]
 fn sticking_cloud_closes_balances() {
     let input = || {

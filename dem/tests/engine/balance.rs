@@ -50,7 +50,6 @@ fn ledger_of_a_settling_pile_closes() {
     assert!(closure[0] > 4.0 * closure[1], "{closure:?}");
 }
 
-/// Every term of the balance: block, applied forces, moving wall, local damping.
 #[test]
 fn ledger_with_every_source_closes() {
     let mut input = pile(4, true);
@@ -138,7 +137,6 @@ fn block_rests_on_spheres() {
     );
 }
 
-/// 0.9 of the critical time step.
 #[test]
 fn pile_settles_just_below_the_limit() {
     let mut input = pile(4, true);
@@ -159,14 +157,12 @@ fn pile_settles_just_below_the_limit() {
     assert!((energy_left(&run) - start).abs() < 1e-2 * lost);
 }
 
-/// To rounding: across blocks, each partner's torque needs its own lever arm.
 #[test]
 fn unequal_spheres_conserve_angular_momentum() {
     let mut random = Random::new(17);
     let mut input = weightless(Material { restitution: 0.8, ..stone() });
     for k in 0..2744_usize {
         let cell = Vec3::new((k % 14) as f64, (k / 14 % 14) as f64, (k / 196) as f64) - Vec3::repeat(6.5);
-        // Chessboard of two sizes.
         let scale = if (k + k / 14 + k / 196).is_multiple_of(2) { 1.0 } else { 0.4 };
         let velocity = random.vector() * 0.5 - cell * 0.1;
         let spin = random.vector() * 50.0;

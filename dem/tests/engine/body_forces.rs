@@ -47,7 +47,6 @@ fn falls_as_the_closed_form_says() {
     assert!(errors[1] < 5e-5 && (1.8..2.2).contains(&(errors[0] / errors[1])), "{errors:?}");
 }
 
-/// v = U k U t/(1 + k U t), k = 3 C ρ/(8 r ρₛ).
 #[test]
 fn wind_takes_stones_along() {
     let velocity = Vec3::new(12.0, -9.0, 20.0);

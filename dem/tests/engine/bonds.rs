@@ -26,7 +26,6 @@ pub fn cement() -> ParallelBond {
     }
 }
 
-/// Area, second moment, polar moment.
 fn section(r: f64) -> (f64, f64, f64) {
     (PI * r * r, PI * r.powi(4) / 4.0, PI * r.powi(4) / 2.0)
 }
@@ -99,7 +98,6 @@ fn moment_factor_and_radius() {
     near(r.bending, 2e5 * i / R / 8.0, 2e-3);
 }
 
-/// Mohr–Coulomb: c + p tan φ at p = 0.5 MPa.
 #[test]
 fn shear_strength_grows_with_pressure() {
     let (a, _, _) = section(R);
@@ -142,7 +140,6 @@ fn contact_point_bond_has_no_moment() {
     let (r, mode) = drive(kind(), |_, t| (t * 1e-3, Vec3::zeros(), Vec3::zeros()));
     near(r.shear.norm(), 30.0, 1e-3);
     assert_eq!(mode, BreakMode::Shear);
-    // Rolling: slip without moment.
     let (r, _) = drive(kind(), |_, t| (Vec3::zeros(), t, Vec3::zeros()));
     assert_eq!((r.bending, r.twisting), (0.0, 0.0));
     near(r.shear.norm(), 30.0, 2e-3);
@@ -211,7 +208,6 @@ fn cantilever_breaks_at_predicted_load() {
     panic!("the beam holds");
 }
 
-/// Only the centrifugal tension stores energy.
 #[test]
 fn free_pair_rotates_without_shear() {
     let mut input = weightless(stone());

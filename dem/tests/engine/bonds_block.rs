@@ -48,7 +48,6 @@ fn block(speed: f64) -> ModelInput {
     let pairs = within_gap(&spheres, 1e-3, |_, _| true);
     assert_eq!((spheres.len(), pairs.len()), (6331, 19480));
     input.bonds = pairs.iter().map(|&[a, b]| BondInput::new(a, b, 0)).collect();
-    // LAMMPS: rolling coefficient 0.004 acts with ½ r, twisting coefficient with ½.
     input.bond_kinds.push(Bond::Direct(DirectBond {
         stiffness: [1.5708e7, 6.2832e6, 392.70, 314.16],
         strength: [62.83, 125.66, 0.15708, 0.31416],
@@ -59,7 +58,6 @@ fn block(speed: f64) -> ModelInput {
     input
 }
 
-/// Strain and mean grip force, every 25 steps.
 fn compress(speed: f64, to: f64) -> (Run, Vec<(f64, f64)>) {
     let mut run = Run::new(block(speed));
     let parts: Vec<u32> = (0..run.model.body_count()).map(|b| run.model.part(b)).collect();
@@ -75,7 +73,6 @@ fn compress(speed: f64, to: f64) -> (Run, Vec<(f64, f64)>) {
     (run, curve)
 }
 
-/// Least-squares slope between two strains.
 fn slope(curve: &[(f64, f64)], from: f64, to: f64) -> f64 {
     let points: Vec<_> = curve.iter().filter(|p| p.0 >= from && p.0 <= to).collect();
     let n = points.len() as f64;
@@ -117,7 +114,7 @@ fn strength_of_a_bonded_block() {
         println!("{:.4e} {:.1}", p.0, p.1);
     }
     assert!((found / LAMMPS_SLOPE - 1.0).abs() < 0.05, "{found:e}");
-    // LAMMPS gives broken pairs the contact of their total overlap, and prints every tenth of these rows.
+    // LAMMPS gives broken pairs the contact of their total overlap.
     assert!((peak.1 / LAMMPS_PEAK - 1.0).abs() < 0.1, "{}", peak.1);
     assert!((peak.0 / 4.03e-4 - 1.0).abs() < 0.1, "{}", peak.0);
 }

@@ -29,7 +29,6 @@ fn ice() -> FaceBond {
     }
 }
 
-/// Slab along x with rounded edges, shortened by the gap.
 fn slab(from: f64, to: f64, (gap, radius): (f64, f64), input: &mut ModelInput) {
     let half = [0.5 * (to - from) - gap - radius, 0.5 * W - radius, 0.5 * T - radius];
     let middle = Vec3::x() * (0.5 * (from + to));
@@ -45,7 +44,6 @@ fn add(corners: &[Vec3], radius: f64, input: &mut ModelInput) {
     input.bodies.push(BodyInput { shape: shape_number, position, orientation, ..BodyInput::default() });
 }
 
-/// Cantilever of unequal slabs: input, positions of faces and centres.
 fn row(kind: FaceBond) -> (ModelInput, Vec<f64>, Vec<f64>) {
     let lengths = [1.0, 0.7, 1.2, 0.6, 1.0, 0.9];
     let mut input = ModelInput { shapes: Vec::new(), ..weightless(stone()) };
@@ -213,7 +211,6 @@ fn a_twisted_bond_breaks_in_shear() {
     assert_eq!(run.state.take_breaks()[0].mode, BreakMode::Shear);
 }
 
-/// Irregular bodies, far from equilibrium.
 #[test]
 fn flying_bonded_bodies_conserve_energy() {
     let mut random = Random::new(5);

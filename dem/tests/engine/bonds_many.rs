@@ -46,7 +46,6 @@ fn falling(n: usize, kind: ParallelBond, speed: f64) -> ModelInput {
     input
 }
 
-/// All dissipation: bond dashpots, breakage, contacts, friction.
 #[test]
 fn energy_balance_through_impact_and_breaking() {
     let error = |fraction: f64, damping: BondDamping, criterion| {
@@ -94,7 +93,6 @@ fn energy_balance_through_impact_and_breaking() {
     assert!(error(0.2, BondDamping::Fraction(0.2), Criterion::Sum) < 2e-3);
 }
 
-/// Half the step, a quarter of the error; dashpots included.
 #[test]
 fn ringing_cube_energy_is_second_order() {
     let error = |fraction: f64, damping| {
@@ -162,7 +160,6 @@ fn flying_cluster_keeps_its_momenta() {
     assert!(run.state.balance.dissipated_bonds > 0.0 && run.state.bond_count() > 0);
 }
 
-/// All observable values, as bits.
 fn bits(run: &mut Run) -> Vec<u64> {
     let mut out = Vec::new();
     for b in 0..run.model.body_count() {
@@ -214,7 +211,6 @@ fn breakage_is_independent_of_threads() {
     }
 }
 
-/// Bitwise, with debonded pairs and re-sorting on the way.
 #[test]
 fn restart_changes_nothing() {
     let mut run = Run::new(falling(6, cement(), 2.0));
@@ -294,7 +290,6 @@ fn contact_takes_over_without_creating_energy() {
     }
 }
 
-/// No contact below the overlap at breakage; an ordinary one after separation.
 #[test]
 fn broken_pair_separates_and_meets_again() {
     let mut input = weightless(trackbed_dem::Material { restitution: 1.0, ..stone() });
@@ -330,7 +325,6 @@ fn broken_pair_separates_and_meets_again() {
     assert!((energy(&run) - start).abs() < 1e-3 * start);
 }
 
-/// Option: overlapping spheres push from the start.
 #[test]
 fn contact_beside_the_bond() {
     let mut input = weightless(stone());

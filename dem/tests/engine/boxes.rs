@@ -14,7 +14,6 @@ fn material() -> Material {
     Material { stiffness: K, tangential_damping_ratio: 1.0, ..stone() }
 }
 
-/// Boxes of half sides [m].
 fn boxes(material: Material, halves: &[[f64; 3]]) -> ModelInput {
     let mut input = weightless(material);
     input.shapes = halves.iter().map(|half| Shape::Box { half: *half }).collect();
@@ -26,7 +25,6 @@ fn fixed(shape: usize, position: Vec3) -> BodyInput {
     BodyInput { fixed: [true; 6], ..body(shape, position) }
 }
 
-/// Runs until kinetic energy has decayed.
 fn rest(run: &mut Run, seconds: f64) {
     while run.state.time < seconds {
         run.step();
@@ -35,7 +33,6 @@ fn rest(run: &mut Run, seconds: f64) {
     assert!(moving < 1e-9, "kinetic energy {moving}");
 }
 
-/// Four full springs per face: aligned, octagon, cross without inner corners, overhang of a third.
 #[test]
 fn faces_carry_four_springs_however_turned() {
     let cases = [
@@ -85,7 +82,6 @@ fn a_column_stands() {
     }
 }
 
-/// Acceleration g (sin α − μ cos α).
 #[test]
 fn a_block_slides_on_a_block() {
     let (angle, mu) = (0.5_f64, 0.3);
@@ -105,7 +101,6 @@ fn a_block_slides_on_a_block() {
     assert!(run.state.spin(1).norm() < 1e-2, "{}", run.state.spin(1).norm());
 }
 
-/// Height twice the width: tips above tan α = 1/2.
 #[test]
 fn block_tips_at_its_diagonal() {
     for (slope, tips) in [(0.48, false), (0.52, true)] {
@@ -126,9 +121,8 @@ fn block_tips_at_its_diagonal() {
     }
 }
 
-/// 200 random poses, elastic: momentum to rounding. The stiffness jumps when the deepest axis changes from a
-/// face to edges: at overlaps of 2 % of the sides, one collision in twenty changes its energy by more than
-/// 2 %.
+/// Momentum to rounding. The stiffness jumps when the deepest axis changes from a face to edges: at overlaps
+/// of 2 % of the sides, one collision in twenty changes its energy by more than 2 %.
 #[test]
 fn collisions_keep_momentum_and_energy() {
     let mut random = Random::new(5);
@@ -174,7 +168,6 @@ fn collisions_keep_momentum_and_energy() {
     assert!(large <= 12 && worst < 0.2 && mean.abs() < 0.005, "{large} {worst:e} {mean:e}");
 }
 
-/// Both are infinitely stiff and in contact.
 #[test]
 fn two_rigid_boxes_are_refused() {
     let mut input = boxes(rigid(material()), &[[0.1, 0.1, 0.1]]);
@@ -183,8 +176,8 @@ fn two_rigid_boxes_are_refused() {
     assert!(trackbed_dem::Model::new(input).unwrap_err().to_string().contains("body 1"));
 }
 
-/// Rotated by 45°: eight points of half a spring. On a slope of 1 in 20 the tangential springs store
-/// ½ F²/(4 Kₜ), to 2 %: points rotate and share F unevenly.
+/// Rotated by 45°, eight points of half a spring. On a slope of 1 in 20 the springs store ½ F²/(4 Kₜ), to 2
+/// %.
 #[test]
 fn shared_springs_hold_their_share_of_energy() {
     let mut input = boxes(material(), &[[0.1, 0.1, 0.05], [0.1, 0.1, 0.05]]);

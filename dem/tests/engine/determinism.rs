@@ -9,7 +9,6 @@ use trackbed_dem::{
     WallShape, Work, step,
 };
 
-/// All observable values, as bits.
 fn bits(run: &Run) -> Vec<u64> {
     let mut out = Vec::new();
     for b in 0..run.model.body_count() {
@@ -29,7 +28,6 @@ fn bits(run: &Run) -> Vec<u64> {
     out
 }
 
-/// Over 2500 spheres in clumps: shared among threads; planes, triangles, block.
 fn scene() -> ModelInput {
     pile(10, true)
 }
@@ -67,7 +65,6 @@ fn skin_changes_nothing() {
     assert!(a == b, "the skin shows");
 }
 
-/// Also across re-sorting (every 5000 steps).
 #[test]
 fn restart_changes_nothing() {
     let mut run = Run::new(pile(4, true));
@@ -188,7 +185,6 @@ pub fn mill(n: usize) -> ModelInput {
     input
 }
 
-/// 1, 2, 3 and 7 threads; new scratch half-way.
 #[test]
 fn walls_of_all_kinds() {
     let run_in = |threads: usize| {

@@ -121,7 +121,6 @@ pub(crate) fn compare_events(
     (differs, theirs, device.rebuilds())
 }
 
-/// Prints the largest difference.
 fn explain(model: &Model, ours: &State, theirs: &State) {
     let motion = |s: &State, b: usize| [s.position(b), s.velocity(b), s.spin(b)];
     let other = (0..model.body_count()).filter(|&b| motion(ours, b) != motion(theirs, b)).count();
@@ -352,7 +351,6 @@ fn walls_of_triangles() {
     }
 }
 
-/// The gas with periodic sides and a mean velocity.
 pub(crate) fn with_borders(mut input: ModelInput) -> ModelInput {
     let far = 0.0206 * 11.0;
     input.planes.retain(|p| p.normal.z.abs() > 0.9);
@@ -361,7 +359,6 @@ pub(crate) fn with_borders(mut input: ModelInput) -> ModelInput {
     input
 }
 
-/// Rigid body of triangles, thrown at the gas.
 #[test]
 fn a_body_of_triangles() {
     if device_is_there() {
@@ -409,7 +406,6 @@ pub(crate) fn pressed(mut input: ModelInput, way: Vec3) -> ModelInput {
     input
 }
 
-/// Cone with rising bottom and rotating shell, triangles, servo-controlled plate.
 fn in_a_cone(input: ModelInput) -> ModelInput {
     let mut input = pressed(input, -Vec3::z());
     input.planes.retain(|p| p.normal.z.abs() < 0.5);
@@ -432,7 +428,6 @@ fn in_a_cone(input: ModelInput) -> ModelInput {
     input
 }
 
-/// Round and servo-controlled walls belong to the CPU part.
 #[test]
 fn round_and_driven_walls() {
     if device_is_there() {
@@ -459,7 +454,6 @@ fn round_and_driven_walls() {
     }
 }
 
-/// Bonded spheres crushed by closing planes, with breakage and separation.
 pub(crate) fn bonded(kind: Bond, material: Material) -> ModelInput {
     let mut input = gas([material, smooth()], Vec::new());
     input.bodies.iter_mut().for_each(|b| b.velocity *= 0.4);
@@ -470,7 +464,6 @@ pub(crate) fn bonded(kind: Bond, material: Material) -> ModelInput {
     input
 }
 
-/// Some of these bonds break.
 pub(crate) fn parallel() -> ParallelBond {
     ParallelBond {
         radius_factor: 0.8,
@@ -546,7 +539,6 @@ fn failing_step_has_engine_message() {
     }
 }
 
-/// An operation changed at rounding level.
 #[test]
 fn a_changed_operation_is_seen() {
     if device_is_there() {

@@ -1,4 +1,4 @@
-//! Device steps with a CPU part: spheres and clumps on a moving surface, among solid bodies.
+//! Device steps with a CPU part.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{STEPS, bonded, fails_alike, gas, mesh, parallel, pressed, smooth, turning, with_clumps};
@@ -13,7 +13,6 @@ use trackbed_dem::{
     AppliedForce, BackEnd, BodyInput, Model, ModelInput, Motion, Shape, State, Vec3, WallInput, Work, step,
 };
 
-/// Rising ground of triangles.
 struct Ground {
     mesh: Arc<SurfaceMesh>,
     height: f64,
@@ -21,7 +20,6 @@ struct Ground {
 }
 
 impl Ground {
-    /// Bumpy ground, `N` cells per side.
     fn new() -> Ground {
         const N: u32 = 9;
         let all = (0..=N).flat_map(|j| (0..=N).map(move |i| (i, j)));
@@ -106,7 +104,6 @@ pub(crate) fn on_ground(mut input: ModelInput) -> ModelInput {
     input
 }
 
-/// Adds a falling box and stones, stones on cleared ground, and a higher lid.
 pub(crate) fn among_blocks(input: ModelInput) -> ModelInput {
     let mut input = on_ground(input);
     input.surface_mesh = Some(Ground::new().mesh);
@@ -138,7 +135,6 @@ pub(crate) fn among_blocks(input: ModelInput) -> ModelInput {
     input
 }
 
-/// Adds a rotating side.
 fn beside_a_wall(mut input: ModelInput) -> ModelInput {
     let sides = [Vec3::y() * 0.4, Vec3::z() * 0.7];
     let side = mesh(4, Vec3::new(0.002, 0.11, 0.12), sides, || 0.0);
@@ -157,7 +153,6 @@ pub(crate) struct Compared {
     read: usize,
 }
 
-/// Compares on rising ground, with forces on the first block and temporarily on a sphere.
 pub(crate) fn compare(input: ModelInput, change: impl Fn(String) -> String) -> Compared {
     let model = Model::new(input).expect("a good input");
     let text = change(source(&model).expect("a model for a device"));
@@ -256,7 +251,6 @@ fn a_changed_part_is_seen() {
     }
 }
 
-/// Failures found by the device or by the CPU.
 #[test]
 fn failing_step_has_engine_message() {
     if device_is_there() {

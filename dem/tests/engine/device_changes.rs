@@ -1,4 +1,4 @@
-//! Kernel changes that a comparison must detect. Each runs in its own process, as a changed kernel may write
+//! Kernel changes that a comparison must detect. Each runs in its own process: a changed kernel may write
 //! outside its buffers.
 
 use crate::c_machine::device_is_there;
@@ -13,7 +13,6 @@ const LOADED: &str = "changed kernels loaded";
 /// Exit code of a child that detected the change.
 const DETECTED: i32 = 42;
 
-/// Result of a changed kernel.
 #[derive(Debug, PartialEq)]
 enum End {
     /// State, balance or error differs.
@@ -31,8 +30,7 @@ pub(crate) fn report_loaded() {
     }
 }
 
-/// Runs `compare` for each change (`from`, `to`, first place) in a child that executes only `test`, which
-/// must call this function with the same changes.
+/// Runs `compare` for each change (`from`, `to`, first place) in a child that executes only `test`.
 fn ends(
     test: &str,
     changes: &[(&str, &str)],
@@ -87,7 +85,6 @@ pub(crate) fn assert_detected(
     }
 }
 
-/// A blank changes nothing. CUDA reports crashes differently.
 #[test]
 fn crash_of_changed_kernel_is_detected() {
     if device_is_there() && std::env::var_os("TRACKBED_DEVICE").is_none() {

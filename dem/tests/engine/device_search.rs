@@ -1,4 +1,4 @@
-//! Neighbour search on a device: lists, order and contact history equal the engine's.
+//! Neighbour search on a device against the engine.
 
 use crate::c_machine::{TestMachine, device_is_there};
 use crate::device::{
@@ -13,7 +13,7 @@ use trackbed_dem::device::{Device, kernels, source};
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{BackEnd, Model, ModelInput, State, Vec3, Work, step};
 
-/// Large spheres; small unequal ones fly in threes, or overlap at rest; one is far away.
+/// Large spheres; small unequal ones fly in threes, or overlap at rest.
 fn unlike() -> ModelInput {
     let mut random = Random::new(5);
     let mut input = gas([turning(stone()), smooth()], Vec::new());
@@ -27,7 +27,6 @@ fn unlike() -> ModelInput {
             body.scale = 0.1 + 0.17 * random.unit().powi(3);
             let still = k % 7 == 0;
             body.fixed = [still, still, still, false, false, false];
-            // Next to the next sphere, or to each other.
             let way = if still { 0.05 * body.scale } else { 1.02 - body.scale };
             body.position = middle + axis * way * 0.01;
             body.velocity = if still { Vec3::zeros() } else { random.vector() * 4.0 };
@@ -38,7 +37,6 @@ fn unlike() -> ModelInput {
     input.bodies.extend(more);
     input.bodies.push(sphere(Vec3::new(1e6, 3e5, 7e5), Vec3::new(-1.0, 0.0, 0.0)));
     input.planes.truncate(3);
-    // On a rising plane, and on one that opens.
     for plane in &mut input.planes[..2] {
         plane.point += plane.normal * 1.5e-3;
     }
@@ -66,12 +64,10 @@ fn unlike_sizes_have_the_same_bits() {
     }
 }
 
-/// Downloads only block totals and sizes of search results.
 #[test]
 fn the_state_stays_on_the_device() {
     if device_is_there() {
         let spheres = gas([stone(), smooth()], Vec::new());
-        // Fraction of a state read per search; CPU triangle contacts need positions.
         for (input, share) in [
             (spheres.clone(), 0.125),
             (with_clumps(unlike(), |k| k % 3 == 1), 0.125),
@@ -98,7 +94,6 @@ fn the_state_stays_on_the_device() {
     }
 }
 
-/// Lost history, repeated partner, forbidden partner.
 #[test]
 fn a_changed_search_is_seen() {
     if device_is_there() {
@@ -115,7 +110,6 @@ fn a_changed_search_is_seen() {
     }
 }
 
-/// Compressed lattice of several blocks, also periodic: all contact types.
 fn packed() -> ModelInput {
     let (mut random, count, wide) = (Random::new(9), 14, 0.0199);
     let mut input = with_borders(gas([stone(), smooth()], Vec::new()));
@@ -155,7 +149,6 @@ fn orphaned_contact_ends_on_cpu() {
     }
 }
 
-/// Wrong order of CPU entries in the sums; wrong partners.
 #[test]
 fn a_changed_place_of_the_rest_is_seen() {
     if device_is_there() {

@@ -61,7 +61,6 @@ fn a_disk_at_rest() {
     }
 }
 
-/// Two sizes, slightly offset; the lowest joint bears all.
 #[test]
 fn ten_disks_stand() {
     let (big, r) = (0.1, 0.01);
@@ -127,7 +126,6 @@ fn bounces_on_face_and_rim() {
     }
 }
 
-/// Random points on an ellipsoid.
 fn stone_of(random: &mut Random, half: [f64; 3], radius: f64) -> Shape {
     let mut corner = || random.vector().normalize().component_mul(&Vec3::from(half));
     let corners: Vec<Vec3> = (0..14).map(|_| corner()).collect();
@@ -230,7 +228,6 @@ fn a_leaning_disk_rolls_its_path() {
     assert!(way > 1.0 && worst < 0.01 * way, "{worst} of {way}");
 }
 
-/// Tilt and precession over three revolutions, centre at rest.
 #[test]
 fn coins_wobble_steadily() {
     for row in read("tests/data/disks/coin_steady.csv") {
@@ -274,7 +271,6 @@ fn libm_angle(a: &Vec3, b: &Vec3) -> f64 {
     (a.x * b.y - a.y * b.x).atan2(a.x * b.x + a.y * b.y)
 }
 
-/// Energy balance; same bits with 1, 2, 3 and 7 threads.
 #[test]
 fn a_heap_of_disks() {
     let mut random = Random::new(9);
@@ -328,7 +324,6 @@ fn slice(z: f64) -> f64 {
     BIG + (SMALL * SMALL - z * z).max(0.0).sqrt()
 }
 
-/// Archimedes' level, by slices in equal angles.
 fn waterline(volume: f64) -> f64 {
     let below = |z: f64| -> f64 {
         let n = 20_000;
@@ -377,7 +372,6 @@ fn afloat(added: f64, position: Vec3, orientation: UnitQuaternion<f64>, dt: f64)
     })
 }
 
-/// Mean, and period from zero crossings.
 fn swing(run: &mut Run, steps: u32, dt: f64, signal: impl Fn(&Run) -> f64) -> (f64, f64) {
     let (mut sum, mut zeros, mut before) = (0.0, Vec::new(), signal(run));
     for step in 0..steps {
@@ -392,7 +386,6 @@ fn swing(run: &mut Run, steps: u32, dt: f64, signal: impl Fn(&Run) -> f64) -> (f
     (sum / f64::from(steps), period)
 }
 
-/// Draught from volume; heave and roll periods from the waterplane.
 #[test]
 fn pancakes_float_heave_and_roll() {
     let (added, dt) = (0.5, 1e-3);

@@ -169,7 +169,6 @@ fn impact_at_extreme_speed() {
         Ok::<_, StepError>((state.velocity(0), state.position(0)))
     };
     for thin in [false, true] {
-        // Face, and seam of two faces.
         for offset in [0.3, 0.02] {
             let (velocity, position) = impact(1.1e10, thin, offset).unwrap();
             assert!(
@@ -188,7 +187,6 @@ fn impact_at_extreme_speed() {
     }
 }
 
-/// Exact to rounding of sums.
 #[test]
 fn one_body_alone() {
     let mut input = weightless(stone());
@@ -204,7 +202,6 @@ fn one_body_alone() {
     assert_eq!(run.state.spin(0), Vec3::new(1.0, 2.0, 3.0));
 }
 
-/// Series stiffness K = 2 k₁k₂/(k₁ + k₂).
 #[test]
 fn stiffnesses_a_million_apart() {
     let soft = Material { stiffness: 1e4, restitution: 0.1, ..stone() };

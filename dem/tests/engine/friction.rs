@@ -5,7 +5,6 @@ use trackbed_dem::{BodyInput, Material, Plane, Shape, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 
-/// Stiff sphere in equilibrium on a plane.
 fn on_plane(friction: f64, velocity: f64, gravity: Vec3) -> Run {
     let material = Material { stiffness: 1e7, friction, tangential_damping_ratio: 1.0, ..stone() };
     let mut input = weightless(material);

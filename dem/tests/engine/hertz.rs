@@ -19,7 +19,6 @@ fn mass(radius: f64) -> f64 {
     2600.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }
 
-/// Sphere of radius 1 cm against one twice as large, or a plane.
 fn impact(restitution: f64, speed: f64, on_plane: bool, gap: f64) -> Run {
     let mut input = weightless(Material { restitution, ..elastic() });
     input.impact_speed = Some(speed);
@@ -33,7 +32,6 @@ fn impact(restitution: f64, speed: f64, on_plane: bool, gap: f64) -> Run {
     Run::new(input)
 }
 
-/// Contact duration, interpolated within a step.
 fn through(run: &mut Run) -> f64 {
     let touching = |run: &Run| !measure::contacts(&run.model, &run.state).is_empty();
     while !touching(run) {
@@ -62,7 +60,7 @@ fn force_of_resting_overlap() {
     }
 }
 
-/// Johnson, Contact Mechanics (1985), eq. 11.24: T = 2.87 (m*²/(R* E*² v))^(1/5); the constant is 2.8682.
+/// Johnson, Contact Mechanics (1985), eq. 11.24: T = 2.87 (m*²/(R* E*² v))^(1/5).
 #[test]
 fn time_of_an_elastic_impact() {
     for speed in [0.01, 1.0] {
@@ -79,7 +77,6 @@ fn time_of_an_elastic_impact() {
     }
 }
 
-/// Unequal spheres, and plane.
 #[test]
 fn restitution_does_not_depend_on_speed() {
     for e in [0.2, 0.5, 0.8, 0.95] {
@@ -96,7 +93,7 @@ fn restitution_does_not_depend_on_speed() {
 }
 
 /// Sliding: speed falls by μ(1 + e)v, angular velocity grows by 5/2 of it over r (Maw, Barber & Fawcett, Wear
-/// 38, 1976, beyond their limit of sticking). Steep: sticks, with less slip.
+/// 38, 1976, beyond their limit of sticking).
 #[test]
 fn oblique_impacts_slide_or_stick() {
     let (e, mu, v) = (0.8, 0.3, 1.0);
@@ -164,7 +161,6 @@ fn unequal_laws_need_pair_law() {
     trackbed_dem::Model::new(input).expect("a law for every pair");
 }
 
-/// A sleeper contact uses the stone's radius; a clump uses its spheres.
 #[test]
 fn radii_are_those_of_contacts() {
     let model = |shapes: Vec<Shape>| {
@@ -188,7 +184,6 @@ fn radii_are_those_of_contacts() {
     let (with, alone) = (model(vec![stone.clone(), sleeper]), model(vec![stone]));
     assert_eq!(with.dt_limit().body, 1, "so many stones fit under the sleeper that it decides");
     assert_eq!(with.dt_limit().stiffness, alone.dt_limit().stiffness);
-    // Row of nine: radius of one, mass of all.
     let row: Vec<_> = (0..9).map(|k| ([0.015 * k as f64, 0.0, 0.0], 0.01)).collect();
     let clump = Clump::from_spheres(&row).expect("a clump");
     let mass = 2600.0 * clump.volume;
@@ -198,7 +193,6 @@ fn radii_are_those_of_contacts() {
     assert!((found / (0.2 * (0.5 * mass / stiffness).sqrt()) - 1.0).abs() < 1e-9, "{found:e}");
 }
 
-/// An impact speed overrides the estimate.
 #[test]
 fn step_follows_the_expected_overlap() {
     let dt = |speed: f64| impact(0.5, speed, true, 1e-5).model.dt();

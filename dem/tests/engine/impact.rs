@@ -5,7 +5,6 @@ use trackbed_dem::{BodyInput, Material, Plane, TimeStep, Vec3, measure};
 
 const RESTITUTIONS: [f64; 4] = [0.2, 0.5, 0.8, 0.95];
 
-/// Runs until separation.
 fn until_apart(run: &mut Run) {
     let touching = |run: &Run| !measure::contacts(&run.model, &run.state).is_empty();
     let mut steps = 0;
@@ -25,7 +24,6 @@ fn until_apart(run: &mut Run) {
 #[test]
 fn restitution_as_requested_between_unequal_spheres() {
     for e in RESTITUTIONS {
-        // Different phases of contact within a step.
         for gap in [1e-4, 1.37e-4, 2.11e-4] {
             let mut input = weightless(Material { restitution: e, ..stone() });
             input.bodies.push(sphere(Vec3::zeros(), Vec3::x()));
@@ -56,7 +54,6 @@ fn restitution_as_requested_on_a_plane() {
     }
 }
 
-/// No first-order error from half-step-old dashpot velocities.
 #[test]
 fn restitution_error_is_of_second_order() {
     let error = |dt: f64| {
@@ -94,8 +91,7 @@ fn oblique_impact_conserves_momentum() {
     assert!(linear < 1e-13 && angular < 1e-12, "{linear:e} {angular:e}");
 }
 
-/// Tangential velocity falls by μ(1 + e) vₙ, angular velocity gains 5/2 of it over r (Walton 1993; Maw,
-/// Barber & Fawcett 1976).
+/// Angular velocity gains 5/2 μ(1 + e) vₙ over r (Walton 1993; Maw, Barber & Fawcett 1976).
 #[test]
 fn sliding_impact_matches_closed_form() {
     let mu = 0.1;
@@ -114,7 +110,7 @@ fn sliding_impact_matches_closed_form() {
     }
 }
 
-/// Contact point velocity follows cos(ωₜT), ωₜ² = 7/2 Ks/m, T = π √(m/Kn): full reversal for Ks/Kn = 2/7.
+/// ωₜ² = 7/2 Ks/m, T = π √(m/Kn): full reversal for Ks/Kn = 2/7.
 #[test]
 fn sticking_impact_matches_closed_form() {
     for ratio in [2.0 / 7.0_f64, 0.5, 0.1] {

@@ -71,7 +71,6 @@ fn lowest(orientation: &UnitQuaternion<f64>) -> Vec3 {
     corners.min_by(|a, b| a.z.total_cmp(&b.z)).expect("eight corners")
 }
 
-/// Table cube just above the plane.
 fn cube(material: Material, orientation: UnitQuaternion<f64>, velocity: Vec3, spin: Vec3) -> Run {
     let mut input = scene(material, block([0.05; 3], 0.005));
     input.time_step = TimeStep::Auto { fraction: 0.01 };
@@ -137,7 +136,6 @@ fn a_corner_on_a_plane() {
     }
 }
 
-/// With friction, whose work is the loss.
 #[test]
 fn an_edge_slides_on_a_plane() {
     let rows = read("tests/data/kinetics/oblique_impact_edge_friction.csv");
@@ -187,11 +185,9 @@ fn a_block_slides_to_a_stop() {
     }
 }
 
-/// Stable at 0.97 of the limit, falls at 1.03.
 #[test]
 fn stacks_that_lean_out() {
     for (row, cubes) in read("tests/data/kinetics/stack_overhang.csv").iter().zip(2..) {
-        // Remaining columns are text.
         let limit = row.iter().find(|v| v.is_finite()).expect("a limit");
         for (share, falls) in [(0.97, false), (1.03, true)] {
             let firm = Material { restitution: 0.1, stiffness: 2e6, ..material() };
@@ -217,7 +213,6 @@ fn stacks_that_lean_out() {
     }
 }
 
-/// Block leaning by `tilt` over a lower edge.
 fn leaning(size: [f64; 3], radius: f64, tilt: f64, stiffness: f64) -> ModelInput {
     let [width, height, depth] = size.map(|s| 0.5 * s);
     let firm = Material { friction: 2.0, restitution: 0.05, stiffness, ..material() };
@@ -247,7 +242,6 @@ fn blocks_rock() {
         loop {
             let now = lean(&run);
             if now < 0.0 || run.state.time > 1.0 {
-                // Interpolated within the step.
                 let time = run.state.time - run.state.dt() * now / (now - before);
                 println!(
                     "r = {}, {:.3} rad: {time:.5} s of {:.5}, {spin:.4} of {:.4} rad/s",
@@ -287,7 +281,6 @@ fn a_tower_on_a_shaking_floor() {
                 run.follow();
                 let now = lean(&run).abs();
                 leans = leans.max(now);
-                // Fallen, or recovering.
                 if now > 0.6 || (pushed == share * limit && now < before && now < 0.5 * falling) {
                     return leans;
                 }

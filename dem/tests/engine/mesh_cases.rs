@@ -44,7 +44,6 @@ fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
         }
         [(into, along)] => !fall(into) && !fall(along) && !fall(&-along),
         _ => {
-            // Vertex: wedge between its two edges.
             let k = (0..3).min_by(|&i, &j| (t[i] - p).norm().total_cmp(&(t[j] - p).norm())).unwrap();
             let (u, v) = ((t[(k + 1) % 3] - t[k]).normalize(), (t[(k + 2) % 3] - t[k]).normalize());
             // Inside the wedge it may fall faster than along its edges: project the gradient.
@@ -58,7 +57,6 @@ fn resists(t: &[Vec3; 3], p: &Vec3, x: &Vec3) -> bool {
     }
 }
 
-/// Overlap and normal by the oracle.
 fn oracle(mesh: &Mesh, x: &Vec3) -> Vec<(f64, Vec3)> {
     let corners: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|t| t.map(|v| mesh.vertices[v])).collect();
     let mut points: Vec<Vec3> = Vec::new();
@@ -98,7 +96,6 @@ fn oracle(mesh: &Mesh, x: &Vec3) -> Vec<(f64, Vec3)> {
     kept
 }
 
-/// Random mesh of about the sphere's size.
 fn mesh(kind: usize, random: &mut Random) -> Mesh {
     let size = RADIUS * (0.3 + 2.0 * random.unit());
     let fan = |apex: Vec3, rim: &[Vec3], closed: bool| {
@@ -135,7 +132,6 @@ fn mesh(kind: usize, random: &mut Random) -> Mesh {
             rim.iter_mut().enumerate().for_each(|(k, v)| v.z = if k % 2 == 0 { 0.3 } else { -0.3 } * size);
             fan(Vec3::zeros(), &rim, true)
         }
-        // Tetrahedron; soup with shared vertices.
         5 => Mesh {
             vertices: (0..4).map(|_| random.vector() * size).collect(),
             triangles: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]],

@@ -10,7 +10,6 @@ use trackbed_dem::{
 
 const G: f64 = 9.81;
 
-/// Step size control by contacts.
 const FOLLOWS: TimeStep = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: true };
 
 fn elastic() -> Material {
@@ -31,7 +30,6 @@ fn pile(centre: Vec3, radius: f64, height: f64) -> WallShape {
     }
 }
 
-/// Body free along one axis, with spring and dashpot.
 fn on_mount(mass: f64, axis: usize, stiffness: f64, damping: f64) -> RigidBody {
     let along = |x: f64| Vec3::from_fn(|d, _| if d == axis { x } else { 0.0 });
     let mount = Mount { stiffness: along(stiffness), damping: along(damping) };
@@ -164,7 +162,6 @@ fn collisions_keep_momentum_and_energy() {
     }
 }
 
-/// For any masses: the pair has the restitution of its law.
 #[test]
 fn central_impacts_have_their_restitution() {
     for (name, shape, half) in [("block", block([0.05; 3], 0.01), 0.05), ("disk", disk(0.05, 0.02), 0.02)] {
@@ -185,7 +182,6 @@ fn central_impacts_have_their_restitution() {
     }
 }
 
-/// Settlement: total weight over stiffness.
 #[test]
 fn a_sprung_plate_sags() {
     let (mass, stiffness) = (4.0, 2e4);
@@ -262,7 +258,6 @@ impl Recurrence {
     }
 }
 
-/// Displacement against the exact recurrence under the recorded forces: second-order error.
 #[test]
 fn response_to_the_recorded_force() {
     let (mass, frequency, zeta) = (40.0, 2.5, 0.03);
@@ -337,7 +332,6 @@ fn bits(state: &State) -> Vec<u8> {
     postcard::to_stdvec(state).expect("a checkpoint")
 }
 
-/// 1 and 3 threads, restart from a checkpoint.
 #[test]
 fn bits_are_independent_of_restart() {
     let run_in = |threads: usize, restart: bool| {
@@ -372,7 +366,6 @@ fn bits_are_independent_of_restart() {
     assert!(one == run_in(1, true), "a restart differs");
 }
 
-/// 2/ω; with a sphere in contact, the higher of two coupled frequencies.
 #[test]
 fn the_step_knows_the_mount() {
     let (mass, stiffness) = (0.5, 4e8);
@@ -428,7 +421,6 @@ fn refusals() {
     refused(ball(), RigidBody { fixed: [true; 6], ..on_mount(1.0, 0, 1.0, 0.0) }, "a fixed direction");
 }
 
-/// Eccentric impact; angular momentum conserved without constraints.
 #[test]
 fn a_round_body_with_inertia_turns() {
     let mut input = ModelInput { shapes: vec![block([0.05, 0.04, 0.03], 0.006)], ..weightless(elastic()) };

@@ -4,8 +4,7 @@ use crate::scene::{Run, clump, plane, stone, weightless};
 use trackbed_dem::{BodyInput, Material, Shape, TimeStep, Vec3, measure};
 
 /// Sphere oscillating on a plane: z = z₀ + A e^(−ζωt) sin(ω_d t). The half-step-old dashpot velocity acts
-/// like a mass reduced by 1 − g, g = C'dt/2m, C' = C/√(1 + C dt/2m); `delayed` compares with that mass, of
-/// second-order damping ratio.
+/// like a mass reduced by 1 − g, g = C'dt/2m; `delayed` compares with that mass.
 fn swing_error(restitution: f64, steps: usize, delayed: bool) -> f64 {
     let material = Material { restitution, ..stone() };
     let mut input = weightless(material);
@@ -24,7 +23,6 @@ fn swing_error(restitution: f64, steps: usize, delayed: bool) -> f64 {
     let omega = if delayed { omega / (1.0 - share).sqrt() } else { omega };
     let damped = omega * (1.0 - zeta * zeta).sqrt();
     let v0 = 5e-5 * omega;
-    // In equilibrium only the dashpot changes the velocity half a step back.
     let before = v0 * (1.0 + zeta * omega * run.model.dt());
     run.state.set_velocity(&run.model, 0, Vec3::new(0.0, 0.0, before), Vec3::zeros());
     run.steps(steps);
@@ -50,7 +48,6 @@ fn second_order_with_dashpot() {
         let order = (pair[0] / pair[1]).log2();
         assert!(order > 1.8, "{errors:?}");
     }
-    // First-order phase lead: half the effect of the reduced mass.
     let phases = [400, 800, 1600].map(|n| swing_error(0.7, n, false));
     println!("with the mass itself {phases:?}");
     for (n, error) in [400.0, 800.0, 1600.0].into_iter().zip(phases) {

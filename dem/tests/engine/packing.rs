@@ -13,8 +13,7 @@ use trackbed_dem::measure::{self, BoxRegion};
 use trackbed_dem::shape::clump::Clump;
 use trackbed_dem::{BodyInput, LocalDamping, Material, Model, Partner, Shape, State, Vec3};
 
-/// 200 spheres compressed beyond jamming: Love–Weber stress is minus the wall pressure to 1e-8; halves add
-/// up.
+/// Compressed beyond jamming: Love–Weber stress is minus the wall pressure to 1e-8.
 #[test]
 fn mean_stress_equals_wall_pressure() {
     let (low, high) = (Vec3::new(0.0, -0.05, 0.02), Vec3::new(0.1, 0.06, 0.11));
@@ -125,8 +124,6 @@ fn unbalanced_force_of_a_resting_sphere() {
     }
 }
 
-/// Slightly compressed: 6 and 12 neighbours inside, counted at faces, edges, corners; cubic fabric is
-/// isotropic.
 #[test]
 fn coordination_and_fabric_of_lattices() {
     for (lattice, inside) in [(Lattice::Simple, 6), (Lattice::Hexagonal, 12), (Lattice::FaceCentred, 12)] {
@@ -151,7 +148,6 @@ fn coordination_and_fabric_of_lattices() {
         assert_eq!(all.distribution.iter().sum::<usize>(), 515);
         assert_eq!(all.distribution[..2], [1, 2]);
         assert!((all.rattlers - 3.0 / 515.0).abs() < 1e-15);
-        // 512 bodies have all contacts but the pair's, counted twice.
         assert!((all.mechanical * 512.0 - (all.mean * 515.0 - 2.0)).abs() < 1e-9);
         let core = measure::coordination_of(&run.model, &run.state, &contacts, |b| {
             b < 512 && [b % n, b / n % n, b / n / n].iter().all(|k| (1..n - 1).contains(k))
@@ -168,7 +164,6 @@ fn coordination_and_fabric_of_lattices() {
     }
 }
 
-/// Quadrature against random points; two halves add up.
 #[test]
 fn clumps_cut_by_a_region() {
     let clump = Clump::from_spheres(&[

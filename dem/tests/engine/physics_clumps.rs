@@ -16,8 +16,7 @@ const LAMMPS: [[f64; 4]; 5] = [
     [1000.0, 0.079173, 0.010797, 3041.0],
 ];
 
-/// The compressed packing expands and settles. Initial differences: 4 µm (cubes' centre of mass) and wall
-/// dashpots; 5 % of energies, 1 % of contacts.
+/// Initial differences: 4 µm (cubes' centre of mass) and wall dashpots; 5 % of energies, 1 % of contacts.
 #[test]
 fn clump_bed_matches_lammps() {
     let spheres: Vec<_> =

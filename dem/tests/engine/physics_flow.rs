@@ -239,7 +239,6 @@ fn orifices_discharge_by_beverloos_law() {
     assert!((exponent - 2.5).abs() < 0.1, "exponent {exponent}");
 }
 
-/// Least squares: y = slope x + cut.
 fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
     let n = x.len() as f64;
     let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);

@@ -6,8 +6,7 @@ use trackbed_dem::{BodyInput, Material, Partner, Shape, TimeStep, Vec3, measure}
 const D: f64 = 0.01;
 const WIDTH: f64 = 0.12;
 
-/// Packing fraction and coordination, without rattlers (fewer than `least` contacts), at least two diameters
-/// from walls and top.
+/// Packing fraction and coordination, without rattlers (fewer than `least` contacts).
 fn pour(mu: f64, least: usize) -> (f64, f64) {
     let mut input = weightless(Material { stiffness: 1e5, friction: mu, restitution: 0.5, ..stone() });
     input.gravity = Vec3::new(0.0, 0.0, -9.81);
@@ -87,8 +86,7 @@ fn pour(mu: f64, least: usize) -> (f64, f64) {
 }
 
 /// Frictionless: random close packing, φ = 0.64, Z = 6 (isostatic). μ = 0.5: φ ≈ 0.59, Z ≈ 4.6 (Silbert,
-/// Ertaş, Grest, Halsey & Levine 2002, Phys. Rev. E 65, 031304; Silbert 2010, Soft Matter 6, 2918). Tolerance
-/// 0.015 and 0.35: 700 spheres, and the pouring method.
+/// Ertaş, Grest, Halsey & Levine 2002, Phys. Rev. E 65, 031304; Silbert 2010, Soft Matter 6, 2918).
 #[test]
 #[ignore = "two beds of 2,500 spheres for 1 s: 30 s"]
 fn friction_loosens_packings_as_published() {

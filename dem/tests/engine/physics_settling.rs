@@ -6,8 +6,8 @@
 //! K = 1e5 N/m, tangential 2/7 of it, e = 0.5, μ = 0.5, 2600 kg/m³.
 //!
 //! Up to 0.15 s only dashpots differ (trackbed's never pull): translation within the peers' range ± 3 %,
-//! rotation ± 10 %. Later rearrangements dominate: a factor of 3 over four orders of magnitude. Heap: packing
-//! fraction ± 0.003, coordination ± 0.06.
+//! rotation ± 10 %. Later rearrangements dominate: a factor of 3. Heap: packing fraction ± 0.003,
+//! coordination ± 0.06.
 
 use crate::scene::{Run, plane, stone};
 use crate::tables;
@@ -55,7 +55,6 @@ fn heap(model: &Model, state: &State) -> (f64, f64) {
     (volume / (WIDTH * WIDTH * 2.0 * moment / volume), 2.0 * pairs as f64 / model.body_count() as f64)
 }
 
-/// Range of the peers in a column, rows by `which`.
 fn range(peers: &[Vec<f64>], column: usize, which: impl Fn(&[f64]) -> bool) -> (f64, f64) {
     let values: Vec<f64> = peers.iter().filter(|r| which(r)).map(|r| r[column]).collect();
     assert_eq!(values.len(), 3, "one row of each program");

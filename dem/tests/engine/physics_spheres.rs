@@ -23,8 +23,7 @@ const HERTZ: [Row; 3] = [
     [500.0, 2.415534e-1, 3.270692e-3, 22757.0],
 ];
 
-/// Restitution of LAMMPS' dashpot for 0.5 without tension (`limit_damping`), ζ = −ln e/√(π² + ln² e): 0.550
-/// (Schwager & Pöschel 2007).
+/// LAMMPS' dashpot for 0.5 without tension, ζ = −ln e/√(π² + ln² e): 0.550 (Schwager & Pöschel 2007).
 fn restitution() -> f64 {
     let log = 0.5_f64.ln();
     let zeta = -log / std::f64::consts::PI.hypot(log);
@@ -72,7 +71,6 @@ fn compare(material: Material, lammps: &[Row], rotation_tolerance: f64) {
 /// Rearrangements of 10,000 spheres differ; the contact laws do not.
 const TOLERANCE: f64 = 0.02;
 
-/// Without initial tangential springs the bed slides a little and comes to rest.
 #[test]
 fn linear_bed_moves_as_in_lammps() {
     compare(
@@ -82,8 +80,8 @@ fn linear_bed_moves_as_in_lammps() {
     );
 }
 
-/// Changed law: the bed expands. Under growing overlap trackbed keeps the tangential force, LAMMPS' `mindlin`
-/// the spring length: possible cause of 3 % in rotation.
+/// Under growing overlap trackbed keeps the tangential force, LAMMPS' `mindlin` the spring length: possible
+/// cause of 3 % in rotation.
 #[test]
 fn hertzian_bed_moves_as_in_lammps() {
     let material = Material { young: Some(5e7), poisson: 0.25, restitution: restitution(), ..stone() };

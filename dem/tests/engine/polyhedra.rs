@@ -22,7 +22,6 @@ fn elastic() -> Material {
     Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() }
 }
 
-/// Hertzian ice, as in the force tables.
 fn hertz() -> Material {
     Material { young: Some(1e9), poisson: 0.3, stiffness: f64::INFINITY, ..material() }
 }
@@ -30,7 +29,6 @@ fn hertz() -> Material {
 /// Effective modulus of two equal bodies [Pa].
 const MODULUS: f64 = 1e9 / (2.0 * (1.0 - 0.09));
 
-/// Linear and Hertzian.
 fn laws() -> [(&'static str, Material); 2] {
     let smooth = Material { friction: 0.0, restitution: 1.0, ..hertz() };
     [("springs", elastic()), ("Hertz", Material { young: Some(1e8), ..smooth })]
@@ -117,7 +115,6 @@ fn ten_cubes_stand() {
     assert!((lowest / weight - 1.0).abs() < 1e-4, "{lowest} of {weight}");
 }
 
-/// Dozens of contact points: each needs its force and history.
 #[test]
 fn round_plates_on_a_slope() {
     let corner = |k: u32| {
@@ -283,7 +280,6 @@ fn collisions(name: &str, elastic: Material) {
     assert!(touched > 150 && worst < 1e-3 && mean.abs() < 1e-4, "{name}: {touched} {worst:e} {mean:e}");
 }
 
-/// Friction, dashpots, both.
 #[test]
 fn collisions_keep_their_account() {
     let pairs = [(0.0, 0.5), (0.5, 1.0), (0.5, 0.5)];
@@ -325,7 +321,6 @@ fn collisions_keep_their_account() {
     }
 }
 
-/// Energy balance; same bits with one and three threads.
 #[test]
 fn a_heap_of_stones() {
     let mut random = Random::new(9);
@@ -530,7 +525,6 @@ fn blocks_that_fall_flat() {
     assert!(flat >= 2 && error.abs() < 0.01, "{flat} {error:e}");
 }
 
-/// The error names pair and overlap.
 #[test]
 fn cores_that_meet_are_named() {
     let mut input = scene(elastic(), vec![block([0.05; 3], 0.001)]);

@@ -51,7 +51,6 @@ fn floor(n: u32, side: f64) -> TriangleSurface {
     TriangleSurface { vertices, triangles, ..TriangleSurface::default() }
 }
 
-/// Octahedron refined `n` times, projected to a sphere.
 fn ball(n: u32, radius: f64) -> WallShape {
     let mut vertices = vec![Vec3::x(), Vec3::y(), Vec3::z(), -Vec3::x(), -Vec3::y(), -Vec3::z()];
     let mut triangles: Vec<[u32; 3]> =
@@ -77,7 +76,6 @@ fn frustum(radii: [f64; 2], height: f64, caps: [bool; 2]) -> WallShape {
     WallShape::Frustum { base: Vec3::z() * (-0.5 * height), axis: Vec3::z(), height, radii, caps }
 }
 
-/// Elastic: energy conserved; with friction and dashpots: balance closes.
 #[test]
 fn bounces_off_walls_keep_the_energy() {
     bounces(4, 2);
@@ -89,7 +87,6 @@ fn many_wall_bounces_conserve_energy() {
     bounces(16, 9);
 }
 
-/// `throws` per wall, at least `least` in contact.
 fn bounces(throws: u32, least: i32) {
     let walls: [(&str, WallShape); 6] = [
         ("mesh", ball(2, 0.1)),
@@ -111,7 +108,6 @@ fn bounces(throws: u32, least: i32) {
                 };
                 let mut m = if rough { Material { restitution: 0.5, ..material() } } else { elastic() };
                 if k % 4 == 2 {
-                    // Every fourth: Hertz.
                     (m.young, m.poisson, m.stiffness) = (Some(1e8), 0.3, f64::INFINITY);
                 }
                 let mut input = scene(m, vec![stone]);
@@ -182,7 +178,6 @@ fn block_slides_smoothly_over_seams() {
     }
 }
 
-/// The funnel bears the weight; a moving wall's work balances.
 #[test]
 fn funnel_bears_weight_of_stones() {
     stones_in_funnel("triangles");
@@ -230,7 +225,6 @@ fn stones_in_funnel(kind: &str) {
         let weight: f64 = (0..4).map(|b| run.model.mass(b) * G).sum();
         println!("{name}: {force} for a weight of {weight}");
         assert!((force + Vec3::z() * weight).norm() < 1e-2 * weight, "{name}: {force} {weight}");
-        // All move with the wall.
         for b in 0..4 {
             assert!(
                 (run.state.velocity(b) - Vec3::z() * 0.1).norm() < 2e-3,
@@ -246,7 +240,6 @@ fn stones_in_funnel(kind: &str) {
     }
 }
 
-/// Periodic in x and y, on a plane, next to a pile.
 fn column() -> ModelInput {
     let mut random = Random::new(33);
     let mut shapes: Vec<Shape> =
@@ -280,7 +273,6 @@ fn column() -> ModelInput {
     input
 }
 
-/// Moved scene, same motion; periodic contacts conserve momentum and energy.
 #[test]
 fn a_border_does_not_show() {
     let input = column();

@@ -13,7 +13,6 @@ use trackbed_dem::{
 /// Of seven ranks, some have no block.
 const RANKS: [usize; 5] = [1, 2, 3, 4, 7];
 
-/// Unequal flying spheres of two materials, box with rising floor, six blocks.
 fn gas() -> ModelInput {
     let mut random = Random::new(11);
     let smooth = Material { friction: 0.2, restitution: 0.8, density: 2000.0, ..stone() };
@@ -31,7 +30,6 @@ fn gas() -> ModelInput {
         body.material = usize::from(k % 3 == 0);
         body.scale = 0.8 + 0.2 * random.unit();
         body.spin = random.vector() * 40.0;
-        // Some are fixed, or do not rotate.
         body.fixed = if k % 97 == 0 { [true; 6] } else { [false, false, false, k % 50 == 0, false, false] };
         if body.fixed[0] {
             (body.velocity, body.spin) = (Vec3::zeros(), Vec3::zeros());
@@ -78,7 +76,6 @@ fn bytes(state: &State) -> Vec<u8> {
     postcard::to_stdvec(state).expect("a state that can be written")
 }
 
-/// States at each download, and final data.
 fn states<B: BackEnd>(model: &Model, state: &mut State, work: &mut B, how: How) -> Vec<Vec<u8>> {
     let mut seen = Vec::new();
     for k in 1..=how.steps {
@@ -96,7 +93,6 @@ fn states<B: BackEnd>(model: &Model, state: &mut State, work: &mut B, how: How) 
     seen
 }
 
-/// Runs `lead` as the first of `size` ranks.
 fn with_ranks<T>(model: &Model, size: usize, lead: impl FnOnce(Local) -> T) -> T {
     let mut links = local(size);
     let first = links.remove(0);
@@ -131,7 +127,6 @@ fn same_bits(name: &str, input: ModelInput, how: How) -> State {
         });
         let differs = seen.iter().zip(&expected).position(|(a, b)| a != b);
         assert_eq!(differs, None, "{name}: the first look at which {size} ranks differ");
-        // Each rank but the first reports after a step.
         let books = traffic.messages[MessageKind::Books as usize];
         assert_eq!(books, (how.steps * (size - 1)) as u64, "{name}: reports of {size} ranks");
         assert!(size == 1 || traffic.ghosts > 60, "{name}: {} ghosts", traffic.ghosts);
@@ -152,7 +147,6 @@ fn spheres() {
     assert!(l.dissipated_dashpot > 0.0 && l.dissipated_friction > 0.0 && l.work_walls != 0.0, "{l:?}");
 }
 
-/// With step size control.
 #[test]
 fn clumps_in_wind() {
     let wind = Wind { velocity: Vec3::new(3.0, 1.0, 0.0), density: 1.2, drag: 0.5 };
@@ -191,7 +185,6 @@ fn pushed_bodies() {
     assert!(state.balance.work_applied != 0.0);
 }
 
-/// Fails after a number of messages.
 struct Failing(Local, usize);
 
 impl Link for Failing {

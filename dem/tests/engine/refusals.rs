@@ -78,7 +78,6 @@ fn degenerate_shapes_bodies_and_walls() {
 fn two_rigid_partners() {
     let error = refused(|i| i.materials[0] = rigid(stone()));
     assert_eq!(error, ModelError::RigidPair { a: "body 0".into(), b: "plane 0".into() });
-    // Allowed: a rigid wall out of the body's reach, a fixed rigid body on a rigid plane.
     let mut input = weightless(rigid(stone()));
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(BodyInput { fixed: [true; 6], ..sphere(Vec3::zeros(), Vec3::zeros()) });
@@ -130,7 +129,6 @@ fn bodies_inside_each_other_are_named() {
     assert!(matches!(fails(input, 1), StepError::Overlap { .. }));
 }
 
-/// Too fast for its contact: stopped by an error naming it.
 #[test]
 fn impacts_beyond_the_law_are_stopped() {
     let mut input = weightless(stone());
@@ -144,7 +142,6 @@ fn impacts_beyond_the_law_are_stopped() {
     assert!(matches!(fails(input, 1000), StepError::Speed { body: 0, .. }));
 }
 
-/// Also for two-sided walls.
 #[test]
 fn passing_through_a_triangle_is_stopped() {
     let mut input = weightless(stone());

@@ -6,8 +6,6 @@ use trackbed_dem::{Material, TimeStep, Vec3};
 
 const G: f64 = 9.81;
 
-/// Sphere of radius 1 cm on a plane, rolling friction 0.1, twisting friction 0.05, gravity inclined by
-/// `slope` in x.
 fn on_plane(hertz: bool, slope: f64, velocity: f64, spin: Vec3) -> Run {
     let law = if hertz { elastic() } else { Material { stiffness: 1e6, ..stone() } };
     let material = Material {
@@ -71,7 +69,6 @@ fn ball_rolls_above_critical_slope() {
             if slope < 0.1 {
                 assert!(found.abs() < 1e-5, "{found}");
             } else {
-                // Relative to free rolling: springs need some rotation to load.
                 let free = 5.0 / 7.0 * G * slope * run.state.time;
                 assert!((found - expected).abs() < 3e-3 * free, "slope {slope}: {found} against {expected}");
             }

@@ -79,8 +79,7 @@ fn rolling_inside_a_cylinder() {
     assert_eq!(run.state.wall_contact_count(), 1);
 }
 
-/// Fixed grain on a rotating wall at the Coulomb limit: friction μN, moment μN R about the axis, work μN Rω t
-/// dissipated.
+/// At the Coulomb limit: moment μN R about the axis, work μN Rω t dissipated.
 #[test]
 fn turning_walls_drag_at_the_limit() {
     let omega = 3.0;
@@ -133,7 +132,6 @@ fn turning_walls_drag_at_the_limit() {
     }
 }
 
-/// Side and bottom of a bin both count, the outside of a rim once; a closed can retains a grain.
 #[test]
 fn pieces_that_meet() {
     let at = |x: Vec3| {

@@ -9,17 +9,14 @@ use trackbed_dem::{
 };
 
 const G: f64 = 9.81;
-/// Step size control by contacts.
 const FOLLOWS: TimeStep = TimeStep::Measured { share: 0.1, longest: 2e-4, collisions: true };
 /// Half sides of a slab, edge radius [m].
 const HALF: [f64; 3] = [0.4, 0.4, 0.2];
 const ROUND: f64 = 0.05;
 
-/// Soil without drag and friction.
 const SOFT: Scarring =
     Scarring { strength: 15e6, drag: 0.0, density: 1700.0, friction: [0.0; 2], growth: 3.0, decay: 185.0 };
 
-/// Two triangles inclined along x [rad].
 fn ground(angle: f64, scarring: Scarring) -> WallInput {
     let at = |x: f64, y: f64| Vec3::new(x, y, -x * angle.tan());
     let vertices = vec![at(-50.0, -50.0), at(200.0, -50.0), at(-50.0, 50.0), at(200.0, 50.0)];
@@ -42,14 +39,12 @@ fn scene(scarring: Scarring) -> ModelInput {
     input
 }
 
-/// Slab landing flat.
 fn slab(scarring: Scarring, velocity: Vec3) -> Run {
     let mut input = scene(scarring);
     input.bodies.push(BodyInput { velocity, ..body(0, Vec3::z() * (HALF[2] + 1e-4)) });
     Run::new(input)
 }
 
-/// Sinkage of a slab [m].
 fn depth(run: &Run) -> f64 {
     HALF[2] - run.state.position(0).z
 }
@@ -74,7 +69,7 @@ fn sinkage_matches_impact_speed() {
     }
 }
 
-/// Frictionless slab on hard ground: 1/u grows with ½ C ρ A t/m, A its front.
+/// 1/u grows with ½ C ρ A t/m, A the slab's front.
 #[test]
 fn drag_matches_front_in_soil() {
     let law = Scarring { drag: 2.5, ..SOFT };
@@ -96,7 +91,7 @@ fn drag_matches_front_in_soil() {
     assert!((depth(&run) - deep).abs() < 1e-4);
 }
 
-/// Loss m g ∫ μ ds, μ = μ₀ + 2/π (μ₁ − μ₀) atan(κ s), s from the first contact.
+/// Loss m g ∫ μ ds from the first contact.
 #[test]
 fn friction_grows_with_the_way() {
     let law = Scarring { friction: [0.1, 0.6], growth: 2.0, ..SOFT };
@@ -147,7 +142,6 @@ fn bits(state: &State) -> Vec<u8> {
     postcard::to_allocvec(state).expect("a state")
 }
 
-/// Threads and restart from a checkpoint.
 #[test]
 fn balances_close_and_bits_agree() {
     let run_in = |threads: usize, restart: bool| {

@@ -162,7 +162,7 @@ pub fn clump() -> Clump {
     .expect("a connected clump")
 }
 
-/// `n`³ clumps and spheres thrown into five planes and a triangle ramp; optionally a block on top.
+/// `n`³ clumps and spheres thrown into five planes and a triangle ramp.
 pub fn pile(n: usize, with_block: bool) -> ModelInput {
     let mut random = Random::new(42);
     let pitch = 0.05;

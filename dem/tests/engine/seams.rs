@@ -3,7 +3,6 @@
 use crate::scene::{Random, Run, plane, sphere, stone, weightless};
 use trackbed_dem::{BodyInput, Material, ModelInput, Plane, Shape, TriangleSurface, Vec3, measure};
 
-/// One body; a clump is shape 1.
 fn of_one(body: BodyInput) -> ModelInput {
     let mut input = weightless(Material { stiffness: 1e6, tangential_damping_ratio: 0.3, ..stone() });
     input.shapes.push(Shape::Clump(crate::scene::clump()));
@@ -15,7 +14,6 @@ fn on_planes(planes: Vec<Plane>, body: BodyInput) -> ModelInput {
     ModelInput { planes, ..of_one(body) }
 }
 
-/// Run under gravity with stored forces.
 fn heavy(mut input: ModelInput) -> Run {
     input.gravity = Vec3::new(0.0, 0.0, -9.81);
     let mut run = Run::new(input);
@@ -33,7 +31,6 @@ fn on_triangles(vertices: &[[f64; 3]], triangles: &[[u32; 3]], body: BodyInput) 
     input
 }
 
-/// Sliding and rolling sphere and clump, vertices shared or not: motion equals a plane's to rounding.
 #[test]
 fn triangulated_floor_is_a_plane() {
     let mut random = Random::new(5);
@@ -72,7 +69,6 @@ fn triangulated_floor_is_a_plane() {
         let mut reference = heavy(on_planes(vec![plane(Vec3::zeros(), Vec3::z())], body.clone()));
         let mut runs = [(&vertices, &triangles), (&soup_vertices, &soup_triangles)]
             .map(|(v, t)| heavy(on_triangles(v, t, body.clone())));
-        // Rounding differences double with each bounce of a clump.
         let bounce = if body.shape == 0 { 1e-10 } else { 1e-6 };
         let mut forces = 0.0_f64;
         while reference.state.time < 0.2 {
@@ -102,7 +98,6 @@ fn contact_count(vertices: &[[f64; 3]], triangles: &[[u32; 3]], centre: Vec3) ->
     (contacts.len(), run.work.contact_force(&run.state, 0))
 }
 
-/// Ridge edge: one vertical contact; valley: two.
 #[test]
 fn ridge_counts_once_and_valley_twice() {
     let roof = |h: f64| {
@@ -128,7 +123,6 @@ fn ridge_counts_once_and_valley_twice() {
     assert!((force.z - 2.0 * 1e6 * overlap * slope.cos()).abs() < 1e-6 && force.x.abs() < 1e-6, "{force}");
 }
 
-/// Pyramid tip 1, room corner 3, square's diagonal 1.
 #[test]
 fn corners_and_diagonals() {
     let base = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
@@ -149,7 +143,6 @@ fn corners_and_diagonals() {
     assert!((force - Vec3::repeat(100.0)).norm() < 1e-6, "{force}");
 }
 
-/// Eight triangles per side; a ball slides into the corner and back as on three planes.
 #[test]
 fn triangle_corner_matches_planes() {
     let n = 8_u32;
@@ -208,8 +201,7 @@ fn both_sides_push() {
     }
 }
 
-/// Sliding, then rolling over several hundred seams, with a loaded tangential spring: force to 1e-10
-/// (relative).
+/// Sliding, then rolling over several hundred seams: force to 1e-10 (relative).
 #[test]
 fn slope_force_matches_plane() {
     let mut random = Random::new(77);
@@ -271,7 +263,6 @@ fn slope_force_matches_plane() {
     assert_eq!(seams, 0, "never more than one contact");
 }
 
-/// Closer to a seam than the point tolerance: the face precedes its neighbour's edge.
 #[test]
 fn face_before_edge_beside_a_seam() {
     let square = [[-0.1, -0.1, 0.0], [0.1, -0.1, 0.0], [0.1, 0.1, 0.0], [-0.1, 0.1, 0.0]];
@@ -283,7 +274,6 @@ fn face_before_edge_beside_a_seam() {
     }
 }
 
-/// A sphere next to a slot between coplanar plates touches the opposite rim.
 #[test]
 fn finds_slot_in_floor() {
     let plate = |from: f64, to: f64| [[from, -0.1, 0.0], [to, -0.1, 0.0], [to, 0.1, 0.0], [from, 0.1, 0.0]];

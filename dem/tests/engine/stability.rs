@@ -13,7 +13,6 @@ use trackbed_dem::{
     measure, stability,
 };
 
-/// Level external surface at height 0.
 struct Level;
 
 impl Surface for Level {
@@ -90,7 +89,6 @@ struct Bed<S> {
 }
 
 impl<S: Surface> Bed<S> {
-    /// Bed at rest, stepped by its contacts.
     fn settled(input: ModelInput, surface: S, seconds: f64) -> Bed<S> {
         let model = Model::new(input).expect("a good input");
         let mut state = State::new(&model);
@@ -129,7 +127,6 @@ impl<S: Surface> Bed<S> {
         differ(&calm, &other) / start
     }
 
-    /// True stability limit [s].
     fn true_limit(&self) -> f64 {
         let found = stability::limit(&self.model, &self.state);
         let (mut low, mut high) = (0.3 * found, 4.0 * found);
@@ -141,7 +138,6 @@ impl<S: Surface> Bed<S> {
         low
     }
 
-    /// Compares both limits, and the bound without contacts.
     fn compare(&self, name: &str) {
         let (found, truth) = (stability::limit(&self.model, &self.state), self.true_limit());
         let moving = measure::energies(&self.model, &self.state).kinetic();
@@ -283,7 +279,6 @@ fn step_growth_is_limited() {
     assert!(grown >= 3, "{grown}");
 }
 
-/// Momentum to rounding; energy as with constant steps.
 #[test]
 fn steps_of_changing_length() {
     let mut errors = Vec::new();
@@ -342,7 +337,6 @@ fn restitution_at_automatic_step() {
     }
 }
 
-/// Energy after 10 s (target 0.1 %).
 #[test]
 fn an_elastic_gas_does_not_heat() {
     let material = Material { restitution: 1.0, friction: 0.0, ..stone() };
@@ -493,7 +487,6 @@ fn the_bound_of_a_dumbbell_has_its_closed_form() {
     assert!((model.dt_limit().dt / exact - 1.0).abs() < 1e-9, "{} {exact}", model.dt_limit().dt);
 }
 
-/// Bounds of ω² add up.
 #[test]
 fn the_bounds_of_contacts_and_bonds_add_up() {
     let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
@@ -541,7 +534,6 @@ fn the_time_of_a_collision_is_that_of_both_masses() {
     assert!((model.longest(false) / exact - 1.0).abs() < 1e-12, "{} {exact}", model.longest(false));
 }
 
-/// Impact speed √(2 g H), H the height of the scene.
 #[test]
 fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
     let material = Material { young: Some(2e7), poisson: 0.2, stiffness: f64::INFINITY, ..stone() };

@@ -6,7 +6,6 @@ use trackbed_dem::{
     WallShape, measure,
 };
 
-/// Free box of triangles.
 fn cuboid(centre: Vec3, half: Vec3, mass: f64) -> WallInput {
     WallInput { body: Some(free(mass)), ..WallInput::fixed(crate::scene::cuboid(centre, half), 0) }
 }
@@ -52,7 +51,6 @@ fn free_flight() {
     assert!(t > 1.0 && (up - Vec3::y()).norm() > 1e-3, "{t} {up}");
 }
 
-/// The spheres bear its weight, and a fifth grain on top.
 #[test]
 fn cube_at_rest_on_spheres() {
     let mut input = with(Material { restitution: 0.2, tangential_damping_ratio: 0.5, ..stone() });
@@ -78,7 +76,6 @@ fn cube_at_rest_on_spheres() {
     assert!((below.z + weight + load).abs() < 1e-8 * weight, "{below} {weight}");
     assert!((run.work.contact_force(&run.state, 4).z / load - 1.0).abs() < 1e-8);
     assert_eq!(run.state.wall_contact_count(), 5);
-    // Moments about the centre of mass vanish at rest.
     let (force, moment) = run.state.wall_force(0);
     assert!(
         (force - Vec3::z() * weight).norm() < 1e-8 * weight && moment.norm() < 1e-8 * weight * 0.05,
@@ -86,7 +83,6 @@ fn cube_at_rest_on_spheres() {
     );
 }
 
-/// Each vertex bears a quarter of the weight.
 #[test]
 fn box_stands_on_its_vertices() {
     let mut input = with(Material { restitution: 0.3, ..stone() });
@@ -138,7 +134,6 @@ fn collision_conserves_momentum() {
     assert_eq!(run.state.balance.work(), 0.0);
 }
 
-/// The contact uses both masses.
 #[test]
 fn central_impact_has_its_restitution() {
     for mass in [0.002, 0.02, 2.0] {
@@ -226,11 +221,9 @@ fn refusals() {
         assert!(run.state.time < 1.0);
     };
     assert!(matches!(error, StepError::WallsMeet { walls: [0, 1], .. }), "{error}");
-    // Round bodies ignore each other; gap 0.11 m, 1 m/s, common gravity.
     assert!((run.state.time - 0.11).abs() < 1e-3, "{}", run.state.time);
 }
 
-/// Its error names it.
 #[test]
 fn a_light_body_sets_the_step() {
     let mut input = with(stone());

@@ -13,7 +13,6 @@ fn material() -> Material {
     Material { stiffness: 1e6, tangential_damping_ratio: 1.0, ..stone() }
 }
 
-/// Linear and Hertzian, without friction or damping.
 fn elastic() -> [(&'static str, Material); 2] {
     let smooth = Material { friction: 0.0, restitution: 1.0, tangential_ratio: 0.0, ..material() };
     let hertz = Material { young: Some(1e8), poisson: 0.3, stiffness: f64::INFINITY, ..smooth };
@@ -83,7 +82,6 @@ impl Throw {
         BodyInput { orientation, velocity, spin, ..body(0, self.position) }
     }
 
-    /// The same block of triangles, with the grain's mass and inertia.
     fn wall(&self, mass: f64, inertia: Vec3) -> WallInput {
         let WallShape::Triangles { vertices, triangles } = cuboid(Vec3::zeros(), Vec3::from(HALF)) else {
             panic!("triangles")
@@ -176,7 +174,6 @@ fn as_polyhedra_with_the_same_faces() {
     }
 }
 
-/// Momentum to rounding, energy without losses; with friction and damping the balance.
 #[test]
 fn hollow_bodies_collide() {
     let laws = elastic().into_iter().chain([("rough springs", material())]);
@@ -239,7 +236,6 @@ fn an_angle_hangs_in_another() {
     assert!((left - start).abs() < 1e-2 * run.state.balance.dissipated());
 }
 
-/// Different meshes, step size control; each bears the load above.
 #[test]
 fn blocks_stand_on_each_other() {
     let mut input = scene(Material { restitution: 0.2, ..material() });
@@ -255,11 +251,9 @@ fn blocks_stand_on_each_other() {
     for k in 1..4 {
         let (v, w) = run.state.wall_velocity(k);
         assert!(v.norm() < 1e-5 && w.norm() < 1e-4, "{k}: {v} {w}");
-        // Weight plus load above.
         let force = run.state.wall_force(k).0.z;
         assert!((force / (4.0 * G) - 1.0).abs() < 1e-5, "{k}: {force}");
     }
-    // From the contacts.
     let measured = run.state.measured_limit().expect("steps follow the contacts");
     assert!((1.0..20.0).contains(&(measured / run.model.dt())), "{measured} {}", run.model.dt());
     let floor = run.state.wall_force(0).0.z / (-12.0 * G);
@@ -271,7 +265,6 @@ fn blocks_stand_on_each_other() {
 fn a_driven_plate_presses_a_block() {
     let mut input = scene(Material { restitution: 0.3, ..material() });
     input.gravity = Vec3::new(0.0, 0.0, -G);
-    // A plane wall like the others.
     input.walls.push(WallInput::fixed(WallShape::Plane { point: Vec3::zeros(), normal: Vec3::z() }, 0));
     input.walls.push(rigid(cuboid(Vec3::z() * 0.051, Vec3::new(0.1, 0.08, 0.05)), free(4.0)));
     let servo = trackbed_dem::Servo {

@@ -35,7 +35,6 @@ pub fn square(width: f64, z: f64) -> WallShape {
     }
 }
 
-/// Shaking table, rotating paddle, drum: prescribed positions, balances; energy error ~ dt².
 #[test]
 fn stirred_heap_balances() {
     let run = |fraction: f64| {
@@ -98,8 +97,7 @@ fn stirred_heap_balances() {
     assert!(coarse < 2e-2 * turnover && fine < 0.25 * coarse, "{coarse:e} {fine:e} {turnover:e}");
 }
 
-/// After a preload of 5 kPa (a fresh packing slips) it holds 1 kPa within 1 % at every step; its work
-/// balances.
+/// After a preload of 5 kPa it holds 1 kPa within 1 % at every step.
 #[test]
 fn servo_holds_its_pressure() {
     let width = 0.09;
@@ -139,7 +137,7 @@ fn servo_holds_its_pressure() {
     }
 }
 
-/// Table acceleration below gravity. Energy error ~ dt²: work uses the mean velocity of each step.
+/// Table acceleration below gravity. Energy error ~ dt².
 #[test]
 fn ball_rides_a_swinging_table() {
     let error = |fraction: f64| {
@@ -172,12 +170,11 @@ fn ball_rides_a_swinging_table() {
     assert!(fine < coarse / 8.0, "{coarse:e} {fine:e}");
 }
 
-/// Springs are capped by friction: their energy is independent of the gate's speed.
+/// Springs are capped by friction.
 #[test]
 fn sliding_gate_stores_no_spring_energy() {
     for friction in [0.0, 0.3] {
         let mut input = heap(1, 0.09, Material { friction, ..stone() });
-        // Wide enough to stay under the grain.
         let motion = Motion { velocity: Vec3::new(-3.0, 0.0, 0.0), ..Motion::default() };
         input.walls.push(WallInput { motion, ..WallInput::fixed(square(1.0, 0.0), 0) });
         let mut run = Run::new(input);

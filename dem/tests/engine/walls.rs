@@ -107,7 +107,6 @@ fn applied_force_and_its_torque() {
     assert!((run.state.balance.work_applied / e - 1.0).abs() < 1e-12);
 }
 
-/// Flat surface at a height rising with time.
 struct Lift {
     height: f64,
     speed: f64,
@@ -136,8 +135,7 @@ impl Surface for Lift {
     }
 }
 
-/// The power of the reported dashpot force equals the recorded loss; zero without dashpots. Sticking,
-/// sliding, adhesive.
+/// The power of the reported dashpot force equals the recorded loss.
 #[test]
 fn the_force_of_dashpots_is_distinguished() {
     let young =

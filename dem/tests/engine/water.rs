@@ -66,7 +66,6 @@ fn terminal_velocity_matches_closed_form() {
     assert!(worst < 1e-4);
 }
 
-/// Both reference areas of drag; decaying rotation.
 #[test]
 fn a_current_takes_floes_along() {
     let mut worst = 0.0_f64;
@@ -112,7 +111,6 @@ fn a_current_takes_floes_along() {
     assert!(worst < 1e-4);
 }
 
-/// Periods from zero crossings, in steps.
 fn period(run: &mut Run, dt: f64, signal: impl Fn(&Run) -> f64) -> f64 {
     let mut zeros = Vec::new();
     let mut before = signal(run);
@@ -129,7 +127,6 @@ fn period(run: &mut Run, dt: f64, signal: impl Fn(&Run) -> f64) -> f64 {
     (zeros[4] - zeros[0]) * 0.5 * dt
 }
 
-/// With added mass; amplitude a hundredth of the draught.
 #[test]
 fn floes_have_expected_periods() {
     for row in read("tests/data/water/box_periods.csv") {
@@ -169,7 +166,6 @@ fn boxes_float_at_their_stable_tilts() {
         let body = BodyInput {
             position: Vec3::new(0.0, 0.0, h * (0.5 - ratio)),
             orientation: nalgebra::UnitQuaternion::from_axis_angle(&Vec3::y_axis(), 10_f64.to_radians()),
-            // Long axis only.
             fixed: [false, true, false, true, false, true],
             ..BodyInput::default()
         };
@@ -214,7 +210,6 @@ fn rounded_floes_have_expected_draught() {
     }
 }
 
-/// Vertical motion with the waves, and Stokes drift at the surface.
 #[test]
 fn small_floes_follow_the_waves() {
     let (height, period) = (0.3, 4.0);
@@ -239,7 +234,6 @@ fn small_floes_follow_the_waves() {
     assert!((highest - (0.15 - 0.0304)).abs() < 0.003, "{highest}");
 }
 
-/// Work of the water equals the change of energy.
 #[test]
 fn accounts_close_in_water() {
     let water = Water {

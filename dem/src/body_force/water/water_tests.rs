@@ -1,6 +1,5 @@
 use super::*;
 
-/// Half ball; volume and centre of a cap by integration.
 #[test]
 fn caps_of_a_ball() {
     let r = 0.3;
@@ -24,7 +23,6 @@ fn caps_of_a_ball() {
     assert_eq!(ball(r, -0.3, &Vec3::x()).volume, 0.0);
 }
 
-/// Two distant balls; fully wet, a clump is lifted at its centre.
 #[test]
 fn clumps_are_their_balls() {
     let (r, far) = (0.1, 0.5);

@@ -3,7 +3,7 @@ use crate::shape::dilated::tests::rows;
 
 const G: f64 = 9.81;
 
-/// 120 points of four waves, against formulas checked by 40-digit differences of the potential.
+/// Table checked by 40-digit differences of the potential.
 #[test]
 fn waves_are_those_of_the_table() {
     let table = rows(include_str!("../../../tests/data/water/airy.csv"));
@@ -28,7 +28,6 @@ fn waves_are_those_of_the_table() {
     }
 }
 
-/// Wavelengths on a current, blocked waves, breaking waves.
 #[test]
 fn lengths_are_those_of_the_table() {
     let table = rows(include_str!("../../../tests/data/water/dispersion.csv"));
@@ -60,7 +59,6 @@ fn lengths_are_those_of_the_table() {
     assert!(blocked == 2 && table.len() > 20, "{blocked} {}", table.len());
 }
 
-/// Very large depth does not overflow.
 #[test]
 fn endless_depth_is_deep_water() {
     let wave = |depth| Wave::new(0.2, Measured::Period(4.0), 0.0, 0.3, depth, [0.0; 2], G).unwrap();

@@ -122,7 +122,6 @@ impl ShapePair for BoxBox {
 fn edges(two: &Two, (i, j): (usize, usize), normal: &Vec3, overlap: f64, found: &mut Manifold) {
     let Two { half: [a, b], turn, way } = two;
     let local = turn.tr_mul(normal);
-    // Extreme edge midpoints.
     let mut p = -a.zip_map(normal, |h, n| h.copysign(n));
     let mut q = b.zip_map(&local, |h, n| h.copysign(n));
     (p[i], q[j]) = (0.0, 0.0);
@@ -155,7 +154,6 @@ fn face(half: &[Vec3; 2], turn: &Matrix3<f64>, way: &Vec3, axis: usize, found: &
     let [a, b] = half;
     let side = 1.0_f64.copysign(way[axis]);
     let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-    // Most opposed face.
     let facing: Vec3 = turn.row(axis).transpose() * side;
     let other = facing.iamax();
     let sign = -1.0_f64.copysign(facing[other]);
@@ -278,7 +276,6 @@ mod tests {
         assert!(overlapping > 500 && several > 100, "{overlapping} {several}");
     }
 
-    /// Face weights sum to four for any clipping.
     #[test]
     fn weights_of_a_face_add_up() {
         let none = Core::default();

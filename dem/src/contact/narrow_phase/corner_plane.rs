@@ -18,7 +18,6 @@ impl ShapePair for CornerPlane {
 
     fn contact_points(&self, corner: &Corner, plane: &PlaneView, found: &mut Manifold) {
         let touch = detect::sphere_plane(&corner.point, 0.0, &plane.origin, &plane.normal);
-        // Laws use the body size as radius.
         let touch = touch.map(|g| ContactGeometry { radius: corner.size, ..g });
         found.extend(touch.map(|g| PairContactPoint::only(g, corner.size)));
     }

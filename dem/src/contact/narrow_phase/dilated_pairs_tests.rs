@@ -1,4 +1,4 @@
-//! Dilated polyhedra against brute force: closest points over all faces and sides, numerical integration.
+//! Dilated polyhedra against brute force.
 
 use super::tests::{energy, placed, stones};
 use super::*;
@@ -21,7 +21,6 @@ pub(super) fn solid<'a>(body: &'a PosedBody<'a>) -> Solid<'a> {
     (body, body.core.faces.iter().map(face).collect())
 }
 
-/// Distance outside a core, nearest feature.
 pub(super) fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2]) {
     let local = body.orientation.inverse() * (p - body.centre) / body.scale;
     let mut best = (f64::INFINITY, [0; 2]);
@@ -50,8 +49,7 @@ pub(super) fn distance((body, faces): &Solid<'_>, p: &Vec3) -> (f64, [usize; 2])
     (best.0 * body.scale, best.1)
 }
 
-/// Four-point Gauss integral, bisected to convergence. Changes of the nearest feature (second part of `f`)
-/// are bisected first; its regions are convex.
+/// Four-point Gauss integral, bisected to convergence; feature changes are bisected first.
 pub(super) fn integral(f: &dyn Fn(f64) -> (f64, [usize; 2]), [low, high]: [f64; 2], close: f64) -> f64 {
     let rule = |a: f64, b: f64| {
         let (m, h) = (0.5 * (a + b), 0.5 * (b - a));
@@ -76,7 +74,6 @@ fn skeleton_of(body: &PosedBody<'_>) -> Skeleton {
     (body.core.corners.iter().map(world).collect(), edges.collect())
 }
 
-/// Energy of unit springs of corners and edges on a convex body.
 fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usize; 2]), reach: f64) -> f64 {
     let spring = |p: &Vec3| 0.5 * (reach - distance(p).0).max(0.0).powi(2);
     let of_corners: f64 = corners.iter().map(spring).sum();
@@ -87,7 +84,6 @@ fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usiz
             let length = (b - a).norm();
             let near = |s: f64| distance(&(a + (b - a) * s));
             let at = |s: f64| near(s).0;
-            // Distance changes by at most the path along the edge.
             if at(0.5) > reach + 0.5 * length {
                 return 0.0;
             }
@@ -123,7 +119,6 @@ fn pressing((corners, edges): &Skeleton, distance: &dyn Fn(&Vec3) -> (f64, [usiz
     of_corners + of_edges
 }
 
-/// Random pairs, some flat on each other or nearly so; both orders agree to rounding.
 fn energies(count: usize) {
     let mut random = Random::new(23, 1);
     let cube: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::repeat(0.35), k)).collect();
@@ -200,7 +195,6 @@ fn energies_are_those_of_brute_force() {
     energies(200);
 }
 
-/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
 fn energies_of_many_pairs() {
@@ -262,7 +256,6 @@ impl Other {
         }
     }
 
-    /// Core distance, negative for overlap.
     fn apart(&self, body: &PosedBody<'_>) -> f64 {
         match self {
             Other::Sphere(size) => {
@@ -345,7 +338,6 @@ fn energies_with_others_match_brute_force() {
     energies_with_others(300);
 }
 
-/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
 fn energies_of_many_pairs_with_others() {

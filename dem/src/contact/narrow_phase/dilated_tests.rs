@@ -15,7 +15,6 @@ pub(super) fn placed<'a>(
     PosedBody { centre, orientation, shape, scale, core, radius: shape.rounding(scale) }
 }
 
-/// Energy of unit springs.
 pub(super) fn energy(found: &Manifold) -> f64 {
     found.iter().map(|t| 0.5 * t.weight * t.geometry.overlap.powi(2)).sum()
 }
@@ -98,7 +97,6 @@ fn forces_have_a_potential() {
     assert!(worst.iter().flatten().all(|w| *w < 2e-6), "{worst:?}");
 }
 
-/// Same points in both orders, features exchanged.
 #[test]
 fn pairs_match_from_both_sides() {
     let mut random = Random::new(4, 1);
@@ -293,7 +291,6 @@ fn forces_are_continuous() {
     }
 }
 
-/// Any hint, even old or of other bodies: bitwise as without.
 #[test]
 fn hints_change_nothing() {
     let mut random = Random::new(11, 1);

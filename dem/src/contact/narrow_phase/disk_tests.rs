@@ -55,7 +55,6 @@ fn shortest([low, high]: [f64; 2], at: &dyn Fn(f64) -> Vec3) -> Vec3 {
     best
 }
 
-/// Energy of unit springs along a line, bisected to convergence.
 fn along(length: f64, pieces: u32, reach: f64, at: &dyn Fn(f64) -> (f64, [usize; 2])) -> f64 {
     // Unloaded parts have a separate name, to locate ends.
     let spring = |s: f64| match at(s) {
@@ -97,7 +96,6 @@ fn disks_of_the_table() {
         let body = placed(&shape, &core, at, turn([6, 7, 8, 9].map(number)), 1.0);
         let (distance, gap) = (number(13), number(14));
         let normal = Vec3::new(number(16), number(17), number(18));
-        // From partner to disk.
         let mut found = Manifold::new();
         let way = match words[1] {
             "plane" => {
@@ -272,7 +270,6 @@ fn disk_energies_match_brute_force() {
     energies(300);
 }
 
-/// 10⁵ pairs of each kind.
 #[test]
 #[ignore = "some minutes"]
 fn energies_of_many_disks() {
@@ -332,7 +329,6 @@ fn forces_of_disks_have_a_potential() {
     assert!(worst.iter().flatten().all(|w| *w < 1e-5), "{worst:?}");
 }
 
-/// Same points in both orders, features exchanged; bitwise equal with hint.
 #[test]
 fn disks_match_from_both_sides() {
     let mut random = Random::new(6, 1);

@@ -1,5 +1,4 @@
-//! Shape pairs in contact: each pair type is a geometry file and an entry of [`KINDS`]; `handler.rs` does
-//! everything else.
+//! Shape pairs in contact: each pair type is a geometry file and an entry of [`KINDS`].
 //!
 //! Separate kernels: spheres (`sphere_pair.rs`, `images.rs`), planes (`planes.rs`), patches merged over seams
 //! (`surface_contacts.rs`).
@@ -50,7 +49,6 @@ pub(crate) fn forces(
     out: &mut CrossForces,
 ) {
     let mut slots = &mut out.slots[out.kinds_at..];
-    // Separate sums: sphere contacts may be computed elsewhere.
     let (mut dashpot, mut friction) = (0.0, 0.0);
     for (kind, list) in KINDS.iter().zip(&mut lists.kinds) {
         let own;

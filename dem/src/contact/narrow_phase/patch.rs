@@ -1,10 +1,9 @@
 //! Dilated polyhedra against wall patches: triangles (`spatial/facet.rs`) and round surfaces (`round.rs`).
 //!
-//! Features indent each other as between bodies (`dilated.rs`), independent of the triangulation. History
-//! belongs to features. At a seam, the next side's history begins before the previous ends, their common part
-//! is subtracted once, and friction continues.
+//! Features indent each other as between bodies (`dilated.rs`), independent of the triangulation. At a seam,
+//! the next side's history begins before the previous ends, so friction continues.
 //!
-//! Limits: as between bodies; a core that meets a triangle ends the run. Triangles are two-sided.
+//! Limits: as between bodies.
 
 use super::dilated::{self, DEEPEST, Frame, Heights, Hull, ROUNDING, Two, rounding, set, skeleton, touch};
 use super::facet::{Closed, Rim, Tip};

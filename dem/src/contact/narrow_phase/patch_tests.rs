@@ -10,7 +10,6 @@ use crate::spatial::patchwork::{Patch, WallView};
 use crate::spatial::round::Round;
 use nalgebra::UnitQuaternion;
 
-/// Wall of unit stiffness.
 struct Wall {
     patches: Vec<Patch>,
     now: WallView,
@@ -92,7 +91,6 @@ fn shapes(random: &mut Random) -> Vec<Shape> {
     shapes
 }
 
-/// Thin and thick disks.
 fn disks() -> Vec<Shape> {
     [[0.5, 0.06], [0.3, 0.12], [0.7, 0.05]]
         .map(|[big, r]| Shape::Polyhedron(Box::new(Dilated::disk(big, r).unwrap())))
@@ -147,11 +145,9 @@ fn box_mesh(half: &Vec3, n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (vertices, all)
 }
 
-/// A triangulated box, coarse or fine, acts as the box.
 #[test]
 fn triangulated_box_matches_box() {
     boxes_of_triangles(shapes(&mut Random::new(21, 1)), &[1, 3], 1e-8);
-    // Rim parts end elsewhere, which changes their sums.
     boxes_of_triangles(disks(), &[1], 2e-4);
 }
 
@@ -170,7 +166,6 @@ fn boxes_of_triangles(shapes: Vec<Shape>, cuts: &[u32], bound: f64) {
         while tried < 600 {
             let k = (random.uniform() * shapes.len() as f64) as usize;
             let way = (random.orientation() * Vec3::z()) * (0.5 + 0.8 * random.uniform());
-            // Some lie flat.
             let q = if tried % 3 == 0 { turn } else { random.orientation() };
             let body = placed(&shapes[k], &cores[k], at + way, q, 1.1);
             let (mut as_body, on_wall) = (Manifold::new(), wall.contact_points(&body));
@@ -233,7 +228,6 @@ fn triangulated_floor_matches_plane() {
     assert!(worst < 1e-8, "{worst:e}");
 }
 
-/// The force is the energy gradient on hills, valleys, open borders, and both sides of round walls.
 #[test]
 fn walls_have_a_potential() {
     potentials_of_walls(shapes(&mut Random::new(23, 1)), 8, 1.0);
@@ -300,7 +294,6 @@ fn potentials_of_walls(shapes: Vec<Shape>, count: usize, loose: f64) {
     }
 }
 
-/// Tabulated disks: force along the shortest direction, no deeper than stated.
 #[test]
 fn disks_of_the_table_on_walls() {
     let table = include_str!("../../../tests/data/shapes/disk_pairs.csv");

@@ -1,5 +1,4 @@
-//! Dilated polyhedra on the external surface of triangles (`spatial/sheet.rs`), as on walls (`patch.rs`). A
-//! body's points share its mass.
+//! Dilated polyhedra on the external surface of triangles, as on walls (`patch.rs`).
 //!
 //! Limits: as for wall triangles; faces of the solid have no mass.
 

@@ -1,5 +1,5 @@
 //! Wall–wall contacts: triangulated bodies (`spatial/shell.rs`) with triangulated surfaces and round patches,
-//! as polyhedra with walls (`patch.rs`, `round.rs`), concave ones included. Penetration ends the run.
+//! concave ones included. Penetration ends the run.
 
 use super::dilated::{DEEPEST, Frame, length, lost, rounding, touch};
 use super::facet::{Closed, Rim, Tip};

@@ -36,8 +36,7 @@ impl Two<'_> {
         self.walls.map(|w| PointMotion::of_whole(&w.velocity, &w.spin, point - w.centre, w.inverse_mass))
     }
 
-    /// Forces on others over `dt` [s]; `old`: history of the pair, the current one is appended to `new`.
-    /// Returns excessive overlap and its limit [m].
+    /// Forces on others over `dt` [s]; returns excessive overlap and its limit [m].
     pub fn forces(
         &self,
         (laws, dt): (&Laws, f64),
@@ -82,7 +81,6 @@ impl Two<'_> {
                 scalar::add_dashpot(&mut second.dashpots, laws, touch.materials, g, memory, &f.force, w);
             }
             if g.overlap > touch.bound && w > 0.0 && deep.is_none() {
-                // The sum over a penetrating edge is meaningless.
                 deep = Some([g.overlap.min(touch.bound / DEEPEST), touch.bound]);
             }
             new.push(WallContactHistory { other: self.other, name: *name, memory });

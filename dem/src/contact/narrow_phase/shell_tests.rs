@@ -4,7 +4,6 @@ use super::*;
 use crate::base::random::Random;
 use nalgebra::UnitQuaternion;
 
-/// Cube of half side 0.5, rounding 0.05.
 fn cube() -> Shell {
     let corner = |k: u32| Vec3::from_fn(|d, _| if k >> d & 1 == 1 { 0.5 } else { -0.5 });
     let vertices: Vec<Vec3> = (0..8).map(corner).collect();
@@ -21,7 +20,6 @@ fn at(centre: Vec3, orientation: UnitQuaternion<f64>) -> Pose {
 const STILL: UnitQuaternion<f64> =
     UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0));
 
-/// Short pile with ends.
 fn pile() -> Vec<Round> {
     let (base, axis, radii) = (Vec3::new(0.0, 0.0, -0.3), Vec3::z(), [0.4; 2]);
     let side = |far| Round::Frustum { base, axis, height: 0.6, radii, far };
@@ -55,7 +53,6 @@ fn lost_of(found: &WallContactList) -> bool {
     found.touches.iter().any(|t| t.weight > 0.0 && t.geometry.overlap > t.bound)
 }
 
-/// Spheres may penetrate faces by 0.9 rounding radii; edges may not cross edges or piles.
 #[test]
 fn what_has_come_too_deep() {
     let (shell, mut found) = (cube(), WallContactList::default());
@@ -66,7 +63,6 @@ fn what_has_come_too_deep() {
         rounds(&moved, &Vec3::zeros(), &ball, at(Vec3::zeros(), STILL), &mut found);
         assert!(!found.touches.is_empty() && lost_of(&found) == deep, "{depth}");
     }
-    // Edges along y below edges along x, or a face on a lying pile: height at contact without rounding.
     let turned = |axis: Vec3| UnitQuaternion::from_scaled_axis(axis * std::f64::consts::FRAC_PI_4);
     let edges = 2.0 * 2.0_f64.sqrt() * 0.45;
     let lying = vec![Round::Frustum {

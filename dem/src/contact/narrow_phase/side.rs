@@ -111,7 +111,6 @@ impl Side for Spheres {
         scene.sphere(block, number)
     }
 
-    // Only second partners are shifted to images.
     fn middle(view: &&Vec4) -> Vec3 {
         xyz(view)
     }

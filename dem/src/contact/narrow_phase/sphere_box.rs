@@ -23,7 +23,6 @@ impl ShapePair for SphereBox {
     fn contact_points(&self, sphere: &&Vec4, solid: &PosedBody<'_>, found: &mut Manifold) {
         let Some(half) = solid.half() else { return };
         let touch = detect::sphere_box(&xyz(sphere), sphere[3], &solid.centre, &solid.orientation, &half);
-        // Valid for a centre inside the box, by up to one radius.
         found.extend(touch.map(|g| PairContactPoint::only(g, 2.0 * sphere[3])));
     }
 }

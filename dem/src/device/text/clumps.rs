@@ -145,7 +145,6 @@ fn alone_kick() -> String {
     out.text()
 }
 
-/// Results of a body integrated singly, from its rotation and the work of fixed rotations.
 fn alone_results(
     k: &kick::Kicked<Recorded>,
     turned: &RotatedBody<Recorded>,

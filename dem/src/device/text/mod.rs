@@ -1,4 +1,4 @@
-//! Kernel source of a model: C templates (`*.c`) filled with recorded engine formulas.
+//! Kernel source of a model: C templates (`*.c`) and recorded formulas.
 
 mod bonds;
 mod clumps;

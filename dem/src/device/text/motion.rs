@@ -24,7 +24,6 @@ pub(super) fn moved(velocity: V3<Recorded>) -> V3<Recorded> {
     vector("x") + velocity * input("dt")
 }
 
-/// Velocity of a free body after the kick, and its local damping force.
 pub(super) fn pushed<const DAMPED: bool>() -> (V3<Recorded>, V3<Recorded>) {
     let (old, force, gravity) = (vector("v"), vector("s.force"), vector("g"));
     let (inverse_mass, step, damping) = (input("v.w"), input("kick"), input("damping"));
@@ -104,8 +103,7 @@ fn single(held: bool) -> String {
     out.text()
 }
 
-/// Work of fixed motions and local damping of a body, in the order of `general` (`integrate/leapfrog.rs`),
-/// from the mean angular velocity and the impulse and work of the rotational constraint.
+/// Work of fixed motions and local damping of a body, in the order of `general` (`integrate/leapfrog.rs`).
 pub(super) fn single_held(
     out: &mut Results,
     s: &Single<Recorded>,

@@ -1,4 +1,4 @@
-//! Wall triangle contacts: C selects triangles as in `contact/surface_contacts.rs`, weights are recorded formulas.
+//! Wall triangle contacts, selected as in `contact/surface_contacts.rs`.
 
 use super::record::{Part, keep, memory};
 use crate::contact::patch_forces::{self, PatchContactInput};

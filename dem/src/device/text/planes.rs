@@ -56,7 +56,6 @@ pub(super) fn results<const ROLLING: bool>(
     out.vector("o->force", f.force);
     out.vector("o->torque_a", f.torque);
     keep::<ROLLING>(&mut out, m, f.dashpot, f.friction, f.deep);
-    // In the order of the totals: power and force, then moment about the origin.
     let [fx, fy, fz] = f.force.array();
     let [ax, ay, az] = f.about_origin.array();
     let zero = Recorded::zero();

@@ -120,8 +120,7 @@ fn both(low: &[f64; 4], high: &[f64; 4]) -> Avx512 {
     }))
 }
 
-/// Four numbers of lanes (0, 2), (1, 3), (4, 6), (5, 7), as two pairs of the first and two of the last
-/// numbers.
+/// Numbers of lanes (0, 2), (1, 3), (4, 6), (5, 7), as two pairs of the first and two of the last numbers.
 #[inline(always)]
 fn halves([Avx512(a), Avx512(b), Avx512(c), Avx512(d)]: [Avx512; 4]) -> [Avx512; 4] {
     intrinsics!({
@@ -215,7 +214,6 @@ impl SimdPack for Avx512 {
     }
     #[inline(always)]
     fn rows<'a>(record: impl Fn(usize) -> &'a Vec4) -> [Avx512; 4] {
-        // Pairs that two rounds of shuffles bring into lane order.
         [
             both(record(0), record(2)),
             both(record(1), record(3)),

@@ -5,7 +5,7 @@ use crate::base::Vec3;
 use crate::law::material::Material;
 use crate::law::{ContactForce, ContactGeometry, ContactLaw, History};
 
-/// Impact with slip, rolling and twisting: all work is dissipated, no step releases energy.
+/// All work is dissipated; no step releases energy.
 pub fn a_closed_path_dissipates_its_work<L: ContactLaw>(material: &Material) {
     let law = law::<L>(material);
     for step_size in [1.0, 50.0] {
@@ -67,7 +67,7 @@ impl<L: ContactLaw> Led<L> {
     }
 }
 
-/// Slow cycles of compression and shear in both orders (Elata & Berryman 1996).
+/// Elata & Berryman 1996.
 pub fn energy_is_stored_or_dissipated_along_a_path<L: ContactLaw>(material: &Material) {
     let (high, low, s) = (2e-5, 5e-6, 2e-6);
     let cycles = [

@@ -60,7 +60,7 @@ pub fn restitution_at_any_speed<L: ContactLaw>(material: &Material) {
     }
 }
 
-/// Closed-form restitution of a crushing impact: energy stored at the largest tip radius over initial energy.
+/// Restitution of a crushing impact: energy stored at the largest tip radius over initial energy.
 fn kept(m: &Material, speed: f64) -> f64 {
     let Some(young) = m.young.filter(|_| m.corner_strength.is_finite()) else { return 1.0 };
     let modulus = 0.5 * young / (1.0 - m.poisson * m.poisson);
@@ -117,7 +117,6 @@ pub fn rotation_of_everything_rotates_the_force<L: ContactLaw>(material: &Materi
 
 /// Closed-form friction limit at normal force [N].
 fn limit(m: &Material, normal: f64) -> f64 {
-    // Pressure over R², or with conical damage over π R².
     let crushes = m.corner_strength.is_finite();
     let square = RADIUS * RADIUS * if crushes { std::f64::consts::PI } else { 1.0 };
     let added = m.asperity_friction / (1.0 + normal / (m.asperity_pressure * square));

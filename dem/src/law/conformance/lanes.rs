@@ -65,7 +65,6 @@ impl<L: ContactLaw, const ROLLING: bool> Kernel for InLanes<'_, L, ROLLING> {
     }
 }
 
-/// Bits without signs of zeros.
 fn bits(numbers: &[f64; 8], lanes: usize) -> [u64; 8] {
     std::array::from_fn(|l| if l < lanes { (numbers[l] + 0.0).to_bits() } else { 0 })
 }
@@ -82,7 +81,6 @@ fn alone<L: ContactLaw>(cases: &[Case<L>; 8], lanes: usize) -> Vec<[u64; 8]> {
     (0..16).map(|k| bits(&each.map(|numbers: [f64; 16]| numbers[k]), lanes)).collect()
 }
 
-/// Contacts along a path, some just begun.
 fn cases<L: ContactLaw>(laws: impl Fn(usize) -> L, seed: usize) -> [Case<L>; 8] {
     std::array::from_fn(|l| {
         let law = laws(l);
@@ -117,7 +115,6 @@ pub fn lanes_give_the_bits_of_single_contacts<L: ContactLaw>(material: &Material
     compare::<L, false>(|_| plain(material, 0.5));
 }
 
-/// All laws at once: bitwise as separately.
 #[test]
 fn mixed_laws_are_bitwise_identical() {
     let material = Material { stiffness: super::SOFT.stiffness, ..super::GLASS };

@@ -87,7 +87,6 @@ conforms! {
     conical_whole: ConicalLaw, Material { corner_strength: 4e7, corner_angle: 0.2, ..GLASS };
 }
 
-/// Crushing from overlap 1e-3 R; the cone recedes by as much when R triples.
 const CRUSHING: Material = Material {
     corner_strength: 6.5e5,
     corner_angle: 1.4,
@@ -115,7 +114,6 @@ fn plain<L: ContactLaw>(material: &Material, restitution: f64) -> L {
     L::mix(&Pair { a: &m, b: &m, exception: None })
 }
 
-/// Impact with slip, rolling and twisting; zero overlap at both ends.
 #[derive(Clone, Copy)]
 struct Path {
     steps: usize,
@@ -143,7 +141,6 @@ impl Path {
 
     fn overlap(&self, k: f64) -> f64 {
         let part = std::f64::consts::PI * k / self.steps as f64;
-        // Two contacts, the second with remaining deformation.
         self.depth * part.sin() * (1.0 - 0.6 * (3.0 * part).cos()).max(0.0)
     }
 

@@ -128,7 +128,7 @@ impl Turns {
         }
     }
 
-    /// As `cut`, but an arc entirely in a shared boundary belongs to the other feature.
+    /// As `cut`; an arc entirely in a shared boundary belongs to the other feature.
     pub fn cut_beyond(&mut self, [a, b, c]: [f64; 3]) {
         if b == 0.0 && c == 0.0 && a >= 0.0 {
             self.0.clear();

@@ -1,6 +1,5 @@
 use super::*;
 
-/// Table rows: name, numbers.
 pub(crate) fn rows(text: &str) -> Vec<(String, Vec<f64>)> {
     let lines = text.lines().filter(|l| !l.starts_with('#')).skip(1);
     let row = |line: &str| {
@@ -15,8 +14,7 @@ pub(crate) fn corners(table: &[(String, Vec<f64>)], name: &str) -> Vec<Vec3> {
     table.iter().filter(|r| r.0 == name).map(|r| Vec3::new(r.1[0], r.1[1], r.1[2])).collect()
 }
 
-/// Reference table from similar formulas, checked by hulls of points on the spheres (2e-6) and quasi Monte
-/// Carlo; one body is 2 km from the origin.
+/// Reference table checked by hulls (2e-6) and quasi Monte Carlo; one body is 2 km from the origin.
 #[test]
 fn moments_are_those_of_the_table() {
     let shapes = rows(include_str!("../../../tests/data/shapes/geometry_corners.csv"));
@@ -104,7 +102,6 @@ fn bodies_that_are_none() {
     assert_eq!(refused(&with(Vec3::new(0.1, 0.5, 0.5))), DilatedError::NotConvex(8));
     assert_eq!(refused(&with(Vec3::new(0.5, f64::NAN, 0.0))), DilatedError::NotFinite);
     assert_eq!(refused(&[&cube[..], &cube[..1]].concat()), DilatedError::NotConvex(8));
-    // A corner that barely bends an edge belongs to the other faces.
     let mut bent = cube.clone();
     bent.push(Vec3::new(0.0, 0.5 + 1e-7, 0.6));
     assert_eq!(Core::new(&bent).map(|c| c.corners.len()), Ok(9));

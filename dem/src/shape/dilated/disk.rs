@@ -16,10 +16,8 @@ const AROUND: usize = 36;
 /// `big`, rounding `r` [m].
 pub(super) fn moments(big: f64, r: f64) -> [f64; 4] {
     let (r2, r3) = (r * r, r * r * r);
-    // Slices: circles of radius R + √(r² − z²).
     let volume = PI * (2.0 * r * big * big + PI * big * r2 + 4.0 / 3.0 * r3);
     let area = TAU * big * big + 2.0 * PI * PI * big * r + 4.0 * PI * r2;
-    // ∫ ρ⁴ dz and ∫ z² ρ² dz.
     let fourth = 2.0 * r * big.powi(4)
         + 2.0 * PI * big.powi(3) * r2
         + 8.0 * big * big * r3

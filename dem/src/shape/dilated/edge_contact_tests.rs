@@ -16,7 +16,6 @@ fn cube() -> Core {
     Core::new(&(0..8).map(|k| cuboid::corner(&Vec3::repeat(0.5), k)).collect::<Vec<_>>()).unwrap()
 }
 
-/// Over a face, beyond an edge and a corner.
 #[test]
 fn distances_from_a_cube() {
     let cube = cube();
@@ -31,7 +30,6 @@ fn distances_from_a_cube() {
     assert!(part.distance(&Vec3::new(0.2, 0.1, 0.6), 0.09).is_none());
 }
 
-/// Edge partly over a face: analytic above it, brute-force sum beyond.
 #[test]
 fn edge_contact_matches_point_sum() {
     let cube = cube();

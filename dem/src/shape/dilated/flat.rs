@@ -16,7 +16,6 @@ impl Flat {
 
     pub fn stretches(&self, segment: &Segment, reach: f64, mut f: impl FnMut([f64; 2], &Nearest)) {
         let Segment { from, direction, range, .. } = segment;
-        // Where the axial distance equals the radius, and the plane crossing.
         let a = direction.x * direction.x + direction.y * direction.y;
         let b = from.x * direction.x + from.y * direction.y;
         let c = from.x * from.x + from.y * from.y - self.0 * self.0;
@@ -42,7 +41,6 @@ impl Flat {
                 }
                 return;
             }
-            // The distance along a line has one minimum.
             let gap = |s: f64| {
                 let (d, n) = at(s);
                 [d - reach, n.dot(direction)]
@@ -71,7 +69,6 @@ impl Flat {
                 if outside(middle)[0] > 0.0 {
                     return circle.near(part, reach, &at, |part| f(part, &at));
                 }
-                // A circle that misses the disk lies on one side.
                 let normal = Vec3::new(0.0, 0.0, circle.at(middle).z.signum());
                 let mut over = Turns::of(part);
                 over.cut(circle.along(&normal, reach));

@@ -1,5 +1,4 @@
-//! Convex hull as faces. Triangles coplanar to 1e-6 of the size are merged, so no two faces of a core are
-//! level.
+//! Convex hull as faces. Triangles coplanar to 1e-6 of the size are merged.
 
 use super::{CORNERS, Core, DilatedError, Edge, Face};
 use crate::base::Vec3;
@@ -72,7 +71,6 @@ fn merged(points: &[Vec3], triangles: &[[u32; 3]], slack: f64) -> Vec<Vec<[u32; 
             };
             let [here, there] = [width(c), width(d)];
             let thin = here.norm() <= slack && k == longest;
-            // Distance of either corner from the other plane.
             let off = here.cross(&there).norm() / here.norm().min(there.norm()).max(f64::MIN_POSITIVE);
             if thin || (off <= slack && here.dot(&there) < 0.0) {
                 let [one, all] = [group[t], group[u]];

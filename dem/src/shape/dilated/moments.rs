@@ -1,8 +1,8 @@
-//! Exact moments of a dilated polyhedron: core, face slabs, edge wedges, corner sectors.
+//! Exact moments of a dilated polyhedron.
 //!
-//! Volume and surface: J. Steiner (1840). Corner with solid angle W of normals, edges k with outgoing unit
-//! vectors ν, angles t between face normals n₁, n₂: ∫n dW = −½ Σ t ν and
-//! ∫n nᵀ dW = ⅓ (W 1 − Σ ν (n₁ + n₂)ᵀ tan(t/2)).
+//! Volume and surface: J. Steiner (1840). Corner with solid angle W of normals: ∫n dW = −½ Σ t ν, ∫n nᵀ dW =
+//! ⅓ (W 1 − Σ ν (n₁ + n₂)ᵀ tan(t/2)), sums over its edges with outgoing unit vector ν and angle t between
+//! face normals n₁, n₂.
 //!
 //! Theory manual: equation (2.6) of `docs/theory/shapes.md`.
 

@@ -157,7 +157,7 @@ impl<'a> Part<'a> {
         Part { core, view, sight: Sight::new(), corners: 0, edges, faces, bounds: Bounds::NONE }
     }
 
-    /// Fills features with a corner in `corners` (bit set) in place: returning the value would cost as much.
+    /// Fills features with a corner in `corners` (bit set) in place, for speed.
     pub fn take(&mut self, corners: u64) -> &Part<'a> {
         let (core, part) = (self.core, &mut *self);
         part.corners = corners;
@@ -172,7 +172,6 @@ impl<'a> Part<'a> {
             let bounds = Bounds::of(edge.ends.map(|e| &part.sight[e as usize]));
             part.edges.push((k as u8, bounds));
             part.bounds.join(&bounds);
-            // A plane that cuts a face cuts its edges.
             edge.faces.iter().for_each(|f| part.faces[places[*f as usize] as usize].1.join(&bounds));
         }
         part
@@ -218,7 +217,6 @@ impl Target for Part<'_> {
             let t = way.dot(&edge.direction).clamp(0.0, edge.length);
             let way = way - edge.direction * t;
             let square = way.norm_squared();
-            // Over a face, edges are nearer only by rounding.
             if square < best.0 * best.0 {
                 let d = square.sqrt();
                 best = (d, way / d);

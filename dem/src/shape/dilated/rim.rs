@@ -52,7 +52,7 @@ impl Sum {
     }
 }
 
-/// Calls `put` with each arc in contact; `floor` ≤ 0 bounds the circle, coefficients as in [`Circle::along`].
+/// Calls `put` with each arc in contact.
 pub(crate) fn rim(
     target: &impl Target,
     circle: &Circle,

@@ -58,8 +58,7 @@ fn crossing([mut low, mut high]: [f64; 2], rising: bool, f: Function<'_>) -> f64
     x
 }
 
-/// Extremum in a bracket, from end slopes; stops at the first crossing of zero. `sign`: sign of the end
-/// values.
+/// Extremum in a bracket, from end slopes; stops at the first crossing of zero.
 fn extremum(
     [mut low, mut high]: [f64; 2],
     [mut first, mut last]: [f64; 2],
@@ -129,7 +128,6 @@ pub(crate) fn below(
 mod tests {
     use super::*;
 
-    /// Cosines of several periods, and a barely negative one.
     #[test]
     fn crossings_of_cosines() {
         for periods in 1..=8 {

@@ -2,9 +2,7 @@
 //!
 //! Incremental: each outside point replaces its visible faces by a fan from their boundary (M. de Berg et
 //! al., Computational Geometry, 3rd ed., sec. 11.2). Points within 1e-10 of the size from a face plane do not
-//! see that face, so coplanar points are safe; the hull may miss them by that distance.
-//!
-//! Limits: cost is points × faces; for thousands of points.
+//! see that face.
 
 use super::surface::Surface;
 use nalgebra::Vector3;

@@ -6,8 +6,7 @@
 //! V = Σ d/6,   ∫x dV = Σ d/24 s,   ∫x xᵀ dV = Σ d/120 (a aᵀ + b bᵀ + c cᵀ + s sᵀ)
 //! ```
 //!
-//! Source: B. Mirtich, J. Graphics Tools 1 (2), 1996; F. Tonon, J. Math. Statistics 1, 2005. Origin at the
-//! box centre to avoid cancellation.
+//! Source: B. Mirtich, J. Graphics Tools 1 (2), 1996; F. Tonon, J. Math. Statistics 1, 2005.
 
 use super::surface::Surface;
 use nalgebra::{Matrix3, Vector3};

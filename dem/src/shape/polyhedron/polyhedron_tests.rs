@@ -16,7 +16,6 @@ fn brick(lo: [f64; 3], hi: [f64; 3]) -> Surface {
     Surface { vertices, triangles }
 }
 
-/// Unit icosahedron, split `levels` times.
 fn icosphere(levels: usize) -> Surface {
     let g = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut points = Vec::new();
@@ -49,7 +48,6 @@ fn l_prism() -> Surface {
     joined(&[brick([0.0; 3], [2.0, 1.0, 1.0]), brick([0.0, 1.0, 0.0], [1.0, 2.0, 1.0])]).unwrap()
 }
 
-/// Outer faces of boxes on a unit grid.
 fn joined(bricks: &[Surface]) -> Option<Surface> {
     let mut quads: Vec<[[f64; 3]; 4]> = Vec::new();
     for b in bricks {
@@ -93,7 +91,6 @@ fn box_moments_match_closed_form() {
         }
         assert_relative_eq!(body.surface().area(), 2.0 * (a * b + b * c + c * a), max_relative = 1e-12);
         let mut extents = body.extents();
-        // The long side is the axis of least moment.
         assert_relative_eq!(extents[0], c, max_relative = 1e-9);
         extents.sort_by(f64::total_cmp);
         assert_relative_eq!(body.sieve_size(), b, max_relative = 1e-9);
@@ -174,7 +171,6 @@ fn counts_holes_and_pieces() {
     let body = Polyhedron::new(&apart).unwrap();
     assert_eq!((body.pieces(), body.holes()), (2, 0));
     assert_relative_eq!(body.moments().volume, 2.0, max_relative = 1e-13);
-    // A ball in a hole is a separate piece.
     let three = both(&hollow, &brick([0.4; 3], [0.6; 3]));
     let body = Polyhedron::new(&three).unwrap();
     assert_eq!((body.pieces(), body.holes()), (2, 1));
@@ -290,7 +286,6 @@ fn side_matches_winding_number() {
 fn surface_points_are_spread_by_area() {
     let body = Polyhedron::new(&brick([0.0; 3], [1.0, 1.0, 9.0])).unwrap();
     let points = body.surface_points(3800);
-    // Two ends of 1 m², four sides of 9 m².
     let at_end = points.iter().filter(|p| p[2] == 0.0 || p[2] == 9.0).count();
     assert_eq!(at_end, 200);
     let mean = points.iter().map(|p| Vector3::from(*p)).sum::<Vector3<f64>>() / 3800.0;
@@ -313,7 +308,6 @@ fn hulls_are_closed_and_convex() {
             assert!(points.iter().all(|p| normal.dot(&(Vector3::from(*p) - a)) < 1e-9));
         }
     }
-    // Coplanar points of a 4 x 4 x 4 lattice.
     let lattice: Vec<[f64; 3]> =
         (0..64).map(|i| [i % 4, i / 4 % 4, i / 16].map(|n| f64::from(n) / 3.0)).collect();
     let cube = Polyhedron::new(&convex_hull(&lattice).unwrap()).unwrap();

@@ -1,7 +1,6 @@
 //! Area-weighted surface sampling.
 //!
-//! Point i of n samples the area fraction [i/n, (i+1)/n): triangle at its midpoint, position from a
-//! low-discrepancy sequence (M. Roberts' R2, g³ = g + 1) folded onto the triangle.
+//! Point i of n samples the area fraction [i/n, (i+1)/n): M. Roberts' R2 sequence, folded onto the triangle.
 
 use super::surface::Surface;
 

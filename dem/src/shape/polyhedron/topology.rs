@@ -26,7 +26,7 @@ impl Topology {
     }
 }
 
-/// Per edge (triangle, runs from lower to higher vertex), and edges in order of appearance.
+/// Edges in order of appearance, by triangle.
 struct Edges {
     order: Vec<(u32, u32)>,
     users: HashMap<(u32, u32), Vec<(u32, bool)>>,
@@ -158,7 +158,6 @@ fn wind_alike(surface: &mut Surface, found: &Edges) -> Result<Vec<Vec<u32>>, Sur
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 let users = &found.users[&(from.min(to), from.max(to))];
                 let (other, direction) = if users[0].0 == t { users[1] } else { users[0] };
-                // Neighbours traverse a shared edge in opposite directions.
                 let wanted = own ^ (direction == (from < to));
                 match turned[other as usize] {
                     None => {
