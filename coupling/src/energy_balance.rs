@@ -29,13 +29,11 @@ pub struct StoredEnergy {
 }
 
 impl StoredEnergy {
-    /// Kinetic and spring energy [J].
     fn kinetic_and_spring_energy(&self) -> f64 {
         let grains = self.grains_kinetic + self.contact_springs + self.bonds + self.mounts;
         grains + self.solid_kinetic + self.solid_strain + self.rail
     }
 
-    /// Sum of absolute changes [J].
     fn sum_of_changes(&self, start: &StoredEnergy) -> f64 {
         let parts = |s: &StoredEnergy| {
             let grains = [s.grains_kinetic, s.contact_springs, s.bonds, s.mounts, s.grains_gravity];
@@ -210,7 +208,6 @@ impl EnergyBalance {
 mod tests {
     use super::*;
 
-    /// Terms of opposite sign must not cancel.
     #[test]
     fn nothing_hides_behind_a_sum() {
         let spent = WorkAndDissipation { friction: -27e9, dashpot: 27e9, ..WorkAndDissipation::default() };
@@ -225,7 +222,6 @@ mod tests {
         );
     }
 
-    /// Internal transfers are no external work; every loss counts once.
     #[test]
     fn every_way_of_energy_closes() {
         let none = WorkAndDissipation::default;
@@ -261,7 +257,6 @@ mod tests {
         }
     }
 
-    /// Negative error is no gain of the dashpots; positive error is their loss.
     #[test]
     fn the_lag_of_dashpots_is_no_gain_of_theirs() {
         let dashpots = |dashpot, interface_dashpot_error| {

@@ -76,7 +76,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Plain iteration diverges (factors −3, 2, −0.5).
     #[test]
     fn solves_linear_map_in_five_passes() {
         let map = |x: &[f64]| {

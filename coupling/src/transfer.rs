@@ -122,7 +122,6 @@ impl Transfer {
         }
     }
 
-    /// Adds the couple of a triangle contact as corner forces.
     fn add_couple(&mut self, surface: &SolidSurface, contact: &SurfaceContact) {
         let nodes = surface.face_nodes(contact.patch);
         let corners = [0, 1, 2].map(|k| surface.position(nodes[k]));
@@ -223,7 +222,6 @@ impl Transfer {
     }
 }
 
-/// Calls `f` with each dof of the solid and its impulse.
 fn on_solid(surface: &SolidSurface, impulse: &[[f64; 3]], mut f: impl FnMut(usize, f64)) {
     let nodes = surface.nodes();
     let mut all = |node: u32, impulse: [f64; 3]| {

@@ -56,7 +56,6 @@ pub fn nodal(model: &Model, u: &[f64]) -> Vec<[f64; 6]> {
     nodal_mean(model, |e| elastic_at_nodes(model, u, e))
 }
 
-/// Stress of an elastic element (index) at its nodes.
 pub(crate) fn elastic_at_nodes(model: &Model, u: &[f64], element: usize) -> [[f64; 6]; MAX_NODES] {
     let kind = model.mesh().connectivity.kind(element);
     let stresses = at_points(model, u, element, sampling_points(kind).into_iter());

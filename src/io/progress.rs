@@ -135,7 +135,6 @@ mod tests {
     use super::*;
     use indicatif::InMemoryTerm;
 
-    /// The bar and the start of its message fit eighty columns.
     #[test]
     fn a_bar_fits_eighty_columns() {
         let terminal = InMemoryTerm::new(8, 80);
@@ -153,7 +152,6 @@ mod tests {
         assert!(shown.starts_with("     running [==========>"), "{shown}");
     }
 
-    /// A line shows progress, time and activity.
     #[test]
     fn lines_where_no_terminal_is() {
         let hidden = ProgressDrawTarget::hidden;

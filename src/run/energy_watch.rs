@@ -103,7 +103,6 @@ mod tests {
         EnergyWatch::default().follow(&balance(1.0 + 1e-14, 0.0)).unwrap();
     }
 
-    /// A later small error does not cancel an earlier large one.
     #[test]
     fn the_worst_row_is_remembered() {
         let mut watch = EnergyWatch::default();

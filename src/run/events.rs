@@ -200,7 +200,6 @@ mod tests {
         }
     }
 
-    /// A chain of neighbours is one event; late or distant breaks are separate.
     #[test]
     fn clusters_neighbours_in_space_and_time() {
         let breaks = [
@@ -234,7 +233,6 @@ mod tests {
         assert!(b_value(&[-9.0; 20]).2.is_none());
     }
 
-    /// 63 kJ is magnitude 0.
     #[test]
     fn magnitude_of_an_energy() {
         let event = &joined(&[broken(0.0, 0.0, libm::pow(10.0, 4.8))], None)[0];

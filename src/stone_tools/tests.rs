@@ -250,7 +250,6 @@ fn rejects_several_or_thin_bodies() {
     assert_eq!(made[0].stone.spheres.len(), 6);
 }
 
-/// Two equal spheres at centre distance d.
 #[test]
 fn two_spheres_match_closed_form() {
     let (r, d) = (1.0, 1.5);

@@ -62,7 +62,6 @@ fn categories_have_extreme_results() {
     assert!(found.regression.is_none() && found.rank_correlations[0].is_none());
 }
 
-/// A separate reference and failed cases have no place in the sensitivity.
 #[test]
 fn incomplete_points_are_left_out() {
     let factors = [factor("a", [0.0, 3.0], false)];

@@ -96,7 +96,6 @@ pub fn four_digits(value: f64) -> String {
     significant(value, 4)
 }
 
-/// Formats with `digits` significant digits.
 fn significant(value: f64, digits: usize) -> String {
     let size = value.abs();
     if value == 0.0 {

@@ -59,7 +59,6 @@ impl Good {
         self.file(name, &format!("{text}{line}\n"))
     }
 
-    /// Changes the fields of line `number` (from 1).
     fn line(self, name: &str, number: usize, change: impl Fn(&mut Vec<String>)) -> Good {
         let text = fs::read_to_string(self.folder.join(name)).unwrap();
         let mut lines: Vec<String> = text.lines().map(String::from).collect();
@@ -69,7 +68,6 @@ impl Good {
         self.file(name, &(lines.join("\n") + "\n"))
     }
 
-    /// Replaces field `column` (from 0) of line `number` (from 1).
     fn field(self, name: &str, number: usize, column: usize, value: &str) -> Good {
         self.line(name, number, |fields| fields[column] = value.into())
     }

@@ -193,7 +193,6 @@ frames = 0
     }
 }
 
-/// Steps far above the limit add energy, also under a moving wall.
 #[test]
 fn spurious_energy_stops_run() {
     let text = format!(
@@ -228,7 +227,6 @@ fn pair(second: &str, more: &str) -> String {
     )
 }
 
-/// Overlap of half a radius: 34 m/s per ball.
 #[test]
 fn rejects_deep_start_overlap() {
     let deep = [

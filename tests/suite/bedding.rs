@@ -136,7 +136,6 @@ fn a_bedded_sleeper_has_seated() {
     assert!(loose > 1e-3 && pressed.abs() < 0.1 * loose, "{loose} {pressed}");
 }
 
-/// Poured grains lie above the bed, outside the sleeper, below the level.
 #[test]
 fn poured_grains_lie_around_the_sleeper() {
     let folder = Folder::new("poured");
@@ -151,7 +150,6 @@ fn poured_grains_lie_around_the_sleeper() {
     assert!(crib.iter().all(|&z| z < 0.17), "{crib:?}");
 }
 
-/// Crushed corners of 50 MPa grains, then a tenth of the stiffness. Elastic corners leave 7.6e-2 J.
 #[test]
 fn pouring_begins_without_energy() {
     let folder = Folder::new("poured_crushed");

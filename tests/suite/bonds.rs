@@ -102,7 +102,6 @@ fn a_row_is_pulled_apart() {
     assert!((head.last().unwrap() - 0.08 - 5e-3 * end).abs() < 1e-7);
 }
 
-/// Weak region, list of pairs, and `between`, which needs both groups.
 #[test]
 fn regions_lists_and_groups() {
     let folder = Folder::new("rules");
@@ -132,7 +131,6 @@ fn regions_lists_and_groups() {
     assert_eq!(summary["bonds"]["made"], 4);
 }
 
-/// The weakest bond breaks; position and load depend on the seed.
 #[test]
 fn strengths_spread_by_seed() {
     let folder = Folder::new("spread");
@@ -175,7 +173,6 @@ fn kinds_of_bonds() {
     }
 }
 
-/// Mean position of the oscillating tip.
 #[test]
 fn bonded_beam_sags_as_predicted() {
     let folder = Folder::new("beam");

@@ -168,7 +168,6 @@ fn threaded_grains_on_solid() {
     broken(&scene, &set, &[0.2, 0.992, 0.996, 1.0], &["cycles.csv", "tecplot/solid_00002.dat"]);
 }
 
-/// Interrupted in layered deposition, settling, compaction and main stage.
 #[test]
 fn a_bed_that_is_compacted() {
     let folder = Folder::new("compacted");
@@ -193,7 +192,6 @@ fn spheres_on_an_elastic_block() {
     broken(&folder.join("scene.toml"), &set, &[0.0, 0.3, 0.5, 0.8, 1.0], &["cycles.csv", "gauss.csv"]);
 }
 
-/// State of each coupling scheme across windows.
 #[test]
 fn spheres_on_block_by_scheme() {
     let folder = scene_folder("coupled_schemes", COUPLED);

@@ -152,7 +152,6 @@ fn run_without_checkpoint_starts_from_scratch() {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-/// One line, exit code 130, resumable.
 #[test]
 fn ctrl_c_and_sigterm() {
     let folder = Folder::new("ctrl_c");

@@ -116,7 +116,6 @@ pub fn inputs() -> Vec<PathBuf> {
     found
 }
 
-/// Stages and time estimate for each; grain speed if there are grains.
 #[test]
 fn explain_reports_every_shipped_scene() {
     let scenes = inputs();

@@ -27,7 +27,6 @@ fn two_laws_meet_in_one_scene() {
     assert!(text.contains("contact kernels: Hertz-Mindlin and linear spring-dashpot"), "{text}");
 }
 
-/// Explicit defaults change nothing.
 #[test]
 fn explicit_default_laws_change_nothing() {
     let scene = repository().join("inputs/grains/box.toml");

@@ -135,7 +135,6 @@ fn animations_and_chains_come_back() {
     );
 }
 
-/// Positions, contact counts and forces equal the run's.
 #[test]
 fn a_run_becomes_an_animation() {
     let folder = Folder::new("run");

@@ -18,7 +18,6 @@ fn on_device(name: &str, text: &str, set: &[&str]) -> (Outcome, bool) {
     (trackbed(arguments), out.exists())
 }
 
-/// Unsupported features: exit code 2, nothing is written.
 #[test]
 fn a_device_refuses_by_name() {
     let inputs = repository().join("inputs").display().to_string();
@@ -40,7 +39,6 @@ fn a_device_refuses_by_name() {
     }
 }
 
-/// Without CUDA one sentence names the missing library.
 #[test]
 fn missing_cuda_library_is_named() {
     let (outcome, written) = on_device("device_missing", GRAINS, &[]);
@@ -83,7 +81,6 @@ fn with_libraries(libraries: &Path, settings: &[(&str, &str)], arguments: &[&str
     }
 }
 
-/// Bitwise equal to the CPU.
 #[test]
 fn stand_in_matches_cpu_bitwise() {
     let Some(libraries) = stand_in() else { return };
@@ -135,7 +132,6 @@ fn coupled_stand_in_matches_cpu_bitwise() {
     }
 }
 
-/// Failing device, and a device without memory.
 #[test]
 fn a_device_that_fails_is_named() {
     let Some(libraries) = stand_in() else { return };

@@ -14,7 +14,6 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
 }
 
-/// Energy error at most 0.1 % (lagged scheme 20 %), interface sums 1e-12.
 #[test]
 fn schemes_and_transfers_close_their_accounts() {
     let mut interface = Vec::new();
@@ -85,7 +84,6 @@ fn classes(text: &str) -> (f64, f64, u32) {
     (w, limit, number(count) as u32)
 }
 
-/// E = 1 MPa, ρ = 1000 kg/m³ under K = 1e7 N/m, windows ten times too long.
 #[test]
 fn unstable_window_on_soft_ground_warns() {
     let soft = [
@@ -263,7 +261,6 @@ end = 0.6
 frames = 2
 "#;
 
-/// Initial penetration of 20 mm into the solid surface.
 #[test]
 fn rejects_start_overlap_with_the_solid() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
@@ -277,7 +274,6 @@ fn rejects_start_overlap_with_the_solid() {
     run(&folder.join("scene.toml"), &folder.join("out"), &["time.end=0.001"]).good();
 }
 
-/// A grain that rolls off the mesh is only a warning.
 #[test]
 fn grain_leaving_mesh_gives_warning() {
     let head = COUPLED.split_once("[[grains]]").unwrap().0;
@@ -294,7 +290,6 @@ fn grain_leaving_mesh_gives_warning() {
     assert!(!s["warnings"].to_string().contains("left the solid"));
 }
 
-/// A load that folds the surface: exit code 3, with element and time.
 #[test]
 fn a_surface_that_folds_is_named() {
     let load = "\n[[solid.load]]\nkind = \"point\"\nat = [0.0, 0.0, 0.0]\nforce = [4e8, 4e8, 0]\n\
@@ -345,7 +340,6 @@ fn box_of_grains(size: f64, count: usize, sizes: &str, seed: usize, end: &str) -
     )
 }
 
-/// Beds on soft ground, and a ball whose smoothing disc is cut by the border.
 #[test]
 fn soft_ground_beds_reach_rest() {
     let damping =

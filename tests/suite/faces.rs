@@ -11,7 +11,6 @@ fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {value:#}"))
 }
 
-/// Gmsh tetrahedra under ballast, Abaqus bricks and wedges under a heap.
 #[test]
 fn tetrahedra_and_mixed_meshes_conserve_energy() {
     let folder = Folder::new("faces");
@@ -44,7 +43,6 @@ fn tetrahedra_and_mixed_meshes_conserve_energy() {
     }
 }
 
-/// Five spheres, W = Σ ρ 4/3 π r³ g, at rest on bricks, wedges and their border.
 #[test]
 fn mixed_mesh_bears_weight_of_spheres() {
     let folder = Folder::new("faces-forms");
@@ -81,7 +79,6 @@ fn mixed_mesh_bears_weight_of_spheres() {
     }
 }
 
-/// As many contact facets with mid-side nodes as without.
 #[test]
 fn no_upward_face_is_left_out() {
     let scene = repository().join(TETRAHEDRA).join("scene.toml").display().to_string();

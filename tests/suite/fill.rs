@@ -57,7 +57,6 @@ fn target_mass_is_met_within_a_grain() {
     }
 }
 
-/// The same grains as with their number.
 #[test]
 fn target_gives_the_grains_of_its_count() {
     let (text, beds) = checked(&scene(SPHERES, "target_height = 0.26", ""));

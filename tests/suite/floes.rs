@@ -67,7 +67,6 @@ fn floes_drift_against_a_pile() {
     assert!(fs::metadata(&picture).unwrap().len() > 5000);
 }
 
-/// Pile on springs of 2 Hz.
 #[test]
 fn a_pile_on_springs() {
     let folder = Folder::new("springs");
@@ -204,7 +203,6 @@ fn bad_floes_and_frusta_are_refused() {
     }
 }
 
-/// The summary counts floes smaller than their rounding.
 #[test]
 fn small_floes_are_remarked() {
     let folder = Folder::new("small_floes");
@@ -360,7 +358,6 @@ frames = 1
 packing = true
 "#;
 
-/// Requested coverage to half a floe, outside the circle, flat on a floor.
 #[test]
 fn round_floes_lie_on_a_floor() {
     let folder = Folder::new("pancakes");
@@ -380,7 +377,6 @@ fn round_floes_lie_on_a_floor() {
     assert!(warnings.contains("round floes cover 0."), "{warnings}");
 }
 
-/// Disks with an aspect ratio, read back at rest.
 #[test]
 fn disks_fill_a_box() {
     let folder = Folder::new("disks");

@@ -136,7 +136,6 @@ fn rain_in_steady_flow() {
     assert!(log.contains("flow: ") && log.contains("  foot: ") && !log.contains("warning: "), "{log}");
 }
 
-/// Free fall from the inlet velocity.
 #[test]
 fn a_drop_falls_from_the_inlet() {
     let folder = Folder::new("drop");
@@ -216,7 +215,6 @@ fn recycling_limits_backlog_rate() {
     );
 }
 
-/// Insertion fails without a free position; the backlog is reported.
 #[test]
 fn no_room_at_the_inlet() {
     let folder = Folder::new("no_room");
@@ -243,7 +241,6 @@ fn no_room_at_the_inlet() {
     assert_eq!(waiting + flow["inserted"]["grains"].as_u64().unwrap(), 600);
 }
 
-/// Grains that cross a thin outlet between two checks are reported.
 #[test]
 fn a_box_that_is_flown_through() {
     let folder = Folder::new("thin");
@@ -269,7 +266,6 @@ fn a_box_that_is_flown_through() {
     assert_eq!(json(&fine.join("summary.json"))["flow"]["outlets"][0]["missed"], 0);
 }
 
-/// An outlet out of reach changes no bit.
 #[test]
 fn an_outlet_out_of_reach() {
     let folder = Folder::new("out_of_reach");
@@ -394,7 +390,6 @@ fn insertion_over_solid_resumes() {
     }
 }
 
-/// Periodic borders and a deposited group; queued grains do not fall.
 #[test]
 fn periodic_insertion_above_bed() {
     let folder = Folder::new("periodic");
@@ -439,7 +434,6 @@ fn periodic_insertion_above_bed() {
     assert_eq!(counted as usize, there);
 }
 
-/// Insertion next to a loaded sleeper, after deposition without the queued grains.
 #[test]
 fn rain_beside_a_sleeper() {
     let flow = r#"[[grains]]

@@ -11,7 +11,6 @@ fn from(scene: &Path, out: &Path, before: &Path, set: &[&str]) -> super::support
     trackbed(words)
 }
 
-/// Falling, impacting, sliding grains: 100 + 100 windows end bitwise like 200.
 #[test]
 fn two_halves_are_a_whole() {
     let folder = Folder::new("from_halves");
@@ -80,7 +79,6 @@ fn track_restarts_with_changed_load() {
     let stages: Vec<&str> =
         summary["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
     assert_eq!(stages, ["run"], "nothing is packed again");
-    // Sleeper heights are continuous.
     let height = |out: &Path| Table::read(&out.join("history.csv")).column("sleeper_z");
     let (before, after) = (height(&first), height(&more));
     assert!((before[before.len() - 1] - after[0]).abs() < 1e-12, "{} {}", before[before.len() - 1], after[0]);

@@ -20,7 +20,6 @@ fn written(name: &str, scene: &str, parts: &[(&str, &str)]) -> Folder {
     folder
 }
 
-/// Three files equal one; the scene overrides, and materials are merged.
 #[test]
 fn the_same_scene_in_pieces() {
     let whole = written("include_whole", &format!("{MATERIAL}\n{GRAINS}\n{WALL}\n{REST}"), &[]);
@@ -109,7 +108,6 @@ fn overrides_paths_and_changes() {
     assert!(before != moved && moved != faster);
 }
 
-/// Includes by override: named overrides apply, an empty list removes all.
 #[test]
 fn other_files_by_an_override() {
     let scene = format!("include = [\"parts/one.toml\"]\n{GRAINS}\n{WALL}\n{REST}");

@@ -494,7 +494,6 @@ fn inverted_meshes_are_reported() {
     assert!(outcome.code == 2 && outcome.stderr.contains(&format!("mesh: found {sentence}")), "{outcome:?}");
 }
 
-/// Units in the header of a time history; 1 s given in milliseconds.
 #[test]
 fn time_history_uses_header_units() {
     let folder = Folder::new("course");
@@ -552,7 +551,6 @@ fn time_history_uses_header_units() {
     }
 }
 
-/// Millimetres in a comment, a title or /UNITS: an error without `solid.scale`.
 #[test]
 fn stated_units_need_a_scale() {
     let folder = Folder::new("stated_units");

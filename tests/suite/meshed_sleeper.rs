@@ -8,7 +8,6 @@ use std::path::Path;
 
 /// Length, width, height [m].
 const SIZE: [f64; 3] = [2.6, 0.28, 0.2];
-/// Mass [kg].
 const MASS: f64 = 360.0;
 /// Stiffness of a ball with its two contacts in series [N/m].
 const BALL: f64 = 0.6e6;
@@ -112,7 +111,6 @@ fn contact_force_at_rest_equals_weight() {
     assert!(energy_error(&folder.join("out")) < 3e-4);
 }
 
-/// Contacts use the sleeper material above and the formation material below, in series.
 #[test]
 fn contacts_use_sleeper_material() {
     let soft = "\n[[material]]\nname = \"soft\"\nstiffness = 0.4e6\nfriction = 0.5\nrestitution = 0.2\n\n[time]\nend = \"0.6 s\"\n";
@@ -235,7 +233,6 @@ fn closed_form_matches_handbook() {
     assert!((end / (2.0 / foundation * half.cosh() * half.cos() / base) - 1.0).abs() < 1e-6);
 }
 
-/// Very stiff mesh against rigid box, on springs, under weight and load.
 #[test]
 fn stiff_mesh_on_springs_is_rigid() {
     let load = "[track.load]\nkind = \"ramp\"\nminimum = 1e3\nmaximum = 21e3\nrise = 0.2\nhold = 0.4\nrest = 0.3\nramp = 0.2\n\

@@ -36,7 +36,6 @@ fn reports_all_syntax_errors() {
     assert!(run.stderr == checked.stderr && !out.exists(), "{run:?}");
 }
 
-/// Errors in separate tables appear together, consequential errors do not.
 #[test]
 fn reports_errors_of_separate_tables() {
     let folder = scene_folder("faults_of_values", SOLID);
@@ -78,7 +77,6 @@ fn colours_are_for_terminals() {
     assert_eq!(said(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]), plain);
 }
 
-/// `--verbose`: a line per second; not with `--quiet`.
 #[test]
 fn lines_of_a_verbose_run() {
     let folder = Folder::new("verbose");

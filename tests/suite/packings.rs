@@ -69,7 +69,6 @@ fn lattice_porosity_and_round_trip() {
     }
 }
 
-/// Clumps at a target volume fraction, all inside; read back to rounding.
 #[test]
 fn scattered_clumps_are_read_back() {
     let folder = Folder::new("clumps");
@@ -125,7 +124,6 @@ fn containers_hold_their_grains() {
     assert!(grains.iter().all(|g| g[0].hypot(g[1]) + g[3] <= 0.05 + 0.25 * g[2] && g[2] >= g[3]));
 }
 
-/// Porosity within 0.5 %, jammed between walls.
 #[test]
 fn growth_meets_the_porosity() {
     let folder = Folder::new("growth");

@@ -193,7 +193,6 @@ fn start_overlap_that_throws_is_found() {
     assert!(accepted.contains("accept_overlap") && thrown(&accepted).is_none());
 }
 
-/// One of two balls inside a closed block of triangles.
 #[test]
 fn grain_in_closed_triangles_is_found() {
     let block = r#"

@@ -102,7 +102,6 @@ fn written(name: &str, text: &str) -> (Folder, PathBuf) {
     (folder, scene)
 }
 
-/// Each stage densifies the bed; energy balance closes.
 #[test]
 fn polyhedra_are_poured_and_tamped() {
     let (folder, scene) = written("polyhedra_poured", POURED);
@@ -159,7 +158,6 @@ end = "1 ms"
 frames = 1
 "#;
 
-/// Grain fields on polyhedra, zero on walls; colours and field selection follow.
 #[test]
 fn frames_have_the_fields_of_polyhedra() {
     let (folder, scene) = written("polyhedra_fields", FLYING);
@@ -337,7 +335,6 @@ frames = 2
 history_interval = "0.1 s"
 "#;
 
-/// Insertion without overlap, recycling, three threads bitwise identical.
 #[test]
 fn polyhedra_and_disks_come_and_go() {
     let (_folder, scene) = written("polyhedra_belt", BELT);

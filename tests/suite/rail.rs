@@ -94,7 +94,6 @@ fn a_bogie_on_a_beam() {
     assert!((1.0..1.5).contains(&amplification), "{amplification}");
 }
 
-/// Two half rails equal one central rail of their sum, to rounding.
 #[test]
 fn two_rails_equal_combined_rail() {
     let one = springs(3, &(bogie("200 km/h") + BEAM));
@@ -127,7 +126,6 @@ fn two_rails_equal_combined_rail() {
     }
 }
 
-/// Iterated windows give the energy balance and the forces of single-pass windows.
 #[test]
 fn rails_restore_state_in_iterations() {
     let head = COUPLED.split_once("[track.load]").unwrap();
@@ -242,7 +240,6 @@ foundation = "15 MN/m"
     assert!(swing > 7e3, "{swing}");
 }
 
-/// A pull above the weight lifts a sleeper off, and it lands again.
 #[test]
 fn a_lifted_sleeper_comes_down_again() {
     let load = r#"

@@ -32,7 +32,6 @@ fn words(text: &str) -> usize {
     text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
 }
 
-/// At most 15 words, with required or optional.
 #[test]
 fn descriptions_are_short_and_complete() {
     let keys = schema::keys();

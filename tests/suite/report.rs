@@ -218,7 +218,6 @@ fn settlement_laws_of_many_cycles() {
     }
 }
 
-/// A folder that was moved, without scene and included files, reads as before.
 #[test]
 fn results_folder_stands_alone() {
     let folder = Folder::new("report_alone");
@@ -246,7 +245,6 @@ fn results_folder_stands_alone() {
     assert!(!after.source.contains(&folder.path().display().to_string()), "an absolute path");
 }
 
-/// The failed run is first and names its check.
 #[test]
 fn failed_verdict_comes_first() {
     let folder = scene_folder("report_failed", COUPLED);

@@ -281,7 +281,6 @@ fn disabled_output_is_not_written() {
     );
 }
 
-/// Optional fields only if chosen, in all formats.
 #[test]
 fn frames_contain_selected_fields() {
     let folder = scene_folder("fields", COUPLED);

@@ -224,7 +224,6 @@ fn layered_k0_needs_unit_weights() {
     assert_eq!(code, 0, "{error}");
 }
 
-/// A modulus contrast of 1e13 is not reported as insufficient constraint.
 #[test]
 fn unlike_stiffnesses_are_named() {
     let (code, error, _) = column(&[("young = \"20 MPa\"", "young = 1e-6")], &[]);

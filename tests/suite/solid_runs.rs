@@ -60,7 +60,6 @@ history_interval = 0.1
 tables = true
 "#;
 
-/// Force control beyond the strength. Limit load to 0.1 % (steps are halved down to 1e-4 of the ramp).
 #[test]
 fn limit_load_keeps_last_equilibrium() {
     let folder = Folder::new("beyond");
@@ -105,7 +104,6 @@ fn limit_load_keeps_last_equilibrium() {
 const TOP: [[f64; 2]; 8] =
     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
 
-/// Pulse of more than twice the strength, average acceleration: work = stored + plastic + damping to 0.5 %.
 #[test]
 fn dynamic_plastic_column_conserves_energy() {
     let folder = Folder::new("pulse");
@@ -163,7 +161,6 @@ fn dynamic_plastic_column_conserves_energy() {
     assert!((by_hand / work - 1.0).abs() < 5e-3, "{by_hand} J against {work} J");
 }
 
-/// Non-associated flow: unsymmetric tangents.
 #[test]
 fn plastic_footing_is_identical_across_threads() {
     let set = [
@@ -191,8 +188,6 @@ fn soil(cohesion: &str) -> Vec<String> {
         .into()
 }
 
-/// Strong soil equals elastic ground: positions, forces, deflections to 1e-6 of the largest, energies to
-/// 1e-6 of the strain energy, velocity to 1e-5.
 #[test]
 fn strong_soil_matches_elastic_ground() {
     let folder = scene_folder("strong", COUPLED);
@@ -254,7 +249,6 @@ fn grains_press_into_weak_soil() {
     assert!(settlement[1] > settlement[0] + 1e-4, "{settlement:?}");
 }
 
-/// One mesh as scene bricks, lists, ANSYS, Gmsh, Abaqus, VTK: bitwise identical.
 #[test]
 fn mesh_formats_give_identical_results() {
     let folder = Folder::new("forms");

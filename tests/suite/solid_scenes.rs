@@ -139,7 +139,6 @@ fn cavity(c: f64) -> (f64, f64) {
     (-radial(1.0), at_border * c.powf(q) - integral)
 }
 
-/// Tolerance 1 %: coarse mesh.
 #[test]
 fn cavity_expansion_matches_closed_form() {
     let (pressure, exact) = cavity(2.0);
@@ -296,7 +295,6 @@ fn layer_response_matches_dalembert() {
     assert!(worst < 0.01 * 0.02 && largest > 0.0198);
 }
 
-/// Axle at 50 m/s, a third of the shear wave speed.
 #[test]
 fn deflection_runs_along_with_the_axle() {
     let (folder, history) = finished("solid/moving_load.toml", &["output.vtk=false"]);
@@ -331,7 +329,6 @@ fn deflection_runs_along_with_the_axle() {
     assert!(factor > 1.0 && factor < 1.25, "{factor}");
 }
 
-/// Base reactions balance weight and load to 1e-5 (ten times the iteration tolerance).
 #[test]
 fn plastic_embankment_carries_and_settles() {
     let (folder, history) = finished("solid/embankment_plastic.toml", &[]);

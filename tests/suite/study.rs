@@ -259,7 +259,6 @@ fn a_failed_run_is_a_row() {
     assert!(table(&folder.join("out/study.csv")).iter().all(|r| r["path error"].is_empty()));
 }
 
-/// Mean, standard deviation and standard error over seeds.
 #[test]
 fn scatter_is_that_of_the_seeds() {
     let folder = Folder::new("study_seeds");

@@ -5,7 +5,6 @@ use super::support::{
 };
 use std::fs;
 
-/// Mass factor 4 equals density × 4 and gravity / 4, bitwise.
 #[test]
 fn mass_factor_keeps_weights_and_settling() {
     let folder = Folder::new("mass_factor");
@@ -86,7 +85,6 @@ fn inertial_number_is_weighed() {
     assert!(text.contains("warning: time.mass_factor: found 1000, at which the inertial number"), "{text}");
 }
 
-/// Kinetic and spring energies are bitwise equal.
 #[test]
 fn search_skin_changes_no_motion() {
     let folder = Folder::new("search_skin");
@@ -104,7 +102,6 @@ fn search_skin_changes_no_motion() {
     );
 }
 
-/// Six facets per ground face; motion close to curved faces.
 #[test]
 fn flat_facets_approximate_curved_faces() {
     let folder = Folder::new("flat_faces");

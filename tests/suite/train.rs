@@ -73,7 +73,6 @@ fn train_on_elastic_embankment() {
     assert!(summary["energy"]["relative_error"].as_f64().unwrap() < 0.02, "{}", summary["energy"]);
 }
 
-/// Breakage, plasticity and rails, interrupted three times with varying threads.
 #[test]
 fn breakage_and_plasticity_resume_bitwise() {
     let folder = Folder::new("train");

@@ -144,7 +144,6 @@ fn flowing_soil_is_invalid() {
     assert!(log.contains("validity: passed, 3 checks"), "{log}");
 }
 
-/// Strains of 70 % at the footing corner give no warning.
 #[test]
 fn footing_at_its_collapse_load_passes() {
     let folder = Folder::new("validity-footing");
@@ -154,7 +153,6 @@ fn footing_at_its_collapse_load_passes() {
     assert!(s["warnings"].as_array().is_none_or(Vec::is_empty), "{}", s["warnings"]);
 }
 
-/// Mass × 100: free fall of 0.05 m becomes 0.5 mm.
 #[test]
 fn falling_scaled_masses_are_invalid() {
     for (factor, end, outcome) in [(100, 0.3, "failed"), (4, 0.1, "failed"), (2, 0.3, "failed")] {
@@ -205,7 +203,6 @@ fn measurement_box_beside_bed_warns() {
     assert_eq!(status(&whole, "fraction of measure core outside the bed"), "passed", "{whole:#}");
 }
 
-/// Rows within the longest window shorten it, but not the run.
 #[test]
 fn run_ends_at_its_end() {
     for interval in ["1 ms", "0.1 ms", "0.07 ms"] {

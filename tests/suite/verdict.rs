@@ -10,7 +10,6 @@ fn judged<'a>(summary: &'a Value, what: &str) -> &'a Value {
     all.iter().find(named).unwrap_or_else(|| panic!("{what} in {all:#?}"))
 }
 
-/// Explicit step beyond the limit; energies reached 1e272 J.
 #[test]
 fn divergent_solid_fails() {
     let folder = Folder::new("verdict-pulse");
@@ -42,7 +41,6 @@ fn a_solid_that_is_right_passes() {
     assert!(energy["value"].as_f64().unwrap() < 1e-6, "{energy}");
 }
 
-/// Step three times too long: spurious energy.
 #[test]
 fn grains_that_heat_have_failed() {
     let folder = Folder::new("verdict-grains");

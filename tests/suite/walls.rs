@@ -40,7 +40,6 @@ fn hopper_discharges() {
     assert!(frame.contains("Polys"));
 }
 
-/// The drum moment opposes the rotation.
 #[test]
 fn drum_lifts_its_bed() {
     let out = Folder::new("drum");
@@ -57,7 +56,6 @@ fn drum_lifts_its_bed() {
     assert!((work / (-all * 2.0 * 0.6) - 1.0).abs() < 0.2, "{work} against {all} N m times 1.2 rad");
 }
 
-/// Platen force within 1 % at constant target.
 #[test]
 fn oedometer_follows_its_programme() {
     let out = Folder::new("servo");
@@ -89,7 +87,6 @@ fn oedometer_follows_its_programme() {
     assert!(history.column("plate_displacement_z")[last] < -1e-4);
 }
 
-/// Pulsed platen: within 1 % at rest, peak and half-way.
 #[test]
 fn a_servo_follows_pulses() {
     let out = Folder::new("servo_pulses");
@@ -171,7 +168,6 @@ fn block_comes_to_rest() {
     assert!(fall[0] == 0.0 && *fall.last().unwrap() < -0.01, "{fall:?}");
 }
 
-/// Square plate from STL, scaled and shifted, bears a ball at its height.
 #[test]
 fn mesh_from_a_file() {
     let folder = Folder::new("mesh_wall");
@@ -219,7 +215,6 @@ frames = 1
     }
 }
 
-/// Turntable with recorded moment, shaking plane, spherical bowl.
 #[test]
 fn keys_of_motion_reach_the_engine() {
     let folder = Folder::new("wall_keys");
@@ -273,7 +268,6 @@ history_interval = "5 ms"
     assert!(history.column("bowl_force_z").iter().any(|f| *f < -0.05));
 }
 
-/// Incline, periodic downstream and across: grains stay between the borders in all files.
 #[test]
 fn flow_goes_round_a_periodic_box() {
     let out = Folder::new("shear");
@@ -289,7 +283,6 @@ fn flow_goes_round_a_periodic_box() {
     }
 }
 
-/// A ball sticks to a ceiling if adhesion exceeds its weight.
 #[test]
 fn adhesion_holds_ball_on_ceiling() {
     let folder = Folder::new("adhesion");

@@ -202,7 +202,6 @@ fn corners_are_named_by_both_sides() {
     }
 }
 
-/// Corners at 0, 1, 1, 1 and side control points at 1.
 #[test]
 fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
     for sign in [1.0, -1.0] {
@@ -234,7 +233,6 @@ fn clamps_points_outside_domain() {
     }
 }
 
-/// Against perpendicular foot or closest side, with slender and obtuse triangles.
 #[test]
 fn flat_triangles_agree_with_elementary_geometry() {
     let mut random = Random::new(31);

@@ -154,7 +154,6 @@ impl SolidSurface {
         &self.face_nodes[patch as usize][..self.shape(patch).node_count()]
     }
 
-    /// Padded with the first node.
     pub(crate) fn padded_nodes(&self, patch: u32) -> [u32; 8] {
         self.face_nodes[patch as usize]
     }

@@ -97,7 +97,6 @@ fn jumps_of_grains_follow_the_logarithm() {
     assert!(jumper.jumps.iter().all(|j| j.error < 1e-6 * b), "{:?}", jumper.jumps);
 }
 
-/// Triple slope after the first jump: error 2 b ln(n/N), next jump halved.
 #[test]
 fn large_error_shortens_next_jump() {
     let b = 1e-6;
@@ -112,7 +111,6 @@ fn large_error_shortens_next_jump() {
     assert_eq!(jumps[1][1], (0.125 * jumps[1][0]).floor(), "{jumps:?}");
 }
 
-/// Limit: 1/2000 of 1 mm over three planes, with motion towards one.
 #[test]
 fn overlap_change_limits_jumps() {
     let plan = CycleJumpOptions { overlap: 1e-4, largest: 10.0, ..PLAN };

@@ -314,7 +314,6 @@ mod tests {
         assert!((jump.rate - (jump.settlement - before.settlement) / 501.0).abs() < 1e-15);
     }
 
-    /// Two seating pulses of three times the load settle 5 mm.
     #[test]
     fn seating_is_stated_apart() {
         let seating = Seating { cycles: 2, maximum: 300.0, frequency: 20.0 };

@@ -204,7 +204,6 @@ impl TrackRecord {
 mod tests {
     use super::*;
 
-    /// 100 kg in free flight for ten steps under weight and seat forces.
     #[test]
     fn a_contact_shows_in_the_momentum() {
         let (mass, gravity, dt, steps) = (100.0, -9.81, 1e-3, 10);

@@ -53,7 +53,6 @@ fn ramp_hold_and_unload() {
     assert_eq!(stays.on(0, 10.0), 10.0);
 }
 
-/// The second sleeper is loaded 0.6 m/v later.
 #[test]
 fn measured_forces_run_along() {
     let points = vec![(0.0, 0.0), (0.1, 50.0), (0.2, -10.0), (0.3, 0.0)];

@@ -42,7 +42,6 @@ fn discrete_pads_tend_to_winklers_foundation() {
     assert!(errors[1].abs() < 0.5 * errors[0].abs() && errors[2].abs() < 0.5 * errors[1].abs(), "{errors:?}");
 }
 
-/// Sleeper forces sum to the wheel load at any position.
 #[test]
 fn sleepers_carry_the_wheel_together() {
     let rail = Rail::new(RailInput { sleepers: 9, beyond: 16, ..input() }, 1e-4).unwrap();
@@ -57,7 +56,6 @@ fn sleepers_carry_the_wheel_together() {
     }
 }
 
-/// Sudden wheel on an undamped, free track.
 #[test]
 fn energy_balances_while_wheel_rolls() {
     let rail = Rail::new(RailInput { sleepers: 3, beyond: 6, gravity: 9.81, ..input() }, 5e-5).unwrap();
@@ -77,7 +75,6 @@ fn energy_balances_while_wheel_rolls() {
     assert!(reference_energy > 10.0 && state.energy().pads > 1.0, "{reference_energy} {:?}", state.energy());
 }
 
-/// Tends to the static force, never above twice.
 #[test]
 fn sudden_wheel_tends_to_static_force() {
     let rail = Rail::new(RailInput { beyond: 12, ..input() }, 1e-4).unwrap();

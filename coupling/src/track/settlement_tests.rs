@@ -100,7 +100,6 @@ fn standard_errors_match_linear_regression() {
     assert!((fit.parameter("s1").unwrap() - 0.003).abs() < 4.0 * found);
 }
 
-/// A wave of 60 cycles in the residuals.
 #[test]
 fn correlated_residuals_widen_errors() {
     let wave = |n: f64| 1e-4 * (n / 60.0 * std::f64::consts::TAU).sin();
@@ -112,7 +111,6 @@ fn correlated_residuals_widen_errors() {
     assert!(fit.standard_errors[0] > 5.0 * white, "{:e} {white:e}", fit.standard_errors[0]);
 }
 
-/// From the second cycle on; as many parameters as the cycles allow.
 #[test]
 fn short_runs_are_fitted() {
     let curve: Vec<[f64; 2]> =

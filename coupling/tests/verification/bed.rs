@@ -107,7 +107,6 @@ fn a_bed_in_a_box_rests() {
     bed_at_rest([20, 20, 5], 6.0);
 }
 
-/// 6 × 6 × 3 spheres.
 #[test]
 fn small_bed_in_a_box_rests() {
     bed_at_rest([6, 6, 3], 4.0);

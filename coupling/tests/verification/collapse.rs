@@ -143,7 +143,6 @@ fn spheres(stiffness: f64, friction: f64) -> dem::Material {
     material(2000.0, stiffness, friction, 1.0)
 }
 
-/// (2 + π) c within +8/−2 % (Tresca).
 #[test]
 #[ignore = "1,200 windows of plastic ground, about 30 s"]
 fn row_reaches_collapse_load_of_clay() {
@@ -153,7 +152,6 @@ fn row_reaches_collapse_load_of_clay() {
     assert!((0.98..1.08).contains(&(found / exact)));
 }
 
-/// Nc = 14.83 within 10 %.
 #[test]
 #[ignore = "4,000 windows of plastic ground, about a minute"]
 fn row_reaches_collapse_load_with_friction() {
@@ -177,7 +175,6 @@ fn prandtl(phi: f64) -> f64 {
     (half * half * (std::f64::consts::PI * tan).exp() - 1.0) / tan
 }
 
-/// A cone matched in plane strain keeps Nc. Matched in triaxial compression, it is stronger.
 #[test]
 fn cones_differ_in_plane_strain() {
     let degrees = |phi: f64| phi.to_radians();

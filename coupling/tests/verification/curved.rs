@@ -23,8 +23,6 @@ fn waves() -> fem::Model {
     model(mesh, size, 20e6, 0.3, 2000.0, Held::Base, fem::Rayleigh { alpha_m: 400.0, beta_k: 1e-3 })
 }
 
-/// 100 N at a steady 0.5 m/s from crest to trough. The work is FORCE × drop (3.9 J), with an energy loss
-/// below 1 %.
 #[test]
 fn curved_traverse_conserves_energy() {
     let solid = waves();

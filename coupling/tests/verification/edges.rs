@@ -78,8 +78,6 @@ fn iterated_windows_restore_plastic_stresses() {
     assert!(c.state.passes.passes > 2 * c.state.passes.windows && plastic > 1e-3);
 }
 
-/// Pulled with three times its weight for 30 ms: force-free flight, impact speed from the work of the pull,
-/// weight at the end.
 #[test]
 fn lifted_body_recovers_contact() {
     let solid = soft();

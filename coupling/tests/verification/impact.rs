@@ -174,7 +174,6 @@ fn off_centre_impact_keeps_angular_momentum() {
     }
 }
 
-/// Energy drift below 2e-6 at ratios 1 and 10, 1e-4 at 100, interface work error included.
 #[test]
 fn energy_drift_of_subcycling_is_small() {
     let solid = cube();
@@ -243,7 +242,6 @@ fn quiet_packing_gains_no_energy() {
     assert!(largest[19] < 1e-6 * potential);
 }
 
-/// A sphere moving with the block at overlap δ has force K δ in all ten sub-steps.
 #[test]
 fn the_surface_moves_within_a_window() {
     let solid = cube();
@@ -333,7 +331,6 @@ fn stiffened_prediction_includes_slip_and_spin() {
     }
 }
 
-/// Two equal indenting spheres: removal halves the force, in every scheme.
 #[test]
 fn a_removed_grain_loads_the_solid_no_more() {
     let solid = cube();

@@ -94,8 +94,6 @@ fn roughen(mesh: &mut Mesh) {
     }
 }
 
-/// 400 points on rough faces: force, and moment about three points, to 1e-12; nodal power equals the
-/// contact power at the surface velocity.
 #[test]
 fn loads_on_every_kind_are_consistent() {
     let mut seen = Vec::new();
@@ -165,7 +163,6 @@ fn loads_on_every_kind_are_consistent() {
     }
 }
 
-/// Contacts at the points of an exact rule.
 #[test]
 fn pressure_contacts_give_consistent_loads() {
     for (name, mesh) in all() {
@@ -243,7 +240,6 @@ fn dragged(
     }
 }
 
-/// At 0.1 mm overlap, obliquely over every kind and combination. One contact with K δ = 10 N to 1e-11.
 #[test]
 fn flat_borders_do_not_disturb_sphere() {
     let mut meshes: Vec<(String, Mesh)> =
@@ -310,8 +306,6 @@ fn kinds_of_block_b(m: usize) -> Vec<(&'static str, fem::Model)> {
     ]
 }
 
-/// Contact force and base reaction equal the weight within 1e-6, nodal load sums to 1e-12; the gap equals
-/// contact plus block deflection within 1e-6.
 #[test]
 fn a_sphere_rests_on_every_kind() {
     let mut reference = None;
@@ -370,7 +364,6 @@ fn a_sphere_rests_on_every_kind() {
     }
 }
 
-/// Three frictional spheres cross several borders.
 #[test]
 fn sliding_balances_energy_on_every_kind() {
     for (name, solid) in kinds_of_block_b(6) {

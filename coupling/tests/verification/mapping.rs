@@ -8,7 +8,6 @@ use trackbed_fem::Mesh;
 const CELLS: usize = 6;
 const EDGE: f64 = 1.0 / CELLS as f64;
 
-/// Top of 6 × 6 × 3 elements.
 fn distorted_top() -> (Mesh, SolidSurface) {
     let mut mesh = Mesh::block([CELLS, CELLS, CELLS / 2], [1.0, 1.0, 0.5]);
     let mut random = Scatter::new(7);

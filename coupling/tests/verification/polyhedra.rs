@@ -45,7 +45,6 @@ fn coupled<'a>(solid: &'a fem::Model, grains: dem::ModelInput, substeps: u32) ->
     Coupled::with_surface(solid, grains, substeps, triangles(solid))
 }
 
-/// Random poses over face, seams and border. Relative energy error 1e-3.
 #[test]
 fn stone_weight_acts_on_base() {
     for (k, place) in [[0.45, 0.55], [0.25, 0.5], [0.37, 0.61]].into_iter().enumerate() {
@@ -92,7 +91,6 @@ fn stone_weight_acts_on_base() {
     }
 }
 
-/// Against a rigid plane: within 1e-8 of the size over 0.25 s, elastic and frictionless.
 #[test]
 fn a_rigid_block_is_a_plane() {
     for (friction, restitution, bound) in [(0.0, 1.0, 1e-8), (0.0, 0.4, 1e-2), (0.5, 0.4, 1e-2)] {
@@ -129,7 +127,6 @@ fn a_rigid_block_is_a_plane() {
     }
 }
 
-/// Soft undamped block, iterated windows.
 #[test]
 fn jumping_stones_conserve_energy() {
     let rayleigh = fem::Rayleigh::default();

@@ -28,7 +28,6 @@ fn mean_settlement_matches_oedometers() {
     assert!((mean / exact - 1.0).abs() < 1e-8);
 }
 
-/// Deflection under 1 N at element corner, mid-face and mid-edge, m = 4, 8, 12. Tolerance 0.5 %.
 #[test]
 fn point_load_compliance_matches_reference() {
     for (m, corner, face, edge) in
@@ -96,7 +95,6 @@ impl Patch {
     }
 }
 
-/// Consistent load, m = 8 and 12, to the printed digits. Tolerance 0.2 %.
 #[test]
 fn patch_settlement_meets_the_reference() {
     for (m, mean, centre, corner) in
@@ -127,7 +125,6 @@ fn patch_settlement_meets_the_reference() {
     }
 }
 
-/// Coupled: patch mean over consistent 1.0331 for n = 4 and 1.0083 for n = 8 within 0.2 %.
 #[test]
 fn spheres_settle_as_point_forces() {
     let patch = Patch::new(8);

@@ -45,7 +45,6 @@ fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
     (ground, sleeper, error.abs() / (start.grains_gravity - now.grains_gravity + spent.work()))
 }
 
-/// Condensed to the surface with 20 modes: within 1 %.
 #[test]
 fn a_reduced_block_matches_full() {
     let solid = block_b(4, Held::Base, fem::Rayleigh { alpha_m: 20.0, beta_k: 2e-4 });

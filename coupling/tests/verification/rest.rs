@@ -9,8 +9,6 @@ const RADIUS: f64 = 0.05;
 const DENSITY: f64 = 2650.0;
 const STIFFNESS: f64 = 1e5;
 
-/// Contact force and base reaction equal the weight within 1e-6, nodal loads the contact force within 1e-12
-/// per step; the gap is overlap plus block deflection.
 #[test]
 fn sphere_rests_with_its_weight() {
     // The block corner is the lightest point and needs the shortest window.

@@ -40,7 +40,6 @@ fn model(mesh: Mesh, young: f64, density: f64) -> fem::Model {
     .unwrap()
 }
 
-/// Sticking ball above `place`.
 fn ball(solid: &fem::Model, place: [f64; 2], density: f64, k: f64, substeps: u32) -> Coupled<'_> {
     let height = touching_height(&top(solid), place);
     let stone = dem::Material { rolling_friction: 0.9, ..material(density, k, 1.0, 0.2) };
@@ -169,7 +168,6 @@ impl Draw {
         Draw { bend, place, name, spread, young: log(1e7, 4e8), stone }
     }
 
-    /// In windows of `window` [s].
     fn coupled<'a>(&self, solid: &'a fem::Model, window: f64) -> Coupled<'a> {
         let [x, y] = self.place;
         let mass = self.stone.density * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);
@@ -301,7 +299,6 @@ fn border_from_both_sides_in_full() {
     assert!(grow(2.5, 9.0) > 0);
 }
 
-/// W = Δt √(K/m) for one contact.
 #[test]
 fn numbers_of_known_interfaces() {
     use trackbed_coupling::interface_stability::SurfacePoint;

@@ -18,7 +18,6 @@ fn spread_top(model: &fem::Model, radius: f64) -> SolidSurface {
     top(model).distribute_over_discs(radius)
 }
 
-/// Nodal load of one contact with its audit.
 fn spread_load(model: &fem::Model, surface: &SolidSurface, c: &SurfaceContact) -> (Vec<f64>, TransferAudit) {
     let mut transfer = Transfer::new(surface);
     let mut audit = TransferAudit::default();
@@ -86,7 +85,6 @@ fn the_ripple_of_discs_is_small() {
     }
 }
 
-/// Rough curved top: force and moment to 1e-12 with inclined forces, also at borders.
 #[test]
 fn distributed_load_conserves_force_and_moment() {
     let size = [0.6, 0.6, 0.3];
@@ -168,7 +166,6 @@ fn motion_comes_back_by_the_transpose() {
     }
 }
 
-/// Bouncing and sliding sphere, disc of 0.6 edges: relative energy error 3e-4.
 #[test]
 fn spreading_adds_no_energy() {
     for (radius, substeps, bound) in [(0.0, 5, 3e-4), (0.15, 5, 3e-4), (0.0, 1, 1e-5)] {

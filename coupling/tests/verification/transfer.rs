@@ -61,7 +61,6 @@ fn conserves_force_and_moment() {
     assert!(worst.0 < 1e-13 && worst.1 < 1e-13);
 }
 
-/// A contact point inconsistent with its coordinates.
 #[test]
 fn the_audit_sees_a_moment_error() {
     let model = rough_block();
@@ -72,7 +71,6 @@ fn the_audit_sees_a_moment_error() {
     assert!(audit.force < 1e-13 && audit.moment > 1e-4, "{audit:?}");
 }
 
-/// To 1e-14 F.
 #[test]
 fn shared_edges_give_equal_loads() {
     let model = rough_block();

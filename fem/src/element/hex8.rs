@@ -71,7 +71,6 @@ mod tests {
         }
     }
 
-    /// Ties the shared checks to a verified element.
     #[test]
     fn the_hex20_passes_the_shared_checks() {
         checks::nodal(&hex20::NATURAL, hex20::shape_functions);

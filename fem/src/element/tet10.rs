@@ -80,7 +80,6 @@ mod tests {
         checks::mid_sides(&NATURAL, 4, &SIDES);
     }
 
-    /// Determinant of degree 3: both rules are exact.
     #[test]
     fn faces_close_element() {
         checks::faces(&NATURAL, shape_functions, &FACES);

@@ -48,7 +48,6 @@ impl StepControl {
 
 const ROUNDING: f64 = 1e-9;
 
-/// Adaptive length of the next step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepLength {
     control: StepControl,

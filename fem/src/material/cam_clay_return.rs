@@ -108,7 +108,6 @@ impl Clay {
         }
     }
 
-    /// Elastic volumetric strain from pressure `start` to `end`.
     fn elastic_strain(&self, start: f64, end: f64) -> f64 {
         let floor = self.floor;
         let from_floor = |p: f64| if p >= floor { libm::log(p / floor) } else { p / floor - 1.0 };

@@ -100,7 +100,6 @@ impl ReturnCandidate {
     }
 }
 
-/// Returned stress and region of a sorted trial stress.
 pub(super) fn project(trial: &[f64; 3], strength: &Strength, moduli: &Moduli) -> ([f64; 3], ReturnRegion) {
     let mut choice =
         ReturnCandidate { stress: *trial, region: ReturnRegion::Elastic, margin: f64::NEG_INFINITY };

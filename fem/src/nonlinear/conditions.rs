@@ -54,7 +54,6 @@ pub(crate) fn check_state(model: &Model, state: &State) -> Result<(), SolveError
     check_finite(model, "the displacement", &state.u, state.time)
 }
 
-/// Adds missing point states of a linear model.
 pub(crate) fn ensure_points(model: &Model, state: &mut State) {
     if state.points.is_empty() {
         let mut points = model.new_points();

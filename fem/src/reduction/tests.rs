@@ -50,7 +50,6 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / top
 }
 
-/// Exact at all nodes for any surface load.
 #[test]
 fn surface_condensation_is_statically_exact() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());
@@ -71,7 +70,6 @@ fn surface_condensation_is_statically_exact() {
     assert!(difference(&state.u, &rest) < 1e-8);
 }
 
-/// Damped motion in one mode, from a static displacement outside the basis.
 #[test]
 fn motion_in_span_matches_full_solid() {
     let model = block(Rayleigh { alpha_m: 30.0, beta_k: 2e-4 }, Vec::new());
@@ -147,7 +145,6 @@ fn energy_balances_in_the_span() {
     }
 }
 
-/// Estimate matches the deflection under a point force.
 #[test]
 fn estimate_matches_run() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());

@@ -271,7 +271,6 @@ fn energy_balances_with_boundary_layers() {
     }
 }
 
-/// No numerical dissipation; balance from the states only.
 #[test]
 fn average_acceleration_conserves_on_moved_supports() {
     let model = shaken_block(Mass::Consistent);

@@ -122,7 +122,6 @@ fn spectrum(mesh: Mesh, rule: Quadrature) -> (Vec<f64>, f64) {
     (values.into_iter().map(|v| v / largest).collect(), rigid)
 }
 
-/// The reduced hex20 has six further modes.
 #[test]
 fn stiffness_has_six_zero_modes() {
     for kind in ElementKind::ALL {
@@ -229,7 +228,6 @@ fn refusal(mesh: Mesh) -> Option<ModelError> {
     Model::new(ModelInput { mesh, materials, ..Default::default() }).err()
 }
 
-/// Mirrored element, and a corner pushed through the opposite side.
 #[test]
 fn reports_inverted_elements() {
     for kind in ElementKind::ALL {
@@ -264,7 +262,6 @@ fn reports_inverted_elements() {
     }
 }
 
-/// A mid-side node close to the apex inverts the pyramid beyond the interior points.
 #[test]
 fn rejects_pyramid_inverted_at_apex() {
     for (along, sound) in [(0.5, true), (0.70, true), (0.80, false)] {

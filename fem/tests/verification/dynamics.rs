@@ -85,7 +85,6 @@ fn push(model: &Model) -> Vec<f64> {
     load
 }
 
-/// State after 0.08 s under a smooth pulse.
 fn after_pulse(model: &Model, method: Newmark, steps: usize) -> State {
     let (push, mut load) = (push(model), vec![0.0; model.dof_count()]);
     let dt = 0.08 / steps as f64;
@@ -207,7 +206,6 @@ fn invalid_load_leaves_state_untouched() {
     assert_eq!(state, before);
 }
 
-/// Steps far below and above the period.
 #[test]
 fn extreme_steps_stay_bounded() {
     let (model, dof, frequency) = oscillator();
@@ -229,7 +227,6 @@ fn extreme_steps_stay_bounded() {
     }
 }
 
-/// Tolerances, of the largest value: 1e-6 (displacement), 1e-5 (velocity, acceleration).
 #[test]
 fn layered_column_follows_the_tabled_history() {
     let (mesh, constraints) = read_mesh("E5_column_pulse");

@@ -109,7 +109,6 @@ fn decay_and_period_match_theory() {
     }
 }
 
-/// State after a smooth pulse of 0.08 s.
 fn after_pulse(model: &Model, mut solver: NewmarkSolver, steps: usize) -> State {
     let mut push = vec![0.0; model.dof_count()];
     for face in model.mesh().boundary_faces().iter().filter(|f| f.side == 5 && f.element >= 6) {

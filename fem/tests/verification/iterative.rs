@@ -161,7 +161,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert!(one == on(2) && one == on(3) && one == on(7));
 }
 
-/// The initial guess is part of the state.
 #[test]
 fn new_solver_continues_bitwise_identically() {
     let model = soils(ElementKind::Tet10, [4, 3, 3], Mass::Lumped, iterative(1e-8));
@@ -179,7 +178,6 @@ fn new_solver_continues_bitwise_identically() {
     assert!(run(false) == run(true));
 }
 
-/// The last window is a good initial guess.
 #[test]
 fn a_steady_load_takes_fewer_iterations() {
     let model = soils(ElementKind::Hex20, [5, 4, 4], Mass::Lumped, iterative(1e-8));

@@ -74,7 +74,6 @@ fn cylinder(
     (widening / count / exact, miss)
 }
 
-/// 6 × 12 elements: displacement within 1 %, radial stress of quadratic kinds within 5 %.
 #[test]
 fn nearly_incompressible_cylinders_match_lame() {
     let nu = 0.4999;
@@ -142,7 +141,6 @@ fn cantilever(
     ends.iter().map(|&n| u[3 * n + 2]).sum::<f64>() / ends.len() as f64 / exact
 }
 
-/// 10 × 2 × 4 elements, straight and with sections slanted by up to a half: within 2 % of beam theory.
 #[test]
 fn hex8_with_incompatible_modes_matches_beam() {
     for (nu, skew) in [(0.0, 0.0), (0.3, 0.0), (0.4999, 0.0), (0.0, 0.5), (0.3, 0.5), (0.4999, 0.5)] {
@@ -179,7 +177,6 @@ fn clamped(kind: ElementKind, stations: &[f64], across: usize, nu: f64, assumed:
     u.iter().zip(&load).map(|(u, f)| u * f).sum::<f64>() / 100.0
 }
 
-/// Reference: 24 × 4 × 4 hex20 refined to the clamped face.
 #[test]
 fn hex8_resolves_a_clamped_face() {
     let even = |n: usize| (0..=n).map(|k| k as f64 / n as f64).collect::<Vec<_>>();

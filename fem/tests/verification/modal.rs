@@ -149,7 +149,6 @@ fn beam_bending_frequencies_match_closed_form() {
     assert_eq!(checked, 4);
 }
 
-/// Against a dense solution with repeated eigenvalues; two separate cubes have twelve rigid motions.
 #[test]
 fn no_mode_is_missed() {
     let cube = Mesh::block([2, 2, 2], [1.0; 3]);
@@ -250,7 +249,6 @@ fn block_on_springs_matches_closed_form() {
     assert!((modes.circular[heave] / exact - 1.0).abs() < 1e-4);
 }
 
-/// Six zero-energy modes of one element.
 #[test]
 fn counts_mechanisms_of_reduced_integration() {
     let single = |rule| {
@@ -319,7 +317,6 @@ fn results_independent_of_thread_count() {
     assert!(one == bits(2) && one == bits(3));
 }
 
-/// Ten modes of 54,000 dofs, fixed and free.
 #[test]
 #[ignore = "for measurement: about 20 s"]
 fn modes_of_a_large_block() {

@@ -87,7 +87,6 @@ fn non_associated() {
     }
 }
 
-/// Above full plasticity of the wall.
 #[test]
 fn no_equilibrium_above_the_limit_pressure() {
     let (model, unit) = cylinder(25.0, Quadrature::Gauss2);

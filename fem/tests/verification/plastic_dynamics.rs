@@ -191,7 +191,6 @@ fn elastic_response_matches_linear_window() {
     }
 }
 
-/// A cube in simple shear, stiffness G, friction tau_y.
 #[test]
 fn an_oscillator_with_friction() {
     let (shear, yield_shear) = (SOIL.lame().1, 20e3);
@@ -257,7 +256,6 @@ fn stored(model: &Model, state: &State) -> f64 {
     energy::kinetic(model, state) + energy::strain(model, state)
 }
 
-/// Numerical dissipation: zero for average acceleration, non-negative for damping schemes.
 #[test]
 fn energy_balance_closes_under_yield() {
     for lumped in [false, true] {

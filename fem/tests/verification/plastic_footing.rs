@@ -91,7 +91,6 @@ fn footing_on_clay_reaches_its_plateau() {
     assert!((factors[2] / factors[1] - 1.0).abs() < 3e-3, "not a plateau: {factors:?}");
 }
 
-/// Associated flow (L L^T), non-associated flow by L U and by GMRES on the elastic factor.
 #[test]
 #[ignore = "prints the cost of unsymmetric systems, a minute"]
 fn cost_of_unsymmetric_systems() {

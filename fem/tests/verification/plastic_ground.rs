@@ -82,7 +82,6 @@ fn layered_k0_state_is_in_equilibrium() {
     }
 }
 
-/// Horizontal stress below the active state: return to the yield surface, then equilibrium.
 #[test]
 fn inadmissible_k0_returns_to_yield_surface() {
     let soil = |density| mohr_coulomb(Elastic { young: 20e6, poisson: 0.3, density }, 0.1, 30.0, 0.0);

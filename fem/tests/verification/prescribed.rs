@@ -201,7 +201,6 @@ fn block() -> Model {
     .unwrap()
 }
 
-/// Momentum change equals the impulse of loads, reactions, springs, dashpots and mass damping.
 #[test]
 fn momentum_balances_with_the_reactions() {
     let model = block();
@@ -210,7 +209,6 @@ fn momentum_balances_with_the_reactions() {
     let method = Newmark { beta: 0.3025, gamma: 0.6 };
     let mut newmark = NewmarkSolver::new(&model, method, dt).unwrap();
     let mut window = ThetaSolver::new(&model, 0.6, dt).unwrap();
-    // External forces as [force, moment].
     let outer = |state: &State, forces: &[f64]| -> Vec<f64> {
         let mut inertia = vec![0.0; n];
         model.mass_times(&state.v, &mut inertia);

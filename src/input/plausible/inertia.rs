@@ -64,7 +64,6 @@ fn number(scene: &Scene, job: &Job, factor: f64) -> Option<f64> {
     Some(rate * size * (factor * material.density / pressure).sqrt())
 }
 
-/// Bed modulus [Pa] for `size` [m] and `pressure` [Pa].
 fn modulus(material: Material, size: f64, pressure: f64) -> Option<f64> {
     let Some(young) = material.young else {
         return (material.stiffness > 0.0).then(|| MODULUS * material.stiffness / size);

@@ -114,7 +114,6 @@ fn of_solid(solid: &SolidPart, end: f64) -> Vec<Excitation> {
     all
 }
 
-/// `mass`: of the solid [kg].
 fn near(excitations: &[Excitation], modes: &Modes, mass: f64) -> Option<Resonance> {
     let modes = modes.frequencies.iter().zip(&modes.effective_mass).filter(|(f, _)| **f > 0.0);
     let pairs = modes.flat_map(|(mode, masses)| excitations.iter().map(move |e| (e, *mode, masses)));

@@ -267,7 +267,6 @@ mod tests {
         problems.iter().map(Problem::to_string).collect()
     }
 
-    /// A mirrored mesh has one cause; partial inversion lists ten elements.
     #[test]
     fn one_cause_is_one_sentence() {
         let mut mesh = sample::straight_block([4, 3, 2]);

@@ -400,7 +400,6 @@ fn drops_unused_nodes_with_warning() {
     assert_eq!((lists.mesh, lists.constraints), (plain.mesh, plain.constraints));
 }
 
-/// Embankment of the FEM verification: 480 elements, three materials.
 #[test]
 fn reads_reformatted_mesh_identically() {
     let embankment = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/fem/E3_embankment_patch");

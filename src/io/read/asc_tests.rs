@@ -6,7 +6,6 @@ fn read(text: &str) -> Result<Surface, String> {
     parse(Path::new("a.asc"), text).map_err(|e| e.to_string())
 }
 
-/// Samples lie at cell centres, northern row first; all normals point up.
 #[test]
 fn samples_lie_at_cell_centres() {
     let surface = read(&format!("{HEAD}1 2 3\n4 5 6\n")).unwrap();

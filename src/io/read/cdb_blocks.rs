@@ -131,7 +131,6 @@ fn whole(lines: &Lines, line: usize, text: &str, key: &str) -> Result<u32, ReadE
         .ok_or_else(|| lines.fault(line, key, format!("\"{text}\""), "a whole number of 0 or more"))
 }
 
-/// Whether a row ends a block.
 fn ends(row: &str) -> bool {
     let row = row.trim();
     row.split([',', ' ']).next() == Some("-1")

@@ -191,7 +191,6 @@ pub fn read_gmsh(file: &Path) -> Result<MeshFile, ReadError> {
     put_together(builder, sections)
 }
 
-/// Whether the format is 2.2 (else 4.1), and its encoding.
 fn mesh_format(tokens: &mut Tokens) -> Result<(bool, Encoding), ReadError> {
     let version = tokens.word("version")?;
     let old = match version {

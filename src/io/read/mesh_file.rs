@@ -303,7 +303,6 @@ pub(super) fn read_bytes(file: &Path, what: &str) -> Result<Vec<u8>, ReadError> 
     })
 }
 
-/// Text of a file.
 pub(super) fn read_text(file: &Path, what: &str) -> Result<String, ReadError> {
     let text = String::from_utf8_lossy(&read_bytes(file, what)?).into_owned();
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))

@@ -170,7 +170,6 @@ impl Series {
         self.add((group, name), (Kind::I64, None), bytes)
     }
 
-    /// Appends a field.
     fn field(&mut self, group: GroupId, field: &Field) -> Result<i64, WriteError> {
         let (kind, columns, bytes) = match &field.values {
             Values::Doubles(components, values) => {

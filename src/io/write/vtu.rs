@@ -82,7 +82,6 @@ pub(super) fn cell_sets(content: &MeshFile) -> Vec<(String, Vec<u32>)> {
     of_elements.chain(of_faces).collect()
 }
 
-/// One bit per member face.
 fn face_bits(members: &[[u32; 2]], elements: usize) -> Vec<u32> {
     let mut bits = vec![0; elements];
     for [element, side] in members {

@@ -133,7 +133,6 @@ impl Shape {
     }
 }
 
-/// Bounding box of boxes.
 pub(super) fn union(boxes: impl IntoIterator<Item = [[f64; 3]; 2]>) -> Option<[[f64; 3]; 2]> {
     boxes
         .into_iter()

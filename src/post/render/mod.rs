@@ -291,7 +291,6 @@ fn middle(run: &Run, moment: &Moment) -> [f64; 3] {
     found.map_or([0.0; 3], |b| [0, 1, 2].map(|k| 0.5 * (b[0][k] + b[1][k])))
 }
 
-/// Box of the grains and ground below.
 fn below(grains: &[V3]) -> Vec<V3> {
     let low = grains.iter().fold(V3::repeat(f32::INFINITY), |a, b| a.inf(b));
     let high = grains.iter().fold(V3::repeat(f32::NEG_INFINITY), |a, b| a.sup(b));

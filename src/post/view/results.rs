@@ -140,7 +140,6 @@ impl Results {
         }
     }
 
-    /// Cached grain file.
     fn grains(&self, file: &Path) -> Result<Arc<GrainFile>, Failure> {
         let latest = || self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, grains)) = latest().as_ref().filter(|(of, _)| of == file) {

@@ -24,7 +24,6 @@ fn moment(step: u64) -> Moment {
     Moment { stage: "run".into(), step, time: 0.1 * step as f64 }
 }
 
-/// Bitwise exact, also infinities and signed zeros, for any part length.
 #[test]
 fn restores_parts_bitwise() {
     let dir = folder("checkpoint_bits");

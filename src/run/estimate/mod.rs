@@ -192,7 +192,6 @@ fn cores(threads: usize) -> f64 {
     1.0 + SPEED_UP * (threads as f64 - 1.0)
 }
 
-/// Window length [s] and θ.
 fn window(job: &Job, grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<(f64, f64)> {
     let (plan, solid) = (job.coupling.as_ref()?, job.solid.as_ref()?);
     let model = dem::Model::new(with_sleepers(grains)).ok()?;

@@ -29,7 +29,6 @@ impl<S: System> Recorder<S> for Sleepers {
     }
 }
 
-/// Number from 1, if several.
 fn number<S>(now: &Now<'_, S>, k: usize) -> String {
     if now.track.count() > 1 { format!("_{}", k + 1) } else { String::new() }
 }

@@ -167,7 +167,6 @@ mod tests {
         0.5 * line.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
     }
 
-    /// Counter-clockwise outlines and clockwise holes sum to the cell area.
     #[test]
     fn outline_area_equals_cell_area() {
         let ring = deposit(&["###", "#.#", "###"]);

@@ -35,7 +35,6 @@ fn slide(view: GrainsView<'_>, plan: &RunoutPlan) -> Vec<usize> {
     (0..model.body_count()).filter(|&b| state.present(b) && plan.has(model.part(b))).collect()
 }
 
-/// Along the slide [m].
 fn along(plan: &RunoutPlan, x: &Vec3) -> f64 {
     x.x * plan.direction[0] + x.y * plan.direction[1]
 }

@@ -184,7 +184,6 @@ impl<'a> TimeLoop<'a> {
         })
     }
 
-    /// Time after `done` windows [s].
     fn time(&self, done: u64) -> f64 {
         let (time, end) = (done as f64 * self.cadence.window, self.run.job.end);
         let ends = done == self.place.windows && (self.shortened || (time - end).abs() < 1e-9 * end);

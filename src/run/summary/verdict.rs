@@ -145,7 +145,6 @@ mod tests {
         assert_eq!(Judged::new("x", 1.0, 1.0, Some(2.0)).outcome, Outcome::Passed);
     }
 
-    /// Only the check that exceeds its limit warns.
     #[test]
     fn each_account_judges_its_own_figure() {
         let remarked = |summary: &Summary| -> Vec<String> {

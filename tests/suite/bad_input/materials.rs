@@ -22,7 +22,6 @@ fn poisson_without_modulus() {
         .refused("scene.toml:8: material.0.edge_factor: found 0, expected 0.01 to 100");
 }
 
-/// Conical damage model: paired constants, needs dissipation.
 #[test]
 fn corners_out_of_place() {
     let elastic = "young = \"10 GPa\"\npoisson = 0.2";

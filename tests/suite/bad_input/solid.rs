@@ -258,7 +258,6 @@ fn history_file_with_a_word() {
         .refused("course.csv:3: factor: found \"much\", expected a number");
 }
 
-/// The estimate depends on the equations only, except the program's own memory.
 #[test]
 fn a_solid_that_will_not_fit() {
     let good = plastic();

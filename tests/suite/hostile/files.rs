@@ -78,7 +78,6 @@ fn counts_are_checked_before_allocation() {
     assert!(!folder.join("out").exists());
 }
 
-/// Huge heaps and values give an immediate error, and no NaN.
 #[test]
 fn absurd_sizes_are_rejected_at_once() {
     let scene = repository().join("inputs/grains/box.toml").display().to_string();

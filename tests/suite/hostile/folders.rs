@@ -275,7 +275,6 @@ fn damaged_slot_leaves_other_valid() {
     assert!(outcome.stderr.starts_with("warning: ") && outcome.stderr.contains(remark), "{outcome:?}");
 }
 
-/// G5: `check` finds errors of later stages.
 #[test]
 fn check_finds_errors_of_later_stages() {
     let folder = Folder::new("beforehand");

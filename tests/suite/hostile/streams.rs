@@ -20,7 +20,6 @@ fn program(scene: &Path, out: &Path, set: &[&str]) -> Command {
 
 const SHORT: [&str; 3] = ["grains.0.count=50", "time.end=0.02", "output.frames=1"];
 
-/// G2: closed or full outputs do not stop a run.
 #[test]
 fn a_run_needs_nobody_who_listens() {
     let folder = Folder::new("listeners");
@@ -184,7 +183,6 @@ fn a_plastic_step_hears_the_interrupt() {
     whole.iter().for_each(|(name, bytes)| assert!(*bytes == out[name], "{name} differs after a restart"));
 }
 
-/// G7: a panic is one line with exit code 3.
 #[test]
 fn panic_is_one_line() {
     let folder = scene_folder("fault", COUPLED);
@@ -201,7 +199,6 @@ fn panic_is_one_line() {
     assert!(status.starts_with("failed: internal error"), "{status}");
 }
 
-/// H4: quoted input is shortened, without control characters.
 #[test]
 fn messages_are_short_and_printable() {
     let folder = Folder::new("tokens");

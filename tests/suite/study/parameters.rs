@@ -5,7 +5,6 @@ use crate::suite::report::Page;
 use crate::suite::support::{Folder, json, snapshot, trackbed};
 use std::fs;
 
-/// Free motion at 1 m/s: height 0.06 m − t.
 const LINEAR: &str = r#"title = "Height of a free sphere"
 scene = "scene.toml"
 
@@ -168,7 +167,6 @@ fn failed_run_does_not_end_study() {
     assert!(page.text.contains(&reason), "{}", page.text);
 }
 
-/// A longer Sobol sequence keeps its first samples; other samples are another study.
 #[test]
 fn sobol_study_is_extended() {
     let folder = folder(
@@ -273,7 +271,6 @@ fn report_shows_study() {
     );
 }
 
-/// Listed values: errors and costs join the responses.
 #[test]
 fn report_shows_errors_of_cases() {
     let folder = super::folder("study_report_errors", &super::steps());

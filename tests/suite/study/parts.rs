@@ -4,7 +4,6 @@ use super::{SWING, arguments, folder, steps, table, without_times};
 use crate::suite::support::{Folder, snapshot, trackbed};
 use std::fs;
 
-/// Merged parts equal the full study; missing parts are named.
 #[test]
 fn merged_parts_equal_full_study() {
     let folder = folder("study_parts", &steps());
@@ -31,7 +30,6 @@ fn merged_parts_equal_full_study() {
     assert!(!folder.join("nowhere").exists());
 }
 
-/// Ctrl-C reaches the runs; `--resume` gives equal tables.
 #[test]
 #[cfg(unix)]
 fn an_interrupted_study_goes_on() {

@@ -76,7 +76,6 @@ fn a_fault_of_all_settings() {
     assert!(outcome.code == 2 && words.iter().all(|w| outcome.stderr.contains(w)), "{}", outcome.stderr);
 }
 
-/// Unknown columns stop after the first run.
 #[test]
 fn quantities_that_runs_do_not_leave() {
     let folder = folder("study_columns", &steps().replace("\"ball_z\"\ntake", "\"bal_z\"\ntake"));

@@ -7,7 +7,6 @@ use std::fs;
 use trackbed::failure::Failure;
 use trackbed::study::{Options, execute};
 
-/// `check` accepts every case; a failing stub prevents runs.
 #[test]
 fn every_setting_is_valid() {
     let folder = Folder::new("study_shipped");

@@ -26,7 +26,6 @@ fn law(name: &str) -> Material {
     }
 }
 
-/// 127 returns; stress to 1e-9 max(|s|, c), as in `case.json`.
 #[test]
 fn point_returns_of_the_table() {
     let mut worst = 0.0_f64;

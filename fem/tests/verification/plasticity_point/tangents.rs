@@ -74,7 +74,6 @@ fn tangents_equal_central_differences_in_every_region() {
     }
 }
 
-/// Differences across equal principal trial stresses.
 #[test]
 fn tangents_with_equal_principal_values() {
     let c = COHESION;
@@ -120,7 +119,6 @@ fn declared_symmetry_matches_tangent() {
     }
 }
 
-/// Two equal lateral stresses: singular unless regularised.
 #[test]
 fn regularised_edge_tangent_is_regular() {
     let material = Material::plastic(SOIL, mohr_coulomb(COHESION, 30.0, 10.0, None));

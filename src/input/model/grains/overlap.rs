@@ -169,7 +169,6 @@ pub fn thrown(grains: &GrainsPart, ground: Option<&SolidSurface>) -> Option<Thro
     Some(Thrown { part: model.part(b), found, speed, usual })
 }
 
-/// Speed [m/s] of a mass [kg] released by a linear spring of a force [N] and an overlap [m].
 fn release_speed(force: &Vec3, overlap: f64, mass: f64) -> f64 {
     (force.norm() * overlap / mass).sqrt()
 }
@@ -242,7 +241,6 @@ impl Exemptions<'_> {
         ends(c).iter().any(|b| growths.iter().any(|g| g.bodies.contains(b)))
     }
 
-    /// Group of the contact, with grains.
     fn group(&self, c: &ContactRecord) -> u32 {
         let grain = ends(c).into_iter().find(|b| !self.is_sleeper(*b));
         grain.map_or(0, |b| self.model.part(b))

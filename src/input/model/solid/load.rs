@@ -100,7 +100,6 @@ pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalL
     Ok(NodalLoad { faces: loaded, forces, entries, function })
 }
 
-/// Sum of the nodal forces of a face [N].
 fn sum(face: &Face, pattern: &[f64]) -> [f64; 3] {
     [0, 1, 2].map(|d| face.nodes().iter().map(|n| pattern[3 * *n as usize + d]).sum())
 }

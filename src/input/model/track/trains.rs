@@ -74,7 +74,6 @@ impl Car {
 mod tests {
     use super::*;
 
-    /// Every shipped train is valid, with ordered axles.
     #[test]
     fn shipped_trains() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../inputs/data/trains.toml");

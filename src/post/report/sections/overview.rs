@@ -66,7 +66,6 @@ fn path_cell(path: &Path) -> Cell {
     Cell::Text(page::shown_path(path).display().to_string())
 }
 
-/// Materials of all runs in one table.
 fn materials(runs: &[RunData], kind: &str) -> Markup {
     let key_of = |key: &str| {
         let rest = key.strip_prefix(kind)?.strip_prefix('.')?;

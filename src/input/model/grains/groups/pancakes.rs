@@ -103,7 +103,6 @@ fn enough(sizes: &SizeSource, area: f64, seed: u64) -> Option<Vec<f64>> {
 }
 
 impl Field {
-    /// Net area [m²].
     fn area(&self) -> f64 {
         let circles: f64 = self.clear.iter().map(|[_, _, r]| PI * r * r).sum();
         (self.high[0] - self.low[0]) * (self.high[1] - self.low[1]) - circles

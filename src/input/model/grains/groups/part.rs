@@ -136,7 +136,6 @@ pub(super) fn bounding_radius(shape: &Shape) -> f64 {
     }
 }
 
-/// Volume at scale 1 [m³].
 pub(super) fn shape_volume(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),

@@ -28,7 +28,6 @@ pub(super) fn sides(corners: &[Point]) -> impl Iterator<Item = [Point; 2]> + '_ 
     corners.iter().zip(corners.iter().cycle().skip(1)).map(|(p, q)| [*p, *q])
 }
 
-/// Area [m²] and centroid [m].
 pub(super) fn area(corners: &[Point]) -> (f64, Point) {
     let Some(&[x, y]) = corners.first() else { return (0.0, [0.0; 2]) };
     let (mut double, mut moment) = (0.0, [0.0; 2]);
@@ -79,7 +78,6 @@ pub(super) fn simplified(corners: &[Point]) -> Vec<Point> {
     left
 }
 
-/// Distance of a point [m]; 0 inside.
 pub(super) fn distance_from(point: Point, corners: &[Point]) -> f64 {
     let inside =
         |[p, q]: [Point; 2]| (q[0] - p[0]) * (point[1] - p[1]) - (q[1] - p[1]) * (point[0] - p[0]) >= 0.0;
@@ -119,7 +117,6 @@ mod tests {
         assert!((area(&scaled(&SQUARE, 0.5, [2.0, 2.0])).0 - 1.0).abs() < 1e-14);
     }
 
-    /// Right triangle with a cut corner: the short side vanishes.
     #[test]
     fn a_side_moved_in_may_vanish() {
         let cut = [[0.1, 0.0], [4.0, 0.0], [0.0, 3.0], [0.0, 0.1]];

@@ -74,7 +74,6 @@ mod tests {
     use super::*;
     use trackbed_dem::random::Random;
 
-    /// Total side length: twice the shared sides plus the box perimeter.
     #[test]
     fn sides_are_shared() {
         let mut random = Random::new(4, 0);
@@ -90,7 +89,6 @@ mod tests {
         assert!((1350..1500).contains(&shared.len()), "{}", shared.len());
     }
 
-    /// Centres 1 m and 3 m from a face of length 2 m.
     #[test]
     fn faces_lie_between_their_floes() {
         for turn in [0.0, 0.7, 2.5] {

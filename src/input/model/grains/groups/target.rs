@@ -136,7 +136,6 @@ impl Amount {
     }
 }
 
-/// Diameter of a sphere of a volume [m³].
 fn diameter(volume: f64) -> f64 {
     libm::cbrt(6.0 / std::f64::consts::PI * volume)
 }
@@ -203,7 +202,6 @@ fn nearest(room: f64, mean: f64, volume: &impl Fn(usize) -> f64) -> usize {
 mod tests {
     use super::*;
 
-    /// Within half a mean grain, also of samples that scatter with the number.
     #[test]
     fn nearest_number_meets_the_volume() {
         for room in [0.6, 1.0, 77.3, 250.4, 1000.0] {

@@ -78,7 +78,6 @@ mod tests {
         assert!((all - 2500.0).abs() < 1e-9, "{all}");
     }
 
-    /// One site: the whole box; two: halves.
     #[test]
     fn few_sites() {
         let of = |sites: &[Point]| -> Vec<f64> {

@@ -24,7 +24,6 @@ fn on_a_block(elements: [usize; 3]) -> (SleeperBodies, Mesh) {
     (bodies, mesh)
 }
 
-/// Rigid and parabolic motions are exact for any grid and sleeper.
 #[test]
 fn motions_are_measured_exactly() {
     for elements in [[6, 2, 1], [7, 1, 2], [1, 1, 1]] {
