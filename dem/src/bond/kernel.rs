@@ -8,6 +8,7 @@
 //! * shear: u += [2 L s − 2 tan(dt/2)(lₐωₐ + l_bω_b)] × n̄, n̄ the mid-step normal;
 //! * rotation: θ += (ωₐ − ω_b) dt;
 //! * force on a: −n kₙ(L − L₀) − kₛ u, moment on a: −k_t (θ·n) n − k_b θ⊥;
+//!
 //! Failure, without dashpots: max(S₁, S₂) = 1 or S₁ + S₂ = 1, S₁ = s₀T + s₁|θ⊥|, S₂ = s₂|u| + s₃|θ·n| + s₄T.
 //!
 //! Theory manual: equations (2.11), (2.12) of `docs/theory/shapes.md`.

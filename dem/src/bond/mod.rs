@@ -1,7 +1,9 @@
 //! Bonds between bodies, carrying force and moment until failure.
 //!
 //! Types: [`Bond`]. A [`BondInput`] resolves to sixteen constants of one kernel (`kernel.rs`):
-//! * Shear, bending, twisting by increments in a frame rotating with the line of centres and the mean angular
+//!
+//! * tension from total length, kₙ (L − L₀), without drift;
+//! * shear, bending, twisting by increments in a frame rotating with the line of centres and the mean angular
 //!   velocity about it (Potyondy & Cundall, Int. J. Rock Mech. Min. Sci. 41, 2004).
 //!
 //! Limits: all but face bonds join single spheres; small rotations between bonded spheres (linear springs).

@@ -1,4 +1,5 @@
 //! Random bond strengths.
+//!
 //! Source: Weibull, J. Appl. Mech. 18, 1951; Box & Muller, Ann. Math. Statist. 29, 1958.
 //!
 //! Theory manual: equation (2.13) of `docs/theory/shapes.md`.

@@ -21,7 +21,7 @@ use crate::engine::work::Work;
 use crate::engine::{bonds, cpu_part, neighbour_list, reordering, step};
 use crate::spatial::surface::{Surface, SurfaceContact};
 
-/// Source of the kernels for a model, valid as C and CUDA.
+/// Returns the source of the kernels for a model, valid as C and CUDA.
 ///
 /// # Errors
 /// [`Unsupported`] for the first unsupported feature.

@@ -48,7 +48,7 @@ impl Steps {
             ("effective mass", limit.mass),
             ("contact stiffness", limit.stiffness),
         ];
-        // Mass may be 0, and so may stiffness.
+        // Mass is 0 without moving bodies, stiffness without contact partners.
         let bad = |(k, value): (usize, f64)| !value.is_finite() || (k < 2 && value <= 0.0);
         match quantities.iter().enumerate().find(|(k, (_, value))| bad((*k, *value))) {
             Some((_, &(quantity, _))) => Err(ModelError::NotFinite { quantity }),

@@ -178,7 +178,8 @@ pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
     }
 }
 
-/// s. `smallest`: neighbour radius [m]; `several`: other boxes exist; `corner`: corner stiffness [N/m].
+/// Returns s. `smallest`: neighbour radius [m]; `several`: other boxes exist; `corner`: corner stiffness
+/// [N/m].
 fn sides(
     shape: &Shape,
     body: &Body,

@@ -2,7 +2,8 @@
 //!
 //! v(n+½) = v(n−½) + dt F(n)/m,  x(n+1) = x(n) + dt v(n+½),
 //!
-//! Local damping scales each component of total force and torque by 1 − α or 1 + α.
+//! Local damping (Cundall) scales each component of total force and torque by 1 − α if it drives the motion,
+//! by 1 + α if it brakes.
 //!
 //! Theory manual: equation (3.1) of `docs/theory/motion.md`.
 

@@ -1,7 +1,7 @@
 //! Adhesion: constant attraction in contact.
 //!
 //! With Hertz's law it is the DMT model (Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53, 1975).
-//! Friction, rolling and twisting limits use the pressure F + P (Derjaguin 1934).
+//! Friction, rolling and twisting limits include the adhesive pressure (Derjaguin 1934).
 //!
 //! Limits: Tabor's number below 0.1 (else Johnson, Kendall & Roberts 1971); energy error up to F v dt/2 at
 //! separation; no boxes, bonds, rigid triangulated bodies.

@@ -3,6 +3,7 @@
 //! Corner: cone of half-angle α with a spherical tip of radius R, initially the effective radius R₀, that
 //! crushes where Hertz's central pressure reaches the strength σ; k = (1 − sin α)/sin α. Unloading and
 //! reloading at constant R.
+//!
 //! h < 5k is required: crushing then dissipates. Dashpot as in `hertz.rs` on the circle √(R u). Initial
 //! overlaps count as crushed: R = R₀ + δ/k.
 //!
@@ -42,7 +43,7 @@ pub fn elastic_limit(strength: f64, modulus: f64) -> f64 {
     (0.5 * PI * strength / modulus).powi(2)
 }
 
-/// Strength [Pa] above which crushing would release energy, for E* [Pa] and α [rad].
+/// Returns the strength [Pa] above which crushing would release energy, for E* [Pa] and α [rad].
 pub fn greatest_strength(modulus: f64, angle: f64) -> f64 {
     2.0 * modulus / PI * (5.0 * slope(angle)).sqrt()
 }

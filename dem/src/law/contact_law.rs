@@ -86,8 +86,8 @@ pub trait ContactLaw: Constants {
     /// Sources.
     fn sources(&self) -> Vec<&'static str>;
 
-    /// Force on one contact; advances its history. Inverse effective mass [1/kg]; velocity at the contact
-    /// point, angular velocity, a minus b, last half step [m/s, rad/s]; step [s].
+    /// Returns the force on one contact and advances its history. Inverse effective mass [1/kg]; velocity at
+    /// the contact point, angular velocity, a minus b, last half step [m/s, rad/s]; step [s].
     #[inline(always)]
     fn evaluate_one(
         &self,

@@ -2,6 +2,7 @@
 //!
 //! F = K d + C ḋ is clipped at zero (Schwager & Pöschel, Granular Matter 9, 2007). Bisection inverts e(ζ);
 //! series near ζ = 1, where both forms lose digits.
+//!
 //! Theory manual: eq. (1.4), `docs/theory/contacts.md`.
 
 pub(super) const SOURCE: &str =

@@ -6,6 +6,7 @@
 //! * the step is a fraction of it ([`TimeStep::Measured`](crate::TimeStep::Measured)), smaller while it
 //!   changes;
 //! * a fraction of the collision time (`engine/collision.rs`) bounds it;
+//!
 //! Steps depend on the state only.
 //!
 //! Theory manual: eq. (3.5), `docs/theory/motion.md`.

@@ -27,7 +27,7 @@ fn ceiling() -> TriangleSurface {
     TriangleSurface { vertices, triangles: vec![[0, 1, 2]], ..TriangleSurface::default() }
 }
 
-/// Derjaguin, Muller & Toporov 1975. Plane, triangle: R* = R; sphere: R/2.
+/// Pull-off force 2π w R*: Derjaguin, Muller & Toporov 1975. Plane, triangle: R* = R; sphere: R/2.
 #[test]
 fn holds_up_to_pull_off_force() {
     for (law, material) in [stone(), glass()].into_iter().enumerate() {

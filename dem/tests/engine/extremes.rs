@@ -322,7 +322,7 @@ fn needle_of_one_to_fifty() {
     assert_eq!(measure::contacts(&model, &state).len(), 50);
 }
 
-/// A step for 24 contacts would be too long for 2,500.
+/// Lands on all 2,500 spheres: a step for 24 contacts would be too long.
 #[test]
 fn plate_of_one_to_fifty() {
     let (r, pitch) = (0.002, 0.99 * 0.004);

@@ -201,7 +201,7 @@ fn both_sides_push() {
     }
 }
 
-/// Sliding, then rolling over several hundred seams: force to 1e-10 (relative).
+/// Over several hundred seams: force to 1e-10 (relative).
 #[test]
 fn slope_force_matches_plane() {
     let mut random = Random::new(77);

@@ -154,7 +154,7 @@ fn floes_have_expected_periods() {
     }
 }
 
-/// Gilbert 1991; Erdős, Schibler & Herndon 1992; within half a degree.
+/// Stable tilts: Gilbert 1991; Erdős, Schibler & Herndon 1992; within half a degree.
 #[test]
 fn boxes_float_at_their_stable_tilts() {
     let text = include_str!("../data/water/box_stability.csv");

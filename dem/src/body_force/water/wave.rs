@@ -1,5 +1,5 @@
-//! Linear (Airy) waves on water of finite depth with a current (Dean & Dalrymple 1991, ch. 3): (ω − k U)² = g
-//! k tanh(k h).
+//! Linear (Airy) waves on water of finite depth with a current U (Dean & Dalrymple 1991, ch. 3): (ω − k U)² =
+//! g k tanh(k h).
 //!
 //! The linear field extends up to the crests: small floes drift (Stokes).
 //!

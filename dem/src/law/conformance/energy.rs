@@ -67,7 +67,7 @@ impl<L: ContactLaw> Led<L> {
     }
 }
 
-/// Elata & Berryman 1996.
+/// Slow cycles of compression and shear (Elata & Berryman 1996).
 pub fn energy_is_stored_or_dissipated_along_a_path<L: ContactLaw>(material: &Material) {
     let (high, low, s) = (2e-5, 5e-6, 2e-6);
     let cycles = [
