@@ -1,4 +1,7 @@
 //! trackbed: coupled DEM–FEM solver for ballasted railway track.
+//!
+//! A scene file ([`scene`]) is resolved into models ([`model`]), advanced by [`mod@run`] and written by
+//! [`mod@write`].
 
 // Closed or full output must not stop a run.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

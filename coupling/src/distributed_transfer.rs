@@ -4,7 +4,7 @@
 //! eqs. (5.4), (5.5); RBE3 (MSC/NASTRAN Quick Reference Guide).
 //!
 //! Compliance ripple on 20-node hexahedra of edge h: 17, 9, 6, 4 % for radii 0.4, 0.6, 0.75, 1 h. Limits:
-//! one radius, small rotations.
+//! one radius, small rotations; discs wrap around sharp edges.
 
 use crate::face::{cross, dot};
 

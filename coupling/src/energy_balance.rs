@@ -196,7 +196,8 @@ impl EnergyBalance {
         self.spent.sum_of_magnitudes().max(self.now.sum_of_changes(&self.start))
     }
 
-    /// Limit of insignificant errors [J].
+    /// Limit of insignificant errors [J]: 1e-3 of kinetic and spring energy, rounding of gravity, or the
+    /// smallest reference.
     pub fn negligible_energy(&self) -> f64 {
         let gravity = |s: &StoredEnergy| s.grains_gravity.abs() + s.solid_gravity.abs();
         let held = 1e-3 * self.start.kinetic_and_spring_energy().max(self.now.kinetic_and_spring_energy());

@@ -1,6 +1,7 @@
 //! Rayleigh damping `C = alpha_m M + beta_k K`, without boundary dashpots.
 //!
-//! Damping ratio `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien 1993, section 12-5).
+//! Damping ratio `zeta = alpha_m/(2 w) + beta_k w/2` (Clough and Penzien 1993, section 12-5). Limits:
+//! `alpha_m M` also damps rigid motion.
 //!
 //! Theory manual: equation (4.9) of `docs/theory/solid.md`.
 

@@ -1,7 +1,8 @@
 //! Supports: prescribed displacements, numbering of free dofs, rigid-body check.
 //!
-//! A body is constrained if the six rigid motions are linearly independent on the supported dofs
-//! (eigenvalues of the 6×6 Gram matrix).
+//! A body is constrained if the six rigid motions are linearly independent on the supported dofs (eigenvalues
+//! of the 6×6 Gram matrix). Limits: supports within a millionth of the body size count as one point; hinges
+//! are detected by pivots.
 
 use crate::boundary::SpringPoint;
 use crate::error::ModelError;

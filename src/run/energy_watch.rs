@@ -8,7 +8,7 @@ use trackbed_io::failure::Failure;
 pub const ENERGY: (f64, f64) = (0.01, 0.2);
 
 /// Fraction of elastic and kinetic energy added to the reference energy, which is almost zero in the first
-/// steps.
+/// steps: first contacts must not stop the run.
 const HELD: f64 = 0.25;
 
 /// Checks allowed above the stop limit: the first step from rest has almost no reference energy.

@@ -1,8 +1,8 @@
 //! Runs that start from the final state of another: `trackbed run NEXT --from DIR`.
 //!
 //! `end.state` contains grains with contact history, broken bonds, and the solid with plastic strains. The
-//! next run starts from it instead of packing, with time, balances and settlement at zero. The model must
-//! be the same except [`FREE`].
+//! next run starts from it instead of packing, with time, balances and settlement at zero. The model must be
+//! the same except [`FREE`]. With `--bed`, grains with the same [`BED`] are imported into another scene.
 
 use super::checkpoint::{self, Loaded, Origin};
 use super::hash::Hash;

@@ -2,8 +2,9 @@
 //! manual.
 //!
 //! 1. Greedy selection: of spheres at lattice points, the one that lowers E most is added repeatedly.
-//! 2. Descent: with each sample point assigned to its nearest sphere, E splits into least squares problems
-//!    of four unknowns.
+//! 2. Descent: with each sample point assigned to its nearest sphere, E splits into least squares problems of
+//!    four unknowns. Damped Gauss–Newton steps (Levenberg–Marquardt) are accepted if E falls and the union
+//!    stays connected.
 //! 3. Exchange: the sphere that contributes least is reselected and refitted.
 //!
 //! Source: own, after the variational sphere sets of R. Wang et al., The Visual Computer 22, 2006

@@ -250,6 +250,8 @@ fn rejects_several_or_thin_bodies() {
     assert_eq!(made[0].stone.spheres.len(), 6);
 }
 
+/// Two equal spheres at centre distance d: V = 2 (4/3)πr³ − π(4r + d)(2r − d)²/12, S = 2·2πr(r + d/2); the
+/// hull is a cylinder of length d with two hemispheres.
 #[test]
 fn two_spheres_match_closed_form() {
     let (r, d) = (1.0, 1.5);

@@ -25,6 +25,8 @@ const POLYNOMIALS: [(u32, u32, &[u32]); SOBOL_DIMENSIONS - 1] = [
 ];
 
 /// Returns `count` points of a random Latin hypercube: one in each of `count` equal intervals of each dimension.
+///
+/// Of several hypercubes, the one with the least correlation between its dimensions.
 pub fn latin_hypercube(count: usize, dimensions: usize, seed: u64) -> Vec<Vec<f64>> {
     let hypercube = |candidate: usize| -> Vec<Vec<f64>> {
         let column = |d: usize| {

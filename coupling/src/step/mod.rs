@@ -4,6 +4,7 @@
 //! correction displaces them in the first sub-step.
 //!
 //! The surface is evaluated at mid-sub-step, because leapfrog velocities trail positions by half a step.
+//! Evaluated at its start, each contact K would gain ½ dt ∫ K v² dt.
 //!
 //! Theory manual, sections 5.4 and 5.5; the FEM step is [`trackbed_fem::theta`].
 

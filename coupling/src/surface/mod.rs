@@ -279,7 +279,7 @@ impl SolidSurface {
             self.correction.resize(self.nodes.len(), [0.0; 3]);
             smooth(self.spread.as_ref(), &self.scratch, &mut self.correction);
         }
-        // Absolute sum of shape functions.
+        // Absolute sum of shape functions: at most 3 (8 nodes, centre: 4 × ¼ + 4 × ½), 5/3 with 6 nodes.
         self.max_speed = 3.0 * speed;
         self.moving = speed > 0.0;
         (self.tau, self.duration) = (0.0, motion.duration);
@@ -316,7 +316,8 @@ impl SolidSurface {
         if self.spread.is_some() { 18.0 * way } else { 3.0 * way }
     }
 
-    /// Returns an inverted face at the start of the window.
+    /// Returns an inverted face at the start of the window: normal rotated by 90 degrees, area down to a
+    /// twentieth, or neighbours facing away from each other.
     pub fn folded(&self) -> Option<usize> {
         let bad = (0..self.faces.len()).find(|&k| {
             places(self.shapes[k]).iter().zip(&self.areas[k]).any(|(&place, before)| {

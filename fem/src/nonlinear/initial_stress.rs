@@ -1,6 +1,6 @@
 //! Initial ground stress: uniform, K0, or gravity in steps.
 //!
-//! Source: Potts and Zdravković (1999), section 10.3.
+//! Source: Potts and Zdravković (1999), section 10.3. Limits: K0 is exact for level ground only.
 //!
 //! Theory manual: equation (4.15) of `docs/theory/solid.md`.
 

@@ -2,7 +2,8 @@
 //!
 //! Trials with cohesion and tan(phi) divided by F apply the whole load from one state. F is bracketed by
 //! factors of 1.5, then bisected. Source: Griffiths and Lane (1999); Zienkiewicz, Humpheson and Lewis
-//! (1975).
+//! (1975). Limits: the bracket depends on the iteration limit by some per cent; displacements rise steeply
+//! near failure.
 
 use super::options::NewtonOptions;
 use super::quasi_static::QuasiStatic;

@@ -12,7 +12,7 @@ use crate::material::{Points, REGULARISATION, ReturnRegion};
 use crate::model::Model;
 use crate::supports::CONSTRAINED;
 
-/// Elastic fraction of a stalled unsymmetric tangent.
+/// Elastic fraction of a stalled unsymmetric tangent; on footings, less stalls and more converges slowly.
 const STABILISATION: f64 = 1e-2;
 
 const ROWS: usize = 3 * MAX_NODES;

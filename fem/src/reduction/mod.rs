@@ -7,7 +7,8 @@
 //!
 //! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps all nodes.
 //!
-//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors.
+//! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors;
+//! approximate stresses near point forces.
 
 mod basis;
 mod estimate;

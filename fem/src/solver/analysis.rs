@@ -1,7 +1,7 @@
 //! Ordering, pattern and symbolic factorisation of an equation system.
 //!
-//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, relaxed amalgamation) on a
-//! postordered elimination tree.
+//! Source: supernodes from faer (sparse::linalg::cholesky::supernodal, relaxed amalgamation) on a postordered
+//! elimination tree. Limits: fewer than 2^31 entries.
 
 use super::AnalysisError;
 use super::pattern::{MIRRORED, UpperPattern, postorder};

@@ -2,7 +2,8 @@
 //!
 //! Results are bitwise identical for any number of threads and repeated factorisations.
 //!
-//! Source: Duff and Reid (1983); Liu (1992).
+//! Source: Duff and Reid (1983); Liu (1992). Limits: rows are exchanged within pivot blocks only, so a
+//! singular pivot block gives [`PivotError`]; see [`DirectSolver::weakest_pivot`].
 
 use super::PivotError;
 use super::analysis::Analysis;

@@ -1,7 +1,7 @@
 //! Permuted pattern, elimination tree and postorder of a structurally symmetric matrix.
 //!
 //! Source: Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. Appl. 11 (1990)
-//! 134-172, sections 3 and 4.
+//! 134-172, sections 3 and 4. Limits: fewer than 2^31 entries.
 
 /// List end, or parent of a root.
 pub(super) const NONE: u32 = u32::MAX;

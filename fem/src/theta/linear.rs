@@ -12,8 +12,8 @@
 //! C = alpha_m M + beta_k K + D. theta = 1/2 conserves energy (Newmark 1/4, 1/2); theta = 1 is backward
 //! Euler.
 //!
-//! Source: Simo and Tarnow (1992) (mid-point form and energy). Moved supports have `vt = du/dt` and
-//! `v1 = v0 + (vt - v0)/theta`.
+//! Source: Simo and Tarnow (1992) (mid-point form and energy). Limits: second order for theta = 1/2 only;
+//! moved supports have `vt = du/dt` and `v1 = v0 + (vt - v0)/theta`.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;

@@ -8,7 +8,7 @@
 //! After divergence, the window is split into 2, 4, … parts under the same mean load, which keeps the
 //! impulse.
 //!
-//! Source: as the linear method; backward Euler stresses.
+//! Source: as the linear method; backward Euler stresses. Limits: second order for theta = 1/2 only.
 
 use super::{ThetaMethod, check_theta};
 use crate::assembly::Combination;

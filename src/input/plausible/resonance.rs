@@ -39,7 +39,7 @@ pub struct Resonance {
     pub mode: f64,
     /// Effective over total mass [-].
     pub share: f64,
-    /// Undamped modal over static deflection, load distributed like mass.
+    /// Undamped modal over static deflection, load distributed like mass: share / |1 − (f/fₙ)²| [-].
     pub amplification: f64,
 }
 

@@ -59,6 +59,8 @@ pub struct Fault {
     pub expected: &'static str,
 }
 
+/// Returns the element kind of 8 or 20 brick node ids, and its nodes in their order.
+///
 /// # Errors
 /// Unknown repetitions, missing corners, some but not all mid-sides missing.
 pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {

@@ -3,6 +3,7 @@
 //! One unrotated band; the raster type places samples at cell centres or corners.
 //!
 //! Source: OGC GeoTIFF standard 1.1 (19-008r4). Decoding: crate `tiff`.
+//! Limits: first image only, plane coordinates in metres.
 
 use std::io::Cursor;
 use std::path::Path;

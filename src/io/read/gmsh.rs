@@ -7,6 +7,8 @@
 //! | physical curve, point | node set, likewise |
 //! | no physical volume | geometric volume id is the material id |
 //!
+//! A volume in several groups takes the material of the first and joins all sets.
+//!
 //! Source: Gmsh Reference Manual, "MSH file format" and "Node ordering". Mid-side nodes follow another edge
 //! order than in ANSYS, Abaqus and VTK.
 //!

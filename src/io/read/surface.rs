@@ -1,7 +1,7 @@
 //! Triangle surfaces from files of other programs.
 //!
 //! The plain list gives the numbers of vertices and triangles, the vertices (`x y z`), and three vertex ids
-//! per triangle, from 1 (from 0 if a 0 occurs).
+//! per triangle, from 1 (from 0 if a 0 occurs). Any winding is accepted; surfaces may be open.
 
 use std::io::Read;
 use std::path::Path;

@@ -21,7 +21,7 @@ struct Stream<'a> {
 }
 
 impl Stream<'_> {
-    /// Fast path for base64 without white space or padding.
+    /// Fast path for base64 without white space or padding: files of a million grains have 100 MB.
     fn whole_groups(&mut self, count: usize) -> Option<Vec<u8>> {
         let letters = count.div_ceil(3) * 4;
         if !self.pending.is_empty() || letters > self.bytes.len() {

@@ -34,7 +34,8 @@ fn eight([a, b, c, d]: [[f64; 3]; 4]) -> [[[f64; 3]; 4]; 8] {
     ]
 }
 
-/// Returns the triangles of the section normal · x = offset. `nodes` has position and value per node.
+/// Returns the triangles of the section normal · x = offset. `nodes` has position and value per node;
+/// `elements` overrides values.
 pub fn section(
     mesh: &Mesh,
     nodes: &[Point],

@@ -1,6 +1,7 @@
 //! Writer of Abaqus and CalculiX input files (`.inp`).
 //!
 //! Types: C3D20R, C3D15, C3D10, C3D8, C3D6, C3D5, C3D4; 13-node pyramids are C3D20R with repeated nodes.
+//! CalculiX reads 20 columns of a number only.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -48,6 +49,7 @@ fn real(value: f64) -> String {
         return plain;
     }
     let long = format!("{value}");
+    // Truncation to 20 columns would cut an exponent, but only digits of a decimal.
     if value.abs() < 1.0 && plain.len() > 20 { long } else { plain }
 }
 

@@ -61,7 +61,7 @@ impl Series {
         self.frames.len()
     }
 
-    /// Adds a file relative to the series.
+    /// Adds a file relative to the series: `part` (0 solid, 1 grains, …) is shown as `name`.
     pub fn push(&mut self, time: f64, part: u32, name: &str, file: &str) {
         self.frames.push(Frame { time, part, name: name.to_string(), file: file.to_string() });
     }

@@ -7,6 +7,9 @@
 //! - body centre: a quarter of the sum of the twelve mid-sides less a quarter of the sum of the eight
 //!   corners.
 //!
+//! `eps_p` is clipped at 0, since corner weights are negative. Other kinds become one brick with repeated
+//! corners.
+//!
 //! Source of the format: Tecplot 360 Data Format Guide, ASCII data, finite-element zones.
 
 use std::collections::HashMap;

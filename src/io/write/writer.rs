@@ -1,4 +1,6 @@
 //! Frame formats of a run.
+//!
+//! A format is a file here with a [`Format`], its [`Writer`], and a line in [`FORMATS`](super::FORMATS).
 
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use trackbed_io::results::series;
 
 /// Returns the groups with their contact materials, in order, and the solid materials by id.
 ///
-/// Included files are not read.
+/// Included files are not read: their groups follow the groups of the scene.
 pub fn of_run(dir: &Path) -> [Value; 2] {
     let bytes = series::own(dir, "run.json").and_then(|file| fs::read(file).ok());
     let run: Value = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();

@@ -18,7 +18,8 @@ use trackbed_io::failure::Failure;
 const GROWTH: u32 = 8;
 /// Budgets up to the main loop without growth.
 const PREPARATION: u32 = 3;
-/// Fraction of the main loop to reach within [`LOOP`] budgets.
+/// Fraction of the main loop to reach within [`LOOP`] budgets: a resting bed may flow once a wall has turned.
+/// With moving walls or flow, [`MOVED`] budgets: a ship enters ice gradually.
 const SEEN: f64 = 0.2;
 /// With inlets and outlets: grains from the top arrive late and are fastest.
 const FLOWN: f64 = 2.0 / 3.0;

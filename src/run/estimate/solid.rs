@@ -45,7 +45,7 @@ const LONG: f64 = 2.0;
 const RATE: f64 = 0.75;
 const ORDER: usize = 512;
 
-/// Stiffness products of a static CG solve.
+/// Stiffness products of a static CG solve: about 60 iterations of 12, mostly single precision, and set-up.
 const PRODUCTS: f64 = 560.0;
 
 /// Estimates the static solve of a large solid; none if short or absent.

@@ -1,7 +1,7 @@
 //! Inlets and outlets with balances.
 //!
 //! The inserted amount never exceeds rate × (t − start) and lags by less than one grain, unless no position
-//! or queued grain is free.
+//! or queued grain is free. The backlog is inserted at twice the rate.
 
 mod record;
 

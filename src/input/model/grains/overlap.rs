@@ -49,7 +49,8 @@ pub(super) fn first_input(grains: &GrainsPart) -> ModelInput {
     input
 }
 
-/// Rejects overlaps of `state` above a tenth of the smaller radius, unless a group has `accept_overlap`.
+/// Rejects overlaps of `state` above a tenth of the smaller radius, unless a group has `accept_overlap`;
+/// `imported`: number of grains of an earlier run, whose contacts with each other and impacts are accepted.
 ///
 /// # Errors
 /// Deepest overlap.

@@ -22,7 +22,8 @@ pub struct Ruler {
 }
 
 impl Ruler {
-    /// Creates a linear scale of up to `most` steps of 1, 2 or 5 times a power of ten, at least `least`.
+    /// Creates a linear scale of up to `most` steps of 1, 2 or 5 times a power of ten, at least `least`;
+    /// `tight` ends at extreme values.
     pub fn linear(values: impl Iterator<Item = f64>, most: usize, least: f64, tight: bool) -> Ruler {
         let (low, high) = widened(range(values).unwrap_or([0.0, 1.0]));
         let least = ((high - low) / most as f64).max(least);

@@ -15,7 +15,7 @@ pub(super) struct Floe {
     pub centre: Point,
 }
 
-/// Bonds floes whose cells share a side. `cells` and `floes` like `sites`.
+/// Bonds floes whose cells share a side. `cells` and `floes` like `sites`; removed floes are `None`.
 pub(super) fn join(
     sites: &[Point],
     cells: &[Vec<Point>],
