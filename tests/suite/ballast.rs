@@ -1,4 +1,4 @@
-//! Ballast under load cycles: settlement laws, cycle jumps, lateral resistance, bed stiffness, fouling.
+//! Ballast under load cycles.
 
 use super::support::{Folder, Outcome, Table, json, repository, results, run};
 use std::path::Path;

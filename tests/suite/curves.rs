@@ -95,7 +95,6 @@ fn uniform_stress_is_exact() {
             near("a_u_z", -1.3 * p / young, 5e-3);
             near("a_u_x", 0.3 * 0.3 * p / young, 5e-3);
             for name in ["box_vertical_stress", "box_vertical_stress_largest"] {
-                // Reaction over an area of 1 m².
                 near(name, -table.column("base_reaction_z")[k], 100e3);
             }
             for name in ["box_mean_stress", "box_mean_stress_largest"] {

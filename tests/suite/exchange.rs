@@ -107,7 +107,6 @@ fn unstable_window_on_soft_ground_warns() {
     println!("{text}");
     assert!(text.contains("warning: stone on "), "{text}");
     assert!(text.contains("coupling.substeps = "), "{text}");
-    // The suggested number is within the limit, one more is not.
     let fitting = text.split_once("coupling.substeps = ").unwrap().1;
     let fitting: u32 = fitting.split_once(' ').unwrap().0.parse().unwrap();
     for (count, bad) in [(fitting, false), (fitting + 1, true)] {

@@ -71,7 +71,6 @@ fn target_gives_the_grains_of_its_count() {
         "{text}"
     );
     let (same, _) = checked(&scene(SPHERES, &format!("count = {count}"), ""));
-    // The first line is the path.
     assert_eq!(text.split_once('\n'), Some((text.lines().next().unwrap(), same.split_once('\n').unwrap().1)));
 }
 

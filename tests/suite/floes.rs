@@ -290,7 +290,6 @@ fn loads_on_structures_are_recorded() {
         let column = |name: &str| history.column(name);
         let (load, force) = (column("tower_load_x"), column("pile_force_x"));
         let most = load.iter().fold(0.0_f64, |m, f| m.max(*f));
-        // Wall force of the preceding step.
         let off: f64 = load.iter().zip(&force).map(|(a, b)| (a - b).abs()).sum::<f64>();
         let all: f64 = load.iter().map(|f| f.abs()).sum();
         assert!(most > 100.0 && off < 0.05 * all, "{kind}: {most} {off} {all}");

@@ -98,7 +98,6 @@ fn rain_in_steady_flow() {
     let history = adds_up(&out);
     let summary = json(&out.join("summary.json"));
     let flow = &summary["flow"];
-    // Inserted mass lags the rate by less than the largest grain.
     let (time, come) = (history.column("time"), history.column("mass_in"));
     let largest = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.006_f64.powi(3);
     for (t, m) in time.iter().zip(&come) {
@@ -158,7 +157,6 @@ fn a_drop_falls_from_the_inlet() {
     let place = ["drops_x", "drops_y", "drops_z"].map(|c| history.column(c));
     assert_eq!(come.last(), Some(&1.0));
     let first = there.iter().position(|n| *n > 0.0).unwrap();
-    // Due 0.1 s after the start.
     assert!((time[first] - 0.13).abs() < 2e-3, "{}", time[first]);
     let last = there.iter().rposition(|n| *n > 0.0).unwrap();
     // The first two rows give velocity and position.
@@ -220,7 +218,6 @@ fn no_room_at_the_inlet() {
     let folder = Folder::new("no_room");
     let scene = folder.write("scene.toml", RAIN);
     let out = folder.join("out");
-    // Box for one grain, which leaves it in free fall from rest.
     let set = [
         "grains.0.inlet.box=[[0.04, 0.04, 0.9], [0.053, 0.053, 0.913]]",
         "grains.0.inlet.velocity=[0, 0, 0]",
@@ -258,7 +255,6 @@ fn a_box_that_is_flown_through() {
     let summary = json(&out.join("summary.json"));
     let outlet = &summary["flow"]["outlets"][0];
     let (seen, missed) = (outlet["amount"]["grains"].as_u64().unwrap(), outlet["missed"].as_u64().unwrap());
-    // At 3 m/s every third check finds the grain inside.
     assert!(missed > seen && seen > 5, "{outlet}");
     assert!(summary["warnings"].to_string().contains("Reduce time.flow_interval"), "{}", summary["warnings"]);
     let fine = folder.join("fine");
@@ -398,7 +394,6 @@ fn periodic_insertion_above_bed() {
         "[[grains]]\nname = \"bed\"\nshape = \"sphere\"\nmaterial = \"glass\"\ncount = 60\nsize = [\"12 mm\", \"14 mm\"]\n\
          fill = { low = [0, 0, 0.4], high = [0.1, 0.1] }\n\n[[outlet]]",
     );
-    // Planes across x become periodic borders, one of them the floor.
     let text = text
         .replace("point = [0, 0, 0]\nnormal = [1, 0, 0]", "point = [0, 0, 0.4]\nnormal = [0, 0, 1]")
         .replace("point = [0.1, 0, 0]\nnormal = [-1, 0, 0]", "point = [0, 0, 0]\nnormal = [0, 1, 0]");

@@ -54,7 +54,6 @@ fn two_halves_are_a_whole() {
 fn track_restarts_with_changed_load() {
     let folder = Folder::new("from_track");
     let scene = repository().join("inputs/track/meshed_sleeper/scene.toml");
-    // A rigid sleeper on a small bed.
     let common = [
         "track.sleeper.mesh=",
         "grains.0.count=150",
@@ -163,7 +162,6 @@ fn grain_kinds_restart_bitwise() {
         let rest =
             format!("[time]\ngrain_step = \"2 us\"\nend = 1\n[output]\nframes = 1\npacking = {packing}\n");
         let scene = folder.write("scene.toml", &shaft(&grains, &rest, true));
-        // A distant plane, first in the list.
         let far = "[[walls]]\nkind = \"plane\"\npoint = [0.0, 0.0, -40.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"stone\"\n";
         let next = folder.write("next.toml", &shaft(&grains, &format!("{rest}{far}"), true));
         let [whole, first, same, bed] = ["whole", "first", "same", "bed"].map(|out| folder.join(out));
@@ -172,7 +170,6 @@ fn grain_kinds_restart_bitwise() {
         from(&scene, &same, &first, &["time.end=0.001999"]).good();
         let end = places(&whole);
         assert!(end.len() >= 90 && places(&same) == end, "{name}: the second half ends elsewhere");
-        // Another scene needs the option for importing only the bed.
         let refused = from(&next, &bed, &first, &["time.end=0.001999"]);
         assert!(
             refused.code == 2 && refused.stderr.contains("--bed imports grains into another"),

@@ -40,7 +40,6 @@ fn the_same_scene_in_pieces() {
     }
     let [mut whole, mut pieces] = [&whole, &pieces].map(|folder| results(&folder.join("out")));
     assert!(whole.contains_key("history.csv"));
-    // Hash, text and wall times differ.
     for name in ["summary.json", "log.txt", "run.json", "end.state"] {
         assert!(whole.remove(name).is_some() && pieces.remove(name).is_some());
     }

@@ -166,7 +166,6 @@ fn steps_are_counted() {
     }
     let frames = |out: &str| fs::read_dir(folder.join(out).join("frames")).unwrap().count();
     assert!(frames("g") == 5 || frames("g") == 10, "{}", frames("g"));
-    // Not with variable steps, not with both keys.
     let refused = |set: &[&str], sentence: &str| {
         let outcome = run(&grains, &folder.join("bad"), set);
         assert!(outcome.code == 2 && outcome.stderr.contains(sentence), "{outcome:?}");

@@ -52,7 +52,6 @@ fn shipped_scenes_have_all_objects() {
         let bodies = job.grains.as_ref().map_or(0, |g| g.groups.bodies.iter().filter(|b| !b.absent).count());
         assert_eq!(preview.of("grains").map(|item| number(&item.count)).sum::<usize>(), bodies, "{name}");
         for item in preview.of("supports") {
-            // Pyramids of five points, one per cell of the model.
             let marks = item.shape.points.len() / 5;
             assert!(marks <= number(&item.count).min(2500), "{name}: {} has {marks} marks", item.name);
         }
@@ -148,7 +147,6 @@ fn page_follows_file_and_shows_errors() {
     let check = String::from_utf8_lossy(&server.get("/data/check").1).into_owned();
     assert!(check.contains("solid: 81 nodes"), "{check}");
 
-    // An error, its message as of `check`, and its correction.
     let broken = SCENE.replace("\"20 MPa\"", "\"-20 MPa\"");
     let wrong = saved(&server, &folder, &broken);
     let said = trackbed(["check", folder.join("scene.toml").to_str().unwrap()]).stderr;

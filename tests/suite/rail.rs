@@ -50,7 +50,6 @@ fn a_bogie_on_a_beam() {
         let formula = 140e3 * 0.5 * beta * 0.6 * (1.0 + shape(2.5)) + 120.0 * 9.81 * 0.6;
         let energy = summary["energy"]["relative_error"].as_f64().unwrap();
         assert!(energy < 1e-5, "{energy} at {speed}");
-        // Pad work is equal on both sides.
         let spent = |key: &str| summary["energy"]["flows"][key].as_f64().unwrap();
         let (seats, pads) = (spent("applied_work"), spent("pads_on_sleepers"));
         assert!((seats - pads).abs() < 1e-10 * seats.abs(), "{seats} {pads}");
@@ -374,7 +373,6 @@ fn rails_go_on_bit_for_bit() {
     goes_on_bit_for_bit(&scene, &folder, &[300, 900, 2000]);
     let walls = std::fs::read_to_string(folder.join("whole/frames/walls_00001.vtp")).unwrap();
     assert!(walls.contains("NumberOfPolys"), "a picture with sleepers and rail");
-    // No restart with a deflected rail.
     let from = Some(folder.join("whole"));
     let next = trackbed::run::Options { from, ..options(&folder.join("next"), 1) };
     let refused = trackbed::run::run(&scene, &next).expect_err("a rail is refused");

@@ -110,7 +110,6 @@ fn ranks_write_identical_files() {
         same(&out, &format!("{ranks} ranks"));
     }
 
-    // Interrupted on three and two ranks, resumed on one, completed on four.
     let out = folder.join("broken");
     for (k, ranks) in [3, 2, 1].into_iter().enumerate() {
         let interrupt = Interrupt::after(windows / 4 - k as u64);

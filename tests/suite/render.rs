@@ -57,7 +57,6 @@ fn sphere_covers_its_circle() {
 #[test]
 fn nearer_sphere_is_visible() {
     let folder = Folder::new("render_depth");
-    // Group 0 orange; group 1 blue, small, in front.
     grains(&folder, 0, &[[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.0, 0.04]], &[0, 1]);
     series(&folder, 1);
     let blue = |pixel: [u8; 3]| pixel[2] > pixel[0];
@@ -299,7 +298,6 @@ fn bad_input_writes_nothing() {
         "{}",
         outcome.stderr
     );
-    // Overwritten only with `--force`, unchanged after an error.
     let there = folder.write("there.png", "mine");
     let out = ["--out", there.to_str().unwrap()];
     refused(dir, &out, "or --force to overwrite it");

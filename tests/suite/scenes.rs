@@ -88,7 +88,6 @@ fn solid_frames_contain_every_field() {
     ];
     expect_arrays(&point, nodes, &solid);
     expect_arrays(&cell, 8, &[("material", 1), ("element_id", 1)]);
-    // The probe lies in the middle of the top: frame and history agree.
     let history = Table::read(&out.join("history.csv"));
     let probe = (0..nodes).find(|n| points[3 * n..3 * n + 3] == [1.0, 1.0, 0.0]).unwrap();
     for (d, axis) in ["x", "y", "z"].iter().enumerate() {
@@ -318,7 +317,6 @@ fn frames_contain_selected_fields() {
 
 #[test]
 fn files_that_are_no_results_stay() {
-    // Results next to input files with result names, in an unused directory.
     let folder = scene_folder("beside", SOLID);
     fs::rename(folder.join("NODECOORD.DAT"), folder.join("nodes.csv")).unwrap();
     folder.edit("scene.toml", "NODECOORD.DAT", "nodes.csv");

@@ -251,7 +251,6 @@ fn a_failed_run_is_a_row() {
     let record = fs::read(folder.join("out/runs/step=unstable.json")).unwrap();
     trackbed(arguments(&folder, "out", &["--resume"])).good();
     assert_eq!(fs::read(folder.join("out/runs/step=unstable.json")).unwrap(), record);
-    // No comparison with a failed reference.
     folder.edit("study.toml", "set = [\"time.grain_step=3.125e-6\"]", "label = \"step=unstable\"");
     let said = trackbed(arguments(&folder, "out", &["--resume"]));
     assert_eq!(said.code, 3);

@@ -133,7 +133,6 @@ fn coupled_energy_adds_up() {
 
 #[test]
 fn contact_force_on_solid_equals_weight() {
-    // Mean contact force in the second half: weight of five spheres and sleeper.
     let folder = scene_folder("carried", COUPLED);
     run(
         &folder.join("scene.toml"),

@@ -22,14 +22,17 @@ impl Folder {
         Folder(path)
     }
 
+    /// Path of the directory.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
+    /// Path in the directory.
     pub fn join(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
+    /// Writes a file.
     pub fn write(&self, name: &str, text: &str) -> PathBuf {
         let file = self.join(name);
         fs::create_dir_all(file.parent().unwrap()).unwrap();
@@ -108,6 +111,7 @@ pub fn run(scene: &Path, out: &Path, set: &[&str]) -> Outcome {
     trackbed(arguments)
 }
 
+/// Repository root.
 pub fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -162,11 +166,13 @@ pub fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
+/// Reads JSON.
 pub fn json(file: &Path) -> serde_json::Value {
     let text = fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
     serde_json::from_str(&text).unwrap()
 }
 
+/// Numbers of a JSON array.
 pub fn numbers(value: &serde_json::Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
 }
@@ -175,6 +181,7 @@ pub fn numbers(value: &serde_json::Value) -> Vec<f64> {
 pub struct Table {
     /// Headers.
     pub heads: Vec<String>,
+    /// Rows.
     pub rows: Vec<Vec<f64>>,
 }
 
@@ -202,6 +209,7 @@ impl Table {
         Table { heads, rows }
     }
 
+    /// Index of a column.
     #[track_caller]
     pub fn index(&self, name: &str) -> usize {
         self.heads
@@ -210,6 +218,7 @@ impl Table {
             .unwrap_or_else(|| panic!("no column {name} in {:?}", self.heads))
     }
 
+    /// Values of a column.
     #[track_caller]
     pub fn column(&self, name: &str) -> Vec<f64> {
         let index = self.index(name);
@@ -226,6 +235,7 @@ pub fn small_block() -> Mesh {
     mesh
 }
 
+/// Writes `mesh` as lists with a fixed base.
 pub fn write_lists(mesh: &Mesh, dir: &Path) {
     let bottom = mesh.coordinates.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     let constraints: Vec<Constraint> = (0..mesh.node_count() as u32)
@@ -314,6 +324,7 @@ solid_step = 0.1
 frames = 2
 "#;
 
+/// Two spheres above a plane.
 pub const GRAINS: &str = r#"title = "two spheres"
 
 [[material]]

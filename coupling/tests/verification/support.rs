@@ -25,6 +25,7 @@ pub fn block_b(m: usize, held: Held, rayleigh: fem::Rayleigh) -> fem::Model {
     block([m, m, m / 2], [1.0, 1.0, 0.5], 20e6, 0.3, 2000.0, held, rayleigh)
 }
 
+/// Block with its top at z = 0 and a base corner at x = y = 0.
 pub fn block(
     counts: [usize; 3],
     size: [f64; 3],

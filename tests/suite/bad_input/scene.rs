@@ -486,7 +486,7 @@ fn jumps_pushes_and_fouling() {
         assert!(outcome.stderr.contains(words), "{set}: {}", outcome.stderr);
         assert!(!out.exists(), "{set}");
     }
-    // Too stiff an actuator is detected during setup; variable steps resolve it.
+    // Too stiff an actuator is detected during setup.
     let folder = super::super::support::scene_folder("ram", &with(push));
     let set = ["track.push.stiffness=\"1e6 GN/m\"", "time.grain_step=1e-6"];
     let outcome = super::super::support::run(&folder.join("scene.toml"), &folder.join("out"), &set);

@@ -13,6 +13,7 @@ pub struct Case {
 }
 
 impl Case {
+    /// Runs `text` with overrides.
     pub fn run(text: &str, set: &[&str]) -> Case {
         Case::in_folder(Folder::new("extremes"), text, set)
     }
@@ -94,19 +95,23 @@ impl Case {
         summary.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {summary:#}"))
     }
 
+    /// Whether a warning contains `part`.
     pub fn warned(&self, part: &str) -> bool {
         self.summary()["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(part))
     }
 
+    /// Result table.
     pub fn table(&self, name: &str) -> Table {
         Table::read(&self.file(name))
     }
 
+    /// Column of `history.csv`.
     #[track_caller]
     pub fn history(&self, column: &str) -> Vec<f64> {
         self.table("history.csv").column(column)
     }
 
+    /// Last value of a history column.
     #[track_caller]
     pub fn last(&self, column: &str) -> f64 {
         *self.history(column).last().unwrap()

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+/// Material `stone`, 2600 kg/m³, with `keys`.
 pub fn stone(keys: &str) -> String {
     let mut text = String::from("title = \"edge\"\n");
     text += if keys.contains("weightless") { "gravity = [0, 0, 0]\n" } else { "" };
@@ -23,6 +24,7 @@ pub fn ball(name: &str, place: [f64; 3], radius: f64, velocity: [f64; 3]) -> Str
     )
 }
 
+/// Recorded plane.
 pub fn plane(name: &str, point: [f64; 3], normal: [f64; 3]) -> String {
     format!(
         "\n[[walls]]\nname = \"{name}\"\nkind = \"plane\"\nmaterial = \"stone\"\nrecord = true\n\
@@ -41,10 +43,12 @@ pub fn floor() -> String {
     plane("floor", [0.0; 3], [0.0, 0.0, 1.0])
 }
 
+/// Mass of a ball of 2600 kg/m³ [kg].
 pub fn mass(radius: f64) -> f64 {
     2600.0 * 4.0 / 3.0 * PI * radius.powi(3)
 }
 
+/// Solid material.
 pub fn material(id: u32, keys: &str) -> String {
     let mut text = format!("\n[[solid.material]]\nid = {id}\n{keys}\n");
     for (key, usual) in [("young", "20e6"), ("poisson", "0.25"), ("density", "2000")] {
@@ -68,6 +72,7 @@ pub fn rollers() -> String {
         .concat()
 }
 
+/// Pressure on a side.
 pub fn pressure(side: &str, value: f64) -> String {
     format!("\n[[solid.load]]\nkind = \"pressure\"\nside = \"{side}\"\npressure = {value:e}\n")
 }
@@ -79,6 +84,7 @@ pub const LISTS: &str = "title = \"edge\"\n\n[solid]\ngravity = false\nnodes = \
 /// Final tables, no frames.
 pub const TABLES: &str = "\n[output]\nvtk = false\ntecplot = false\ntables = true\n";
 
+/// Block of one material.
 pub fn block(lines: [&str; 3]) -> String {
     let [x, y, z] = lines;
     format!("title = \"edge\"\n\n[solid]\ngravity = false\n\n[solid.block]\nx = {x}\ny = {y}\nz = {z}\n")

@@ -5,7 +5,9 @@ use super::super::support::repository;
 use super::PARTS;
 use std::fs;
 
+/// Result of a row.
 pub struct Row {
+    /// Tried values.
     pub tried: String,
     /// Observed outcome with numbers.
     pub outcome: String,
@@ -14,6 +16,7 @@ pub struct Row {
 }
 
 impl Row {
+    /// Creates a row.
     pub fn new(tried: impl Into<String>, outcome: impl Into<String>, source: &'static str) -> Row {
         Row { tried: tried.into(), outcome: outcome.into(), source }
     }
@@ -32,6 +35,7 @@ pub struct Entry {
 /// Declares rows with one test each; those after `long` are `--ignored`.
 macro_rules! rows {
     ($($name:ident: $edge:literal;)* $([long $why:literal] $long:ident: $long_edge:literal;)*) => {
+        /// Rows of this file in table order.
         pub const ROWS: &[$crate::suite::extremes::table::Entry] = &[
             $($crate::suite::extremes::table::Entry { name: concat!(module_path!(), "::", stringify!($name)), edge: $edge, row: $name },)*
             $($crate::suite::extremes::table::Entry { name: concat!(module_path!(), "::", stringify!($long)), edge: $long_edge, row: $long },)*

@@ -103,7 +103,6 @@ fn absurd_sizes_are_rejected_at_once() {
         let set = format!("solid.material.0.density={density}");
         refused(["modal", &beam, "--out", &out, "--set", &set], beyond);
     }
-    // An ordinary heap of as many grains is accepted.
     let wide = ["grains.0.count=20000", "grains.0.fill.high=[2, 2]", "walls.2.point=[2, 0, 0]"];
     let sets = wide.iter().chain(&["walls.4.point=[0, 2, 0]"]).flat_map(|s| ["--set", s]);
     trackbed(["check", &scene].into_iter().chain(sets)).good();
@@ -172,7 +171,6 @@ fn abaqus_sets_use_bounded_memory() {
         outcome.stderr.contains("sets: found 10") && outcome.stderr.contains("expected at most 10"),
         "{outcome:?}"
     );
-    // Constrained node of a range that the mesh lacks.
     let outcome = info("held.inp", &format!("{head}{ranges}*BOUNDARY\nALL, 1\n"));
     assert!(outcome.code == 2 && outcome.stderr.contains("*BOUNDARY: found node "), "{outcome:?}");
 }

@@ -34,6 +34,7 @@ pub fn grains(folder: &Folder, frame: usize, spheres: &[[f64; 4]], parts: &[u32]
     file(folder, &format!("grains_{frame}.vtp"), "PolyData", &piece, &body);
 }
 
+/// Force chains by end points.
 pub fn chains(folder: &Folder, frame: usize, ends: &[[f64; 6]], forces: &[f64]) {
     let body = format!(
         "<CellData>{}</CellData><Points>{}</Points><Lines>{}{}</Lines>",
@@ -73,6 +74,7 @@ pub fn solid(
     );
 }
 
+/// Series of `count` frames, 1 s apart.
 pub fn series(folder: &Folder, count: usize) {
     let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"><Collection>\n");
     for frame in 0..count {

@@ -57,6 +57,7 @@ fn resolve(scopes: &Scopes, from: &ModulePath, path: &[String], depth: usize) ->
     Some(Target::Module(module))
 }
 
+/// Graph of a crate.
 pub fn graph(scopes: &Scopes) -> Graph {
     let mut graph = Graph::new();
     let mut tie = |from: &str, to: String, name: &str| {
@@ -104,6 +105,7 @@ pub struct Circle {
     pub folder: String,
     /// Files and directories (with `/`) in the cycle.
     pub entries: Vec<String>,
+    /// Ties: `from -> to: names`.
     pub ties: Vec<String>,
 }
 

@@ -6,10 +6,13 @@ use std::path::Path;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 
+/// Module path from the crate root.
 pub type ModulePath = Vec<String>;
 
+/// Import by `use`.
 #[derive(Debug)]
 pub struct Import {
+    /// Path as written.
     pub path: Vec<String>,
     /// Re-export (`pub use`).
     pub public: bool,
@@ -20,19 +23,24 @@ pub struct Import {
 pub struct Scope {
     /// File relative to the repository.
     pub file: String,
+    /// Defined items.
     pub items: BTreeSet<String>,
+    /// Imported names.
     pub imports: BTreeMap<String, Import>,
+    /// Glob imports.
     pub globs: Vec<Vec<String>>,
     /// Paths in code, signatures and macro calls.
     pub paths: BTreeSet<Vec<String>>,
     /// Inherent methods with their types.
     pub methods: Vec<(Vec<String>, String)>,
+    /// Called methods.
     pub calls: BTreeSet<String>,
 }
 
 /// Scopes of a crate by module path, without test code.
 pub type Scopes = BTreeMap<ModulePath, Scope>;
 
+/// Reads a crate from its root file.
 pub fn read_crate(repository: &Path, root: &str) -> Scopes {
     let mut scopes = Scopes::new();
     let folder = root.rsplit_once('/').expect("a root file lies in a folder").0;
@@ -225,6 +233,7 @@ fn tokens(stream: proc_macro2::TokenStream, scope: &mut Scope) {
     }
 }
 
+/// Length of a function.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Length {
     /// Lines from name to closing brace.
@@ -233,6 +242,7 @@ pub struct Length {
     pub place: String,
 }
 
+/// Lengths of all functions, tests included.
 pub fn functions(file: &str, text: &str) -> Vec<Length> {
     struct Functions<'a>(&'a str, Vec<Length>);
     impl Functions<'_> {

@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Scope of a ban.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ban {
+    /// Names in code.
     Names,
     /// Also comments, messages and pages.
     Anywhere,

@@ -150,7 +150,6 @@ fn failed_run_does_not_end_study() {
     let (failed, done): (Vec<_>, Vec<_>) = rows.iter().partition(|r| r["done"] == "0");
     assert!(rows.len() == 4 && !failed.is_empty() && !done.is_empty(), "{rows:?}");
     assert!(done.iter().all(|r| !r["height [m]"].is_empty() && r["reasons"].is_empty()), "{rows:?}");
-    // Later cases run after the first failure.
     assert!(done.last().unwrap()["case"] > failed[0]["case"], "{rows:?}");
     let reason = format!("{}: failed, exit code 3: ", failed[0]["case"]);
     assert!(failed[0]["height [m]"].is_empty() && failed[0]["reasons"].starts_with(&reason), "{rows:?}");
@@ -247,7 +246,6 @@ fn report_shows_study() {
     }
     let effect: f64 = table(&folder.join("out/sensitivity.csv"))[0]["effect"].parse().unwrap();
     assert!(page.numbers.contains(&effect), "{effect}");
-    // Renewed without --force, other files are kept.
     trackbed(["report", &out]).good();
     let other = folder.write("other.html", "<p>mine</p>").display().to_string();
     let refused = trackbed(["report", &out, "--out", &other]);

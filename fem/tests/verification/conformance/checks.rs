@@ -106,6 +106,7 @@ pub fn elastic_cycles(case: &Case) {
     }
 }
 
+/// `sigma : d eps_p >= 0` for associated flow.
 pub fn dissipation(case: &Case) {
     let mut yielded = 0;
     for seed in SEEDS {
