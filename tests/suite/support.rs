@@ -411,6 +411,7 @@ frames = 2
 tecplot = true
 "#;
 
+/// Planes around a square shaft of `width` [m].
 pub fn shaft(width: f64) -> String {
     let plane = |point: [f64; 3], normal: [f64; 3]| {
         format!("[[walls]]\nkind = \"plane\"\npoint = {point:?}\nnormal = {normal:?}\nmaterial = \"stone\"\n")

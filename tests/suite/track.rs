@@ -124,6 +124,7 @@ fn a_single_sleeper_has_no_number() {
     assert_eq!(heads[1..6], ["load", "sleeper_x", "sleeper_y", "sleeper_z", "sleeper_tilt"]);
 }
 
+/// Compares an uninterrupted run with runs interrupted at `breaks`.
 pub fn goes_on_bit_for_bit(scene: &Path, folder: &Folder, breaks: &[u64]) {
     let (whole, broken) = (folder.join("whole"), folder.join("broken"));
     trackbed::run::run(scene, &options(&whole, 1)).unwrap();

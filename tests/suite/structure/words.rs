@@ -104,6 +104,7 @@ pub fn replaced_phrases(page: &str) -> Vec<(String, bool)> {
     all
 }
 
+/// Places of replaced phrases in a file.
 pub fn phrases_in(file: &str, text: &str, phrases: &[(String, bool)]) -> Vec<String> {
     let mut words: Vec<(usize, String)> = Vec::new();
     for (number, line) in text.lines().enumerate() {
