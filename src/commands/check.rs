@@ -181,7 +181,11 @@ fn solid_lines(solid: &SolidPart, memory: Option<u64>) -> Result<(Vec<Line>, Val
 }
 
 fn mass(kg: f64) -> String {
-    if kg < 1e4 { format!("{kg:.4} kg") } else { format!("{:.1} t", 1e-3 * kg) }
+    match kg {
+        ..10.0 => format!("{kg:.4} kg"),
+        ..1e4 => format!("{kg:.1} kg"),
+        _ => format!("{:.1} t", 1e-3 * kg),
+    }
 }
 
 /// Then no step limit exists.

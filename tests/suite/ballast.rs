@@ -247,7 +247,7 @@ fn settlement_rates_and_stiffness_match_cycles() {
     // Loading branch against whole cycle.
     assert!(stiffness[39] > 0.5 * k[39] && stiffness[39] < 3.0 * k[39], "{} {}", stiffness[39], k[39]);
     let printed = std::fs::read_to_string(folder.join("out/log.txt")).unwrap();
-    assert!(printed.contains("Alva-Hurtado & Selig: s = s1 (1 + C log10 N)"), "{printed}");
+    assert!(printed.contains("Alva-Hurtado & Selig: s [m] = s1 (1 + C log10 N)"), "{printed}");
 }
 
 #[test]

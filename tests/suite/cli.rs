@@ -374,7 +374,8 @@ fn check_reports_coupling_stability() {
     let numbers = |substeps: &str| {
         let set = format!("coupling.substeps={substeps}");
         let scheme = "coupling.scheme=predicted";
-        let outcome = trackbed(["check", scene.to_str().unwrap(), "--set", &set, "--set", scheme]).good();
+        let outcome =
+            trackbed(["check", scene.to_str().unwrap(), "--verbose", "--set", &set, "--set", scheme]).good();
         let after = |mark: &str| -> f64 {
             let rest = outcome.stdout.split_once(mark).unwrap().1;
             rest.split([',', ' ']).next().unwrap().parse().unwrap()

@@ -95,7 +95,7 @@ fn unstable_window_on_soft_ground_warns() {
     let folder = scene_folder("soft", COUPLED);
     let scene = folder.join("scene.toml");
     let check = |more: &[&str]| {
-        let mut arguments = vec!["check".to_string(), scene.display().to_string()];
+        let mut arguments = vec!["check".to_string(), "--verbose".into(), scene.display().to_string()];
         for s in soft.iter().chain(more) {
             arguments.extend(["--set".to_string(), s.to_string()]);
         }

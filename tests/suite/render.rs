@@ -218,7 +218,7 @@ fn video_frames_match_index() {
     let dir = folder.path().to_str().unwrap();
     let said =
         trackbed(["render", dir, "--out", file.to_str().unwrap(), "--size", "161x99", "--fps", "4"]).good();
-    assert!(said.stdout.contains("161 x 99 pixels, 2 frames, t = 0 to 1 s"), "{}", said.stdout);
+    assert!(said.stdout.contains("161 x 99 pixels, 2 frames, t = 0.0000 to 1.0000 s"), "{}", said.stdout);
     let bytes = fs::read(&file).unwrap();
     let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     assert_eq!((&bytes[..4], &bytes[8..12]), (&b"RIFF"[..], &b"AVI "[..]));

@@ -26,6 +26,9 @@ pub const MOST: u64 = 1024;
 /// Rise of the dissipation rate since the last evaluation that calls for the next one.
 const SURGE: f64 = 10.0;
 
+/// Fraction of the limit that a step may reach between evaluations.
+const NEAR: f64 = 0.95;
+
 /// Contacts per body of a packing.
 const LASTING: f64 = 1.5;
 
@@ -77,12 +80,17 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
     let rate = dissipation_rate(state);
     let surges = rate > SURGE * state.step_size.rate;
-    if state.steps == 0 || state.steps < state.step_size.look && !surges {
+    let due = state.steps >= state.step_size.look;
+    if state.steps == 0 || !due && !surges {
         return false;
     }
     state.step_size.rate = rate;
     let mut operator = Operator::new(model, state);
     let (found, before) = (largest_step(&mut operator, state), state.step_size.limit);
+    // Between evaluations, only a step near the limit changes.
+    if !due && state.step_size.wanted < NEAR * found {
+        return false;
+    }
     let packed = operator.links() as f64 > LASTING * state.present_count() as f64;
     let longest = model.longest(packed);
     let change = if before > 0.0 && found.is_finite() { (found / before).max(before / found) } else { 2.0 };
