@@ -205,7 +205,8 @@ fn grain_lines(
         0 => format!("grains: {} bodies", alone.body_count()),
         spheres => format!("grains: {} bodies with {spheres} spheres", alone.body_count()),
     };
-    let step = match model.measured() {
+    let prescribed = all_prescribed(grains);
+    let step = match model.measured().filter(|_| !prescribed) {
         None => format!("  DEM time step {:.4e} s", model.dt()),
         Some(share) => format!(
             "  DEM time step {:.4e} s initially, then {share} of the critical time step, at most {:.4e} s",
@@ -213,7 +214,7 @@ fn grain_lines(
             model.longest(true)
         ),
     };
-    let governed = match all_prescribed(grains) {
+    let governed = match prescribed {
         true => "the motion of all bodies is prescribed".into(),
         false => grains.describe(model.dt_limit()),
     };
