@@ -78,7 +78,7 @@ def limits(bench, rng):
     limits_ += ["-f 1", "-f 16", "-s 256", "-s 1024", "-t 1"]
     results = good_results(bench, [SCENE])[SCENE[0]]
     commands = [["check", scene], command(*SCENE, bench.work / "limited"), ["mesh", "info", INPUTS / "coupled/embankment_tet10/embankment.msh"]]
-    commands += [["report", results, "--out", bench.work / "limited.html"]]
+    commands += [["report", results, "--force", "--out", bench.work / "limited.html"]]
     commands += [["view", results, "--force", "--export", bench.work / "limited.html"]]
     commands += [["render", results, "--force", "--out", bench.work / "limited.png"]]
     commands += [["study", INPUTS / "studies/newton_settlement.toml", "--out", bench.work / "limited"]]

@@ -99,6 +99,6 @@ mod tests {
         assert_eq!(status(&[load("a", 0.01), load("b", -0.05)]), Some(Outcome::Warned));
         assert_eq!(status(&[load("a", 0.2), load("b", -0.05)]), Some(Outcome::Failed));
         let message = load_error(&[load("a", 0.01), load("b", -0.05)]).unwrap().message;
-        assert!(message.starts_with("b: travel [m] 0.0000e0 to 9.5000e-1"), "{message}");
+        assert!(message.starts_with("b: travel [m] found 0.0000e0 to 9.5000e-1"), "{message}");
     }
 }
