@@ -41,7 +41,7 @@ def results(bench, rng):
         page.write_text("kept")
         for words in (
             ["view", out, "--export", page, "--force"],
-            ["report", out, "--out", page],
+            ["report", out, "--out", page, "--force"],
             ["render", out, picture],
         ):
             before = page.read_bytes()

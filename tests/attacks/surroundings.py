@@ -64,7 +64,7 @@ def clock(bench, rng):
             os.utime(path, (4e9, 4e9))
         bench.attempt(*words, out=out, untouched=[out], codes={2}, env=env)
         page = bench.work / "page.html"
-        bench.attempt("report", out, "--out", page, untouched=[out], codes={0}, env=env)
+        bench.attempt("report", out, "--out", page, "--force", untouched=[out], codes={0}, env=env)
         bench.attempt("view", out, "--export", page, "--force", untouched=[out], codes={0}, env=env)
         yield
 
