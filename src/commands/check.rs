@@ -106,7 +106,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
         Some(grains) => {
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
-            numbers["grains"] = grain_numbers(&model, &grains.describe(model.dt_limit()));
+            numbers["grains"] = grain_numbers(&model, &grains.describe_limit(&model));
             numbers["grains"]["beds"] = bed_numbers(grains);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
                 let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
@@ -215,11 +215,10 @@ fn grain_lines(
         ),
     };
     let governed = match prescribed {
-        true => "the motion of all bodies is prescribed".into(),
-        false => grains.describe(model.dt_limit()),
+        true => "  the motion of all bodies is prescribed".into(),
+        false => format!("  critical for the initial step: {}", grains.describe_limit(&model)),
     };
-    let mut lines: Vec<Line> =
-        vec![bodies.into(), step.into(), format!("  critical for the initial step: {governed}").into()];
+    let mut lines: Vec<Line> = vec![bodies.into(), step.into(), governed.into()];
     let steps = |time: f64| {
         let most = time / model.dt();
         match model.measured() {

@@ -309,7 +309,7 @@ impl RunState<'_> {
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
         summary.model.grain_step_limit = Some(model.dt_limit().dt);
-        summary.model.grain_step_set_by = Some(part.describe(model.dt_limit()));
+        summary.model.grain_step_set_by = Some(part.describe_limit(&model));
         Ok(model)
     }
 }

@@ -16,7 +16,6 @@ use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use std::sync::Arc;
 use trackbed_dem::sheet::SurfaceMesh;
-use trackbed_dem::timestep::DtLimit;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
 
 /// Resolved grains.
@@ -98,12 +97,13 @@ impl GrainsPart {
         self.wind.into_iter().chain(self.water)
     }
 
-    /// Formats a step limit of a model with the grains first and rigid sleepers last.
-    pub fn describe(&self, limit: &DtLimit) -> String {
-        let group = self.groups.bodies.get(limit.body).and_then(|b| self.groups.names.get(b.part as usize));
-        let body = match group {
-            Some(group) => format!("body {} of {group}", limit.body),
-            None => "sleeper".into(),
+    /// Formats the step limit of a model of these groups.
+    pub fn describe_limit(&self, model: &Model) -> String {
+        let limit = model.dt_limit();
+        let name = |part: u32| self.groups.names.get(part as usize).map_or("", String::as_str);
+        let body = match limit.body < model.body_count() {
+            true => format!("{} body {}", name(model.part(limit.body)), limit.body),
+            false => "no body".into(),
         };
         let wall = limit.wall.and_then(|wall| self.walls.names.get(wall));
         limit.with_names(&body, self.materials.name(limit.partner), wall.map_or("", String::as_str))
