@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lag_of_dashpots_is_no_gain_of_theirs() {
+    fn dashpot_term_excludes_negative_interface_error() {
         let dashpots = |dashpot, interface_dashpot_error| {
             WorkAndDissipation { dashpot, interface_dashpot_error, ..WorkAndDissipation::default() }
                 .dissipation_terms()[0]

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn box_has_the_volume_of_its_points() {
+    fn point_volumes_sum_to_box() {
         let (model, state) = model();
         let all = BoxPoints::new(&model, 0..8, [0.0; 3], [2.0, 1.0, 1.0]).unwrap();
         let points = all.stress(&model, &state);

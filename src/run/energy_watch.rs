@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gain_of_the_time_integration_stops_a_run() {
+    fn numerical_gain_stops_run() {
         let closed = EnergyBalance {
             spent: WorkAndDissipation { numerical: -0.3, ..WorkAndDissipation::default() },
             ..balance(1.3, 0.0)
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_steps_are_judged_by_what_moves() {
+    fn initial_reference_includes_stored_energy() {
         let mut watch = EnergyWatch::default();
         watch.follow(&balance(1.001, 1e-6)).unwrap();
         assert!(watch.now() > 0.9, "the judgement at the end has no such allowance: {watch:?}");

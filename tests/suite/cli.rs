@@ -268,7 +268,7 @@ fn overrides_change_the_scene() {
 }
 
 #[test]
-fn output_at_a_file_is_bad_input() {
+fn rejects_file_as_output() {
     let folder = scene_folder("unwritable", SOLID);
     folder.write("taken", "a file");
     let outcome = run(&folder.join("scene.toml"), &folder.join("taken"), &[]);

@@ -47,7 +47,7 @@ fn settled(text: &str) -> (String, Value) {
 
 /// Largest grain of 44 mm: 0.118 kg; a clump has at most the volume 0.784 d³.
 #[test]
-fn target_mass_is_met_within_a_grain() {
+fn mass_matches_target_within_grain() {
     for (shape, largest) in [(SPHERES.to_string(), 0.118), (clumps(), 0.177)] {
         for target in [3.0, 20.0] {
             let (_, beds) = checked(&scene(&shape, &format!("target_mass = \"{target} kg\""), ""));
@@ -58,7 +58,7 @@ fn target_mass_is_met_within_a_grain() {
 }
 
 #[test]
-fn target_gives_the_grains_of_its_count() {
+fn target_height_sets_grain_count() {
     let (text, beds) = checked(&scene(SPHERES, "target_height = 0.26", ""));
     assert!((beds[0]["height"].as_f64().unwrap() / 0.26 - 1.0).abs() < 0.003, "{beds}");
     let porosity = beds[0]["porosity"].as_f64().unwrap();
@@ -114,7 +114,7 @@ fn missed_target_is_a_warning() {
 }
 
 #[test]
-fn level_above_the_bed_is_a_warning() {
+fn warns_of_level_above_bed() {
     let (low, _) = checked(&scene(SPHERES, "target_height = 0.26", "level = 0.24"));
     assert!(!low.contains("deposition.level"), "{low}");
     let (high, _) = checked(&scene(SPHERES, "target_height = 0.26", "level = 0.35"));

@@ -73,7 +73,7 @@ fn number(count: &str) -> usize {
 }
 
 #[test]
-fn pictures_of_shipped_scenes_are_not_empty() {
+fn shipped_scenes_render_nonempty_pictures() {
     let folder = Folder::new("preview_pictures");
     let out = folder.join("picture.bmp");
     for scene in inputs() {

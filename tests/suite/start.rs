@@ -164,7 +164,7 @@ fn completions_name_every_option() {
 }
 
 #[test]
-fn manual_has_a_page_for_every_command() {
+fn manual_covers_every_command() {
     let folder = Folder::new("manual");
     let pages = folder.join("man/man1");
     trackbed(["manual", pages.to_str().unwrap()]).good();

@@ -34,7 +34,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn powers_give_the_field_of_the_shape_functions() {
+fn power_form_matches_shape_functions() {
     let mut random = Random::new(29);
     for shape in SHAPES {
         for _ in 0..100 {
@@ -99,7 +99,7 @@ fn closest_point_matches_a_fine_scan() {
 }
 
 #[test]
-fn a_warm_start_gives_the_same_point_in_two_iterations() {
+fn warm_start_converges_in_two_iterations() {
     let mut random = Random::new(5);
     for shape in SHAPES {
         for _ in 0..100 {
@@ -203,7 +203,7 @@ fn corners_are_named_by_both_sides() {
 }
 
 #[test]
-fn bounds_hold_a_face_that_bulges_beyond_its_sides() {
+fn bounds_enclose_bulging_face() {
     for sign in [1.0, -1.0] {
         let heights = [0.0, 1.0, 1.0, 1.0, 0.75, 1.0, 1.0, 0.75].map(|c| sign * c);
         let mut x = [[0.0; 3]; 8];

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ledger_of_grains_goes_into_the_account_whole() {
+    fn all_grain_energy_terms_are_counted() {
         let model = dem::Model::new(dem::ModelInput::default()).expect("no grains at all");
         let mut grains = dem::State::new(&model);
         let ledger = &mut grains.balance;

@@ -106,7 +106,7 @@ fn separate_sides_match_uncoupled_runs_bitwise() {
 /// Newmark ¼, ½ and the window step with mean load are the same for a load linear in each step: difference
 /// below 1e-13 of the largest displacement and velocity over 500 steps, with damping.
 #[test]
-fn a_solid_under_grains_that_do_not_touch_moves_as_newmarks_does() {
+fn solid_without_contact_follows_newmark() {
     let solid = ground();
     const STEPS: usize = 500;
     let n = solid.dof_count();

@@ -283,7 +283,7 @@ fn lagged_surface_velocity_is_linear() {
 }
 
 #[test]
-fn a_surface_that_leaps_is_touched_at_once() {
+fn detects_contact_after_surface_jump() {
     let solid = cube();
     let (dt, substeps) = (2e-6, 10);
     let window = dt * f64::from(substeps);
@@ -332,7 +332,7 @@ fn stiffened_prediction_includes_slip_and_spin() {
 }
 
 #[test]
-fn a_removed_grain_loads_the_solid_no_more() {
+fn removed_grain_exerts_no_force() {
     let solid = cube();
     let iterated = Scheme::Iterated { tolerance: 1e-9, passes: 30 };
     for scheme in [Scheme::Predicted, Scheme::Lagged, Scheme::Stiffened, iterated] {

@@ -74,7 +74,7 @@ fn finds_points_on_distorted_surface() {
 }
 
 #[test]
-fn a_window_shows_the_surface_where_it_is() {
+fn surface_follows_predicted_motion() {
     let (mesh, mut surface) = distorted_top();
     let mut random = Scatter::new(29);
     let n = 3 * mesh.node_count();

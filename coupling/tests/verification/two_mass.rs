@@ -122,7 +122,7 @@ fn threshold(scheme: Scheme, zeta: f64, mass_ratio: f64, mut low: f64, mut high:
 const ITERATED: Scheme = Scheme::Iterated { tolerance: 1e-9, passes: 30 };
 
 #[test]
-fn thresholds_of_the_schemes_at_a_damping_of_0_2() {
+fn damped_thresholds_match_reference() {
     for (scheme, reference) in [(Scheme::Lagged, 0.29), (Scheme::Predicted, 1.59), (Scheme::Stiffened, 3.33)]
     {
         let (below, above) =

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_target_is_judged_by_its_mean() {
+    fn constant_target_error_is_relative_deviation() {
         let load = follow(|_| 10.0, |t| if t < 0.1 { 10.0 } else { 20.0 }, 1.0);
         assert!(load.amplitude_ratio.is_none() && (load.error - 0.95).abs() < 0.1, "{load:?}");
         assert!(follow(|_| 10.0, |_| 10.1, 1.0).error < 0.011);

@@ -166,7 +166,7 @@ fn rejects_nan_speed() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn step_bits_independent_of_thread_count() {
     for hertz in [true, false] {
         let model = heap(hertz, true);
         let run = |threads: usize| {

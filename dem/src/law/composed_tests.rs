@@ -22,7 +22,7 @@ const GLASS: Material = Material {
 const RADIUS: f64 = 0.005;
 
 #[test]
-fn moduli_of_like_pairs_and_of_rigid_partners() {
+fn moduli_against_equal_and_rigid_partner() {
     let like = HertzLaw::mix(&pair(&GLASS, &GLASS));
     let shear = 6e7 / 2.5;
     assert!((like.normal.modulus - 6e7 / (2.0 * 0.9375)).abs() < 1e-6);
@@ -106,7 +106,7 @@ fn coulomb_limit_shortens_spring() {
 }
 
 #[test]
-fn spring_turns_with_the_tangent_plane_and_keeps_its_length() {
+fn spring_rotates_with_constant_length() {
     let law = LinearLaw::mix(&pair(&SOFT, &SOFT));
     let mut h = History { spring: Vec3::new(1e-6, 0.0, 0.0), rate: 0.0, ..History::NONE };
     for k in 0..=100 {

@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_force_is_reached_for_any_gain() {
+    fn servo_reaches_constant_force() {
         for gain in [0.25, 1.0] {
             for damping in [0.0, 0.3, 0.45] {
                 for compliance in [1.0, 0.1, 1e-2] {

@@ -179,7 +179,7 @@ fn two_rigid_boxes_are_refused() {
 /// Rotated by 45°, eight points of half a spring. On a slope of 1 in 20 the springs store ½ F²/(4 Kₜ), to 2
 /// %.
 #[test]
-fn shared_springs_hold_their_share_of_energy() {
+fn shared_spring_energy_matches_closed_form() {
     let mut input = boxes(material(), &[[0.1, 0.1, 0.05], [0.1, 0.1, 0.05]]);
     input.gravity = Vec3::new(0.05 * G, 0.0, -G);
     input.bodies.push(fixed(0, Vec3::zeros()));

@@ -150,7 +150,7 @@ fn orphaned_contact_ends_on_cpu() {
 }
 
 #[test]
-fn a_changed_place_of_the_rest_is_seen() {
+fn changed_contact_order_is_detected() {
     if device_is_there() {
         let spheres = gas([stone(), smooth()], Vec::new());
         let bonds = bonded(Bond::Parallel(parallel()), stone());
@@ -162,11 +162,13 @@ fn a_changed_place_of_the_rest_is_seen() {
             ("if (HELD_WITH[k] == other) return 1;", "if (HELD_WITH[k] == other) return 0;"),
             ("NO_SPHERE(s) (SINGLE[s] & ELSEWHERE)", "NO_SPHERE(s) 0"),
         ];
-        assert_detected("device_search::a_changed_place_of_the_rest_is_seen", &changes, |k, change| {
-            match inputs.get(k) {
+        assert_detected(
+            "device_search::changed_contact_order_is_detected",
+            &changes,
+            |k, change| match inputs.get(k) {
                 Some(input) => compare_events(input.clone(), STEPS, change, |_, _| false).0,
                 None => device_beside::compare(among_blocks(spheres.clone()), change).differs,
-            }
-        });
+            },
+        );
     }
 }

@@ -359,7 +359,7 @@ fn an_elastic_gas_does_not_heat() {
 /// With K = Kₜ and 1/I = 5/(2 m r²), ω² in K/m: 1 normal; 1 + 5/2 tangential; 5/2 rotation; with a rolling
 /// spring Kₜ r² the larger root of λ² − 6 λ + 5/2; twisting 5/2.
 #[test]
-fn one_sphere_on_a_plane_has_its_closed_form() {
+fn limit_on_plane_matches_closed_form() {
     let (free, held) = (false, true);
     for (name, fixed, rolling, twisting, expected) in [
         ("free", [free; 6], 0.0, 0.0, 3.5),
@@ -391,7 +391,7 @@ fn one_sphere_on_a_plane_has_its_closed_form() {
 
 /// Two planes (Hertz) double the overlap and reduce the limit by a sixth per check.
 #[test]
-fn a_changing_limit_is_used_with_care() {
+fn falling_limit_reduces_step_fraction() {
     let material =
         Material { young: Some(2e7), stiffness: f64::INFINITY, friction: 0.0, restitution: 0.3, ..stone() };
     let mut input = crate::scene::weightless(material);
@@ -437,7 +437,7 @@ fn a_changing_limit_is_used_with_care() {
 }
 
 #[test]
-fn a_window_has_as_few_steps_as_the_limit_allows() {
+fn window_has_fewest_stable_steps() {
     let mut input = crate::scene::weightless(Material { friction: 0.0, ..stone() });
     input.planes.push(plane(Vec3::zeros(), Vec3::z()));
     input.bodies.push(crate::scene::sphere(Vec3::z() * (0.01 - 1e-7), Vec3::zeros()));
@@ -455,7 +455,7 @@ fn a_window_has_as_few_steps_as_the_limit_allows() {
 
 /// ω² = 12 K/m · max(1, 7/2 α or 6 α).
 #[test]
-fn the_bound_of_a_sphere_has_its_closed_form() {
+fn sphere_bound_matches_closed_form() {
     for (alpha, rolling, expected) in [(0.1, 0.0, 1.0), (0.5, 0.0, 1.75), (1.0, 0.0, 3.5), (0.5, 0.1, 3.0)] {
         let mut input = crate::scene::weightless(Material {
             tangential_ratio: alpha,
@@ -473,7 +473,7 @@ fn the_bound_of_a_sphere_has_its_closed_form() {
 
 /// ω² = 24 K (1/m + (a + r)²/I), spheres of radius r at ±a.
 #[test]
-fn the_bound_of_a_dumbbell_has_its_closed_form() {
+fn dumbbell_bound_matches_closed_form() {
     let (a, r) = (0.006, 0.008);
     let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
     let dumbbell = Clump::from_spheres(&[([-a, 0.0, 0.0], r), ([a, 0.0, 0.0], r)]).expect("a clump");
@@ -488,7 +488,7 @@ fn the_bound_of_a_dumbbell_has_its_closed_form() {
 }
 
 #[test]
-fn the_bounds_of_contacts_and_bonds_add_up() {
+fn contact_and_bond_bounds_add() {
     let mut input = crate::scene::weightless(Material { restitution: 1.0, ..stone() });
     input.bodies.push(crate::scene::sphere(Vec3::zeros(), Vec3::zeros()));
     input.bodies.push(crate::scene::sphere(Vec3::x() * 0.02, Vec3::zeros()));
@@ -513,7 +513,7 @@ fn the_bounds_of_contacts_and_bonds_add_up() {
 
 /// 0.08 √(m*/K) without loss, m* = m₁ m₂/(m₁ + m₂), stiffest contact.
 #[test]
-fn the_time_of_a_collision_is_that_of_both_masses() {
+fn collision_time_uses_reduced_mass() {
     let light = Material { restitution: 1.0, ..stone() };
     let heavy = Material { density: 100.0 * light.density, ..light };
     let mut input = crate::scene::weightless(light);
@@ -535,7 +535,7 @@ fn the_time_of_a_collision_is_that_of_both_masses() {
 }
 
 #[test]
-fn the_speed_of_a_fall_sets_the_limit_after_hertz() {
+fn fall_speed_sets_hertz_limit() {
     let material = Material { young: Some(2e7), poisson: 0.2, stiffness: f64::INFINITY, ..stone() };
     let mut input = crate::scene::weightless(material);
     input.gravity = Vec3::z() * -9.81;

@@ -84,7 +84,7 @@ fn iteration_count_independent_of_mesh_size() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn static_bits_independent_of_thread_count() {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

@@ -53,7 +53,7 @@ macro_rules! laws {
             }
 
             #[test]
-            fn tangent_is_the_derivative_of_the_stress() {
+            fn tangent_is_stress_derivative() {
                 tangent(&case());
             }
 
@@ -68,7 +68,7 @@ macro_rules! laws {
             }
 
             #[test]
-            fn plastic_work_of_associated_flow_is_never_negative() {
+            fn associated_plastic_work_is_nonnegative() {
                 dissipation(&case());
             }
 

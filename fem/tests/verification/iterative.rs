@@ -148,7 +148,7 @@ fn bits(state: &State) -> Vec<u64> {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bits() {
+fn window_bits_independent_of_thread_count() {
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

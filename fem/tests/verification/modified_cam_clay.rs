@@ -224,7 +224,7 @@ fn equivalent_strain_of_isotropic_compression() {
 
 /// pc = R (p + q²/(M² p)).
 #[test]
-fn overconsolidation_counts_the_shear_of_the_initial_stress() {
+fn overconsolidation_includes_initial_shear() {
     let (p, q) = (100e3, 60e3);
     // Triaxial compression along z.
     let stress = [-(p - q / 3.0), -(p - q / 3.0), -(p + 2.0 * q / 3.0), 0.0, 0.0, 0.0];
@@ -237,7 +237,7 @@ fn overconsolidation_counts_the_shear_of_the_initial_stress() {
 }
 
 #[test]
-fn a_small_preconsolidation_pressure_is_not_lifted() {
+fn small_preconsolidation_pressure_is_kept() {
     let law = ModifiedCamClay { consolidation: Consolidation::Pressure(400.0), ..CLAY };
     let material = Material::plastic(law.reference(1900.0), law);
     let state = PointState { stress: [-399.0, -399.0, -399.0, 0.0, 0.0, 0.0], ..PointState::default() };
@@ -253,7 +253,7 @@ fn a_small_preconsolidation_pressure_is_not_lifted() {
 }
 
 #[test]
-fn reduced_strength_divides_the_tangent_of_the_friction_angle() {
+fn strength_reduction_divides_friction_tangent() {
     use trackbed_fem::ConstitutiveLaw;
     let tangent = |m: f64| (3.0 * m / (6.0 + m)).asin().tan();
     for factor in [1.0, 1.3, 2.0] {

@@ -112,11 +112,11 @@ mod library {
     }
 
     #[test]
-    fn a_folder_that_is_not_there_is_an_error() {
+    fn missing_directory_is_an_error() {
         // The directory is set per process.
         if std::env::var_os("TRACKBED_NO_FOLDER").is_none() {
             let output = std::process::Command::new(std::env::current_exe().unwrap())
-                .args(["--exact", "mumps::library::a_folder_that_is_not_there_is_an_error"])
+                .args(["--exact", "mumps::library::missing_directory_is_an_error"])
                 .env("TRACKBED_NO_FOLDER", "1")
                 .env("TMPDIR", "/no/such/folder")
                 .output()

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn last_state_serves_while_scene_is_read() {
+    fn previous_state_serves_during_reload() {
         let dir = folder("live");
         let file = dir.join("scene.toml");
         std::fs::write(&file, "x = \n").unwrap();

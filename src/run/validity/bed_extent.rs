@@ -165,7 +165,7 @@ mod tests {
 
     /// A bed of 0.3 × 0.3 m whose grains end 4 mm before the walls.
     #[test]
-    fn boxes_past_walls_or_floor_are_found() {
+    fn detects_boxes_beyond_bed() {
         let bodies = [(Vec3::new(0.024, 0.024, 0.02), 0.02), (Vec3::new(0.276, 0.276, 0.06), 0.02)];
         let walls = [(0, 0.0), (0, 0.3), (1, 0.0), (1, 0.3), (2, 0.0), (0, 5.0)];
         let bed = BedExtent::around(&bodies).unwrap().up_to(&walls, 0.04);

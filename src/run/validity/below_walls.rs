@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bonded_to_a_held_grain_is_not_lost() {
+    fn grains_bonded_to_fixed_are_kept() {
         // Body 0 is held, 1 and 2 hang from it, 3 and 4 are a broken end.
         let broken = Fragments { of: vec![0, 0, 0, 1, 1], sizes: vec![3, 2] };
         assert_eq!(hanging(&broken, [0].into_iter()), [true, true, true, false, false]);

@@ -68,7 +68,7 @@ impl<L: ContactLaw> Led<L> {
 }
 
 /// Slow cycles of compression and shear (Elata & Berryman 1996).
-pub fn energy_is_stored_or_dissipated_along_a_path<L: ContactLaw>(material: &Material) {
+pub fn path_work_is_stored_or_dissipated<L: ContactLaw>(material: &Material) {
     let (high, low, s) = (2e-5, 5e-6, 2e-6);
     let cycles = [
         [(high, 0.0), (high, s), (low, s), (low, 0.0), (high, 0.0)],

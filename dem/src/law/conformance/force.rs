@@ -140,7 +140,7 @@ pub fn friction_below_its_limit<L: ContactLaw>(material: &Material) {
     assert!(sliding > 100 && sticking > 100, "{sliding} sliding, {sticking} sticking");
 }
 
-pub fn stiffness_is_the_slope_of_the_force<L: ContactLaw>(material: &Material) {
+pub fn stiffness_equals_force_gradient<L: ContactLaw>(material: &Material) {
     let law = plain::<L>(material, 0.5);
     let still = Vec3::zeros();
     for d in [1e-6, 3e-5, 2e-4] {

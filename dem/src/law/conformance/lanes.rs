@@ -110,7 +110,7 @@ fn compare<L: ContactLaw, const ROLLING: bool>(laws: impl Fn(usize) -> L) {
     }
 }
 
-pub fn lanes_give_the_bits_of_single_contacts<L: ContactLaw>(material: &Material) {
+pub fn lanes_match_scalar_contacts_bitwise<L: ContactLaw>(material: &Material) {
     compare::<L, true>(|_| law(material));
     compare::<L, false>(|_| plain(material, 0.5));
 }

@@ -52,8 +52,8 @@ macro_rules! conforms {
             }
 
             #[test]
-            fn stiffness_is_the_slope_of_the_force() {
-                force::stiffness_is_the_slope_of_the_force::<$law>(&$material);
+            fn stiffness_equals_force_gradient() {
+                force::stiffness_equals_force_gradient::<$law>(&$material);
             }
 
             #[test]
@@ -62,8 +62,8 @@ macro_rules! conforms {
             }
 
             #[test]
-            fn energy_is_stored_or_dissipated_along_a_path() {
-                energy::energy_is_stored_or_dissipated_along_a_path::<$law>(&$material);
+            fn path_work_is_stored_or_dissipated() {
+                energy::path_work_is_stored_or_dissipated::<$law>(&$material);
             }
 
             #[test]
@@ -72,8 +72,8 @@ macro_rules! conforms {
             }
 
             #[test]
-            fn lanes_give_the_bits_of_single_contacts() {
-                lanes::lanes_give_the_bits_of_single_contacts::<$law>(&$material);
+            fn lanes_match_scalar_contacts_bitwise() {
+                lanes::lanes_match_scalar_contacts_bitwise::<$law>(&$material);
             }
         }
     )+};

@@ -129,7 +129,7 @@ fn isotropic_extension_ends_at_the_apex() {
 
 /// Softening moves the apex, `0.1 c cot(phi)`, below the cut-off of `0.4 c`.
 #[test]
-fn the_apex_takes_over_from_the_cut_off() {
+fn softened_apex_replaces_cut_off() {
     let c = COHESION;
     let soft = Hardening::Linear { initial: c, modulus: -20.0 * c, limit: Some(0.1 * c) };
     let mc = mohr_coulomb(c, 30.0, 10.0, Some(0.4 * c));

@@ -163,7 +163,7 @@ fn associated_returns_are_closest_points() {
 
 /// Corners and rays span all admissible stresses.
 #[test]
-fn associated_returns_of_mohr_coulomb_against_all_corners_and_rays() {
+fn mohr_coulomb_returns_maximise_dissipation() {
     let (c, phi, t) = (COHESION, 30.0, 0.4 * COHESION);
     let (sin, cos) = rad(phi).sin_cos();
     let s3 = ((1.0 + sin) * t - 2.0 * c * cos) / (1.0 - sin);

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn round_walls_cut_what_is_neither_in_nor_out() {
+    fn curved_walls_cut_intersecting_footprints() {
         let tube = |radius: f64, base: f64| WallShape::Frustum {
             base: Vec3::new(0.0, 0.0, base),
             axis: Vec3::z(),

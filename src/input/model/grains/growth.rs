@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn rings_of_a_cone_touch_its_bounds() {
+    fn cone_points_reach_its_bounds() {
         let cone = Container::Cone { from: Vec3::zeros(), to: Vec3::z(), from_radius: 0.1, to_radius: 0.5 };
         let points = extreme(&cone);
         let top = points.iter().map(|x| x.x).fold(0.0, f64::max);
