@@ -28,7 +28,7 @@ pub mod stability;
 mod testing;
 pub mod wall;
 
-pub use base::{Vec3, balance_terms, error, force_tracking, random};
+pub use base::{Vec3, balance_terms, error, force_tracking, names, random};
 pub use bodies::input::BodyInput;
 pub use engine::back_end::BackEnd;
 pub use engine::{input, model, state, step, timestep, work};
@@ -44,6 +44,7 @@ pub use input::{AppliedForce, LocalDamping, ModelInput, SearchSkin, TimeStep};
 pub use law::material::{Material, PairOverride};
 pub use law::scarring::Scarring;
 pub use model::Model;
+pub use names::Names;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, find_deep_contacts, step};

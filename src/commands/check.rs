@@ -106,7 +106,7 @@ pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool)
         Some(grains) => {
             let (model, own) = grain_lines(document, job, grains)?;
             lines.extend(own);
-            numbers["grains"] = grain_numbers(&model, &grains.describe_limit(&model));
+            numbers["grains"] = grain_numbers(&model);
             numbers["grains"]["beds"] = bed_numbers(grains);
             if let (Some(coupling), Some(solid)) = (&job.coupling, &job.solid) {
                 let (own, values) = coupling_lines(document, coupling, solid, grains, &model)?;
@@ -216,7 +216,7 @@ fn grain_lines(
     };
     let governed = match prescribed {
         true => "  the motion of all bodies is prescribed".into(),
-        false => format!("  critical for the initial step: {}", grains.describe_limit(&model)),
+        false => format!("  critical for the initial step: {}", model.describe_limit()),
     };
     let mut lines: Vec<Line> = vec![bodies.into(), step.into(), governed.into()];
     let steps = |time: f64| {
@@ -233,14 +233,14 @@ fn grain_lines(
     Ok((model, lines))
 }
 
-fn grain_numbers(model: &dem::Model, limit: &str) -> Value {
+fn grain_numbers(model: &dem::Model) -> Value {
     let longest = model.measured().map_or(model.dt(), |_| model.longest(true));
     json!({
         "bodies": model.body_count(),
         "spheres": model.sphere_count(),
         "first_step": model.dt(),
         "longest_step": longest,
-        "step_limit": limit,
+        "step_limit": model.describe_limit(),
     })
 }
 

@@ -49,7 +49,7 @@ impl<'a> Bed<'a> {
         }
         // Every step of a bed is observed.
         .and_then(|()| work.download(model, state))
-        .map_err(|e| Failure::Numerical(format!("{}: {e}", self.doing)))?;
+        .map_err(|e| Failure::Numerical(format!("{}: {}", self.doing, model.name_objects(&e))))?;
         self.checkpoints.check(self.doing, self.state.time)
     }
 

@@ -78,7 +78,7 @@ impl Steps {
         description: &[u8],
     ) -> Result<Steps, Failure> {
         message::note(&format!("main stage: DEM steps on {} ranks", link.size()));
-        let ranks = Ranks::new(link, model, state, description).map_err(failed)?;
+        let ranks = Ranks::new(link, model, state, description).map_err(failed(model))?;
         Ok(Steps::Ranks(Box::new(ranks)))
     }
 
@@ -93,9 +93,13 @@ impl Steps {
     }
 }
 
-/// Converts a step error.
-pub fn failed(error: StepError) -> Failure {
-    let text = error.to_string();
+/// Converts a step error, with names of bodies and walls.
+pub fn failed(model: &dem::Model) -> impl Fn(StepError) -> Failure {
+    |error| convert(model, &error)
+}
+
+fn convert(model: &dem::Model, error: &StepError) -> Failure {
+    let text = model.name_objects(error);
     // A lost rank is no numerical failure.
     if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
 }

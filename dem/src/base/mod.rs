@@ -5,6 +5,7 @@ pub(crate) mod capacity;
 pub mod error;
 pub(crate) mod failure;
 pub mod force_tracking;
+pub mod names;
 pub mod random;
 mod vector;
 

@@ -201,24 +201,26 @@ fn settings(input: &ModelInput) -> Result<(), ModelError> {
 
 pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> Result<(), ModelError> {
     let endless = |a: u32, b: usize| laws.rigid(a, b as u32);
+    let names = &input.names;
+    let body = |k: usize| names.body(input.bodies[k].part, k);
     let count = input.materials.len();
     let hard = |m: u32| (0..count).any(|other| endless(m, other));
     let rigid: Vec<usize> = (0..bodies.len()).filter(|&k| hard(bodies.get(k).material)).collect();
     for (n, &i) in rigid.iter().enumerate() {
         let a = &bodies.get(i);
-        let error = |b: String| Err(ModelError::RigidPair { a: format!("body {i}"), b });
+        let error = |b: String| Err(ModelError::RigidPair { a: body(i), b });
         for &j in &rigid[n + 1..] {
             let b = &bodies.get(j);
             let still = a.inverse_mass == 0.0 && b.inverse_mass == 0.0;
             if !still && endless(a.material, b.material as usize) {
-                return error(format!("body {j}"));
+                return error(body(j));
             }
         }
         if a.inverse_mass == 0.0 {
             continue;
         }
         if let Some(p) = input.planes.iter().position(|p| endless(a.material, p.material)) {
-            return error(format!("plane {p}"));
+            return error(names.plane(p));
         }
         // Boxes interact with neither.
         if a.kind != BodyKind::Solid || input.shapes[a.shape].dilated() {
@@ -226,7 +228,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
                 return error(format!("triangle surface {t}"));
             }
             if let Some(t) = input.walls.iter().position(|w| endless(a.material, w.material)) {
-                return error(format!("wall {t}"));
+                return error(names.wall(input.triangles.len() + t));
             }
             if surfaces(input).any(|m| endless(a.material, m)) {
                 return error("the surface".to_string());
@@ -234,12 +236,17 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
         }
     }
     for (w, wall) in input.walls.iter().enumerate().filter(|(_, w)| w.body.is_some()) {
-        let error = |b: String| Err(ModelError::RigidPair { a: format!("the rigid body of wall {w}"), b });
+        let error = |b: String| {
+            Err(ModelError::RigidPair {
+                a: format!("the rigid body of {}", names.wall(input.triangles.len() + w)),
+                b,
+            })
+        };
         if let Some(b) = rigid.iter().find(|&&b| endless(bodies.get(b).material, wall.material)) {
-            return error(format!("body {b}"));
+            return error(body(*b));
         }
         if let Some(p) = input.planes.iter().position(|p| endless(wall.material as u32, p.material)) {
-            return error(format!("plane {p}"));
+            return error(names.plane(p));
         }
     }
     Ok(())

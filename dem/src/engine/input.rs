@@ -1,6 +1,7 @@
 //! User input of a model; checked form: [`crate::engine::model::Model`].
 
 use crate::base::Vec3;
+use crate::base::names::Names;
 use crate::bodies::input::BodyInput;
 use crate::body_force::BodyForce;
 use crate::bond::{Bond, BondInput};
@@ -91,6 +92,8 @@ pub struct AppliedForce {
 /// Model input.
 #[derive(Clone, Debug)]
 pub struct ModelInput {
+    /// Names in messages.
+    pub names: Names,
     /// Materials.
     pub materials: Vec<Material>,
     /// Values of material pairs.
@@ -136,6 +139,7 @@ impl Default for ModelInput {
     /// Empty, gravity 9.81 m/s² along −z.
     fn default() -> ModelInput {
         ModelInput {
+            names: Names::default(),
             materials: Vec::new(),
             contacts: Vec::new(),
             shapes: Vec::new(),

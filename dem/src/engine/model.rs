@@ -7,6 +7,7 @@ use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
+use crate::base::names::Names;
 use crate::bodies::table::{Bodies, Body, BodyKind, for_members, volume};
 use crate::body_force::{self, BodyForce, Skin};
 use crate::contact::narrow_phase::SheetView;
@@ -61,6 +62,7 @@ pub struct Model {
     pub(crate) periodic: Option<Periodic>,
     steps: Steps,
     limit: DtLimit,
+    names: Names,
 }
 
 struct Sizes {
@@ -136,10 +138,11 @@ impl Model {
         check::fluid_step(&input.time_step, fluids)?;
         let landing = timestep::landing(&bodies, &input, &laws, expected);
         let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);
-        let steps = Steps::new(&input.time_step.damped(input.damping), &limit, longest, collision)?;
+        let cause = limit.describe(&input.names, |body| input.bodies.get(body).map(|b| b.part));
+        let steps = input.time_step.damped(input.damping);
+        let steps = Steps::new(&steps, (&limit, &cause), longest, collision)?;
         let walls_and_surface = walls.walls.iter().map(|w| w.material);
-        let clumps = bodies.iter().any(|b| b.kind == BodyKind::Clump);
-        let solids = round < bodies.len();
+        let (clumps, solids) = (bodies.iter().any(|b| b.kind == BodyKind::Clump), round < bodies.len());
         let body_materials = sorted(bodies.iter().map(|b| b.material));
         let patch_materials = sorted(walls_and_surface.chain(check::surfaces(&input).map(|m| m as u32)));
         let planes = input.planes.iter().map(|p| Plane { normal: p.normal.normalize(), ..*p }).collect();
@@ -177,6 +180,7 @@ impl Model {
             radii,
             steps,
             limit,
+            names: input.names,
         })
     }
 
@@ -188,6 +192,20 @@ impl Model {
     /// Stability limit and its cause.
     pub fn dt_limit(&self) -> &DtLimit {
         &self.limit
+    }
+
+    /// Formats the stability limit and its cause.
+    pub fn describe_limit(&self) -> String {
+        self.limit.describe(&self.names, |body| self.group(body))
+    }
+
+    /// Replaces indices of bodies and walls of a message by names.
+    pub fn name_objects(&self, message: &impl std::fmt::Display) -> String {
+        self.names.replace(&message.to_string(), |body| self.group(body))
+    }
+
+    fn group(&self, body: usize) -> Option<u32> {
+        (body < self.body_count()).then(|| self.part(body))
     }
 
     /// Fraction of the critical time step of current contacts, if steps follow it ([`crate::stability`]).

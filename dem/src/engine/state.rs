@@ -273,6 +273,7 @@ impl State {
         // The total count fixes sorting steps, hence rounding.
         self.before = self.steps;
         self.balance = BalanceTerms::default();
+        (self.step_size.before, self.step_size.expected) = ([0.0; 2], 0.0);
         self.driven_speed = 0.0;
         self.bonds.breaks.clear();
         for wall in &mut self.walls {

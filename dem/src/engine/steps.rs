@@ -23,7 +23,12 @@ impl Steps {
     ///
     /// # Errors
     /// A fixed step above the limit; values out of floating-point range.
-    pub fn new(input: &TimeStep, limit: &DtLimit, rigid: f64, collision: f64) -> Result<Steps, ModelError> {
+    pub fn new(
+        input: &TimeStep,
+        (limit, cause): (&DtLimit, &str),
+        rigid: f64,
+        collision: f64,
+    ) -> Result<Steps, ModelError> {
         let lasting = collision::PACKED * collision;
         let steps = |first: f64| Steps { first, share: None, longest: rigid, collision, lasting };
         let steps = match *input {
@@ -38,7 +43,7 @@ impl Steps {
                 Steps { first, share: Some(share), longest, collision, lasting }
             }
             TimeStep::Fixed(dt) if dt > limit.dt => {
-                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: limit.to_string() });
+                return Err(ModelError::TimeStep { dt, limit: limit.dt, cause: cause.into() });
             }
             TimeStep::Fixed(dt) | TimeStep::FixedAboveLimit(dt) => steps(dt),
         };

@@ -20,6 +20,7 @@
 
 use super::input::ModelInput;
 use crate::base::Vec3;
+use crate::base::names::Names;
 use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::bond;
 use crate::contact::narrow_phase::{DEEPEST, LENGTH};
@@ -31,7 +32,6 @@ use crate::shape::dilated::Dilated;
 use crate::wall::set::Walls;
 use crate::wall::shells::Shells;
 use std::collections::BTreeSet;
-use std::fmt;
 
 /// Stability limit and its cause.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,32 +68,28 @@ impl DtLimit {
 }
 
 impl DtLimit {
-    /// Formats with the names of governing body, partner's material and wall.
-    pub fn with_names(&self, body: &str, material: &str, wall: &str) -> String {
+    /// Formats with names; `group`: of a body.
+    pub fn describe(&self, names: &Names, group: impl Fn(usize) -> Option<u32>) -> String {
         let contact = match self.stiffness > 0.0 {
-            true => format!(" in contact with {material} (stiffness {:.3e} N/m)", self.stiffness),
+            true => {
+                let material = names.material(self.partner);
+                format!(" in contact with {material} (stiffness {:.3e} N/m)", self.stiffness)
+            }
             false => String::new(),
         };
-        if self.wall.is_some() {
+        if let Some(wall) = self.wall {
             let mount = match self.mount > 0.0 {
                 true => format!(" on its mount ({:.3e} rad/s)", self.mount.sqrt()),
                 false => String::new(),
             };
-            return format!("the rigid body of wall {wall}{contact}{mount}");
+            return format!("the rigid body of {}{contact}{mount}", names.wall(wall));
         }
         let bonds = match self.bonds > 0.0 {
             true => format!(" and held by its bonds (up to {:.3e} rad/s)", self.bonds.sqrt()),
             false => String::new(),
         };
+        let body = group(self.body).map_or_else(|| "no body".into(), |group| names.body(group, self.body));
         format!("{body} (effective mass {:.3e} kg){contact}{bonds}", self.mass)
-    }
-}
-
-impl fmt::Display for DtLimit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let wall = self.wall.map_or_else(String::new, |wall| wall.to_string());
-        let (body, material) = (format!("body {}", self.body), format!("material {}", self.partner));
-        f.write_str(&self.with_names(&body, &material, &wall))
     }
 }
 

@@ -21,11 +21,23 @@ pub(crate) struct StepSize {
     pub before: [f64; 2],
     /// Dissipation rate at the last stability check [W].
     pub rate: f64,
+    /// Energy received up to which the last stability check holds [J].
+    pub expected: f64,
 }
 
 impl StepSize {
     pub fn new(dt: f64) -> StepSize {
-        StepSize { dt, last: dt, wanted: dt, limit: 0.0, look: 0, interval: 0, before: [0.0; 2], rate: 0.0 }
+        StepSize {
+            dt,
+            last: dt,
+            wanted: dt,
+            limit: 0.0,
+            look: 0,
+            interval: 0,
+            before: [0.0; 2],
+            rate: 0.0,
+            expected: 0.0,
+        }
     }
 
     /// Time increment of velocities [s].

@@ -436,6 +436,44 @@ fn falling_limit_reduces_step_fraction() {
     );
 }
 
+/// Two planes (Hertz) raise the overlap a hundredfold, the limit falls to a third, between two regular
+/// evaluations; nothing is dissipated.
+#[test]
+fn step_follows_a_fast_load() {
+    let material =
+        Material { young: Some(2e7), stiffness: f64::INFINITY, friction: 0.0, restitution: 1.0, ..stone() };
+    let mut input = crate::scene::weightless(material);
+    let overlap = 1e-6;
+    input.planes.push(plane(Vec3::z() * overlap, Vec3::z()));
+    input.planes.push(plane(Vec3::z() * (0.02 - overlap), -Vec3::z()));
+    input.bodies.push(crate::scene::sphere(Vec3::z() * 0.01, Vec3::zeros()));
+    input.impact_speed = Some(1e-6);
+    input.time_step = TimeStep::Measured { share: 0.8, longest: f64::INFINITY, collisions: false };
+    let model = Model::new(input).expect("a good input");
+    let mut state = State::new(&model);
+    let mut work = Work::new(&model, &state);
+    let (mut evaluated, mut interval) = (0, 0);
+    while interval < stability::MOST {
+        trackbed_dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a good step");
+        if stability::follow(&model, &mut state) {
+            (interval, evaluated) = (state.steps - evaluated, state.steps);
+        }
+    }
+    let speed = 99.0 * overlap / (0.5 * stability::MOST as f64 * state.dt());
+    let (mut worst, mut changes, before) = (0.0_f64, 0, stability::limit(&model, &state));
+    for (sign, plane) in [(1.0, 0), (-1.0, 1)] {
+        state.set_plane_velocity(plane, Vec3::z() * sign * speed);
+    }
+    while state.plane_point(&model, 0).z < 100.0 * overlap {
+        trackbed_dem::step(&model, &mut state, &mut work, &NoSurface, &[]).expect("a good step");
+        changes += usize::from(stability::follow(&model, &mut state));
+        worst = worst.max(state.dt() / stability::limit(&model, &state));
+    }
+    let fall = stability::limit(&model, &state) / before;
+    println!("limit falls to {fall:.2}, {changes} changes of the step, at most {worst:.3} of the limit");
+    assert!(fall < 0.4 && worst < 1.0, "{fall} {worst}");
+}
+
 #[test]
 fn window_has_fewest_stable_steps() {
     let mut input = crate::scene::weightless(Material { friction: 0.0, ..stone() });

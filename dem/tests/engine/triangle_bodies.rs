@@ -232,5 +232,5 @@ fn a_light_body_sets_the_step() {
     input.walls.push(cuboid(Vec3::new(0.0, 0.0, 0.5), Vec3::repeat(0.05), 1e-3));
     let model = Model::new(input).unwrap();
     assert!(model.dt() < alone);
-    assert!(model.dt_limit().to_string().starts_with("the rigid body of wall 0"), "{}", model.dt_limit());
+    assert!(model.describe_limit().starts_with("the rigid body of wall 0"), "{}", model.describe_limit());
 }

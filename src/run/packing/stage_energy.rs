@@ -55,7 +55,9 @@ impl StageEnergy {
             Some(s) => dem::find_contacts(model, &mut start, &mut work, s),
             None => dem::find_contacts(model, &mut start, &mut work, &dem::surface::NoSurface),
         }
-        .map_err(|e| Failure::Numerical(format!("grains at the start of {stage}: {e}")))?;
+        .map_err(|e| {
+            Failure::Numerical(format!("grains at the start of {stage}: {}", model.name_objects(&e)))
+        })?;
         let balance = EnergyBalance {
             start: stored(model, &start),
             now: stored(model, state),

@@ -223,7 +223,7 @@ fn equilibrium(
     let mut load = dead_load.to_vec();
     solid.add_loads(0.0, &mut load);
     let (contacts, resting) = coupling::step::initial_contact_load(grains, start, surface, model.mesh())
-        .map_err(|e| Failure::Numerical(e.to_string()))?;
+        .map_err(|e| Failure::Numerical(grains.name_objects(&e)))?;
     for (l, c) in load.iter_mut().zip(&contacts) {
         *l += c;
     }

@@ -84,16 +84,17 @@ fn settle(
             Some(s) => work.step(&model, &mut state, s, &[]),
             None => work.step(&model, &mut state, &dem::surface::NoSurface, &[]),
         }
-        .map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
+        .map_err(|e| Failure::Numerical(format!("settling: {}", model.name_objects(&e))))?;
         // Check the speed every millisecond.
         if bed::passed(&state, LOOK) {
-            work.download(&model, &mut state).map_err(|e| Failure::Numerical(format!("settling: {e}")))?;
+            work.download(&model, &mut state)
+                .map_err(|e| Failure::Numerical(format!("settling: {}", model.name_objects(&e))))?;
             let speed = bed::rms_speed(&model, &state);
             // Free fall must have started.
             settled = state.time > START_OF_SETTLING && plan.settled(speed, &model, &state);
             going = !settled && state.time < plan.max_time;
-            progress.message(format!("rms {speed:.2e} m/s"));
-            progress.at(state.time, || format!("{} steps, {:.4} s", state.steps, state.time));
+            progress.message(format!("root mean square speed {speed:.2e} m/s"));
+            progress.at(state.time, || format!("t = {:.4} s", state.time));
         }
         if going {
             run.checkpoints.step(

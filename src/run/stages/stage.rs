@@ -309,7 +309,7 @@ impl RunState<'_> {
         summary.model.spheres = model.sphere_count();
         summary.model.grain_step = Some(model.dt());
         summary.model.grain_step_limit = Some(model.dt_limit().dt);
-        summary.model.grain_step_set_by = Some(part.describe_limit(&model));
+        summary.model.grain_step_set_by = Some(model.describe_limit());
         Ok(model)
     }
 }

@@ -26,7 +26,7 @@ use trackbed_coupling::track::{Track, TrackInput};
 use trackbed_dem as dem;
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_io::failure::Failure;
-use trackbed_io::progress::Progress;
+use trackbed_io::progress::{Progress, Verbosity};
 
 /// Initial state of the grains.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -237,7 +237,7 @@ impl<'a> TimeLoop<'a> {
         if let Some(text) = system.progress() {
             self.progress.message(text);
         }
-        self.progress.at(reached as f64, || details(system, time, k));
+        self.progress.at(reached as f64, || details(system, time, k, self.run.verbosity));
         self.show(system)?;
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }
@@ -435,9 +435,13 @@ fn settlement(
     Some(SettlementRecord { seating, per_cycle, increments, slowing, fits, bed_stiffness, jump })
 }
 
-fn details<S: System>(system: &S, time: f64, k: u64) -> String {
+fn details<S: System>(system: &S, time: f64, k: u64, verbosity: Verbosity) -> String {
+    let time = if time < 1e-3 { format!("t = {time:.4e} s") } else { format!("t = {time:.4} s") };
+    if verbosity < Verbosity::Verbose {
+        return time;
+    }
     let (grain_steps, solid_steps) = system.steps_done(k);
-    let mut parts = vec![if time < 1e-3 { format!("{time:.4e} s") } else { format!("{time:.4} s") }];
+    let mut parts = vec![time];
     if let Some(grains) = system.grains() {
         parts.push(format!("{grain_steps} DEM steps"));
         parts.push(format!("{} contacts", dem::measure::contacts(grains.model, grains.state).len()));

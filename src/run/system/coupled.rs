@@ -77,7 +77,7 @@ impl CoupledSystem<'_> {
             applied(t, &model.grains, s, out);
         };
         coupling::step::step(model, &mut self.state, &mut self.work, apply, solid_load)
-            .map_err(|e| Failure::Numerical(e.to_string()))?;
+            .map_err(|e| Failure::Numerical(model.grains.name_objects(&e)))?;
         if let Some(seats) = &mut self.seats {
             seats.work += seats.work_at(middle, &self.state.solid.u) - before;
         }
@@ -132,7 +132,10 @@ impl System for CoupledSystem<'_> {
     fn advance(&mut self, applied: Applied<'_>) -> Result<(), Failure> {
         // CPU steps use the state directly.
         if std::mem::take(&mut self.changed) && self.work.grains.elsewhere() {
-            self.work.grains.upload(&self.model.grains, &self.state.grains).map_err(failed)?;
+            self.work
+                .grains
+                .upload(&self.model.grains, &self.state.grains)
+                .map_err(failed(&self.model.grains))?;
         }
         // Applies from the next window.
         self.last_window = self.model.window();
@@ -154,7 +157,7 @@ impl System for CoupledSystem<'_> {
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
         coupling::step::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
-            .map_err(|e| Failure::Numerical(e.to_string()))
+            .map_err(|e| Failure::Numerical(self.model.grains.name_objects(&e)))
     }
 
     fn surface(&self) -> &dyn dem::surface::Surface {

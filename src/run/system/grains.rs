@@ -39,7 +39,7 @@ impl GrainsSystem {
     ) -> Result<GrainsSystem, Failure> {
         let mut work = dem::Work::new(&model, &state);
         dem::find_contacts(&model, &mut state, &mut work, &dem::surface::NoSurface)
-            .map_err(|e| Failure::Numerical(e.to_string()))?;
+            .map_err(failed(&model))?;
         GrainsSystem::with(model, state, work, interval, (place, sharing))
     }
 
@@ -159,14 +159,14 @@ impl System for GrainsSystem {
         let none = &dem::surface::NoSurface;
         // CPU steps use the state directly.
         if std::mem::take(&mut self.changed) && self.work.elsewhere() {
-            self.work.upload(&self.model, &self.state).map_err(failed)?;
+            self.work.upload(&self.model, &self.state).map_err(failed(&self.model))?;
         }
         for _ in 0..dem::stability::divide(&self.model, &mut self.state, self.window, 1) {
             self.applied.clear();
             applied(self.state.time, &self.model, &self.state, &mut self.applied);
-            self.work.step(&self.model, &mut self.state, none, &self.applied).map_err(failed)?;
+            self.work.step(&self.model, &mut self.state, none, &self.applied).map_err(failed(&self.model))?;
         }
-        self.work.download(&self.model, &mut self.state).map_err(failed)
+        self.work.download(&self.model, &mut self.state).map_err(failed(&self.model))
     }
 
     fn shorten(&mut self, rest: f64) -> bool {
@@ -185,7 +185,7 @@ impl System for GrainsSystem {
 
     fn exchange(&mut self, leave: &[usize], arrive: &[dem::flow::Arrival]) -> Result<(), Failure> {
         dem::flow::exchange(&self.model, &mut self.state, &mut self.work, leave, arrive)
-            .map_err(|e| Failure::Numerical(e.to_string()))
+            .map_err(|e| Failure::Numerical(self.model.name_objects(&e)))
     }
 
     fn stored(&self) -> StoredEnergy {

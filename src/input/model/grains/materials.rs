@@ -22,18 +22,13 @@ pub struct MaterialsPart {
     pub pairs: Vec<PairOverride>,
     /// Materials of grains.
     pub of_grains: Vec<usize>,
-    names: Vec<String>,
+    pub(super) names: Vec<String>,
 }
 
 impl MaterialsPart {
     /// Returns grain materials that may contact a solid. Rigid sleepers contact grains only.
     pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
-    }
-
-    /// Returns the name of a material.
-    pub fn name(&self, material: usize) -> &str {
-        self.names.get(material).map_or("", String::as_str)
     }
 
     /// Returns sources of contact laws and time integration.

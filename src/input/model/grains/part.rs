@@ -16,7 +16,7 @@ use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use std::sync::Arc;
 use trackbed_dem::sheet::SurfaceMesh;
-use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, TimeStep, Vec3};
+use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, Names, TimeStep, Vec3};
 
 /// Resolved grains.
 #[derive(Clone)]
@@ -97,18 +97,6 @@ impl GrainsPart {
         self.wind.into_iter().chain(self.water)
     }
 
-    /// Formats the step limit of a model of these groups.
-    pub fn describe_limit(&self, model: &Model) -> String {
-        let limit = model.dt_limit();
-        let name = |part: u32| self.groups.names.get(part as usize).map_or("", String::as_str);
-        let body = match limit.body < model.body_count() {
-            true => format!("{} body {}", name(model.part(limit.body)), limit.body),
-            false => "no body".into(),
-        };
-        let wall = limit.wall.and_then(|wall| self.walls.names.get(wall));
-        limit.with_names(&body, self.materials.name(limit.partner), wall.map_or("", String::as_str))
-    }
-
     /// Whether grains scar a wall.
     pub fn scarred(&self) -> bool {
         self.walls.others.iter().any(|w| w.scarring.is_some())
@@ -172,6 +160,7 @@ impl GrainsPart {
             }
         }
         let mut input = ModelInput {
+            names: self.names(),
             materials: self.materials.all.clone(),
             contacts: self.materials.pairs.clone(),
             shapes: self.groups.shapes.clone(),
@@ -193,6 +182,15 @@ impl GrainsPart {
         };
         self.bonds.add_to(&mut input);
         input
+    }
+
+    fn names(&self) -> Names {
+        Names {
+            groups: self.groups.names.clone(),
+            planes: self.walls.plane_names.clone(),
+            walls: self.walls.names.clone(),
+            materials: self.materials.names.clone(),
+        }
     }
 
     /// Returns the material of a body.

@@ -58,7 +58,7 @@ fn stiffness(
         Ok(_) => Ok(()),
         Err(ModelError::RigidPair { a, b }) => {
             let name = format!("body {number}");
-            let [a, b] = [a, b].map(|end| if end == name { "the plate".into() } else { end });
+            let [a, b] = [a, b].map(|end| if end.ends_with(&name) { "the plate".into() } else { end });
             let found = format!("no stiffness for {a} against {b}, which can be in contact");
             let expected = "`stiffness` for one of their materials, or for the pair";
             Err(document.error(&format!("compaction.{k}.plate.material"), found, expected))

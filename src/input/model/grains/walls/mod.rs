@@ -22,6 +22,8 @@ pub struct WallsPart {
     pub others: Vec<WallInput>,
     /// Names of the other walls.
     pub names: Vec<String>,
+    /// Names of the planes.
+    pub plane_names: Vec<String>,
     /// Walls with recorded force.
     pub recorded: Vec<Recorded>,
 }
@@ -104,6 +106,7 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
         return Err(wall.error("name", format!("\"{name}\""), "a unique name").into());
     }
     if let (WallShape::Plane { point, normal }, true) = (&shape, is_plain(wall)) {
+        part.plane_names.push(name);
         part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
         return Ok(());
     }
