@@ -45,13 +45,13 @@ pub enum ModelError {
     BoundaryFace { index: usize, element: u32, side: u8, fault: &'static str },
 }
 
-/// Parameter errors; scenes name beta `alpha` and gamma `delta`.
+/// Parameter errors of Newmark and HHT-α.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NewmarkError {
     /// Not unconditionally stable.
     #[error(
-        "Newmark with alpha = {beta}, delta = {gamma} is not unconditionally stable: it needs delta >= 0.5 and \
-         alpha >= 0.25 (0.5 + delta)^2 = {least_beta}"
+        "Newmark with beta = {beta}, gamma = {gamma} is not unconditionally stable: it needs gamma >= 0.5 and \
+         beta >= 0.25 (0.5 + gamma)^2 = {least_beta}"
     )]
     Unstable {
         /// Given beta.
@@ -62,7 +62,7 @@ pub enum NewmarkError {
         least_beta: f64,
     },
     /// Negative or not finite.
-    #[error("Newmark's alpha = {beta} and delta = {gamma} must be finite numbers, 0 or above")]
+    #[error("Newmark's beta = {beta} and gamma = {gamma} must be finite numbers, 0 or above")]
     Range {
         /// Given beta.
         beta: f64,
@@ -79,7 +79,7 @@ pub enum NewmarkError {
     #[error("HHT-alpha needs the load at the start of the step, too")]
     LoadAtStart,
     /// Not for prescribed motion.
-    #[error("Newmark with alpha = 0 cannot follow a prescribed motion")]
+    #[error("Newmark with beta = 0 cannot follow a prescribed motion")]
     Prescribed,
 }
 

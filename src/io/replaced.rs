@@ -3,11 +3,13 @@
 use serde_json::Value;
 
 /// Scene keys: path, new name.
-const KEYS: [(&str, &str); 4] = [
+const KEYS: [(&str, &str); 6] = [
     ("bond.*.spread.together", "correlated"),
     ("grains.*.concentration", "solid_fraction"),
     ("grains.*.motion", "prescribed_velocity"),
     ("outlet.*.again", "recycle"),
+    ("solid.dynamics.alpha", "beta"),
+    ("solid.dynamics.delta", "gamma"),
 ];
 
 /// Values of scene keys: path, value, new value.

@@ -67,7 +67,7 @@ fn clumps_and_sleeper_on_an_embankment() {
 #[test]
 fn embankment_in_motion() {
     let set = [
-        "solid.dynamics.alpha=0.25",
+        "solid.dynamics.beta=0.25",
         "solid.rayleigh.alpha_m=4.0",
         "solid.rayleigh.beta_k=0.0003",
         "time.end=0.02",

@@ -220,6 +220,20 @@ fn lagged_scheme_limits_energy_error() {
 }
 
 #[test]
+fn lagged_scheme_warns_of_undamped_contacts() {
+    let folder = scene_folder("undamped", COUPLED);
+    let warned = |scheme: &str, ratio: f64| {
+        let scene = folder.join("scene.toml");
+        let scheme = format!("coupling.scheme={scheme}");
+        let ratio = format!("material.0.tangential_damping_ratio={ratio}");
+        let checked = trackbed(["check", scene.to_str().unwrap(), "--set", &scheme, "--set", &ratio]);
+        checked.good().stdout.contains("undamped tangential contacts at rest gain energy in every window")
+    };
+    assert!(warned("lagged", 0.0));
+    assert!(!warned("lagged", 0.1) && !warned("predicted", 0.0));
+}
+
+#[test]
 fn contact_classes_have_separate_limits() {
     let more = "[[material]]\nname = \"pebble\"\ndensity = 2650\nstiffness = \"4 MN/m\"\nfriction = 0.5\nrestitution = 0.4\n\n\
                 [[grains]]\nname = \"fines\"\nshape = \"sphere\"\nmaterial = \"pebble\"\nspheres = [[1.0, 0.4, 0.03, 0.03]]\n\n\

@@ -39,7 +39,7 @@ fn head_on_collision_stops() {
     let grains = format!("[[grains]]\nname = \"pair\"\nshape = \"sphere\"\nmaterial = \"stone\"\n{pair}\n");
     assert!(GRAINS.contains(&grains));
     let text = GRAINS.replace(&grains, &(group("left", -0.2, 100.0) + &group("right", 0.2, -100.0)));
-    stops("head_on", &text, "overlap of body 0 and body 1");
+    stops("head_on", &text, "overlap of body 0 of \"left\" and body 1 of \"right\"");
 }
 
 #[test]
@@ -49,9 +49,9 @@ fn fast_impact_on_floor_stops() {
     assert!(GRAINS.contains(spheres));
     let text = GRAINS.replace(spheres, fast);
     // More than half a radius per step: speed limit. Short steps: overlap limit.
-    stops("fast_floor", &text, "speed of body 0: 1000");
+    stops("fast_floor", &text, "speed of body 0 of \"pair\": 1000");
     let short = text.replace("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"5 us\"");
-    stops("fast_floor_short", &short, "overlap of body 0 and plane 0");
+    stops("fast_floor_short", &short, "overlap of body 0 of \"pair\" and wall0");
 }
 
 /// Drag acceleration within 0.1 µs, contacts a hundred times slower: u = V/(1 + cVt), c = ½ρCπr²/m.

@@ -3,6 +3,7 @@
 use super::support::{
     COUPLED, Folder, GRAINS, Outcome, PLASTIC, Table, json, repository, run, scene_folder, trackbed,
 };
+use base64::prelude::{BASE64_STANDARD, Engine};
 use quick_xml::events::Event;
 use std::fs;
 use std::path::Path;
@@ -14,6 +15,8 @@ pub(super) struct Page {
     /// Full-precision numbers of tooltips.
     pub(super) numbers: Vec<f64>,
     pub(super) figures: usize,
+    /// Columns and rows of the JPEG pictures.
+    pictures: Vec<[usize; 2]>,
     source: String,
 }
 
@@ -21,12 +24,13 @@ impl Page {
     /// Reads a page; requires well-formed, self-contained, finite content.
     #[track_caller]
     pub(super) fn read(file: &Path) -> Page {
-        let source = fs::read_to_string(file).unwrap();
+        let (source, pictures) = without_pictures(&fs::read_to_string(file).unwrap());
         let mut page = Page {
             sections: vec![],
             text: String::new(),
             numbers: vec![],
             figures: 0,
+            pictures,
             source: source.clone(),
         };
         let mut reader = quick_xml::Reader::from_str(&source);
@@ -40,7 +44,7 @@ impl Page {
                 Event::Start(tag) | Event::Empty(tag) => {
                     let name = String::from_utf8(tag.name().as_ref().to_vec()).unwrap();
                     depth += i32::from(matches!(event, Event::Start(_)));
-                    assert!(!matches!(name.as_str(), "script" | "img" | "link" | "iframe"), "<{name}>");
+                    assert!(!matches!(name.as_str(), "script" | "link" | "iframe"), "<{name}>");
                     page.figures += usize::from(name == "figure");
                     for attribute in tag.attributes() {
                         let attribute = attribute.unwrap();
@@ -50,7 +54,8 @@ impl Page {
                             b"title" if name == "td" => {
                                 page.numbers.push(value.split(' ').next().unwrap().parse().unwrap());
                             }
-                            b"src" | b"onload" | b"onclick" | b"onerror" => panic!("{value}"),
+                            b"src" => assert!(name == "img" && value == INLINE, "{name} {value}"),
+                            b"onload" | b"onclick" | b"onerror" => panic!("{value}"),
                             b"href" => assert!(value.starts_with('#'), "{value}"),
                             _ => {}
                         }
@@ -94,6 +99,26 @@ impl Page {
     }
 }
 
+/// Beginning of an inline picture.
+const INLINE: &str = "data:image/jpeg;base64,";
+
+/// Removes the content of pictures, which may contain any letters; returns their columns and rows.
+fn without_pictures(source: &str) -> (String, Vec<[usize; 2]>) {
+    let mut parts = source.split(INLINE);
+    let mut text = parts.next().unwrap().to_string();
+    let mut sizes = Vec::new();
+    for part in parts {
+        let (content, rest) = part.split_once('"').unwrap();
+        let bytes = BASE64_STANDARD.decode(content).unwrap();
+        // Start of frame: marker, length, precision, rows, columns.
+        let at = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
+        let number = |k: usize| usize::from(u16::from_be_bytes([bytes[at + k], bytes[at + k + 1]]));
+        sizes.push([number(7), number(5)]);
+        text += &format!("{INLINE}\"{rest}");
+    }
+    (text, sizes)
+}
+
 fn around(text: &str, word: &str) -> String {
     let at = text.find(word).unwrap();
     text[at.saturating_sub(60)..].chars().take(160).collect()
@@ -126,7 +151,9 @@ fn the_main_job() {
     ];
     let folder = Folder::new("report_track");
     let (page, summary) = reported(&folder, "inputs/track/cyclic/scene.toml", &set);
+    assert_eq!(page.pictures, [[1120, 630]]);
     page.has(&[
+        "picture",
         "overview",
         "settlement",
         "loops",
@@ -302,7 +329,7 @@ fn grains_alone() {
     );
     page.has(&["overview", "walls", "packing", "flow", "energy"]);
     page.says(summary["flow"]["mean_rate_out"].as_f64().unwrap());
-    page.lacks(&["solid", "settlement", "sleepers"]);
+    page.lacks(&["picture", "solid", "settlement", "sleepers"]);
     // Results of an earlier version have other names.
     let (file, out) = (folder.join("out/summary.json"), folder.join("out"));
     let mut text = fs::read_to_string(&file).unwrap();

@@ -414,20 +414,20 @@ fn one_in_the_other() -> String {
 fn grains_inside_each_other_are_named() {
     let folder = Folder::new("overlap");
     folder.write("scene.toml", &one_in_the_other());
-    fails(&folder, &["overlap of body 0 and body 1"]);
+    fails(&folder, &["overlap of body 0 of \"pair\" and body 1 of \"pair\""]);
 }
 
 #[test]
 fn a_failure_while_settling_is_reported() {
     let folder = Folder::new("overlap_settling");
     folder.write("scene.toml", &(one_in_the_other() + "\n[deposition]\nmax_time = 0.1\n"));
-    fails(&folder, &["settling: ", "overlap of body 0 and body 1"]);
+    fails(&folder, &["settling: ", "overlap of body 0 of \"pair\" and body 1 of \"pair\""]);
 }
 
 #[test]
 fn unstable_newmark_constants_blow_up() {
     let dynamics =
-        "[solid.dynamics]\nalpha = 0\ndelta = 0.3\naccept_conditional_stability = true\n\n[[solid.load]]";
+        "[solid.dynamics]\nbeta = 0\ngamma = 0.3\naccept_conditional_stability = true\n\n[[solid.load]]";
     let time = "[time]\nend = 5\nsolid_step = 0.01\n\n[output]";
     let text = SOLID.replace("[[solid.load]]", dynamics).replace("[output]", time);
     let folder = scene_folder("blow_up_solid", &text);

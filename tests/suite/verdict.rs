@@ -14,8 +14,8 @@ fn judged<'a>(summary: &'a Value, what: &str) -> &'a Value {
 fn divergent_solid_fails() {
     let folder = Folder::new("verdict-pulse");
     let set = [
-        "solid.dynamics.alpha=0",
-        "solid.dynamics.delta=0.5",
+        "solid.dynamics.beta=0",
+        "solid.dynamics.gamma=0.5",
         "solid.dynamics.accept_conditional_stability=true",
         "output.frames=0",
     ];

@@ -52,6 +52,16 @@ impl Default for SearchSkin {
     }
 }
 
+impl SearchSkin {
+    /// Returns the skin [m] for a mean radius [m].
+    pub(crate) fn distance(self, mean: f64) -> f64 {
+        match self {
+            SearchSkin::Share(share) => share * mean,
+            SearchSkin::Distance(distance) => distance,
+        }
+    }
+}
+
 /// Bound for stiffnesses with local damping.
 const DAMPED: f64 = 0.95;
 

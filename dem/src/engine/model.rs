@@ -2,7 +2,7 @@
 
 use super::check;
 use super::collision;
-use super::input::{ModelInput, SearchSkin};
+use super::input::ModelInput;
 use super::steps::Steps;
 use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
@@ -116,10 +116,7 @@ impl Model {
         check::rigid_pairs(&bodies, &input, &laws)?;
         let Sizes { radii, spheres, largest, mean } = Sizes::new(&bodies, &input.shapes);
         let round = (0..bodies.len()).filter(|&b| bodies.kind(b) != BodyKind::Solid).count();
-        let skin = match input.skin {
-            SearchSkin::Share(share) => share * mean,
-            SearchSkin::Distance(distance) => distance,
-        };
+        let skin = input.skin.distance(mean);
         check::adhesion(&input)?;
         check::scarring(&bodies, &input)?;
         check::polyhedra(&bodies, &input, &laws)?;
@@ -206,6 +203,11 @@ impl Model {
 
     fn group(&self, body: usize) -> Option<u32> {
         (body < self.body_count()).then(|| self.part(body))
+    }
+
+    /// Whether the stiffness of a contact grows with the overlap.
+    pub(crate) fn stiffens(&self) -> bool {
+        self.expected > 0.0
     }
 
     /// Fraction of the critical time step of current contacts, if steps follow it ([`crate::stability`]).

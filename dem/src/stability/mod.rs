@@ -16,7 +16,6 @@ mod operator;
 
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::measure;
 use operator::Operator;
 
 /// Fewest steps between evaluations of the limit.
@@ -24,8 +23,8 @@ pub const LEAST: u64 = 64;
 /// Most steps between evaluations.
 pub const MOST: u64 = 1024;
 
-/// Energy received since the last evaluation, relative to the spring energy, that calls for the next one. For
-/// Hertz contacts: a quarter more force, 4 % off the limit.
+/// Energy received since the last evaluation, relative to the spring energy, that calls for the next one if
+/// stiffness grows with the overlap. For Hertz contacts: a quarter more force, 4 % off the limit.
 const RECEIVED: f64 = 0.45;
 
 /// Rise of the dissipation rate since the last evaluation that calls for the next one.
@@ -85,17 +84,22 @@ pub fn follow(model: &Model, state: &mut State) -> bool {
     let Some(share) = model.measured() else { return false };
     let rate = dissipation_rate(state);
     let received = state.balance.work() - state.balance.dissipated();
-    let surges = rate > SURGE * state.step_size.rate || received > state.step_size.expected;
+    let loaded = model.stiffens() && received > state.step_size.expected;
+    let surges = loaded || rate > SURGE * state.step_size.rate;
     let due = state.steps >= state.step_size.look;
     if state.steps == 0 || !due && !surges {
         return false;
     }
-    state.step_size.rate = rate;
-    state.step_size.expected = received + RECEIVED * measure::energies(model, state).elastic();
     let mut operator = Operator::new(model, state);
-    let (found, before) = (largest_step(&mut operator, state), state.step_size.limit);
+    state.step_size.rate = rate;
+    state.step_size.expected = received + RECEIVED * operator.spring_energy();
     // Between evaluations, only a step near the limit changes.
-    if !due && state.step_size.wanted < NEAR * found {
+    let wanted = state.step_size.wanted;
+    if !due && lanczos::largest(operator.at(wanted)) < 4.0 * NEAR * NEAR {
+        return false;
+    }
+    let (found, before) = (largest_step(&mut operator, state), state.step_size.limit);
+    if !due && wanted < NEAR * found {
         return false;
     }
     let packed = operator.links() as f64 > LASTING * state.present_count() as f64;

@@ -2,7 +2,7 @@
 
 use crate::error::NewmarkError;
 
-/// Newmark parameters (Hughes 1987); scenes name them `alpha` and `delta`.
+/// Newmark parameters (Hughes 1987).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newmark {
     /// Weight of the new acceleration in the displacement [-].

@@ -76,6 +76,19 @@ pub fn render(options: &Options) -> Result<Written, Failure> {
     Ok(Written { file, size: options.size, frames, times })
 }
 
+/// Returns the last frame as a JPEG picture of `size`, and its caption; none without frames.
+///
+/// # Errors
+/// Invalid results; I/O errors.
+pub fn last_frame(dir: &Path, size: [usize; 2]) -> Result<Option<(Vec<u8>, String)>, Failure> {
+    let options = Options { size, hide: vec![Part::Caption], ..Options::new(dir) };
+    let run = Run::open(dir)?;
+    let Some(last) = run.frames.len().checked_sub(1) else { return Ok(None) };
+    let studio = Studio::new(&run, &options, &[last])?;
+    let bytes = encode::jpg(dir, &studio.picture(last)?)?;
+    Ok(Some((bytes, studio.remark(last).replace("   ", ", "))))
+}
+
 /// Returns the file to write, `usual` by default, and its format.
 fn target(options: &Options, usual: &Path) -> Result<(PathBuf, Form), Failure> {
     let file = options.out.clone().unwrap_or_else(|| usual.to_path_buf());

@@ -1,6 +1,6 @@
 //! Options of pictures from the command line, named as in the viewer.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::colours;
 use super::draw::{Colour, V3};
@@ -298,6 +298,35 @@ pub fn map(name: &str) -> Result<(), Failure> {
 }
 
 impl Options {
+    /// Returns the default options for a results directory.
+    pub fn new(dir: &Path) -> Options {
+        Options {
+            dir: dir.to_path_buf(),
+            out: None,
+            force: false,
+            frames: None,
+            size: [1280, 720],
+            show: Vec::new(),
+            hide: Vec::new(),
+            fields: Vec::new(),
+            ranges: Vec::new(),
+            maps: Vec::new(),
+            opacities: Vec::new(),
+            towards: None,
+            perspective: None,
+            zoom: 1.0,
+            near_grains: false,
+            background: [1.0; 3],
+            clips: Vec::new(),
+            deform: 1.0,
+            since: None,
+            bands: 0,
+            min_force: 0.0,
+            thickness: 1.0,
+            rate: 10.0,
+        }
+    }
+
     /// Returns the last choice.
     pub fn of<T: Clone>(list: &[(Option<Part>, T)], part: Part) -> Option<T> {
         list.iter().rev().find(|(of, _)| of.is_none_or(|of| of == part)).map(|(_, value)| value.clone())

@@ -52,7 +52,8 @@ mark { background: var(--care); color: inherit; }
 .facts td.n, .facts th.n { text-align: left; }
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(420px, 100%), 1fr)); gap: 18px 26px; align-items: start; }
 figure { margin: 6px 0; max-width: 620px; break-inside: avoid; }
-figure > svg { width: 100%; height: auto; display: block; }
+figure > svg, figure > img { width: 100%; height: auto; display: block; }
+figure.picture { max-width: 900px; }
 svg text { fill: var(--ink); } svg .major { stroke: var(--grid); } svg .minor { stroke: var(--grid2); }
 svg .frame { stroke: var(--note); } svg .hollow { fill: var(--paper); }
 figcaption { font-weight: bold; font-size: 14px; margin: 0 0 4px 40px; }

@@ -52,7 +52,7 @@ fn infinite_friction() {
 #[test]
 fn rigid_against_rigid() {
     grains_scene().scene("stiffness = \"1 MN/m\"\n", "").refused(
-        "scene.toml:3: material: found no stiffness for body 0 against body 1, which can be in contact, expected `stiffness` \
+        "scene.toml:3: material: found no stiffness for body 0 of \"pair\" against body 1 of \"pair\", which can be in contact, expected `stiffness` \
          for one of their materials, or for the pair",
     );
 }
@@ -448,7 +448,7 @@ fn rigid_plate_on_rigid_wall() {
         .scene("normal = [0, 0, 1]\nmaterial = \"stone\"", "normal = [0, 0, 1]\nmaterial = \"rigid\"")
         .scene("[time]", &TAMPING.replace("\"stone\"", "\"rigid\""))
         .refused(
-            "scene.toml:30: compaction.0.plate.material: found no stiffness for the plate against plane 0, which can be in \
+            "scene.toml:30: compaction.0.plate.material: found no stiffness for the plate against wall0, which can be in \
              contact, expected `stiffness` for one of their materials, or for the pair",
         );
 }

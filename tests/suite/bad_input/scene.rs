@@ -200,11 +200,11 @@ fn probe_at_an_absent_node() {
 #[test]
 fn unstable_newmark_constants() {
     solid()
-        .scene("[[solid.load]]", "[solid.dynamics]\nalpha = 0.1\n\n[[solid.load]]")
+        .scene("[[solid.load]]", "[solid.dynamics]\nbeta = 0.1\n\n[[solid.load]]")
         .scene("[output]", "[time]\nend = 0.1\nsolid_step = 0.01\n\n[output]")
         .refused(
-            "scene.toml:15: solid.dynamics: found Newmark with alpha = 0.1, delta = 0.5 is not unconditionally stable: \
-             it needs delta >= 0.5 and alpha >= 0.25 (0.5 + delta)^2 = 0.25, expected stable constants",
+            "scene.toml:15: solid.dynamics: found Newmark with beta = 0.1, gamma = 0.5 is not unconditionally stable: \
+             it needs gamma >= 0.5 and beta >= 0.25 (0.5 + gamma)^2 = 0.25, expected stable constants",
         );
 }
 
@@ -243,16 +243,16 @@ fn mixed_rayleigh_damping() {
 fn grain_step_above_the_limit() {
     // Limit for two equal spheres.
     grains_scene().scene("end = \"20 ms\"", "end = \"20 ms\"\ngrain_step = \"1 ms\"").refused(
-        "scene.toml:24: time.grain_step: found 0.001 s, expected at most 1.374298e-4 s, set by body 0 (effective mass \
-         7.929e-1 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
+        "scene.toml:24: time.grain_step: found 0.001 s, expected at most 1.374298e-4 s, set by body 0 of \"pair\" (effective mass \
+         7.929e-1 kg) in contact with stone (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
     );
 }
 
 #[test]
 fn step_above_limit_under_sleeper() {
     coupled().scene("[output]", "[time]\ngrain_step = \"1 ms\"\n\n[output]").refused(
-        "scene.toml:54: time.grain_step: found 0.001 s, expected at most 3.887101e-4 s, set by body 0 (effective mass \
-         6.343e0 kg) in contact with material 0 (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
+        "scene.toml:54: time.grain_step: found 0.001 s, expected at most 3.887101e-4 s, set by body 0 of \"bed\" (effective mass \
+         6.343e0 kg) in contact with stone (stiffness 1.000e6 N/m), or `accept_step_above_limit = true`",
     );
 }
 

@@ -257,7 +257,7 @@ fn impact() -> Row {
     assert!(accounts.iter().all(|e| *e < 0.01), "{accounts:?}");
     assert!(speeds.iter().all(|v| (850.0..900.0).contains(v)), "{speeds:?}");
     run(1e7).stopped("energy error: ");
-    run(1e5).stopped("speed of body 0: 1000");
+    run(1e5).stopped("speed of body 0 of \"ball\": 1000");
     Row::new(
         "ball of 10 mm, e = 0.9, on a steel plate 1 m × 10 mm; deepest overlap 0.1, 0.5, 1.5 radii; 3.3; 33",
         format!(

@@ -205,7 +205,8 @@ fn overlap() -> Row {
         errors.push(off(energy, 0.5 * 1e5 * depth * depth));
     }
     assert!(errors.iter().all(|e| *e < 0.02), "{errors:?}");
-    Case::run(&pair(0.0101), &[]).stopped("overlap of body 0 and body 1: 0.0101 m (limit 0.01 m)");
+    Case::run(&pair(0.0101), &[])
+        .stopped("overlap of body 0 of \"left\" and body 1 of \"right\": 0.0101 m (limit 0.01 m)");
     Row::new(
         "pair 1e-4, 0.1, 0.5, 0.99, 1.01 radii inside each other",
         format!(
@@ -225,14 +226,15 @@ fn coincident() -> Row {
             + &time(0.02, 100)
     };
     for gap in [0.0, 1e-300, 1e-12] {
-        Case::run(&pair(gap), &[]).stopped("at t = 0.000000e0 s: overlap of body 0 and body 1: 0.0");
+        Case::run(&pair(gap), &[])
+            .stopped("at t = 0.000000e0 s: overlap of body 0 of \"one\" and body 1 of \"two\": 0.0");
     }
     let on_floor =
         |z: f64| stone("") + &ball("one", [0.0, 0.0, z], 0.01, [0.0; 3]) + &floor() + &time(0.02, 100);
     let case = Case::run(&on_floor(0.0), &[]).good();
     let error = case.value("/energy/largest_relative_error");
     assert!(error < 0.01 && case.last("one_z") > 0.01);
-    Case::run(&on_floor(-0.005), &[]).stopped("overlap of body 0 and wall 0: 0.015 m");
+    Case::run(&on_floor(-0.005), &[]).stopped("overlap of body 0 of \"one\" and wall \"floor\": 0.015 m");
     Row::new(
         "two balls 0, 1e-300, 1e-12 m apart; a ball with its centre in a plane, and 0.5 radii beyond",
         format!(

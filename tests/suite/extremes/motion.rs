@@ -50,7 +50,7 @@ fn gravities() -> Row {
     let errors = [1e-6, 1.0, 1e3]
         .map(|gravity| off(-fallen(gravity).good().last("floor_force_z"), mass(0.01) * gravity));
     assert!(errors.iter().all(|e| *e < 1e-6), "{errors:?}");
-    fallen(1e6).stopped("overlap of body 0 and wall 0: 0.01");
+    fallen(1e6).stopped("overlap of body 0 of \"ball\" and wall \"floor\": 0.01");
     Row::new(
         "ball dropped by its radius at 1e-6, 1, 1e3, 1e6 m/s²",
         format!(
@@ -78,7 +78,7 @@ fn moving_walls() -> Row {
         errors.push(off(struck(speed, stiffness).good().velocity("ball", 0.1)[2], 1.5 * speed));
     }
     assert!(errors.iter().all(|e| *e < 0.01), "{errors:?}");
-    struck(100.0, 1e5).stopped("overlap of body 0 and triangle 0");
+    struck(100.0, 1e5).stopped("overlap of body 0 of \"ball\" and triangle 0");
     Row::new(
         "plate of triangles that meets a ball at rest at 0.1, 1, 30 m/s, 1000 m/s (K = 1.1e10); 100 m/s (K = 1e5)",
         format!(
@@ -91,7 +91,7 @@ fn moving_walls() -> Row {
 
 fn skipping_walls() -> Row {
     for speed in [300.0, 1e3, 3e3, 1e4] {
-        struck(speed, 1e5).stopped("speed of wall 0");
+        struck(speed, 1e5).stopped("speed of wall0");
     }
     Row::new(
         "the plate at 300, 1e3, 3e3, 1e4 m/s, K = 1e5: 1.2, 4, 12, 40 radii in a step",

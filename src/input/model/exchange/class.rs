@@ -145,5 +145,15 @@ pub fn remarks(classes: &[ContactClass], scheme: Scheme, substeps: u32) -> Vec<S
             )
         })
         .chain(heavy)
+        .chain(undamped(classes, scheme))
         .collect()
+}
+
+/// The staggered scheme adds energy to undamped contacts at rest, whatever the window.
+fn undamped(classes: &[ContactClass], scheme: Scheme) -> Option<String> {
+    let found = classes.iter().find(|c| scheme == Scheme::Lagged && c.numbers.phase > 0.0)?;
+    Some(format!(
+        "{} on {}: undamped tangential contacts at rest gain energy in every window under coupling.scheme = \"lagged\". Set scheme = \"predicted\", or tangential_damping_ratio = 0.1.",
+        found.grains, found.solid
+    ))
 }

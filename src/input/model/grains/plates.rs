@@ -57,8 +57,9 @@ fn stiffness(
     match Model::new(input) {
         Ok(_) => Ok(()),
         Err(ModelError::RigidPair { a, b }) => {
-            let name = format!("body {number}");
-            let [a, b] = [a, b].map(|end| if end.ends_with(&name) { "the plate".into() } else { end });
+            let own = format!("body {number}");
+            let is_plate = |end: &str| end == own || end.starts_with(&format!("{own} of"));
+            let [a, b] = [a, b].map(|end| if is_plate(&end) { "the plate".into() } else { end });
             let found = format!("no stiffness for {a} against {b}, which can be in contact");
             let expected = "`stiffness` for one of their materials, or for the pair";
             Err(document.error(&format!("compaction.{k}.plate.material"), found, expected))

@@ -127,15 +127,15 @@ pub fn plans(
 fn time_method(d: &Table<Dynamics>) -> Result<TimeMethod, SceneError> {
     if let Some(alpha) = d.hht_alpha {
         let idle = [
-            ("alpha", d.alpha.is_some()),
-            ("delta", d.delta.is_some()),
+            ("beta", d.beta.is_some()),
+            ("gamma", d.gamma.is_some()),
             ("accept_conditional_stability", d.accept_conditional_stability),
         ];
         d.reject_with(idle, "`hht_alpha`")?;
         d.check("hht_alpha", alpha, |a| (-1.0 / 3.0..=0.0).contains(&a), "-1/3 to 0")?;
         return Ok(TimeMethod::Hht(alpha));
     }
-    let method = Newmark { beta: d.alpha.unwrap_or(0.25), gamma: d.delta.unwrap_or(0.5) };
+    let method = Newmark { beta: d.beta.unwrap_or(0.25), gamma: d.gamma.unwrap_or(0.5) };
     let checked = if d.accept_conditional_stability { method.check_range() } else { method.check() };
     checked.map_err(|e| d.here(e.to_string(), "stable constants"))?;
     Ok(TimeMethod::Newmark(method))

@@ -8,10 +8,10 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dynamics {
-    /// Newmark's α (β elsewhere); default 0.25.
-    pub alpha: Option<f64>,
-    /// Newmark's δ (γ elsewhere); default 0.5.
-    pub delta: Option<f64>,
+    /// Newmark's β; default 0.25.
+    pub beta: Option<f64>,
+    /// Newmark's γ; default 0.5.
+    pub gamma: Option<f64>,
     /// α of Hilber–Hughes–Taylor, instead of Newmark's; default none; −1/3 – 0.
     pub hht_alpha: Option<f64>,
     /// Whether conditionally stable constants are accepted; default false.

@@ -60,7 +60,7 @@ fn png(file: &Path, picture: &Picture) -> Result<Vec<u8>, WriteError> {
 }
 
 /// Fails for pictures too large for JPEG.
-fn jpg(file: &Path, picture: &Picture) -> Result<Vec<u8>, WriteError> {
+pub fn jpg(file: &Path, picture: &Picture) -> Result<Vec<u8>, WriteError> {
     let mut bytes = Vec::new();
     let refused = |error: jpeg_encoder::EncodingError| WriteError::format(file, error);
     let side = |n: usize| u16::try_from(n).map_err(|_| WriteError::format(file, "a side above 65535 pixels"));

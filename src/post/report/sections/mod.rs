@@ -11,6 +11,7 @@ mod loops;
 mod overlay;
 mod overview;
 mod packing;
+mod picture;
 mod reproduce;
 mod settlement;
 mod slopes;
@@ -27,9 +28,10 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// Returns all sections with data; `axle_load` of a cycle [t].
 pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
-    let sections: [Make; 24] = [
+    let sections: [Make; 25] = [
         verdict::verdict,
         compare::compare,
+        picture::picture,
         overview::overview,
         settlement::settlement,
         loops::loops,

@@ -1,0 +1,39 @@
+//! Pictures of the last frames.
+
+use crate::render;
+use crate::report::data::RunData;
+use crate::report::page::{Section, joined, plots};
+use base64::prelude::{BASE64_STANDARD, Engine};
+use maud::{Markup, PreEscaped, html};
+
+/// Most pictures of a page.
+const MOST: usize = 4;
+
+/// Columns and rows of a single picture, and of one of several.
+const SIZES: [[usize; 2]; 2] = [[1120, 630], [640, 400]];
+
+/// Formats a picture of each run; runs without readable frames have none.
+pub fn picture(runs: &[RunData]) -> Option<Section> {
+    let alone = runs.len() == 1;
+    let size = SIZES[usize::from(!alone)];
+    let drawn = runs.iter().take(MOST).filter_map(|run| {
+        let (bytes, remark) = render::last_frame(&run.dir, size).ok()??;
+        Some(figure(&bytes, &if alone { remark } else { format!("{}: {remark}", run.label) }))
+    });
+    let figures: Vec<Markup> = drawn.collect();
+    let html = if alone { joined(figures) } else { plots(figures) };
+    Section::new("picture", "Last frame", html)
+}
+
+fn figure(bytes: &[u8], caption: &str) -> Markup {
+    // Base64 needs no escaping; XML closes the element.
+    let image =
+        format!("<img alt=\"Last frame\" src=\"data:image/jpeg;base64,{}\"/>", BASE64_STANDARD.encode(bytes));
+    html! {
+        figure class="picture" {
+            figcaption { (caption) } "\n"
+            (PreEscaped(image)) "\n"
+        }
+        "\n"
+    }
+}
