@@ -1,7 +1,7 @@
 //! Pictures of the last frames.
 
 use crate::render;
-use crate::report::data::RunData;
+use crate::report::data::{RunData, State};
 use crate::report::page::{Section, joined, plots};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{Markup, PreEscaped, html};
@@ -16,7 +16,8 @@ const SIZES: [[usize; 2]; 2] = [[1120, 630], [640, 400]];
 pub fn picture(runs: &[RunData]) -> Option<Section> {
     let alone = runs.len() == 1;
     let size = SIZES[usize::from(!alone)];
-    let drawn = runs.iter().take(MOST).filter_map(|run| {
+    // Mode shapes have no scale.
+    let drawn = runs.iter().filter(|run| run.state() != State::Modes).take(MOST).filter_map(|run| {
         let (bytes, remark) = render::last_frame(&run.dir, size).ok()??;
         Some(figure(&bytes, &if alone { remark } else { format!("{}: {remark}", run.label) }))
     });
